@@ -242,19 +242,28 @@ def dask_address():
         yield cluster.scheduler_address
 
 
-def cut(bag, directory, begin, end, *, topics=None):
+def cut(bag, directory, begin, end):
     """Write the messages of `bag` from `begin` to `end` [s] to a bag of their own."""
+    low, high = (bag.start_time + round(at * 1e9) for at in (begin, end))
+    _copy(bag, directory, lambda one: one.data if low <= one.log_time < high else None)
+
+
+def _copy(bag, directory, data_of):
+    """Write a bag with the data that a function gives for each message, and return it."""
+    from ballscrew_monitor.recordings.bag import Bag
     from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 
-    low, high = (bag.start_time + round(at * 1e9) for at in (begin, end))
     with BagWriter(directory, directory.name) as writer:
         for name, info in bag.topics.items():
             writer.add_topic(Topic(name=name, type_name=info.type_name, offer=Offer.SENSOR))
-        for message in bag.messages(topics):
-            if low <= message.log_time < high:
-                writer.write(
-                    message.topic,
-                    message.data,
-                    log_time=message.log_time,
-                    publish_time=message.publish_time,
-                )
+        for message in bag.messages():
+            if (data := data_of(message)) is not None:
+                times = {'log_time': message.log_time, 'publish_time': message.publish_time}
+                writer.write(message.topic, data, **times)
+    return Bag(directory)
+
+
+@pytest.fixture(scope='session')
+def copy_bag():
+    """Return what copies a bag with some messages damaged or left out."""
+    return _copy

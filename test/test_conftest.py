@@ -26,7 +26,7 @@ sys.meta_path[sys.meta_path.index(PathFinder)] = Blind
 """
 
 
-def test_without_mcap_the_tests_that_need_it_are_skipped(tmp_path: Path) -> None:
+def test_without_mcap_the_tests_that_need_it_are_skipped(tmp_path):
     """Neither an error when they are collected, nor a failure of a test with a bag."""
     (tmp_path / 'blind.py').write_text(BLIND)
     paths = (str(tmp_path), os.environ.get('PYTHONPATH', ''))
@@ -47,13 +47,13 @@ def test_without_mcap_the_tests_that_need_it_are_skipped(tmp_path: Path) -> None
     assert 'passed, 1 skipped' in done.stdout
 
 
-def test_no_example_is_judged_by_its_time() -> None:
+def test_no_example_is_judged_by_its_time():
     """A busy machine fails no property."""
     assert settings().deadline is None
     assert HealthCheck.too_slow in settings().suppress_health_check
 
 
-def test_the_tests_draw_the_same_examples_each_time_and_fuzzing_does_not() -> None:
+def test_the_tests_draw_the_same_examples_each_time_and_fuzzing_does_not():
     """Nobody's first `make test` finds a defect that is not of their change."""
     same, fuzz = settings.get_profile('same'), settings.get_profile('fuzz')
     assert (same.derandomize, same.database) == (True, None)

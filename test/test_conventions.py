@@ -84,12 +84,11 @@ OPTIONAL = {
 }
 
 
-def name_of(path: Path) -> str:
-    """Return the path within the tree."""
+def name_of(path):
     return str(path.relative_to(TREE))
 
 
-def public(body: list[ast.stmt]) -> list[ast.FunctionDef | ast.ClassDef]:
+def public(body):
     """Return the public functions and classes of a module or class, methods included."""
     found: list[ast.FunctionDef | ast.ClassDef] = []
     for node in body:
@@ -98,7 +97,7 @@ def public(body: list[ast.stmt]) -> list[ast.FunctionDef | ast.ClassDef]:
     return found
 
 
-def quantities(node: ast.FunctionDef | ast.ClassDef) -> list[str]:
+def quantities(node):
     """Return the names of the float parameters or fields that are quantities."""
     if isinstance(node, ast.FunctionDef):
         given = [(arg.arg, arg.annotation) for arg in (*node.args.args, *node.args.kwonlyargs)]
@@ -117,7 +116,7 @@ def quantities(node: ast.FunctionDef | ast.ClassDef) -> list[str]:
     ]
 
 
-def says_unit(node: ast.FunctionDef | ast.ClassDef, text: str) -> bool:
+def says_unit(node, text):
     """Tell whether a unit is in the docstring, or in a comment beside the fields of a class."""
     if UNIT.search(ast.get_docstring(node) or ''):
         return True
@@ -126,8 +125,7 @@ def says_unit(node: ast.FunctionDef | ast.ClassDef, text: str) -> bool:
 
 
 @pytest.mark.parametrize('path', PACKAGES, ids=name_of)
-def test_docstrings_say_units(path: Path) -> None:
-    """A public function or class with a physical quantity says its [unit]."""
+def test_docstrings_say_units(path):
     text = path.read_text()
     for node in public(ast.parse(text).body):
         named = quantities(node)
@@ -135,7 +133,7 @@ def test_docstrings_say_units(path: Path) -> None:
 
 
 @pytest.mark.parametrize('path', PACKAGES, ids=name_of)
-def test_units_are_spelt_as_everywhere(path: Path) -> None:
+def test_units_are_spelt_as_everywhere(path):
     """One spelling for one unit: N m, rev/min, s, degC, Pa s."""
     tree = ast.parse(path.read_text())
     for node in (tree, *public(tree.body)):
@@ -143,27 +141,24 @@ def test_units_are_spelt_as_everywhere(path: Path) -> None:
 
 
 @pytest.mark.parametrize('path', [*SOURCES, TREE / 'setup.py'], ids=name_of)
-def test_sources_carry_copyright_and_licence(path: Path) -> None:
-    """Two lines, the same everywhere."""
+def test_sources_carry_copyright_and_licence(path):
     text = path.read_text()
     assert text.startswith(HEADER) or text.split('\n', 1)[1].startswith(HEADER)
 
 
 @pytest.mark.parametrize('path', TEXTS, ids=name_of)
-def test_no_file_knows_the_machine_it_was_written_on(path: Path) -> None:
-    """No path into someone's home or scratch space."""
+def test_no_file_knows_the_machine_it_was_written_on(path):
     assert not re.findall(r'(?<![\w.])/(?:home|root|tmp|work|Users)/\w+', path.read_text())
 
 
-def version_in(name: str, pattern: str) -> str:
+def version_in(name, pattern):
     """Return what a pattern finds first in a file."""
     match = re.search(pattern, (TREE / name).read_text(), re.MULTILINE)
     assert match, f'no version in {name}'
     return match[1]
 
 
-def test_version_is_the_same_everywhere() -> None:
-    """One number for both packages."""
+def test_version_is_the_same_everywhere():
     assert (
         len(
             {
@@ -177,7 +172,7 @@ def test_version_is_the_same_everywhere() -> None:
     )
 
 
-def test_pins_meet_all_requirements() -> None:
+def test_pins_meet_all_requirements():
     """What setup.py asks for, with all extras, is pinned to a version that it allows."""
     lines = (TREE / 'constraints.txt').read_text().splitlines()
     pins = dict(line.split('==') for line in lines if not line.startswith('#'))
@@ -187,7 +182,7 @@ def test_pins_meet_all_requirements() -> None:
         assert requirement.specifier.contains(version), f'{requirement}: {version} is pinned'
 
 
-def test_manifest_names_what_is_imported() -> None:
+def test_manifest_names_what_is_imported():
     """Every package that is imported is depended on, and none that is not."""
     manifest = ElementTree.parse(TREE / 'package.xml')
     declared = {element.text for element in manifest.iter('exec_depend')}
@@ -212,8 +207,7 @@ def test_manifest_names_what_is_imported() -> None:
     assert not {name for name in declared - needed if f'{name}/' not in text}
 
 
-def test_every_file_of_tests_is_collected() -> None:
-    """Each holds a test, under a name that pytest looks for, and no test hides another."""
+def test_every_file_of_tests_is_collected():
     for path in sorted((TREE / 'test').rglob('*.py')):
         names = [
             node.name
@@ -224,7 +218,7 @@ def test_every_file_of_tests_is_collected() -> None:
         assert path.name == 'conftest.py' or (path.name.startswith('test_') and names), path.name
 
 
-def test_every_golden_sentence_is_asked_for() -> None:
+def test_every_golden_sentence_is_asked_for():
     """The file of tests that a table is of names each of its keys, in their order."""
     folder = TREE / 'test'
     golden = tomllib.loads((folder / 'data' / 'sentences.toml').read_text(encoding='utf-8'))
@@ -238,7 +232,7 @@ def test_every_golden_sentence_is_asked_for() -> None:
     assert list(golden) == sorted(golden)
 
 
-def test_tests_mirror_the_sources() -> None:
+def test_tests_mirror_the_sources():
     """Each file of tests in a folder stands where the file stands that it tests."""
     folder = TREE / 'test'
     nested = {path.relative_to(folder) for path in folder.glob('*/**/test_*.py')}
@@ -250,7 +244,7 @@ def test_tests_mirror_the_sources() -> None:
     assert alone == THEMES
 
 
-def test_a_deadline_only_ends_a_hang() -> None:
+def test_a_deadline_only_ends_a_hang():
     """Every file that has one has the same, long enough for a machine that is busy elsewhere."""
     texts = [path.read_text() for path in (TREE / 'test').rglob('*.py')]
     found = {one for text in texts for one in re.findall(r'^DEADLINE = .*?(?=,|$)', text, re.M)}
@@ -259,13 +253,13 @@ def test_a_deadline_only_ends_a_hang() -> None:
     assert not [one for text in texts for one in calls.findall(text)]
 
 
-def test_slow_tests_are_there() -> None:
+def test_slow_tests_are_there():
     """What is named as slow is a file or folder of tests; a move would make it fast unseen."""
     slow = runpy.run_path(str(TREE / 'test' / 'conftest.py'))['SLOW']
     assert not [name for name in slow if not (TREE / 'test' / name).exists()]
 
 
-def test_only_sources_are_in_the_repository() -> None:
+def test_only_sources_are_in_the_repository():
     """Nothing that is made, nothing large."""
     listed = subprocess.run(
         ['git', 'ls-files', '-z'], cwd=TREE, capture_output=True, text=True, check=False

@@ -53,29 +53,28 @@ COMMAND = re.compile(r'ballscrew ((?:surface )?[a-z]+)((?: [^`\n#]*)?)')
 MOST_PAGES, MOST_WORDS = 10, 900
 
 
-def name_of(page: Path) -> str:
-    """Return the path of a page within the repository."""
+def name_of(page):
     return str(page.relative_to(ROOT))
 
 
-def anchors(page: Path) -> set[str]:
+def anchors(page):
     """Return the anchors that the headings of a page make."""
     headings = re.findall(r'^#+ (.*)$', page.read_text(encoding='utf-8'), flags=re.MULTILINE)
     return {re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-') for heading in headings}
 
 
-def defines(file: Path, name: str) -> bool:
+def defines(file, name):
     """Tell whether a module defines a function or class of that name."""
     return bool(re.search(rf'^(?:def|class) {name}\b', file.read_text(encoding='utf-8'), re.M))
 
 
-def words_of(page: Path) -> str:
+def words_of(page):
     """Return the text of a page without line breaks and without the table that code makes."""
     text = page.read_text(encoding='utf-8').replace(markdown_table().strip(), '')
     return ' '.join(text.split())
 
 
-def help_of(capsys, *words: str) -> str:
+def help_of(capsys, *words):
     """Return what `--help` prints for a command."""
     with pytest.raises(SystemExit):
         main([*words, '--help'])
@@ -83,8 +82,7 @@ def help_of(capsys, *words: str) -> str:
 
 
 @pytest.mark.parametrize('page', PAGES, ids=name_of)
-def test_links_lead_somewhere(page: Path):
-    """Every relative link of a page names a file of the repository, and a heading if any."""
+def test_links_lead_somewhere(page):
     links = re.findall(r'\]\(([^)#]*)(?:#([^)]+))?\)', page.read_text(encoding='utf-8'))
     for target, anchor in links:
         if not target.startswith('http'):
@@ -94,35 +92,30 @@ def test_links_lead_somewhere(page: Path):
 
 
 @pytest.mark.parametrize('page', PAGES, ids=name_of)
-def test_paths_named_exist(page: Path):
-    """Every path into the repository that a page names is there."""
+def test_paths_named_exist(page):
     for named in CODE_PATH.findall(page.read_text(encoding='utf-8')):
         assert (ROOT / named.rstrip('.')).exists(), named
 
 
 @pytest.mark.parametrize('page', PAGES, ids=name_of)
-def test_functions_named_exist(page: Path):
-    """Every function or class that a page names with its file is defined there."""
+def test_functions_named_exist(page):
     text = page.read_text(encoding='utf-8')
     for file, name in re.findall(r'`([\w/]+/\w+\.py): (\w+)`', text):
         assert defines(ROOT / file, name), f'{file}: {name}'
 
 
 def test_documents_named_in_code_exist():
-    """Every page that a docstring or comment refers to is there."""
     for path in SOURCES:
         for named in re.findall(r'\bdocs/[\w/]+\.md', path.read_text(encoding='utf-8')):
             assert (ROOT / named).exists(), f'{name_of(path)}: {named}'
 
 
 def test_parameter_page_is_the_table():
-    """The page holds the table as the code makes it."""
     page = (DOCS / 'reference' / 'parameters.md').read_text(encoding='utf-8')
     assert markdown_table().strip() in page
 
 
 def test_commands_of_the_readme_exist(capsys):
-    """Each command that the README's table shows is one that the program knows."""
     readme = (ROOT / 'README.md').read_text(encoding='utf-8')
     help_text = help_of(capsys)
     shown = set(re.findall(r'^\| `ballscrew (\w+)', readme, flags=re.MULTILINE))
@@ -132,8 +125,7 @@ def test_commands_of_the_readme_exist(capsys):
 
 
 @pytest.mark.parametrize('page', [ROOT / 'README.md', *GUIDE, *REFERENCE], ids=name_of)
-def test_commands_of_a_page_have_their_options(page: Path, capsys):
-    """Each option of a command that a page shows is one that the command knows."""
+def test_commands_of_a_page_have_their_options(page, capsys):
     for command, rest in COMMAND.findall(page.read_text(encoding='utf-8')):
         known = help_of(capsys, *command.split())
         for option in re.findall(r'--[a-zA-Z][\w-]*', rest):
@@ -146,25 +138,23 @@ def test_guide_is_of_few_pages():
 
 
 @pytest.mark.parametrize('page', GUIDE, ids=name_of)
-def test_guide_is_short(page: Path):
-    """A page of the guide is read in one go."""
+def test_guide_is_short(page):
     assert len(page.read_text(encoding='utf-8').split()) <= MOST_WORDS
 
 
 @pytest.mark.parametrize('page', [*GUIDE, *REFERENCE], ids=name_of)
-def test_pages_are_without_history(page: Path):
-    """Guide and reference say what is, not what was."""
+def test_pages_are_without_history(page):
     assert not HISTORY.findall(words_of(page))
 
 
 @pytest.mark.parametrize('page', PAGES, ids=name_of)
-def test_pages_are_in_plain_words(page: Path):
+def test_pages_are_in_plain_words(page):
     """No page has phrases that a native speaker would not write."""
     assert not FOREIGN.findall(words_of(page))
 
 
 @pytest.mark.parametrize('path', SOURCES, ids=name_of)
-def test_sources_are_in_plain_words(path: Path):
+def test_sources_are_in_plain_words(path):
     """No comment or docstring has those phrases, and a module opens with a noun."""
     text = path.read_text(encoding='utf-8')
     assert not OPENING.match(ast.get_docstring(ast.parse(text)) or '')
@@ -175,29 +165,26 @@ def test_sources_are_in_plain_words(path: Path):
 
 
 def test_front_page_leads_to_every_page():
-    """Each page of guide, reference and theory is linked from docs/README.md."""
     front = (DOCS / 'README.md').read_text(encoding='utf-8')
     for page in (*GUIDE, *REFERENCE, *sorted((DOCS / 'theory').glob('*.md'))):
         assert f'({page.relative_to(DOCS)})' in front
 
 
 @pytest.mark.parametrize('index', ['decisions', 'notes'])
-def test_index_lists_its_pages(index: str):
-    """The first page of a folder links all others."""
+def test_index_lists_its_pages(index):
     text = (DOCS / index / 'README.md').read_text(encoding='utf-8')
     for page in (DOCS / index).glob('*.md'):
         assert page.name == 'README.md' or f'({page.name})' in text
 
 
 def test_every_picture_is_on_a_page():
-    """No picture is kept that no page shows."""
     text = ''.join(page.read_text(encoding='utf-8') for page in PAGES)
     for picture in DOCS.rglob('*.png'):
         assert f'/{picture.name})' in text, picture.name
 
 
 @pytest.mark.parametrize('folder', FOLDERS)
-def test_architecture_names_every_folder(folder: str):
+def test_architecture_names_every_folder(folder):
     """Each folder of both packages has its row, and its entry is a function or class there."""
     page = (DOCS / 'architecture.md').read_text(encoding='utf-8')
     rows = [line for line in page.splitlines() if line.startswith(f'| `{folder}` |')]

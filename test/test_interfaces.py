@@ -2,12 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The interfaces: every field is explained, zero is UNKNOWN, and version 1 is what it was."""
 
-from collections.abc import Iterator
 import importlib
 import json
 from pathlib import Path
 import re
-from typing import Any
 
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, PointResult, SurfaceInfo
 import pytest
@@ -24,7 +22,7 @@ ENUMERATIONS = {
 }
 
 
-def fields(source: Path) -> Iterator[tuple[str, str, str]]:
+def fields(source):
     """Yield type, name and comment of each field; a comment holds up to the next empty line."""
     comment = ''
     for line in map(str.strip, source.read_text().splitlines()):
@@ -38,55 +36,48 @@ def fields(source: Path) -> Iterator[tuple[str, str, str]]:
             yield kind, name, comment + beside
 
 
-def constants() -> dict[str, int]:
+def constants():
     """Return all numeric constants of all interfaces."""
     found = (CONSTANT.match(line) for path in SOURCES for line in path.read_text().splitlines())
     return {match['name']: int(match['value']) for match in found if match}
 
 
-def type_of(source: Path) -> Any:
-    """Return the generated class of an interface."""
+def type_of(source):
     module = importlib.import_module(f'ballscrew_msgs.{source.parent.name}')
     return getattr(module, source.stem)
 
 
 @pytest.mark.parametrize('source', SOURCES, ids=lambda path: path.name)
-def test_every_field_is_explained(source: Path) -> None:
-    """A comment says what it is; a number also says its unit."""
+def test_every_field_is_explained(source):
     for kind, name, comment in fields(source):
         assert comment, f'{name} has no comment'
         if kind.startswith('float'):
             assert re.search(r'\[[^\]]+\]|`unit`', comment), f'{name} has no [unit]'
 
 
-def test_zero_is_unknown_in_every_enumeration() -> None:
-    """A message that nobody filled in says that nothing is known."""
+def test_zero_is_unknown_in_every_enumeration():
     numbers = constants()
     kinds = {name.split('_')[0] for name in numbers if not name.startswith('MAX_')}
     assert kinds == ENUMERATIONS
-    assert {f'{kind}_UNKNOWN' for kind in kinds} == {
-        name for name, value in numbers.items() if value == 0
-    }
+    expected = {name for name, value in numbers.items() if value == 0}
+    assert {f'{kind}_UNKNOWN' for kind in kinds} == expected
 
 
 @pytest.mark.parametrize('kind', sorted(ENUMERATIONS))
-def test_values_of_an_enumeration_are_consecutive(kind: str) -> None:
-    """Values count up without a gap, in the order of the file."""
+def test_values_of_an_enumeration_are_consecutive(kind):
     values = [value for name, value in constants().items() if name.startswith(f'{kind}_')]
     assert values == list(range(len(values)))
 
 
-def test_all_interfaces_are_generated() -> None:
-    """CMakeLists.txt names every file, and the recorded hashes every type."""
+def test_all_interfaces_are_generated():
     named = re.findall(r'"(\w+/\w+\.\w+)"', (TREE / 'msg_defs' / 'CMakeLists.txt').read_text())
     assert named == [str(path.relative_to(TREE / 'msg_defs')) for path in SOURCES]
-    assert list(RECORD['hashes']) == [
-        f'ballscrew_msgs/{path.parent.name}/{path.stem}' for path in SOURCES
-    ]
+    expected = [f'ballscrew_msgs/{path.parent.name}/{path.stem}' for path in SOURCES]
+    assert list(RECORD['hashes']) == expected
 
 
 @pytest.mark.parametrize('source', SOURCES, ids=lambda path: path.name)
-def test_type_hash_is_the_recorded_one(source: Path) -> None:
+def test_type_hash_is_the_recorded_one(source):
     """
     Two sides with different hashes do not understand each other.
 
@@ -97,7 +88,7 @@ def test_type_hash_is_the_recorded_one(source: Path) -> None:
     assert type_hash(kind) == RECORD['hashes'][kind]
 
 
-def type_hash(kind: str) -> str:
+def type_hash(kind):
     """Return the RIHS01 hash that the build wrote beside the type."""
     package, folder, name = kind.split('/')
     share = Path(importlib.import_module(package).__file__ or '')
@@ -114,12 +105,11 @@ def type_hash(kind: str) -> str:
     [BallScrewState(), OperatingPoint(), PointResult(), SurfaceInfo()],
     ids=lambda message: type(message).__name__,
 )
-def test_message_survives_the_wire(message: Any) -> None:
-    """What is serialised is what is deserialised."""
+def test_message_survives_the_wire(message):
     assert deserialize_message(serialize_message(message), type(message)) == message
 
 
 @pytest.mark.parametrize('value', [1, True, '1'], ids=repr)
-def test_float_field_refuses_what_is_no_float(value: object, refused) -> None:
+def test_float_field_refuses_what_is_no_float(value, refused):
     """With ROS_PYTHON_CHECK_FIELDS=1; without it an int is silently sent as 5e-324."""
     refused('speed_field_type', OperatingPoint, speed=value)

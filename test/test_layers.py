@@ -1,14 +1,8 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Imports: `surrogate` never ROS, the node of `surrogate` the lookup alone, all downward.
-
-Once as the sources say it, once as a fresh process does it.
-
-"""
+"""Imports downward, as sources say and as a fresh process does it; `surrogate` never ROS."""
 
 import ast
-from collections.abc import Iterator
 from pathlib import Path
 import subprocess
 import sys
@@ -65,18 +59,18 @@ STANDS_ON = {
 """Folders that import these modules alone: what the node loads, and what knows no physics."""
 
 
-def name_of(path: Path) -> str:
+def name_of(path):
     """Return the dotted name of a module."""
     parts = path.relative_to(TREE).with_suffix('').parts
     return '.'.join(part for part in parts if part != '__init__')
 
 
-def room(name: str) -> str:
+def room(name):
     """Return the folder or single module of a half that holds a module."""
     return f'{name}.'.split('.')[1]
 
 
-def imports(path: Path) -> Iterator[str]:
+def imports(path):
     """Yield every absolute import of a module, wherever it stands."""
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
@@ -90,7 +84,7 @@ def imports(path: Path) -> Iterator[str]:
             yield from known or [node.module]
 
 
-def loaded_by(statement: str) -> set[str]:
+def loaded_by(statement):
     """Return the names of the modules that a fresh process holds after a statement."""
     done = subprocess.run(
         [sys.executable, '-c', f'{statement}; import sys; print(*sys.modules)'],
@@ -103,14 +97,14 @@ def loaded_by(statement: str) -> set[str]:
 
 
 @pytest.mark.parametrize('path', MODULES['surrogate'], ids=name_of)
-def test_surrogate_imports_numerical_libraries_and_itself(path: Path) -> None:
+def test_surrogate_imports_numerical_libraries_and_itself(path):
     """No ROS, nothing of the online half."""
     allowed = NUMERICAL | {'surrogate'} | set(sys.stdlib_module_names)
     assert {name.split('.')[0] for name in imports(path)} <= allowed
 
 
 @pytest.mark.parametrize('path', MODULES['ballscrew_monitor'], ids=name_of)
-def test_online_half_imports_the_lookup_alone(path: Path) -> None:
+def test_online_half_imports_the_lookup_alone(path):
     """Only the command line, which is both halves, hands over to the offline one."""
     more = {
         'cli.py': {'surrogate.cli', 'surrogate.parameters'},
@@ -126,7 +120,7 @@ def test_online_half_imports_the_lookup_alone(path: Path) -> None:
 
 
 @pytest.mark.parametrize('path', MODULES['ballscrew_monitor'], ids=name_of)
-def test_online_half_imports_downward(path: Path) -> None:
+def test_online_half_imports_downward(path):
     """A folder imports itself and the floors below it; no folder imports the command line."""
     own = room(name_of(path))
     floor = next((at for at, rooms in enumerate(FLOORS) if own in rooms), len(FLOORS))
@@ -144,14 +138,14 @@ def test_online_half_imports_downward(path: Path) -> None:
         ('ballscrew_monitor', (*FLOORS, ('cli', 'options', '__main__'))),
     ],
 )
-def test_every_room_has_a_floor(half: str, floors: tuple[tuple[str, ...], ...]) -> None:
+def test_every_room_has_a_floor(half, floors):
     """No folder and no single module is forgotten, and none is named that is gone."""
     rooms = {room(name_of(path)) for path in MODULES[half]} - {''}
     assert rooms == {one for floor in floors for one in floor}
 
 
 @pytest.mark.parametrize('path', MODULES['surrogate'], ids=name_of)
-def test_offline_half_imports_downward(path: Path) -> None:
+def test_offline_half_imports_downward(path):
     """A folder imports itself and the floors below it; two import a few modules alone."""
     own = room(name_of(path))
     named = {name for name in imports(path) if name.startswith('surrogate.')}
@@ -164,7 +158,7 @@ def test_offline_half_imports_downward(path: Path) -> None:
     assert {room(name) for name in others} <= below
 
 
-def test_surrogate_loads_no_ros() -> None:
+def test_surrogate_loads_no_ros():
     """As seen by a process that imports all of it."""
     loaded = loaded_by(f'import {", ".join(map(name_of, MODULES["surrogate"]))}')
     assert not [name for name in loaded if name == 'rclpy' or name.split('.')[0].endswith('_msgs')]
@@ -179,14 +173,14 @@ def test_surrogate_loads_no_ros() -> None:
         ('ballscrew_monitor.report.command', {'contourpy', 'polars', 'scipy'}),
     ],
 )
-def test_what_must_start_quickly_loads_nothing_heavy(module: str, heavy: set[str]) -> None:
+def test_what_must_start_quickly_loads_nothing_heavy(module, heavy):
     """The lookup in any process, a point by formulas, the table of tiers, a printed replay."""
     loaded = loaded_by(f'import {module}')
     assert module in loaded
     assert not loaded & heavy
 
 
-def test_node_loads_of_surrogate_what_the_lookup_needs() -> None:
+def test_node_loads_of_surrogate_what_the_lookup_needs():
     """The process that watches the machine holds nothing of the solver, plots or recordings."""
     needed = loaded_by('import surrogate.surface, surrogate.units')
     loaded = loaded_by('import ballscrew_monitor.node.run')

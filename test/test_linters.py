@@ -16,13 +16,8 @@ PATHS = [str(TREE / name) for name in ('setup.py', *FOLDERS) if (TREE / name).ex
 
 @pytest.mark.flake8
 @pytest.mark.linter
-def test_flake8(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    """
-    No finding: the text of a finding is what the assertion shows.
-
-    Its plugin for docstrings is left out: `ament_pep257` asks the same program for more codes.
-
-    """
+def test_flake8(capsys, monkeypatch):
+    """No finding but of docstrings, for which `ament_pep257` asks the same program for more."""
     monkeypatch.setattr(flake8_docstrings.pep257Checker, 'run', lambda self: ())
     code, findings = main_with_errors(argv=PATHS)
     capsys.readouterr()
@@ -31,7 +26,7 @@ def test_flake8(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.linter
 @pytest.mark.pep257
-def test_pep257(capsys: pytest.CaptureFixture[str]) -> None:
+def test_pep257(capsys):
     """No finding: the text of a finding is what the assertion shows."""
     code = main(argv=PATHS)
     assert code == 0, capsys.readouterr().err
@@ -39,7 +34,7 @@ def test_pep257(capsys: pytest.CaptureFixture[str]) -> None:
 
 @pytest.mark.linter
 @pytest.mark.xmllint
-def test_xmllint() -> None:
+def test_xmllint():
     """The manifests follow the schema of package format 3; needs ROS 2 and the net."""
     xmllint = pytest.importorskip(
         'ament_xmllint.main', reason='ament_xmllint is not in the wheels'

@@ -9,7 +9,7 @@ import subprocess
 TREE = Path(__file__).resolve().parents[1]
 
 
-def test_clean_leaves_the_bags_of_others(tmp_path: Path) -> None:
+def test_clean_leaves_the_bags_of_others(tmp_path):
     """Only the bag that is generated is removed."""
     shutil.copy(TREE / 'Makefile', tmp_path)
     for name in ('bags/nominal_cycle', 'bags/mine', 'out'):

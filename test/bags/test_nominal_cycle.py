@@ -29,7 +29,6 @@ TYPES = {
 
 @pytest.fixture(scope='module')
 def messages(nominal_bag):
-    """Return the decoded messages by topic."""
     found = {topic: [] for topic in TYPES}
     for message in Bag(nominal_bag).messages():
         found[message.topic].append(deserialize_message(message.data, TYPES[message.topic]))
@@ -38,7 +37,6 @@ def messages(nominal_bag):
 
 @pytest.fixture(scope='module')
 def judged(nominal_bag, judge):
-    """Return what the monitor says of it."""
     return judge(nominal_bag, ROOT / 'config/nominal_cycle.yaml')
 
 

@@ -49,7 +49,6 @@ def within(name, rows, time):
 
 
 def seconds(stamp):
-    """Return a stamp [ns] as time since the begin [s]."""
     return (stamp - BEGIN) / SECOND
 
 

@@ -62,8 +62,6 @@ LATCHED = QoSProfile(depth=10, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 
 @dataclasses.dataclass(kw_only=True)
 class Numbers:
-    """What a surface says of a point."""
-
     validity: PointValidity = PointValidity.VALID
     rcs: float = 0.0
     efficiency: float = 0.9
@@ -197,7 +195,6 @@ def feed(monitor, events):
 
 
 def look_up(surface, speed, load, temperature, found):
-    """Fill in what a surface of constants says, as `surrogate.surface.look_up` does."""
     numbers = surface.lookup(speed, load, temperature)
     found.validity = int(numbers.validity)
     for name in Found.__dataclass_fields__:
@@ -227,7 +224,6 @@ def scan_part(surface, speed, temperature, begin, end):
 
 
 def scan(surface, speed, temperature):
-    """Fill in all of them."""
     return scan_part(surface, speed, temperature, 0, SCANNED)
 
 
@@ -239,7 +235,6 @@ def constant_or(constant, real):
 
 
 def take_constants(patch):
-    """Let the judgement look surfaces of constants up, interpreted."""
     for module in (advice, point, step, derived_load):
         for constant in (look_up, look_up_rest, is_inside, scan, scan_part):
             name = constant.__name__
@@ -287,7 +282,6 @@ def last_one_cleans(folder, clean):
 
 
 def remove_stale_segments():
-    """Remove what killed nodes have left in the shared memory."""
     with contextlib.ExitStack() as stack:
         held = {one for one in domains.DOMAINS if stack.enter_context(domains.held(one))}
         domains.remove_stale(held)
@@ -385,7 +379,6 @@ class NodeProcess:
             raise AssertionError(f'{late}, the node said:\n{self.output.read_text()}') from late
 
     def spin(self):
-        """Take a message, or wait a little for one."""
         self.node.executor.spin_once(timeout_sec=0.02)
 
     def now(self):
@@ -445,7 +438,6 @@ class NodeProcess:
         raise AssertionError(f'{service} did not answer')
 
     def set_parameters(self, **values):
-        """Set parameters as one; return the result."""
         parameters = [
             Parameter(name.replace('__', '.'), value=value).to_parameter_msg()
             for name, value in values.items()
@@ -464,7 +456,6 @@ class NodeProcess:
         return self.call(ChangeState, 'change_state', transition=request.transition).success
 
     def lifecycle(self):
-        """Return the label of the lifecycle state."""
         return self.call(GetState, 'get_state').current_state.label
 
     def machine(self, speed_topic='joint_states', load_topic='axial_load'):
@@ -541,12 +532,10 @@ class NodeProcess:
         ]
 
     def stop(self, number=signal.SIGINT):
-        """Send a signal; return the exit code."""
         self.process.send_signal(number)
         return self.end()
 
     def end(self):
-        """Wait until the node has ended; return the exit code."""
         return self.process.wait(DEADLINE)
 
     def close(self):
@@ -584,7 +573,6 @@ def bound_addresses():
 
 
 def target_of(link):
-    """Return what a link names; nothing if it is gone."""
     try:
         return os.readlink(link)
     except FileNotFoundError:

@@ -22,7 +22,6 @@ VISCOSITY = 'oil: viscosity is -1 Pa s, allowed is above 0'
 
 
 def python(*arguments, **environment):
-    """Run Python on this code; return what came of it."""
     return subprocess.run(
         [sys.executable, *map(str, arguments)],
         cwd=ROOT,
@@ -33,14 +32,11 @@ def python(*arguments, **environment):
     )
 
 
-def test_a_replay_prints_the_summary(short_bag, capsys, says):
+def test_a_replay_prints_the_summary_or_json(short_bag, capsys, says):
     assert cli.main(['replay', str(short_bag), '--params', str(PARAMS)]) == 0
     out = capsys.readouterr().out
     assert out.startswith(says('300_speed_samples'))
     assert '  events      1\n' in out
-
-
-def test_a_replay_prints_json(short_bag, capsys):
     assert cli.main(['replay', str(short_bag), '--params', str(PARAMS), '--json']) == 0
     record = json.loads(capsys.readouterr().out)
     assert record['x']['judged'] == 300
@@ -76,9 +72,7 @@ def test_defaults_hold_in_any_working_directory(short_bag, tmp_path, monkeypatch
         (KeyboardInterrupt(), 130, 'interrupted_2'),
     ],
 )
-def test_what_ends_a_command_is_a_sentence_and_an_exit_code(
-    error, code, sentence, monkeypatch, capsys, says
-):
+def test_an_end_is_a_sentence_and_an_exit_code(error, code, sentence, monkeypatch, capsys, says):
     def fail(args):
         raise error
 
@@ -112,9 +106,11 @@ def test_what_is_not_installed_is_named_with_its_cure(module, command, short_bag
     )
 
 
-def test_a_bag_that_does_not_exist(capsys, says):
+def test_what_does_not_exist_is_refused(capsys, says, tmp_path):
     assert cli.main(['replay', '/nowhere', '--params', str(PARAMS)]) == 2
     assert capsys.readouterr().err == says('log_nowhere_does')
+    assert cli.main(['events', str(tmp_path)]) == 2
+    assert f'{tmp_path} has no state.sqlite3' in capsys.readouterr().err
 
 
 def test_every_command_is_listed(capsys):
@@ -175,22 +171,14 @@ def make_state(tmp_path):
     state.close()
 
 
-def test_the_event_log_is_printed_for_people(state, capsys):
+def test_the_event_log_is_printed_as_text_and_json(state, capsys, monkeypatch, tmp_path):
     assert cli.main(['events', str(state.folder)]) == 0
     start, end = capsys.readouterr().out.splitlines()
     assert start.split()[1:] == ['-', 'node_start']
     assert end.split()[1:] == ['x', 'event_end', 'event', '4:', 'ended']
-
-
-def test_the_event_log_is_exported_as_lines_of_json(state, capsys, monkeypatch, tmp_path):
     monkeypatch.setenv('XDG_STATE_HOME', str(tmp_path))
     state.close()
     assert cli.main(['events', '--json']) == 0
     start, end = map(json.loads, capsys.readouterr().out.splitlines())
     assert (start['kind'], start['axis'], start['stamp_ns']) == ('node_start', None, 1)
     assert (end['event'], end['worst_value'], end['ending']) == (4, None, 'ended')
-
-
-def test_a_folder_without_an_event_log_is_refused(capsys, tmp_path):
-    assert cli.main(['events', str(tmp_path)]) == 2
-    assert f'{tmp_path} has no state.sqlite3' in capsys.readouterr().err

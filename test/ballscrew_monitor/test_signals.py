@@ -125,9 +125,7 @@ def test_a_command_ends_with_130(end, tmp_path, short_bag, command, stage):
 
 
 @pytest.mark.parametrize(('number', 'code'), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_a_report_that_is_ended_leaves_nothing_unfinished(
-    end, tmp_path, nominal_bag, number, code
-):
+def test_an_ended_report_leaves_nothing(end, tmp_path, nominal_bag, number, code):
     out, scratch = tmp_path / 'out', tmp_path / 'scratch'
     scratch.mkdir()
     more = [nominal_bag, '--out', out]  # long enough to be met at work

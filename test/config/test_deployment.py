@@ -55,7 +55,6 @@ def drawn_by_foxglove():
 
 
 def drawn_by_plotjuggler():
-    """Return the paths that the layout of PlotJuggler draws."""
     tree = ElementTree.parse(CONFIG / 'layouts' / 'plotjuggler_axis_x.xml')
     names = [curve.get('name') for curve in tree.iter('curve')]
     return {tuple(name.removeprefix(f'{STATE}/').split('/')) for name in names}

@@ -15,7 +15,6 @@ FILES = sorted(CONFIG.glob('*.yaml'))
 
 
 def axes_of(name):
-    """Return the axes of a file by name, as the node builds them."""
     values = parameters.read_file(CONFIG / name)
     axes, reasons = build_axes(values, lambda topic: f'/{topic}')
     assert not reasons
@@ -23,7 +22,6 @@ def axes_of(name):
 
 
 def inputs_of(axis):
-    """Return the inputs of an axis by what they measure."""
     return {one.source: one for one in axis.inputs}
 
 

@@ -57,7 +57,6 @@ def test_arguments_have_defaults_and_descriptions(launched):
 
 @pytest.fixture
 def mine(tmp_path, monkeypatch):
-    """Return the name of a parameter file in the working directory."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / 'mine.yaml').write_text('')
     return 'mine.yaml'

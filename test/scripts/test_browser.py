@@ -51,10 +51,8 @@ def test_a_browser_that_is_there_is_enough(machine, tmp_path, name):
 def test_root_gets_it(machine, tmp_path, says):
     said = machine(id=ROOT, apt_get=NOTES)
     assert said == says('set_up_installing')
-    assert (tmp_path / 'asked').read_text().splitlines() == [
-        'update',
-        'install -y --no-install-recommends chromium',
-    ]
+    expected = ['update', 'install -y --no-install-recommends chromium']
+    assert (tmp_path / 'asked').read_text().splitlines() == expected
 
 
 @pytest.mark.parametrize(

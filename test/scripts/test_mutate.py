@@ -31,13 +31,11 @@ def test_half():
 
 @pytest.fixture
 def script():
-    """Return the names of the script."""
     return runpy.run_path(str(TREE / 'scripts' / 'mutate.py'))
 
 
 @pytest.fixture
 def mutate(script, tmp_path):
-    """Return the names of the script, at work on a tree of one file."""
     for function in ('mutants', 'tests_of', 'substitute'):
         script[function].__globals__['TREE'] = tmp_path
     (tmp_path / 'half.py').write_text(SOURCE)

@@ -23,22 +23,21 @@ SHIM = '#!/bin/sh\necho "pyenv: command not found" >&2\nexit 127\n'
 Machine = Callable[..., 'subprocess.CompletedProcess[str]']
 
 
-def put(folder: Path, name: str, text: str) -> None:
-    """Write a command into a folder."""
+def put(folder, name, text):
     path = folder / name
     path.write_text(text)
     path.chmod(0o755)
 
 
 @pytest.fixture
-def machine(tmp_path: Path) -> Machine:
+def machine(tmp_path):
     """Return a function that runs the script on a machine with just these commands."""
     folder = tmp_path / 'bin'
     folder.mkdir()
     for name in ('id', 'mkdir', 'sed', 'sh', 'tail'):
         (folder / name).symlink_to(shutil.which(name) or name)
 
-    def run(commands: dict[str, str], **variables: str) -> 'subprocess.CompletedProcess[str]':
+    def run(commands, **variables):
         for name, text in commands.items():
             (folder / name).unlink(missing_ok=True)
             put(folder, name, text)
@@ -59,26 +58,17 @@ COMPLETE = {'git': TRUE, 'make': TRUE, 'g++': TRUE, 'python3': WORKING}
 APT = {'apt-get': TRUE, 'apt-cache': '#!/bin/sh\n[ $3 != python3 ] || echo Version: 3.12.3-0\n'}
 
 
-def test_python_is_the_interpreter_underneath(machine: Machine) -> None:
-    """Its path is the only output."""
+def test_python_underneath_that_works_or_was_asked_for_is_the_only_candidate(machine, says):
     done = machine(COMPLETE)
     assert (done.returncode, done.stdout, done.stderr) == (0, f'{BASE}\n', '')
-
-
-def test_shim_that_fails_is_skipped(machine: Machine) -> None:
-    """Candidates are judged by running them."""
     done = machine({**COMPLETE, 'python3': SHIM, 'python3.12': SHIM, 'python3.11': WORKING})
     assert (done.returncode, done.stdout) == (0, f'{BASE}\n')
-
-
-def test_python_that_was_asked_for_is_the_only_candidate(machine: Machine, says) -> None:
-    """No other one is taken in silence."""
     done = machine({**COMPLETE, 'other': SHIM}, PYTHON='other')
     assert done.returncode == 2
     assert done.stderr == says('set_up_python')
 
 
-def test_user_gets_one_line_to_type(machine: Machine, says) -> None:
+def test_user_gets_one_line_to_type(machine, says):
     """Nothing is installed for a user who is not root, and sudo is never called."""
     lacking = {name: text for name, text in COMPLETE.items() if name not in ('g++', 'python3')}
     done = machine({**lacking, **APT, 'id': '#!/bin/sh\necho 1000\n', 'python3': SHIM})
@@ -86,16 +76,14 @@ def test_user_gets_one_line_to_type(machine: Machine, says) -> None:
     assert done.stderr == says('set_up_type')
 
 
-def test_machine_without_apt_gets_the_list(machine: Machine, says) -> None:
-    """Another distribution has other names."""
+def test_machine_without_apt_gets_the_list(machine, says):
     done = machine({**COMPLETE, 'python3': SHIM})
     assert done.returncode == 2
     assert done.stderr.startswith(says('set_up_install'))
     assert done.stderr.count('\n') == 1
 
 
-def test_root_gets_what_is_missing(machine: Machine, tmp_path: Path) -> None:
-    """Only that is installed, and nothing is asked."""
+def test_root_gets_what_is_missing(machine, tmp_path):
     lacking = {name: text for name, text in COMPLETE.items() if name != 'g++'}
     apt = f'#!/bin/sh\necho "$@" >> asked\n[ $1 = update ] || : > {tmp_path}/bin/g++\n'
     chmod = shutil.which('chmod')
@@ -108,13 +96,11 @@ def test_root_gets_what_is_missing(machine: Machine, tmp_path: Path) -> None:
         }
     )
     assert (done.returncode, done.stdout) == (0, f'{BASE}\n')
-    assert (tmp_path / 'asked').read_text().splitlines() == [
-        'update',
-        'install -y --no-install-recommends g++',
-    ]
+    expected = ['update', 'install -y --no-install-recommends g++']
+    assert (tmp_path / 'asked').read_text().splitlines() == expected
 
 
-def test_failing_apt_is_said(machine: Machine, says) -> None:
+def test_failing_apt_is_said(machine, says):
     """The reason is the end of its output."""
     lacking = {name: text for name, text in COMPLETE.items() if name != 'make'}
     done = machine(
@@ -126,8 +112,5 @@ def test_failing_apt_is_said(machine: Machine, says) -> None:
         }
     )
     assert done.returncode == 2
-    assert done.stderr.splitlines() == [
-        'set-up: installing make',
-        'no network',
-        says('set_up_apt'),
-    ]
+    expected = ['set-up: installing make', 'no network', says('set_up_apt')]
+    assert done.stderr.splitlines() == expected

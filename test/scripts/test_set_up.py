@@ -10,7 +10,6 @@ from pathlib import Path
 import runpy
 import sys
 import threading
-from types import ModuleType
 from typing import Any
 
 import pytest
@@ -25,8 +24,7 @@ SetUp = Callable[..., list[str]]
 
 
 @pytest.fixture
-def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """Return the script as a module that works on an empty tree."""
+def module(tmp_path, monkeypatch):
     specification = importlib.util.spec_from_file_location('set_up', SCRIPT)
     assert specification is not None
     assert specification.loader is not None
@@ -43,14 +41,14 @@ def module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
 
 
 @pytest.fixture
-def set_up(module: ModuleType, monkeypatch: pytest.MonkeyPatch) -> SetUp:
+def set_up(module, monkeypatch):
     """Return a function that sets up by three steps and returns the exit code and what it did."""
 
-    def run(*, raises: dict[str, BaseException] | None = None, **keys: str) -> list[str]:
+    def run(*, raises=None, **keys):
         done: list[str] = []
 
-        def work(name: str) -> Callable[[], None]:
-            def act() -> None:
+        def work(name):
+            def act():
                 done.append(name)
                 if raises and name in raises:
                     raise raises[name]
@@ -76,56 +74,35 @@ def set_up(module: ModuleType, monkeypatch: pytest.MonkeyPatch) -> SetUp:
     return run
 
 
-def test_second_call_does_nothing(set_up: SetUp) -> None:
-    """Neither pip nor cmake."""
+def test_a_change_repeats_its_step_and_a_new_environment_all(set_up):
+    """A second call does nothing, neither pip nor cmake."""
     assert set_up() == ['0', 'environment', 'interfaces', 'bag']
     assert set_up() == ['0']
-
-
-def test_change_repeats_its_step(set_up: SetUp) -> None:
-    """Only that one; what a step makes may also just be gone."""
-    set_up()
     assert set_up(interfaces='changed') == ['0', 'interfaces']
     assert set_up(interfaces='changed', bag='lost') == ['0', 'bag']
-
-
-def test_new_environment_is_filled_again(set_up: SetUp) -> None:
-    """All that was in the old one is gone."""
-    set_up()
     assert set_up(environment='changed') == ['0', 'environment', 'interfaces', 'bag']
 
 
-def test_interruption_is_made_good(
-    set_up: SetUp, capsys: pytest.CaptureFixture[str], says
-) -> None:
-    """The next call repeats the step that was at work, also in a change."""
-    assert set_up(raises={'interfaces': KeyboardInterrupt()}) == [
-        '130',
-        'environment',
-        'interfaces',
-    ]
+def test_interruption_is_made_good(set_up, capsys, says):
+    expected = ['130', 'environment', 'interfaces']
+    assert set_up(raises={'interfaces': KeyboardInterrupt()}) == expected
     assert capsys.readouterr().err == says('set_up_interrupted')
     assert set_up() == ['0', 'interfaces', 'bag']
     set_up(interfaces='changed', raises={'interfaces': KeyboardInterrupt()})
     assert set_up() == ['0', 'interfaces']
 
 
-def test_failure_is_one_sentence(
-    module: ModuleType, set_up: SetUp, capsys: pytest.CaptureFixture[str], says
-) -> None:
-    """With the end of the log above it."""
+def test_failure_is_one_sentence(module, set_up, capsys, says):
     assert set_up(raises={'bag': module.Failure('pip failed with exit code 1')})[0] == '1'
     assert capsys.readouterr().err.endswith(says('set_up_pip'))
 
 
-def test_step_beside_others_does_not_hold_them_up(
-    module: ModuleType, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_step_beside_others_does_not_hold_them_up(module, monkeypatch):
     """Each waits for the other to be at work."""
     met = threading.Barrier(2)
     done: list[str] = []
 
-    def meet(name: str) -> None:
+    def meet(name):
         met.wait(DEADLINE)
         done.append(name)
 
@@ -141,13 +118,11 @@ def test_step_beside_others_does_not_hold_them_up(
     assert sorted(done) == ['environment', 'interfaces']
 
 
-def test_failure_beside_others_is_told_from_its_own_log(
-    module: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], says
-) -> None:
+def test_failure_beside_others_is_told_from_its_own_log(module, monkeypatch, capsys, says):
     """The others are done meanwhile, and the next call repeats that one alone."""
     done: list[str] = []
 
-    def fail() -> None:
+    def fail():
         done.append('solver')
         module.SOLVER_LOG.write_text('why\n')
         raise module.Failure('python failed with exit code 1', module.SOLVER_LOG)
@@ -167,16 +142,14 @@ def test_failure_beside_others_is_told_from_its_own_log(
     assert sorted(done) == ['bag', 'solver', 'solver']
 
 
-def test_failing_command_is_named(module: ModuleType, refused) -> None:
-    """Its output is in the log."""
+def test_failing_command_is_named(module, refused):
     module.LOG.parent.mkdir()
     with refused('python_s_failed'):
         module.run(sys.executable, '-c', 'print("why"); raise SystemExit(3)')
     assert module.LOG.read_text().splitlines()[-1] == 'why'
 
 
-def test_key_follows_names_and_contents(module: ModuleType, tmp_path: Path) -> None:
-    """A file that is renamed, changed or added is noticed."""
+def test_key_follows_names_and_contents(module, tmp_path):
     first, second = tmp_path / 'a', tmp_path / 'b'
     first.write_text('x')
     keys = [module.digest('step', files=[first])]
@@ -187,7 +160,7 @@ def test_key_follows_names_and_contents(module: ModuleType, tmp_path: Path) -> N
     assert len(set(keys)) == 4
 
 
-def walked(share: Path) -> set[str]:
+def walked(share):
     """Return the files below `share` as launch tools find them: no link to a directory counts."""
     return {
         str(Path(folder, name).relative_to(share))
@@ -196,9 +169,7 @@ def walked(share: Path) -> set[str]:
     }
 
 
-def test_installed_files_are_found_without_following_links(
-    module: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_installed_files_are_found_without_following_links(module, tmp_path, monkeypatch):
     """Also over an installation of links to directories, and after a file is gone."""
     monkeypatch.setattr(module, 'run', lambda *command: None)
     wanted = {'config/a.yaml', 'config/layouts/b.json', 'launch/c.launch.py', 'package.xml'}
@@ -216,9 +187,7 @@ def test_installed_files_are_found_without_following_links(
     assert (tmp_path / 'launch' / 'c.launch.py').exists()
 
 
-def test_package_installs_each_shared_file(
-    module: ModuleType, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_package_installs_each_shared_file(module, monkeypatch):
     """What setup.py lists is what the set-up links."""
     tree = SCRIPT.parents[1]
     asked: dict[str, Any] = {}

@@ -25,7 +25,6 @@ def row():
 
 
 def test_list_is_the_same_everywhere():
-    """Any other number of any case is another list."""
     text = ' '.join(case.key for case in CASES)
     assert hashlib.sha256(text.encode()).hexdigest()[:12] == 'ac3fa6384587'
 
@@ -40,7 +39,6 @@ def test_any_part_of_the_list_is_a_fair_sample(every):
 
 
 def test_cases_lie_in_their_ranges():
-    """Ends included, as they are rounded."""
     for case in CASES:
         low, high = bench.LOADS[case.kind]
         assert low <= case.load <= high
@@ -51,7 +49,6 @@ def test_cases_lie_in_their_ranges():
 
 
 def test_rows_come_back_from_the_table(tmp_path, row):
-    """What was written is read, whatever its kind."""
     other = replace(row, key='other', rcs=0.25, converged=False)
     bench.write_rows(tmp_path / 'table.csv', [row, other])
     back = bench.read_rows(tmp_path / 'table.csv')
@@ -72,7 +69,6 @@ def test_rows_come_back_from_the_table(tmp_path, row):
     ],
 )
 def test_each_row_has_one_group(row, change, group):
-    """By kind, speed and film."""
     assert replace(row, **change).group == group
 
 

@@ -2,35 +2,30 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reference tables and shared objects of the offline tests."""
 
-from collections.abc import Mapping
 import csv
 import math
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
 from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.cli import add_commands, Parser
-from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
+from surrogate.parameters import load_lubricant, load_screw
 from surrogate.screw import closed_form
 from surrogate.surface import FIELDS
-from surrogate.surface.file import SurfaceData
 
 REFERENCE = Path(__file__).parents[1] / 'reference'
 
 
-def rows(name: str) -> list[dict[str, str]]:
-    """Return the rows of a reference table, without its header lines."""
+def rows(name):
     lines = (REFERENCE / name).read_text(encoding='utf-8').splitlines()
     return list(csv.DictReader(line for line in lines if not line.startswith('#')))
 
 
 @pytest.fixture(scope='session')
 def table():
-    """Return the reader of the reference tables."""
     return rows
 
 
@@ -48,30 +43,27 @@ def run(request):
 
 
 @pytest.fixture(scope='session')
-def screw() -> Screw:
-    """Return the nominal screw."""
+def screw():
     return load_screw('nominal')
 
 
 @pytest.fixture(scope='session')
-def oil() -> Lubricant:
-    """Return the nominal oil."""
+def oil():
     return load_lubricant('iso_vg_68')
 
 
 @pytest.fixture(scope='session')
-def surface_data(screw: Screw, oil: Lubricant) -> SurfaceData:
-    """Build the nominal surface once."""
+def surface_data(screw, oil):
     return build_closed_form(screw, oil, default_settings(screw))
 
 
 @pytest.fixture(scope='session')
-def stand_in() -> SimpleNamespace:
+def stand_in():
     """Return a fast model in place of solved contacts, and its torque over that of formulas."""
     return SimpleNamespace(chain=chain_stand_in, run=run_stand_in, torque=torque_of_stand_in)
 
 
-def chain_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
+def chain_stand_in(inputs):
     """Return what `solve_chain` returns: formulas, of which torque and films are corrected."""
     screw, lubricant = screw_and_oil(inputs)
     load, heat = inputs['load'], inputs['temperature']
@@ -85,12 +77,12 @@ def chain_stand_in(inputs: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def torque_of_stand_in(speed: float, load: float, heat: float) -> float:
+def torque_of_stand_in(speed, load, heat):
     """Return the friction torque over that of the formulas [-]: smooth, of either sign."""
     return 1.1 + 0.02 * math.log(speed) + 1e-5 * load + 1e-3 * (heat - 313.15)
 
 
-def stand_in_point(found: Any, place: int, torque: float) -> dict[str, Any]:
+def stand_in_point(found, place, torque):
     values = {name: float(getattr(found, name)[place]) for name in FIELDS}
     if not math.isfinite(values['film_ratio']):
         return {'converged': False, 'status': 'no load'}
@@ -105,6 +97,5 @@ def stand_in_point(found: Any, place: int, torque: float) -> dict[str, Any]:
     }
 
 
-def run_stand_in(tasks: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    """Solve chains in this process."""
+def run_stand_in(tasks):
     return {name: chain_stand_in(inputs) for name, inputs in tasks.items()}

@@ -3,7 +3,6 @@
 """The offline commands as a user types them."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,9 +16,7 @@ POINT = ['--screw', 'nominal', '--oil', 'iso_vg_68', '--tier', 'closed_form']
 
 @pytest.fixture
 def record(run, capsys):
-    """Return the function that gives the JSON that a point prints."""
-
-    def printed(*words: str) -> dict:
+    def printed(*words):
         assert run(*POINT, '--json', *words) == 0
         return json.loads(capsys.readouterr().out)
 
@@ -27,20 +24,14 @@ def record(run, capsys):
 
 
 def test_point_as_json(record):
-    """The record is strict JSON in SI with four contacts and the tier's name."""
     found = record('--speed-rpm', '600', '--load-N', '1000')
     assert found['tier'] == 'closed_form'
     assert found['efficiency'] == pytest.approx(0.934, abs=2e-3)
     assert found['entrainment_speed_m_s'] == pytest.approx(0.49657, abs=1e-5)
-    assert found['driving_torque_Nm'] == pytest.approx(
-        10 / (2 * np.pi) + found['friction_torque_Nm']
-    )
-    assert [(c['nut'], c['side']) for c in found['contacts']] == [
-        ('loaded', 'screw'),
-        ('loaded', 'nut'),
-        ('relieved', 'screw'),
-        ('relieved', 'nut'),
-    ]
+    expected = 10 / (2 * np.pi) + found['friction_torque_Nm']
+    assert found['driving_torque_Nm'] == pytest.approx(expected)
+    wanted = [('loaded', 'screw'), ('loaded', 'nut'), ('relieved', 'screw'), ('relieved', 'nut')]
+    assert [(c['nut'], c['side']) for c in found['contacts']] == wanted
     assert found['normal_force_loaded_N'] > 27.6 > found['normal_force_relieved_N']
     assert found['regime'] == 'mixed'
 
@@ -73,7 +64,6 @@ def test_a_negative_number_with_an_exponent_is_no_option(run, capsys, number):
     ],
 )
 def test_four_quadrants(record, rpm, load, drives):
-    """The load drives the screw when it has not the sign of the motion."""
     found = record('--speed-rpm', rpm, '--load-N', load)
     assert found['back_driving'] is drives
     assert (found['driving_torque_Nm'] < 0) is drives
@@ -114,7 +104,6 @@ def test_ratings_are_warned_about(record):
     ],
 )
 def test_a_number_out_of_range_is_refused(run, words, refused):
-    """Not a number and absurd values are one sentence."""
     refused('text', run, *POINT, *words)
 
 
@@ -140,7 +129,7 @@ def test_full_tier_is_solved_and_a_failure_is_an_exit_code(run, capsys, monkeypa
     assert run(*words) == 1
 
 
-def test_options_of_the_full_tier(run, tmp_path: Path, capsys):
+def test_options_of_the_full_tier(run, tmp_path, capsys):
     """Kinematics, inlet heating and picture reach the solve; the other tier refuses them."""
     words = ('--speed-rpm', '600', '--load-N', '0', '--json')
     more = ('--kinematics', 'smooth', '--inlet-heating', '--plot', tmp_path)
@@ -161,6 +150,5 @@ def test_options_of_the_full_tier(run, tmp_path: Path, capsys):
 
 
 def test_oil_that_is_no_liquid_is_named_with_its_temperature(run):
-    """The sentence speaks of what was typed."""
     with pytest.raises(InputError, match=r'temperature is -40 degC: iso_vg_68: viscosity is'):
         run(*POINT[:-1], 'full', '--speed-rpm', '60', '--load-N', '0', '--temperature-degC', '-40')

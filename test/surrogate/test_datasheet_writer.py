@@ -34,7 +34,6 @@ def test_every_number_comes_back(tmp_path, screw, oil):
 
 
 def test_a_place_that_cannot_be_written_is_a_sentence(tmp_path, screw, refused):
-    """A directory, and a file where a directory should be."""
     refused('cannot_written_regular', write_sheet, tmp_path, screw)
     (tmp_path / 'file').write_text('x')
     refused('datasheet_cannot_written', write_sheet, tmp_path / 'file' / 'screw.yaml', screw)

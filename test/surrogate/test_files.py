@@ -3,12 +3,11 @@
 """Files that appear whole or not at all."""
 
 import os
-from pathlib import Path
 
 from surrogate.files import replace_file
 
 
-def test_a_file_is_made_with_its_directory_and_replaced(tmp_path: Path):
+def test_a_file_is_made_with_its_directory_and_replaced(tmp_path, refused):
     """Readable by all, and nothing else is left in the directory."""
     path = tmp_path / 'a' / 'b' / 'file'
     for content in (b'one', b'two'):
@@ -16,9 +15,10 @@ def test_a_file_is_made_with_its_directory_and_replaced(tmp_path: Path):
         assert path.read_bytes() == content
     assert path.stat().st_mode & 0o777 == 0o644
     assert list(path.parent.iterdir()) == [path]
+    refused('regular_file', replace_file, tmp_path, b'one')
 
 
-def test_a_failure_leaves_what_was_there(tmp_path: Path, monkeypatch, refused):
+def test_a_failure_leaves_what_was_there(tmp_path, monkeypatch, refused):
     """The disk is full when the bytes are flushed."""
     path = tmp_path / 'file'
     replace_file(path, b'one')
@@ -30,8 +30,3 @@ def test_a_failure_leaves_what_was_there(tmp_path: Path, monkeypatch, refused):
     refused('space_left_device', replace_file, path, b'two')
     assert path.read_bytes() == b'one'
     assert list(tmp_path.iterdir()) == [path]
-
-
-def test_a_directory_is_not_written_over(tmp_path: Path, refused):
-    """Only regular files are replaced."""
-    refused('regular_file', replace_file, tmp_path, b'one')

@@ -4,13 +4,11 @@
 
 from dataclasses import asdict, replace
 import math
-from pathlib import Path
 import re
 
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
-from surrogate.files import InputError
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.parameters import BallRoughness, DATA, load_lubricant, load_screw, OperatingPoint
 from surrogate.raceway.ball import ball_of
@@ -53,7 +51,6 @@ PLACES = {
 
 
 def test_nominal_datasheets_hold_every_quantity_of_the_table(table, screw, oil):
-    """The datasheets and the table of the nominal screw say the same."""
     owners = {'screw': screw, 'oil': oil, 'published': PublishedRoughness()}
     for row in table('nominal_screw.csv'):
         place = PLACES.get(row['quantity'], ('screw', row['quantity'], 1))
@@ -68,88 +65,74 @@ def test_nominal_datasheets_hold_every_quantity_of_the_table(table, screw, oil):
 
 
 def test_vg_68_has_the_nominal_viscosity_at_40_degrees(oil):
-    """The oil is anchored at its reference temperature, exactly."""
     assert float(lubricant_state(oil, 40 + ZERO_CELSIUS).viscosity) == 0.060
 
 
 @pytest.mark.parametrize('name', ['iso_vg_32', 'iso_vg_68', 'iso_vg_100'])
-def test_grades_have_their_viscosity_and_a_source(name):
-    """Each grade has its ISO 3448 number at 40 degC and says where it comes from."""
+def test_shipped_oils_have_their_viscosity_boundary_film_and_a_source(name):
+    """ISO 3448 number at 40 degC; 3 nm between 1 and 5 nm, fully flooded."""
     oil = load_lubricant(name)
     assert oil.kinematic_viscosity_40 * 1e6 == pytest.approx(int(name.split('_')[-1]))
     assert oil.viscosity == pytest.approx(oil.kinematic_viscosity_40 * oil.density, rel=0.02)
     assert len(oil.source) > 20
+    floors = (oil.film_floor_low, oil.film_floor, oil.film_floor_high)
+    assert [1e9 * floor for floor in floors] == pytest.approx([1.0, 3.0, 5.0])
+    assert oil.film_factor == 1.0
 
 
 MISTAKES = [
-    ('lead_mm: 10.0\n', '', 'missing key lead_mm'),
-    ('lead_mm: 10.0', 'lead_mm: 10.0\nfriction: 0.1', 'unknown key friction, allowed are name'),
-    ('lead_mm: 10.0', 'lead_m: 0.01', 'lead_m has a wrong unit, the key is lead_mm'),
-    ('rms_um: 0.12', 'rms_nm: 120.0', 'roughness: rms_nm has a wrong unit, the key is rms_um'),
-    (
-        'rms_um: 0.12',
-        'rms_um: 0.12\n  rms_slope_rad: 0.03',
-        'roughness: rms_slope_rad has a wrong unit, the key is rms_slope_deg',
-    ),
-    ('  rms_um: 0.12', '  rms_um: -0.1', 'roughness: rms_um is -0.1, allowed is 0 to 10'),
-    ('cutoff_long_mm: 0.25', 'cutoff_long_mm: 0.002', 'screw.yaml: roughness: long cut-off is 2'),
-    ('  fractal_dimension: 2.68\n', '', 'neither fractal dimension nor rms slope is given'),
-    ('fractal_dimension: 2.68', 'rms_slope_deg: 30.0', 'rms slope is 30 deg, allowed is 0.553'),
+    ('lead_mm: 10.0\n', '', 'missing_lead_mm'),
+    ('lead_mm: 10.0', 'lead_mm: 10.0\nfriction: 0.1', 'unknown_friction_name'),
+    ('lead_mm: 10.0', 'lead_m: 0.01', 'lead_m_lead_mm'),
+    ('rms_um: 0.12', 'rms_nm: 120.0', 'roughness_rms_nm_rms_um'),
+    ('rms_um: 0.12', 'rms_um: 0.12\n  rms_slope_rad: 0.03', 'rms_slope_rad_wrong'),
+    ('  rms_um: 0.12', '  rms_um: -0.1', 'roughness_rms_um_0_1'),
+    ('cutoff_long_mm: 0.25', 'cutoff_long_mm: 0.002', 'roughness_long_cut'),
+    ('  fractal_dimension: 2.68\n', '', 'neither_fractal_dimension'),
+    ('fractal_dimension: 2.68', 'rms_slope_deg: 30.0', 'rms_slope_30'),
     (
         'fractal_dimension: 2.68',
         'fractal_dimension: 2.68\n  rms_slope_deg: 1.0',
-        'fractal dimension 2.68 has the rms slope 2.18 deg, stated is 1 deg',
+        'fractal_dimension_2_68',
     ),
-    ('rms_um: 0.12', 'rms_um: 0.12\n  lay: longitudinal', 'roughness: fan angle is missing'),
-    ('state: new', 'state: old', "state is 'old', allowed is run_in or new"),
-    ('state: new', 'traced: old', "traced is 'old', allowed is new or run_in"),
-    (
-        'state: new',
-        'state: new\n  traced: run_in',
-        'screw.yaml: roughness: traced is run_in and state is new, allowed is state: run_in for a '
-        'profile that was traced after running in',
-    ),
-    (
-        'state: new',
-        'run_in_pressure_GPa: 6.0',
-        'screw.yaml: roughness: run_in_pressure_GPa is 6 GPa between run_in_low_GPa (2) and '
-        'run_in_high_GPa (5), allowed are rising numbers up to the hardness (7 GPa)',
-    ),
-    ('state: new', 'run_in_low_GPa: 3.5', 'is 3 GPa between run_in_low_GPa (3.5) and'),
-    ('state: new', 'hardness_GPa: 4.0', 'allowed are rising numbers up to the hardness (4 GPa)'),
-    ('state: new', 'hardness_GPa: .nan', 'hardness_GPa is nan, allowed is 1 to 20'),
-    ('lead_mm: 10.0', 'lead_mm: 10.0\nworking_load_N: -1.0', 'working_load_N is -1, allowed is 0'),
-    ('roughness:\n', 'ball_roughness: {}\nroughness:\n', 'neither rms_um nor grade is given'),
+    ('rms_um: 0.12', 'rms_um: 0.12\n  lay: longitudinal', 'roughness_fan_angle'),
+    ('state: new', 'state: old', 'state_old_run_in'),
+    ('state: new', 'traced: old', 'traced_old_new'),
+    ('state: new', 'state: new\n  traced: run_in', 'roughness_traced_run_in'),
+    ('state: new', 'run_in_pressure_GPa: 6.0', 'roughness_run_in_pressure_gpa_6'),
+    ('state: new', 'run_in_low_GPa: 3.5', 'run_in_pressure_3'),
+    ('state: new', 'hardness_GPa: 4.0', 'rising_numbers_up'),
+    ('state: new', 'hardness_GPa: .nan', 'hardness_gpa_nan_1'),
+    ('lead_mm: 10.0', 'lead_mm: 10.0\nworking_load_N: -1.0', 'working_load_n_1_0'),
+    ('roughness:\n', 'ball_roughness: {}\nroughness:\n', 'neither_rms_um_nor'),
     (
         'roughness:\n',
         'ball_roughness: {rms_um: 0.01, grade: G10}\nroughness:\n',
-        'ball_roughness: rms_um and grade are given, allowed is one of the two',
+        'ball_roughness_rms_um_grade',
     ),
-    ('roughness:\n', 'ball_roughness: {grade: G7}\nroughness:\n', "grade is 'G7', allowed is G3"),
-    ('lead_mm: 10.0', 'lead_mm: 0.01', 'lead_mm is 0.01, allowed is 0.5 to 200'),
-    ('lead_mm: 10.0', 'lead_mm: .nan', 'lead_mm is nan, allowed is 0.5 to 200'),
-    ('lead_mm: 10.0', 'lead_mm: .inf', 'lead_mm is inf, allowed is 0.5 to 200'),
-    ('lead_mm: 10.0', 'lead_mm: ten', "lead_mm is 'ten', allowed is a number from 0.5 to 200"),
-    ('lead_mm: 10.0', 'lead_mm: 1e1', 'write 1.0e-8, not 1e-8'),
-    ('poisson_ratio: 0.3', 'poisson_ratio: true', 'poisson_ratio is True, allowed is a number'),
-    ('loaded_balls_per_nut: 51', 'loaded_balls_per_nut: 51.5', 'allowed is a whole number'),
-    ('ball_diameter_mm: 5.953', 'ball_diameter_mm: 16.5', 'allowed is less than pitch_radius_mm'),
-    ('raceway:', 'raceway: 3\nunused:', 'unknown key unused'),
-    ('name: nominal', 'name: [', 'cannot be read as YAML'),
-    ('name: nominal', 'name: ../nominal', "name is '../nominal', allowed is letters, digits"),
-    ('lead_mm: 10.0', 'lead_mm: 10.0\nlead_mm: 12.0', 'key lead_mm stands twice'),
-    ('preload_N: 990.0', 'preload_N: 99000.0', 'preload_N is 99000 N, allowed is up to static'),
+    ('roughness:\n', 'ball_roughness: {grade: G7}\nroughness:\n', 'grade_g7_g3'),
+    ('lead_mm: 10.0', 'lead_mm: 0.01', 'lead_mm_0_01_0_5'),
+    ('lead_mm: 10.0', 'lead_mm: .nan', 'lead_mm_nan_0_5'),
+    ('lead_mm: 10.0', 'lead_mm: .inf', 'lead_mm_inf_0_5'),
+    ('lead_mm: 10.0', 'lead_mm: ten', 'lead_mm_ten_0_5'),
+    ('lead_mm: 10.0', 'lead_mm: 1e1', 'write_1_0e_8'),
+    ('poisson_ratio: 0.3', 'poisson_ratio: true', 'poisson_ratio_true'),
+    ('loaded_balls_per_nut: 51', 'loaded_balls_per_nut: 51.5', 'balls_whole'),
+    ('ball_diameter_mm: 5.953', 'ball_diameter_mm: 16.5', 'less_than_pitch_radius_mm'),
+    ('raceway:', 'raceway: 3\nunused:', 'unknown_unused'),
+    ('name: nominal', 'name: [', 'cannot_be_read'),
+    ('name: nominal', 'name: ../nominal', 'name_nominal_letters'),
+    ('lead_mm: 10.0', 'lead_mm: 10.0\nlead_mm: 12.0', 'lead_mm_stands_twice'),
+    ('preload_N: 990.0', 'preload_N: 99000.0', 'preload_n_99000_n'),
 ]
 
 
-@pytest.mark.parametrize(('old', 'new', 'sentence'), MISTAKES, ids=[m[2][:30] for m in MISTAKES])
-def test_a_mistake_in_a_datasheet_is_one_sentence(tmp_path: Path, old, new, sentence):
-    """The sentence names the file, the key, the value and what is allowed."""
+@pytest.mark.parametrize(('old', 'new', 'sentence'), MISTAKES, ids=[m[2] for m in MISTAKES])
+def test_a_mistake_in_a_datasheet_is_one_sentence(tmp_path, old, new, sentence, refused):
     path = tmp_path / 'screw.yaml'
     assert old in SCREW
     path.write_text(SCREW.replace(old, new, 1), encoding='utf-8')
-    with pytest.raises(InputError, match=re.escape(sentence)) as caught:
-        load_screw(str(path))
+    caught = refused(sentence, load_screw, str(path))
     assert str(path) in str(caught.value)
     assert '\n' not in str(caught.value)
 
@@ -163,19 +146,17 @@ OLD = (
 
 
 @pytest.mark.parametrize('old', [OLD, OLD[1:3], *((one,) for one in OLD)])
-def test_keys_of_an_old_datasheet_are_named_with_what_to_write_instead(tmp_path: Path, old):
+def test_keys_of_an_old_datasheet_are_named_with_what_to_write_instead(tmp_path, old, refused):
     """One sentence: the file, every old key that it has, and the keys that took their place."""
     path = tmp_path / 'screw.yaml'
     lines = ''.join(f'  {line}\n' for line in old)
     path.write_text(SCREW.replace('roughness:\n', f'roughness:\n{lines}', 1), encoding='utf-8')
-    names = ', '.join(line.split(':')[0] for line in old)
-    sentence = f'{path}: roughness: {names} {"is" if len(old) == 1 else "are"} not read'
-    with pytest.raises(InputError, match=re.escape(sentence)) as caught:
+    names = ', '.join(line.split(':')[0] for line in old) + (' is' if len(old) == 1 else ' are')
+    with refused('old_keys_read', path=path, names=names) as caught:
         load_screw(str(path))
     instead = str(caught.value).split('instead', 1)[1]
     for key in ('cutoff_long_mm', 'cutoff_short_um', 'fractal_dimension', 'rms_slope_deg'):
         assert key in instead
-    assert instead.endswith('film_floor_nm belongs to the lubricant')
     assert '\n' not in str(caught.value)
 
 
@@ -195,8 +176,7 @@ def test_a_cut_off_that_leaves_the_balls_no_waves_is_refused(screw, grade, long,
     ball = BallRoughness(grade=grade)
     coarse = replace(screw.roughness, cutoff_long=0.8e-3, cutoff_short=long)
     assert replace(screw, roughness=coarse).roughness.cutoff_short == long
-    sentence = f'cutoff_short_um of roughness is {long * 1e6:g} um, allowed is less than the long'
-    with pytest.raises(InputError, match=sentence):
+    with refused('cutoff_short_um_roughness', long=f'{long * 1e6:g}'):
         replace(screw, roughness=coarse, ball_roughness=ball)
     refused('long_cut_off', ball_of, coarse, ball)
     finer = replace(coarse, cutoff_short=0.99 * long)
@@ -212,35 +192,23 @@ def test_heights_of_raceway_and_ball_add_as_squares(screw):
     assert screw.composite_rms == screw.roughness.rms
 
 
-@pytest.mark.parametrize('name', ['iso_vg_32', 'iso_vg_68', 'iso_vg_100'])
-def test_shipped_oils_state_their_boundary_film(name):
-    """3 nm between 1 and 5 nm, fully flooded."""
-    oil = load_lubricant(name)
-    floors = (oil.film_floor_low, oil.film_floor, oil.film_floor_high)
-    assert [1e9 * floor for floor in floors] == pytest.approx([1.0, 3.0, 5.0])
-    assert oil.film_factor == 1.0
-
-
-def test_the_film_floor_lies_between_its_bounds(oil):
+def test_the_film_floor_lies_between_its_bounds(oil, refused):
     """On a bound it is inside; beyond it is one sentence."""
     assert replace(oil, film_floor=1e-9).film_floor == 1e-9
     assert replace(oil, film_floor=5.0 * 1e-9).film_floor == 5.0 * 1e-9
     for floor in (0.9e-9, 5.1e-9):
-        with pytest.raises(InputError, match=r'film_floor_nm is [\d.]+ nm, allowed is 1 to 5 nm'):
-            replace(oil, film_floor=floor)
+        refused('film_floor_nm', replace, oil, film_floor=floor)
 
 
 @pytest.mark.parametrize('content', ['', '3', '[1, 2]', 'name', '\x00'])
-def test_a_file_that_is_no_mapping_is_refused(tmp_path: Path, content):
-    """Anything but a mapping is named as such, whatever YAML makes of it."""
+def test_a_file_that_is_no_mapping_is_refused(tmp_path, content, refused):
     path = tmp_path / 'oil.yaml'
     path.write_text(content, encoding='utf-8')
-    with pytest.raises(InputError, match=r'oil\.yaml: (must be a mapping|cannot be read)'):
-        load_lubricant(str(path))
+    sentence = 'oil_yaml_read' if content == '\x00' else 'oil_yaml_mapping'
+    refused(sentence, load_lubricant, str(path))
 
 
-def test_the_source_is_mandatory(tmp_path: Path, refused):
-    """A datasheet without a source is not a datasheet."""
+def test_the_source_is_mandatory(tmp_path, refused):
     path = tmp_path / 'screw.yaml'
     path.write_text(re.sub(r'source: >-\n(  .*\n)+', "source: ''\n", SCREW), encoding='utf-8')
     refused('source_text_empty', load_screw, str(path))
@@ -259,12 +227,10 @@ def test_the_source_is_mandatory(tmp_path: Path, refused):
     ],
 )
 def test_an_oil_that_contradicts_itself_is_refused(oil, change, sentence, refused):
-    """Within its own sheet."""
     refused(sentence, replace, oil, **change)
 
 
 def test_an_unknown_name_lists_the_shipped_ones(refused):
-    """A wrong name is answered with the right ones."""
     refused('nor_one_shipped', load_lubricant, 'iso_vg_46')
 
 
@@ -284,7 +250,6 @@ def test_a_point_and_its_mirror_image_are_one_point(speed, load):
 
 
 def test_sheets_are_frozen(screw):
-    """A datasheet cannot be changed by accident."""
     with pytest.raises(AttributeError):
         screw.lead = 0.02
     assert set(asdict(screw)) >= {'lead', 'roughness'}

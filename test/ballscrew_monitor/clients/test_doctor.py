@@ -31,67 +31,24 @@ GOOD = {
     'max_lag': '30.0',
 }
 WRONG = {
-    'topic': (
-        {'load': "{topic: 'axial_laod', timeout: 30.0}"},
-        'x.load: no publisher yet on /axial_laod: start it, or set x.load.topic to /axial_load',
-    ),
-    'type': (
-        {'speed': "{type: 'std_msgs/msg/Float64', field: 'data', timeout: 30.0}"},
-        'x.speed: /joint_states carries sensor_msgs/msg/JointState, expected is '
-        'std_msgs/msg/Float64: set x.speed.type to sensor_msgs/msg/JointState',
-    ),
-    'field': (
-        {'load': "{field: 'wrench.force', timeout: 30.0}"},
-        "field 'wrench.force' of WrenchStamped is Vector3, not a number: set x.load.field, "
-        'numbers are wrench.force.x, wrench.force.y',
-    ),
-    'joint': (
-        {'speed': "{field: 'velocity[xaxis]', timeout: 30.0}"},
-        'the messages name arm, x_axis and no joint xaxis, set x.speed.field to '
-        'velocity[x_axis] or another of them',
-    ),
-    'speed_unit': (
-        {'speed': "{topic: 'spindle', type: '', field: 'data', timeout: 30.0}"},
-        'x.speed: 1500 rad/s is far outside the surface',
-    ),
-    'load_unit': ({'load': "{unit: 'kN', timeout: 30.0}"}, 'set x.load.unit to N'),
-    'temperature_unit': (
-        {'temperature': "{topic: 'oil_temperature', unit: 'K'}"},
-        'set x.temperature.unit to degC',
-    ),
-    'torque_unit': (
-        {'torque': "{topic: 'spindle', unit: 'A', uncertainty: 0.1}"}
-        | {'load': "{source: 'motor_torque'}"},
-        "parameters x.torque: torque unit 'A' needs torque.constant [N m/A], it is 0.0",
-    ),
-    'torque_uncertainty': (
-        {'torque': "{topic: 'spindle'}", 'load': "{source: 'motor_torque'}"},
-        'parameter x.torque.uncertainty is 0.0, not stated, x.load.source motor_torque needs',
-    ),
-    'no_torque': (
-        {'load': "{source: 'motor_torque'}", 'torque': '{uncertainty: 0.1}'},
-        "parameter x.torque.topic is '', not stated, x.load.source motor_torque needs the topic",
-    ),
-    'timeout': (
-        {'load': "{topic: 'slow_load', timeout: 0.1}"},
-        'x.load: it comes less often than its timeout allows: set x.load.timeout to ',
-    ),
-    'qos': (
-        {},
-        'QoS does not fit on /joint_states, offered is best_effort and asked for is reliable: '
-        'set qos_overrides./joint_states.subscription.reliability to best_effort',
-    ),
-    'position_only': (
-        {'speed': "{topic: 'positions', timeout: 30.0}"},
-        'x.speed: speed is not usable: velocity is empty in its messages: let the source fill it',
-    ),
-    'clock_ahead': (
-        {'load': "{topic: 'future_load', timeout: 30.0}"},
-        'x.load: load is not usable: its stamps lie ahead of the clock, set the clocks alike',
-    ),
-    'simulated': ({}, 'use_sim_time is true and nobody publishes /clock'),
-    'override': ({}, 'parameter qos_overrides./joint.subscription.depth is of no input'),
-    'surface': ({'surface': "'/no/such.npz'"}, 'axis x: '),
+    'topic': {'load': "{topic: 'axial_laod', timeout: 30.0}"},
+    'type': {'speed': "{type: 'std_msgs/msg/Float64', field: 'data', timeout: 30.0}"},
+    'field': {'load': "{field: 'wrench.force', timeout: 30.0}"},
+    'joint': {'speed': "{field: 'velocity[xaxis]', timeout: 30.0}"},
+    'speed_unit': {'speed': "{topic: 'spindle', type: '', field: 'data', timeout: 30.0}"},
+    'load_unit': {'load': "{unit: 'kN', timeout: 30.0}"},
+    'temperature_unit': {'temperature': "{topic: 'oil_temperature', unit: 'K'}"},
+    'torque_unit': {'torque': "{topic: 'spindle', unit: 'A', uncertainty: 0.1}"}
+    | {'load': "{source: 'motor_torque'}"},
+    'torque_uncertainty': {'torque': "{topic: 'spindle'}", 'load': "{source: 'motor_torque'}"},
+    'no_torque': {'load': "{source: 'motor_torque'}", 'torque': '{uncertainty: 0.1}'},
+    'timeout': {'load': "{topic: 'slow_load', timeout: 0.1}"},
+    'qos': {},
+    'position_only': {'speed': "{topic: 'positions', timeout: 30.0}"},
+    'clock_ahead': {'load': "{topic: 'future_load', timeout: 30.0}"},
+    'simulated': {},
+    'override': {},
+    'surface': {'surface': "'/no/such.npz'"},
 }
 EXTRA = {
     'qos': "    qos_overrides: {/joint_states: {subscription: {reliability: 'reliable'}}}\n",
@@ -155,7 +112,6 @@ def make_domain():
 
 
 def write(folder, changes, extra=''):
-    """Write a parameter file whose axis x differs from a good one."""
     lines = [f'      {name}: {value}\n' for name, value in (GOOD | changes).items()]
     path = folder / 'params.yaml'
     text = '/**/ballscrew_monitor:\n  ros__parameters:\n' + extra + '    x:\n' + ''.join(lines)
@@ -179,7 +135,6 @@ def patient(examine, as_expected):
 
 @pytest.fixture
 def examined(domain, monkeypatch, capsys):
-    """Return what says of a parameter file without a finding what the doctor says."""
     monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
 
     def examine(path):
@@ -210,10 +165,10 @@ def test_positions_and_a_torque_instead_of_a_load_have_no_finding(tmp_path, exam
 
 
 @pytest.mark.parametrize('name', WRONG)
-def test_a_wrong_file_has_its_sentence(name, domain, tmp_path, monkeypatch, capsys):
-    changes, sentence = WRONG[name]
+def test_a_wrong_file_has_its_sentence(name, domain, tmp_path, monkeypatch, capsys, says):
+    sentence = says(name)
     monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
-    path = write(tmp_path, changes, EXTRA.get(name, ''))
+    path = write(tmp_path, WRONG[name], EXTRA.get(name, ''))
     command = ['doctor', '--params', str(path), '--json', '--seconds']
 
     def findings(seconds):
@@ -235,9 +190,7 @@ def test_a_wrong_file_has_its_sentence(name, domain, tmp_path, monkeypatch, caps
         ('monitor: {%s: {axes: [x]}}', 'says_nothing_node'),
     ],
 )
-def test_a_file_that_the_node_refuses_is_bad_input(
-    text, sentence, domain, tmp_path, monkeypatch, says
-):
+def test_a_refused_file_is_bad_input(text, sentence, domain, tmp_path, monkeypatch, says):
     monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
     path = tmp_path / 'params.yaml'
     path.write_text(text % 'ros__parameters', encoding='utf-8')
@@ -246,10 +199,7 @@ def test_a_file_that_the_node_refuses_is_bad_input(
     assert says(sentence) in str(caught.value)
 
 
-def test_a_time_that_is_none_is_bad_input(tmp_path, refused):
+def test_bad_times_and_domains_are_bad_input(tmp_path, refused, monkeypatch):
     refused('seconds_0_s', doctor, write(tmp_path, {}), seconds=0.0)
-
-
-def test_a_domain_that_is_no_number_is_bad_input(tmp_path, monkeypatch, refused):
     monkeypatch.setenv('ROS_DOMAIN_ID', 'here')
     refused('ros_cannot_start', doctor, write(tmp_path, {}), seconds=1.0)

@@ -46,18 +46,15 @@ def begin(node, *arguments):
 
 
 def end(process):
-    """Wait for the command; return its exit code and what it said."""
     out, err = process.communicate(timeout=DEADLINE)
     return process.returncode, out, err
 
 
 def ask(node, *arguments):
-    """Run the command; return its exit code and what it said."""
     return end(begin(node, *arguments))
 
 
 def said(node, words):
-    """Tell whether the node has said something."""
     return words in node.output.read_text()
 
 
@@ -108,9 +105,8 @@ def test_a_page_about_the_current_point_is_for_a_person(node, says):
     lines = out.splitlines()
     assert lines[0].startswith('axis x: Solved')
     assert lines[1].split() == ['full', 'solve', 'surface']
-    assert [line.split()[0] for line in lines[2:9]] == [
-        *('efficiency', 'RCS', 'asperity', 'film', 'central', 'friction', 'driving')
-    ]
+    expected = [*('efficiency', 'RCS', 'asperity', 'film', 'central', 'friction', 'driving')]
+    assert [line.split()[0] for line in lines[2:9]] == expected
     assert lines[-1] == says('surface_corrected')
 
 
@@ -185,7 +181,7 @@ def test_a_goal_that_is_accepted_too_late_is_taken_back():
 @pytest.mark.parametrize(
     ('interrupted', 'code', 'sentence'), [([], 1, 'm_solve_does'), ([signal.SIGINT], 130, '')]
 )
-def test_a_server_that_is_never_ready_is_sent_no_goal(
+def test_a_server_not_ready_is_sent_no_goal(
     monkeypatch, capsys, interrupted, code, sentence, says
 ):
     client = SimpleNamespace(server_is_ready=lambda: False)  # has no way to send

@@ -14,11 +14,8 @@ def table(*ports):
     )
 
 
-def test_ports_tell_domains():
+def test_ports_tell_domains_and_the_lock_of_a_test_run_is_no_participant():
     ports = [port(0, 0), port(7, 3), port(7, 4), port(101, 0), 53, 40_000]
     assert domains_of(table(*ports)) == [0, 7, 101]
-
-
-def test_the_lock_of_a_test_run_is_no_participant():
     assert domains_of(table(port(7, LOCK_PARTICIPANT))) == []
     assert domains_of('') == []

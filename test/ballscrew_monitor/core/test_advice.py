@@ -24,21 +24,23 @@ def heavier_is_better(speed, load):
 
 
 @pytest.mark.parametrize('sign', [1.0, -1.0])
-def test_the_border_is_found_from_its_optimal_side(core, sign):
+def test_a_border_is_found_from_its_optimal_side_and_the_load_keeps_its_sense(core, sign):
     point = core.point(speed=sign * 5.0, axial_load=-sign * 1000.0)
     found = advise(point, core.surface(rcs=faster_is_better), core.limits()).target_speed
     assert sign * found == pytest.approx(30.0, rel=1e-5)
     assert sign * found >= 30.0
+    point = core.point(speed=10.0, axial_load=sign * 1000.0)
+    found = advise(point, core.surface(efficiency=heavier_is_better), core.limits()).target_load
+    assert sign * found == pytest.approx(1500.0, rel=1e-4)
+    assert sign * found >= 1500.0
 
 
 def test_the_nearer_of_two_borders_wins(core):
     surface = core.surface(rcs=lambda speed, load: 0.0 if speed < 8.0 or speed > 50.0 else 1.0)
-    assert advise(core.point(speed=10.0), surface, core.limits()).target_speed == pytest.approx(
-        8.0
-    )
-    assert advise(core.point(speed=45.0), surface, core.limits()).target_speed == pytest.approx(
-        50.0
-    )
+    found = advise(core.point(speed=10.0), surface, core.limits()).target_speed
+    assert found == pytest.approx(8.0)
+    made = advise(core.point(speed=45.0), surface, core.limits()).target_speed
+    assert made == pytest.approx(50.0)
 
 
 @pytest.mark.parametrize(
@@ -54,20 +56,9 @@ def test_a_speed_that_is_no_advice(core, speed, rcs):
     assert math.isnan(found.target_speed)
 
 
-@pytest.mark.parametrize('sign', [1.0, -1.0])
-def test_the_load_keeps_its_sense(core, sign):
-    point = core.point(speed=10.0, axial_load=sign * 1000.0)
-    found = advise(point, core.surface(efficiency=heavier_is_better), core.limits()).target_load
-    assert sign * found == pytest.approx(1500.0, rel=1e-4)
-    assert sign * found >= 1500.0
-
-
-def test_to_leave_the_efficiency_unjudged_is_no_advice(core):
+def test_advice_under_a_light_load(core):
     surface = core.surface(efficiency=0.5)
     assert math.isnan(advise(core.point(axial_load=300.0), surface, core.limits()).target_load)
-
-
-def test_a_light_load_may_become_lighter(core):
     surface = core.surface(
         rcs=lambda speed, load: 1.0 if abs(load) > 100.0 else 0.0, efficiency=0.5
     )
@@ -75,19 +66,15 @@ def test_a_light_load_may_become_lighter(core):
     assert found == pytest.approx(100.0, rel=1e-4)
 
 
-def test_advice_as_a_sentence(core, says):
+def test_advice_is_a_sentence_and_an_optimal_point_its_own(core, says):
     assert Advice().text == ''
     advice = advise(core.point(speed=5.0), core.surface(rcs=faster_is_better), core.limits())
     assert advice.text == 'at this load run at 30 rad/s (286 rev/min)'
     both = Advice(target_speed=30.0, target_load=-1500.0)
     assert both.text == says('this_load_run')
-
-
-def test_an_optimal_point_is_its_own_advice(core):
     point = core.point(speed=7.0, axial_load=-600.0)
-    assert advise(point, core.surface(), core.limits()) == Advice(
-        target_speed=7.0, target_load=-600.0
-    )
+    expected = Advice(target_speed=7.0, target_load=-600.0)
+    assert advise(point, core.surface(), core.limits()) == expected
 
 
 @pytest.mark.parametrize('sign', [1.0, -1.0])

@@ -40,26 +40,17 @@ def test_it_is_what_ros_writes_but_for_padding_and_end(filled, name):
         assert not any(mine for mine, other in zip(ours, theirs) if mine != other)
 
 
-def test_nothing_follows_an_empty_array():
+def test_empty_arrays_messages_without_fields_and_wide_characters(refused):
     assert serialized(JointState())[-16:] == bytes(16)
     assert len(serialized(JointState())) == 36
-
-
-def test_a_message_without_fields_has_one_byte():
     assert serialized(Empty()) == b'\0\1\0\0\0'
     assert serialized(UInt8(data=7)) == b'\0\1\0\0\7'
+    refused('unboundedwstring_cannot', serialized, Wide())
 
 
 class Wide:
-    """A message with a text of wide characters."""
-
     SLOT_TYPES = (definition.UnboundedWString(),)
 
     @staticmethod
     def get_fields_and_field_types():
-        """Return the names and types of the fields."""
         return {'data': 'wstring'}
-
-
-def test_wide_characters_are_refused_in_a_sentence(refused):
-    refused('unboundedwstring_cannot', serialized, Wide())

@@ -38,21 +38,20 @@ def test_speed_units(unit, value, expected):
     assert speed(unit, -value) == -speed(unit, value)
 
 
-def test_handedness_turns_rotary_speeds_only():
+def test_handedness_turns_rotary_speeds_and_torques():
     assert speed('rad/s', 3.0, handedness='left') == -3.0
     assert speed('rev/min', 60.0, handedness='left') == -speed('rev/min', 60.0)
     assert speed('mm/s', 10.0, handedness='left') == speed('mm/s', 10.0)
+    assert conversions.torque_scaling(1.0, handedness='right', **PLAIN)(2.0) == 2.0
+    assert conversions.torque_scaling(1.0, handedness='left', **PLAIN)(2.0) == -2.0
+    assert conversions.signed(2.0, POSITIVE) == 2.0
+    assert conversions.signed(2.0, NEGATIVE) == -2.0
 
 
 def test_scale_comes_before_offset_and_both_before_the_unit():
     assert speed('rad/s', 3.0, scale=2.0, offset=-1.0) == 5.0
     assert conversions.load_scaling('kN', scale=2.0, offset=1.0)(3.0) == 7000.0
     assert conversions.temperature_scaling('degC', scale=0.5, offset=10.0)(60.0) == 313.15
-
-
-def test_torque_is_along_the_screw():
-    assert conversions.torque_scaling(1.0, handedness='right', **PLAIN)(2.0) == 2.0
-    assert conversions.torque_scaling(1.0, handedness='left', **PLAIN)(2.0) == -2.0
 
 
 @pytest.mark.parametrize(('unit', 'torque'), [('N m', 4.0), ('A', 0.5 * 4.0), ('%', 0.25 * 4.0)])
@@ -104,11 +103,6 @@ def test_the_power_that_an_opposing_load_takes_has_the_same_sign_in_both_frames(
 @pytest.mark.parametrize('direction', [POSITIVE, NEGATIVE])
 def test_no_load_is_never_minus_zero(direction):
     assert math.copysign(1.0, conversions.opposing_load(0.0, direction)) == 1.0
-
-
-def test_torque_along_the_motion_turns_with_it():
-    assert conversions.signed(2.0, POSITIVE) == 2.0
-    assert conversions.signed(2.0, NEGATIVE) == -2.0
 
 
 @pytest.mark.parametrize(

@@ -50,13 +50,16 @@ def test_the_surface_is_asked_in_its_own_frame(core):
     assert surface.asked == [(20.0, -300.0, 313.15), (20.0, 300.0, 313.15)]
 
 
-def test_a_valid_estimate_carries_the_numbers(core):
+def test_a_valid_estimate_carries_the_numbers_and_a_masked_cell_says_so(core):
     result = estimate(core.point(speed=-20.0), core.surface(rcs=0.25), rcs_limit=0.25)
     assert (result.validity, result.reason) == (PointValidity.VALID, '')
     assert (result.rcs, result.efficiency) == (0.25, 0.9)
     assert result.machine_torque == -2.0
     assert result.worst_nut is Nut.NEGATIVE
     assert (result.regime, result.contact_state) == (Regime.HYDRODYNAMIC, ContactState.PARTIAL)
+    result = estimate(core.point(), core.surface(validity=PointValidity.MASKED), rcs_limit=0.25)
+    assert (result.validity, result.numbers) == (PointValidity.MASKED, None)
+    assert 'did not converge' in result.reason
 
 
 @pytest.mark.parametrize(
@@ -84,12 +87,6 @@ def test_what_cannot_be_estimated_has_a_reason_and_no_numbers(core, changes, val
     assert math.isnan(result.efficiency)
     assert result.regime is Regime.UNKNOWN
     assert result.contact_state is ContactState.UNKNOWN
-
-
-def test_a_masked_cell_says_so(core):
-    result = estimate(core.point(), core.surface(validity=PointValidity.MASKED), rcs_limit=0.25)
-    assert (result.validity, result.numbers) == (PointValidity.MASKED, None)
-    assert 'did not converge' in result.reason
 
 
 @given(

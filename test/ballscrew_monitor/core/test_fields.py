@@ -54,19 +54,15 @@ def test_every_type_of_number_is_read(kind):
     assert compile_field('data', kind)(kind()) == 0.0
 
 
-def test_joints_are_found_by_name_wherever_they_stand():
+def test_joints_are_found_by_name_and_other_joints_and_short_arrays_are_told_apart():
     read = compile_field('velocity[x_axis]', JointState)
     assert read(joints('x_axis', 'y_axis', velocity=[1.0, 2.0])) == 1.0
     assert read(joints('y_axis', 'x_axis', velocity=[1.0, 2.0])) == 2.0
     read = compile_field('velocity[robot.x]', JointState)  # a dot in its name
     assert read(joints('robot', 'robot.x', velocity=[1.0, 2.0])) == 2.0
-
-
-def test_other_joints_and_a_short_array_are_told_apart():
     read = compile_field('velocity[x_axis]', JointState)
-    assert read(joints('y_axis', velocity=[1.0])) == fields.OtherJoints(
-        'velocity', 'x_axis', ('y_axis',)
-    )
+    expected = fields.OtherJoints('velocity', 'x_axis', ('y_axis',))
+    assert read(joints('y_axis', velocity=[1.0])) == expected
     assert read(joints('x_axis')) == fields.TooShort('velocity', 'x_axis', 0)
     short = compile_field('position[3]', JointState)(joints('x_axis'))
     assert short == fields.TooShort('position', '3', 0)

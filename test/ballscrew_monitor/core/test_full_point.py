@@ -35,10 +35,15 @@ def full(**changes):
     return answer(**({'efficiency_stderr': 0.0, 'rcs_stderr': 0.0} | changes))
 
 
-def test_a_point_lies_on_the_surface_by_its_amount_of_speed_and_opposing_load(core):
+def test_a_point_lies_on_the_surface_by_its_amounts_and_a_request_holds_it(core):
     place = solved_at(core.point(speed=-10.0, axial_load=-500.0))
     assert (place.speed, place.opposing_load, place.temperature) == (10.0, -500.0, 313.15)
     assert solved_at(core.point(speed=10.0, axial_load=-500.0)).opposing_load == 500.0
+    request = full_point.request_of(SURFACE, core.point(speed=-10.0, axial_load=500.0))
+    assert request['header']['inputs'] == SURFACE.header['inputs']
+    assert request['header']['tier'] == 'full'
+    assert request['point'] == {'speed': 10.0, 'opposing_load': 500.0, 'temperature': 313.15}
+    assert set(request['header']) == {'tier', 'inputs'}
 
 
 @pytest.mark.parametrize(
@@ -59,14 +64,11 @@ def test_a_difference_is_held_against_the_errors_of_both(changes, within):
     assert found.within_stated_error is within
 
 
-def test_without_an_answer_of_the_surface_nothing_is_known():
+def test_the_stated_error_is_that_of_interpolation_and_law_or_not_known():
     found = full_point.compare(full(), None)
     assert math.isnan(found.efficiency)
     assert math.isnan(found.rcs)
     assert not found.within_stated_error
-
-
-def test_the_stated_error_is_that_of_interpolation_and_of_the_law():
     assert stated_error(answer(), 'rcs') == 2.0**-9
     assert stated_error(answer(rcs_stderr=2.0**-9), 'rcs') == 2.0**-8
 
@@ -129,16 +131,13 @@ def asked(core, stamps, numbers=None, dwell=None, **point):
 def test_a_solve_is_asked_for_after_a_stay_and_not_again_for_a_while(core):
     stamps = range(START, START + STAY + PAUSE + SECOND, SECOND)
     assert asked(core, stamps) == [START + STAY, START + STAY + PAUSE]
-
-
-def test_whoever_moves_on_does_not_dwell(core):
+    stamps = [START, START + STAY]
+    assert asked(core, stamps, speed=0.2) == []
+    assert asked(core, stamps, speed=500.0) == []
     dwell, stamps = Dwell(), range(START, START + 2 * STAY, SECOND)
     for stamp in stamps:
         speed = 10.0 * (1.0 + 0.01 * ((stamp - START) // SECOND))
         assert asked(core, [stamp], dwell=dwell, speed=speed) == []
-
-
-def test_a_clock_that_is_set_back_begins_the_stay_anew(core):
     dwell = Dwell()
     assert asked(core, [START], dwell=dwell) == []
     assert asked(core, [START - STAY, START - 1], dwell=dwell) == []

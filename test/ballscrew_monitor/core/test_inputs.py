@@ -31,16 +31,13 @@ def speed_input(*, type_name='sensor_msgs/msg/JointState', **changes):
     return inputs.OpenInput(**(values | changes)).close(type_name)
 
 
-def test_a_header_stamp_is_the_stamp():
+def test_a_header_stamp_is_the_stamp_and_without_one_the_time_of_reception_counts():
     sample = speed_input().read(
         joints('x_axis', velocity=[3.0], stamp=NOW - 5), now=NOW, max_future=0
     )
     assert sample == InputSample(
         source=Source.SPEED, value=3.0, stamp=NOW - 5, stamp_source=StampSource.HEADER, arrival=NOW
     )
-
-
-def test_without_a_stamp_the_time_of_reception_counts():
     unstamped = speed_input(type_name='std_msgs/msg/Float64', field='data')
     for sample in (
         speed_input().read(joints('x_axis', velocity=[3.0]), now=NOW, max_future=0),
@@ -49,13 +46,16 @@ def test_without_a_stamp_the_time_of_reception_counts():
         assert (sample.stamp, sample.stamp_source) == (NOW, StampSource.RECEIVE)
 
 
-def test_a_stamp_exactly_as_far_ahead_as_allowed_is_taken():
+def test_a_stamp_as_far_ahead_as_allowed_is_taken_and_any_before_a_clock_starts():
     speed = speed_input()
     limit = joints('x_axis', velocity=[3.0], stamp=NOW + 7)
     beyond = joints('x_axis', velocity=[3.0], stamp=NOW + 8)
     assert isinstance(speed.read(limit, now=NOW, max_future=7), InputSample)
     refusal = speed.read(beyond, now=NOW, max_future=7)
     assert (refusal.source, refusal.why, refusal.arrival) == (Source.SPEED, Why.FUTURE, NOW)
+    message = joints('x_axis', velocity=[3.0], stamp=NOW)
+    sample = speed_input().read(message, now=0, max_future=0)
+    assert (sample.stamp, sample.arrival) == (NOW, NOW)
 
 
 @pytest.mark.parametrize(
@@ -79,12 +79,6 @@ def test_a_refused_stamp_says_what_mends_it(ahead, why, words):
     refusal = speed_input().read(message, now=SECOND, max_future=SECOND // 2)
     assert refusal.why is why
     assert all(word in refusal.text for word in words)
-
-
-def test_a_clock_that_has_not_started_refuses_no_stamp_and_times_nothing():
-    message = joints('x_axis', velocity=[3.0], stamp=NOW)
-    sample = speed_input().read(message, now=0, max_future=0)
-    assert (sample.stamp, sample.arrival) == (NOW, NOW)
 
 
 @pytest.mark.parametrize('now', [0, NOW])
@@ -129,12 +123,9 @@ def test_a_message_about_other_joints_is_refused_as_such():
     )
 
 
-def test_the_value_is_scaled():
+def test_the_value_is_scaled_and_an_open_input_is_closed_by_a_type(refused):
     speed = speed_input(scaling=Scaling(factor=2.0, shift=1.0))
     assert speed.read(joints('x_axis', velocity=[3.0]), now=NOW, max_future=0).value == 7.0
-
-
-def test_an_open_input_is_closed_by_a_type(refused):
     opened = inputs.OpenInput(
         source=Source.SPEED, topic='speed', field='data', scaling=Scaling(factor=2.0, shift=0.0)
     )

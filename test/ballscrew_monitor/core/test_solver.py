@@ -33,7 +33,6 @@ def world_fixture():
 
 
 def make_world():
-    """Return a solver and the list of the processes that it has started."""
     started = []
 
     def start():
@@ -60,10 +59,14 @@ def ends(done):
     return [(one.job, one.end, one.sentence) for one in done]
 
 
-def test_no_process_is_started_before_it_is_needed(world):
+def test_no_process_is_started_before_it_is_needed_and_closing_ends_it(world):
     solver, started = world
     assert solver.poll(0.0) == []
     assert (started, solver.busy) == ([], False)
+    solver, started = begin(world, job())
+    solver.close()
+    assert started[0].killed
+    assert not solver.busy
 
 
 def test_one_after_another_in_the_order_in_which_they_came(world):
@@ -73,9 +76,8 @@ def test_one_after_another_in_the_order_in_which_they_came(world):
     for now, one in enumerate(jobs, start=1):
         assert process.sent[-1] == {'solve': one.request}
         process.out = [{'solved': {'rcs': 0.5}}]
-        assert solver.poll(float(now)) == [
-            Done(job=one, end=End.SOLVED, result={'rcs': 0.5}, wall_time=1.0)
-        ]
+        expected = [Done(job=one, end=End.SOLVED, result={'rcs': 0.5}, wall_time=1.0)]
+        assert solver.poll(float(now)) == expected
     assert not solver.busy
 
 
@@ -155,13 +157,6 @@ def test_a_solve_ends_at_its_timeout_which_counts_from_its_begin(world):
     assert started[0].killed
     assert started[1].sent == [{'solve': second.request}]
     assert solver.poll(9.9) == []
-
-
-def test_closing_ends_the_process(world):
-    solver, started = begin(world, job())
-    solver.close()
-    assert started[0].killed
-    assert not solver.busy
 
 
 def test_a_step_without_numbers_knows_none():

@@ -17,13 +17,11 @@ def test_it_holds_until_its_time_and_not_at_it():
     assert shelving.at(NOW) is shelving
     assert shelving.at(shelving.until - 1) is shelving
     assert shelving.at(shelving.until) is NOT_SHELVED
-
-
-def test_a_clock_that_is_set_back_shelves_no_longer_than_a_day():
     shelving = shelve(NOW, 86400.0, 'why')
     assert shelving.at(shelving.until - LONGEST_SHELVING) is shelving
     assert shelving.at(shelving.until - LONGEST_SHELVING - 1) is NOT_SHELVED
     assert shelving.at(10 * SECOND) is NOT_SHELVED
+    assert shelve(NOW, 0.0, '') is NOT_SHELVED
 
 
 @pytest.mark.parametrize('wrong', [0, 10 * SECOND, NOW - 86400 * SECOND])
@@ -34,10 +32,6 @@ def test_a_clock_that_is_behind_does_not_end_it(wrong):
     assert not shelving.is_over(shelving.until - 1)
     assert shelving.is_over(shelving.until)
     assert not NOT_SHELVED.is_over(NOW)
-
-
-def test_a_duration_of_zero_ends_it_without_a_reason():
-    assert shelve(NOW, 0.0, '') is NOT_SHELVED
 
 
 @pytest.mark.parametrize(

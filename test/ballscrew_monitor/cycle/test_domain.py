@@ -1,11 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""
-A ROS domain of one's own, and which files of FastDDS are removed.
-
-Those of killed processes go, never those of living ones.
-
-"""
+"""A ROS domain of one's own; files of FastDDS go with killed processes, never with living ones."""
 
 from collections import Counter
 import contextlib
@@ -36,27 +31,21 @@ def test_ports_are_those_of_the_specification():
     assert highest < 32768  # from here on the kernel gives ports to clients
 
 
-def test_two_at_a_time_get_different_domains():
+def test_a_domain_is_held_by_one_at_a_time_and_not_free_with_a_participant():
     with free_domain() as one, free_domain() as other:
         assert one != other
         assert {one, other} <= set(domains.DOMAINS)
-
-
-def test_a_domain_with_a_participant_is_not_free():
+    with free_domain() as found:
+        with domains.held(found) as free:
+            assert not free
+    with domains.held(found) as free:
+        assert free
     with free_domain() as found:
         assert domains.is_free(found)
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as participant:
             participant.bind(('', port(found, 1)))
             assert not domains.is_free(found)
         assert domains.is_free(found)
-
-
-def test_a_domain_is_held_by_one_at_a_time():
-    with free_domain() as found:
-        with domains.held(found) as free:
-            assert not free
-    with domains.held(found) as free:
-        assert free
 
 
 def test_when_all_are_taken_it_says_so(monkeypatch, refused):
@@ -91,12 +80,16 @@ def names(paths):
     return {path.name for path in paths}
 
 
-def test_a_segment_is_stale_when_its_lock_can_be_had(folder):
+def test_a_segment_is_stale_when_its_lock_can_be_opened_and_had(folder):
     assert names(stale(folder, set())) == {SEGMENT, f'{SEGMENT}_el'}
     with (folder / f'{SEGMENT}_el').open() as owner:
         fcntl.flock(owner, fcntl.LOCK_EX)
         assert not stale(folder, set())
     assert names(stale(folder, set())) == {SEGMENT, f'{SEGMENT}_el'}
+    lock = folder / f'{SEGMENT}_el'
+    lock.unlink()
+    lock.mkdir()
+    assert not stale(folder, set())
 
 
 @pytest.mark.parametrize('name', [SEGMENT, f'{SEGMENT}_el'])
@@ -120,29 +113,16 @@ def test_what_is_of_another_user_is_kept(folder, monkeypatch):
     assert not stale(folder, {7, 8})
 
 
-def test_a_port_is_stale_in_a_free_domain_only(folder):
+def test_which_ports_are_stale(folder):
     ports = stale(folder, {7}) - stale(folder, set())
     assert names(ports) == {PORT, f'sem.{PORT}_mutex'}
     assert len(stale(folder, {7, 8}) - stale(folder, {7})) == 2
-
-
-def test_a_port_of_no_domain_is_stale_when_its_lock_can_be_had(folder):
-    assert 'fastrtps_port7000' not in names(stale(folder, {7, 8}))
-    (folder / 'fastrtps_port7000_el').touch()
-    assert {'fastrtps_port7000', 'fastrtps_port7000_el'} <= names(stale(folder, set()))
-
-
-def test_a_port_that_somebody_listens_to_is_kept(folder):
     with (folder / f'fastdds_port{port(8, 1) + 1}_sl').open() as listener:
         fcntl.flock(listener, fcntl.LOCK_SH)
         assert stale(folder, {8}) == stale(folder, set())
-
-
-def test_what_cannot_be_opened_is_kept(folder):
-    lock = folder / f'{SEGMENT}_el'
-    lock.unlink()
-    lock.mkdir()
-    assert not stale(folder, set())
+    assert 'fastrtps_port7000' not in names(stale(folder, {7, 8}))
+    (folder / 'fastrtps_port7000_el').touch()
+    assert {'fastrtps_port7000', 'fastrtps_port7000_el'} <= names(stale(folder, set()))
 
 
 @pytest.fixture
@@ -196,7 +176,6 @@ def test_what_a_killed_process_leaves_is_removed_and_a_living_one_keeps_its_own(
 
 @pytest.fixture
 def runs(tmp_path, shared_memory):
-    """Return a function that makes the context of a run of the tests, and who has cleaned."""
     cleaned = []
 
     def make(name):

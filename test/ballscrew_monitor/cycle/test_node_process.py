@@ -34,7 +34,6 @@ def listen_for_a_sign(domain, wait_for):
 
 @pytest.fixture
 def node(tmp_path, monkeypatch, wait_for):
-    """Return the node as a child, with its signal handlers in place."""
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     with free_domain() as domain:
         process = NodeProcess(PARAMS, tmp_path / 'node.log', domain=domain)
@@ -95,23 +94,19 @@ def test_its_words_are_kept(tmp_path, wait_for, is_alive):
 
 
 def test_the_node_is_of_this_very_code(monkeypatch):
-    """The folder of both packages comes first, before what the caller has."""
     monkeypatch.setenv('PYTHONPATH', '/somewhere')
     assert path_to_this_code().split(os.pathsep) == [str(ROOT), '/somewhere']
     assert (ROOT / 'ballscrew_monitor').is_dir()
     assert (ROOT / 'surrogate').is_dir()
 
 
-def test_the_environment_is_of_this_machine_and_without_borrowed_libraries(monkeypatch):
+def test_the_environment_is_of_this_machine_and_has_the_libraries_of_ros(monkeypatch):
     monkeypatch.setenv('_ROS_WHEELS_BOOTSTRAP_COMPLETE', '1')
     monkeypatch.setenv('LD_LIBRARY_PATH', '/somewhere')
     made = child_environment(7)
     assert made['ROS_DOMAIN_ID'] == '7'
     assert made.items() >= loopback().items()
     assert not set(made) & set(node_process.WHEEL_VARIABLES)
-
-
-def test_a_stock_ros_keeps_its_library_path(monkeypatch):
     monkeypatch.delenv('_ROS_WHEELS_BOOTSTRAP_COMPLETE', raising=False)
     monkeypatch.setenv('LD_LIBRARY_PATH', '/opt/ros/jazzy/lib')
     assert child_environment(7)['LD_LIBRARY_PATH'] == '/opt/ros/jazzy/lib'

@@ -11,7 +11,6 @@ import pytest
 
 
 def make_outcome(**states):
-    """Return the outcome of a run with the last states by axis."""
     return Outcome(
         recording=Path('cycle.mcap'),
         sent=Counter(),
@@ -30,9 +29,12 @@ def words(*, received, judged, dropped=0, sent=10, rate=1.0):
     return loss(make_outcome(x=state), 'x', sent, 10, rate)
 
 
-def test_nothing_lost_is_nothing_said():
+def test_a_loss_is_said_and_nothing_else(says):
     assert words(received=10, judged=10) == ''
     assert words(received=12, judged=10, dropped=2, sent=12) == ''
+    assert 'lower rate' not in words(received=10, judged=9, rate=20.0)
+    sentence = loss(make_outcome(), 'y', 3, 3, 1.0)
+    assert sentence == says('y_0_3')
 
 
 @pytest.mark.parametrize(
@@ -46,16 +48,5 @@ def test_nothing_lost_is_nothing_said():
         ({'received': 9, 'judged': 9, 'rate': 20.0}, '9_10_speed_messages'),
     ],
 )
-def test_it_says_what_did_not_arrive_what_was_refused_and_what_had_no_verdict(
-    health, sentence, says
-):
+def test_it_says_what_was_lost_refused_or_without_verdict(health, sentence, says):
     assert words(**health) == f'axis x: {says(sentence)}'
-
-
-def test_a_fast_run_that_lost_nothing_on_the_way_is_not_told_to_be_slower():
-    assert 'lower rate' not in words(received=10, judged=9, rate=20.0)
-
-
-def test_a_silent_axis_has_lost_everything(says):
-    sentence = loss(make_outcome(), 'y', 3, 3, 1.0)
-    assert sentence == says('y_0_3')

@@ -36,7 +36,6 @@ STATE = '/ballscrew_monitor/x/state'
 
 
 def start(*arguments):
-    """Start `ballscrew run` as a process."""
     return subprocess.Popen(
         [sys.executable, '-u', '-m', 'ballscrew_monitor', 'run', *map(str, arguments)],
         cwd=ROOT,
@@ -69,14 +68,13 @@ def patient(tmp_path_factory):
 
 @pytest.fixture(scope='module')
 def finished(short_bag, patient, tmp_path_factory):
-    """Return the directory, the output and the exit code of a run."""
     out = tmp_path_factory.mktemp('run') / 'out'
     with start('--bag', short_bag, '--params', patient, '--out', out) as process:
         text, errors = process.communicate(timeout=DEADLINE)
     return out, text, errors, process.returncode
 
 
-def test_it_succeeds_and_leaves_its_products(finished):
+def test_it_succeeds_and_leaves_its_products_and_no_process(finished, is_alive):
     out, text, errors, code = finished
     assert (code, errors) == (0, '')
     assert {path.name for path in out.iterdir() if not path.name.startswith('.')} == {
@@ -86,12 +84,18 @@ def test_it_succeeds_and_leaves_its_products(finished):
     assert '300 sent, 300 judged' in text
     assert re.search(r'^\[#+\.*\] 0:\d\d left .* rev/min .* RCS ', text, flags=re.MULTILINE)
     assert 'zone        optimal' in text
+    pid = int(re.search(r'process (\d+)', finished[1]).group(1))
+    assert not is_alive(pid)
 
 
-def test_its_page_is_that_of_a_replay_of_the_recording(finished, tmp_path):
+def test_its_page_is_that_of_a_replay_and_another_library_reads_its_recording(finished, tmp_path):
     assert main(['replay', str(finished[0] / 'cycle.mcap'), '--out', str(tmp_path)]) == 0
     for name in ('report.html', 'summary.json', 'events.csv'):
         assert (tmp_path / name).read_bytes() == (finished[0] / name).read_bytes()
+    with AnyReader([finished[0]]) as reader:
+        for connection, _, data in reader.messages():
+            reader.deserialize(data, connection.msgtype)
+        assert set(reader.topics) == set(Bag(finished[0]).topics)
 
 
 def test_its_page_shows_what_the_node_judged(finished, says):
@@ -114,11 +118,6 @@ def test_its_page_shows_what_the_node_judged(finished, says):
     assert note.startswith(says('during_run_node'))
 
 
-def test_no_process_is_left(finished, is_alive):
-    pid = int(re.search(r'process (\d+)', finished[1]).group(1))
-    assert not is_alive(pid)
-
-
 def test_the_recording_holds_inputs_and_outputs(finished, short_bag):
     recorded, played = Bag(finished[0]), Bag(short_bag)
     for topic, info in played.topics.items():
@@ -127,13 +126,6 @@ def test_the_recording_holds_inputs_and_outputs(finished, short_bag):
     for name in ('x/out_of_zone', 'x/surface_info'):
         assert recorded.topics[f'/ballscrew_monitor/{name}'].count >= 1
     assert recorded.topics['/diagnostics'].count >= 1
-
-
-def test_another_library_reads_every_message_of_the_recording(finished):
-    with AnyReader([finished[0]]) as reader:
-        for connection, _, data in reader.messages():
-            reader.deserialize(data, connection.msgtype)
-        assert set(reader.topics) == set(Bag(finished[0]).topics)
 
 
 def test_the_node_says_what_the_replay_says(finished, short_bag, patient):
@@ -249,9 +241,7 @@ def test_what_is_not_judged_is_a_failure(short_bag, patient, tmp_path, monkeypat
         ({'out': Path('/proc/nowhere')}, 'output_directory_proc'),
     ],
 )
-def test_bad_input_is_one_sentence_before_anything_starts(
-    short_bag, tmp_path, change, expected, refused
-):
+def test_bad_input_is_one_sentence_at_once(short_bag, tmp_path, change, expected, refused):
     given = {'bag': short_bag, 'params': PARAMS, 'out': tmp_path / 'out', 'rate': 1.0} | change
     with refused(expected):
         run(plan(given['bag'], given['params'], given['out'], given['rate']))

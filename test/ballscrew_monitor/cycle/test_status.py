@@ -11,7 +11,6 @@ import pytest
 
 
 def make_state(**changes):
-    """Return the state of a facing cut."""
     state = BallScrewState(
         level=BallScrewState.LEVEL_OK, zone=BallScrewState.ZONE_OPTIMAL, event_id=3
     )
@@ -27,11 +26,8 @@ def line(state):
     return '  '.join(state_cells(state))
 
 
-def test_a_state_in_columns(says):
+def test_a_state_in_columns_and_a_warning_with_its_causes(says):
     assert line(make_state()) == says('800_rev_min')
-
-
-def test_a_warning_says_its_number_and_causes(says):
     causes = [Finding(code=Finding.CODE_RCS_HIGH), Finding(code=Finding.CODE_EFFICIENCY_LOW)]
     warned = make_state(
         level=BallScrewState.LEVEL_WARN, zone=BallScrewState.ZONE_OUTSIDE, findings=causes
@@ -60,7 +56,7 @@ def test_what_is_not_judged_is_a_dash():
     assert line(lost).endswith('not judged       level unknown')
 
 
-def test_columns_keep_their_place():
+def test_columns_keep_their_place_and_a_narrow_terminal_what_matters():
     lengths = {
         tuple(len(cell) for cell in state_cells(state)[:-1])
         for state in (
@@ -70,6 +66,12 @@ def test_columns_keep_their_place():
         )
     }
     assert len(lengths) == 1
+    cells = [progress_bar(0.5, 30.0), *state_cells(make_state())]
+    assert fit(cells, 200) == '  '.join(cells).rstrip()
+    for width in (120, 80, 60, 40, 20):
+        assert len(fit(cells, width)) <= width
+    assert fit(cells, 60).startswith('  800 rev/min')
+    assert fit(cells, 60).endswith('ok')
 
 
 @pytest.mark.parametrize(
@@ -85,20 +87,8 @@ def test_progress(part, left, expected):
     assert progress_bar(part, left) == expected
 
 
-def test_a_narrow_terminal_keeps_speed_and_warning():
-    cells = [progress_bar(0.5, 30.0), *state_cells(make_state())]
-    assert fit(cells, 200) == '  '.join(cells).rstrip()
-    for width in (120, 80, 60, 40, 20):
-        assert len(fit(cells, width)) <= width
-    assert fit(cells, 60).startswith('  800 rev/min')
-    assert fit(cells, 60).endswith('ok')
-
-
 class Terminal(io.StringIO):
-    """A stream that says it is a terminal."""
-
     def isatty(self):
-        """Say so."""
         return True
 
 

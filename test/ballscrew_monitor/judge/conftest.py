@@ -31,13 +31,11 @@ with np.load(ROWS) as archive:
 
 @pytest.fixture(params=range(len(NAMES)), ids=NAMES)
 def run(request):
-    """Return the number of a run."""
     return request.param
 
 
 @pytest.fixture(scope='session')
 def golden():
-    """Return all that is on file."""
     return Golden()
 
 
@@ -50,7 +48,6 @@ class Golden:
         self.surface = Surface.load(DATA / 'golden_surface.npz')
 
     def table(self, prefix, which):
-        """Return rows of a table, each a namespace of its columns."""
         columns = {
             name.removeprefix(prefix): column[which].tolist()
             for name, column in self.arrays.items()
@@ -59,11 +56,9 @@ class Golden:
         return [types.SimpleNamespace(**dict(zip(columns, row))) for row in zip(*columns.values())]
 
     def numbers(self, run):
-        """Return the numbers of the events of a run."""
         return np.flatnonzero(self.arrays['event_run'] == run)
 
     def monitor(self, run):
-        """Return the monitor of a run before its first event."""
         settings = settings_of(self.arrays['run_settings'][run])
         return Monitor(self.surface, settings, kept_of(self.arrays['run_memory'][run]))
 
@@ -87,7 +82,6 @@ class Golden:
         )
 
     def command(self, monitor, stored):
-        """Let a monitor take a command."""
         kind = KINDS[stored.kind]
         if kind == 'acknowledge':
             monitor.acknowledge(stored.stamp)
@@ -103,7 +97,6 @@ class Golden:
 
 
 def settings_of(text):
-    """Return settings as they are on file."""
     known = json.loads(text)
     for name in ('timeouts', 'plausible'):
         known[name] = {Source[source]: value for source, value in known[name].items()}
@@ -114,7 +107,6 @@ def settings_of(text):
 
 
 def kept_of(text):
-    """Return what was kept from before, as it is on file."""
     known = json.loads(text)
     shelving = Shelving(until=known['shelved_until'], reason='kept')
     return Memory(

@@ -74,7 +74,6 @@ def derived_number(surface, how, course):
 
 
 def derived(running, surface, how):
-    """Return the load that follows, and in words why not."""
     row = derived_number(surface, how, running)
     return SimpleNamespace(
         validity=Validity(row.validity),
@@ -94,9 +93,7 @@ def motor_torque(surface, speed, force, *, acceleration=0.0, temperature=313.15)
 
 
 @given(either, SPEEDS, SIGNS, LOADS, SIGNS, KELVINS, st.floats(-100.0, 100.0))
-def test_the_load_comes_back_in_all_four_quadrants(
-    surface, amount, way, force, sign, temperature, acceleration
-):
+def test_the_load_comes_back(surface, amount, way, force, sign, temperature, acceleration):
     assume(not IDLE[0] < force < IDLE[1])
     speed, load = way * amount, sign * force
     torque = motor_torque(surface, speed, load, acceleration=acceleration, temperature=temperature)
@@ -110,9 +107,7 @@ def test_the_load_comes_back_in_all_four_quadrants(
 
 
 @given(either, SPEEDS, SIGNS, LOADS, SIGNS, st.floats(0.001, 0.5), st.floats(-1.0, 1.0))
-def test_the_uncertainty_holds_the_load_for_every_torque_within_its_own(
-    surface, amount, way, force, sign, uncertainty, off
-):
+def test_the_uncertainty_holds_the_load(surface, amount, way, force, sign, uncertainty, off):
     speed, load = way * amount, sign * force
     torque = motor_torque(surface, speed, load)
     assume(torque is not None)
@@ -159,16 +154,13 @@ def test_four_quadrants_by_hand(straight, speed, torque, load):
     assert found.axial_load == pytest.approx(load, rel=1e-12)
 
 
-def test_inertia_is_taken_off_in_the_machine_frame(straight):
+def test_inertia_is_taken_off_and_the_half_width_is_the_sum_of_what_is_stated(straight):
     for way in (1.0, -1.0):
         for acceleration in (100.0, -100.0):
             running = at(way * 10.0, way * 1.125 + INERTIA * acceleration)
             running = at(running[0], running[3], acceleration=acceleration)
             found = derived(running, straight, told())
             assert found.axial_load == pytest.approx(-way * 1024.0, rel=1e-9)
-
-
-def test_the_half_width_is_the_sum_of_what_is_stated(straight):
     straight.numbers |= {'friction_torque_error': 0.0625, 'friction_torque_stderr': 0.03125}
     straight.parasitic_torque = 0.25
     how = told(torque_uncertainty=0.125, parts_uncertainty=0.5)
@@ -272,9 +264,6 @@ def test_a_gap_of_the_surface_that_may_hold_the_load(core):
     )
     assert derived(at(10.0, 1.125), surface, told()).validity is Validity.MASKED
     assert derived(at(10.0, 2.125), surface, told()).validity is Validity.VALID
-
-
-def test_a_surface_without_answers(core):
     surface = core.surface(driving_torque=math.nan)
     assert derived(at(10.0, 1.0), surface, told()).validity is Validity.MASKED
 

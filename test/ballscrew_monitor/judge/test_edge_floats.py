@@ -42,8 +42,6 @@ WAYS = {
 
 @pytest.fixture(scope='module')
 def make_monitor(core):
-    """Return a function that makes a monitor of the shipped surface."""
-
     def make(way, plausible=math.inf):
         timeouts = dict.fromkeys(Source, SECOND // 2)
         changes = {'timeouts': timeouts, 'plausible': {Source.SPEED: plausible}}

@@ -51,7 +51,6 @@ INPUT = (
 
 
 def close(found, wanted):
-    """Tell whether two numbers agree."""
     if isinstance(wanted, float):
         same = math.isnan(found) and math.isnan(wanted)
         return same or math.isclose(found, wanted, rel_tol=TOLERANCE)
@@ -59,14 +58,12 @@ def close(found, wanted):
 
 
 def check(found, wanted, names, place):
-    """Compare attributes with columns."""
     for name in names:
         here, there = getattr(found, name), getattr(wanted, name)
         assert close(-1 if here is None else here, there), f'{place}: {name} {here} {there}'
 
 
 def check_row(row, memory, wanted, texts, monitor, place):
-    """Compare a row and the memory after it with a row on file."""
     check(row, wanted, SAME, place)
     if wanted.published:
         check(row, wanted, REST, place)
@@ -92,7 +89,6 @@ def check_row(row, memory, wanted, texts, monitor, place):
 
 
 def check_state(state, wanted, place):
-    """Compare a state with one on file."""
     check(state, wanted, ('stamp', 'level_since', 'event_id', 'judged'), place)
     check(state, wanted, ('measured_torque', 'torque_residual'), place)
     assert state.shelving.until == wanted.shelved_until, place
@@ -113,7 +109,6 @@ def check_state(state, wanted, place):
 
 
 def test_rows_are_the_golden_ones(run, golden, core, monkeypatch):
-    """Every number of every row and state of one list of events."""
     rows = []
 
     def observed(tables, settings, memory, *others):

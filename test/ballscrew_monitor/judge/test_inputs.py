@@ -17,8 +17,6 @@ LOAD = int(Source.LOAD)
 
 
 class Input:
-    """The load of one axis."""
-
     def __init__(self, timeout=10, max_lag=10**9, configured=1):
         self.memory = Memory()
         self.settings = Settings(timeout=[timeout] * INPUTS, max_lag=max_lag)
@@ -67,16 +65,13 @@ def test_an_input_begins_missing_and_is_bad_until_the_next_good_sample():
     assert refused_of(load.memory)[Source.LOAD] == {Why.NOT_A_NUMBER: 1}
 
 
-def test_messages_about_other_joints_are_counted_but_do_no_harm():
+def test_messages_about_other_joints_and_inputs_without_a_topic_do_no_harm():
     load = Input()
     load.accept(1)
     load.refuse(Why.OTHER_JOINTS)
     status = load.status(1)
     assert (status.state, status.received, status.dropped) == (InputState.OK, 2, 1)
     assert refused_of(load.memory)[Source.LOAD] == {}
-
-
-def test_an_input_without_a_topic_says_so():
     assert Input(configured=0).status().state is InputState.NOT_CONFIGURED
 
 
@@ -100,14 +95,11 @@ def test_the_lag_is_the_least_of_the_last_samples(lags):
     assert load.status().lagging is (least > 0)
 
 
-def test_stamps_of_reception_have_no_lag():
+def test_stamps_of_reception_have_no_lag_and_those_of_the_future_arrived_now():
     load = Input(max_lag=1)
     load.accept(100, 200, StampSource.RECEIVE)
     assert math.isnan(load.status(100).lag)
     assert not load.status(100).lagging
-
-
-def test_what_arrived_in_the_future_of_a_clock_that_was_set_back_has_arrived_now():
     load = Input()
     load.accept(1000)
     inputs.rebase(load.memory, 500)
@@ -115,7 +107,7 @@ def test_what_arrived_in_the_future_of_a_clock_that_was_set_back_has_arrived_now
     assert load.status(511).state is InputState.STALE
 
 
-def test_losses_add_up_and_are_shown_for_a_while():
+def test_losses_add_up_are_shown_for_a_while_and_may_be_unknown():
     load = Input()
     load.lose(0, SECOND)
     assert (load.status(SECOND).lost, load.status(SECOND).losing) == (0, False)
@@ -124,9 +116,6 @@ def test_losses_add_up_and_are_shown_for_a_while():
     assert load.status(3 * SECOND).lost == 7
     assert load.status(3 * SECOND + SHOWN - 1).losing
     assert not load.status(3 * SECOND + SHOWN).losing
-
-
-def test_a_loss_that_cannot_be_known_is_unknown_and_keeps_what_was_counted():
     load = Input()
     for count, told in ((3, 3), (-1, None), (0, 3)):
         load.lose(count, SECOND)

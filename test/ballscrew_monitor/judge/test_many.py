@@ -69,7 +69,6 @@ def bits(array):
 
 
 def assert_same(one, other, names, place):
-    """Compare fields bit by bit."""
     one, other = bits(one), bits(other)
     for name in names:
         np.testing.assert_array_equal(one[name], other[name], f'{place}: {name}')

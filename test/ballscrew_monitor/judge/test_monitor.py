@@ -136,9 +136,6 @@ def test_an_acknowledged_warning_comes_back_as_a_new_event(core):
     core.feed(monitor, core.motion(10.0, start=START + SECOND, count=51))
     event = monitor.event
     assert (event.number, event.active, event.ending) == (2, True, '')
-
-
-def test_an_event_whose_stamps_run_ahead_of_the_clock_ends_after_it_began(core):
     monitor, samples = slow_is_bad(core), core.motion(10.0, count=51)
     core.feed(monitor, samples)
     ended = monitor.acknowledge(START - 10 * SECOND)
@@ -155,16 +152,13 @@ def test_totals_reset(core):
     assert (state.totals.running_time, state.judged) == (STEP, 12)
 
 
-def test_new_limits_hold_from_the_next_sample(core):
+def test_new_limits_and_a_new_surface_hold_from_the_next_sample(core):
     monitor = core.monitor(core.surface(rcs=0.5), core.limits(raise_delay=0))
     assert core.feed(monitor, core.motion(10.0))[-1].verdict.zone is Zone.OUTSIDE
     limits = core.limits(rcs=0.625, raise_delay=0)
     monitor.settings = dataclasses.replace(monitor.settings, limits=limits)
     state = core.feed(monitor, core.motion(10.0, start=START + STEP))[-1]
     assert (state.verdict.zone, state.limits) == (Zone.OPTIMAL, limits)
-
-
-def test_a_new_surface_answers_from_the_next_sample(core):
     monitor = core.monitor(core.surface(rcs=0.5))
     core.feed(monitor, core.motion(10.0))
     monitor.use_surface(core.surface(rcs=0.125))
@@ -237,7 +231,7 @@ def heard(monitor):
     return monitor.input_status(0)[1].joints
 
 
-def test_joints_of_messages_about_others_are_collected_until_a_sample_comes(core):
+def test_joints_of_others_are_collected_until_a_sample_comes_up_to_a_number(core):
     monitor = core.monitor()
     assert heard(monitor) is None
     for names in (('c', 'a'), ('b',), ('c', 'a')):
@@ -247,9 +241,6 @@ def test_joints_of_messages_about_others_are_collected_until_a_sample_comes(core
     assert heard(monitor) is None
     monitor.update(others('d'))
     assert heard(monitor).names == ('d',)
-
-
-def test_of_joints_without_end_a_part_is_kept(core):
     monitor = core.monitor()
     for i in range(3 * MOST_OTHERS):
         monitor.update(others(f'joint{i}'))

@@ -48,12 +48,11 @@ def sample(source, value, stamp=START):
 
 
 def run(monitor, speed, torque, stamp=START):
-    """Take a torque and a speed; return the state."""
     assert monitor.update(sample(Source.TORQUE, torque, stamp)) is None
     return monitor.update(sample(Source.SPEED, speed, stamp))
 
 
-def test_the_load_is_derived_and_marked(core):
+def test_the_load_and_its_input_are_derived_and_marked(core):
     state = run(derived(core), 10.0, 1.125)
     assert state.point.axial_load == pytest.approx(-1024.0)
     assert state.point.axial_load_source is PointSource.DERIVED
@@ -62,6 +61,9 @@ def test_the_load_is_derived_and_marked(core):
     assert (state.verdict.zone, state.judged) == (Zone.OPTIMAL, 1)
     assert state.measured_torque == 1.125
     assert math.isnan(state.torque_residual)
+    states = {health.source: health.state for health in run(derived(core), 10.0, 1.0).inputs}
+    assert states[Source.LOAD] is InputState.DERIVED
+    assert states[Source.TORQUE] is InputState.OK
 
 
 def test_a_load_of_a_topic_has_no_uncertainty(core):
@@ -79,12 +81,6 @@ def test_a_finding_says_that_the_load_is_derived(core, says):
     monitor.update(sample(Source.LOAD, -1000.0))
     measured = monitor.update(sample(Source.SPEED, 10.0)).verdict.findings[0]
     assert measured.text == says('too_much')
-
-
-def test_the_input_of_the_load_is_called_derived(core):
-    states = {health.source: health.state for health in run(derived(core), 10.0, 1.0).inputs}
-    assert states[Source.LOAD] is InputState.DERIVED
-    assert states[Source.TORQUE] is InputState.OK
 
 
 def test_before_the_torque_arrives_nothing_can_be_judged(core):

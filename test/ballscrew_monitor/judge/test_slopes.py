@@ -30,7 +30,6 @@ SAMPLES = st.lists(st.tuples(STEPS, VALUES), min_size=1, max_size=60)
 
 
 def stamped(steps):
-    """Return stamps and values."""
     stamp, made = START, []
     for step, value in steps:
         stamp += step
@@ -69,9 +68,8 @@ def assert_line(ring, samples, scale):
     span = max(newest[-1][0] - newest[0][0], 1) / SECOND
     tolerance = {'rel': 1e-12, 'abs': 4e-12 * scale / min(span, 1.0), 'nan_ok': True}
     assert slope_of(ring) == pytest.approx(slope, **tolerance)
-    assert slope_change(ring, WINDOW) == pytest.approx(
-        abs(least_squares(newest) - slope), **tolerance
-    )
+    expected = abs(least_squares(newest) - slope)
+    assert slope_change(ring, WINDOW) == pytest.approx(expected, **tolerance)
 
 
 @given(SAMPLES, st.floats(-10.0, 10.0))
@@ -88,16 +86,13 @@ def test_it_is_the_least_squares_line_wherever_the_values_lie(steps, amount):
     assert_line(ring, [(START, amount)], 600.0)
 
 
-def test_a_fast_source_goes_round_the_ring():
+def test_a_fast_source_goes_round_the_ring_and_one_sample_has_no_slope():
     ring = SlopeRing()
     samples = [(START + i * 50_000, math.sin(0.01 * i)) for i in range(3 * MOST + 7)]
     for stamp, value in samples:
         slope_take(ring, WINDOW, GAP, stamp, value)
     assert ring.count == MOST
     assert_line(ring, samples, 1.0)
-
-
-def test_without_two_samples_there_is_no_slope():
     ring = SlopeRing()
     assert math.isnan(slope_of(ring))
     assert math.isnan(slope_change(ring, WINDOW))
@@ -128,7 +123,6 @@ COMPILED = [compiled(each) for each in (slope_take, slope_of, slope_change)]
 
 
 def slopes(samples, window=SHORT, of=slope_of):
-    """Return the slope after each sample, or what else is `of` the ring."""
     ring, found = SlopeRing(), []
     for stamp, value in samples:
         slope_take(ring, window, GAP, stamp, value)
@@ -180,15 +174,16 @@ def test_the_response_of_few_samples_is_the_least_squares_line(count, omega):
 
 
 def changes(values, step=STEP):
-    """Return how the slope changes after each sample."""
     samples = [(START + i * step, value) for i, value in enumerate(values)]
     return slopes(samples, of=lambda ring: slope_change(ring, SHORT))
 
 
-def test_a_ramp_does_not_change():
+def test_a_ramp_does_not_change_and_few_samples_do_as_the_last_two():
     found = changes([3.0 * i for i in range(100)])
     assert math.isnan(found[0])
     assert found[1:] == pytest.approx([0.0] * 99, abs=1e-9)
+    found = changes([0.0, 0.0, 0.0, 1.0], step=SHORT // 3)[-1]
+    assert found == pytest.approx(60.0 - 0.3 * 60.0)
 
 
 def test_a_slope_that_sets_in_shows_until_the_window_knows_it():
@@ -200,8 +195,3 @@ def test_a_slope_that_sets_in_shows_until_the_window_knows_it():
     slope = slopes([(START + i * STEP, value) for i, value in enumerate(values)])[after]
     assert found[after] == pytest.approx(1.0 - slope, rel=1e-9)
     assert found[-1] == pytest.approx(0.0, abs=1e-9)
-
-
-def test_the_change_of_few_samples_is_that_of_the_last_two():
-    found = changes([0.0, 0.0, 0.0, 1.0], step=SHORT // 3)[-1]
-    assert found == pytest.approx(60.0 - 0.3 * 60.0)

@@ -41,12 +41,17 @@ def slow_is_bad(core, **changes):
     return core.monitor(surface, **changes)
 
 
-def test_every_speed_sample_is_judged_once_and_no_other(core):
+def test_every_speed_sample_in_order_is_judged_once_and_no_other(core):
     monitor = core.monitor()
     assert monitor.update(load(5.0)) is None
     states = core.feed(monitor, core.motion(10.0, count=5))
     assert [state.judged for state in states] == [1, 2, 3, 4, 5]
     assert [state.stamp for state in states] == [START + i * STEP for i in range(5)]
+    monitor = core.monitor()
+    core.feed(monitor, core.motion(10.0, count=3))
+    assert monitor.update(speed(10.0, START + STEP)) is None
+    state = monitor.update(speed(10.0, START + 2 * STEP))
+    assert (state.judged, state.inputs[0].dropped) == (4, 1)
 
 
 def test_only_samples_that_led_to_a_verdict_count_as_judged(core):
@@ -62,12 +67,20 @@ def test_only_samples_that_led_to_a_verdict_count_as_judged(core):
     assert monitor.update(speed(10.0, START + SECOND)).judged == 4
 
 
-def test_before_the_load_arrives_nothing_can_be_judged(core):
+def test_before_the_load_and_a_configured_temperature_nothing_can_be_judged(core):
     state = core.monitor().update(speed(10.0))
     assert state.estimate.validity is PointValidity.NO_INPUT
     assert state.verdict.findings[0].code is Code.INPUT_LOST
     assert math.isnan(state.point.axial_load)
     assert (state.level, state.judged) == (Level.UNKNOWN, 0)
+    point = core.feed(core.monitor(), core.motion(10.0))[-1].point
+    assert (point.temperature, point.temperature_source) == (313.15, PointSource.DEFAULT)
+    monitor = core.monitor(timeouts=dict.fromkeys(THREE, TIMEOUT))
+    state = core.feed(monitor, core.motion(10.0))[-1]
+    assert state.estimate.validity is PointValidity.NO_INPUT
+    monitor.update(core.sample(Source.TEMPERATURE, 300.0))
+    point = core.feed(monitor, core.motion(10.0, start=START + STEP))[-1].point
+    assert (point.temperature, point.temperature_source) == (300.0, PointSource.MEASURED)
 
 
 def test_a_load_exactly_as_old_as_its_timeout_is_judged(core):
@@ -78,17 +91,6 @@ def test_a_load_exactly_as_old_as_its_timeout_is_judged(core):
     assert stale.point.axial_load_source is PointSource.HELD
     assert stale.point.axial_load == -1000.0
     assert stale.estimate.validity is PointValidity.NO_INPUT
-
-
-def test_a_configured_temperature_is_waited_for_and_the_default_is_not(core):
-    point = core.feed(core.monitor(), core.motion(10.0))[-1].point
-    assert (point.temperature, point.temperature_source) == (313.15, PointSource.DEFAULT)
-    monitor = core.monitor(timeouts=dict.fromkeys(THREE, TIMEOUT))
-    state = core.feed(monitor, core.motion(10.0))[-1]
-    assert state.estimate.validity is PointValidity.NO_INPUT
-    monitor.update(core.sample(Source.TEMPERATURE, 300.0))
-    point = core.feed(monitor, core.motion(10.0, start=START + STEP))[-1].point
-    assert (point.temperature, point.temperature_source) == (300.0, PointSource.MEASURED)
 
 
 def test_the_measured_torque_is_compared_and_never_judged(core):
@@ -147,14 +149,6 @@ def test_a_bad_load_stops_the_judgement_and_one_of_other_joints_does_not(core, w
     assert state.inputs[1].dropped == 1
     state = core.feed(monitor, core.motion(10.0, start=START + 2 * STEP))[-1]
     assert state.verdict.zone is Zone.OPTIMAL
-
-
-def test_a_sample_out_of_order_is_dropped_and_one_of_equal_stamp_is_judged(core):
-    monitor = core.monitor()
-    core.feed(monitor, core.motion(10.0, count=3))
-    assert monitor.update(speed(10.0, START + STEP)) is None
-    state = monitor.update(speed(10.0, START + 2 * STEP))
-    assert (state.judged, state.inputs[0].dropped) == (4, 1)
 
 
 def test_the_direction_is_held_at_standstill(core):
@@ -238,16 +232,13 @@ def test_a_loop_of_the_clock_opens_the_gates(core):
     )
 
 
-def test_a_tick_of_an_earlier_time_forgets_the_future(core):
+def test_a_tick_of_an_earlier_time_forgets_the_future_but_one_that_is_allowed(core):
     monitor = core.monitor()
     core.feed(monitor, [START, *core.motion(10.0)])
     state = monitor.tick(START - BACKWARD_JUMP - 1)
     assert state.estimate.validity is PointValidity.NO_INPUT
     assert state.point.speed_source is PointSource.UNKNOWN
     assert monitor.tick(START - BACKWARD_JUMP) is not None
-
-
-def test_stamps_that_run_ahead_of_the_clock_are_no_jump(core):
     monitor = slow_is_bad(core, max_future=START)
     for i in range(51):
         pair = core.motion(10.0, start=START + i * STEP)
@@ -300,21 +291,15 @@ def test_a_speed_slower_than_its_timeout_is_warned_of(core, period):
     assert monitor.event.start == START + period
 
 
-def test_a_slow_speed_that_stands_in_between_is_outside_anew(core):
+def test_stays_that_are_not_of_one_piece_and_a_slow_speed_change_no_level(core):
     monitor = slow_is_bad(core)
     for i in range(20):
         core.feed(monitor, core.motion(0.0 if i % 2 else 10.0, start=START + i * SECOND))
     assert monitor.level is Level.UNKNOWN
-
-
-def test_one_hole_between_two_short_stays_outside_is_no_warning(core):
     monitor = slow_is_bad(core)
     core.feed(monitor, core.motion(10.0, count=20))
     core.feed(monitor, core.motion(10.0, start=START + 60 * SECOND, count=20))
     assert monitor.level is Level.UNKNOWN
-
-
-def test_a_slow_speed_never_brings_ok(core):
     monitor = slow_is_bad(core)
     state = core.feed(monitor, core.motion(40.0, count=20, step=SECOND))[-1]
     assert state.inputs[0].slow
@@ -457,12 +442,11 @@ def turning(core, wrap=math.tau):
 
 
 def turn(monitor, angle, i):
-    """Take a load and a position; return the state."""
     monitor.update(load(-1000.0, START + i * STEP))
     return monitor.update(speed(angle, START + i * STEP))
 
 
-def test_positions_are_judged_by_their_speed(core):
+def test_positions_are_judged_by_their_speed_two_of_them_after_a_hole(core):
     monitor = turning(core)
     assert turn(monitor, 0.0, 0) is None
     for i in range(1, 300):
@@ -471,31 +455,25 @@ def test_positions_are_judged_by_their_speed(core):
     assert (state.verdict.zone, state.judged) == (Zone.OPTIMAL, 299)
     assert (state.inputs[0].received, state.inputs[0].dropped) == (300, 1)
     assert state.totals.revolutions == pytest.approx(298 * 0.2 / math.tau)
-
-
-def test_a_jump_of_the_position_never_reaches_the_totals(core):
-    monitor = turning(core, wrap=0.0)
-    states = [turn(monitor, 0.2 * i + 1e6 * (i == 10), i) for i in range(21)]
-    assert [i for i, state in enumerate(states) if state is None] == [0, 10, 11]
-    assert states[-1].inputs[0].implausible == 2
-    assert states[-1].totals.revolutions == pytest.approx(19 * 0.2 / math.tau)
-    assert states[-1].window.speed.high == pytest.approx(20.0)
-
-
-def test_a_speed_of_positions_that_is_not_plausible_is_refused(core):
-    monitor = turning(core)
-    for i in range(5):
-        assert turn(monitor, 0.6 * i, i) is None
-    assert monitor.tick(START + 10 * SECOND).inputs[0].implausible == 4
-
-
-def test_after_a_hole_two_positions_are_needed(core):
     monitor = turning(core)
     turn(monitor, 0.0, 0)
     turn(monitor, 0.2, 1)
     assert turn(monitor, 0.4, 200) is None
     assert monitor.tick(START + 2 * SECOND).inputs[0].why is Why.HOLE
     assert turn(monitor, 0.6, 201).point.speed == pytest.approx(20.0)
+
+
+def test_a_position_that_jumps_or_is_not_plausible_never_counts(core):
+    monitor = turning(core, wrap=0.0)
+    states = [turn(monitor, 0.2 * i + 1e6 * (i == 10), i) for i in range(21)]
+    assert [i for i, state in enumerate(states) if state is None] == [0, 10, 11]
+    assert states[-1].inputs[0].implausible == 2
+    assert states[-1].totals.revolutions == pytest.approx(19 * 0.2 / math.tau)
+    assert states[-1].window.speed.high == pytest.approx(20.0)
+    monitor = turning(core)
+    for i in range(5):
+        assert turn(monitor, 0.6 * i, i) is None
+    assert monitor.tick(START + 10 * SECOND).inputs[0].implausible == 4
 
 
 @pytest.mark.parametrize('speed_of_all', [-45.0, 0.0, 45.0])

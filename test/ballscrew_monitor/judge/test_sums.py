@@ -19,7 +19,6 @@ BEGIN = 1000 * SECOND
 
 
 def row(stamp=0, **changes):
-    """Return a row that is optimal unless told otherwise."""
     values = {'speed': 10.0, 'axial_load': -1000.0, 'rcs': 0.0, 'efficiency': 0.9, 'zone': 1}
     values |= {'validity': 1, 'film_ratio': 3.0, 'friction_torque': 0.125, 'regime': 3}
     return Row(**(values | {'stamp': BEGIN + stamp} | changes))
@@ -77,17 +76,20 @@ def test_each_sample_lasts_until_the_next():
     assert totals.revolutions == 1.5
 
 
-def test_a_gap_a_standstill_and_a_step_back_add_nothing():
+def test_what_adds_nothing_is_not_judged_or_is_reset():
     nothing = Totals(since=BEGIN)
     assert add_up(row(), row(GAP + 1)) == nothing
     assert add_up(row(speed=0.2, gates=STANDSTILL), row(GAP)) == nothing
     assert add_up(row(), row(-1)) == nothing
-
-
-def test_motion_that_is_not_judged_is_counted_as_such():
     totals = add_up(row(speed=150.0, validity=3, zone=0, regime=0), row(GAP))
     assert (totals.running_time, totals.unjudged_time) == (GAP, GAP)
     assert (totals.revolutions, totals.energy_lost) == (75.0 / TURN, 0.0)
+    memory = Memory()
+    add_up(row(), row(GAP), memory=memory)
+    clear_totals(memory)
+    assert totals_of(memory) == Totals()
+    totals = add_up(row(2 * GAP), memory=memory)
+    assert (totals.running_time, totals.since) == (GAP, BEGIN + 2 * GAP)
 
 
 streams = st.lists(
@@ -128,12 +130,3 @@ def test_parts_add_up_exactly_and_are_kept_bit_for_bit(stream, data):
     assert judged == totals.optimal_time + totals.outside_time
     assert judged == totals.boundary_time + totals.mixed_time + totals.hydrodynamic_time
     assert 0 <= totals.running_time <= stamp
-
-
-def test_a_reset_begins_at_zero_and_loses_no_time():
-    memory = Memory()
-    add_up(row(), row(GAP), memory=memory)
-    clear_totals(memory)
-    assert totals_of(memory) == Totals()
-    totals = add_up(row(2 * GAP), memory=memory)
-    assert (totals.running_time, totals.since) == (GAP, BEGIN + 2 * GAP)

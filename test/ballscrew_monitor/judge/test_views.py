@@ -17,7 +17,6 @@ SOURCES = {'speed_source': 1, 'axial_load_source': 1, 'temperature_source': 1}
 
 
 def judged(core, **changes):
-    """Return the verdict on a row, and the row."""
     monitor, place = core.monitor(), {'speed': 10.0, 'axial_load': -1e3, 'temperature': 313.15}
     row = Row(**(place | SOURCES | VALID | changes))
     shut_gates(monitor.numbers, Memory(), row)

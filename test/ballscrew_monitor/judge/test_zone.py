@@ -23,12 +23,10 @@ below = lambda value: math.nextafter(value, -math.inf)  # noqa: E731
 
 
 def numbers(core, **changes):
-    """Return settings as numbers."""
     return core.monitor(limits=core.limits(**changes)).numbers
 
 
 def judged(core, memory=None, **changes):
-    """Return a row with its gates and zone."""
     values = {'validity': 1, 'speed': 10.0, 'axial_load': -1000.0, 'rcs': 0.0, 'efficiency': 0.9}
     row, settings = Row(**(values | changes)), numbers(core)
     shut_gates(settings, memory or Memory(), row)
@@ -123,7 +121,6 @@ def test_bands_are_exhaustive(core, rcs, efficiency):
 
 
 def levels(core, signs, *, level=Level.UNKNOWN, step=STEP, period=0, **limits):
-    """Return the level after each of rows that are one step apart."""
     settings, found = numbers(core, **limits), []
     memory = Memory(level=int(level), level_since=-1)
     for i, (zone, clears) in enumerate(signs):
@@ -134,32 +131,23 @@ def levels(core, signs, *, level=Level.UNKNOWN, step=STEP, period=0, **limits):
     return found
 
 
-def test_a_level_changes_when_its_delay_is_exactly_over(core):
+def test_a_level_changes_when_its_delay_is_exactly_over_without_a_break(core):
     assert levels(core, [OUTSIDE] * 51) == [Level.UNKNOWN] * 50 + [Level.WARN]
     assert levels(core, [INSIDE] * 101, level=Level.WARN) == [Level.WARN] * 100 + [Level.OK]
     none = {'raise_delay': 0, 'clear_delay': 0}
     assert levels(core, [OUTSIDE, INSIDE, OUTSIDE], **none) == [Level.WARN, Level.OK, Level.WARN]
-
-
-def test_one_optimal_sample_starts_the_raising_over(core):
     signs = [OUTSIDE] * 50 + [BAND] + [OUTSIDE] * 50
     assert set(levels(core, signs, level=Level.OK)) == {Level.OK}
+    assert levels(core, [BAND] * 200, level=Level.WARN)[-1] is Level.WARN
+    assert levels(core, [BAND] * 200)[-1] is Level.OK
+    found = levels(core, [OUTSIDE, UNKNOWN] * 26, level=Level.OK)
+    assert found[-2:] == [Level.WARN, Level.WARN]
 
 
 @pytest.mark.parametrize('spoiler', [OUTSIDE, BAND, UNKNOWN])
 def test_anything_else_starts_the_clearing_over(core, spoiler):
     signs = [INSIDE] * 100 + [spoiler] + [INSIDE] * 100
     assert set(levels(core, signs, level=Level.WARN)) == {Level.WARN}
-
-
-def test_the_hysteresis_band_keeps_a_warning_but_brings_the_first_ok(core):
-    assert levels(core, [BAND] * 200, level=Level.WARN)[-1] is Level.WARN
-    assert levels(core, [BAND] * 200)[-1] is Level.OK
-
-
-def test_what_cannot_be_judged_does_not_hide_a_warning(core):
-    found = levels(core, [OUTSIDE, UNKNOWN] * 26, level=Level.OK)
-    assert found[-2:] == [Level.WARN, Level.WARN]
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,6 @@ def sample(source, value, stamp=START):
 
 
 def after(core, *events, surface=None, clock_stands=False, settings=None, links=None, **limits):
-    """Return the statuses after some events, by their part, and the monitor."""
     delays = {'raise_delay': 0, 'clear_delay': 0}
     limits, state = core.limits(**(delays | limits)), None
     monitor = core.monitor(surface, limits, **(settings or {}))
@@ -54,7 +53,6 @@ def said(status):
 
 
 def values_of(status):
-    """Return the values of a status by key."""
     return {pair.key: pair.value for pair in status.values}
 
 
@@ -92,14 +90,11 @@ def test_names_and_hardware_of_two_machines_and_two_axes_differ(core):
     assert diagnostics.failed('/mill/monitor', 'x', 'why')[0].name == made[0].name
 
 
-def test_all_is_well(core):
+def test_all_is_well_once_the_delay_is_over(core):
     made = after(core, LOAD, SPEED)
     assert [status.level for status in made.values()] == [OK, OK, OK]
     assert made['Lubrication'].message == 'optimal'
     assert {status.hardware_id for status in made.values()} == {'x: constant'}
-
-
-def test_before_the_delay_is_over_nothing_is_ok(core):
     status = after(core, LOAD, SPEED, clear_delay=SECOND)['Lubrication']
     assert said(status) == (WARN, 'not judged for long enough yet')
 
@@ -261,7 +256,6 @@ def test_messages_hold_no_measured_numbers(core):
 
 
 def first_words(text):
-    """Return what a message begins with, up to where its cure begins."""
     return re.split('[:,]', text, maxsplit=1)[0].strip()
 
 
@@ -306,13 +300,12 @@ DERIVED = {
 
 
 def straight(core, drag=0.0):
-    """Return a surface whose torque follows the load."""
     surface = core.surface(driving_torque=lambda speed, load: load / 1024.0)
     surface.parasitic_torque, surface.lead = drag, math.tau / 1024.0
     return surface
 
 
-def test_a_derived_load_is_told_with_its_uncertainty(core):
+def test_a_derived_load_is_told_with_its_uncertainty_or_why_it_is_not(core):
     torque = sample(Source.TORQUE, 1.0)
     found = after(core, torque, SPEED, surface=straight(core), settings=DERIVED)
     lubrication, inputs = values_of(found['Lubrication']), values_of(found['Inputs'])
@@ -321,10 +314,6 @@ def test_a_derived_load_is_told_with_its_uncertainty(core):
     assert lubrication['Axial load uncertainty [N]'] == '128'
     assert (inputs['Load state'], inputs['Torque state']) == ('DERIVED', 'OK')
     assert found['Inputs'].level == OK
-
-
-def test_a_torque_that_does_not_tell_the_load(core):
-    torque = sample(Source.TORQUE, 1.0)
     found = after(core, torque, SPEED, surface=straight(core, 0.75), settings=DERIVED)
     text = 'not judged: the motor torque does not tell the load here'
     assert said(found['Lubrication']) == (WARN, text)

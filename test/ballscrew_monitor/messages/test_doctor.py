@@ -67,8 +67,10 @@ def facts(source=Source.SPEED, unit='rad/s', **changes):
     return InputFacts(**(values | changes))
 
 
-def test_all_is_well():
+def test_all_is_well_and_without_a_surface_no_unit_is_judged():
     assert findings(around(), [facts()], 3.0) == []
+    unknown = facts(heard=heard(0.0, 1e9), known=None, scalings={})
+    assert findings(around(), [unknown], 3.0) == []
 
 
 @pytest.mark.parametrize(
@@ -133,9 +135,7 @@ def test_a_field_that_cannot_be_read_lists_the_numbers_that_can(says):
         (Source.TEMPERATURE, 'degC', 313.0, 314.0, 'set_temperature'),
     ],
 )
-def test_numbers_far_outside_the_surface_look_like_another_unit(
-    source, unit, low, high, cure, says
-):
+def test_numbers_far_outside_look_like_another_unit(source, unit, low, high, cure, says):
     (said,) = findings(around(), [facts(source, unit, heard=heard(low, high))], 3.0)
     assert 'is far outside the surface' in said
     assert says(cure) in said
@@ -146,25 +146,14 @@ def test_the_limit_of_what_is_plausible_belongs_to_it(high, count):
     assert len(findings(around(), [facts(heard=heard(0.0, high))], 3.0)) == count
 
 
-def test_without_a_surface_no_unit_is_judged():
-    unknown = facts(heard=heard(0.0, 1e9), known=None, scalings={})
-    assert findings(around(), [unknown], 3.0) == []
-
-
-def test_gaps_longer_than_the_timeout():
+def test_gaps_silence_and_more_messages_than_one_core_takes_are_findings(says):
     assert findings(around(), [facts(heard=heard(gap=0.5))], 3.0) == []
     (said,) = findings(around(), [facts(heard=heard(gap=0.6))], 3.0)
     assert said.endswith('set x.speed.timeout to 2.0 or more')
-
-
-def test_silence_is_a_finding_once_the_timeout_is_over(says):
     silent = heard(math.nan, math.nan, math.nan, received=0, state=InputState.MISSING)
     (said,) = findings(around(), [facts(heard=silent)], 3.0)
     assert said == says('speed_publisher_joint_states')
     assert findings(around(), [facts(heard=silent, timeout=30.0)], 3.0) == []
-
-
-def test_more_messages_than_one_core_takes(says):
     axes = [facts(heard=heard(rate=1600.0)) for _ in range(2)]
     assert findings(around(), axes, 3.0) == []
     axes.append(facts(heard=heard(rate=1.0)))

@@ -51,12 +51,9 @@ def test_each_fault_has_its_sentence(state, changes, link, text, says):
     assert reasons.fault(status(state, **changes), link, 'x.speed') == says(text)
 
 
-def test_messages_without_joints_are_read_by_index(says):
+def test_messages_without_joints_are_read_by_index_and_of_many_joints_some_are_listed(says):
     said = reasons.joint_reason(OtherJoints('velocity', 'x', ()), 'x.speed')
     assert said == says('messages_name_joints')
-
-
-def test_of_many_joints_some_are_listed():
     names = tuple(f'joint_{letter}' for letter in 'abcdefghijkl')
     said = reasons.joint_reason(OtherJoints('velocity', 'joint_l', names), 'x.speed')
     assert f'{names[reasons.SHOWN_JOINTS - 1]}, ... and no joint' in said

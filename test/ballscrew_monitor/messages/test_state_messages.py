@@ -38,10 +38,8 @@ def test_a_state_as_a_message(core):
     assert math.isnan(message.point.motor_torque)
     assert message.point.direction == msg.OperatingPoint.DIRECTION_NEGATIVE
     assert message.point.temperature_source == msg.OperatingPoint.SOURCE_DEFAULT
-    assert (message.level, message.zone) == (
-        msg.BallScrewState.LEVEL_WARN,
-        msg.BallScrewState.ZONE_OUTSIDE,
-    )
+    expected = (msg.BallScrewState.LEVEL_WARN, msg.BallScrewState.ZONE_OUTSIDE)
+    assert (message.level, message.zone) == expected
     assert (message.event_id, message.judged) == (1, 1)
     assert [finding.code for finding in message.findings] == [msg.Finding.CODE_RCS_HIGH]
     assert list(message.active_gates) == []
@@ -54,19 +52,14 @@ def test_a_state_as_a_message(core):
 def test_a_result_as_a_message(core):
     state, _ = one_state(core)
     result = StateWriter('x', msg.PointResult.TIER_FULL).write(state).result
-    assert (result.validity, result.tier, result.reason) == (
-        msg.PointResult.VALIDITY_VALID,
-        msg.PointResult.TIER_FULL,
-        '',
-    )
+    expected = (msg.PointResult.VALIDITY_VALID, msg.PointResult.TIER_FULL, '')
+    assert (result.validity, result.tier, result.reason) == expected
     for name in ('efficiency', 'rcs', *state_messages.NUMBERS):
         assert getattr(result, name) == getattr(state.estimate.numbers, name) or (
             name.endswith('_std') and math.isnan(getattr(result, name))
         )
-    assert (result.worst_nut, result.worst_side) == (
-        msg.PointResult.NUT_POSITIVE,
-        msg.PointResult.SIDE_NUT,
-    )
+    wanted = (msg.PointResult.NUT_POSITIVE, msg.PointResult.SIDE_NUT)
+    assert (result.worst_nut, result.worst_side) == wanted
     assert result.regime == msg.PointResult.REGIME_HYDRODYNAMIC
 
 
@@ -86,15 +79,12 @@ def test_a_used_message_keeps_nothing_of_the_state_before(core):
     assert 'above the surface' in fresh.result.reason
 
 
-def test_an_event_as_a_message(core):
+def test_an_event_as_a_message_and_that_there_was_none(core):
     _, monitor = one_state(core, surface=core.surface(rcs=0.5), limits=core.limits(raise_delay=0))
     message = over_the_wire(state_messages.out_of_zone_message('x', monitor.event, shelved=True))
     assert (message.axis, message.event_id, message.active) == ('x', 1, True)
     assert (message.start.sec, message.duration, message.worst_value) == (1_000_000_000, 0.0, 0.5)
     assert message.cause.code == msg.Finding.CODE_RCS_HIGH
-
-
-def test_the_first_event_message_says_that_there_was_none():
     message = over_the_wire(state_messages.out_of_zone_message('x', Event(), shelved=False))
     assert (message.event_id, message.active, message.duration) == (0, False, 0.0)
     assert math.isnan(message.worst_value)
@@ -110,11 +100,8 @@ def test_a_surface_as_a_message(core):
     assert (message.screw, message.oil, message.tier) == ('constant', 'water', 1)
     assert (message.speed_min, message.axial_load_max) == (0.1, 4000.0)
     assert message.temperature_max == pytest.approx(80.0)
-    assert (message.error_field, list(message.error_max), list(message.error_p95)) == (
-        ['rcs'],
-        [2e-3],
-        [1e-3],
-    )
+    expected = (['rcs'], [2e-3], [1e-3])
+    assert (message.error_field, list(message.error_max), list(message.error_p95)) == expected
     assert message.default_temperature == pytest.approx(40.0)
     assert (message.limit_factor_low, message.limit_factor_high) == (0.75, 1.5)
 
@@ -134,6 +121,5 @@ def test_a_requested_point(speed, stated, direction):
     point = state_messages.read_point(message, default_temperature=300.0)
     assert (point.axial_load, point.temperature, point.direction) == (3.0, 300.0, direction)
     message.temperature = 20.0
-    assert state_messages.read_point(
-        message, default_temperature=300.0
-    ).temperature == pytest.approx(293.15)
+    found = state_messages.read_point(message, default_temperature=300.0).temperature
+    assert found == pytest.approx(293.15)

@@ -24,7 +24,6 @@ def outside(node):
 
 
 def last_word(node, heard):
-    """Return the message that ends the event."""
     node.until(lambda: not heard[-1].active, 'the end of the event')
     assert (heard[-1].event_id, heard[-1].cause.text) == (1, heard[-2].cause.text)
     return heard[-1].advice

@@ -14,7 +14,6 @@ SAMPLES = 3
 
 
 def warned(states):
-    """Tell whether the last of all samples is judged, and is a warning."""
     judged = [(state.judged, state.level) for state in states]
     return judged[-1:] == [(SAMPLES, BallScrewState.LEVEL_WARN)]
 
@@ -51,10 +50,8 @@ def test_an_axis_is_served_by_itself(two):
     node, publish, surface = two
     answers = [node.call(Trigger, f'x/{name}') for name in ('acknowledge', 'reset_totals')]
     assert [answer.success for answer in answers] == [True, True]
-    assert [answer.message for answer in answers] == [
-        'acknowledged of x',
-        'set the totals to zero of x',
-    ]
+    expected = ['acknowledged of x', 'set the totals to zero of x']
+    assert [answer.message for answer in answers] == expected
     state = last_after(node, publish)
     assert (state['x'].event_id, state['y'].event_id) == (2, 1)
     assert state['x'].totals.running_time < state['y'].totals.running_time

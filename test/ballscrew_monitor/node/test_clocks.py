@@ -29,15 +29,6 @@ OK, WARN = BallScrewState.LEVEL_OK, BallScrewState.LEVEL_WARN
 GOOD = 'all inputs arrive'
 BOTH = 'speed and load '
 INPUTS = ('speed', 'load', 'speed and load')
-LAGS = 'stamps lag behind their arrival: set the clocks alike, or raise max_lag'
-SIMULATED = 'stamps are of simulated time and the node runs on the wall clock: set use_sim_time'
-AHEAD = (
-    'is not usable: its stamps lie ahead of the clock, set the clocks alike or raise max_future'
-)
-WALL = (
-    'is not usable: its stamps are of the wall clock and the node runs on simulated time, '
-    'stamp with /clock or unset use_sim_time'
-)
 
 
 class Source:
@@ -50,7 +41,6 @@ class Source:
         self._node.stamp = 0
 
     def go_on(self, speed=FAST):
-        """Publish a sample if one is due."""
         now = time.monotonic()
         if now < self._next:
             return
@@ -60,24 +50,19 @@ class Source:
         self.sent += 1
 
     def until(self, condition, what, speed=FAST):
-        """Publish until there is something."""
         return self._node.until(lambda: self.go_on(speed) or condition(), what)
 
 
 class Listener:
-    """What the node says."""
-
     def __init__(self, node):
         self.states = node.states()
         self._node = node
 
     @property
     def level(self):
-        """Return the last level."""
         return self.states[-1].level if self.states else None
 
     def has_judged(self, count):
-        """Tell whether a number of samples has been judged."""
         return bool(self.states) and self.states[-1].judged >= count
 
     def sentences(self):
@@ -85,12 +70,7 @@ class Listener:
         return list(dict.fromkeys(text for _, text in self._node.levels()))
 
     def faults(self):
-        """
-        Return what was wrong with the inputs that had arrived, a sentence a fault, each once.
-
-        Between a message of one input and that of the other the fault of one alone may be told.
-
-        """
+        """Return what was wrong with the inputs that had arrived; for a moment of one alone."""
         never = ('speed was never', 'load was never')
         begin = (*never, diagnostics.INACTIVE, diagnostics.NOTHING_YET, GOOD)
         found = [part for one in self.sentences() for part in re.split('; (?=load )', one)]
@@ -110,14 +90,14 @@ def in_order(states):
     return states[first:]
 
 
-def test_a_constant_lag_is_judged_and_told_and_a_warning_clears(node):
+def test_a_constant_lag_is_judged_and_told_and_a_warning_clears(node, says):
     node.start(**TIMEOUTS, **QUICK)
     heard, source = Listener(node), Source(node, lambda: node.now() - LAG)
     source.until(lambda: heard.level == WARN, 'the warning', SLOW)
     source.until(lambda: heard.level == OK, 'its end')
     # Many ticks later nothing has changed.
     source.until(lambda: heard.has_judged(source.sent // 2 + 100), 'more states')
-    source.until(lambda: heard.faults_of_both(LAGS), 'the lag of both')
+    source.until(lambda: heard.faults_of_both(says('lags')), 'the lag of both')
     node.until(lambda: heard.has_judged(source.sent), 'the last state')
     found = in_order(heard.states)
     assert {state.result.validity for state in found} == {PointResult.VALIDITY_VALID}
@@ -144,7 +124,7 @@ def test_a_lead_beyond_what_is_allowed_is_refused_and_clears_nothing(node, says)
     source.until(lambda: heard.level == WARN, 'the warning', SLOW)
     assert heard.faults() == set()
     source.clock = lambda: node.now() + LAG
-    refusals = {f'speed {AHEAD}', f'load {AHEAD}'}
+    refusals = {f'{one} {says("ahead")}' for one in INPUTS[:2]}
     source.until(lambda: heard.faults() >= refusals, 'the refusals')
     source.until(lambda: heard.states[-1].inputs[0].dropped > 100, 'more of it')
     assert heard.faults() == refusals
@@ -154,19 +134,20 @@ def test_a_lead_beyond_what_is_allowed_is_refused_and_clears_nothing(node, says)
         assert health.refusal.endswith(says('set_clocks_both'))
 
 
-def test_a_drift_is_told_when_it_has_grown(node):
+def test_a_drift_is_told_when_it_has_grown(node, says):
     """The clock of the source runs at a tenth of its rate."""
     node.start(**TIMEOUTS, **(QUICK | {'x__limits__clear_delay': 0.02}))
     heard, source = Listener(node), Source(node, node.now)
     begin = node.now()
     source.clock = lambda: begin + source.sent * SECOND // 1000
-    source.until(lambda: heard.faults_of_both(LAGS) and heard.level == OK, 'lag and level')
+    lags = says('lags')
+    source.until(lambda: heard.faults_of_both(lags) and heard.level == OK, 'lag and level')
     node.until(lambda: heard.has_judged(source.sent), 'the last state')
     found = in_order(heard.states)
     assert {state.result.validity for state in found} == {PointResult.VALIDITY_VALID}
 
 
-def test_a_lagging_source_beside_one_without_stamps(node):
+def test_a_lagging_source_beside_one_without_stamps(node, says):
     node.start(
         *('-p', 'x.load.type:=std_msgs/msg/Float64', '-p', 'x.load.field:=data'),
         **TIMEOUTS,
@@ -189,7 +170,7 @@ def test_a_lagging_source_beside_one_without_stamps(node):
     assert load.stamp_source == InputHealth.STAMP_RECEIVE
     assert load.lag != load.lag
     node.until(lambda: go_on() or heard.faults(), 'the lag')
-    assert heard.faults() == {'speed ' + LAGS}
+    assert heard.faults() == {'speed ' + says('lags')}
 
 
 @pytest.mark.parametrize('speed', [None, SLOW])
@@ -226,17 +207,18 @@ def test_stamps_of_the_wall_clock_on_simulated_time(node, says):
     source.until(
         lambda: heard.states[-1].inputs[0].state == InputHealth.STATE_BAD, 'the refusal', FAST
     )
-    refusals = {f'speed {WALL}', f'load {WALL}'}
+    refusals = {f'{one} {says("wall")}' for one in INPUTS[:2]}
     source.until(lambda: heard.faults() >= refusals, 'the sentences')
     assert heard.faults() - {diagnostics.CLOCK_STANDS} == refusals
     assert heard.states[-1].inputs[0].refusal == says('stamps_wall_clock')
     assert heard.level == WARN
 
 
-def test_stamps_of_simulated_time_on_the_wall_clock(node):
+def test_stamps_of_simulated_time_on_the_wall_clock(node, says):
     node.start(**TIMEOUTS, **QUICK)
     heard, source = Listener(node), Source(node, lambda: node.stamp + SECOND // 100)
     source.until(lambda: heard.level == WARN, 'the warning', SLOW)
-    source.until(lambda: heard.level == OK and heard.faults_of_both(SIMULATED), 'its end')
+    told = says('simulated')
+    source.until(lambda: heard.level == OK and heard.faults_of_both(told), 'its end')
     found = in_order(heard.states)
     assert {state.result.validity for state in found} == {PointResult.VALIDITY_VALID}

@@ -14,14 +14,6 @@ from std_msgs.msg import Float64
 LONG = {'x__speed__timeout': 60.0, 'x__load__timeout': 60.0}
 SECOND = 10**9  # [ns]
 PERIOD = 4 * SECOND // 10  # [ns]
-NO_LOAD = 'load was never received: no publisher yet on /axial_load: start it, or set x.load.topic'
-NOT_A_NUMBER = (
-    'speed is not usable: it is not a finite number, mend its source or read another field'
-)
-ABSURD = (
-    'speed is not usable: it is beyond the plausible range, mend the source, its unit or scale, '
-    'or raise limits.plausible_speed or limits.plausible_load'
-)
 JOINTS = 'sensor_msgs/msg/JointState'
 
 
@@ -33,12 +25,10 @@ class Source:
         self.publisher = node.node.create_publisher(kind, topic, qos)
 
     def joints(self, name='x_axis', *velocity, ahead=0):
-        """Return a message of now, or of `ahead` [ns] from now."""
         message = JointState(name=[name], position=[0.0], velocity=list(velocity))
         return self.node.stamped(message, self.node.now() + ahead)
 
     def says(self):
-        """Return the faults that the node names now."""
         levels = self.node.levels()
         sentences = levels[-1][1].split('; ') if levels else []
         of_speed = [text for text in sentences if text.startswith('speed')]
@@ -57,46 +47,36 @@ class Source:
         self.node.until(told, text)
 
 
-def test_joints_position_only_numbers_and_stamps(node):
+def test_joints_position_only_numbers_and_stamps(node, says):
     node.start(**LONG)
-    source = Source(node)
-    source.until_told(
-        'speed has no sample: the messages name arm, x_joint and no joint x_axis, '
-        'set x.speed.field to velocity[x_joint] or another of them',
-        lambda: JointState(name=['arm', 'x_joint'], velocity=[1.0, 2.0]),
-    )
-    source.until_told(
-        'speed is not usable: velocity is empty in its messages: let the source fill it, '
-        'or read another field',
-        lambda: source.joints('x_axis'),
-    )
+    source, nothing = Source(node), says('load_without_publisher')
+    other = JointState(name=['arm', 'x_joint'], velocity=[1.0, 2.0])
+    source.until_told(says('joints_of_others'), lambda: other)
+    source.until_told(says('velocity_is_empty'), lambda: source.joints('x_axis'))
     for number in (math.nan, math.inf, -math.inf):
-        source.until_told(ABSURD, lambda: source.joints('x_axis', 1e300))
-        source.until_told(NOT_A_NUMBER, lambda number=number: source.joints('x_axis', number))
+        source.until_told(says('absurd'), lambda: source.joints('x_axis', 1e300))
+        source.until_told(
+            says('not_a_number'), lambda number=number: source.joints('x_axis', number)
+        )
     source.until_told(
-        'speed is not usable: its stamps lie ahead of the clock, set the clocks alike or raise '
-        'max_future',
-        lambda: source.joints('x_axis', 1.0, ahead=3600 * SECOND),
+        says('stamps_ahead'), lambda: source.joints('x_axis', 1.0, ahead=3600 * SECOND)
     )
-    assert NO_LOAD in source.says()
+    assert nothing in source.says()
     node.until(
         lambda: (
-            source.publisher.publish(source.joints('x_axis', 100.0)) or source.says() == [NO_LOAD]
+            source.publisher.publish(source.joints('x_axis', 100.0)) or source.says() == [nothing]
         ),
         'the speed to be well',
     )
 
 
-def test_no_publisher_another_type_and_a_publisher_that_is_gone(node):
+def test_no_publisher_another_type_and_a_publisher_that_is_gone(node, says):
     node.start(x__load__timeout=1.0)
     source = Source(node, kind=Float64)
-    source.until_told(
-        'speed was never received: /joint_states carries std_msgs/msg/Float64, expected is '
-        f'{JOINTS}: set x.speed.type to std_msgs/msg/Float64'
-    )
-    source.until_told(NO_LOAD)
+    source.until_told(says('another_type', expected=JOINTS))
+    source.until_told(says('load_without_publisher'))
     load = Source(node, kind=WrenchStamped, topic='axial_load')
-    load.until_told('load was never received: the publisher on /axial_load has sent nothing yet')
+    load.until_told(says('load_not_sent'))
     node.until(
         lambda: (
             load.publisher.publish(WrenchStamped())
@@ -105,7 +85,7 @@ def test_no_publisher_another_type_and_a_publisher_that_is_gone(node):
         'the load to arrive',
     )
     node.node.destroy_publisher(load.publisher)
-    source.until_told('load is stale: the publisher on /axial_load is gone')
+    source.until_told(says('load_publisher_gone'))
 
 
 def test_a_timeout_shorter_than_the_period_is_told_with_one_that_would_do(node):
@@ -131,34 +111,24 @@ def test_a_timeout_shorter_than_the_period_is_told_with_one_that_would_do(node):
     node.until(told, cure)
 
 
-def test_qos_that_does_not_fit_is_told_and_overrides_are_parameters(node):
+def test_qos_that_does_not_fit_is_told_and_overrides_are_parameters(node, says):
     name = 'qos_overrides./joint_states.subscription'
     node.start('-p', f'{name}.reliability:=reliable', '-p', f'{name}.depth:=7')
     qos = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.BEST_EFFORT)
     source = Source(node, qos=qos)
-    source.until_told(
-        'speed was never received: QoS does not fit on /joint_states, offered is best_effort and '
-        f'asked for is reliable: set {name}.reliability to best_effort'
-    )
+    source.until_told(says('qos_does_not_fit', name=name))
     names = [f'{name}.{policy}' for policy in ('reliability', 'depth', 'history', 'durability')]
     values = node.call(GetParameters, 'get_parameters', names=names).values
-    assert [value.string_value or value.integer_value for value in values] == [
-        'reliable',
-        7,
-        'keep_last',
-        'volatile',
-    ]
+    found = [value.string_value or value.integer_value for value in values]
+    assert found == ['reliable', 7, 'keep_last', 'volatile']
     (info,) = node.node.get_subscriptions_info_by_topic('/joint_states')
     assert info.qos_profile.reliability == QoSReliabilityPolicy.RELIABLE
 
 
-def test_an_empty_type_is_that_of_the_publisher_that_comes(node):
+def test_an_empty_type_is_that_of_the_publisher_that_comes(node, says):
     node.start('-p', "x.speed.type:=''", x__speed__field='data')
     told = Source(node, kind=WrenchStamped, topic='axial_load')
-    told.until_told(
-        'speed was never received: no publisher yet on /joint_states: start it, or set '
-        'x.speed.topic'
-    )
+    told.until_told(says('speed_without_publisher'))
     states, source = node.states(), Source(node, kind=Float64)
 
     def judged():
@@ -176,11 +146,9 @@ def test_a_negative_index_ends_the_start_in_one_sentence(node, says):
     assert node.output.read_text() == says('speed_field_field')
 
 
-def test_an_override_of_no_input_is_not_configured(node):
+def test_an_override_of_no_input_is_not_configured(node, says):
     node.start('-p', 'qos_overrides./joint_state.subscription.depth:=7')
-    reason = (
-        'not configured: parameter qos_overrides./joint_state.subscription.depth is of no input, '
-    )
+    reason = says('override_of_no_input')
 
     def levels():
         """Return the levels with which the reason is told."""

@@ -62,7 +62,6 @@ def test_a_state_comes_by_then_however_the_samples_come(core, period, tick, time
 
 
 def offered(node, **parameters):
-    """Start the node; return the deadline that its state offers, and the topic."""
     topic = f'{node.name}/x/state'
     node.start(**parameters)
     node.until(lambda: node.node.count_publishers(topic))

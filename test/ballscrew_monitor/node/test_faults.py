@@ -64,7 +64,6 @@ def write_bomb(path):
 
 
 def write_half(path):
-    """Write the first half of a surface."""
     content = shipped_surface().read_bytes()
     path.write_bytes(content[: len(content) // 2])
 
@@ -124,3 +123,22 @@ def test_a_bad_start_value_is_one_sentence_and_exit_code_2(environment, name, ca
     assert err.count('\n') == 1
     assert err.startswith(f'ballscrew_monitor: parameter {name} is ')
     assert ', allowed is ' in err or ', it must be ' in err
+
+
+@pytest.mark.parametrize(
+    ('argument', 'sentence'),
+    [
+        ('x.limits.rcs:=1', 'limits_rcs_1'),
+        ('x.limits.rsc:=0.1', 'limits_rsc_unknown'),
+        ('diagnostic_period:=2.0', 'diagnostic_period_unknown'),
+        ("axis:=['y']", 'unknown'),
+        ('y.screw:=nominal', 'y_screw_unknown'),
+        ('x.speed.unit:=rpm', 'speed_unit_rpm'),
+        ("axes:=['X']", 'axes_holds'),
+    ],
+)
+def test_a_bad_parameter_is_one_sentence(environment, argument, sentence, says, capfd):
+    assert run(['--ros-args', '-p', argument], [1]) == 2
+    said = capfd.readouterr().err
+    assert said.count('\n') == 1
+    assert said.startswith(f'ballscrew_monitor: {says(sentence)}')

@@ -56,7 +56,6 @@ def logged(kind, number, ending=''):
 
 @pytest.fixture(name='start')
 def make_start(tmp_path):
-    """Return what starts a node after files of the former format, some of them changed."""
     opened = []
 
     def start(**changes):
@@ -81,9 +80,8 @@ def test_all_is_taken_over_bit_for_bit_and_set_aside(start, tmp_path):
     kept = state.recall(Corrections('x'))
     (solve,) = kept.read_solves()
     assert (kept.surface, solve.speed, solve.solved) == ('abc', 0.1 + 0.2, {'rcs': 1 / 3})
-    assert [one.record() for one in read_entries(tmp_path)] == [
-        START | {'stamp_ns': stamp} for stamp in (2, 10, 20)
-    ]
+    expected = [START | {'stamp_ns': stamp} for stamp in (2, 10, 20)]
+    assert [one.record() for one in read_entries(tmp_path)] == expected
     place = tmp_path / PLACE
     said = f'the database replaces 5 files, which are now in {place}'
     assert (state.notices, state.problem) == ([said], '')

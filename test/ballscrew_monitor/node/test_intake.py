@@ -50,7 +50,6 @@ def nothing():
 
 
 def turns(intake):
-    """Let the intake have a turn."""
     with pytest.raises(StopIteration):
         intake.execute(None).send(None)
 
@@ -84,7 +83,6 @@ class Bench:
         self.drain_events()
 
     def matched(self):
-        """Return how many publishers each input is matched with."""
         return {source: link.matched for source, link in self.intake.links(self.axis).items()}
 
     def until(self, condition, meanwhile=None):
@@ -338,10 +336,8 @@ def test_an_open_input_takes_the_type_of_its_publisher(bench):
     assert list(bench.intake.topics) == ['/late']
     late.publish(Float64(data=5.0))
     bench.until(lambda: len(bench.taken) == 2)
-    assert {(event.source, event.value) for event in bench.taken} == {
-        (Source.SPEED, 5.0),
-        (Source.TORQUE, 5.0),
-    }
+    expected = {(Source.SPEED, 5.0), (Source.TORQUE, 5.0)}
+    assert {(event.source, event.value) for event in bench.taken} == expected
 
 
 def test_an_open_input_whose_field_is_not_in_the_type_says_so_and_waits_on(bench):

@@ -40,15 +40,12 @@ class Axis:
         self.publish = None
 
     def start(self, **parameters):
-        """Start the node, the first time with its machine."""
         self.states.clear()
         self.events.clear()
         self.node.start(**{'state_dir': self.folder} | AT_ONCE | parameters)
         self.publish = self.publish or self.node.machine()
 
     def move(self, speed, condition, what):
-        """Move until a state fulfils a condition; return the state."""
-
         def moved():
             self.publish(speed)
             return next((one for one in reversed(self.states) if condition(one)), None)
@@ -56,7 +53,6 @@ class Axis:
         return self.node.until(moved, what)
 
     def kill(self):
-        """Kill the node, as the system does."""
         self.node.process.kill()
         assert self.node.process.wait() == -signal.SIGKILL
 
@@ -68,7 +64,6 @@ class Axis:
         return last[0][1]
 
     def kept(self):
-        """Return the row of the axis on the disk."""
         if not (self.folder / FILE).exists():
             return None
         place = f'file:{self.folder / FILE}?mode=ro'
@@ -91,7 +86,6 @@ class Axis:
         self.node.until(lambda: self.events[-1].active, 'the event')
 
     def log(self):
-        """Return the event log."""
         return [entry.record() for entry in read_entries(self.folder)]
 
 
@@ -108,12 +102,10 @@ def test_a_node_that_is_killed_in_an_event_goes_on(axis):
         known = axis.kept()['running_time_ns'] / SECOND
         axis.kill()
     lines = [(line['kind'], line.get('event'), line.get('ending')) for line in axis.log()]
-    assert [line for line in lines if line[0] == 'event_begin'] == [
-        ('event_begin', number, '') for number in range(1, KILLS + 1)
-    ]
-    assert [line for line in lines if line[0] == 'event_end'] == [
-        ('event_end', number, RESTARTED) for number in range(1, KILLS)
-    ]
+    expected = [('event_begin', number, '') for number in range(1, KILLS + 1)]
+    assert [line for line in lines if line[0] == 'event_begin'] == expected
+    wanted = [('event_end', number, RESTARTED) for number in range(1, KILLS)]
+    assert [line for line in lines if line[0] == 'event_end'] == wanted
     assert [line[0] for line in lines].count('node_start') == KILLS
 
 
@@ -138,11 +130,8 @@ def test_a_full_disk_is_one_sentence_and_nothing_is_lost(axis):
     bad = f'{axis.folder} cannot be written, disk I/O error'
     assert axis.node.levels('State directory') == [good, (DiagnosticStatus.WARN, bad), good]
     kinds = [line['kind'] for line in axis.log()]
-    assert [kind for kind in kinds if kind != 'reset_totals'] == [
-        'node_start',
-        'event_begin',
-        'event_end',
-    ]
+    expected = ['node_start', 'event_begin', 'event_end']
+    assert [kind for kind in kinds if kind != 'reset_totals'] == expected
     assert 'reset_totals' in kinds
     assert axis.kept()['event'] == 1
     assert axis.node.stop() == 0

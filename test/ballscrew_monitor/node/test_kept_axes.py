@@ -61,7 +61,6 @@ class Machine:
         self.look = look
 
     def start(self):
-        """Start the node, without its thread."""
         self.state = RestartState(self.folder, limit=200_000)
         self.state.start = nothing
         self.retention = KeptAxes(
@@ -97,7 +96,6 @@ class Machine:
 
     @property
     def running_time(self):
-        """Return what the monitor knows [ns]."""
         return self.monitor.kept.totals.running_time
 
 

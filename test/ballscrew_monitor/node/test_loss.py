@@ -37,7 +37,6 @@ class Machine:
         self.loads.publish(WrenchStamped())
 
     def publish(self, publisher=None):
-        """Publish a speed."""
         self.sent += 1
         speed = FAST + STEP * self.sent
         (publisher or self.speeds).publish(JointState(name=['x_axis'], velocity=[speed]))
@@ -54,11 +53,9 @@ class Machine:
 
     @property
     def speed(self):
-        """Return the health of the speed, if there is a state."""
         return self.states[-1].inputs[0] if self.states else None
 
     def has(self, condition):
-        """Tell whether the health of the speed is so."""
         return self.speed is not None and condition(self.speed)
 
     def judge(self, publisher=None):
@@ -68,7 +65,6 @@ class Machine:
         self.node.until(lambda: self.states and self.states[-1].judged > before, 'a state')
 
     def is_said(self, sentence):
-        """Tell whether a warning about the inputs has begun so."""
         return any(
             level == DiagnosticStatus.WARN and message.startswith(sentence)
             for level, message in self.node.levels()

@@ -63,7 +63,6 @@ def told(state):
 
 
 def replayed(folder, messages):
-    """Return the states of a replay of the messages."""
     with BagWriter(folder, 'bag') as writer:
         writer.add_topic(Topic(name='/joint_states', type_name=JOINT_STATES, offer=Offer.SENSOR))
         for stamp, message in messages:

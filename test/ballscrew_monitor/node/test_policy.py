@@ -31,7 +31,6 @@ def policy():
 
 
 def test_the_policy_allows_all_that_the_node_has(node, policy):
-    """Compared with the graph of a node that hears all four inputs."""
     topics = {'x__temperature__topic': 'oil_temperature', 'x__torque__topic': 'motor_torque'}
     node.start(use_sim_time='true', x__plain_topics='true', **topics)
     node.until(lambda: node.lifecycle() == 'active')

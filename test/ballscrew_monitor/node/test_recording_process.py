@@ -27,17 +27,11 @@ def values(**changes):
     return parameters.defaults(['x']) | {'record': 'always'} | changes
 
 
-def test_without_a_wish_there_is_none():
+def test_a_recording_is_made_where_it_is_wished_has_a_place_and_leaves_room(tmp_path, refused):
     assert recording(values(record='off'), None) is None
-
-
-def test_a_place_is_needed(tmp_path, refused):
     refused('there_state_dir_set', recording, values(), None)
     assert recording(values(), tmp_path).args[0] == tmp_path / 'recordings'
     assert recording(values(record_dir='/there'), None).args[0] == Path('/there')
-
-
-def test_one_recording_must_not_remove_all_others(tmp_path, refused):
     refused('record_total_300_mb', recording, values(record_total=300.0), tmp_path)
 
 

@@ -5,51 +5,36 @@
 from ballscrew_monitor.node.run import wants_localhost
 import pytest
 
-FILES = {
-    'all': '/**:\n  ros__parameters: {localhost: true}\n',
-    'name': 'ballscrew_monitor:\n  ros__parameters: {localhost: true}\n',
-    'any_place': '/**/ballscrew_monitor:\n  ros__parameters: {localhost: true}\n',
-    'full': '/line/ballscrew_monitor:\n  ros__parameters: {localhost: true}\n',
-    'one_part': '/*/ballscrew_monitor:\n  ros__parameters: {localhost: true}\n',
-    'nested': 'line:\n  ballscrew_monitor:\n    ros__parameters: {localhost: true}\n',
-    'other': '/**/other:\n  ros__parameters: {localhost: true}\n',
-    'false': '/**:\n  ros__parameters: {localhost: false}\n',
-    'letter': '/**:\n  ros__parameters: {localhost: y}\n',
-    'number': '/**:\n  ros__parameters: {localhost: 1}\n',
-    'damaged': '/**: [\n',
-}
+LOCAL = 'ros__parameters: {localhost: true}'
 
 
 @pytest.fixture
 def file(tmp_path):
-    """Return a function that writes one of the files and gives its path."""
-
-    def write(name):
-        path = tmp_path / f'{name}.yaml'
-        path.write_text(FILES[name])
-        return str(path)
+    def write(text):
+        (tmp_path / 'parameters.yaml').write_text(text)
+        return str(tmp_path / 'parameters.yaml')
 
     return write
 
 
 @pytest.mark.parametrize(
-    ('name', 'in_root', 'in_line'),
+    ('text', 'in_root', 'in_line'),
     [
-        ('all', True, True),
-        ('name', True, False),
-        ('any_place', True, True),
-        ('full', False, True),
-        ('one_part', False, True),
-        ('nested', False, True),
-        ('other', False, False),
-        ('false', False, False),
-        ('letter', True, True),
-        ('number', False, False),
-        ('damaged', False, False),
+        (f'/**: {{{LOCAL}}}', True, True),
+        (f'ballscrew_monitor: {{{LOCAL}}}', True, False),
+        (f'/**/ballscrew_monitor: {{{LOCAL}}}', True, True),
+        (f'/line/ballscrew_monitor: {{{LOCAL}}}', False, True),
+        (f'/*/ballscrew_monitor: {{{LOCAL}}}', False, True),
+        (f'line: {{ballscrew_monitor: {{{LOCAL}}}}}', False, True),
+        (f'/**/other: {{{LOCAL}}}', False, False),
+        ('/**: {ros__parameters: {localhost: false}}', False, False),
+        ('/**: {ros__parameters: {localhost: y}}', True, True),
+        ('/**: {ros__parameters: {localhost: 1}}', False, False),
+        ('/**: [', False, False),
     ],
 )
-def test_of_a_file_what_is_said_to_the_node_counts(file, name, in_root, in_line):
-    arguments = ['--ros-args', '--params-file', file(name)]
+def test_of_a_file_what_is_said_to_the_node_counts(file, text, in_root, in_line):
+    arguments = ['--ros-args', '--params-file', file(text)]
     assert wants_localhost(arguments) is in_root
     assert wants_localhost([*arguments, '-r', '__ns:=/line']) is in_line
 
@@ -75,6 +60,6 @@ def test_of_the_arguments_the_last_one_counts(arguments, wanted):
 
 
 def test_a_node_of_another_name_has_its_own(file):
-    arguments = ['--ros-args', '--params-file', file('other'), '-r']
+    arguments = ['--ros-args', '--params-file', file(f'/**/other: {{{LOCAL}}}'), '-r']
     assert wants_localhost([*arguments, '__node:=other'])
     assert wants_localhost([*arguments, 'ballscrew_monitor:__name:=other', '-r', '__ns:=/line'])

@@ -33,8 +33,6 @@ SOLVING = 'contact'  # a word of the stages of a solve
 
 
 class Goal:
-    """A goal that was sent, and what has come back."""
-
     def __init__(self, node, client, request):
         self._node = node
         self.feedback = []
@@ -46,7 +44,6 @@ class Goal:
 
     @property
     def accepted(self):
-        """Wait whether the node has taken it."""
         return self._node.until(self._sent.done, 'the word on a goal') and self._handle.accepted
 
     @property
@@ -54,28 +51,22 @@ class Goal:
         return self._sent.result()
 
     def cancel(self):
-        """Take it back."""
         return self._handle.cancel_goal_async()
 
     def poll(self):
-        """Return the status and the result, if they have come."""
         if self._answer is None:
             self._answer = self._handle.get_result_async()
         return self._answer.done() and (self._answer.result().status, self._answer.result().result)
 
     def end(self):
-        """Wait for the status and the result."""
         assert self.accepted
         return self._node.until(self.poll, 'the result of a goal')
 
     def at(self, stage):
-        """Tell whether it has come to a stage."""
         return any(stage in step.stage for step in self.feedback)
 
 
 class Solves:
-    """What asks the node for solves."""
-
     def __init__(self, node):
         self._node = node
         # Room for answers to as many goals as a test sends at once.
@@ -86,7 +77,6 @@ class Solves:
         node.until(lambda: node.lifecycle() == 'active', 'the active node')
 
     def ask(self, place=PLACE, **request):
-        """Send a goal at a place, or as asked."""
         request = {'axis': 'x', 'point': place} | request
         return Goal(self._node, self._client, SolveOperatingPoint.Goal(**request))
 
@@ -127,18 +117,7 @@ def test_a_solve_is_told_beside_the_surface(node):
     assert result.wall_time > 0.0
 
 
-def test_a_slow_solve_tells_what_it_is_at_and_how_far(node):
-    node.start()
-    goal = Solves(node).ask(**LONG)
-    assert goal.end()[0] == SUCCEEDED
-    fractions = [step.fraction for step in goal.feedback]
-    assert fractions == sorted(fractions)
-    assert fractions[0] < fractions[-1]
-    assert 0.0 < fractions[-1] <= 1.0
-    assert goal.at(SOLVING)
-
-
-def test_what_cannot_be_solved_is_one_sentence(node):
+def test_what_cannot_be_solved_is_one_sentence_and_a_slow_solve_tells_how_far_it_is(node):
     node.start()
     solves = Solves(node)
     for request, sentence in (
@@ -154,6 +133,13 @@ def test_what_cannot_be_solved_is_one_sentence(node):
         assert sentence in result.status
         assert result.status.count('. ') == 0
     assert not node.solvers()
+    goal = solves.ask(**LONG)
+    assert goal.end()[0] == SUCCEEDED
+    fractions = [step.fraction for step in goal.feedback]
+    assert fractions == sorted(fractions)
+    assert fractions[0] < fractions[-1]
+    assert 0.0 < fractions[-1] <= 1.0
+    assert goal.at(SOLVING)
     assert node.transition('deactivate')
     status, result = solves.ask().end()
     assert (status, result.status) == (ABORTED, 'the node is inactive, activate it first')
@@ -206,7 +192,6 @@ class Paced:
         self.sent = 0
 
     def go_on(self):
-        """Publish a sample if one is due."""
         now = time.monotonic()
         if now >= self._next:
             self._next = now + 0.01
@@ -239,23 +224,7 @@ def test_a_killed_worker_ends_its_goal_alone_and_no_message_is_missed(node, says
     assert {state.judged for state in states} - {0} == set(range(1, samples.sent + 1))
 
 
-def test_of_fifty_goals_at_once_nine_are_taken_and_the_others_rejected(node, says):
-    node.start()
-    solves = Solves(node)
-    goals = [solves.ask(**LONG) for _ in range(50)]
-    taken = [goal for goal in goals if goal.accepted]
-    assert taken == goals[:MOST]
-    for goal in taken:
-        goal.cancel()
-    assert {goal.end()[0] for goal in taken} == {CANCELED}
-    said = node.output.read_text()
-    assert says('solve_rejected_8') in said
-    assert 'Traceback' not in said
-    status, result = solves.ask(axis='q').end()
-    assert (status, 'is unknown' in result.status) == (ABORTED, True)
-
-
-def test_a_goal_is_taken_back_while_it_waits_starts_or_solves(node):
+def test_a_goal_is_taken_back_at_any_time_and_of_fifty_at_once_nine_are_taken(node, says):
     node.start()
     solves = Solves(node)
     begun = solves.ask(**LONG)
@@ -271,21 +240,34 @@ def test_a_goal_is_taken_back_while_it_waits_starts_or_solves(node):
     node.until(lambda: solving.at(SOLVING), 'the solve')
     take_back(node, solving)
     assert solves.ask().end()[0] == SUCCEEDED
+    goals = [solves.ask(**LONG) for _ in range(50)]
+    taken = [goal for goal in goals if goal.accepted]
+    assert taken == goals[:MOST]
+    for goal in taken:
+        goal.cancel()
+    assert {goal.end()[0] for goal in taken} == {CANCELED}
+    said = node.output.read_text()
+    assert says('solve_rejected_8') in said
+    assert 'Traceback' not in said
+    status, result = solves.ask(axis='q').end()
+    assert (status, 'is unknown' in result.status) == (ABORTED, True)
 
 
 def take_back(node, goal):
-    """Cancel a goal and wait for its end."""
     goal.cancel()
     status, result = node.until(goal.poll, 'the end of a goal')
     assert (status, result.success, result.status) == (CANCELED, False, 'cancelled')
 
 
-def test_an_overdue_solve_says_how_far_it_came(node):
+def test_an_overdue_solve_says_how_far_it_came_and_a_killed_node_leaves_no_worker(node, is_alive):
     node.start()
     status, result = Solves(node).ask(**LONG, timeout=0.5).end()
     assert status == ABORTED
     assert result.status.startswith('stopped after its timeout of 0.5 s, ')
     assert not node.solvers()
+    _, worker = solving(node)
+    node.stop(signal.SIGKILL)
+    node.until(lambda: not is_alive(worker), 'the end of the worker')
 
 
 def test_a_signal_during_a_solve_ends_goal_worker_and_node(node, is_alive):
@@ -298,15 +280,7 @@ def test_a_signal_during_a_solve_ends_goal_worker_and_node(node, is_alive):
     assert 'Traceback' not in node.output.read_text()
 
 
-def test_a_killed_node_leaves_no_worker(node, is_alive):
-    node.start()
-    _, worker = solving(node)
-    node.stop(signal.SIGKILL)
-    node.until(lambda: not is_alive(worker), 'the end of the worker')
-
-
 def solving(node):
-    """Begin a long solve; return its goal and the process that does it."""
     goal = Solves(node).ask(**LONG)
     assert goal.accepted
     goal.poll()  # asks for the result

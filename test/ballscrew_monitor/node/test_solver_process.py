@@ -21,11 +21,19 @@ def make_process():
     made.kill()
 
 
-def test_a_request_that_cannot_be_solved_is_a_sentence_and_the_process_goes_on(process, wait_for):
+def test_a_bad_request_and_ctrl_c_do_not_end_it_and_a_kill_is_told(process, wait_for, says):
     for _ in range(2):
         process.send(BAD_REQUEST)
         (frame,) = wait_for(process.frames, 'a frame')
         assert frame == {'failed': "KeyError: 'header'"}
+    process.send(BAD_REQUEST)
+    wait_for(process.frames, 'a frame')
+    os.kill(process.pid, signal.SIGINT)
+    process.send(BAD_REQUEST)
+    assert 'failed' in wait_for(process.frames, 'a frame')[0]
+    os.kill(process.pid, signal.SIGKILL)
+    (frame,) = wait_for(process.frames, 'a frame')
+    assert frame == {'lost': says('process_solve_was')}
 
 
 def test_it_holds_nothing_of_ros_and_runs_nicely(process, wait_for):
@@ -51,20 +59,6 @@ def test_what_the_worker_imports_is_the_offline_half_alone():
     names = {name.split('.')[0] for name in done.stdout.split()}
     assert 'surrogate' in names
     assert not names & {'rclpy', 'ballscrew_monitor', 'ballscrew_msgs', 'matplotlib'}
-
-
-def test_a_killed_process_says_so(process, wait_for, says):
-    os.kill(process.pid, signal.SIGKILL)
-    (frame,) = wait_for(process.frames, 'a frame')
-    assert frame == {'lost': says('process_solve_was')}
-
-
-def test_ctrl_c_is_not_for_it(process, wait_for):
-    process.send(BAD_REQUEST)
-    wait_for(process.frames, 'a frame')
-    os.kill(process.pid, signal.SIGINT)
-    process.send(BAD_REQUEST)
-    assert 'failed' in wait_for(process.frames, 'a frame')[0]
 
 
 def test_it_ends_with_whoever_started_it(wait_for, is_alive):

@@ -19,20 +19,16 @@ LIMIT = 400_000  # [B]
 
 
 class Opened(StateDatabase):
-    """A database that is opened at once."""
-
     def __init__(self, folder, limit=LIMIT):
         self.damage, self.notices = [], []
         super().__init__(folder, limit, damage=self.damage, notices=self.notices)
         self.found = self.load()
 
     def setting(self, name):
-        """Return what a setting is."""
         return self._database.execute(f'PRAGMA {name}').fetchone()[0]
 
     @property
     def event(self):
-        """Return the number of the last event that was found."""
         return self.found[AxisRecord, 'x'].event
 
     def fill(self, *numbers):
@@ -50,7 +46,6 @@ class Opened(StateDatabase):
 
 @pytest.fixture(name='make')
 def make_database(tmp_path):
-    """Return what opens databases, which are closed at the end."""
     with contextlib.ExitStack() as stack:
 
         def make(folder=tmp_path, **changes):
@@ -76,9 +71,8 @@ def test_what_is_written_is_found_again(make, tmp_path):
     database.close()
     assert {path.name for path in tmp_path.iterdir()} == {'lock', FILE}
     found = make().found
-    assert {key: one.row() for key, one in found.items()} == {
-        key: one.row() for key, one in records.items()
-    }
+    expected = {key: one.row() for key, one in records.items()}
+    assert {key: one.row() for key, one in found.items()} == expected
 
 
 def test_a_second_node_waits_until_the_first_is_gone(make, tmp_path):
@@ -193,10 +187,13 @@ def test_a_damaged_file_is_kept_aside(make, tmp_path, where, end):
     assert stamps(tmp_path) == [100]
 
 
-def test_a_killed_beginning_is_begun_once_more(make, tmp_path):
+def test_a_killed_beginning_is_begun_again_and_a_removed_file_noticed(make, tmp_path):
     (tmp_path / FILE).touch()
     database = make()
     assert (database.found, database.damage) == ({}, [])
+    assert database.is_open
+    (tmp_path / FILE).unlink()
+    assert not database.is_open
 
 
 def test_a_full_disk_loses_nothing_that_was_kept(make, tmp_path, refused):
@@ -244,13 +241,6 @@ def test_somebody_who_reads_without_an_end_does_not_let_the_journal_grow(make, t
     database.fill(1000)
     assert stamps(tmp_path)[-1] == 1000
     assert database.size() < LIMIT
-
-
-def test_a_file_that_is_removed_is_noticed(make, tmp_path):
-    database = make()
-    assert database.is_open
-    (tmp_path / FILE).unlink()
-    assert not database.is_open
 
 
 def test_who_reads_is_told_why_there_is_nothing_to_read(make, tmp_path, refused):

@@ -9,7 +9,6 @@ import pytest
 
 @pytest.fixture
 def domain(monkeypatch):
-    """Return a free domain, set in the environment."""
     with free_domain() as number:
         for name, value in ros_environment(number).items():
             monkeypatch.setenv(name, value)

@@ -41,7 +41,6 @@ def values():
 
 @pytest.fixture(scope='module')
 def judged(nominal_bag, values):
-    """Return the columns of the nominal cycle and its outcome."""
     *blocks, outcome = replay_columns(Bag(nominal_bag), values)
     assert isinstance(outcome, AxisOutcome)
     return joined(blocks), outcome
@@ -77,9 +76,8 @@ def test_the_outcome_is_that_of_the_states(nominal_bag, judged, values):
     summary, expected = outcome.summary(), summary_of(said)
     assert summary.events == expected.events
     for event, told in zip(summary.events, expected.events, strict=True):
-        np.testing.assert_equal(
-            (event.target_speed, event.target_load), (told.target_speed, told.target_load)
-        )
+        wanted = (told.target_speed, told.target_load)
+        np.testing.assert_equal((event.target_speed, event.target_load), wanted)
         assert event.place.endswith(' N')
         assert told.place == ''  # a message does not tell
     assert summary.states == expected.states < outcome.rows
@@ -88,7 +86,7 @@ def test_the_outcome_is_that_of_the_states(nominal_bag, judged, values):
     assert outcome.judged == np.count_nonzero(columns.judged)
 
 
-def test_columns_tell_zones_reasons_and_times(judged):
+def test_columns_tell_zones_reasons_and_times_and_blocks_join(judged):
     columns, outcome = judged
     assert set(columns.reason) == {Reason.JUDGED, Reason.STANDSTILL}
     np.testing.assert_array_equal(columns.zone == 0, columns.reason == Reason.STANDSTILL)
@@ -96,10 +94,6 @@ def test_columns_tell_zones_reasons_and_times(judged):
     assert seconds(outside) == pytest.approx(seconds(outcome.totals.outside_time), abs=0.02)
     assert np.isnan(columns.measured_torque).all()  # the bag has no torque
     assert all(reason.text for reason in Reason)
-
-
-def test_blocks_of_one_axis_join(judged):
-    columns, _ = judged
     twice = joined([columns, columns])
     assert len(twice) == 2 * len(columns)
     for name, kind in COLUMNS.items():
@@ -167,7 +161,6 @@ STEP = 10_000_000  # [ns]
 
 
 def alone():
-    """Return the axis with a fresh monitor."""
     monitor = Monitor(AXIS.surface, AXIS.monitor.settings)
     return dataclasses.replace(AXIS, monitor=monitor)
 

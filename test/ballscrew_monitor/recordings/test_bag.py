@@ -20,12 +20,10 @@ OF_MCAP = {'storage_identifier': 'mcap'}
 
 @pytest.fixture
 def copy(short_bag, tmp_path):
-    """Return a copy of the short bag that may be damaged."""
     return shutil.copytree(short_bag, tmp_path / 'copy')
 
 
 def sentence(action):
-    """Return the one sentence in which `action` fails."""
     with pytest.raises(InputError) as caught:
         action()
     text = str(caught.value)
@@ -34,7 +32,7 @@ def sentence(action):
     return text
 
 
-def test_messages_come_by_log_time(short_bag):
+def test_messages_come_by_log_time_of_the_topics_that_are_chosen(short_bag):
     bag = Bag(short_bag)
     messages = list(bag.messages())
     times = [message.log_time for message in messages]
@@ -42,9 +40,6 @@ def test_messages_come_by_log_time(short_bag):
     assert (times[0], times[-1]) == (bag.start_time, bag.end_time)
     assert len(messages) == sum(info.count for info in bag.topics.values())
     assert bag.duration == pytest.approx(3.0, abs=0.02)
-
-
-def test_topics_can_be_chosen_and_a_file_is_a_bag_too(short_bag):
     bag = Bag(short_bag / 'short.mcap')
     assert {message.topic for message in bag.messages(['/axial_load'])} == {'/axial_load'}
     bag.require(TYPES)
@@ -68,16 +63,13 @@ def test_topics_that_are_missing_or_of_another_type_are_named(short_bag, says):
     assert says('geometry_msgs_msg') in text
 
 
-def test_a_topic_without_messages_is_named(tmp_path):
+def test_a_topic_or_a_bag_without_messages_is_named(tmp_path):
     with BagWriter(tmp_path, 'bag') as writer:
         for name in ('/a', '/b'):
             writer.add_topic(Topic(name=name, type_name='std_msgs/msg/Header', offer=Offer.SENSOR))
         writer.write('/a', bytes(20), log_time=1, publish_time=1)
     text = sentence(lambda: Bag(tmp_path).require({'/b': 'std_msgs/msg/Header'}))
     assert 'topic /b holds no message' in text
-
-
-def test_a_bag_without_any_message_is_refused(tmp_path):
     BagWriter(tmp_path, 'bag').close()
     assert 'holds no message' in sentence(lambda: Bag(tmp_path))
 

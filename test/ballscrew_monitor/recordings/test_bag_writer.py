@@ -23,7 +23,6 @@ DATA = bytes(100)
 
 
 def write(writer, count, *, topic=HEADERS, begin=1000):
-    """Announce a topic, and write messages of it."""
     writer.add_topic(topic)
     for number in range(count):
         writer.write(topic.name, DATA, log_time=begin + number, publish_time=begin + number - 1)
@@ -143,13 +142,12 @@ def test_an_unknown_type_and_a_bad_directory_are_one_sentence(tmp_path, refused)
 
 
 def break_off(folder, error):
-    """Fail in the middle of a bag."""
     with whole_bag(folder, 'bag') as writer:
         write(writer, 1)
         raise error
 
 
-def test_a_whole_bag_is_there_when_it_is_complete_or_not_at_all(tmp_path):
+def test_a_whole_bag_is_there_when_it_is_complete_or_not_at_all(tmp_path, refused):
     folder = tmp_path / 'new' / 'bag'
     with pytest.raises(KeyboardInterrupt):
         break_off(folder, KeyboardInterrupt)
@@ -160,6 +158,10 @@ def test_a_whole_bag_is_there_when_it_is_complete_or_not_at_all(tmp_path):
     assert [*folder.parent.iterdir()] == [folder]
     assert sorted(path.name for path in folder.iterdir()) == ['bag.mcap', 'metadata.yaml']
     assert Bag(folder).topics['/a'].count == 2
+    (tmp_path / 'file').write_text('')
+    for place in (tmp_path / 'file', tmp_path / 'file' / 'bag'):
+        with refused('cannot_written'), whole_bag(place, 'bag'):
+            raise AssertionError
 
 
 def test_an_older_bag_and_what_is_beside_it_stay_until_the_next_is_whole(tmp_path, refused):
@@ -171,10 +173,3 @@ def test_an_older_bag_and_what_is_beside_it_stay_until_the_next_is_whole(tmp_pat
     names = sorted(path.name for path in tmp_path.iterdir())
     assert names == ['bag.mcap', 'metadata.yaml', 'notes.txt']
     assert Bag(tmp_path).topics['/a'].count == 3
-
-
-def test_a_place_where_no_whole_bag_can_be_is_one_sentence(tmp_path, refused):
-    (tmp_path / 'file').write_text('')
-    for place in (tmp_path / 'file', tmp_path / 'file' / 'bag'):
-        with refused('cannot_written'), whole_bag(place, 'bag'):
-            raise AssertionError

@@ -47,8 +47,6 @@ def recorded(path, topic='/ballscrew_monitor/x/state'):
 
 
 def finished(node, folder, count=1):
-    """Wait until there are recordings that are complete."""
-
     def found():
         whole = [path for path in sorted(folder.glob('*')) if (path / 'metadata.yaml').exists()]
         return whole if len(whole) >= count else None

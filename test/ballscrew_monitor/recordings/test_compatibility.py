@@ -66,14 +66,12 @@ def _replayed(request):
 
 
 def read_by_mcap(directory):
-    """Return topic and bytes of every message, as the MCAP library reads them."""
     with (directory / 'cycle.mcap').open('rb') as stream:
         found = make_reader(stream, validate_crcs=True).iter_messages(log_time_order=False)
         return [(channel.topic, message.data) for _, channel, message in found]
 
 
 def read_by_mcap_ros2(directory):
-    """Return topic and message of every message, decoded by the schemas in the bag."""
     with (directory / 'cycle.mcap').open('rb') as stream:
         reader = make_reader(stream, decoder_factories=[DecoderFactory()])
         return [
@@ -82,7 +80,6 @@ def read_by_mcap_ros2(directory):
 
 
 def read_by_rosbags(directory):
-    """Return topic and message of every message, decoded by the schemas in the bag."""
     with AnyReader([directory]) as reader:
         return [
             (connection.topic, reader.deserialize(data, connection.msgtype))
@@ -114,13 +111,16 @@ def test_every_value_is_read_as_it_was_written(written, read):
         assert plain(message, wanted) == plain(wanted, wanted), topic
 
 
-def test_every_byte_is_read_as_it_was_written(written):
+def test_every_byte_is_read_as_it_was_written_and_the_metadata_is_of_version_9(written):
     directory, messages = written
     for (topic, data), (wanted, message) in zip(read_by_mcap(directory), messages, strict=True):
         assert (topic, data) == (wanted, serialized(message))
+    text = (written[0] / 'metadata.yaml').read_text()
+    assert yaml.safe_load(text)['rosbag2_bagfile_information']['version'] == 9
+    assert not re.search(r'[&*]id\d', text)
 
 
-def test_rosbags_finds_types_counts_times_and_qos(written):
+def test_rosbags_finds_all_of_a_topic_and_a_schema_holds_every_type_inside(written):
     directory, messages = written
     with AnyReader([directory]) as reader:
         counts = {topic: info.msgcount for topic, info in reader.topics.items() if info.msgcount}
@@ -131,15 +131,6 @@ def test_rosbags_finds_types_counts_times_and_qos(written):
     assert kinds == {topic.name: topic.type_name for topic in TOPICS}
     assert all(counts[topic] == [name for name, _ in messages].count(topic) for topic in counts)
     assert offers[EVENT][0].durability.name == 'TRANSIENT_LOCAL'
-
-
-def test_the_metadata_is_of_version_9_without_references(written):
-    text = (written[0] / 'metadata.yaml').read_text()
-    assert yaml.safe_load(text)['rosbag2_bagfile_information']['version'] == 9
-    assert not re.search(r'[&*]id\d', text)
-
-
-def test_a_schema_holds_every_type_inside(written):
     with (written[0] / 'cycle.mcap').open('rb') as stream:
         schemas = make_reader(stream).get_summary().schemas.values()
     assert {schema.name for schema in schemas} == {topic.type_name for topic in TOPICS}
@@ -161,9 +152,8 @@ def test_the_curves_of_the_layouts_are_numbers_over_a_growing_time(written, read
     states = [message for topic, message in read(directory) if topic == STATE]
     wanted = [message for topic, message in messages if topic == STATE]
     for path in re.findall(rf'"{STATE}\.([\w.]+)"', LAYOUT.read_text()):
-        assert [number(state, path) for state in states] == [
-            number(state, path) for state in wanted
-        ]
+        expected = [number(state, path) for state in wanted]
+        assert [number(state, path) for state in states] == expected
     assert [stamp_of(state) for state in states] == [stamp_of(state) for state in wanted]
 
 

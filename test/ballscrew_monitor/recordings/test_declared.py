@@ -31,7 +31,7 @@ class Whole:
         return 'no valid sample'
 
 
-def test_a_record_is_written_as_it_is_declared():
+def test_a_record_is_written_as_it_is_declared_with_its_keys():
     record = plain(Whole(load=-1.5))
     assert math.isnan(record.pop('speed_rad_s'))
     assert record == {
@@ -42,13 +42,7 @@ def test_a_record_is_written_as_it_is_declared():
         'by_input': {'load': {'count': 3}},
         'doubled': 3.0,
     }
-
-
-def test_a_number_that_is_known_needs_no_reason():
     assert 'speed_rad_s_reason' not in plain(Whole(load=0.0, speed=0.0))
     assert plain(Whole(load=0.0, speed=None))['speed_rad_s_reason'] == 'no valid sample'
-
-
-def test_keys_are_those_of_what_is_written():
     written_keys = 'load_N start_stamp_ns speed_rad_s parts by_input doubled'
     assert list(keys(Whole)) == written_keys.split()

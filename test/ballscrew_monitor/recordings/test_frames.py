@@ -59,15 +59,12 @@ def test_what_a_full_pipe_does_not_take_waits_and_what_is_too_much_is_counted(pi
     assert [one.sequence for one in read_frames(io.BytesIO(received))] == taken
 
 
-def test_a_reader_that_is_gone_breaks_the_sender_and_nothing_else(pipe):
+def test_a_reader_that_is_gone_breaks_the_sender_and_an_absurd_length_the_stream(pipe):
     sender = FrameSender(pipe[1])
     os.close(pipe[0])
     assert sender.put(frame(0))
     assert sender.flush()
     assert sender.broken
     assert not sender.put(frame(1))
-
-
-def test_an_absurd_length_ends_the_stream():
     head = Frame(FrameKind.MESSAGE, body=b'').packed()[:-4] + b'\xff' * 4
     assert list(read_frames(io.BytesIO(head + bytes(100)))) == []

@@ -13,17 +13,12 @@ import pytest
 from surrogate.files import InputError
 
 
-def test_dependencies_follow_the_definition_with_their_names():
+def test_dependencies_follow_the_definition_once_with_their_names():
     parts = message_definition('sensor_msgs/msg/JointState').split(f'{SEPARATOR}\n')
     assert 'float64[] velocity' in parts[0]
-    assert [part.splitlines()[0] for part in parts[1:]] == [
-        'MSG: builtin_interfaces/Time',
-        'MSG: std_msgs/Header',
-    ]
+    expected = ['MSG: builtin_interfaces/Time', 'MSG: std_msgs/Header']
+    assert [part.splitlines()[0] for part in parts[1:]] == expected
     assert all(part.endswith('\n') for part in parts)
-
-
-def test_a_type_is_included_once_however_often_it_is_used():
     text = message_definition('ballscrew_msgs/msg/BallScrewState')
     names = re.findall('^MSG: (.*)$', text, flags=re.MULTILINE)
     assert len(names) == len(set(names))
@@ -32,9 +27,8 @@ def test_a_type_is_included_once_however_often_it_is_used():
 
 def test_the_hash_is_that_of_the_generated_description():
     # Published for ROS 2 Jazzy: std_msgs/msg/Header.
-    assert type_hash('std_msgs/msg/Header') == (
-        'RIHS01_f49fb3ae2cf070f793645ff749683ac6b06203e41c891e17701b1cb597ce6a01'
-    )
+    expected = 'RIHS01_f49fb3ae2cf070f793645ff749683ac6b06203e41c891e17701b1cb597ce6a01'
+    assert type_hash('std_msgs/msg/Header') == expected
 
 
 @pytest.mark.parametrize('name', ['std_msgs/msg/Nothing', 'Header', 'no_msgs/msg/Header'])

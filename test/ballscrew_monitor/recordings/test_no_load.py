@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Torque over speed out of a bag: what counts as steady, bins, errors, and the command on it."""
 
+import itertools
 import json
 import math
 
@@ -45,7 +46,6 @@ def speeds(*plateaus):
 
 
 def stamped(message, place):
-    """Give a message the time of its place."""
     message.header.stamp.sec, message.header.stamp.nanosec = divmod(
         100 * SECOND + place * SECOND // RATE, SECOND
     )
@@ -53,7 +53,6 @@ def stamped(message, place):
 
 
 def write(folder, speed, torque, *, warmth=None, joint='x_axis'):
-    """Write a bag with one message per sample and return it."""
     with BagWriter(folder, 'bag') as writer:
         for name, kind in (('joint_states', 'JointState'), ('oil', 'Temperature')):
             writer.add_topic(
@@ -138,16 +137,11 @@ def test_numbers_that_are_none_are_counted(tmp_path):
     assert notes[1] == '5 messages held no finite number'
 
 
-def test_messages_that_do_not_decode_are_counted_and_named(tmp_path):
+def test_messages_that_do_not_decode_are_counted_and_named(copy_bag, tmp_path):
     speed = speeds(0.0, 10.0, 40.0)
     whole = write(tmp_path / 'whole', speed, 0.01 * speed)
-    with BagWriter(tmp_path / 'bad', 'bag') as writer:
-        for name, kind in whole.types.items():
-            writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.SENSOR))
-        for number, message in enumerate(whole.messages()):
-            data = message.data[:20] if number in (500, 600) else message.data
-            writer.write(message.topic, data, log_time=message.log_time, publish_time=0)
-    bad = Bag(tmp_path / 'bad')
+    ends = itertools.chain([None] * 500, [20], [None] * 99, [20], itertools.repeat(None))
+    bad = copy_bag(whole, tmp_path / 'bad', lambda one: one.data[: next(ends)])
     columns, notes = read_no_load(bad, CHANNELS)
     assert columns['speed'] == pytest.approx([10.0, 40.0])
     assert notes[-1] == '2 messages held no finite number'
@@ -155,8 +149,9 @@ def test_messages_that_do_not_decode_are_counted_and_named(tmp_path):
     assert bad.notes[0].endswith('; 2 such messages were refused')
 
 
-def test_a_bag_without_what_is_asked_for_is_refused(tmp_path, refused):
-    """Topic, field and joint are named."""
+def test_a_bag_without_what_is_asked_for_or_without_its_fields_is_refused(
+    tmp_path, refused, capsys
+):
     bag = write(tmp_path, speeds(10.0), speeds(10.0), joint='y_axis')
     refused('message_joint_states_holds', read_no_load, bag, CHANNELS)
     nowhere = [speed_channel('nope', 'velocity[0]', 'rad/s', LEAD), *CHANNELS]
@@ -165,6 +160,10 @@ def test_a_bag_without_what_is_asked_for_is_refused(tmp_path, refused):
     refused('has_field_effect', read_no_load, bag, odd)
     empty = [*CHANNELS, temperature_channel('oil', 'temperature')]
     refused('topic_oil_holds', read_no_load, bag, empty)
+    write(tmp_path / 'bag', speeds(10.0), speeds(10.0))
+    words = ['identify', str(tmp_path / 'bag'), '--speed-topic', 'joint_states']
+    assert cli.main(words) == 2
+    assert '--speed-field is missing, a bag needs it' in capsys.readouterr().err
 
 
 def test_the_command_finds_the_parasitic_torque_in_a_bag(tmp_path, capsys):
@@ -192,11 +191,3 @@ def test_the_command_finds_the_parasitic_torque_in_a_bag(tmp_path, capsys):
     found = json.loads(capsys.readouterr().out)['friction_torque_Nm']
     bare = float(closed_form.solve(SCREW, OIL, point.speed, 0.0, 313.15).friction_torque)
     assert found == pytest.approx(bare + 0.12 + 4e-4 * point.speed, rel=0.01)
-
-
-def test_a_bag_needs_its_fields(tmp_path, capsys):
-    """The option that is missing is named."""
-    write(tmp_path / 'bag', speeds(10.0), speeds(10.0))
-    words = ['identify', str(tmp_path / 'bag'), '--speed-topic', 'joint_states']
-    assert cli.main(words) == 2
-    assert '--speed-field is missing, a bag needs it' in capsys.readouterr().err

@@ -13,7 +13,6 @@ from surrogate.files import InputError
 
 
 def sentence(path, **how):
-    """Return the one sentence in which opening fails."""
     with pytest.raises(InputError) as caught, opened_log(path, **how):
         pass
     assert '\n' not in str(caught.value)

@@ -312,10 +312,8 @@ def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path)
         assert len(outcome.events) == monitor.event.number
         assert sum(len(one) for one in blocks if one.axis == name) == outcome.rows
     assert not any(one.active for one in x.events[:-1])
-    assert (
-        bag.notes
-        == ['the replay is what the node judged: it agrees with all 6 notes of the node'] * 2
-    )
+    expected = ['the replay is what the node judged: it agrees with all 6 notes of the node'] * 2
+    assert bag.notes == expected
     log = judge_log(bag_in(tmp_path), LogParameters(values=values, origin='own'))
     assert all(case.numbered for case in log.axes)
     lost = {one.source: one.lost for one in node.axes['x'].monitor.input_status(node.now)}
@@ -325,9 +323,7 @@ def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path)
 
 
 @pytest.mark.parametrize(('module', 'name'), [(journal, 'VERSION'), (dump, 'MEMORY_VERSION')])
-def test_a_recording_of_another_version_is_an_ordinary_bag_and_says_so(
-    tmp_path, monkeypatch, module, name
-):
+def test_a_recording_of_another_version_is_an_ordinary_bag(tmp_path, monkeypatch, module, name):
     with monkeypatch.context() as other:
         other.setattr(module, name, 1 if name == 'VERSION' else MEMORY_VERSION + 1)
         node = SmallNode(tmp_path)

@@ -73,7 +73,6 @@ class Listener:
 
 @pytest.fixture
 def listener(domain, short_bag, wait_for):
-    """Return a listener to the topics of the short bag."""
     made = Listener(domain, Bag(short_bag).topics, wait_for)
     yield made
     made.close()
@@ -193,9 +192,8 @@ def test_in_a_loop_time_goes_on(short_bag):
     assert len(joints) > twice
     assert [stamp - length for stamp in stamps[one:twice]] == stamps[:one]
     assert stamps == sorted(set(stamps))
-    assert [message.velocity for message in joints[one:twice]] == [
-        message.velocity for message in joints[:one]
-    ]
+    expected = [message.velocity for message in joints[:one]]
+    assert [message.velocity for message in joints[one:twice]] == expected
     clock = [shown.clock.sec * SECOND + shown.clock.nanosec for shown in node.sent['/clock']]
     assert clock == sorted(clock)
     assert clock[-1] > bag.start_time + 2 * length
@@ -224,9 +222,7 @@ def foreign_bag(short_bag, tmp_path):
     return path
 
 
-def test_the_inputs_of_the_node_are_played_unless_told_otherwise(
-    foreign_bag, capsys, refused, says
-):
+def test_inputs_are_played_unless_told_otherwise(foreign_bag, capsys, refused, says):
     bag = Bag(foreign_bag)
     params = ROOT / 'config' / 'nominal_cycle.yaml'
     inputs = set(input_topics(read_file(params)))

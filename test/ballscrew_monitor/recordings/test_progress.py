@@ -19,9 +19,6 @@ def said(step):
     return stream.getvalue()
 
 
-def test_short_work_is_silent():
+def test_short_work_is_silent_and_long_work_tells_rate_and_time_left(says):
     assert said(0.1) == ''
-
-
-def test_long_work_tells_rate_and_time_left(says):
     assert says('500_1000_s') in said(1.0)

@@ -24,7 +24,6 @@ DEADLINE = 600.0  # [s] which only ends a hang
 
 @pytest.fixture
 def spinner(domain):
-    """Return a node in a free domain, and a way to spin it."""
     context = rclpy.Context()
     rclpy.init(context=context, domain_id=domain)
     node = rclpy.create_node('recorder', context=context)
@@ -64,13 +63,11 @@ def test_what_is_played_is_recorded(spinner, domain, short_bag, tmp_path, wait_f
             assert player.wait(DEADLINE) == 0
         recorder.close()
     copy = Bag(tmp_path)
-    assert {name: info.count for name, info in copy.topics.items()} == {
-        name: info.count for name, info in bag.topics.items()
-    }
+    expected = {name: info.count for name, info in bag.topics.items()}
+    assert {name: info.count for name, info in copy.topics.items()} == expected
     for topic in bag.topics:
-        assert [message.data for message in copy.messages([topic])] == [
-            message.data for message in bag.messages([topic])
-        ]
+        wanted = [message.data for message in bag.messages([topic])]
+        assert [message.data for message in copy.messages([topic])] == wanted
     assert [message.log_time for message in copy.messages()] == list(range(total))
     assert heard == [message.data for message in bag.messages(['/axial_load'])]
 

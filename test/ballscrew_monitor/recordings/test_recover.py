@@ -54,7 +54,6 @@ def test_a_writer_that_was_killed_loses_its_last_chunk_at_most(tmp_path):
 
 @pytest.fixture
 def whole(tmp_path):
-    """Return a finished file of many small chunks."""
     with BagWriter(tmp_path, 'whole') as writer:
         writer.add_topic(TOPIC)
         for number in range(100):

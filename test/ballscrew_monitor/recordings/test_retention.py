@@ -27,7 +27,6 @@ DATA = serialize_message(Float64(data=1.0))
 
 
 def topic(number, name, offer='SENSOR'):
-    """Return what announces a topic."""
     stated = {'name': name, 'type': 'std_msgs/msg/Float64', 'offer': offer}
     return Frame(FrameKind.TOPIC, topic=number, body=json.dumps(stated).encode())
 
@@ -52,7 +51,6 @@ def feed(retention, seconds, triggers=()):
 
 
 def seconds_in(folder):
-    """Return the seconds of the messages in each recording, by its name."""
     return {
         path.name: [(one.log_time - EPOCH) // SECOND for one in Bag(path).messages()]
         for path in sorted(folder.glob('*'))
@@ -158,9 +156,7 @@ def test_a_topic_that_comes_later_is_recorded_too(tmp_path, always):
     assert [one.topic for one in Bag(path).messages()] == ['/a'] * 3 + ['/b']
 
 
-def test_a_topic_that_is_announced_while_nothing_can_be_written_is_known_later(
-    tmp_path, monkeypatch
-):
+def test_a_topic_announced_while_nothing_is_written_is_known_later(tmp_path, monkeypatch):
     retention = retention_in(tmp_path)
 
     def refuse(*unused):

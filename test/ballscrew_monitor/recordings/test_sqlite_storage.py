@@ -22,7 +22,6 @@ def content(length):
 
 
 def write(path, messages, page_size=SMALLEST):
-    """Write messages as a recording has them."""
     with contextlib.closing(sqlite3.connect(path)) as base, base:
         base.execute(f'PRAGMA page_size = {page_size}')
         base.execute(TABLE)

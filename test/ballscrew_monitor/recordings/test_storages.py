@@ -29,7 +29,6 @@ TYPES = {
 
 @pytest.fixture(scope='module')
 def messages(short_bag):
-    """Return the messages of the short bag."""
     return list(Bag(short_bag).messages())
 
 
@@ -43,7 +42,6 @@ def plain(messages):
 
 
 def write(path, messages, storage, compression=CompressionMode.NONE):
-    """Write messages of the topics of the short bag by rosbags."""
     store = get_typestore(Stores.ROS2_JAZZY)
     writer = Writer(path, version=9, storage_plugin=storage)
     if compression is not CompressionMode.NONE:
@@ -60,19 +58,16 @@ def write(path, messages, storage, compression=CompressionMode.NONE):
 
 @pytest.fixture
 def sqlite_file(messages, tmp_path):
-    """Return a sqlite3 file of the messages."""
     return next(write(tmp_path / 'bag', messages, StoragePlugin.SQLITE3).glob('*.db3'))
 
 
 def overwrite(file, begin, content):
-    """Write over some bytes of a file."""
     with file.open('r+b') as stream:
         stream.seek(begin)
         stream.write(content)
 
 
 def flip(file, at):
-    """Change one byte of a file."""
     overwrite(file, at, bytes([file.read_bytes()[at] ^ 0x55]))
 
 
@@ -81,9 +76,7 @@ def flip(file, at):
     [pair for pair in KINDS if pair != (StoragePlugin.SQLITE3, CompressionMode.STORAGE)],
     ids=lambda word: word.name,
 )
-def test_every_storage_and_compression_of_rosbags_is_read(
-    storage, compression, messages, tmp_path
-):
+def test_every_storage_of_rosbags_is_read(storage, compression, messages, tmp_path):
     bag = Bag(write(tmp_path / 'bag', messages, storage, compression))
     assert content(bag) == plain(messages)
     assert bag.types == TYPES
@@ -160,9 +153,7 @@ def test_what_a_bag_says_of_itself_may_be_damaged(messages, tmp_path, refused):
 
 
 @pytest.mark.parametrize('part', [0.6, 0.8, 0.95])
-def test_what_is_whole_of_a_truncated_file_is_read_and_counted(
-    short_bag, messages, tmp_path, part
-):
+def test_intact_parts_of_a_truncated_file_are_read(short_bag, messages, tmp_path, part):
     data = (short_bag / 'short.mcap').read_bytes()
     cut = tmp_path / 'cut.mcap.active'
     cut.write_bytes(data[: int(part * len(data))])
@@ -228,9 +219,7 @@ def test_a_message_of_the_time_before_the_damage_is_read(messages, tmp_path):
 
 @pytest.mark.parametrize('part', [0.5, 0.8, 0.95, 0.999])
 @pytest.mark.parametrize('size', [0, 20_000], ids=['short', 'over several pages'])
-def test_what_is_whole_of_a_truncated_sqlite3_file_is_read_and_counted(
-    size, part, messages, tmp_path, refused
-):
+def test_intact_parts_of_a_truncated_sqlite3_are_read(size, part, messages, tmp_path, refused):
     some = [
         dataclasses.replace(one, data=one.data + bytes([number % 256]) * size)
         for number, one in enumerate(messages)
@@ -268,9 +257,7 @@ def test_a_page_of_a_sqlite3_file_that_is_damaged_is_left_out(messages, sqlite_f
 
 @pytest.mark.parametrize('at', [0.5, 0.55, 0.6])
 @pytest.mark.parametrize('kind', ['zeros', 'noise'])
-def test_a_sqlite3_file_damaged_within_gives_true_messages_whenever_it_is_read(
-    at, kind, messages, sqlite_file
-):
+def test_a_damaged_sqlite3_file_gives_true_messages(at, kind, messages, sqlite_file):
     begin = int(at * sqlite_file.stat().st_size)
     if kind == 'zeros':
         overwrite(sqlite_file, begin, bytes(500))

@@ -36,39 +36,32 @@ def of_one_state(event=None, **totals):
     return summary_of([state] if event is None else [state, event])
 
 
-def test_totals_are_those_of_the_last_state(says):
+def test_a_summary_has_the_last_totals_and_each_event_once(says):
     summary = make_summary()
     assert (summary.states, summary.judged, summary.running_time) == (2, 1000, 8.0)
-    assert summary.lines()[:3] == [
-        says('motion_8_0'),
-        says('regime_boundary_0'),
-        says('zone_optimal_6'),
-    ]
-
-
-def test_an_event_is_listed_once_with_its_last_word(says):
+    expected = [says('motion_8_0'), says('regime_boundary_0'), says('zone_optimal_6')]
+    assert summary.lines()[:3] == expected
     events = make_summary().lines()[3:]
     assert events == ['events      2', says('1_3_0'), says('2_6_0')]
+    assert [summary.span(event) for event in summary.events] == [(3.0, 5.0), (6.0, 10.0)]
 
 
-def test_an_efficiency_is_told_in_percent():
+def test_percents_are_rounded_as_in_a_verdict(says):
     event = OutOfZone(event_id=1, worst_value=0.0656)
     event.cause = Finding(code=Finding.CODE_EFFICIENCY_LOW, limit=0.85)
     found = of_one_state(event)
     assert found.lines()[-1].endswith('efficiency < 85 %, worst 6.6 %')
     assert found.events[0].shown(math.nan) == '–'
+    said = of_one_state(running_time=75.6, optimal_time=0.4, outside_time=75.2).lines()[2]
+    assert said.startswith(says('zone_optimal_0'))
 
 
-def test_an_event_that_is_still_on_lasts_to_the_last_state():
-    summary = make_summary()
-    assert [summary.span(event) for event in summary.events] == [(3.0, 5.0), (6.0, 10.0)]
-
-
-def test_json_has_units_and_no_nan():
+def test_json_has_units_and_no_nan_and_without_a_state_there_is_none():
     record = json.loads(json_text(of_one_state(energy_lost=math.nan).record()))
     assert record['energy_lost_J'] is None
     assert record['running_time_s'] == 0.0
     assert record['events'] == []
+    assert summary_of([]) is None
 
 
 def test_no_event_reads_well_only_where_a_motion_was_judged():
@@ -77,12 +70,3 @@ def test_no_event_reads_well_only_where_a_motion_was_judged():
     for still in (of_one_state(), of_one_state(running_time=9.0, unjudged_time=9.0)):
         assert still.says_nothing
         assert still.lines()[-1] == 'events      none, for no motion was judged'
-
-
-def test_shares_are_rounded_as_in_a_verdict(says):
-    said = of_one_state(running_time=75.6, optimal_time=0.4, outside_time=75.2).lines()[2]
-    assert said.startswith(says('zone_optimal_0'))
-
-
-def test_without_a_state_there_is_none():
-    assert summary_of([]) is None

@@ -112,7 +112,6 @@ def make_event(number, start, duration, **changes):
 
 
 def make_status(source, **changes):
-    """Return the status of an input that does well."""
     values = {
         'source': source,
         'state': InputState.OK,
@@ -164,12 +163,10 @@ def make_case(blocks, events=(), *, totals=None, values=None, known=None, **chan
 
 
 def make_log(*cases, **changes):
-    """Return a recording that was judged."""
     return LogCase(**{'name': 'log', 'parameters': 'my.yaml', 'axes': cases} | changes)
 
 
 def make_values(axis='x', **changes):
-    """Return parameters of an axis with an oil temperature."""
     return defaults([axis]) | {f'{axis}.temperature.topic': 'oil_temperature'} | changes
 
 

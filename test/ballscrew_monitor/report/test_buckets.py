@@ -47,31 +47,22 @@ def test_the_worst_code_of_a_bucket_is_kept():
     assert kept.rows()['zone'].tolist() == [4, 4, 1, 1]
 
 
-def test_rows_between_include_both_ends_of_a_stretch_but_its_last_instant():
+def test_rows_are_cut_joined_and_broken_at_a_hole():
     rows = make_rows([0.0, 1.0, 2.0, 3.0, 4.0], range(5))
     assert buckets.between(rows, [(1.0, 2.5), (4.0, 5.0)])['time'].tolist() == [1.0, 2.0, 4.0]
     assert buckets.between(rows, []).size == 0
-
-
-def test_a_hole_becomes_a_break():
+    rows = buckets.in_order(np.concatenate([make_rows([2.0], [1.0]), make_rows([1.0], [2.0])]))
+    assert rows['speed'].tolist() == [2.0, 1.0]
     rows = buckets.with_breaks(make_rows([0.0, 0.1, 5.0], [1.0, 2.0, 3.0], [2, 2, 2]), 1.0)
     assert np.isnan(rows['speed'][2])
     assert rows['zone'].tolist() == [2, 2, 0, 2]
     assert (np.diff(rows['time']) > 0).all()
 
 
-def test_slices_are_joined_and_sorted():
-    rows = buckets.in_order(np.concatenate([make_rows([2.0], [1.0]), make_rows([1.0], [2.0])]))
-    assert rows['speed'].tolist() == [2.0, 1.0]
-
-
-def test_times_of_a_day_are_exact():
+def test_times_of_a_day_are_exact_and_those_of_a_stretch_stated_where_they_are_not_even():
     time = 86_400.0 + np.arange(5) * 0.001
     sent = base64.b64decode(buckets.coarse_record(make_rows(time, range(5)))['time'])
     assert np.frombuffer(sent, dtype='<f8').tolist() == time.tolist()
-
-
-def test_times_of_a_stretch_are_stated_where_they_are_not_even():
     even = buckets.fine_record(make_rows(np.arange(10) * 0.001, np.arange(10)))
     assert 'time' not in even
     assert (even['begin'], even['end'], even['count']) == (0.0, pytest.approx(0.009), 10)

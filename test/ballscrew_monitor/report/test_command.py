@@ -13,7 +13,6 @@ import pytest
 
 @pytest.fixture
 def logs(short_bag, tmp_path):
-    """Return a folder of two recordings and a broken one."""
     folder = tmp_path / 'logs'
     for name in ('first', 'second <script>'):
         shutil.copytree(short_bag, folder / name)
@@ -62,21 +61,15 @@ def test_one_bad_recording_does_not_stop_the_rest(logs, tmp_path, capsys):
     assert '<script>' not in index.partition('<main>')[2].partition('</main>')[0]
 
 
-def test_several_recordings_are_printed_one_after_the_other(logs, capsys, says):
+def test_several_recordings_are_printed_one_after_the_other_or_as_one_json(logs, capsys, says):
     paths = [str(logs / name) for name in ('broken.mcap', 'first')]
     assert cli.main(['replay', *paths]) == 1
     shown = capsys.readouterr()
     assert 'axis x: 300 speed samples judged' in shown.out
     assert says('broken_mcap_neither') in shown.err
-
-
-def test_several_recordings_are_one_json(logs, capsys):
     assert cli.main(['replay', str(logs / 'first'), str(logs / 'second <script>'), '--json']) == 0
     record = json.loads(capsys.readouterr().out)
     assert [one['x']['judged'] for one in record.values()] == [300, 300]
-
-
-def test_a_recording_that_cannot_be_read_is_null_with_a_reason(logs, capsys, says):
     broken = str(logs / 'broken.mcap')
     assert cli.main(['replay', broken, str(logs / 'first'), '--json']) == 1
     record = json.loads(capsys.readouterr().out)

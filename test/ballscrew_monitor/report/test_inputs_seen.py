@@ -21,12 +21,15 @@ def statuses(judged, source=None, **changes):
     return tuple(judged.status(one, **(changes if one in chosen else {})) for one in Source)
 
 
-def test_an_input_is_shown_in_its_unit(judged):
+def test_an_input_is_shown_in_its_unit_and_if_always_late_as_a_whole(judged):
     values = judged.values(**{'x.speed.unit': 'rev/min'})
     speed = seen_of(judged.case([judged.columns()], values=values), Source.SPEED)
     assert speed.low == pytest.approx(100.0 * 30.0 / math.pi, rel=0.01)
     assert (speed.origin, speed.unit, speed.hints) == ('measured', 'rev/min', ())
     assert speed.rate == pytest.approx(100.0)
+    blocks = [judged.columns(place, 1) for place in range(0, 1000, 100)]
+    case = judged.case(blocks, inputs=statuses(judged, received=10))
+    assert seen_of(case, Source.SPEED).rate == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize(
@@ -54,12 +57,6 @@ def test_a_gap_of_an_input_of_its_own_rate_is_left_out_with_its_timeout(judged, 
     block = judged.columns(axial_load_source=sources)
     case = judged.case([block], values=values, inputs=inputs, refused=refused)
     assert seen_of(case, Source.LOAD).rate == pytest.approx(rate)
-
-
-def test_of_an_input_that_is_always_late_the_whole_counts(judged):
-    blocks = [judged.columns(place, 1) for place in range(0, 1000, 100)]
-    case = judged.case(blocks, inputs=statuses(judged, received=10))
-    assert seen_of(case, Source.SPEED).rate == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize(
@@ -102,40 +99,34 @@ TORQUE = {'x.torque.topic': 'torque', 'x.torque.field': 'data'}
         ),
     ],
 )
-def test_what_is_worked_out_or_in_part_assumed_is_not_called_measured(
-    judged, source, assumed, stated, origin, says
-):
+def test_what_is_worked_out_is_not_called_measured(judged, source, assumed, stated, origin, says):
     known = {'assumed': dict.fromkeys(assumed, {}), 'stated': frozenset(stated)}
     case = judged.case([judged.columns()], values=judged.values(**TORQUE), known=known)
     seen = seen_of(case, source)
     assert (seen.origin, seen.measured) == (says(origin), says(origin) == 'measured')
 
 
-def test_a_load_of_the_motor_torque_is_said_so_once(judged):
+def test_what_was_worked_out_or_assumed_is_marked(judged):
     case = judged.case([judged.columns()], known={'load_from': 'motor_torque'})
     assert seen_of(case, Source.LOAD).origin == 'worked out from the motor torque'
-
-
-def test_an_assumed_rate_is_marked(judged):
     known = {'assumed': {'time.rate_Hz': {'value': 100.0, 'reason': 'usual'}}}
     assert seen_of(judged.case([judged.columns()], known=known), Source.SPEED).rate_assumed
     assert not seen_of(judged.case([judged.columns()]), Source.SPEED).rate_assumed
 
 
-def test_metres_read_as_millimetres_are_doubted(judged):
+def test_feeds_too_slow_or_too_fast_and_a_load_that_never_changes_are_doubted(judged):
     values = judged.values(**{'x.speed.unit': 'mm/s'})
     block = judged.columns(speed=0.1 * np.sin(np.arange(100)))
     hints = seen_of(judged.case([block], values=values), Source.SPEED).hints
     assert len(hints) == 1
     assert 'the axis never moves' in hints[0]
     assert 'm/s' in hints[0].partition('which may be')[2]
-
-
-def test_a_feed_of_more_than_2_metres_a_second_is_doubted(judged):
     values = judged.values(**{'x.speed.unit': 'm/s'})
     block = judged.columns(speed=2000.0)
     hints = seen_of(judged.case([block], values=values), Source.SPEED).hints
     assert any('it feeds with up to 3.18 m/s' in hint for hint in hints)
+    hints = seen_of(judged.case([judged.columns(axial_load=0.0)]), Source.LOAD).hints
+    assert hints == ('x.load: it never changes, is it connected?',)
 
 
 @pytest.mark.parametrize('place', ['stated', 'assumed'])
@@ -150,19 +141,11 @@ def test_of_a_table_the_map_is_to_be_checked(judged, speed, place, says):
         assert 'x.speed.unit' not in hint
 
 
-def test_a_load_that_never_changes_is_doubted(judged):
-    hints = seen_of(judged.case([judged.columns(axial_load=0.0)]), Source.LOAD).hints
-    assert hints == ('x.load: it never changes, is it connected?',)
-
-
-def test_refused_samples_are_counted_by_why(judged):
+def test_refused_samples_are_counted_by_why_each_in_words(judged):
     refused = {Source.LOAD: {Why.IMPLAUSIBLE: 7, Why.NOT_A_NUMBER: 2}}
     load = seen_of(judged.case([judged.columns()], refused=refused), Source.LOAD)
     assert load.refused == '7 beyond what is plausible, 2 not a number'
     assert 'check x.load.unit and scale' in load.hints[0]
-
-
-def test_every_reason_of_a_refusal_has_words():
     assert set(REFUSALS) == set(Why)
 
 
@@ -171,9 +154,17 @@ def load_with(judged, known=None, **changes):
     return seen_of(judged.case([judged.columns()], inputs=inputs, known=known), Source.LOAD)
 
 
-def test_an_input_that_is_well_has_no_trouble(judged):
+def test_an_input_that_is_well_has_no_trouble_and_a_slow_or_foreign_one_is_doubted(judged, says):
     assert load_with(judged, lag=0.001).troubles == {}
     assert load_with(judged, known={'numbered': True}).troubles == {}
+    load = load_with(judged, lost=0)
+    assert (load.lost, load.troubles) == (None, {})
+    assert load_with(judged, known={'numbered': True}, lost=0).lost == 0
+    hints = load_with(judged, slow=True, longest_gap=2.0).hints
+    assert hints == (says('load_comes_less'),)
+    assert 'lie 3 s behind' in load_with(judged, lag=3.0, lagging=True).hints[0]
+    far = load_with(judged, lag=1.7e9, lagging=True).hints
+    assert far == (says('load_stamps_another'),)
 
 
 @pytest.mark.parametrize(
@@ -189,23 +180,6 @@ def test_an_input_that_is_well_has_no_trouble(judged):
 )
 def test_troubles_of_the_messages_are_told(judged, changes, trouble, text):
     assert load_with(judged, known={'numbered': True}, **changes).troubles == {trouble: text}
-
-
-def test_a_recording_that_does_not_number_messages_claims_no_loss(judged):
-    load = load_with(judged, lost=0)
-    assert (load.lost, load.troubles) == (None, {})
-    assert load_with(judged, known={'numbered': True}, lost=0).lost == 0
-
-
-def test_a_slow_input_is_told_a_timeout_that_would_do(judged, says):
-    hints = load_with(judged, slow=True, longest_gap=2.0).hints
-    assert hints == (says('load_comes_less'),)
-
-
-def test_stamps_of_another_clock_are_doubted(judged, says):
-    assert 'lie 3 s behind' in load_with(judged, lag=3.0, lagging=True).hints[0]
-    far = load_with(judged, lag=1.7e9, lagging=True).hints
-    assert far == (says('load_stamps_another'),)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,6 @@ import pytest
 
 @pytest.fixture(scope='module')
 def parameters(request, short_bag):
-    """Return the parameters of the nominal cycle."""
     params = request.config.rootpath / 'config' / 'nominal_cycle.yaml'
     return parameters_for(Bag(short_bag), params, params)
 

@@ -13,8 +13,8 @@ import pytest
 HOSTILE = '</script><script>document.body.dataset.errors = 1</script><img src=x onerror=alert(1)>'
 
 
-@pytest.fixture
-def written(judged, tmp_path):
+@pytest.fixture(scope='module')
+def written(judged, tmp_path_factory):
     """Return a page of two axes, one with a torque, with hostile names, and its text."""
     events = [judged.event(1, 10.0, 5.0, advice=HOSTILE)]
     values = judged.values('y', **{'y.torque.topic': HOSTILE, 'y.torque.field': 'data'})
@@ -27,25 +27,19 @@ def written(judged, tmp_path):
     ]
     named = {'name': HOSTILE, 'parameters': HOSTILE, 'notes': [HOSTILE]}
     text = report_page(judged.log(*axes, empty=['z'], assumptions=assumptions, **named))
-    path = tmp_path / 'report.html'
+    path = tmp_path_factory.mktemp('page') / 'report.html'
     path.write_text(text)
     return path, text
 
 
-def test_hostile_names_are_text(written):
+def test_hostile_names_are_text_the_verdict_comes_first_and_what_was_assumed_is_tagged(written):
     _, text = written
     assert HOSTILE not in text
     assert html.escape(HOSTILE) in text
     assert text.count('<script') == text.count('</script') == len(CHARTS) + 1
-
-
-def test_the_verdict_comes_first_and_all_axes_have_one(written):
     main = written[1].partition('<main>')[2]
     assert re.findall(r'<strong>([^<]*)</strong>', main) == ['Outside:', 'Good:', 'Not known:']
     assert main.index('class="verdict') < main.index('class="map"')
-
-
-def test_what_was_assumed_is_tagged_so(written):
     assert '<span class="tag assumed">assumed</span>' in written[1]
 
 
@@ -62,12 +56,9 @@ def test_a_load_that_was_worked_out_is_not_called_measured(judged, says):
     assert '<span class="tag assumed">assumed</span>' in screw
 
 
-def test_where_all_is_known_there_is_no_caution(judged):
+def test_where_all_is_known_there_is_no_caution_and_long_tables_are_cut(judged):
     text = report_page(judged.log(judged.case([judged.columns()])))
     assert 'Assumed, neither' not in text
-
-
-def test_tables_are_cut_and_say_so(judged):
     events = [judged.event(number + 1, 0.1 * number, 0.05) for number in range(1200)]
     case = judged.case([judged.columns(count=100)], events)
     text = report_page(judged.log(case))

@@ -8,7 +8,6 @@ import shutil
 
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.report.log_report import (
     JUDGED_SHARE,
@@ -29,39 +28,36 @@ from rclpy.serialization import deserialize_message
 
 @pytest.fixture(scope='module')
 def params(request):
-    """Return the parameters of the nominal cycle."""
     return request.config.rootpath / 'config' / 'nominal_cycle.yaml'
 
 
 @pytest.fixture(scope='module')
 def reported(short_bag, params, tmp_path_factory):
-    """Return the result and the directory of the report on the short bag."""
     out = tmp_path_factory.mktemp('out') / 'report'
     bag = Bag(short_bag)
     return report_log(bag, out, parameters_for(bag, None, params)), out
 
 
-def test_all_products_are_there_and_nothing_else(reported):
+def test_all_products_hold_every_sample_and_each_state_behind_its_cause(reported, short_bag):
     result, out = reported
-    assert sorted(path.name for path in out.iterdir()) == [
-        'events.csv',
-        'judged',
-        'report.html',
-        'states.parquet',
-        'summary.json',
-    ]
+    expected = ['events.csv', 'judged', 'report.html', 'states.parquet', 'summary.json']
+    assert sorted(path.name for path in out.iterdir()) == expected
     assert result.judged
-    assert [(line.axis, line.standing, line.warnings) for line in result.lines] == [
-        ('x', 'bad', 1)
-    ]
-
-
-def test_states_are_all_samples_of_the_speed(reported, short_bag):
-    _, out = reported
+    wanted = [('x', 'bad', 1)]
+    assert [(line.axis, line.standing, line.warnings) for line in result.lines] == wanted
     rows = pl.read_parquet(out / 'states.parquet')
     assert rows.height == Bag(short_bag).topics['/joint_states'].count
     totals = json.loads((out / 'summary.json').read_text())['axes']['x']['totals']
     assert rows['reason'].is_in(['JUDGED', 'STANDSTILL']).sum() == totals['judged']
+    found = [(one.log_time, one.topic) for one in Bag(out / 'judged').messages()]
+    assert [time for time, _ in found] == sorted(time for time, _ in found)
+    causes = set()
+    for log_time, topic in found:
+        if topic == '/joint_states':
+            causes.add(log_time)
+        elif topic.endswith('/state'):
+            assert log_time in causes
+    assert causes
 
 
 def test_the_judged_bag_holds_inputs_and_what_the_node_would_say(reported, short_bag, params):
@@ -99,19 +95,6 @@ def test_each_diagnostics_tell_of_every_axis(short_bag, params, tmp_path):
     assert 3 <= len(told) <= 13
 
 
-def test_the_judged_bag_reads_in_order_each_state_behind_its_cause(reported):
-    _, out = reported
-    found = [(one.log_time, one.topic) for one in Bag(out / 'judged').messages()]
-    assert [time for time, _ in found] == sorted(time for time, _ in found)
-    causes = set()
-    for log_time, topic in found:
-        if topic == '/joint_states':
-            causes.add(log_time)
-        elif topic.endswith('/state'):
-            assert log_time in causes
-    assert causes
-
-
 def test_the_judged_bag_says_of_what_log_it_is(short_bag, params, tmp_path):
     bag = Bag(short_bag)
     own = {'ballscrew_monitor.source': 'log.csv', 'ballscrew_monitor.mapping': '{}'}
@@ -119,9 +102,8 @@ def test_the_judged_bag_says_of_what_log_it_is(short_bag, params, tmp_path):
     bag.metadata = own | {'robot': 'press 7'}
     report_log(bag, tmp_path, parameters_for(bag, None, params))
     found = Bag(tmp_path / 'judged').metadata
-    assert {key: text.strip() for key, text in found.items()} == {
-        key: text.strip() for key, text in own.items()
-    }
+    expected = {key: text.strip() for key, text in own.items()}
+    assert {key: text.strip() for key, text in found.items()} == expected
 
 
 def test_the_judged_bag_carries_the_parameters_it_was_judged_with(short_bag, params, tmp_path):
@@ -187,65 +169,49 @@ def test_what_a_kill_leaves_goes_with_the_next_report(short_bag, params, tmp_pat
 
 
 def files(folder):
-    """Return the files in a folder and below, from there."""
     return sorted(path.relative_to(folder) for path in folder.rglob('*') if path.is_file())
 
 
-def test_a_message_that_does_not_decode_is_counted(short_bag, params, tmp_path):
-    bag, damaged = Bag(short_bag), tmp_path / 'damaged'
-    load = read_file(params)['x.load.topic']
-    with BagWriter(damaged, 'damaged') as writer:
-        for name, info in bag.topics.items():
-            writer.add_topic(Topic(name=name, type_name=info.type_name, offer=Offer.SENSOR))
-        left = 1
-        for message in bag.messages(None):
-            cut = message.topic == absolute(load) and left
-            left -= bool(cut)
-            writer.write(
-                message.topic,
-                message.data[:12] if cut else message.data,
-                log_time=message.log_time,
-                publish_time=message.publish_time,
-            )
-    found = Bag(damaged)
+def test_a_message_that_does_not_decode_is_counted(short_bag, params, copy_bag, tmp_path):
+    load, cut = absolute(read_file(params)['x.load.topic']), []
+
+    def damaged(message):
+        if message.topic != load or cut:
+            return message.data
+        cut.append(message)
+        return message.data[:12]
+
+    found = copy_bag(Bag(short_bag), tmp_path / 'damaged', damaged)
     result = report_log(found, tmp_path / 'out', parameters_for(found, params, params))
     assert result.judged
     inputs = json.loads((tmp_path / 'out' / 'summary.json').read_text())['axes']['x']['inputs']
     assert inputs['load']['refused'] == '1 that do not decode'
 
 
-def test_a_report_is_written_where_nothing_is_judged(short_bag, params, tmp_path):
+def test_a_bag_may_be_not_judged_but_must_fit(short_bag, params, tmp_path, refused):
     values = read_file(params) | {'x.speed.field': 'velocity[nope]'}
     result = report_log(Bag(short_bag), tmp_path, LogParameters(values=values, origin='mine'))
     assert not result.judged
     assert result.unjudged == ['x']
     assert 'Not known' in (tmp_path / 'report.html').read_text()
-
-
-def test_a_bag_that_does_not_fit_leaves_nothing(short_bag, params, tmp_path, refused):
     values = read_file(params) | {'x.load.topic': 'nope'}
     with refused('topic_nope'):
         report_log(Bag(short_bag), tmp_path / 'out', LogParameters(values=values, origin='mine'))
     assert not list((tmp_path / 'out').glob('*'))
 
 
-def test_events_are_a_line_each(judged, tmp_path):
+def test_events_are_a_line_each_and_none_is_a_table_without_lines(judged, tmp_path):
     events = [judged.event(1, 0.1, 0.2), judged.event(2, 0.5, 0.1, active=True)]
     case = judged.case([judged.columns()], events)
     write_events(tmp_path / 'events.csv', judged.log(case))
     with (tmp_path / 'events.csv').open(newline='', encoding='utf-8') as file:
         rows = list(csv.DictReader(file))
-    assert [(row['axis'], row['event_id'], row['active']) for row in rows] == [
-        ('x', '1', 'False'),
-        ('x', '2', 'True'),
-    ]
+    expected = [('x', '1', 'False'), ('x', '2', 'True')]
+    assert [(row['axis'], row['event_id'], row['active']) for row in rows] == expected
     assert float(rows[1]['start_s']) == 0.5
     assert [float(rows[0][name]) for name in ('speed_rad_s', 'axial_load_N')] == [45.0, -1200.0]
     assert (rows[0]['target_speed_rad_s'], rows[0]['target_load_N']) == ('60.0', 'nan')
     assert int(rows[0]['start_stamp_ns']) == judged.begin + 100_000_000
-
-
-def test_no_event_is_a_table_without_lines(judged, tmp_path):
     log = judged.log(judged.case([judged.columns()]))
     write_events(tmp_path / 'events.csv', log)
     assert (tmp_path / 'events.csv').read_text().startswith('axis,event_id,')

@@ -84,10 +84,14 @@ def test_files_of_other_names_or_with_a_gap_are_recordings_of_their_own(tmp_path
     assert folder_names(found) == [name.removesuffix('.mcap') for name in held]
 
 
-def test_tables_count_beside_a_bag_where_they_are_asked_for(tmp_path):
+def test_tables_count_beside_a_bag_where_they_are_asked_for_and_a_map_is_for_them(tmp_path):
     touch(tmp_path / 'a.mcap', tmp_path / 'b.csv')
     assert find_logs([tmp_path]) == [tmp_path]
     assert names(find_logs([tmp_path], tables=True), tmp_path) == ['a.mcap', 'b.csv']
+    mapping = tmp_path / 'map.yaml'
+    assert map_for(tmp_path / 'a.mcap', mapping, alone=False) is None
+    assert map_for(tmp_path / 'a.mcap', mapping, alone=True) == mapping
+    assert map_for(tmp_path / 'b.csv', mapping, alone=False) == mapping
 
 
 @pytest.mark.parametrize('tables', [False, True])
@@ -106,13 +110,12 @@ def test_the_folder_of_the_reports_to_come_holds_no_recordings(tmp_path):
     assert names(found, tmp_path) == ['a.csv']
 
 
-def test_what_is_named_twice_is_taken_once_and_what_is_not_there_is_kept(tmp_path):
+def test_what_is_named_twice_is_taken_once_and_nothing_is_refused(tmp_path, refused):
     gone = tmp_path / 'gone.mcap'
     assert find_logs([gone, gone]) == [gone]
-
-
-def test_a_folder_without_a_recording_is_a_sentence(tmp_path, refused):
     refused('holds_recording_hold', find_logs, [tmp_path])
+    touch(tmp_path / 'one.csv')
+    refused('import_one_guess', find_logs, [tmp_path])
 
 
 def test_tables_that_are_left_out_are_named(tmp_path):
@@ -124,28 +127,12 @@ def test_tables_that_are_left_out_are_named(tmp_path):
     assert not left_out([tmp_path / 'a.mcap', tmp_path / 't1.csv'], [])
 
 
-def test_a_folder_of_tables_alone_says_what_they_need(tmp_path, refused):
-    touch(tmp_path / 'one.csv')
-    refused('import_one_guess', find_logs, [tmp_path])
-
-
-def test_a_map_is_for_the_tables_among_several_recordings(tmp_path):
-    touch(tmp_path / 'a.mcap', tmp_path / 'b.csv')
-    mapping = tmp_path / 'map.yaml'
-    assert map_for(tmp_path / 'a.mcap', mapping, alone=False) is None
-    assert map_for(tmp_path / 'a.mcap', mapping, alone=True) == mapping
-    assert map_for(tmp_path / 'b.csv', mapping, alone=False) == mapping
-
-
 def test_each_report_has_a_folder_of_its_own():
     logs = [Path('a/log.mcap'), Path('b/log.mcap'), Path('c/<img src=x>'), Path('d/..mcap')]
     made = folder_names(logs)
     assert len(set(made)) == 4
     assert made[:2] == ['log', 'log-2']
     assert not set('<> /') & set(''.join(made))
-
-
-def test_a_name_that_looks_like_a_number_takes_no_others_folder():
     made = folder_names([Path('x/log.mcap'), Path('log-2.mcap'), Path('y/log.mcap')])
     assert len(set(made)) == 3
 
@@ -155,9 +142,7 @@ NAMES = ('report.html', 'summary.json', 'states.parquet', 'judged/judged.mcap')
 
 @pytest.mark.parametrize('there', [False, True])
 @pytest.mark.parametrize('steps', range(2 * len(NAMES)))
-def test_products_are_never_beside_a_page_that_is_not_their_own(
-    tmp_path, monkeypatch, there, steps
-):
+def test_no_products_are_beside_a_page_of_others(tmp_path, monkeypatch, there, steps):
     made, out = tmp_path / 'made', tmp_path / 'out'
     for folder in (made, out):
         (folder / 'judged').mkdir(parents=True)

@@ -21,8 +21,6 @@ axes:
 
 
 class Shown:
-    """Takes what a bar would show."""
-
     def __init__(self):
         self.lines = []
 

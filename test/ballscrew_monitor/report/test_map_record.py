@@ -9,16 +9,19 @@ import numpy as np
 import pytest
 
 
-def test_time_spent_is_that_in_motion(judged):
+def test_time_spent_is_that_in_motion_and_without_it_the_datasheet_is_shown(judged):
     speed = np.where(np.arange(1000) < 400, 0.0, 100.0)
     record = operating_map(judged.case([judged.columns(count=1000, speed=speed)]))
     cells = record.dwell
     assert cells.size == COLUMNS * ROWS
     assert cells.sum() == pytest.approx(5.99)
     assert plain(record)['dwell']['longest'] == pytest.approx(cells.max())
+    record = operating_map(judged.case([judged.columns(speed=0.0)]))
+    assert record.temperature == 40.0
+    assert record.dwell.sum() == 0.0
 
 
-def test_the_border_is_where_the_surface_has_the_limit(judged):
+def test_the_border_is_where_the_surface_has_the_limit_and_the_zone_on_both_sides_of_it(judged):
     case = judged.case([judged.columns()])
     record = operating_map(case)
     border = next(line for line in record.lines if line.kind == 'rcs')
@@ -27,10 +30,6 @@ def test_the_border_is_where_the_surface_has_the_limit(judged):
     speed, load = points[len(points) // 2]
     found = case.surface.lookup(speed * np.pi / 30.0, float(load), 313.15)
     assert found.rcs == pytest.approx(case.settings.limits.rcs, rel=0.15)
-
-
-def test_the_zone_is_left_and_right_of_the_border(judged):
-    record = operating_map(judged.case([judged.columns()]))
     assert (record.zone[:, 0] == OUTSIDE).all()
     assert (record.zone[-1, -8:] == OPTIMAL).any()
 
@@ -67,9 +66,3 @@ def test_other_temperatures_have_a_border_of_their_own(judged):
     assert record.temperature == 40.0
     labels = [line.label for line in record.lines if line.kind == 'rcs_other']
     assert labels == ['30 °C', '50 °C']
-
-
-def test_without_motion_there_is_a_map_of_the_datasheet(judged):
-    record = operating_map(judged.case([judged.columns(speed=0.0)]))
-    assert record.temperature == 40.0
-    assert record.dwell.sum() == 0.0

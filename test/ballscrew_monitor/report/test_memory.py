@@ -33,7 +33,6 @@ MORE = 700_000
 
 @pytest.fixture(scope='module')
 def bags(tmp_path_factory):
-    """Return a short and a long recording, in small chunks."""
     folder = tmp_path_factory.mktemp('bags')
     return [write(folder / str(count), count) for count in (SHORT, LONG)]
 

@@ -39,14 +39,11 @@ def test_rows_are_in_the_order_of_their_dates():
     assert '2026-01-14' in page
 
 
-def test_times_are_in_units_that_a_person_would_use():
+def test_times_and_shares_read_as_a_person_would_say_them():
     page = overview_page([make_entry('a', 1, 0.0)])
     assert '<td class="short" data-value="3600.0">60 min</td>' in page
     assert '<td class="short" data-value="1800.0">30 min</td>' in page
     assert '[-]' not in page
-
-
-def test_a_share_is_that_of_the_verdict_and_a_dash_where_nothing_was_judged():
     entries = [make_entry('a', 0, 1790.46), make_entry('b', 1, math.nan)]
     page = overview_page(entries)
     assert '>99.5</td>' in page
@@ -54,15 +51,12 @@ def test_a_share_is_that_of_the_verdict_and_a_dash_where_nothing_was_judged():
     assert page.count('<circle') == 0
 
 
-def test_a_trend_has_a_point_for_each_date():
+def test_a_trend_has_a_point_for_each_date_and_one_date_is_none():
     page = overview_page(
         [make_entry('a', 0, 18.0), make_entry('b', 3, 36.0), make_entry('c', 5, 9.0)]
     )
     assert page.count('<circle') == 3
     assert 'the highest point is 2 %' in page
-
-
-def test_one_date_is_no_trend():
     page = overview_page([make_entry('a', 0, 18.0), make_entry('b', 1, 18.0, axis='y')])
     assert '<circle' not in page
 

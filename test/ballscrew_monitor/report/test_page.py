@@ -1,11 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""
-A page is whole in itself, lets nothing else run, and its vendored part is the released one.
-
-Numbers come back as they were, and no text ends its element.
-
-"""
+"""A page is whole in itself and lets nothing else run; numbers come back, text ends no element."""
 
 import base64
 import hashlib
@@ -49,11 +44,12 @@ def test_own_components_are_plain_and_small(name):
         )
 
 
-def test_a_page_asks_for_nothing():
+def test_a_page_asks_for_nothing_and_without_scripts_none_may_run():
     made = page.page('t', page.element('p', 'text'), scripts=page.CHARTS, data='{"axes":[]}')
     addresses = set(re.findall(r'https?://[^\s"\'<>)]+', made))
     assert addresses <= {'https://github.com/leeoniya/uPlot'}  # a comment of uPlot
     assert not re.search(r'<(?:link|img|iframe|object)\b|@import|\bsrc=|fetch\(|XMLHttp', made)
+    assert 'script-src &#x27;none&#x27;' in page.page('t', page.element('p', 'text'))
 
 
 def test_its_policy_names_each_script_and_style_that_is_in_it():
@@ -69,12 +65,11 @@ def test_its_policy_names_each_script_and_style_that_is_in_it():
             assert f"'sha256-{digest}'" in policy
 
 
-def test_without_scripts_none_may_run():
-    assert 'script-src &#x27;none&#x27;' in page.page('t', page.element('p', 'text'))
-
-
-def test_a_title_is_text():
+def test_hostile_text_makes_no_element_and_markup_is_not_escaped_twice():
     assert '<title>&lt;script&gt;</title>' in page.page('<script>', page.element('p', ''))
+    assert [tag for tag, _ in parsed(page.element('p', HOSTILE, id=HOSTILE)).tags] == ['p']
+    assert page.element('p', page.element('b', 'a & b')) == '<p><b>a &amp; b</b></p>'
+    assert page.joined('<', page.element('br')) == '&lt;<br>'
 
 
 SORTED_TWICE = """
@@ -109,7 +104,6 @@ def test_what_is_not_known_is_sorted_last_both_ways(browse, tmp_path):
 
 
 def unpacked(record):
-    """Return packed numbers as the page reads them."""
     steps = np.frombuffer(base64.b64decode(record['data']), dtype='<u2')
     if 'runs' in record:
         steps = np.repeat(steps, np.frombuffer(base64.b64decode(record['runs']), dtype='<u4'))
@@ -131,10 +125,18 @@ def test_any_span_has_all_its_steps(span):
     assert base64.b64decode(record['data']) == np.array([1, 65535, 0, 1], dtype='<u2').tobytes()
 
 
-def test_number_whose_span_would_overflow_counts_as_nan():
+def test_packed_numbers_at_their_extremes():
     record = page.packed([-1.7e308, 1.0, 1.7e308, math.inf, 3.0])
     assert (record['low'], record['high']) == (1.0, 3.0)
     np.testing.assert_array_equal(unpacked(record), [math.nan, 1.0, math.nan, math.nan, 3.0])
+    record = page.packed([3.0, -1.0, math.nan, 2.0])
+    assert (record['low'], record['high']) == (-1.0, 3.0)
+    record = page.packed([0.0, 2.2e-309, math.nan])
+    np.testing.assert_allclose(unpacked(record), [0.0, 0.0, math.nan], atol=2.2e-309)
+    record = page.packed(np.repeat([1.0, math.nan, 2.0], 1000))
+    assert len(record['data']) < 20
+    np.testing.assert_array_equal(unpacked(record), np.repeat([1.0, math.nan, 2.0], 1000))
+    assert base64.b64decode(page.floats([1.0])) == np.float32(1.0).tobytes()
 
 
 @given(st.lists(st.floats(), max_size=20))
@@ -144,26 +146,6 @@ def test_any_numbers_can_be_packed(values):
     assert not np.isfinite(steps[~(np.abs(values) <= page.LARGEST)]).any()
 
 
-def test_extremes_of_packed_numbers_are_exact():
-    record = page.packed([3.0, -1.0, math.nan, 2.0])
-    assert (record['low'], record['high']) == (-1.0, 3.0)
-
-
-def test_numbers_that_differ_less_than_can_be_divided_by_are_one():
-    record = page.packed([0.0, 2.2e-309, math.nan])
-    np.testing.assert_allclose(unpacked(record), [0.0, 0.0, math.nan], atol=2.2e-309)
-
-
-def test_numbers_that_seldom_change_take_no_room():
-    record = page.packed(np.repeat([1.0, math.nan, 2.0], 1000))
-    assert len(record['data']) < 20
-    np.testing.assert_array_equal(unpacked(record), np.repeat([1.0, math.nan, 2.0], 1000))
-
-
-def test_floats_are_four_bytes_each():
-    assert base64.b64decode(page.floats([1.0])) == np.float32(1.0).tobytes()
-
-
 def test_no_text_ends_the_element_that_holds_it():
     text = page.script_json({'name': '</script><script>alert(1)</script>&', 'none': math.nan})
     assert not set('<>&') & set(text)
@@ -171,8 +153,6 @@ def test_no_text_ends_the_element_that_holds_it():
 
 
 class Tags(HTMLParser):
-    """Collects the tags and the text of a page."""
-
     def __init__(self):
         super().__init__()
         self.tags, self.text = [], ''
@@ -198,15 +178,6 @@ def test_text_and_attributes_come_back_as_they_were(text):
     assert found.text.replace('\r', '') == text.replace('\r', '')
 
 
-def test_hostile_text_makes_no_element():
-    assert [tag for tag, _ in parsed(page.element('p', HOSTILE, id=HOSTILE)).tags] == ['p']
-
-
-def test_markup_is_not_escaped_twice():
-    assert page.element('p', page.element('b', 'a & b')) == '<p><b>a &amp; b</b></p>'
-    assert page.joined('<', page.element('br')) == '&lt;<br>'
-
-
 def test_a_table_states_values_and_moments():
     made = page.table(
         ('Name', 'Time [s]'),
@@ -219,20 +190,14 @@ def test_a_table_states_values_and_moments():
     assert 'script' not in [tag for tag, _ in tags]
 
 
-def test_a_bar_has_parts_as_long_as_they_are_large():
+def test_a_bar_has_parts_as_long_as_they_are_large_and_swatches_their_class():
     rects = [
         attrs
         for tag, attrs in parsed(page.share_bar([(3.0, 'a'), (1.0, 'b')], 't')).tags
         if tag == 'rect'
     ]
     assert [rect['width'] for rect in rects] == ['750.00', '250.00']
-
-
-def test_a_bar_of_nothing_is_empty():
     assert 'width="0.00"' in page.share_bar([(0.0, 'a')], 't')
-
-
-def test_swatches():
     assert 'line-rcs' in page.swatch('rcs', 'line')
     assert 'fill-zone' in page.swatch('zone')
     assert 'line-hatch' in page.swatch('hatch', 'dots')

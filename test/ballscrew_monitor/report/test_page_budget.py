@@ -90,9 +90,7 @@ def test_a_page_of_an_hour_at_1_khz_is_small(judged, hour):
 @pytest.mark.parametrize(
     ('axes', 'events', 'gaps', 'least'), [(16, 60, 0, 16), (4, 3000, 1200, 4), (16, 3000, 1200, 0)]
 )
-def test_a_page_of_many_axes_or_events_is_small_too(
-    judged, axis, one_map, axes, events, gaps, least
-):
+def test_a_page_of_many_is_small(judged, axis, one_map, axes, events, gaps, least):
     case = axis('x', events, gaps=gaps)
     page = report_page(judged.log(*[case] * axes))
     assert 0.85 * MOST_BYTES < len(page.encode()) < MOST_BYTES
@@ -107,14 +105,12 @@ def test_a_page_of_many_axes_or_events_is_small_too(
         assert page.count(f', the longest {min(MOST_ROWS, 4 * MOST_ROWS // axes)} are') == axes
 
 
-def test_what_some_do_not_want_is_for_the_others():
+def test_shares_are_fair_and_samples_are_for_the_worst_events_of_all_axes(judged):
     assert fair_shares(90.0, [10.0, 100.0, 60.0]) == [10.0, 40.0, 40.0]
     assert fair_shares(500.0, [10.0, 100.0, 60.0]) == [10.0, 100.0, 60.0]
     assert fair_shares(-1.0, [10.0]) == [0.0]
     assert fair_shares(1.0, []) == []
 
-
-def test_every_sample_is_for_the_worst_events_of_all_axes(judged):
     def case(*depths):
         events = [judged.event(n + 1, n, 0.5, worst_value=d) for n, d in enumerate(depths)]
         return judged.case([judged.columns()], events)

@@ -50,12 +50,20 @@ def test_a_table_says_what_its_load_is_worked_out_from(table):
     assert found.short_origin == 'those of log.csv'
 
 
-def test_only_parameters_that_nobody_gave_are_nominal(short_bag, request):
+def test_only_parameters_that_nobody_gave_are_nominal_or_have_no_temperature(
+    short_bag, request, tmp_path
+):
     from ballscrew_monitor.recordings.bag import Bag
 
     nominal = request.config.rootpath / 'config' / 'nominal_cycle.yaml'
     assert parameters_for(Bag(short_bag), None, nominal).nominal
     assert not parameters_for(Bag(short_bag), nominal, nominal).nominal
+    given = tmp_path / 'params.yaml'
+    given.write_text(
+        '/**/ballscrew_monitor:\n  ros__parameters: {x: {temperature: {default: 50.0}}}\n'
+    )
+    assert is_stated(parameters_for(Bag(short_bag), given, given))
+    assert not is_stated(parameters_for(Bag(short_bag), None, given))
 
 
 def found_with(table, params=None, **changes):
@@ -113,14 +121,3 @@ def test_parameters_that_are_given_state_what_they_name_and_no_more(table, tmp_p
     assert 'lead_mm' in found.axes['x'].assumed
     (tmp_path / 'params.yaml').write_text(text + '      temperature: {default: 40.0}\n')
     assert is_stated(found_with(table, tmp_path / 'params.yaml'))
-
-
-def test_a_bag_without_a_map_has_a_stated_temperature_too(short_bag, tmp_path):
-    from ballscrew_monitor.recordings.bag import Bag
-
-    given = tmp_path / 'params.yaml'
-    given.write_text(
-        '/**/ballscrew_monitor:\n  ros__parameters: {x: {temperature: {default: 50.0}}}\n'
-    )
-    assert is_stated(parameters_for(Bag(short_bag), given, given))
-    assert not is_stated(parameters_for(Bag(short_bag), None, given))

@@ -13,7 +13,6 @@ from surrogate.plotting.style import DPI
 
 
 def small_map(*marks):
-    """Return a map without lines, which take most of the time."""
     return OperatingMap(
         temperature=40.0,
         others=False,
@@ -49,7 +48,6 @@ def test_a_failure_leaves_no_picture(judged, tmp_path, monkeypatch):
 
 
 def strips_of(judged, case):
-    """Return the axes of the bars and of the panels."""
     (part,) = picture.figure_log(judged.log(case), [small_map()]).subfigs
     bars, *strips = part.subfigs[1].axes
     return bars, {strip.get_title(loc='left'): strip for strip in strips}
@@ -60,14 +58,8 @@ def test_panels_and_numbers_are_those_of_the_page(judged):
     bars, strips = strips_of(judged, case)
     assert [text.get_text() for text in bars.texts] == ['7']
     assert bars.texts[0].get_position()[0] == pytest.approx(0.4)
-    assert [title.split()[0] for title in strips] == [
-        'Screw',
-        'Axial',
-        'Oil',
-        'Efficiency,',
-        'Film',
-        'RCS:',
-    ]
+    expected = ['Screw', 'Axial', 'Oil', 'Efficiency,', 'Film', 'RCS:']
+    assert [title.split()[0] for title in strips] == expected
     load = strips['Axial load, positive along the axis [N]']
     np.testing.assert_array_equal(load.lines[0].get_ydata(), judged.columns().axial_load)
     (shade,) = load.patches

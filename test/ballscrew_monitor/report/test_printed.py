@@ -47,30 +47,23 @@ def test_an_axis_of_which_only_standstill_was_judged_says_so(judged, says):
     first, verdict, *_ = log_lines(judged.log(case))
     assert first == says('80_speed_samples')
     assert verdict.endswith(says('0_2_s'))
-    assert lines_of(case, 'not judged') == [
-        '0.79 s: the screw stands still',
-        '0.2 s: no valid sample of the load',
-    ]
+    expected = ['0.79 s: the screw stands still', '0.2 s: no valid sample of the load']
+    assert lines_of(case, 'not judged') == expected
 
 
-def test_an_axis_that_is_well_has_no_check(judged, says):
+def test_lines_of_an_axis_that_is_well_has_gaps_warns_or_has_no_rows(judged, says):
     case = judged.case([judged.columns()])
     assert not lines_of(case, 'check')
     assert not lines_of(case, 'not judged')
     assert lines_of(case, 'events') == ['none']
     assert lines_of(case, 'verdict') == [says('good_stayed_optimal')]
-
-
-def test_the_time_without_rows_has_a_line(judged):
     case = judged.case([judged.columns(0, 51), judged.columns(250, 51)])
     assert lines_of(case, 'not judged') == ['2 s: gaps in the speed, up to its timeout']
-
-
-def test_why_and_what_to_do_have_their_lines(judged):
     case = judged.case([judged.columns()], [judged.event(1, 0.1, 0.2)])
     assert lines_of(case, 'why')[0].startswith('The oil film was too thin')
     assert 'at this load run at 60 rad/s' in lines_of(case, 'what to do')[0]
     assert any(' at 430 rev/min and -1200 N: at this' in line for line in axis_lines(case))
+    assert list(log_lines(judged.log(empty=['y']))) == ['axis y: no usable sample']
 
 
 def test_inputs_tell_source_span_rate_and_troubles(judged, says):
@@ -97,10 +90,6 @@ def test_json_has_totals_and_inputs_of_an_axis_side_by_side(judged, says):
     assert records['x']['inputs']['speed']['rate_Hz'] == records['x']['inputs']['load']['rate_Hz']
     assert records['y'] is None
     assert records['y_reason'] == says('recording_holds_usable')
-
-
-def test_an_axis_without_rows_is_named(judged):
-    assert list(log_lines(judged.log(empty=['y']))) == ['axis y: no usable sample']
 
 
 def test_the_summary_is_strict_json_with_reasons_for_null(judged):

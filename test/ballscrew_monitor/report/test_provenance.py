@@ -16,7 +16,7 @@ def known_of(part, name):
     return part.partition(f'<td>{name}</td>')[2].partition('</tr>')[0]
 
 
-def test_nominal_parameters_are_assumed(judged):
+def test_nominal_parameters_and_defaults_of_a_map_are_assumed(judged):
     case = judged.case([judged.columns()], known={'nominal': True})
     assert 'nor stated: the screw, the oil. The' in ''.join(caution([case]))
     rows = assumptions_part(case, 'the nominal ones')
@@ -24,6 +24,10 @@ def test_nominal_parameters_are_assumed(judged):
         assert '<span class="tag assumed">assumed</span>' in known_of(rows, name)
     stated = assumptions_part(judged.case([judged.columns()]), 'mine')
     assert 'tag assumed' not in stated
+    known = {'defaulted': frozenset({'surface', 'limits'})}
+    part = assumptions_part(judged.case([judged.columns()], known=known), 'mine')
+    for name, word in (('Model', 'assumed'), ('Limits', 'assumed'), ('Parameters', 'stated')):
+        assert f'>{word}</span>' in known_of(part, name)
 
 
 @pytest.mark.parametrize(('stated', 'count'), [(['temperature_degC'], 0), ([], 1)])
@@ -62,13 +66,6 @@ def test_a_lead_that_is_not_that_of_the_surface_is_a_contradiction(judged):
     assert 'Lead of the surface' not in same
 
 
-def test_what_stands_at_its_default_in_a_map_is_assumed(judged):
-    known = {'defaulted': frozenset({'surface', 'limits'})}
-    part = assumptions_part(judged.case([judged.columns()], known=known), 'mine')
-    for name, word in (('Model', 'assumed'), ('Limits', 'assumed'), ('Parameters', 'stated')):
-        assert f'>{word}</span>' in known_of(part, name)
-
-
 def with_torque(judged, forward, backward):
     """Return a case whose torque differs from the model by two means [N m]."""
     ahead = np.arange(100) < 50
@@ -95,16 +92,13 @@ def test_a_difference_of_torque_is_split_by_direction(judged, forward, backward,
         assert sentence in part
 
 
-def test_one_direction_tells_no_friction(judged):
+def test_one_direction_tells_no_friction_and_without_torque_there_is_no_comparison(judged):
     part = torque_part(judged.case([judged.columns(motor_torque=1.7, motor_torque_source=1)]))
     assert 'Only one direction was recorded' in part
-
-
-def test_without_a_measured_torque_there_is_no_comparison(judged):
     assert torque_part(judged.case([judged.columns()])) == ''
 
 
-def test_seconds_are_told_for_each_reason(judged, says):
+def test_seconds_are_told_for_each_reason_and_gaps_lead_to_their_moment(judged, says):
     block = judged.columns(
         reason=[Reason.NO_LOAD] * 30 + [Reason.JUDGED] * 70,
         zone=[Zone.UNKNOWN] * 30 + [Zone.OPTIMAL] * 70,
@@ -112,15 +106,9 @@ def test_seconds_are_told_for_each_reason(judged, says):
     part = gaps_part(judged.case([block]))
     assert says('judged_valid_sample') in part
     assert says('speed_has_gap') in part
-
-
-def test_gaps_lead_to_their_moment(judged, says):
     part = gaps_part(judged.case([judged.columns(0, 10), judged.columns(310, 10)]))
     assert says('speed_has_1') in part
     assert 'data-begin="-0.9100" data-end="4.1000"' in part
-
-
-def test_what_could_be_judged_adds_up_to_the_recording(judged, says):
     blocks = [judged.columns(0, 51), judged.columns(250, 51)]
     rows = gaps_part(judged.case(blocks)).partition('</table>')[0].split('<tr')[2:]
     rest, known = rows

@@ -43,7 +43,7 @@ def test_codes_count_from_zero_without_a_hole(kind):
     assert [member.value for member in kind] == list(range(len(kind)))
 
 
-def test_parquet_holds_all_rows_by_axis_and_codes_by_name(judged, tmp_path):
+def test_parquet_holds_all_rows_by_axis_or_none_with_the_same_columns(judged, tmp_path):
     blocks = [judged.columns(0, 60), judged.columns(0, 40, axis='y'), judged.columns(60, 40)]
     with scratch_folder(tmp_path) as folder:
         store = RowStore(folder)
@@ -57,9 +57,6 @@ def test_parquet_holds_all_rows_by_axis_and_codes_by_name(judged, tmp_path):
     assert found['zone'].unique().to_list() == [Zone.OPTIMAL.name]
     assert_same(block_of(found.filter(pl.col('axis') == 'y')), blocks[1])
     assert [path.name for path in tmp_path.iterdir()] == ['states.parquet']
-
-
-def test_no_rows_are_a_file_with_the_same_columns(judged, tmp_path):
     with scratch_folder(tmp_path) as folder:
         RowStore(folder).write(tmp_path / 'states.parquet')
     empty = pl.read_parquet(tmp_path / 'states.parquet')

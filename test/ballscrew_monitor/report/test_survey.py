@@ -33,16 +33,16 @@ def test_it_does_not_depend_on_the_blocks(judged):
     assert whole.span == pytest.approx(1.0)
 
 
-def test_time_and_energy_are_summed_over_rows(judged):
+def test_time_and_energy_are_summed_and_only_measured_inputs_have_extremes(judged):
     found = survey_of(judged.columns(speed=10.0, friction_torque=0.5))
     assert found.reasons == {Reason.JUDGED: pytest.approx(0.99)}
     assert found.energy[Zone.OPTIMAL] == pytest.approx(0.99 * 5.0)
-
-
-def test_standstill_costs_no_energy(judged):
     found = survey_of(judged.columns(speed=0.0, reason=Reason.STANDSTILL, zone=Zone.UNKNOWN))
     assert sum(found.energy.values()) == 0.0
     assert math.isnan(found.opposing.mean)
+    found = survey_of(judged.columns(temperature_source=2))
+    assert math.isnan(found.inputs[Source.TEMPERATURE].low)
+    assert found.inputs[Source.LOAD].high == pytest.approx(-950.0)
 
 
 def test_gaps_are_listed_longest_first_and_are_no_time_of_a_reason(judged):
@@ -79,12 +79,6 @@ def test_a_stray_stamp_makes_the_log_the_time_line(judged):
     assert found.shift == 1000
 
 
-def test_only_measured_inputs_have_extremes(judged):
-    found = survey_of(judged.columns(temperature_source=2))
-    assert math.isnan(found.inputs[Source.TEMPERATURE].low)
-    assert found.inputs[Source.LOAD].high == pytest.approx(-950.0)
-
-
 def test_torque_is_compared_by_direction(judged):
     block = judged.columns(motor_torque_source=1, motor_torque=1.7)
     directions = np.where(np.arange(100) < 50, 1, 2).astype(np.uint8)
@@ -95,8 +89,5 @@ def test_torque_is_compared_by_direction(judged):
             block, direction=directions, motor_torque=torque, machine_torque=machine
         )
     ).torque
-    assert (found.count, found.forward, found.backward) == (
-        100,
-        pytest.approx(0.2),
-        pytest.approx(-0.4),
-    )
+    expected = (100, pytest.approx(0.2), pytest.approx(-0.4))
+    assert (found.count, found.forward, found.backward) == expected

@@ -16,7 +16,7 @@ import pytest
 SHORT = 2 * BUCKETS
 
 
-def test_around_the_50_worst_events_every_sample_is_kept(hour):
+def test_around_the_worst_events_every_sample_is_kept_where_there_is_room(hour):
     record = series_record(hour)
     assert record['shown'] == 50
     worst = hour.worst_first[:50]
@@ -26,9 +26,6 @@ def test_around_the_50_worst_events_every_sample_is_kept(hour):
             inside = [one for one in record['fine'] if one['begin'] <= end <= one['end']]
             assert len(inside) == 1
             assert inside[0]['count'] == 2000
-
-
-def test_samples_near_events_make_way_where_there_is_no_room(hour):
     record = series_record(hour, 1_000_000)
     assert 5 < record['shown'] < 50
     assert (
@@ -61,14 +58,11 @@ def test_what_a_course_takes_is_known_before(judged, count):
     assert 0.3 * coarse_bytes(case, room) < made <= coarse_bytes(case, room)
 
 
-def test_a_short_recording_keeps_every_sample(judged):
+def test_a_short_recording_keeps_every_sample_and_its_events(judged):
     case = judged.case([judged.columns(count=SHORT)], [judged.event(1, 1.0, 2.0)])
     record = series_record(case)
     assert (record['bucket'], record['fine']) == (0.0, [])
     assert len(record['time']) == pytest.approx(SHORT * 8 * 4 / 3, abs=4)
-
-
-def test_events_are_on_the_time_line_of_the_page(judged):
     case = judged.case([judged.columns(count=1000)], [judged.event(1, 1.0, 2.0)])
     assert series_record(case)['events'] == [{'begin': 1.0, 'end': 3.0}]
 
@@ -83,10 +77,13 @@ def test_only_the_worst_events_are_shaded(judged):
     assert min(one['begin'] for one in shaded) == pytest.approx(2.0)
 
 
-def test_torque_has_a_panel_where_it_was_measured(judged, hour):
+def test_torque_has_a_panel_where_it_was_measured_and_oil_is_in_degc(judged, hour):
     titles = [panel['title'] for panel in series_record(judged.case([judged.columns()]))['panels']]
     assert len(titles) == 6
     assert series_record(hour)['panels'][-1]['title'].startswith('Torque')
+    block = judged.columns(count=2)
+    rows = rows_of(judged.case([block]), block, ('temperature',))
+    assert rows['temperature'].tolist() == pytest.approx([40.0, 40.0])
 
 
 def test_what_is_not_judged_or_only_held_is_a_gap(judged):
@@ -107,17 +104,8 @@ def test_codes_are_ordered_by_how_bad_they_are(judged):
         regime=[3, 2, 1],
     )
     codes = codes_of(rows_of(judged.case([block]), block, ()))
-    assert {key: found.tolist() for key, found in codes.items()} == {
-        'regime': [1, 2, 3],
-        'zone': [2, 3, 4],
-        'level': [1, 2, 3],
-    }
-
-
-def test_temperature_is_in_degrees_celsius(judged):
-    block = judged.columns(count=2)
-    rows = rows_of(judged.case([block]), block, ('temperature',))
-    assert rows['temperature'].tolist() == pytest.approx([40.0, 40.0])
+    expected = {'regime': [1, 2, 3], 'zone': [2, 3, 4], 'level': [1, 2, 3]}
+    assert {key: found.tolist() for key, found in codes.items()} == expected
 
 
 def test_stray_stamps_do_not_stretch_the_page(judged):

@@ -58,9 +58,7 @@ SAID = (
 
 
 @pytest.mark.parametrize(('columns', 'total', 'said'), SAID)
-def test_one_sentence_says_how_an_axis_did_and_another_what_to_do(
-    judged, columns, total, said, says
-):
+def test_sentences_say_how_an_axis_did_and_what_to_do(judged, columns, total, said, says):
     verdict = verdict_of(judged.case([judged.columns(**columns)], totals=total))
     assert f'{verdict.whole} {verdict.remedy}' == says(said)
 
@@ -101,13 +99,10 @@ def advised(judged, number, speed, target, **changes):
     )
 
 
-def test_the_strictest_advice_of_a_cause_stands_for_the_others(judged, says):
+def test_the_strictest_advice_stands_for_all_of_its_direction(judged, says):
     mild = advised(judged, 1, 10.0, 44.0, worst_value=0.98)
     strict = advised(judged, 2, -47.0, -98.0, axial_load=1600.0)
     assert remedy(judged, mild, strict) == says('as_warning_2')
-
-
-def test_advice_to_run_faster_and_advice_to_run_slower_stand_apart(judged):
     events = [
         advised(judged, number, speed, target, quantity='efficiency', worst_value=0.005)
         for number, speed, target in ((1, 90.0, 70.0), (2, 100.0, 50.0), (3, 10.0, 20.0))
@@ -124,7 +119,7 @@ def test_without_advice_no_more_is_said_than_was_looked_for(judged, says):
     assert remedy(judged, judged.event(1, 0.1, 0.2, speed=math.nan, **helpless)) == ''
 
 
-def test_a_gap_does_not_hide_that_an_axis_never_moved(judged):
+def test_gaps_hide_neither_that_an_axis_never_moved_nor_why_it_was_not_judged(judged):
     still = {'speed': 0.1, 'zone': Zone.UNKNOWN}
     gap = {'reason': Reason.NO_INPUTS, 'speed_source': PointSource.HELD, 'tick': True}
     blocks = [
@@ -136,10 +131,6 @@ def test_a_gap_does_not_hide_that_an_axis_never_moved(judged):
     blocks = [blocks[0], judged.columns(90, 200, **still, **gap)]
     verdict = verdict_of(judged.case(blocks, totals=Totals()))
     assert verdict.sentence.endswith('axis x: no valid sample of several inputs.')
-
-
-def test_why_a_motion_was_not_judged_does_not_count_gaps(judged):
-    gap = {'reason': Reason.NO_INPUTS, 'speed_source': PointSource.HELD, 'tick': True}
     blocks = [
         judged.columns(0, 10, reason=Reason.NO_LOAD, zone=Zone.UNKNOWN),
         judged.columns(10, 90, zone=Zone.UNKNOWN, **gap),

@@ -21,7 +21,7 @@ def build(**changes):
     return build_axis('x', values)
 
 
-def test_defaults_make_an_axis_of_the_shipped_surface():
+def test_defaults_make_an_axis_of_the_shipped_surface_and_what_is_plausible():
     axis = build()
     assert (axis.surface.screw_name, axis.surface.oil_name) == ('nominal', 'iso_vg_68')
     assert axis.surface.tier == 'full'
@@ -30,6 +30,12 @@ def test_defaults_make_an_axis_of_the_shipped_surface():
     limits = axis.monitor.settings.limits
     assert limits.light_load == 0.25 * axis.surface.preload
     assert (limits.raise_delay, limits.clear_delay) == (SECOND // 2, SECOND)
+    axis = build()
+    fastest, load = axis.surface.speed_range[1], axis.surface.load_range[1]
+    expected = {Source.SPEED: 3.0 * fastest, Source.LOAD: 3.0 * load}
+    assert axis.monitor.settings.plausible == expected
+    stated = build(limits__plausible_speed=300.0, limits__plausible_load=5e3)
+    assert stated.monitor.settings.plausible == {Source.SPEED: 300.0, Source.LOAD: 5e3}
 
 
 @pytest.mark.parametrize('tier', ['closed_form', 'full'])
@@ -37,13 +43,10 @@ def test_a_tier_chooses_its_shipped_surface(tier):
     assert build(surface=tier).surface.tier == tier
 
 
-def test_a_topic_makes_an_input():
+def test_a_topic_makes_an_input_and_an_empty_type_leaves_it_open():
     axis = build(temperature__topic='oil', torque__topic='torque')
     assert [source.source for source in axis.inputs] == list(Source)
     assert axis.monitor.settings.timeouts[Source.TEMPERATURE] == 30 * SECOND
-
-
-def test_an_empty_type_leaves_the_input_open():
     axis = build(speed__type='')
     assert [source.source for source in axis.inputs] == [Source.LOAD]
     assert [source.source for source in axis.open_inputs] == [Source.SPEED]
@@ -74,7 +77,7 @@ MOTOR = {
 }
 
 
-def test_a_load_of_the_motor_torque_has_no_topic():
+def test_only_a_load_of_a_topic_has_one_and_is_not_derived():
     axis = build(**MOTOR, inertia=2e-3, load__largest_share=0.25, acceleration_window=0.1)
     assert [source.source for source in axis.inputs] == [Source.TORQUE, Source.SPEED]
     assert axis.topics == {Source.TORQUE: 'torque', Source.SPEED: 'joint_states'}
@@ -87,20 +90,14 @@ def test_a_load_of_the_motor_torque_has_no_topic():
         parts_uncertainty=0.2,
         largest_share=0.25,
     )
-
-
-def test_a_load_of_a_topic_is_not_derived():
     assert build().monitor.settings.derivation is None
 
 
-def test_a_torque_that_is_only_compared_has_the_unit_of_the_drive():
+def test_units_of_a_drive_and_of_positions_reach_the_inputs():
     axis = build(
         torque__topic='current', torque__unit='A', torque__constant=0.5, handedness='left'
     )
     assert axis.inputs[1].scaling(4.0) == -2.0
-
-
-def test_a_position_unit_makes_the_speed_of_positions():
     assert build().monitor.settings.positions is None
     axis = build(speed__unit='deg', speed__field='position[0]', speed__wrap=360.0)
     positions = axis.monitor.settings.positions
@@ -156,27 +153,13 @@ def test_a_surface_of_another_screw_is_refused(refused):
     refused('configured_other', build, surface=str(shipped_surface()), screw='other')
 
 
-def test_live_parameters_are_taken_over():
+def test_live_parameters_and_a_new_surface_are_taken_over_at_once():
     axis = build()
     values = parameters.defaults(['x']) | {'x.limits.rcs': 0.5, 'x.max_future': 2.0}
     axis.adapt(values)
     assert axis.monitor.settings == settings_of('x', values, axis.surface)
     assert axis.monitor.settings.limits.rcs == 0.5
     assert axis.max_future == 2 * SECOND
-
-
-def test_what_is_plausible_is_stated_or_three_times_the_surface():
-    axis = build()
-    fastest, load = axis.surface.speed_range[1], axis.surface.load_range[1]
-    assert axis.monitor.settings.plausible == {
-        Source.SPEED: 3.0 * fastest,
-        Source.LOAD: 3.0 * load,
-    }
-    stated = build(limits__plausible_speed=300.0, limits__plausible_load=5e3)
-    assert stated.monitor.settings.plausible == {Source.SPEED: 300.0, Source.LOAD: 5e3}
-
-
-def test_a_new_surface_is_used_at_once():
     axis = build()
     other = build().surface
     axis.use_surface(other, parameters.defaults(['x']))

@@ -114,7 +114,6 @@ def test_localhost_needs_fastdds_and_the_profile_to_itself():
 
 
 def without_profile(domain):
-    """Return the environment of a process as it is where nothing has been done."""
     left_out = {*loopback({}), *ros_environment(domain)}
     made = {
         name: value for name, value in child_environment(domain).items() if name not in left_out

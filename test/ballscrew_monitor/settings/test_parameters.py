@@ -100,28 +100,19 @@ def test_each_axis_has_parameters_of_its_own():
     assert sum(name.startswith('x.') for name in values) == len(AXIS_ROWS)
 
 
-def test_the_example_file_is_the_one_made_from_the_table():
+def test_the_files_of_examples_and_the_readme_are_those_of_the_table():
     assert (CONFIG / 'example.yaml').read_text() == parameters.example_yaml()
-
-
-def test_the_example_file_holds_every_default():
     assert parameters.read_file(CONFIG / 'example.yaml') == parameters.defaults(['x'])
     assert len(parameters.flatten(yaml.safe_load(parameters.example_yaml()))) == len(ROWS)
-
-
-def test_the_file_of_the_nominal_cycle_is_good():
     values = parameters.read_file(CONFIG / 'nominal_cycle.yaml')
     assert values['x.temperature.topic'] == 'oil_temperature'
-
-
-def test_the_table_for_the_readme_has_a_line_for_each_parameter():
     lines = parameters.markdown_table().splitlines()
     assert len(lines) == 2 + len(ROWS)
     assert {line.count('|') for line in lines} == {7}
     assert any('| `<axis>.limits.rcs` | `0.01` |' in line for line in lines)
 
 
-def test_later_sections_win_and_other_nodes_do_not_count(tmp_path):
+def test_later_sections_win_and_texts_need_no_quotes(tmp_path):
     path = written(
         tmp_path,
         '/**: {ros__parameters: {use_sim_time: true, qos_overrides: {/parameter_events: '
@@ -130,6 +121,12 @@ def test_later_sections_win_and_other_nodes_do_not_count(tmp_path):
         'ballscrew_monitor: {ros__parameters: {x.oil: c}}\n',
     )
     assert parameters.read_file(path)['x.oil'] == 'c'
+    path = written(tmp_path, "/**: {ros__parameters: {axes: [x, 'y'], y: {oil: a}}}")
+    assert parameters.read_file(path)['y.oil'] == 'a'
+    alias = '{x: {load: {unit: N}, screw: &n "N", oil: *n}}'
+    path = written(tmp_path, f'/**: {{ros__parameters: {alias}}}')
+    values = parameters.read_file(path)
+    assert (values['x.load.unit'], values['x.screw'], values['x.oil']) == ('N', 'N', 'N')
 
 
 @pytest.mark.parametrize(
@@ -162,19 +159,6 @@ def test_bad_files_are_refused_by_their_name(tmp_path, text, match, refused):
 
 def test_a_missing_file_is_refused(tmp_path, refused):
     refused('cannot_read', parameters.read_file, tmp_path / 'none.yaml')
-
-
-def test_quoted_letters_and_groups_of_one_letter_are_texts(tmp_path):
-    path = written(tmp_path, "/**: {ros__parameters: {axes: [x, 'y'], y: {oil: a}}}")
-    assert parameters.read_file(path)['y.oil'] == 'a'
-
-
-def test_the_newton_needs_no_quotes(tmp_path):
-    path = written(
-        tmp_path, '/**: {ros__parameters: {x: {load: {unit: N}, screw: &n "N", oil: *n}}}'
-    )
-    values = parameters.read_file(path)
-    assert (values['x.load.unit'], values['x.screw'], values['x.oil']) == ('N', 'N', 'N')
 
 
 def test_the_error_of_ros_for_mixed_types_is_told_with_its_cure():

@@ -51,23 +51,24 @@ def contact_at(speed, side='screw', law=LAW):
     return law.contact(side, CONTACT, condition, OIL, FLOOR)
 
 
-def test_the_curve_passes_what_the_marches_have():
+def test_the_curve_passes_the_marches_and_the_loss_stays_in_its_band():
     """RCS 0.01 at the onset, about 0.14 at half and 0.44 at a quarter of its speed."""
     assert float(rcs_at(0.0)) == pytest.approx(ONSET_RCS)
     assert rcs_at(np.log([0.5, 0.25])) == pytest.approx([0.14, 0.44], rel=0.05)
-
-
-def test_beyond_the_curve_all_touches_or_nothing():
-    """At no speed RCS is 1; fast it is exactly 0."""
     found = rcs_at(np.array([-math.inf, -12.0, 3.0, math.inf]))
     assert found.tolist() == pytest.approx([1.0, 1.0, 0.0, 0.0], abs=1e-4)
     assert found[2:].tolist() == [0.0, 0.0]
     assert share_at(np.array([0.0, 1.0])).tolist() == [0.0, 1.0]
+    assert loss_at(np.array([-1.4]), np.array([0.4e9]), 1.0) == pytest.approx([LEAST_LOSS])
+    light, heavy = (
+        loss_at(np.array([-1.0, 0.0]), np.full(2, pressure), 0.0) for pressure in (0.5e9, 1.2e9)
+    )
+    assert light[1] < heavy[1]
+    assert light[0] - light[1] < heavy[0] - heavy[1]
 
 
 @given(x=st.floats(-20.0, 20.0), step=st.floats(1e-3, 3.0))
 def test_contact_never_grows_with_the_speed(x, step):
-    """RCS and share fall and stay between 0 and 1; share is no more than RCS."""
     rcs = rcs_at(np.array([x, x + step]))
     for values in (rcs, share_at(rcs)):
         assert 0 <= values[1] <= values[0] <= 1
@@ -80,19 +81,6 @@ def test_the_loss_at_the_onset_falls_with_the_lay_and_far_beyond_it_is_smooth(la
     assert loss == pytest.approx([expected, 1.0])
 
 
-def test_the_loss_stays_in_the_band_of_the_marches():
-    """Ridges along the track under a light load."""
-    assert loss_at(np.array([-1.4]), np.array([0.4e9]), 1.0) == pytest.approx([LEAST_LOSS])
-
-
-def test_heavy_contacts_lose_more_at_the_onset_and_grow_faster_below():
-    light, heavy = (
-        loss_at(np.array([-1.0, 0.0]), np.full(2, pressure), 0.0) for pressure in (0.5e9, 1.2e9)
-    )
-    assert light[1] < heavy[1]
-    assert light[0] - light[1] < heavy[0] - heavy[1]
-
-
 @given(speed=st.floats(1e-5, 10.0), faster=st.floats(1.01, 10.0))
 def test_contacts_touch_less_the_faster_they_roll(speed, faster):
     """The integral over the strips as each strip."""
@@ -103,17 +91,14 @@ def test_contacts_touch_less_the_faster_they_roll(speed, faster):
     assert slow.rcs_deviation >= 0
 
 
-def test_rest_touches_everywhere_and_a_smooth_raceway_nowhere():
+def test_rest_touches_everywhere_a_smooth_raceway_nowhere_and_strips_enclose():
+    """RCS over a contact is a mean of its places, between those of its extreme strips."""
     assert contact_at(0.0) == AT_REST
     assert contact_at(1e-9 * ONSET).rcs == pytest.approx(1.0)
     none = contact_at(0.1, 'nut')
     assert (none.rcs, none.asperity_share, none.rcs_deviation) == (0.0, 0.0, 0.0)
     assert none.loss_factor == pytest.approx(1.0)
     assert contact_at(100 * ONSET).rcs == 0.0
-
-
-def test_a_contact_is_between_its_extreme_strips():
-    """RCS over it is a mean of its places."""
     strips = line_at(CONTACT, LOAD, np.linspace(0.0, 0.999, 200))
     onsets = ROUGH.speeds(strips, OIL, FLOOR)
     for over in (0.4, 1.0, 1.5):

@@ -26,29 +26,11 @@ def new(screw):
     return onset_of(screw, 'screw')
 
 
-def test_smooth_raceways_have_none(screw, place):
+def test_smooth_raceways_have_no_onset_and_others_one_over_the_viscosity(screw, place, new):
     smooth = with_raceway(screw, rms=0.0)
     assert onset_of(smooth, 'screw').speed(*place, OIL, FLOOR) == 0.0
-
-
-def test_the_film_at_the_onset_is_never_below_the_floor():
     assert film_at_onset(1e-12, FLOOR, 1e9) == FLOOR
     assert film_at_onset(1e-5, FLOOR, 1e9) > FLOOR
-
-
-def test_softer_summits_touch_at_slower_speeds(screw, place, new):
-    run = onset_of(with_raceway(screw, state='run_in'), 'screw').speed(*place, OIL, FLOOR)
-    assert 0.2 < run / new.speed(*place, OIL, FLOOR) < 0.6
-
-
-@pytest.mark.parametrize(('floor', 'sign'), [(1e-9, -1), (5e-9, 1)])
-def test_a_thicker_boundary_film_touches_at_faster_speeds(new, place, floor, sign):
-    usual, other = (new.speed(*place, OIL, one) for one in (FLOOR, floor))
-    assert sign * math.log(other / usual) > 0.1
-
-
-def test_the_onset_speed_is_one_over_the_viscosity(new, place):
-    """Film and reduction know the viscosity by its product with the speed alone."""
     thick, thin = (
         new.speed(*place, ContactLubricant(viscosity=eta, pressure_viscosity=2e-8), FLOOR)
         for eta in (0.2, 0.02)
@@ -56,7 +38,15 @@ def test_the_onset_speed_is_one_over_the_viscosity(new, place):
     assert thin / thick == pytest.approx(10.0, rel=2e-3)
 
 
-def test_a_rougher_raceway_touches_at_faster_speeds(screw, place, new):
+def test_softer_summits_touch_at_slower_and_rougher_ones_at_faster_speeds(screw, place, new):
+    run = onset_of(with_raceway(screw, state='run_in'), 'screw').speed(*place, OIL, FLOOR)
+    assert 0.2 < run / new.speed(*place, OIL, FLOOR) < 0.6
     rough = with_raceway(screw, rms=0.18e-6)
     faster = onset_of(rough, 'screw').speed(*place, OIL, FLOOR)
     assert faster > 1.3 * new.speed(*place, OIL, FLOOR)
+
+
+@pytest.mark.parametrize(('floor', 'sign'), [(1e-9, -1), (5e-9, 1)])
+def test_a_thicker_boundary_film_touches_at_faster_speeds(new, place, floor, sign):
+    usual, other = (new.speed(*place, OIL, one) for one in (FLOOR, floor))
+    assert sign * math.log(other / usual) > 0.1

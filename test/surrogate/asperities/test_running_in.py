@@ -15,7 +15,6 @@ from surrogate.asperities.running_in import (
     working_load,
     working_pressure,
 )
-from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz, screw_contact, SIDES
 from surrogate.formulas.load_sharing import normal_force, nut_forces
 from surrogate.parameters import BallRoughness
@@ -70,30 +69,19 @@ def test_a_softer_cut_lowers_the_summits_more(screw):
     assert 0.03 < 1 - run / whole < 0.12
 
 
-def test_waves_that_no_tile_holds_are_refused(screw):
+def test_what_no_tile_holds_and_no_summit_bears_is_refused(screw, refused):
     long = with_raceway(screw, cutoff_short=400e-6, cutoff_long=8e-3)
-    with pytest.raises(InputError, match='waves are longer than half of the contact'):
-        running_tiles(long, 'screw')
+    refused('waves_longer_contact', running_tiles, long, 'screw')
+    pressed = with_raceway(replace(screw, working_load=5e5), state='run_in')
+    refused('mean_pressure_above', running_tiles, pressed, 'screw')
 
 
-def test_tiles_hold_the_shortest_wave_on_enough_nodes(screw):
+def test_tiles_hold_the_shortest_wave_and_the_ball_and_smooth_raceways_have_none(screw):
     (length, width), (rows, columns) = tile_size(screw, 'nut')
     assert shortest_wave(screw) * rows / length >= 8
     assert shortest_wave(screw) * columns / width >= 8
     assert rows % 2 == columns % 2 == 0
-
-
-def test_the_ball_is_added(screw):
     rough = replace(screw, ball_roughness=BallRoughness(rms=0.05e-6))
     both, alone = (rms(running_tiles(one, 'screw')) for one in (rough, screw))
     assert both == pytest.approx(math.hypot(alone, 0.05e-6), rel=0.1)
-
-
-def test_smooth_raceways_have_no_tiles(screw):
     assert running_tiles(with_raceway(screw, rms=0.0), 'screw') == []
-
-
-def test_a_load_that_presses_harder_than_the_summits_bear_is_refused(screw):
-    pressed = with_raceway(replace(screw, working_load=5e5), state='run_in')
-    with pytest.raises(InputError, match='mean pressure is .* GPa, allowed is above 0 and below'):
-        running_tiles(pressed, 'screw')

@@ -39,21 +39,15 @@ def test_a_contact_leaves_of_a_wave_what_venner_has():
     assert left.heights.max() == pytest.approx(1 / (1 + 0.125 * 3 + 0.04 * 9))
 
 
-def test_height_falls_as_the_contact_reduces_more_and_presses_more(acting):
+def test_the_height_falls_is_exact_where_it_was_pressed_and_goes_on_beyond(acting):
     reductions, pressures = np.geomspace(1e4, 1e7, 40), np.geomspace(0.1e9, 4e9, 12)
     height = acting.height(reductions[:, None], pressures)
     assert (np.diff(height, axis=0) <= 0).all()
     assert (np.diff(height, axis=1) <= 1e-12).all()
-
-
-def test_the_table_is_exact_where_it_was_pressed(acting):
     for row, reduction in enumerate(acting.log_reduction):
         for column, pressure in enumerate(acting.log_pressure):
             found = acting.height(math.exp(reduction), math.exp(pressure))
             assert math.log(found) == pytest.approx(acting.log_height[row][column], abs=1e-9)
-
-
-def test_far_beyond_the_table_heights_fall_with_the_square_of_the_reduction(acting):
     far = math.exp(acting.log_reduction[-1]) * np.array([2.0, 4.0])
     one, other = acting.height(far, 1e9)
     assert one / other == pytest.approx(4.0)

@@ -20,30 +20,21 @@ SMOOTH = (DATA / 'cases' / 'nominal_smooth.yaml').read_text(encoding='utf-8')
 
 @pytest.fixture
 def small(tmp_path):
-    """Return the path of the nominal smooth case on a small grid."""
     path = tmp_path / 'small.yaml'
     path.write_text(SMOOTH + 'grid: [65, 33]\n', encoding='utf-8')
     return path
 
 
-def test_contact_as_json(run, capsys, small):
-    """Strict JSON, exit code 0."""
+def test_contact_as_json_of_a_path_or_a_shipped_name(run, capsys, small):
+    """Strict JSON, exit code 0; central film and status on the page."""
     assert run(small, '--json') == 0
     found = json.loads(capsys.readouterr().out)
     assert found['converged'] is True
     assert found['central_film_m'] == pytest.approx(150e-9, rel=0.05)
-
-
-def test_contact_as_a_page(run, capsys, small):
-    """Central film and status."""
     assert run(small) == 0
     out = capsys.readouterr().out
     assert 'central film' in out
     assert 'status: Converged' in out
-
-
-def test_a_shipped_case_by_name(run, capsys):
-    """The name of a shipped case is enough."""
     assert run('nominal_smooth', '--json') == 0
     assert json.loads(capsys.readouterr().out)['grid'] == [257, 65]
 
@@ -116,8 +107,6 @@ def test_a_march_that_stalls_exits_with_1(run, capsys, rolling, monkeypatch):
 
 
 def test_an_interrupted_march_leaves_no_traceback(capsys, rolling, monkeypatch):
-    """One line, the exit code of an interrupt."""
-
     def interrupted(step, progress):
         raise KeyboardInterrupt
 
@@ -126,20 +115,13 @@ def test_an_interrupted_march_leaves_no_traceback(capsys, rolling, monkeypatch):
     assert capsys.readouterr().err.splitlines()[-1] == 'ballscrew: interrupted'
 
 
-def test_pictures(run, small, tmp_path):
-    """--plot writes the pictures and leaves nothing half-written."""
+def test_pictures_are_written_or_refused_in_a_sentence(run, small, tmp_path, monkeypatch, refused):
+    """No directory, no matplotlib: one sentence."""
     pytest.importorskip('matplotlib')
     folder = tmp_path / 'deep' / 'plots'
     assert run(small, '--plot', folder) == 0
-    assert sorted(path.name for path in folder.iterdir()) == [
-        'contact_3d.png',
-        'contact_maps.png',
-        'contact_profiles.png',
-    ]
-
-
-def test_pictures_that_cannot_be_made(run, small, tmp_path, monkeypatch, refused):
-    """No directory, no matplotlib: one sentence."""
+    expected = ['contact_3d.png', 'contact_maps.png', 'contact_profiles.png']
+    assert sorted(path.name for path in folder.iterdir()) == expected
     refused('plot_small_cannot', run, small, '--plot', small)
     monkeypatch.setitem(sys.modules, 'surrogate.contact.figures', None)
     refused('plot_needs_matplotlib', run, small, '--plot', tmp_path / 'plots')

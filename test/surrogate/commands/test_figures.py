@@ -34,7 +34,6 @@ def test_one_figure(run, tmp_path, capsys, says):
     ],
 )
 def test_bad_input_is_one_sentence(run, tmp_path, words, sentence):
-    """Before anything is solved."""
     with pytest.raises(InputError, match=sentence):
         run('--out', tmp_path / 'out', *words)
     assert not (tmp_path / 'out').exists()

@@ -31,17 +31,21 @@ def data(tmp_path):
     return path
 
 
-def test_json_is_strict_and_whole(run, capsys, data):
-    """Values, intervals and residual in SI units."""
+def test_json_is_whole_and_only_the_screw_is_written_where_the_oil_is_kept(
+    run, capsys, data, tmp_path
+):
     assert run(data, '--json') == 0
     record = json.loads(capsys.readouterr().out)
     values = {one['name']: one['value'] for one in record['parameters']}
-    assert values == pytest.approx(
-        {'parasitic_torque': 0.12, 'parasitic_torque_rate': 4e-4, 'torque_offset': 0.03}, abs=1e-9
-    )
+    expected = {'parasitic_torque': 0.12, 'parasitic_torque_rate': 4e-4, 'torque_offset': 0.03}
+    assert values == pytest.approx(expected, abs=1e-9)
     assert record['points'] == 10
     assert record['temperature_K'] == pytest.approx(313.15)
     assert record['data'] == 'drag.csv'
+    assert run(data) == 0
+    assert [path.name for path in tmp_path.iterdir()] == ['drag.csv']
+    assert run(data, '--out', tmp_path / 'found.yaml') == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ['drag.csv', 'found.yaml']
 
 
 def test_the_written_sheet_gives_the_measured_torque(run, capsys, data, tmp_path, says):
@@ -58,14 +62,6 @@ def test_the_written_sheet_gives_the_measured_torque(run, capsys, data, tmp_path
     assert says('parasitic_torque_identified') in screw.source
     assert str(tmp_path) not in sheet.read_text(encoding='utf-8')
     assert screw.name == 'nominal_identified'
-
-
-def test_only_the_screw_is_written_where_the_oil_is_not_fitted(run, data, tmp_path):
-    """And nothing at all without --out."""
-    assert run(data) == 0
-    assert [path.name for path in tmp_path.iterdir()] == ['drag.csv']
-    assert run(data, '--out', tmp_path / 'found.yaml') == 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == ['drag.csv', 'found.yaml']
 
 
 def test_the_full_tier_is_asked_for_by_name(run, data, monkeypatch, capsys):
@@ -88,7 +84,6 @@ def test_the_full_tier_is_asked_for_by_name(run, data, monkeypatch, capsys):
 
 
 def test_a_fit_that_did_not_converge_exits_with_1(run, data, monkeypatch, capsys):
-    """The record says so, too."""
     from scipy.optimize import least_squares
 
     monkeypatch.setattr(
@@ -104,7 +99,6 @@ def test_a_fit_that_did_not_converge_exits_with_1(run, data, monkeypatch, capsys
 
 
 def test_datasheets_that_are_read_are_not_written_over(run, data, tmp_path, refused):
-    """Neither the screw nor the oil, which takes its name from the output."""
     mine = tmp_path / 'mine.yaml'
     assert run(data, '--out', mine) == 0
     before = mine.read_text(encoding='utf-8')
@@ -112,12 +106,6 @@ def test_datasheets_that_are_read_are_not_written_over(run, data, tmp_path, refu
     with refused('datasheet_given'):
         run(data, '--oil', tmp_path / 'other_oil.yaml', '--out', tmp_path / 'other.yaml')
     assert mine.read_text(encoding='utf-8') == before
-
-
-@pytest.mark.parametrize('celsius', ['-300', 'nan', 'inf'])
-def test_a_temperature_that_no_oil_has_is_refused(run, data, celsius, refused):
-    """The sentence names the option."""
-    refused('temperature_degc_number', run, data, f'--temperature-degC={celsius}')
 
 
 def test_options_that_mean_nothing_are_refused(run, data, tmp_path, refused):
@@ -128,11 +116,12 @@ def test_options_that_mean_nothing_are_refused(run, data, tmp_path, refused):
     text = data.read_text(encoding='utf-8').replace('\n', ',40\n')
     data.write_text(text.replace('torque_Nm,40', 'torque_Nm,temperature_degC'), encoding='utf-8')
     refused('holds_temperature_too', run, data, '--temperature-degC', 40)
+    for celsius in ('-300', 'nan', 'inf'):
+        refused('temperature_degc_number', run, data, f'--temperature-degC={celsius}')
     assert run(data) == 0
 
 
 def test_a_bag_is_read_by_who_can(run, tmp_path, capsys):
-    """The arguments and the lead go out, columns and notes come back."""
     seen = []
 
     def reader(args, lead):

@@ -25,7 +25,7 @@ def record(run, capsys, tmp_path):
     return printed
 
 
-def test_the_shipped_sheet_as_a_page(run, capsys):
+def test_the_shipped_sheet_as_a_page_in_the_range_of_the_oil(run, capsys):
     """Both states, though the sheet names one."""
     assert run('--screw', 'nominal', '--oil', 'iso_vg_68') == 0
     page = capsys.readouterr().out
@@ -38,9 +38,11 @@ def test_the_shipped_sheet_as_a_page(run, capsys):
         'raceway (new): Rq 0.12 um',
     ):
         assert part in page
+    with pytest.raises(InputError, match='the range of the oil sheet'):
+        run('--screw', 'nominal', '--oil', 'iso_vg_68', '--temperature-degC', 120)
 
 
-def test_pressures_are_those_of_the_sheet(record):
+def test_pressures_load_and_trace_are_those_of_the_sheet(record):
     """One that is sure has no range; harder summits touch at faster speeds."""
     one = 'run_in_pressure_GPa: 3.0\n  run_in_low_GPa: 3.0\n  run_in_high_GPa: 3.0'
     states = record(f'{one}\n  hardness_GPa: 5.0')['states']
@@ -48,10 +50,6 @@ def test_pressures_are_those_of_the_sheet(record):
     assert states['run_in']['cutting_pressure_Pa'] == 3e9
     assert states['run_in']['speed_range_rad_s'] == [states['run_in']['speed_rad_s']] * 2
     assert states['new']['speed_rad_s'] > states['run_in']['speed_rad_s'] > 0
-
-
-def test_load_and_trace_are_those_of_the_sheet(record):
-    """A profile that was traced after running in has no other state."""
     found = record('traced: run_in', 'working_load_N: 900.0\n', '--load-N', 500)
     assert list(found['states']) == ['run_in']
     assert (found['working_load_N'], found['working_load_stated']) == (900.0, True)
@@ -63,8 +61,3 @@ def test_a_picture_is_drawn_where_it_is_asked_for(run, tmp_path, monkeypatch):
     monkeypatch.setattr('surrogate.screw.onset_figure.STEPS', 2)
     assert run('--screw', 'nominal', '--oil', 'iso_vg_68', '--plot', tmp_path / 'deep') == 0
     assert [path.name for path in (tmp_path / 'deep').iterdir()] == ['onset_nominal_iso_vg_68.png']
-
-
-def test_a_temperature_beyond_the_oil_sheet_is_refused(run):
-    with pytest.raises(InputError, match='the range of the oil sheet'):
-        run('--screw', 'nominal', '--oil', 'iso_vg_68', '--temperature-degC', 120)

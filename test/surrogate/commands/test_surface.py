@@ -4,7 +4,6 @@
 
 from dataclasses import replace
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,9 +14,17 @@ from surrogate.tasks.store import store_path, TaskStore
 COMMAND = ('surface',)
 
 CLOSED_FORM = shipped_surface(tier='closed_form')
+DATA = read(CLOSED_FORM)
 
 
-def test_build_info_check(run, tmp_path: Path, capsys):
+def written(folder, **changes):
+    """Return the path of the shipped surface with changes."""
+    path = folder / 'map.npz'
+    write(path, replace(DATA, **changes))
+    return path
+
+
+def test_build_info_check(run, tmp_path, capsys):
     """A surface is built, described and found good; a second build is the same surface."""
     path = tmp_path / 'map.npz'
     ranges = ('--load-range', -500, 500, '--temperature-range', 30, 50, '--speed-range', 1, 2000)
@@ -34,16 +41,12 @@ def test_build_info_check(run, tmp_path: Path, capsys):
     assert 'passed, hash verified, 5 of 5 points' in capsys.readouterr().out
 
 
-def test_check_of_a_shipped_tier_is_of_twenty_points(run, capsys):
-    """The name of a tier is enough."""
+def test_check_is_of_twenty_points_and_tells_how_far_off_the_limit_is(run, capsys, refused):
+    """In per cent of the speed, at as many points as asked for; one is where the worst changes."""
     assert run('check', 'closed_form') == 0
     out = capsys.readouterr().out
     assert str(CLOSED_FORM) in out
     assert '20 of 20 points' in out
-
-
-def test_check_tells_how_far_off_the_limit_of_the_zone_is(run, capsys, refused):
-    """In per cent of the speed, at as many points as asked for; one is where the worst changes."""
     words = ('check', 'closed_form', '--points', '2', '--limit-points')
     assert run(*words, '2') == 0
     _, *limits = capsys.readouterr().out.splitlines()
@@ -54,32 +57,15 @@ def test_check_tells_how_far_off_the_limit_of_the_zone_is(run, capsys, refused):
     refused('limit_points_1', run, *words, '-1')
 
 
-def test_check_finds_a_wrong_surface(run, tmp_path: Path, capsys):
-    """A surface whose numbers are not those of its datasheets fails with exit code 1."""
-    data = read(CLOSED_FORM)
-    wrong = replace(data, fields={**data.fields, 'rcs': 0.5 * data.fields['rcs']})
-    path = tmp_path / 'wrong.npz'
-    write(path, wrong)
-    assert run('check', path) == 1
+def test_check_finds_a_wrong_surface_and_info_is_strict_json_without_errors(run, tmp_path, capsys):
+    """Numbers that are not those of the datasheets; a map without answers is not good either."""
+    wrong = {**DATA.fields, 'rcs': 0.5 * DATA.fields['rcs']}
+    assert run('check', written(tmp_path, fields=wrong)) == 1
     assert 'FAILED' in capsys.readouterr().out
-
-
-def test_a_surface_without_answers_fails_its_check(run, tmp_path: Path, capsys):
-    """A map that is masked everywhere has no error, and is not good for that."""
-    data = read(CLOSED_FORM)
-    path = tmp_path / 'masked.npz'
-    write(path, replace(data, mask=np.ones_like(data.mask)))
-    assert run('check', path) == 1
+    assert run('check', written(tmp_path, mask=np.ones_like(DATA.mask))) == 1
     assert '20 without an answer' in capsys.readouterr().out
-
-
-def test_info_is_strict_json_even_without_errors(run, tmp_path: Path, capsys):
-    """Errors that were not measured are null."""
-    data = read(CLOSED_FORM)
-    path = tmp_path / 'unmeasured.npz'
-    errors = {name: np.full_like(values, np.nan) for name, values in data.errors.items()}
-    write(path, replace(data, errors=errors))
-    assert run('info', path, '--json') == 0
+    errors = {name: np.full_like(values, np.nan) for name, values in DATA.errors.items()}
+    assert run('info', written(tmp_path, errors=errors), '--json') == 0
     assert json.loads(capsys.readouterr().out)['errors']['rcs'] == {'max': None, 'p95': None}
 
 
@@ -96,26 +82,22 @@ def test_check_without_time_is_a_failure(run, capsys, refused):
 @pytest.mark.parametrize(
     ('words', 'sentence'),
     [
-        (['--speed-range', '100', '10'], 'speed_range_100'),
-        (['--speed-range', '0', '10'], 'speed_range_0'),
-        (['--load-range', '5', '5'], 'load_range_5'),
-        (['--temperature-range', '50', 'nan'], 'temperature_range_50'),
+        ('build --speed-range 100 10', 'speed_range_100'),
+        ('build --speed-range 0 10', 'speed_range_0'),
+        ('build --load-range 5 5', 'load_range_5'),
+        ('build --temperature-range 50 nan', 'temperature_range_50'),
+        ('build --oil water', 'nor_one_shipped'),
+        ('build --tier closed_form --workers 2', 'workers_dask_have'),
+        ('info none.npz', 'such_surface_file'),
+        ('check --points 0', 'points_0'),
     ],
 )
-def test_a_range_is_refused_in_the_unit_it_was_typed_in(run, words, sentence, refused):
-    """The user reads the numbers that the user typed."""
-    refused(sentence, run, 'build', *words)
-
-
-def test_bad_files_reach_the_user_as_sentences(run, tmp_path: Path, refused):
-    """Missing files and unknown names raise the two exceptions that the program reports."""
-    refused('such_surface_file', run, 'info', tmp_path / 'none.npz')
-    refused('nor_one_shipped', run, 'build', '--oil', 'water')
-    refused('points_0', run, 'check', '--points', '0')
+def test_bad_words_are_one_sentence(run, words, sentence, refused):
+    """In the unit that was typed; workers would do nothing for formulas."""
+    refused(sentence, run, *words.split())
 
 
 def test_info_is_a_page_a_person_reads(run, capsys):
-    """Inputs, ranges in rev/min and degC, nodes, the error table and where it comes from."""
     assert run('info', 'closed_form') == 0
     text = capsys.readouterr().out
     for part in (
@@ -131,13 +113,11 @@ def test_info_is_a_page_a_person_reads(run, capsys):
         assert part in text
 
 
-def test_info_tells_what_draws_leave_uncertain(run, tmp_path: Path, capsys, says):
+def test_info_tells_what_draws_leave_uncertain(run, tmp_path, capsys, says):
     """Median and largest deviation, in the page and in the record."""
-    data = read(CLOSED_FORM)
-    spread = np.linspace(0.0, 0.02, data.mask.size).reshape(data.mask.shape)
-    path = tmp_path / 'drawn.npz'
-    header = {**data.header, 'format_version': ENSEMBLE_VERSION}
-    write(path, replace(data, header=header, deviations={'rcs': spread}))
+    spread = np.linspace(0.0, 0.02, DATA.mask.size).reshape(DATA.mask.shape)
+    header = {**DATA.header, 'format_version': ENSEMBLE_VERSION}
+    path = written(tmp_path, header=header, deviations={'rcs': spread})
     assert run('info', path) == 0
     text = capsys.readouterr().out
     assert 'deviation: median, max    of the mean' in text
@@ -148,7 +128,7 @@ def test_info_tells_what_draws_leave_uncertain(run, tmp_path: Path, capsys, says
     assert spreads['rcs']['stderr'] == {'median': None, 'max': None}
 
 
-def test_clean_removes_kept_results(run, tmp_path: Path, capsys):
+def test_clean_removes_kept_results(run, tmp_path, capsys):
     """The command that a refused store names does what the sentence says."""
     out = tmp_path / 'map.npz'
     with TaskStore(out, 'test 1'):
@@ -158,8 +138,3 @@ def test_clean_removes_kept_results(run, tmp_path: Path, capsys):
     assert not store_path(out).exists()
     assert run('clean', out) == 0
     assert 'nothing to remove' in capsys.readouterr().out
-
-
-def test_workers_are_refused_where_they_would_do_nothing(run, refused):
-    """The closed form is solved in a second or two, in this process."""
-    refused('workers_dask_have', run, 'build', '--tier', 'closed_form', '--workers', '2')

@@ -7,6 +7,8 @@ from dataclasses import replace
 import pytest
 from surrogate.contact.case import CaseGrid, CaseRoughness, load_case
 from surrogate.contact.rolling import march_case
+from surrogate.parameters import DATA
+import yaml
 
 
 @pytest.fixture(scope='session')
@@ -29,6 +31,19 @@ def rolling_case():
             seed=3,
         ),
     )
+
+
+@pytest.fixture
+def load(tmp_path):
+    """Return the function that loads the nominal smooth case with `keys` of its file changed."""
+    content = yaml.safe_load((DATA / 'cases' / 'nominal_smooth.yaml').read_text(encoding='utf-8'))
+
+    def loaded(**keys):
+        path = tmp_path / 'case.yaml'
+        path.write_text(yaml.safe_dump(content | keys), encoding='utf-8')
+        return load_case(str(path))
+
+    return loaded
 
 
 @pytest.fixture(scope='session')

@@ -42,12 +42,10 @@ def write(folder, **keys):
 
 
 def load(folder, **keys):
-    """Return a case."""
     return load_case(write(folder, **keys))
 
 
 def test_units_and_defaults(tmp_path):
-    """All values are SI; what is not stated is the documented default."""
     case = load(tmp_path)
     assert case.contact.radius_x == pytest.approx(2.5888e-3)
     assert case.contact.reduced_modulus == pytest.approx(226.37e9)
@@ -60,7 +58,6 @@ def test_units_and_defaults(tmp_path):
 
 
 def test_optional_keys(tmp_path):
-    """Each reaches the solver; grid and domain may be lists in the order of their keys."""
     keys = {
         'fluid': 'barus_incompressible',
         'eyring_stress_MPa': 6,
@@ -79,7 +76,6 @@ def test_optional_keys(tmp_path):
 
 
 def test_a_rolling_case(tmp_path):
-    """The march, the strip and the roughness by the standard in SI units."""
     rough = {
         'patch': 'standard',
         'rms_um': 0.12,
@@ -104,7 +100,6 @@ def test_a_rolling_case(tmp_path):
 
 @pytest.mark.parametrize('cls', [ContactCase, CaseRoughness, CaseGrid, CaseDomain, CaseStrip])
 def test_the_page_of_the_command_names_every_key(cls):
-    """A key that is added without a word about it fails here."""
     page = PAGE.read_text(encoding='utf-8')
     for spec in fields(cls):
         unit = spec.metadata.get('unit')
@@ -114,7 +109,6 @@ def test_the_page_of_the_command_names_every_key(cls):
 
 @pytest.mark.parametrize('name', CASES)
 def test_shipped_cases_load(name):
-    """Each shipped case has the nominal or a published contact."""
     case = load_case(name)
     assert case.load > 0
     if name.startswith('nominal'):
@@ -187,7 +181,6 @@ BAD = [
 
 @pytest.mark.parametrize(('keys', 'sentence'), BAD)
 def test_bad_cases_are_one_sentence(tmp_path, keys, sentence, refused):
-    """The sentence names the file, the key, the value and what is allowed."""
     path = write(tmp_path, **keys)
     with refused(sentence) as caught:
         load_case(path)
@@ -196,7 +189,6 @@ def test_bad_cases_are_one_sentence(tmp_path, keys, sentence, refused):
 
 
 def test_files_that_are_no_cases(tmp_path, refused):
-    """No file, no YAML, no mapping."""
     refused('cases_absent_neither', load_case, 'absent')
     path = tmp_path / 'list.yaml'
     path.write_text('- 1\n', encoding='utf-8')

@@ -20,13 +20,11 @@ ROUGH = replace(
 
 
 def curves(axes):
-    """Return the labelled curves of a panel."""
     return {line.get_label(): line for line in axes.get_lines()}
 
 
 @pytest.fixture(scope='module')
 def smooth():
-    """Return a smooth solution."""
     return solve_case(SMOOTH)[0]
 
 
@@ -40,21 +38,27 @@ def mixed():
     return replace(solution, asperity_pressure=asperity, contact_mask=mask), surface
 
 
-def test_smooth_profiles(smooth):
-    """Film pressure, Hertz, film and floor on the centre line, in GPa and nm."""
+def test_smooth_profiles_and_maps_cover_the_ellipse(smooth):
+    """Maps go beyond both semi-axes; the title of what did not converge warns."""
     upper, lower = figures.figure_profiles(smooth).axes
     assert list(curves(upper)) == ['film', 'Hertz, dry and smooth']
-    np.testing.assert_allclose(
-        curves(upper)['film'].get_ydata(), 1e-9 * smooth.film_pressure[:, 16]
-    )
+    expected = 1e-9 * smooth.film_pressure[:, 16]
+    np.testing.assert_allclose(curves(upper)['film'].get_ydata(), expected)
     hertz = curves(upper)['Hertz, dry and smooth'].get_ydata()
     assert max(hertz) == pytest.approx(1e-9 * smooth.hertz_pressure, rel=1e-2)
-    np.testing.assert_allclose(
-        curves(lower)['film on this line'].get_ydata(), 1e9 * smooth.film[:, 16]
-    )
+    wanted = 1e9 * smooth.film[:, 16]
+    np.testing.assert_allclose(curves(lower)['film on this line'].get_ydata(), wanted)
     assert curves(lower)['film floor'].get_ydata()[0] == pytest.approx(3.0)
     assert upper.get_ylabel().endswith('[GPa]')
     assert lower.get_ylabel().endswith('[nm]')
+    left, right = figures.figure_maps(smooth).axes[:2]
+    for axes in (left, right):
+        assert axes.get_xlim()[0] < -1.1e6 * smooth.semi_axis_x
+        assert axes.get_ylim()[1] > 1.1e6 * smooth.semi_axis_y
+    from surrogate.ehl import Status
+
+    figure = figures.figure_maps(replace(smooth, status=Status.STALLED))
+    assert 'NOT CONVERGED' in figure.get_suptitle()
 
 
 def test_mixed_profiles(mixed):
@@ -68,31 +72,10 @@ def test_mixed_profiles(mixed):
     assert len(marks.get_xdata()) == 3
 
 
-def test_maps_cover_the_ellipse(smooth):
-    """Both maps reach beyond both semi-axes as far as the domain does."""
-    left, right = figures.figure_maps(smooth).axes[:2]
-    for axes in (left, right):
-        assert axes.get_xlim()[0] < -1.1e6 * smooth.semi_axis_x
-        assert axes.get_ylim()[1] > 1.1e6 * smooth.semi_axis_y
-
-
-def test_a_result_that_is_not_converged_says_so(smooth):
-    """The title of every picture warns."""
-    from surrogate.ehl import Status
-
-    figure = figures.figure_maps(replace(smooth, status=Status.STALLED))
-    assert 'NOT CONVERGED' in figure.get_suptitle()
-
-
 def test_all_pictures_are_written(tmp_path, mixed):
-    """Four files for a rough contact, each a PNG."""
     paths = list(figures.draw_contact(tmp_path, *mixed))
-    assert [path.name for path in paths] == [
-        'contact_profiles.png',
-        'contact_maps.png',
-        'contact_3d.png',
-        'contact_roughness.png',
-    ]
+    expected = 'contact_profiles.png contact_maps.png contact_3d.png contact_roughness.png'.split()
+    assert [path.name for path in paths] == expected
     assert sorted(tmp_path.iterdir()) == sorted(paths)
     for path in paths:
         assert path.read_bytes().startswith(b'\x89PNG')

@@ -42,8 +42,8 @@ def table_case(rows, name, side):
     )
 
 
-def test_the_record_has_the_documented_keys():
-    """In order, JSON types, NaN as null."""
+def test_the_record_has_the_documented_keys_and_friction_grows_with_slip():
+    """Keys in order, JSON types; no slip, no friction; then monotonic, linear at first."""
     solution, _ = solve_case(SMALL)
     record = contact_record(SMALL, solution)
     assert list(record) == KEYS
@@ -52,6 +52,11 @@ def test_the_record_has_the_documented_keys():
     assert record['rcs'] == record['asperity_share'] == 0.0
     assert len(record['friction_coefficient']) == 3
     assert json.loads(json.dumps(record)) == record
+    ratios = (0.0, 1e-9, 2e-9, 0.01, 0.1, 1.0)
+    found = [friction_coefficient(solution, ratio, 0.1) for ratio in ratios]
+    assert found[0] == 0.0
+    assert found[2] == pytest.approx(2 * found[1], rel=1e-6)
+    assert np.all(np.diff(found) > 0)
 
 
 def test_what_did_not_converge_is_not_told():
@@ -83,16 +88,6 @@ def test_friction_and_films_of_the_table(table, name, side):
     if 'rolling_coefficient' in row:
         rolling = record['rolling_force_N'] / case.load
         assert rolling == pytest.approx(row['rolling_coefficient'], rel=0.03)
-
-
-def test_friction_grows_with_slip_from_zero():
-    """No slip, no friction; then monotonic, linear at first."""
-    solution, _ = solve_case(SMALL)
-    ratios = (0.0, 1e-9, 2e-9, 0.01, 0.1, 1.0)
-    found = [friction_coefficient(solution, ratio, 0.1) for ratio in ratios]
-    assert found[0] == 0.0
-    assert found[2] == pytest.approx(2 * found[1], rel=1e-6)
-    assert np.all(np.diff(found) > 0)
 
 
 def test_a_dry_contact_has_boundary_friction():

@@ -66,7 +66,6 @@ def test_settings_of_a_case(rolling_case):
 
 
 def test_every_step_is_told(rolling_case):
-    """From none to all of them, one after the other."""
     seen = []
     short = replace(rolling_case, places=1, transits=1.0)
     with watched(lambda now: seen.append((now.step, now.steps)) if now.steps else None):
@@ -90,7 +89,6 @@ def test_a_strip_of_the_contact(rolling_case, caplog, says):
 
 
 def test_a_rescaled_patch_rolls_on_the_level(rolling_case):
-    """Its waves and its factor stay; the slope of the patch would climb for ever."""
     rough = CaseRoughness(rms=0.02e-6, shortest_wavelength=40e-6, sample_length=0.1e-3, seed=1)
     case = replace(rolling_case, roughness=rough, places=1, transits=1.0)
     solution, surface = march_case(case)
@@ -101,15 +99,10 @@ def test_a_rescaled_patch_rolls_on_the_level(rolling_case):
     assert solution.converged
 
 
-def test_nodes_too_far_apart_are_said(rolling_case, caplog):
-    """A warning before the march."""
+def test_nodes_too_far_apart_are_said_and_too_few_transits_refused(rolling_case, caplog, refused):
     grid = CaseGrid(nx=17, ny=17)
     case = replace(rolling_case, grid=grid, places=1, transits=1.0)
     with caplog.at_level(logging.WARNING):
         march_case(case)
     assert 'um apart along x, the shortest wavelength is' in caplog.text
-
-
-def test_transits_that_are_too_few(rolling_case, refused):
-    """At least one at each place."""
     refused('transits_1_0', march_case, replace(rolling_case, transits=1.0))

@@ -14,7 +14,6 @@ figures = pytest.importorskip('surrogate.contact.rolling_figure')
 
 
 def panels(solution):
-    """Return the panels of a picture by the letter of their title."""
     return {axes.get_title()[:3]: axes for axes in figures.figure_rolling(solution).axes}
 
 
@@ -28,21 +27,16 @@ def test_three_panels(marched):
     (along,) = [line for line in found['(b)'].get_lines() if len(line.get_xdata()) > 2]
     np.testing.assert_allclose(along.get_ydata(), 100 * solution.rcs_along)
     lines = {line.get_label(): line for line in found['(c)'].get_lines()}
-    np.testing.assert_allclose(
-        lines['film at the centre'].get_ydata(), 1e9 * solution.centre_films
-    )
+    wanted = 1e9 * solution.centre_films
+    np.testing.assert_allclose(lines['film at the centre'].get_ydata(), wanted)
     assert lines['film at the centre'].get_xdata()[-1] == pytest.approx(solution.transits)
     assert lines['floor 3 nm'].get_ydata()[0] == pytest.approx(3.0)
     assert lines['next place'].get_xdata()[0] == pytest.approx(solution.transits / 2)
-    assert [found[letter].get_ylabel() for letter in ('(a)', '(b)', '(c)')] == [
-        'y across the track [µm]',
-        'RCS per semi-axis [%]',
-        'film [nm]',
-    ]
+    expected = ['y across the track [µm]', 'RCS per semi-axis [%]', 'film [nm]']
+    assert [found[letter].get_ylabel() for letter in ('(a)', '(b)', '(c)')] == expected
 
 
 def test_a_strip_has_two_lines_for_its_zone(rolling_case):
-    """Its Hertz zone has no end across."""
     strip = CaseStrip(place=0.0, width=60e-6, columns=12)
     rough = replace(rolling_case.roughness, rms=0.02e-6)
     case = replace(rolling_case, strip=strip, roughness=rough, places=1, transits=1.0)

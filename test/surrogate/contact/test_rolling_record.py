@@ -23,24 +23,19 @@ def strict(record):
     return json.loads(json_text(record))
 
 
-def test_the_record_has_its_keys_and_strict_json(rolling_case, marched):
-    """In order, JSON types."""
+def test_the_record_is_strict_json_of_the_march(rolling_case, marched, says):
+    """Keys in order; Lambda is the smooth central film over the whole Rq; shares are in order."""
     record = rolling_record(rolling_case, *marched)
     assert list(record) == list(RollingRecord.__annotations__)
     assert strict(record)['strip_width_m'] is None
     assert record['kinematics'] == 'rolling'
     assert record['grid'] == [65, 65]
     assert record['converged'] is True
-
-
-def test_numbers_are_those_of_the_march(rolling_case, marched, says):
-    """Lambda is the smooth central film over the whole Rq; shares are in order."""
     solution, surface = marched
     record = rolling_record(rolling_case, solution, surface)
     assert record['film_ratio'] == pytest.approx(solution.central_film / 0.1e-6)
-    assert record['memory_length_m'] == pytest.approx(
-        solution.memory * solution.x_nodes[-1] / solution.x[-1], rel=1e-6
-    )
+    expected = solution.memory * solution.x_nodes[-1] / solution.x[-1]
+    assert record['memory_length_m'] == pytest.approx(expected, rel=1e-6)
     assert record['thin_film_m'] == [1e-9, 3e-9, 5e-9, 10e-9]
     assert np.all(np.diff(record['thin_share']) >= 0)
     assert record['rcs'] >= record['asperity_share'] > 0
@@ -53,30 +48,11 @@ def test_numbers_are_those_of_the_march(rolling_case, marched, says):
     assert rough['shortest_wavelength_m'] >= 20e-6
 
 
-def test_the_ball_counts_in_the_film_ratio(rolling_case, marched):
-    """Rq of both is the root of their squares."""
+def test_the_ball_counts_in_the_film_ratio_and_one_place_has_no_error(rolling_case, marched):
     rough = replace(rolling_case.roughness, ball_rms=0.05e-6)
     record = rolling_record(replace(rolling_case, roughness=rough), *marched)
     assert record['roughness']['rms_m'] == pytest.approx(np.hypot(0.1e-6, 0.05e-6))
     assert 'ball Rq 0.05 um' in record['roughness']['sentence']
-
-
-def test_what_was_not_averaged_is_null(rolling_case, marched):
-    """A march without a smooth film to start from has a status and no numbers."""
-    solution, surface = marched
-    inputs = {
-        one: getattr(solution, one) for one in ('contact', 'lubricant', 'condition', 'settings')
-    }
-    bare = MovingSolution(**inputs, status=MarchStatus.NO_SMOOTH_FILM)
-    record = strict(rolling_record(rolling_case, bare, surface))
-    assert record['converged'] is False
-    assert record['status'] == MarchStatus.NO_SMOOTH_FILM.value
-    assert [record[key] for key in AVERAGED] == [None] * len(AVERAGED)
-    assert record['thin_share'] == [None] * 4
-
-
-def test_one_place_has_no_standard_error(rolling_case, marched):
-    """Null, and no sign on the page."""
     solution, surface = marched
     rcs = replace(solution.rcs, error=float('nan'))
     one = replace(solution, rcs=rcs)
@@ -90,9 +66,20 @@ def test_one_place_has_no_standard_error(rolling_case, marched):
     assert '+-' not in line
 
 
-def test_the_page_says_everything_a_person_asks(rolling_case, marched, says):
-    """Workshop units, one line each, the status last."""
+def test_what_was_not_averaged_is_null_and_the_page_says_all_a_person_asks(
+    rolling_case, marched, says
+):
+    """A march without a smooth film has a status and no numbers; the page has workshop units."""
     solution, surface = marched
+    inputs = {
+        one: getattr(solution, one) for one in ('contact', 'lubricant', 'condition', 'settings')
+    }
+    bare = MovingSolution(**inputs, status=MarchStatus.NO_SMOOTH_FILM)
+    record = strict(rolling_record(rolling_case, bare, surface))
+    assert record['converged'] is False
+    assert record['status'] == MarchStatus.NO_SMOOTH_FILM.value
+    assert [record[key] for key in AVERAGED] == [None] * len(AVERAGED)
+    assert record['thin_share'] == [None] * 4
     record = rolling_record(rolling_case, solution, surface)
     lines = rolling_page(record, rolling_case, solution).splitlines()
     assert lines[0].startswith(says('rolling_contact_10'))

@@ -77,7 +77,6 @@ def nominal():
 
 @pytest.fixture(scope='session')
 def solved(nominal):
-    """Solve it at 27.6 N and 0.5 m/s on the production grid."""
     return solve_contact(*nominal, Condition(load=27.6, entrainment_speed=0.5))
 
 

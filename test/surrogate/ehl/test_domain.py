@@ -39,7 +39,6 @@ def test_a_summit_that_touches_outside_is_inside_the_domain(nominal, place, edge
 
 
 def test_heights_at_nodes_leave_the_domain_alone(nominal):
-    """An array says nothing about heights elsewhere."""
     wall = np.full((9, 9), 1e-3)
     assert domain(nominal, wall) == pytest.approx(domain(nominal, lambda x, y: 0 * x))
 

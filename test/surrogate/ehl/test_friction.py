@@ -48,7 +48,7 @@ def test_spin_has_a_moment_and_no_force_across_the_symmetry(solved):
     assert abs(found.force_x) < 1e-9 * abs(found.force_y)
 
 
-def test_small_slip_is_newtonian(solved):
+def test_small_slip_is_newtonian_and_below_the_floor_proportional(solved):
     """At vanishing slip the stress is eta slip / h and doubles with the slip."""
     slip = 1e-12
     found = contact_friction(solved, slip_x=slip)
@@ -56,6 +56,9 @@ def test_small_slip_is_newtonian(solved):
     newton = viscosity_of(solved.lubricant, solved.film_pressure) * slip / solved.film
     assert found.traction[wet] == pytest.approx(newton[wet], rel=1e-6)
     assert contact_friction(solved, slip_x=0.0).coefficient == 0.0
+    small = contact_friction(solved, slip_x=1e-6, slip_floor=1e-4)
+    double = contact_friction(solved, slip_x=2e-6, slip_floor=1e-4)
+    assert double.force_x == pytest.approx(2 * small.force_x, rel=1e-3)
 
 
 def test_central_film_changes_the_film_only(solved):
@@ -113,13 +116,6 @@ def test_dry_contact_has_the_boundary_coefficient(nominal, raceway):
     assert 0 < found.film_coefficient < found.coefficient < 0.12
 
 
-def test_slip_floor_regularises_the_direction(solved):
-    """Far below the floor the force is proportional to the slip."""
-    small = contact_friction(solved, slip_x=1e-6, slip_floor=1e-4)
-    double = contact_friction(solved, slip_x=2e-6, slip_floor=1e-4)
-    assert double.force_x == pytest.approx(2 * small.force_x, rel=1e-3)
-
-
 @pytest.mark.parametrize(
     'wrong',
     [
@@ -131,13 +127,11 @@ def test_slip_floor_regularises_the_direction(solved):
     ],
 )
 def test_bad_input_is_one_sentence(solved, wrong):
-    """Shape, finiteness and ranges."""
     with pytest.raises(InputError):
         contact_friction(solved, **wrong)
 
 
 def test_barus_viscosity(nominal):
-    """eta0 exp(alpha p)."""
     oil = replace(nominal[1], law='barus_incompressible')
     assert float(viscosity_of(oil, 1e9)) == pytest.approx(0.06 * np.exp(20.0))
 

@@ -23,7 +23,6 @@ def plain_deformation(pressure, dx, dy):
 @pytest.mark.parametrize('length', [4, 6, 8, 12, 16, 24, 36, 64, 108, 128, 144, 192])
 @pytest.mark.parametrize(('dtype', 'error'), [(np.float64, 1e-12), (np.float32, 1e-4)])
 def test_fft_is_numpys(length, dtype, error):
-    """Every length, both directions, both precisions."""
     rng = np.random.default_rng(length)
     signal = rng.normal(size=(length, 3)) + 1j * rng.normal(size=(length, 3))
     re, im = signal.real.astype(dtype), signal.imag.astype(dtype)
@@ -44,7 +43,6 @@ def test_good_lengths_have_only_the_factors_in_hand():
 
 
 def test_deformation_is_the_plain_sum():
-    """On the full grid and on the symmetric half, mirror column included."""
     rng = np.random.default_rng(0)
     pressure = np.zeros((21, 17))
     pressure[1:-1, 1:-1] = rng.random((19, 15))

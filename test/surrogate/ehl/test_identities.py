@@ -11,7 +11,6 @@ from surrogate.formulas.geometry import Contact, hertz
 
 
 def integral(solution, field):
-    """Integrate a field that vanishes on the border."""
     area = (solution.x[1] - solution.x[0]) * (solution.y[1] - solution.y[0])
     return field.sum() * area
 
@@ -43,7 +42,6 @@ def test_first_moment_is_the_couette_integral(nominal):
 
 
 def test_same_groups_same_answer(solved, nominal):
-    """A contact ten times as large with the same groups has ten times the film."""
     contact, oil = nominal
     larger = Contact(
         radius_x=10 * contact.radius_x,

@@ -85,7 +85,6 @@ def test_steps_hardly_grow_with_the_grid(moes_case):
 
 
 def test_contact_is_solved_by_lines_alone(nominal):
-    """A dry or touching state has no coarser levels."""
     condition = Condition(load=27.6, entrainment_speed=0.0)
     case = make_case(*nominal, condition, Settings(nx=65, ny=129), None)
     grid = case.grid(65, 129, symmetric=True)

@@ -49,7 +49,7 @@ def test_every_speed_converges_and_keeps_its_promises(chain):
     ('place', 'tolerance', 'films', 'shares'),
     [(3, 1e-4, 2e-5, 1e-5), (3, 3e-3, 1e-3, 1e-4), (6, 1e-4, 2e-5, 1e-5), (6, 3e-3, 1e-3, 1e-3)],
 )
-def test_what_is_left_of_the_flux_moves_nothing(
+def test_the_rest_of_the_flux_moves_nothing(
     chain, nominal, raceway, place, tolerance, films, shares
 ):
     """Against a thousandth of the tolerance: thin films and RCS, as contact begins and grows."""
@@ -123,12 +123,7 @@ def test_dry_contact_is_that_of_an_independent_solver(nominal, raceway):
 
 
 def test_vanishing_roughness_is_the_smooth_contact(nominal, raceway):
-    """
-    A thousandth of the roughness gives the resolved smooth film to 1 %, without contact.
-
-    Surfaces that may touch are solved with another wedge.
-
-    """
+    """A thousandth of the roughness, solved with another wedge, gives the smooth film to 1 %."""
     condition = Condition(load=27.6, entrainment_speed=0.5)
     settings = replace(SETTINGS, nx=129, ny=65)
     fine = solve_contact(*nominal, condition, settings=replace(settings, nx=257))
@@ -143,7 +138,6 @@ def test_vanishing_roughness_is_the_smooth_contact(nominal, raceway):
 
 
 def test_heights_and_function_are_the_same_roughness(chain, nominal, raceway):
-    """An array on the solution grid gives the solution of the function it was taken from."""
     x, y = np.meshgrid(chain[0].x, chain[0].y, indexing='ij')
     found = solve_contact(
         *nominal,
@@ -172,7 +166,6 @@ def test_half_grid_says_how_far_films_and_shares_are_known(chain, nominal, racew
 
 
 def test_heights_at_nodes_give_the_same_errors(chain, nominal, raceway):
-    """Every second height of an array is the half grid of the function."""
     found = chain[SPEEDS.index(0.015)]
     x, y = np.meshgrid(found.x, found.y, indexing='ij')
     again = solve_contact(
@@ -182,9 +175,7 @@ def test_heights_at_nodes_give_the_same_errors(chain, nominal, raceway):
 
 
 @pytest.mark.parametrize('speed', [0.03, 0.004])
-def test_the_way_over_the_half_grid_ends_where_the_long_one_does(
-    nominal, raceway, speed, monkeypatch
-):
+def test_the_half_grid_leads_to_the_same_solution(nominal, raceway, speed, monkeypatch):
     """From cold, without and with contact: the same solution, with fewer Krylov iterations."""
     condition = Condition(load=27.6, entrainment_speed=speed)
     short = solve_contact(*nominal, condition, roughness=raceway, settings=SETTINGS)

@@ -77,14 +77,10 @@ def limited(at_hertz, change):
     return limit_on_contact(problem, np.full(len(change), 0.5), np.array(change), RISE)
 
 
-def test_small_changes_on_contact_are_taken_whole(at_hertz):
-    """Newton is left alone near the solution."""
+def test_small_changes_on_contact_are_taken_whole_and_large_ones_cut(at_hertz):
+    """A fall by powers of e of the viscosity, in steps that grow as it does; a rise by its cap."""
     change = [-1e-3, -1e-6, 0.0, 1e-6, 0.5]
     assert limited(at_hertz, change) == pytest.approx(change, rel=1e-12)
-
-
-def test_large_changes_on_contact_are_cut(at_hertz):
-    """A fall by powers of e of the viscosity, in steps that grow as it does; a rise by its cap."""
     _, problem, _ = at_hertz
     viscosity = replace(problem, exponent=1.0, growth=20.0, pressure_scale=1.96e8)
     found = limit_on_contact(viscosity, np.full(2, 5.0), np.array([-3.0, -4.0]), RISE)

@@ -46,7 +46,6 @@ SMALL = Settings(nx=33, ny=33)
     ],
 )
 def test_impossible_inputs_are_refused(given, change):
-    """Numbers in range, known laws, odd grids and domains that hold the contact."""
     with pytest.raises(InputError, match=next(iter(change))):
         replace(given, **change)
 
@@ -56,36 +55,33 @@ def test_impossible_inputs_are_refused(given, change):
     [{'radius_x': -1e-3}, {'radius_y': 0.0}, {'reduced_modulus': math.nan}, {'radius_y': 99.0}],
 )
 def test_impossible_contacts_are_refused(nominal, change):
-    """Radii and modulus must be positive and of one world."""
     with pytest.raises(InputError, match='radius|modulus'):
         solve_contact(replace(nominal[0], **change), nominal[1], NOMINAL)
 
 
 @pytest.mark.parametrize('heights', [np.zeros((3, 3)), np.full((33, 33), np.nan)])
 def test_roughness_that_does_not_fit_is_refused(nominal, heights, refused):
-    """Its shape is that of the grid and all heights are finite."""
     refused('roughness_2', solve_contact, *nominal, NOMINAL, roughness=heights, settings=SMALL)
 
 
 def test_results_are_frozen_and_statuses_are_sentences(nominal):
-    """No field can be set; every status ends with a full stop."""
     found = solve_contact(*nominal, NOMINAL, settings=SMALL)
     with pytest.raises(FrozenInstanceError):
         found.rcs = 0.5
     assert all(status.value.endswith('.') and ' ' in status.value for status in Status)
 
 
-def test_no_time_is_a_status(nominal):
-    """A cap of a microsecond ends before convergence and says so."""
+def test_no_time_and_no_iterations_are_a_status_without_numbers(nominal):
+    """Films, shares and forces are NaN, not those of the last iterate."""
     found = solve_contact(*nominal, NOMINAL, settings=Settings(time_cap=1e-3))
     assert found.status is Status.OUT_OF_TIME
     assert not found.converged
-
-
-def test_no_iterations_is_a_status(nominal):
-    """One Newton iteration is not enough and is not called so."""
     found = solve_contact(*nominal, NOMINAL, settings=replace(SMALL, newton_limit=1))
     assert found.status is Status.STALLED
+    found = solve_contact(*nominal, NOMINAL, settings=Settings(newton_limit=1))
+    assert not found.converged
+    known = ('central_film', 'minimum_film', 'rcs', 'asperity_share', 'rolling_force')
+    assert all(math.isnan(getattr(found, name)) for name in known)
 
 
 def test_smooth_contact_that_the_grid_makes_up_is_refused(moes_case):
@@ -140,7 +136,6 @@ def test_contact_at_the_edge_of_the_domain_is_refused(nominal):
 
 
 def test_a_film_below_the_floor_is_real_contact(nominal):
-    """At 0.1 mm/s the smooth film is far below the floor, and most of the load is dry."""
     found = solve_contact(
         *nominal, Condition(load=27.6, entrainment_speed=1e-5), settings=Settings(film_floor=10e-9)
     )
@@ -162,14 +157,6 @@ def test_the_long_axis_works_or_says_no():
     assert found.converged, found.status.value
     assert found.semi_axis_x > 5 * found.semi_axis_y
     assert 0 < found.minimum_film < found.central_film
-
-
-def test_numbers_of_a_solve_that_did_not_converge_are_unknown(nominal):
-    """Out of time: films, shares and forces are NaN, not those of the last iterate."""
-    found = solve_contact(*nominal, NOMINAL, settings=Settings(newton_limit=1))
-    assert not found.converged
-    known = ('central_film', 'minimum_film', 'rcs', 'asperity_share', 'rolling_force')
-    assert all(math.isnan(getattr(found, name)) for name in known)
 
 
 def test_a_film_that_hardly_deforms_the_bodies_says_how_much_is_cut_off(nominal):

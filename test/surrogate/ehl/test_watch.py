@@ -6,8 +6,14 @@ import pytest
 from surrogate.ehl.watch import at, Iteration, tell, watched
 
 
-def test_without_a_watcher_nothing_happens():
+def test_without_a_watcher_nothing_happens_and_a_march_says_its_steps():
     tell(1, 0.5)
+    seen = []
+    with watched(seen.append):
+        with at(step=3, steps=8):
+            tell(5, 0.5)
+        tell(1, 0.5)
+    assert [(one.step, one.steps) for one in seen] == [(3, 8), (0, 0)]
 
 
 def test_a_watcher_is_told_of_what_happens_in_its_context():
@@ -23,15 +29,6 @@ def test_a_watcher_is_told_of_what_happens_in_its_context():
         Iteration(stage='rough contact', nut=2, side=1, count=2, residual=0.25),
         Iteration(count=3, residual=0.125),
     ]
-
-
-def test_a_march_says_how_many_steps_are_made():
-    seen = []
-    with watched(seen.append):
-        with at(step=3, steps=8):
-            tell(5, 0.5)
-        tell(1, 0.5)
-    assert [(one.step, one.steps) for one in seen] == [(3, 8), (0, 0)]
 
 
 def test_a_watcher_may_end_a_solve_and_leaves_nothing_behind():

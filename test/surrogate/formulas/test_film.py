@@ -10,11 +10,15 @@ from surrogate.formulas import film as laws
 from surrogate.formulas.geometry import Contact
 
 
-def test_film_ratio_of_smooth_surfaces_has_no_end():
+def test_smooth_surfaces_have_no_end_of_the_ratio_and_resting_contacts_no_film():
     """Infinite above a film, 0 without one, unknown where the film is."""
     film = np.array([1e-7, 0.0, np.nan])
     np.testing.assert_array_equal(laws.film_ratio(film, 0.0), [np.inf, 0.0, np.nan])
     np.testing.assert_allclose(laws.film_ratio(film, 1e-7), [1.0, 0.0, np.nan])
+    contact = Contact(radius_x=0.003, radius_y=0.08, reduced_modulus=2.26e11)
+    g = laws.groups(contact, 27.6, 0.0, 0.06, 2e-8)
+    assert laws.central_film_hamrock_dowson_1977(contact, g) == 0.0
+    assert laws.rolling_force_biboulet_houpert_2010(contact, g) == 0.0
 
 
 def dimensional(row):
@@ -52,33 +56,24 @@ def moes(load, material, radius_ratio):
     )
 
 
-def test_central_film_stays_4_to_11_percent_above_converged_solutions(table):
-    """Hamrock and Dowson's central film is high by the margin known for it."""
+def test_hamrock_and_dowson_against_converged_solutions_and_their_own_case(table):
+    """Central film 4 to 11 % above; minimum film within 7 % for the long ellipse."""
     for row in table('ehl_dimensional.csv'):
         contact, _, g = dimensional(row)
         ratio = laws.central_film_hamrock_dowson_1977(contact, g) / (float(row['hc_nm']) * 1e-9)
         assert 1.04 < ratio < 1.11, row['case']
-
-
-def test_minimum_film_is_within_7_percent_for_the_long_ellipse(table):
-    """From ellipticity 3 on the minimum film is good."""
     row = next(r for r in table('ehl_dimensional.csv') if r['case'] == 'ball_screw_ellipse')
     contact, _, g = dimensional(row)
     found = laws.minimum_film_hamrock_dowson_1977(contact, g)
     assert found == pytest.approx(float(row['hmin_nm']) * 1e-9, rel=0.07)
-
-
-def test_minimum_film_of_the_papers_own_case(table):
-    """The paper's case U 1.683e-12, W 1.106e-7, G 4522 gives its printed film within 6 %."""
     row = next(r for r in table('ehl_dimensional.csv') if r['case'] == 'hamrock_dowson_k1')
     contact, _, g = dimensional(row)
     assert g.speed == pytest.approx(1.683e-12, rel=2e-3)
     assert g.load == pytest.approx(1.106e-7, rel=2e-3)
     assert g.material == pytest.approx(4522, rel=2e-3)
     assert laws.outside_range('central_film_hamrock_dowson_1977', g) == ()
-    assert laws.minimum_film_hamrock_dowson_1977(contact, g) == pytest.approx(
-        float(row['hmin_nm']) * 1e-9, rel=0.06
-    )
+    expected = float(row['hmin_nm']) * 1e-9
+    assert laws.minimum_film_hamrock_dowson_1977(contact, g) == pytest.approx(expected, rel=0.06)
 
 
 @pytest.mark.parametrize(
@@ -89,7 +84,6 @@ def test_minimum_film_of_the_papers_own_case(table):
     ],
 )
 def test_nijenbanning_values(load, material, ratio, film):
-    """Values of the fit in Moes scale."""
     contact, g = moes(load, material, ratio)
     found = laws.central_film_nijenbanning_1994(contact, g) / np.sqrt(2 * g.speed)
     assert found == pytest.approx(film, rel=1e-3)
@@ -104,7 +98,7 @@ def test_nijenbanning_against_incompressible_solutions(table):
             assert found == pytest.approx(float(row['Hc']), rel=0.15)
 
 
-def test_rolling_force_lies_above_the_short_domains(table):
+def test_rolling_force_of_short_domains_and_of_the_nominal_contact(table, screw):
     """A finite domain cuts the inlet and so the rolling force, by up to half."""
     row = next(r for r in table('ehl_dimensional.csv') if r['rolling_coefficient'])
     contact, load, g = dimensional(row)
@@ -112,17 +106,12 @@ def test_rolling_force_lies_above_the_short_domains(table):
     assert 1.0 < ratio / float(row['rolling_coefficient']) < 1.6
     # Extrapolated to a far inlet from the values at 4.5 and 10 half-widths, which fall as 1/x.
     assert ratio == pytest.approx(4.55e-4, rel=0.10)
-
-
-def test_rolling_force_of_the_nominal_contact(screw):
-    """The nominal contact tends to 1.05e-3 of its load for a far inlet; the fit is 20 % below."""
     from surrogate.formulas.geometry import screw_contact
 
     contact = screw_contact(screw, 'screw')
     g = laws.groups(contact, 27.6, 0.49657, 0.060, 2e-8)
-    assert laws.rolling_force_biboulet_houpert_2010(contact, g) / 27.6 == pytest.approx(
-        1.05e-3, rel=0.25
-    )
+    found = laws.rolling_force_biboulet_houpert_2010(contact, g) / 27.6
+    assert found == pytest.approx(1.05e-3, rel=0.25)
 
 
 @given(st.floats(0.1, 1e3), st.floats(1.01, 100))
@@ -138,22 +127,12 @@ def test_rolling_force_has_its_isoviscous_limit(load, factor):
     assert gain == pytest.approx(factor ** (2 / 3), rel=1e-3)
 
 
-def test_a_resting_contact_has_no_film_and_no_rolling_force():
-    """Speed zero is legal and gives exact zeros."""
-    contact = Contact(radius_x=0.003, radius_y=0.08, reduced_modulus=2.26e11)
-    g = laws.groups(contact, 27.6, 0.0, 0.06, 2e-8)
-    assert laws.central_film_hamrock_dowson_1977(contact, g) == 0.0
-    assert laws.rolling_force_biboulet_houpert_2010(contact, g) == 0.0
-
-
 @pytest.mark.parametrize(('ratio', 'share'), [(0.1, 0.89), (0.5, 0.46), (1, 0.17), (2, 0.016)])
 def test_asperity_share_printed_values(ratio, share):
-    """The fit's values at four film ratios, to the digits printed."""
     assert laws.asperity_share_aihara_1987(ratio) == pytest.approx(share, rel=0.035)
 
 
-def test_every_range_names_a_formula_and_real_groups():
-    """The table of ranges cannot name a formula or group that does not exist."""
+def test_ranges_name_formulas_and_groups_and_leaving_one_is_told():
     import surrogate.formulas.film as module
 
     for formula, ranges in laws.RANGES.items():
@@ -161,11 +140,6 @@ def test_every_range_names_a_formula_and_real_groups():
         for name, (low, high) in ranges.items():
             assert hasattr(laws.Groups, name)
             assert low < high
-
-
-def test_leaving_a_range_is_told_with_numbers():
-    """The phrase names group, value and range."""
     _, g = moes(500, 10, 25.0)
-    assert laws.outside_range('central_film_nijenbanning_1994', g) == (
-        'radius_ratio 25 (fitted 1 to 20)',
-    )
+    expected = 'radius_ratio 25 (fitted 1 to 20)'
+    assert laws.outside_range('central_film_nijenbanning_1994', g) == expected

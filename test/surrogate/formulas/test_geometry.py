@@ -40,7 +40,7 @@ def test_hertz_table(table, screw):
         assert found.approach == pytest.approx(float(row['approach_um']) * 1e-6, rel=5e-3)
 
 
-def test_sphere_on_flat_is_johnson():
+def test_sphere_on_flat_is_johnson_and_no_load_is_no_contact():
     """A circle of radius (3 Q R / (4 E*))^(1/3) with approach a^2/R; E* is half of E'."""
     contact = Contact(radius_x=0.01, radius_y=0.01, reduced_modulus=2.2e11)
     found, radius = hertz(contact, 50.0), (0.75 * 50.0 * 0.01 / 1.1e11) ** (1 / 3)
@@ -48,6 +48,10 @@ def test_sphere_on_flat_is_johnson():
     assert found.semi_axis_y == pytest.approx(radius, rel=1e-12)
     assert found.approach == pytest.approx(radius**2 / 0.01, rel=1e-12)
     assert found.max_pressure == pytest.approx(1.5 * 50.0 / (math.pi * radius**2), rel=1e-12)
+    contact = Contact(radius_x=0.003, radius_y=0.08, reduced_modulus=2.26e11)
+    found = hertz(contact, [0.0, 10.0])
+    assert found.max_pressure[0] == found.semi_axis_x[0] == found.approach[0] == 0.0
+    assert np.all(np.isfinite(found.approach))
 
 
 @given(RADII, RADII)
@@ -63,7 +67,6 @@ def test_ellipticity_solves_the_legendre_form(radius_x, radius_y):
 
 @given(RADII, RADII, st.floats(0.1, 1e4))
 def test_turning_a_contact_by_90_degrees_swaps_the_axes(radius_x, radius_y, load):
-    """The orientation is a matter of naming."""
     one = hertz(Contact(radius_x=radius_x, radius_y=radius_y, reduced_modulus=2e11), load)
     other = hertz(Contact(radius_x=radius_y, radius_y=radius_x, reduced_modulus=2e11), load)
     assert one.semi_axis_x == pytest.approx(other.semi_axis_y, rel=1e-9)
@@ -72,20 +75,11 @@ def test_turning_a_contact_by_90_degrees_swaps_the_axes(radius_x, radius_y, load
 
 @given(st.floats(0.1, 1e3), st.floats(1.5, 8.0))
 def test_hertz_scales_with_the_cube_root_of_the_load(load, factor):
-    """Pressure and axes grow as Q^(1/3), the approach as Q^(2/3)."""
     contact = Contact(radius_x=0.003, radius_y=0.08, reduced_modulus=2.26e11)
     small, large = hertz(contact, load), hertz(contact, factor**3 * load)
     assert large.max_pressure == pytest.approx(factor * small.max_pressure, rel=1e-9)
     assert large.semi_axis_x == pytest.approx(factor * small.semi_axis_x, rel=1e-9)
     assert large.approach == pytest.approx(factor**2 * small.approach, rel=1e-9)
-
-
-def test_no_load_is_no_contact():
-    """At zero load everything is zero, in an array as well."""
-    contact = Contact(radius_x=0.003, radius_y=0.08, reduced_modulus=2.26e11)
-    found = hertz(contact, [0.0, 10.0])
-    assert found.max_pressure[0] == found.semi_axis_x[0] == found.approach[0] == 0.0
-    assert np.all(np.isfinite(found.approach))
 
 
 def test_reduced_modulus_of_steel(screw):

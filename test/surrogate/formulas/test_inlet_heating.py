@@ -17,15 +17,12 @@ SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 WARM = 313.15
 
 
-def test_factor_by_hand():
+def test_the_factor_by_hand_falls_with_speed_and_rises_with_conductivity():
     """L = 1, p/E' = 0.005, S = 0: 0.934 / 1.213; without heating exactly 1."""
     found = film_factor_gupta_1992(pressure=0.005, loading=1.0, slide_roll=0.0)
     assert found == pytest.approx(0.934 / 1.213)
     assert film_factor_gupta_1992(pressure=0.005, loading=0.0, slide_roll=0.02) == 1.0
-
-
-def test_factor_falls_with_speed_and_rises_with_conductivity():
-    """From 1 at rest; oil that carries heat away is less affected."""
+    assert viscosity_slope(OIL, WARM) == pytest.approx(0.05, abs=0.01)
     factors = [heating_factor(SCREW, OIL, 'screw', 27.6, us, WARM) for us in (0, 0.1, 1, 10)]
     assert factors[0] == 1.0
     assert factors[0] > factors[1] > factors[2] > factors[3] > 0.5
@@ -33,13 +30,7 @@ def test_factor_falls_with_speed_and_rises_with_conductivity():
     assert heating_factor(SCREW, other, 'screw', 27.6, 1.0, WARM) > factors[2]
 
 
-def test_slope_of_viscosity_is_that_of_the_law():
-    """Against a wide difference of the logarithm: 4 to 6 % per kelvin near 40 degC."""
-    assert viscosity_slope(OIL, WARM) == pytest.approx(0.05, abs=0.01)
-
-
 def test_heated_films_are_thinner_by_the_factor_and_it_is_off_by_default():
-    """At 1000 rev/min the smooth film falls by the factor, within 0.3 %."""
     small = Settings(nx=129, ny=65, error_estimate=False)
     cold = ScrewSettings(smooth=small, kinematics='smooth')
     assert not cold.inlet_heating

@@ -18,10 +18,13 @@ CONTACT = Contact(radius_x=2.589e-3, radius_y=77.39e-3, reduced_modulus=226.4e9)
 LINE = laws.Line(radius=2.5e-3, reduced_modulus=226.4e9, max_pressure=np.array(0.9e9))
 
 
-def test_half_width_is_that_of_hertz():
-    """Load per length w = pi/2 pH b leads back to the pressure, pH = sqrt(w E'/(2 pi R))."""
+def test_half_width_and_groups_of_moes_by_hand():
+    """U = 0.012/(226.4e9 * 2.5e-3) = 2.12e-11, L = 9.72, w/(E' R) = 9.93e-5, M1 = 21.6."""
     load = 0.5 * math.pi * 0.9e9 * LINE.semi_axis
     assert math.sqrt(load * 226.4e9 / (2 * math.pi * 2.5e-3)) == pytest.approx(0.9e9, rel=1e-12)
+    M1, L = laws.moes_line(LINE, 0.1, 0.06, 2e-8)
+    assert float(L) == pytest.approx(9.716, rel=1e-3)
+    assert float(M1) == pytest.approx(21.56, rel=1e-3)
 
 
 @given(load=st.floats(1.0, 200.0), place=st.floats(0.0, 0.99))
@@ -43,13 +46,6 @@ def test_strips_carry_the_load_of_the_ellipse():
     assert line.radius == pytest.approx(CONTACT.radius_x, rel=0.05)
 
 
-def test_groups_of_moes_by_hand():
-    """U = 0.012/(226.4e9 * 2.5e-3) = 2.12e-11, L = 9.72, w/(E' R) = 9.93e-5, M1 = 21.6."""
-    M1, L = laws.moes_line(LINE, 0.1, 0.06, 2e-8)
-    assert float(L) == pytest.approx(9.716, rel=1e-3)
-    assert float(M1) == pytest.approx(21.56, rel=1e-3)
-
-
 @pytest.mark.parametrize(
     ('n', 'left'), [(0.0, 1.0), (1.0, 0.8584), (2.5, 0.6400), (5.0, 0.3810), (10.0, 0.1600)]
 )
@@ -62,7 +58,6 @@ def test_amplitude_curve(n, left):
 
 @given(n=st.floats(0.0, 100.0), more=st.floats(1e-3, 10.0))
 def test_longer_waves_are_flattened_more(n, more):
-    """From 1 for the shortest towards 0."""
     short, long = (
         float(laws.amplitude_reduction_venner_1997(x, 1.0, 1.0, 1.0)) for x in (n, n + more)
     )
@@ -71,7 +66,6 @@ def test_longer_waves_are_flattened_more(n, more):
 
 @given(speed=st.floats(1e-3, 1.0))
 def test_the_film_does_not_fall_with_the_speed(speed):
-    """Nor with the viscosity."""
     slow, fast = laws.central_film_line(LINE, np.array([1.0, 1.2]) * speed, 0.06, 2e-8)
     assert 0 < slow < fast
     assert float(laws.central_film_line(LINE, speed, 0.12, 2e-8)) > slow

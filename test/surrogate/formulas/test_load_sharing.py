@@ -19,7 +19,6 @@ from surrogate.formulas.load_sharing import (
 
 
 def test_preload_sharing_table(table):
-    """The table is exact to the digits that it prints."""
     for row in table('preload_sharing.csv'):
         loaded, relieved = nut_forces(float(row['axial_load_over_preload']) * 990.0, 990.0)
         assert loaded / 990 == pytest.approx(float(row['loaded_nut_over_preload']), abs=5.1e-5)
@@ -28,32 +27,24 @@ def test_preload_sharing_table(table):
 
 @given(st.floats(-UNLOADING_RATIO, UNLOADING_RATIO), st.floats(1.0, 1e5))
 def test_both_equations_hold(ratio, preload):
-    """The springs share the approach and the forces balance the load."""
     loaded, relieved = nut_forces(ratio * preload, preload)
     assert loaded - relieved == pytest.approx(abs(ratio) * preload, rel=1e-9, abs=1e-9 * preload)
-    assert loaded ** (2 / 3) + relieved ** (2 / 3) == pytest.approx(
-        2 * preload ** (2 / 3), rel=1e-9
-    )
+    expected = 2 * preload ** (2 / 3)
+    assert loaded ** (2 / 3) + relieved ** (2 / 3) == pytest.approx(expected, rel=1e-9)
 
 
 @given(st.floats(1.0, 10.0))
 def test_past_unloading_one_nut_carries_everything(factor):
-    """From 2.83 preloads on the relieved nut carries exactly nothing."""
     load = factor * UNLOADING_RATIO * 990.0
     loaded, relieved = nut_forces(load, 990.0)
     assert relieved == 0.0
     assert loaded == load
 
 
-def test_zero_preload_is_legal():
-    """Without preload one nut carries the load and the other nothing."""
+def test_zero_preload_is_legal_and_a_share_of_the_rating_stands_for_it(screw):
     loaded, relieved = nut_forces([0.0, 100.0], 0.0)
     assert loaded.tolist() == [0.0, 100.0]
     assert relieved.tolist() == [0.0, 0.0]
-
-
-def test_a_share_of_the_rating_stands_for_no_preload(screw):
-    """One hundredth, or as asked; a preload stands for itself."""
     free = replace(screw, preload=0.0)
     assert working_preload(screw) == working_preload(screw, 0.02) == screw.preload
     assert working_preload(free) == 0.01 * screw.static_rating

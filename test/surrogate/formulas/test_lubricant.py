@@ -9,27 +9,16 @@ import pytest
 from surrogate.formulas import lubricant
 
 
-def test_d341_passes_through_both_anchors():
-    """The law is exact at 40 and 100 degC."""
+def test_d341_passes_through_both_anchors_and_between_them():
+    """By hand at 65 degC: log log falls from 0.264099 by 3.62445 x 0.033356 to 23.9 mm2/s."""
     found = lubricant.kinematic_viscosity_astm_d341([313.15, 373.15], 68e-6, 8.7e-6)
     assert found == pytest.approx([68e-6, 8.7e-6], rel=1e-12)
-
-
-def test_d341_between_the_anchors():
-    """
-    By hand at 65 degC.
-
-    Log log falls from 0.264099 by 3.62445 x 0.033356, so nu is 23.9 mm2/s.
-
-    """
-    assert lubricant.kinematic_viscosity_astm_d341(338.15, 68e-6, 8.7e-6) == pytest.approx(
-        23.88e-6, rel=1e-3
-    )
+    found = lubricant.kinematic_viscosity_astm_d341(338.15, 68e-6, 8.7e-6)
+    assert found == pytest.approx(23.88e-6, rel=1e-3)
 
 
 @given(st.floats(275.0, 370.0))
 def test_a_warmer_oil_is_thinner_lighter_and_softer(kelvin):
-    """Viscosity, density and pressure-viscosity fall with temperature."""
     from surrogate.parameters import load_lubricant
 
     oil = lubricant.lubricant_state(load_lubricant('iso_vg_68'), [kelvin, kelvin + 1])
@@ -38,26 +27,16 @@ def test_a_warmer_oil_is_thinner_lighter_and_softer(kelvin):
         assert warmer < cooler
 
 
-def test_roelands_is_barus_for_small_pressure():
-    """Slope d ln(eta)/dp at p = 0 is alpha, whatever the viscosity."""
+def test_roelands_printed_value_and_barus_for_small_pressure():
+    """At 1 GPa Z is 0.571713, (6.10204)^z 2.81233, e^(6.85659 x 1.81233) x 0.06 = 14 958 Pa s."""
+    assert lubricant.viscosity_roelands_1966(1e9, 0.06, 2e-8) == pytest.approx(14958, rel=1e-3)
     rise = np.log(lubricant.viscosity_roelands_1966(1.0e3, 0.06, 2e-8) / 0.06)
     assert rise / 1.0e3 == pytest.approx(2e-8, rel=1e-4)
     assert lubricant.viscosity_roelands_1966(0.0, 0.06, 2e-8) == pytest.approx(0.06, rel=1e-15)
 
 
-def test_roelands_printed_value():
-    """
-    At 1 GPa.
-
-    Z 0.571713, (6.10204)^z 2.81233, e^(6.85659 x 1.81233) x 0.06 Pa s = 14 958 Pa s.
-
-    """
-    assert lubricant.viscosity_roelands_1966(1e9, 0.06, 2e-8) == pytest.approx(14958, rel=1e-3)
-
-
 @given(st.floats(1e-6, 1e6))
 def test_eyring_is_newtonian_when_slow_and_never_above(rate):
-    """Stress <= eta gamma, with equality in the limit of small stress."""
     stress = float(lubricant.shear_stress_eyring_1936(0.06, rate, 5e6))
     assert stress <= 0.06 * rate * (1 + 1e-12)
     if 0.06 * rate < 5e4:

@@ -12,7 +12,6 @@ from surrogate.screw.closed_form import solve
 
 @pytest.mark.parametrize('factor', [0.05, 0.5, 1.0])
 def test_the_central_film_is_the_stated_share(screw, oil, factor):
-    """At every speed; entrainment and slip are those of the motion."""
     starved = solve(screw, replace(oil, film_factor=factor), [1.0, 50.0], 500.0, 313.15)
     flooded = solve(screw, oil, [1.0, 50.0], 500.0, 313.15)
     np.testing.assert_allclose(starved.central_film, factor * flooded.central_film, rtol=1e-12)
@@ -22,5 +21,4 @@ def test_the_central_film_is_the_stated_share(screw, oil, factor):
 
 
 def test_a_flooded_contact_keeps_its_speed_to_the_bit(oil):
-    """A factor of 1 is no other model."""
     assert starved_speed(oil, 0.123456789) == 0.123456789

@@ -47,7 +47,6 @@ def test_power_in_is_power_out_plus_loss(friction, load):
 
 @given(FRICTION, LOAD)
 def test_a_driving_load_gives_what_friction_leaves(friction, load):
-    """Back-driving: the torque taken from the screw over the torque of the load."""
     ideal = load * LEAD / (2 * math.pi)
     found = laws.efficiency(friction, -load, LEAD)
     if friction < ideal:
@@ -64,23 +63,18 @@ def test_slope_is_the_derivative(friction, load, sign):
     step, load = 1e-4 * friction, sign * load
     low, high = (laws.efficiency(friction + side * step, load, LEAD) for side in (-1, 1))
     if low > 0 and high > 0:
-        assert laws.efficiency_slope(friction, load, LEAD) == pytest.approx(
-            (low - high) / (2 * step), rel=1e-3
-        )
+        expected = (low - high) / (2 * step)
+        assert laws.efficiency_slope(friction, load, LEAD) == pytest.approx(expected, rel=1e-3)
 
 
-def test_what_is_unknown_stays_unknown():
-    """A NaN torque or load gives a NaN efficiency, in either quadrant."""
+def test_efficiencies_that_are_unknown_zero_or_one():
     for load in (1000.0, -1000.0):
         assert math.isnan(laws.efficiency(math.nan, load, LEAD))
     assert math.isnan(laws.efficiency(0.1, math.nan, LEAD))
-
-
-def test_zero_load_has_efficiency_zero():
-    """By definition, from either side."""
     assert laws.efficiency(0.1, 0.0, LEAD) == 0.0
     assert laws.efficiency(0.1, -0.0, LEAD) == 0.0
     assert laws.driving_torque(0.1, 0.0, LEAD) == 0.1
+    assert laws.efficiency(0.0, 5.0, LEAD) == laws.efficiency(0.0, -5.0, LEAD) == 1.0
 
 
 @given(
@@ -102,15 +96,9 @@ def test_no_float_of_the_load_raises(friction, load, sign):
         assert 0.0 <= slope < math.inf
 
 
-def test_a_frictionless_screw_is_perfect_both_ways():
-    """Without friction nothing is lost."""
-    assert laws.efficiency(0.0, 5.0, LEAD) == laws.efficiency(0.0, -5.0, LEAD) == 1.0
-
-
 def test_catalogue_drag(screw):
     """0.05 (tan alpha)^-0.5 F L/(2 pi) is 0.25 N m for the nominal nut."""
     found = laws.drag_torque_catalogue(screw.preload, screw.lead, helix_angle(screw))
-    assert found == pytest.approx(
-        0.05 / math.sqrt(math.tan(helix_angle(screw))) * 990 * 0.01 / 6.2832, rel=1e-4
-    )
+    expected = 0.05 / math.sqrt(math.tan(helix_angle(screw))) * 990 * 0.01 / 6.2832
+    assert found == pytest.approx(expected, rel=1e-4)
     assert found == pytest.approx(0.250, abs=1e-3)

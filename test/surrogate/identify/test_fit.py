@@ -103,8 +103,8 @@ def test_the_band_holds_as_many_points():
     assert inside / (draws * len(BOTH)) == pytest.approx(0.95, abs=0.015)
 
 
-def test_points_weigh_by_their_standard_deviation():
-    """A point that is known badly does not count, and the scatter is judged against it."""
+def test_points_weigh_by_their_deviation_and_a_robust_loss_lets_one_go():
+    """A point known badly does not count; a bad one of a dozen hardly moves the robust loss."""
     noise = np.zeros(12)
     noise[5] = 0.1
     sigma = np.full(12, 1e-4)
@@ -114,10 +114,6 @@ def test_points_weigh_by_their_standard_deviation():
     assert found.value('parasitic_torque') == pytest.approx(CONSTANT, abs=1e-6)
     assert found.reduced_chi_square < 0.01
     assert math.isnan(identify(SCREW, replace(run, torque_std=None), contacts).reduced_chi_square)
-
-
-def test_a_robust_loss_lets_an_outlier_go():
-    """One bad point of a dozen moves least squares, and hardly the other."""
     noise = 1e-4 * np.random.default_rng(2).standard_normal(12)
     noise[3] += 0.2
     run, contacts = recording(noise=noise)
@@ -174,7 +170,6 @@ def test_what_the_data_cannot_tell_has_no_interval(says):
     ],
 )
 def test_a_run_that_cannot_tell_is_refused(speed, sentence, refused):
-    """One speed, few points, none."""
     run = no_load_run({'speed': speed, 'torque': speed}, source='synthetic', temperature=WARM)
     nothing = ContactModel(
         torque=lambda factor, friction: 0 * run.speed,
@@ -197,10 +192,16 @@ def test_torque_against_the_motion_is_refused(refused):
     assert any('take more torque than was measured' in text for text in record['warnings'])
 
 
-def test_parameters_that_fast_points_cannot_tell_apart_are_named(says):
+def test_parameters_that_cannot_be_told_apart_and_the_offset_are_said(says):
+    """0.03 N m on a lead of 10 mm are 18.8 N; nothing is said of one direction."""
     run, contacts = recording(np.geomspace(70.0, 200.0, 12))
     record = identification_record(SCREW, run, contacts, identify(SCREW, run, contacts, ALL[:1]))
     assert says('viscosity_factor_correlated') in ' | '.join(record['warnings'])
+    run, contacts = recording(BOTH, offset=OFFSET)
+    record = identification_record(SCREW, run, contacts, identify(SCREW, run, contacts))
+    assert record['offset_force_N'] == pytest.approx(18.85, abs=0.01)
+    assert 'offset as a load       18.8 N' in page(record)
+    assert not [text for text in record['warnings'] if 'one direction' in text]
 
 
 def test_the_record_is_whole_and_warns():
@@ -219,15 +220,6 @@ def test_the_record_is_whole_and_warns():
     assert 0 < low < high < 1
     assert 'parasitic_torque_rate' in page(record)
     assert [one['unit'] for one in record['parameters']] == ['N m', 'N m s/rad', '-']
-
-
-def test_the_offset_is_told_as_a_load():
-    """0.03 N m on a lead of 10 mm are 18.8 N; nothing is said of one direction."""
-    run, contacts = recording(BOTH, offset=OFFSET)
-    record = identification_record(SCREW, run, contacts, identify(SCREW, run, contacts))
-    assert record['offset_force_N'] == pytest.approx(18.85, abs=0.01)
-    assert 'offset as a load       18.8 N' in page(record)
-    assert not [text for text in record['warnings'] if 'one direction' in text]
 
 
 def test_identified_sheets_hold_what_was_found_and_say_from_where(says):

@@ -11,17 +11,13 @@ from surrogate.identify.intervals import correlation, covariance, student_factor
 DRAWN = np.random.default_rng(5)
 
 
-def test_a_mean_has_its_textbook_error():
-    """Over root n, with n - 1 degrees of freedom; and t of the printed table."""
+def test_a_mean_and_a_line_have_their_textbook_errors():
+    """Over root n, with n - 1 degrees of freedom; t of the printed table; covariance of numpy."""
     sample = DRAWN.standard_normal(11)
     cover, variance = covariance(np.ones((11, 1)), sample - sample.mean())
     assert variance == pytest.approx(np.var(sample, ddof=1))
     assert cover[0, 0] == pytest.approx(np.var(sample, ddof=1) / 11)
     assert student_factor(10) == pytest.approx(2.228, abs=5e-4)
-
-
-def test_a_line_has_the_covariance_of_numpy():
-    """Whatever the scale of the columns; correlation from it."""
     x = np.linspace(1.0, 9.0, 15)
     y = 1e6 * x + DRAWN.standard_normal(15)
     fit, expected = np.polyfit(x, y, 1, cov=True)

@@ -79,30 +79,25 @@ def assert_met(found, expected):
     assert error.max() < 4e-3
 
 
-def test_many_speeds_share_a_few_nodes(formulas):
-    """Twenty speeds over 1.6 decades share ten nodes a decade."""
+def test_many_speeds_share_a_few_nodes_and_temperatures_are_met(formulas):
+    """Ten nodes a decade; the oil of each point, through its viscosity: 0.2 % over 8 K."""
     run = run_at(np.geomspace(50, 2000, 20))
     model = solved_model(SCREW, OIL, run)
     assert len(formulas) == 18
     exact = closed_form_model(SCREW, OIL, run)
     assert_met(model.torque(1.0, 0.1), exact.torque(1.0, 0.1))
+    run = run_at(np.geomspace(50, 2000, 12), temperature=np.linspace(WARM - 4, WARM + 4, 12))
+    model, exact = solved_model(SCREW, OIL, run), closed_form_model(SCREW, OIL, run)
+    np.testing.assert_allclose(model.torque(1.0, 0.1), exact.torque(1.0, 0.1), rtol=2e-3)
 
 
 def test_viscosity_and_friction_are_met_over_their_ranges(formulas):
-    """Wherever the fit may go, one solve per node."""
     run = run_at(np.geomspace(50, 2000, 12))
     model, exact = solved_model(SCREW, OIL, run, BOTH), closed_form_model(SCREW, OIL, run)
     assert len(formulas) == len(set(formulas)) == 24
     for factor, friction in ((0.5, 0.02), (1.0, 0.1), (0.8, 0.13), (2.0, 0.3), (1.5, 0.06)):
         found, expected = (one.torque(factor, friction) for one in (model, exact))
         assert_met(found, expected)
-
-
-def test_temperatures_of_the_points_are_met(formulas):
-    """The oil of each point, through its viscosity: 0.2 % over 8 K."""
-    run = run_at(np.geomspace(50, 2000, 12), temperature=np.linspace(WARM - 4, WARM + 4, 12))
-    model, exact = solved_model(SCREW, OIL, run), closed_form_model(SCREW, OIL, run)
-    np.testing.assert_allclose(model.torque(1.0, 0.1), exact.torque(1.0, 0.1), rtol=2e-3)
 
 
 def test_known_answers_come_out_of_the_table(formulas):
@@ -128,17 +123,12 @@ def test_solved_contacts_and_a_known_answer():
     assert [one.value for one in found.estimates] == pytest.approx((0.12, 4e-4), rel=1e-4)
 
 
-def test_a_run_that_one_table_cannot_hold_is_refused(formulas, refused):
-    """Temperatures and loads far apart."""
+def test_what_one_table_cannot_hold_or_is_not_solved_is_refused(formulas, refused, monkeypatch):
     rpm = [60.0, 200.0, 600.0]
     warm = run_at(rpm, temperature=np.array([300.0, 310.0, 330.0]))
     refused('up_16_7', solved_model, SCREW, OIL, warm)
     loaded = run_at(rpm, load=np.array([0.0, 0.0, 300.0]))
     refused('load_n_up_200', solved_model, SCREW, OIL, loaded)
-
-
-def test_a_speed_that_is_not_solved_is_named(formulas, monkeypatch, refused):
-    """A failed solve refuses the fit and says why."""
     failed = Stub(math.nan, converged=False, status='It stalled.')
     monkeypatch.setattr('surrogate.identify.table.solve_screw', lambda *given, **options: failed)
     refused('60_rev_min', solved_model, SCREW, OIL, run_at([60, 200, 600]))

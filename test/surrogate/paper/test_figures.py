@@ -24,7 +24,7 @@ SCREW, LAW = load_screw('nominal'), AsperityLaw(onsets={}, deviation=0.16)
 UNITS = ('[-]', '[mm/s]', '[mN m]', '[nm]', '[N]', '[GPa]', '[µm]', '[rev/min]')
 
 
-def made_up(task: StudyTask) -> StudyRow:
+def made_up(task):
     """Return a row with numbers of the right size: friction falls, then rises with speed."""
     slow = 1 / (1 + (task.rpm / 8) ** 4)
     torque = 0.02 + 0.07 * slow + 1e-4 * task.rpm
@@ -89,7 +89,6 @@ def hump(x, y):
 
 
 def test_all_pictures_are_written(study):
-    """One PNG per figure; nothing else is left."""
     paths = list(figures.draw_figures(study, tuple(NEEDS)))
     assert [path.name for path in paths] == [
         'paper_04_surface.png',
@@ -110,7 +109,6 @@ def test_all_pictures_are_written(study):
 
 @pytest.mark.parametrize('name', tuple(NEEDS))
 def test_axes_say_quantity_and_unit(study, name):
-    """Every labelled axis ends in a unit, and every picture has a caption and a label."""
     for draw in figures._pictures(study, name, None).values():
         figure = draw()
         labels = [
@@ -126,7 +124,6 @@ def test_axes_say_quantity_and_unit(study, name):
 
 
 def test_torque_with_measurements(study):
-    """Of rolling and standing roughness; measurements stand at their speed and torque."""
     measured = screws.MeasuredTorque(
         rpm=np.array([100.0]), torque=np.array([0.05]), deviation=np.array([0.01])
     )
@@ -140,17 +137,19 @@ def test_torque_with_measurements(study):
     assert bars.get_ydata()[0] == pytest.approx(50.0)
 
 
-def test_stribeck_marks_the_limit_and_the_published_film(study):
+def test_stribeck_marks_limit_and_film_and_zone_needs_the_map_alone(study):
     """RCS 0.01; 153 nm at 502.65 mm/s."""
     figure = screws.figure_stribeck(LAW, list(study.rows.values()))
     labels = [label for axes in figure.axes for label in axes.get_legend_handles_labels()[1]]
     assert 'limit 0.01' in labels
     assert 'reported, rough: 153 nm at 502.65 mm/s' in labels
     assert {'asperity share', 'film share'} <= set(labels)
+    only = [row for row in study.rows.values() if row.load > 0 and row.kind == 'screw']
+    assert maps.figure_maps(SCREW, only).axes
+    assert maps.figure_zone(SCREW, LAW, only).axes
 
 
 def test_measurements_are_read_and_refused():
-    """Deviation is optional; a missing column or word is an error."""
     found = screws.read_measured([{'speed_rev_min': '60', 'torque_Nm': '0.2'}])
     assert (found.rpm[0], found.torque[0], found.deviation[0]) == (60.0, 0.2, 0.0)
     for line in ({'speed': '60', 'torque_Nm': '0.2'}, {'speed_rev_min': 'x', 'torque_Nm': '1'}):
@@ -158,7 +157,7 @@ def test_measurements_are_read_and_refused():
             screws.read_measured([line])
 
 
-def test_maps_meet_their_nodes(study):
+def test_maps_meet_their_nodes_and_a_point_that_failed_leaves_a_gap(study):
     """Between the nodes lies a map that returns them; efficiency rises with load."""
     speed, load, rcs, eta = maps.fine_map(SCREW, list(study.rows.values()))
     corner = study.rows[
@@ -169,10 +168,6 @@ def test_maps_meet_their_nodes(study):
     assert eta[-1, 0] == pytest.approx(ideal / (ideal + corner.friction_torque))
     assert (np.diff(eta, axis=0) > 0).all()
     assert (speed[-1], load[0]) == (pytest.approx(SPEEDS[-1]), pytest.approx(MAP_LOADS[0]))
-
-
-def test_a_point_that_failed_leaves_a_gap(study):
-    """Its profile is left out, and the map bridges it between its neighbours."""
     failed = [
         StudyTask(kind='contact', rpm=600.0, load=PRELOAD).key,
         StudyTask(kind='screw', rpm=SPEEDS[3], load=MAP_LOADS[0]).key,
@@ -184,13 +179,6 @@ def test_a_point_that_failed_leaves_a_gap(study):
     assert len(labels) == 4
     assert not [label for label in labels if '600 rev/min' in label]
     assert np.isfinite(maps.fine_map(SCREW, list(rows.values()))[3]).all()
-
-
-def test_zone_and_maps_need_no_row_beyond_the_map(study):
-    """They draw from the map alone."""
-    only = [row for row in study.rows.values() if row.load > 0 and row.kind == 'screw']
-    assert maps.figure_maps(SCREW, only).axes
-    assert maps.figure_zone(SCREW, LAW, only).axes
 
 
 def test_report_leaves_out_what_the_rows_cannot_tell(study):

@@ -9,12 +9,12 @@ import pytest
 from surrogate.asperities.law import law_of
 from surrogate.commands.figures import DRAWS
 from surrogate.paper.cases import NEEDS, StudyTask, tasks
-from surrogate.paper.marks import Mark, marks
+from surrogate.paper.marks import marks
 from surrogate.paper.report import report
 from surrogate.paper.rows import read_rows
 from surrogate.paper.solve import solve_task
 from surrogate.paper.study import known_inputs
-from surrogate.paper.trends import Trend, trends
+from surrogate.paper.trends import trends
 from surrogate.parameters import load_lubricant, load_screw
 
 TREE = Path(__file__).parents[3]
@@ -27,7 +27,11 @@ MARKS = marks(SCREW, ROWS)
 TRENDS = trends(SCREW, law_of(SCREW), ROWS.values())
 
 
-def mark(start: str, *words: str) -> Mark:
+def task_of(kind, rpm, load, **more):
+    return StudyTask(kind=kind, rpm=float(rpm), load=float(load), **more)
+
+
+def mark(start, *words):
     """Return the one number whose name begins so and holds all the words."""
     begun = [one for one in MARKS if one.name.startswith(start)]
     found = [one for one in begun if all(word in one.name for word in words)]
@@ -35,19 +39,14 @@ def mark(start: str, *words: str) -> Mark:
     return found[0]
 
 
-def trend(start: str) -> Trend:
+def trend(start):
     """Return the one trend whose name begins so."""
     (found,) = (one for one in TRENDS if one.name.startswith(start))
     return found
 
 
-def test_page_of_numbers_is_the_report_of_its_rows():
-    """What the command writes from the rows."""
+def test_page_of_numbers_is_the_report_of_the_rows_of_the_default_run():
     assert NUMBERS.endswith(report(SCREW, law_of(SCREW), ROWS))
-
-
-def test_rows_are_those_of_the_default_run():
-    """Every task once, all of the shipped datasheets and law, all converged."""
     wanted = {task.key: task for task in tasks(tuple(NEEDS), DRAWS)}
     assert set(ROWS) == set(wanted)
     known = known_inputs()
@@ -66,12 +65,10 @@ def test_rows_are_those_of_the_default_run():
     ],
 )
 def test_sentences_have_the_numbers_of_the_table(words):
-    """As the page prints them."""
     assert words in ' '.join(PAGE.split())
 
 
 def test_every_picture_is_there_and_small():
-    """Each picture of the page is a small PNG, and each in the folder is on the page."""
     pictures = TREE / 'docs' / 'pictures'
     shown = set(re.findall(r'\]\(\.\./pictures/(paper_\w+\.png)\)', PAGE))
     assert shown == {path.name for path in pictures.glob('paper_*.png')}
@@ -79,10 +76,12 @@ def test_every_picture_is_there_and_small():
     assert all((pictures / name).stat().st_size < 300_000 for name in shown)
 
 
-def test_film_is_that_of_the_study():
+def test_film_is_that_of_the_study_and_every_trend_has_its_rolling_side():
     """Smooth within 1 %, and rough by the trend."""
     assert mark('central film, smooth, 502.65').value == pytest.approx(153.0, rel=0.01)
     assert trend('central film').standing.agrees == trend('central film').rolling.agrees == 'yes'
+    assert all(one.rolling for one in TRENDS)
+    assert len(TRENDS) == 12
 
 
 @pytest.mark.parametrize(
@@ -101,15 +100,8 @@ def test_film_is_that_of_the_study():
     ],
 )
 def test_what_agrees(name, standing, rolling):
-    """What the page says of standing and of rolling roughness."""
     found = trend(name)
     assert (found.standing.agrees, found.rolling.agrees) == (standing, rolling)
-
-
-def test_every_trend_has_its_rolling_side():
-    """A trend that only one model tells would be no comparison."""
-    assert all(one.rolling for one in TRENDS)
-    assert len(TRENDS) == 12
 
 
 def test_asperities_move_to_the_centre():
@@ -119,18 +111,14 @@ def test_asperities_move_to_the_centre():
         assert change.value < -2 * change.error < 0
 
 
-def test_statistical_contact_makes_efficiency_rise():
-    """Without rolling losses: at every step with contact, and over the whole range of speeds."""
+def test_statistical_contact_and_other_rules_of_friction():
+    """Efficiency rises without rolling losses; the central film changes sliding a little."""
     assert mark('efficiency, statistical share', 'least step').value > 1e-4
     first, last = (
         mark('efficiency, statistical share', f', {rpm} rev/min').value for rpm in ('2', '1000')
     )
     assert last > first + 0.03
     assert mark('statistical share, loaded nut').value > 1.1
-
-
-def test_other_rules_of_friction():
-    """The central film changes sliding by a few percent; friction along the track is no rule."""
     assert 1.01 < mark('sliding torque with the central film').value < 1.08
     assert mark('torque of friction along the track over ours').value > 5
 
@@ -138,46 +126,26 @@ def test_other_rules_of_friction():
 @pytest.mark.parametrize(
     ('task', 'columns', 'tolerance'),
     [
+        (task_of('contact', 600, 2400), 'central_film minimum_film', 2e-3),
+        (task_of('contact', 600, 2400, case='short inlet'), 'central_film max_pressure', 2e-3),
         (
-            StudyTask(kind='contact', rpm=600.0, load=2400.0),
-            ('central_film', 'minimum_film'),
-            2e-3,
-        ),
-        (
-            StudyTask(kind='contact', rpm=600.0, load=2400.0, case='short inlet'),
-            ('central_film', 'max_pressure'),
-            2e-3,
-        ),
-        (
-            StudyTask(kind='contact', rpm=10.0, load=0.0, draw=3),
-            ('rcs', 'asperity_share', 'asperity_distance', 'mean_film'),
+            task_of('contact', 10, 0, draw=3),
+            'rcs asperity_share asperity_distance mean_film',
             0.02,
         ),
+        (task_of('contact', 5, 1000, draw=1, case='relieved nut'), 'rcs mean_film', 0.02),
         (
-            StudyTask(kind='contact', rpm=5.0, load=1000.0, draw=1, case='relieved nut'),
-            ('rcs', 'mean_film'),
-            0.02,
-        ),
-        (
-            StudyTask(kind='screw', rpm=1000.0, load=1000.0),
-            ('friction_torque', 'sliding_torque', 'track_torque', 'central_film'),
+            task_of('screw', 1000, 1000),
+            'friction_torque sliding_torque track_torque central_film',
             5e-3,
         ),
+        (task_of('screw', 300, 0), 'friction_torque friction_coefficient rcs rcs_deviation', 5e-3),
         (
-            StudyTask(kind='screw', rpm=300.0, load=0.0),
-            ('friction_torque', 'friction_coefficient', 'rcs', 'rcs_deviation'),
-            5e-3,
-        ),
-        (
-            StudyTask(kind='screw', rpm=20.0, load=0.0, draw=0, case='standing'),
-            ('friction_torque', 'friction_coefficient', 'rcs', 'asperity_coefficient'),
+            task_of('screw', 20, 0, draw=0, case='standing'),
+            'friction_torque friction_coefficient rcs asperity_coefficient',
             0.02,
         ),
-        (
-            StudyTask(kind='formulas', rpm=600.0, load=2400.0),
-            ('rcs_loaded', 'friction_torque'),
-            1e-4,
-        ),
+        (task_of('formulas', 600, 2400), 'rcs_loaded friction_torque', 1e-4),
     ],
     ids=lambda value: value.key if isinstance(value, StudyTask) else '',
 )
@@ -186,6 +154,6 @@ def test_rows_are_what_the_code_solves(task, columns, tolerance):
     kept = ROWS[task.key]
     row, _ = solve_task(SCREW, OIL, task, kept.inputs)
     assert row.status == kept.status
-    for name in columns:
+    for name in columns.split():
         assert getattr(kept, name) > 0
         assert getattr(row, name) == pytest.approx(getattr(kept, name), rel=tolerance), name

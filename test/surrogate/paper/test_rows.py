@@ -8,7 +8,6 @@ import math
 import numpy as np
 import pytest
 from surrogate.asperities.law import VERSION
-from surrogate.files import InputError
 from surrogate.paper import curves
 from surrogate.paper.cases import NEEDS, SHORT, SMOOTH, STANDING, StudyTask, tasks
 from surrogate.paper.rows import inputs_hash, read_rows, StudyRow, write_rows
@@ -20,36 +19,24 @@ SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 BASE = StudyRow(inputs='a', kind='contact', rpm=5.0, load=0.0, draw=0, status='CONVERGED', rcs=0.1)
 
 
-def test_every_task_is_asked_once():
-    """Figures share their solves; what keeps most fields wins."""
+def test_every_task_is_asked_once_and_more_draws_are_more_rough_contacts(refused):
+    """Figures share their solves; the whole screw rolls without draws, but for one."""
     wanted = tasks(tuple(NEEDS), 6)
     assert len({task.key for task in wanted}) == len(wanted)
     first = next(task for task in wanted if (task.rpm, task.load, task.draw) == (5.0, 0.0, 0))
     assert first.fields == 'map'
     assert len(tasks(('7',), 1)) == 4
-
-
-def test_more_draws_are_more_tasks_of_rough_contacts():
-    """Of the study's roughness; the whole screw rolls and has none, but for one that stands."""
     few, many = (tasks(('trends',), draws) for draws in (2, 6))
     more = {task.key for task in many} - {task.key for task in few}
     assert len(more) == len(many) - len(few) > 4
     assert {task.kind for task in many if task.key in more} == {'contact'}
     assert {task.draw for task in many if task.kind == 'screw' and task.rolls} == {SMOOTH}
     assert {task.draw for task in many if task.kind == 'screw' and not task.rolls} == {0}
+    refused('figure_5', tasks, ('5',), 6)
+    refused('draws_0', tasks, ('7',), 0)
 
 
-@pytest.mark.parametrize(
-    ('figures', 'draws', 'words'),
-    [(('5',), 6, "figure is '5', allowed are 4, 6b"), (('7',), 0, 'draws is 0, allowed is 1')],
-)
-def test_what_is_not_made_is_refused(figures, draws, words):
-    """One sentence."""
-    with pytest.raises(InputError, match=words):
-        tasks(figures, draws)
-
-
-def test_rows_come_back_as_they_were_written(tmp_path):
+def test_rows_come_back_by_their_key_and_broken_tables_are_refused(tmp_path, refused):
     """NaN, negative draws and names with blanks included; rows of other inputs are left."""
     rows = [BASE, replace(BASE, draw=SMOOTH, case=SHORT, load=500.0), replace(BASE, inputs='b')]
     write_rows(tmp_path / 'paper.csv', rows)
@@ -59,13 +46,14 @@ def test_rows_come_back_as_they_were_written(tmp_path):
     assert (first.rcs, first.draw, first.status) == (0.1, 0, 'CONVERGED')
     assert math.isnan(first.friction_torque)
     assert [path.name for path in tmp_path.iterdir()] == ['paper.csv']
-
-
-def test_a_broken_table_is_refused(tmp_path, refused):
-    """With its path."""
+    task = StudyTask(kind='contact', rpm=5.0, load=0.0, draw=0)
+    assert task.key == BASE.key == 'contact_ours_5rpm_0N_draw0'
     (tmp_path / 'paper.csv').write_text('inputs,kind,rpm\na,contact,fast\n')
     refused('paper_cannot_read', read_rows, tmp_path / 'paper.csv')
     assert read_rows(tmp_path / 'none.csv') == {}
+    write_rows(tmp_path / 'paper.csv', [BASE])
+    with open_pool(1) as pool:
+        refused('rows_without_results', run_study, tmp_path, tasks(('7',), 1), pool)
 
 
 def test_another_screw_is_another_study():
@@ -99,13 +87,6 @@ def test_a_study_goes_on_where_it_stopped(tmp_path):
     assert list(read_rows(tmp_path / 'paper.csv')) == [task.key for task in wanted[:3]]
 
 
-def test_rows_of_an_earlier_version_are_refused(tmp_path):
-    """They came without the results that are kept now."""
-    write_rows(tmp_path / 'paper.csv', [BASE])
-    with open_pool(1) as pool, pytest.raises(InputError, match='rows without the kept results'):
-        run_study(tmp_path, tasks(('7',), 1), pool)
-
-
 def test_mean_and_spread_over_draws():
     """Standard deviation and error of two draws by hand; rows that failed are left out."""
     rows = [
@@ -124,35 +105,19 @@ def test_mean_and_spread_over_draws():
 
 
 def line(at, mean):
-    """Return a curve without spread."""
     nothing = np.full(len(at), math.nan)
     return curves.Curve(
         at=np.array(at), mean=np.array(mean), deviation=nothing, error=nothing, draws=1
     )
 
 
-def test_crossing_by_logarithms():
+def test_crossing_by_logarithms_and_the_map_is_a_grid():
     """Between 0.1 and 0.001 half way in the logarithm; NaN where it never passes."""
     assert curves.crossing(line([10.0, 40.0], [0.1, 0.001]), 0.01) == pytest.approx(20.0)
     assert curves.crossing(line([10.0, 40.0], [0.01, 0.0]), 0.01) == pytest.approx(10.0)
     assert math.isnan(curves.crossing(line([10.0, 40.0], [0.1, 0.02]), 0.01))
     assert math.isnan(curves.crossing(line([10.0, 40.0], [0.001, 0.0]), 0.01))
     assert curves.lowest(line([1.0, 2.0, 3.0], [5.0, 4.0, 6.0])) == (2.0, 4.0)
-
-
-def test_constant_friction_is_that_of_the_table(table):
-    """The comparator of the maps is the reference table's, at its preload of 1 kN."""
-    row = table('constant_friction.csv')[0]
-    screw = replace(SCREW, preload=1000.0)
-    for load in (0.5, 1.0, 2.0):
-        expected = float(row[f'eta_at_{load:g}_preload'])
-        assert curves.constant_friction_efficiency(screw, 1000.0 * load) == pytest.approx(
-            expected, abs=1e-3
-        )
-
-
-def test_the_map_is_a_grid():
-    """Loads by speeds, of the rolling screw; NaN for what did not converge."""
     rows = [
         replace(BASE, kind='screw', load=load, rpm=rpm, rcs=load * rpm)
         for load in (50.0, 100.0)
@@ -166,7 +131,11 @@ def test_the_map_is_a_grid():
     np.testing.assert_array_equal(values, [[250.0, math.nan], [500.0, 1000.0]])
 
 
-def test_key_names_the_task():
-    """A row has the key of its task."""
-    task = StudyTask(kind='contact', rpm=5.0, load=0.0, draw=0)
-    assert task.key == BASE.key == 'contact_ours_5rpm_0N_draw0'
+def test_constant_friction_is_that_of_the_table(table):
+    """The comparator of the maps is the reference table's, at its preload of 1 kN."""
+    row = table('constant_friction.csv')[0]
+    screw = replace(SCREW, preload=1000.0)
+    for load in (0.5, 1.0, 2.0):
+        expected = float(row[f'eta_at_{load:g}_preload'])
+        found = curves.constant_friction_efficiency(screw, 1000.0 * load)
+        assert found == pytest.approx(expected, abs=1e-3)

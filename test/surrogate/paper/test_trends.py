@@ -34,10 +34,16 @@ def test_course(values, expected):
     assert judged.course(np.array(values), np.full(len(values), 0.1)) == expected
 
 
-def test_a_change_as_large_as_the_tolerance_is_none():
-    """Equality belongs to what counts as none."""
+def test_a_change_as_large_as_the_tolerance_is_none_and_words_of_a_course():
+    """Equality counts as no change; words have value and place of the start and of each turn."""
     assert judged.course(np.array([1.0, 1.5]), np.full(2, 0.5)) == []
     assert judged.course(np.array([1.5, 1.0]), np.full(2, 0.5)) == []
+    at = np.array([2.0, 20.0, 1000.0])
+    found = judged.read_course(at, np.array([90.0, 50.0, 205.0]), ('falls', 'rises'), 'rev/min')
+    assert found == judged.Reading(
+        said='90 at 2 rev/min, falls to 50 at 20, rises to 205 at 1000', agrees='yes'
+    )
+    assert judged.read_course(at[:1], at[:1], ('falls',), 'N') is None
 
 
 @pytest.mark.parametrize(
@@ -51,16 +57,6 @@ def test_agreement(values, agrees):
     )
     assert found is not None
     assert found.agrees == agrees
-
-
-def test_words_of_a_course():
-    """Value and place of the start and of each turn."""
-    at = np.array([2.0, 20.0, 1000.0])
-    found = judged.read_course(at, np.array([90.0, 50.0, 205.0]), ('falls', 'rises'), 'rev/min')
-    assert found == judged.Reading(
-        said='90 at 2 rev/min, falls to 50 at 20, rises to 205 at 1000', agrees='yes'
-    )
-    assert judged.read_course(at[:1], at[:1], ('falls',), 'N') is None
 
 
 def test_onsets_are_judged_by_the_film_ratio():
@@ -102,10 +98,8 @@ def test_table_and_summary():
         judged.Trend(name='one', published='falls', standing=no, rolling=yes),
         judged.Trend(name='two', published='rises', standing=None, rolling=no),
     ]
-    assert judged.trend_table(found).splitlines()[2:] == [
-        '| one | falls | b | no | a | yes |',
-        '| two | rises |  |  | b | no |',
-    ]
+    expected = ['| one | falls | b | no | a | yes |', '| two | rises |  |  | b | no |']
+    assert judged.trend_table(found).splitlines()[2:] == expected
     assert judged.summary(found).splitlines() == [
         '* Rolling roughness, agree: one.',
         '* Rolling roughness, agree in part: none.',

@@ -31,31 +31,20 @@ def test_grades_are_those_of_the_standard(refused):
 
 
 def test_a_pair_is_the_plain_sum_of_both():
-    """Heights add; mean squares add, because the phases are independent."""
+    """Heights add as they stand; mean squares add, because the phases are independent."""
     x, y = np.linspace(-1e-4, 1e-4, 40), np.linspace(-4e-4, 4e-4, 30)
     raceway, ball = draw_raceway(RACEWAY, 6), draw_raceway(BALL, 6, field=1)
     pair = draw_pair(RACEWAY, BALL, 6)
-    np.testing.assert_allclose(
-        pair.heights(x, y), raceway.heights(x, y) + ball.heights(x, y), atol=1e-18
-    )
+    expected = raceway.heights(x, y) + ball.heights(x, y)
+    np.testing.assert_allclose(pair.heights(x, y), expected, atol=1e-18)
     assert wave_rms(pair) == pytest.approx(math.hypot(wave_rms(raceway), wave_rms(ball)))
     assert pair.shortest_wavelength == min(raceway.shortest_wavelength, ball.shortest_wavelength)
-
-
-def test_scales_and_planes_go_into_the_sum():
-    """A patch of one and a raw surface of the other add as they stand."""
     x, y = np.linspace(-1e-4, 1e-4, 20), np.linspace(-4e-4, 4e-4, 20)
     one = replace(draw_raceway(RACEWAY, 1), scale=1.7, plane=(1e-7, 1e-4, -2e-4))
     other = replace(draw_raceway(BALL, 2), scale=0.6, plane=(0.0, 0.0, 3e-4))
-    np.testing.assert_allclose(
-        summed(one, other).heights(x, y), one.heights(x, y) + other.heights(x, y), atol=1e-18
-    )
-
-
-def test_a_smooth_ball_changes_nothing():
-    """Rq 0 is a second field of height 0."""
+    expected = one.heights(x, y) + other.heights(x, y)
+    np.testing.assert_allclose(summed(one, other).heights(x, y), expected, atol=1e-18)
     smooth = scale_spectrum(RoughnessSpectrum(rms=0.0))
     x = np.linspace(0, 1e-3, 30)
-    np.testing.assert_allclose(
-        draw_pair(RACEWAY, smooth, 3).heights(x, x), draw_raceway(RACEWAY, 3).heights(x, x)
-    )
+    wanted = draw_raceway(RACEWAY, 3).heights(x, x)
+    np.testing.assert_allclose(draw_pair(RACEWAY, smooth, 3).heights(x, x), wanted)

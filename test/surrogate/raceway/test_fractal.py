@@ -53,7 +53,6 @@ def rms_over(surface, window, points=(151, 451)):
 
 @given(x=PLACE, y=PLACE, seed=st.integers(0, 2**32))
 def test_heights_are_the_published_sum(x, y, seed):
-    """The matrix product and the printed double sum agree to rounding."""
     found = fractal_surface(COARSE, seed).heights([x], [y])[0, 0]
     assert found == pytest.approx(direct_sum(COARSE, seed, x, y), rel=1e-9, abs=1e-16)
 
@@ -82,7 +81,6 @@ def test_rms_follows_from_the_constants():
 
 
 def test_a_shorter_wave_adds_and_changes_nothing():
-    """Refining the surface keeps its long waves, so that resolution studies compare one draw."""
     long, short = fractal_surface(COARSE, 3), fractal_surface(NOMINAL, 3)
     count = len(long.phase)
     assert len(short.phase) == count + 5 * NOMINAL.ridges
@@ -106,8 +104,8 @@ def test_a_rescaled_patch_has_the_rms_of_the_datasheet(seed):
     assert abs(np.polyfit(y, heights.mean(axis=0), 1)[0]) * 1.6e-3 < 0.05 * NOMINAL.rms
 
 
-def test_the_factor_of_a_patch_is_logged(caplog):
-    """One line says kind, rms before, window and factor."""
+def test_the_factor_of_a_patch_is_logged_and_another_one_starts_raw(caplog):
+    """One line says kind, rms before, window and factor; a second patch replaces the first."""
     with caplog.at_level(logging.INFO, 'surrogate.raceway.patch'):
         patch = take_patch(fractal_surface(NOMINAL, 0), 'rescaled', HERTZ, NOMINAL.rms)
     (line,) = caplog.messages
@@ -115,6 +113,11 @@ def test_the_factor_of_a_patch_is_logged(caplog):
     assert line == (
         f'patch rescaled: rms {1e6 * before:.4g} um over 0.2 x 1.6 mm, times {patch.scale:.4g}'
     )
+    surface = fractal_surface(NOMINAL, 5)
+    once = take_patch(surface, 'cut', SMALL, NOMINAL.rms)
+    again = take_patch(take_patch(surface, 'rescaled', HERTZ, 9e-6), 'cut', SMALL, NOMINAL.rms)
+    assert again.scale == once.scale == 1.0
+    assert again.plane == once.plane
 
 
 def test_cut_patches_scatter_by_draw():
@@ -132,28 +135,17 @@ def test_cut_patches_scatter_by_draw():
     assert np.all(levelled <= tilted * 1.001)
 
 
-def test_taking_a_patch_again_starts_from_the_raw_surface():
-    """A second patch replaces the first instead of scaling it once more."""
-    surface = fractal_surface(NOMINAL, 5)
-    once = take_patch(surface, 'cut', SMALL, NOMINAL.rms)
-    again = take_patch(take_patch(surface, 'rescaled', HERTZ, 9e-6), 'cut', SMALL, NOMINAL.rms)
-    assert again.scale == once.scale == 1.0
-    assert again.plane == once.plane
-
-
 @given(x=PLACE, y=PLACE, seed=st.integers(0, 20))
 def test_a_shift_moves_the_place_to_the_centre(x, y, seed):
     """Raw surface or patch: heights(0, 0) of the shifted are heights(x, y) of the first."""
     raw = fractal_surface(COARSE, seed)
     for surface in (raw, take_patch(raw, 'rescaled', HERTZ, COARSE.rms)):
         moved = shifted(surface, x, y)
-        assert moved.heights([1e-5], [2e-5])[0, 0] == pytest.approx(
-            surface.heights([x + 1e-5], [y + 2e-5])[0, 0], rel=1e-6, abs=1e-14
-        )
+        expected = surface.heights([x + 1e-5], [y + 2e-5])[0, 0]
+        assert moved.heights([1e-5], [2e-5])[0, 0] == pytest.approx(expected, rel=1e-6, abs=1e-14)
 
 
 def test_a_lay_runs_along_its_direction():
-    """A longitudinal lay is smooth along x and rough along y, a transverse one the reverse."""
     x = np.arange(0, 1e-3, 2e-6)
     lags = np.array([4])
     ratio = {}
@@ -170,7 +162,6 @@ def test_a_lay_runs_along_its_direction():
 
 
 def test_a_lay_keeps_the_rms():
-    """Only directions differ, so the rms over a large area is that of the isotropic surface."""
     x = np.linspace(-40e-3, 40e-3, 300)
     rms = [
         np.sqrt(
@@ -196,7 +187,6 @@ def test_a_lay_keeps_the_rms():
     ],
 )
 def test_bad_input_is_one_sentence(act, sentence, says):
-    """Each mistake names the value and what is allowed."""
     with pytest.raises(InputError) as caught:
         act()
     assert says(sentence) in str(caught.value)

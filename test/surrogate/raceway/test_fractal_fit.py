@@ -20,8 +20,8 @@ ALONG = np.arange(0, 4e-3, SPACING)
 TRACES = np.linspace(0, 4e-3, 64)
 
 
-def test_expected_structure_function_is_the_mean_of_many():
-    """Over many places and draws the measured function tends to the expected one."""
+def test_the_structure_function_is_the_mean_of_many_and_tends_to_the_variance():
+    """Over many places and draws; heights far apart differ by 2 Rq^2 on average."""
     lags = np.array([1, 4, 16, 64])
     measured = np.mean(
         [
@@ -30,13 +30,8 @@ def test_expected_structure_function_is_the_mean_of_many():
         ],
         axis=(0, 2),
     )
-    np.testing.assert_allclose(
-        measured, expected_structure_function(NOMINAL, lags * SPACING), rtol=0.06
-    )
-
-
-def test_far_apart_heights_differ_by_twice_the_variance():
-    """The structure function of waves tends to 2 Rq^2 on average."""
+    expected = expected_structure_function(NOMINAL, lags * SPACING)
+    np.testing.assert_allclose(measured, expected, rtol=0.06)
     far = np.mean(expected_structure_function(NOMINAL, np.linspace(0.05, 0.5, 4000)))
     assert far == pytest.approx(2 * theoretical_rms(NOMINAL) ** 2, rel=0.1)
 
@@ -54,7 +49,6 @@ def test_dimension_and_roughness_come_back(seed):
 
 @pytest.mark.parametrize('dimension', [2.2, 2.4, 2.85])
 def test_other_dimensions_come_back(dimension):
-    """The fit is not tuned to the nominal surface."""
     other = replace(NOMINAL, fractal_dimension=dimension)
     fit = identify_fractal(fractal_surface(other, 1).heights(ALONG, TRACES), SPACING, NOMINAL)
     assert fit.fractal_dimension == pytest.approx(dimension, abs=0.03)
@@ -72,18 +66,14 @@ def test_a_straight_line_through_the_logarithms_is_biased():
     assert 3 - slope / 2 == pytest.approx(2.637, abs=0.02)
 
 
-def test_one_profile_is_enough_for_a_rough_answer():
-    """One profile: D within 0.1, no error estimate; its slope and height do not matter."""
+def test_one_profile_is_enough_and_a_lay_is_profiled_across():
+    """D within 0.1 without error estimate; slope and height of a profile do not matter."""
     profile = fractal_surface(NOMINAL, 0).heights(ALONG, [0.0])[:, 0]
     fit = identify_fractal(profile, SPACING, NOMINAL)
     assert fit.fractal_dimension == pytest.approx(2.68, abs=0.1)
     assert math.isnan(fit.dimension_error)
     tilted = identify_fractal(profile + 1e-3 + 0.01 * ALONG, SPACING, NOMINAL)
     assert tilted.fractal_dimension == pytest.approx(fit.fractal_dimension, abs=1e-4)
-
-
-def test_a_profile_across_a_lay():
-    """A surface with a lay is identified across it, from traces that are far apart along it."""
     surface = fractal_surface(NOMINAL, 2, lay='longitudinal')
     heights = surface.heights(np.linspace(0, 80e-3, 64), ALONG).T
     fit = identify_fractal(heights, SPACING, NOMINAL, lay='longitudinal', across=True)
@@ -103,5 +93,4 @@ def test_a_profile_across_a_lay():
     ],
 )
 def test_bad_profiles_are_one_sentence(heights, spacing, sentence, refused):
-    """Each says what is wrong and what is allowed."""
     refused(sentence, identify_fractal, heights, spacing, NOMINAL)

@@ -22,12 +22,11 @@ def write(folder, *lines, name='surface.csv'):
 
 
 def columns(*values):
-    """Return the lines of a table."""
     return [','.join(repr(float(number)) for number in row) for row in zip(*values, strict=True)]
 
 
-def test_a_profile_with_places(tmp_path):
-    """Along x or y, with units of each column, comments and blank lines left out."""
+def test_a_profile_with_places_in_one_column_or_one_line(tmp_path):
+    """Along x or y, with units of each column; the spacing says along which direction."""
     lines = columns(X, PROFILE)
     along = read_surface(write(tmp_path, '# stylus', 'x_um, z_nm', '', *lines))
     assert along.raw.shape == (40, 1)
@@ -37,10 +36,6 @@ def test_a_profile_with_places(tmp_path):
     assert across.raw.shape == (1, 40)
     assert across.spacing_y == pytest.approx(0.5e-3)
     np.testing.assert_allclose(across.raw[0], PROFILE * 1e-6)
-
-
-def test_a_profile_in_one_column_or_one_line(tmp_path):
-    """Both mean the same; the spacing says along which direction it was measured."""
     column = read_surface(write(tmp_path, 'z_nm,spacing_x_um=0.5', *PROFILE))
     line = read_surface(write(tmp_path, 'z_nm spacing_x_nm=500', ';'.join(map(str, PROFILE))))
     across = read_surface(write(tmp_path, 'z_nm,spacing_y_um=5e-1', *PROFILE))
@@ -50,7 +45,7 @@ def test_a_profile_in_one_column_or_one_line(tmp_path):
     assert line.spacing_x == pytest.approx(column.spacing_x) == pytest.approx(0.5e-6)
 
 
-def test_a_map_as_a_matrix_and_as_points(tmp_path):
+def test_a_map_as_a_matrix_and_as_points_and_options(tmp_path):
     """Columns run along x and lines along y; points come in any order."""
     matrix = read_surface(write(tmp_path, 'z_nm,spacing_x_um=0.5,spacing_y_um=2', *columns(*MAP)))
     places = [part.ravel() for part in np.meshgrid(X, Y, indexing='ij')]
@@ -61,10 +56,6 @@ def test_a_map_as_a_matrix_and_as_points(tmp_path):
         np.testing.assert_allclose(found.raw, MAP * 1e-9)
         assert (found.spacing_x, found.spacing_y) == pytest.approx((0.5e-6, 2e-6))
         assert found.heights([0.0], [0.0]).shape == (1, 1)
-
-
-def test_options_reach_the_surface(tmp_path):
-    """Filter and mirror are those of the measured surface."""
     path = write(tmp_path, 'x_um,z_nm', *columns(X, PROFILE))
     found = read_surface(path, shortest_wavelength=4e-6, outside='mirror')
     assert found.shortest_wavelength == 4e-6
@@ -99,7 +90,6 @@ def test_options_reach_the_surface(tmp_path):
     ],
 )
 def test_bad_files_are_one_sentence(tmp_path, lines, sentence, refused):
-    """The sentence names the file, the line and what is allowed."""
     path = write(tmp_path, *lines)
     with refused(sentence) as caught:
         read_surface(path)
@@ -107,12 +97,13 @@ def test_bad_files_are_one_sentence(tmp_path, lines, sentence, refused):
     assert '\n' not in str(caught.value)
 
 
-def test_files_that_cannot_be_read(tmp_path, refused):
-    """No file, no text."""
+def test_files_that_cannot_be_read_or_need_the_library(tmp_path, refused, monkeypatch):
     refused('there_such_file', read_surface, tmp_path / 'absent.csv')
     path = tmp_path / 'binary.csv'
     path.write_bytes(bytes(range(256)))
     refused('cannot_read_as', read_surface, path)
+    monkeypatch.setitem(sys.modules, 'SurfaceTopography', None)
+    refused('needs_surfacetopography', read_surface, write(tmp_path, 'nothing', name='map.x3p'))
 
 
 def test_areal_files(tmp_path, refused):
@@ -126,9 +117,3 @@ def test_areal_files(tmp_path, refused):
     assert (found.spacing_x, found.spacing_y) == pytest.approx((0.5e-6, 2e-6))
     garbage = write(tmp_path, 'nothing', name='map.x3p')
     refused('map_x3p_cannot', read_surface, garbage)
-
-
-def test_without_the_library_areal_files_are_refused(tmp_path, monkeypatch, refused):
-    """One sentence names the extra to install."""
-    monkeypatch.setitem(sys.modules, 'SurfaceTopography', None)
-    refused('needs_surfacetopography', read_surface, write(tmp_path, 'nothing', name='map.x3p'))

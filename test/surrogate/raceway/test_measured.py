@@ -33,7 +33,6 @@ def test_points_are_kept_and_places_between_interpolated():
 
 @given(x=INSIDE, y=st.floats(-0.24e-3, 0.24e-3))
 def test_a_place_has_one_height_whatever_the_grid(x, y):
-    """As with fractal surfaces."""
     surface = measured_surface(HEIGHTS, STEP, 2 * STEP)
     alone = surface.heights([x], [y])[0, 0]
     grid = surface.heights([0.1e-3, x, -0.1e-3], [y, 0.0])
@@ -41,11 +40,16 @@ def test_a_place_has_one_height_whatever_the_grid(x, y):
     assert grid[1, 0] == pytest.approx(alone, rel=1e-9, abs=1e-18)
 
 
-def test_outside_the_map_is_refused(refused):
-    """The sentence says how far the contact reaches and how far the map does."""
+def test_outside_the_map_is_refused_and_a_profile_goes_on_across(refused):
+    """Along x it stands for a transverse lay, along y for a longitudinal one."""
     surface = measured_surface(HEIGHTS, STEP, 2 * STEP, source='map.csv')
     refused('map_contact_needs', surface.heights, [0.0, 0.3e-3], [0.0])
     refused('along_y_map', surface.heights, [0.0], [-0.25e-3])
+    profile = HEIGHTS[:, :1]
+    transverse = measured_surface(profile, STEP, STEP).heights(X, [-1.0, 0.0, 5.0])
+    np.testing.assert_allclose(transverse, np.repeat(profile, 3, axis=1), atol=1e-20)
+    longitudinal = measured_surface(profile.T, STEP, STEP).heights([-1.0, 0.0, 5.0], X)
+    np.testing.assert_allclose(longitudinal, np.repeat(profile.T, 3, axis=0), atol=1e-20)
 
 
 @given(x=INSIDE)
@@ -55,15 +59,6 @@ def test_a_mirrored_map_goes_on_without_a_jump(x):
     first, turned, again = surface.heights([x, 0.4e-3 - x, x + 0.8e-3], [0.0])[:, 0]
     assert turned == pytest.approx(first, rel=1e-6, abs=1e-14)
     assert again == pytest.approx(first, rel=1e-6, abs=1e-14)
-
-
-def test_a_profile_goes_on_in_the_other_direction():
-    """Along x it stands for a transverse lay, along y for a longitudinal one."""
-    profile = HEIGHTS[:, :1]
-    transverse = measured_surface(profile, STEP, STEP).heights(X, [-1.0, 0.0, 5.0])
-    np.testing.assert_allclose(transverse, np.repeat(profile, 3, axis=1), atol=1e-20)
-    longitudinal = measured_surface(profile.T, STEP, STEP).heights([-1.0, 0.0, 5.0], X)
-    np.testing.assert_allclose(longitudinal, np.repeat(profile.T, 3, axis=0), atol=1e-20)
 
 
 def test_patches_work_as_on_fractal_surfaces(refused):
@@ -111,6 +106,5 @@ def test_the_filter_halves_a_wave_at_its_cutoff():
     ],
 )
 def test_bad_maps_are_one_sentence(heights, options, sentence, refused):
-    """Each says what is wrong and what is allowed."""
     with refused(sentence):
         measured_surface(heights, **{'spacing_x': STEP, 'spacing_y': 2 * STEP, **options})

@@ -28,7 +28,6 @@ def one_wave(along, across, amplitude=1e-7):
 
 @given(width=st.floats(1e-4, 5e-3), seed=st.integers(0, 50), y=st.floats(-1e-3, 1e-3))
 def test_heights_repeat_across_the_track(width, seed, y):
-    """To rounding, at any place, after any number of widths."""
     surface = periodic_across(draw_raceway(scale_spectrum(SPECTRUM), seed), width).surface
     heights = surface.heights(np.linspace(0, 1e-3, 7), y + width * np.array([0, 1, -1, 10]))
     np.testing.assert_allclose(heights, heights[:, :1] * np.ones(4), atol=1e-17)
@@ -48,8 +47,8 @@ def test_waves_move_by_half_a_step_across_or_keep_their_length(width, seed):
     np.testing.assert_array_equal(after.phase, before.phase)
 
 
-def test_the_cost_falls_with_the_width():
-    """A surface that fits already costs nothing; ten times the width costs a tenth or less."""
+def test_the_cost_falls_with_the_width_and_single_waves_keep_their_length():
+    """A steep wave keeps its length, one that runs across keeps its part along the track."""
     surface = draw_raceway(scale_spectrum(SPECTRUM), 1)
     narrow, wide, wider = (periodic_across(surface, width) for width in (5e-4, 5e-3, 5e-2))
     for name in ('turn', 'length_change', 'largest_length_change'):
@@ -58,10 +57,6 @@ def test_the_cost_falls_with_the_width():
     assert wider.length_change < 0.02 * narrow.length_change
     again = periodic_across(wide.surface, wide.width)
     assert (again.turn, again.length_change, again.lost) == pytest.approx((0, 0, 0), abs=1e-9)
-
-
-def test_single_waves():
-    """A steep wave keeps its length, one that runs across keeps its part along the track."""
     turned = periodic_across(one_wave(40.0, 1.1), 1e-3)
     assert turned.surface.wave_number_y == pytest.approx(2e3 * math.pi)
     assert turned.length_change == pytest.approx(0, abs=1e-12)
@@ -84,7 +79,6 @@ def test_ridges_along_the_track_stay_so():
 
 
 def test_what_has_no_period_is_refused(refused):
-    """A width that is not positive, and a surface that slopes."""
     refused('strip_width_1', periodic_across, one_wave(1.0, 1.0), -1e-3)
     with refused('slopes_across_track'):
         periodic_across(replace(one_wave(1.0, 1.0), plane=(0.0, 0.0, 1e-3)), 1e-3)

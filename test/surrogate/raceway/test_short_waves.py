@@ -26,7 +26,7 @@ def surface():
     return take_patch(fractal_surface(ROUGHNESS, 1), 'rescaled', window, ROUGHNESS.rms)
 
 
-def test_long_waves_stay_as_they_are(surface):
+def test_long_waves_stay_as_they_are_and_some_must_be_left(surface, refused):
     """Only amplitudes of shorter waves go; nothing is cut below the shortest."""
     kept = without_short_waves(surface, 20e-6)
     assert kept.shortest_wavelength == pytest.approx(4e-3 / 1.5**13)
@@ -35,10 +35,6 @@ def test_long_waves_stay_as_they_are(surface):
     assert 0 < lost.std() < 0.5 * kept.heights(AXIS, AXIS).std()
     whole = without_short_waves(surface, 13e-6)
     assert np.array_equal(whole.heights(AXIS, AXIS), surface.heights(AXIS, AXIS))
-
-
-def test_a_cut_that_leaves_no_wave_is_refused(surface, refused):
-    """The sentence names the length and what is allowed."""
     refused('5000_um_longest', without_short_waves, surface, 5e-3)
 
 

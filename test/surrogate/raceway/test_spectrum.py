@@ -62,5 +62,4 @@ def test_the_waves_of_a_lay_fan_about_its_normal(lay, centre):
     ],
 )
 def test_inputs_that_no_roughness_has_are_refused(changed, message, refused):
-    """One sentence each: what, value, unit, allowed."""
     refused(message, RoughnessSpectrum, **{'rms': 0.12e-6, 'fractal_dimension': 2.5, **changed})

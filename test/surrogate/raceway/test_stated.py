@@ -54,7 +54,6 @@ def test_the_state_is_said_and_changes_no_wave():
     [('new', 'new', 6e9), ('run_in', 'new', 4e9), ('run_in', 'run_in', 6e9)],
 )
 def test_each_state_is_cut_at_its_own_pressure(state, traced, pressure):
-    """A profile that was traced after running in was cut by it, and bears the hardness."""
     sheet = replace(STATED, state=state, traced=traced, hardness=6e9, run_in_pressure=4e9)
     assert sheet.cutting_pressure == pressure
 
@@ -66,7 +65,6 @@ def test_pressures_may_be_equal():
 
 
 def test_what_nobody_stated_is_said(says):
-    """The long cut-off of the table, and a smooth ball."""
     raceway, _, ball = roughness_sentence(STATED, BALL).partition('; ')
     assert 'not stated' not in raceway
     assert ball.startswith('ball (G10): Rq 0.025 um')

@@ -88,9 +88,8 @@ def test_a_sampled_wave_has_the_expected_rms_and_slope(wavelength, angle):
     period = wavelength / math.cos(angle) / SPACING
     whole = rough[: round(int(len(rough) / period) * period)]
     reading = stylus.read_waves(2 * math.pi * math.cos(angle) / wavelength, BAND)
-    assert stylus.profile_rms(whole) == pytest.approx(
-        1e-7 * math.sqrt(reading.height / 2), rel=0.01
-    )
+    expected = 1e-7 * math.sqrt(reading.height / 2)
+    assert stylus.profile_rms(whole) == pytest.approx(expected, rel=0.01)
     slope = math.atan(1e-7 * math.sqrt(reading.slope / 2))
     assert stylus.profile_rms_slope(whole, SPACING) == pytest.approx(slope, rel=0.01)
 
@@ -108,7 +107,6 @@ def test_filtering_makes_nothing_up_at_the_ends():
 
 
 def test_a_profile_that_the_instrument_has_filtered_needs_no_short_cutoff():
-    """Short cut-off 0 leaves short waves whole."""
     band = ProfileBand(cutoff_short=0.0, cutoff_long=0.25e-3)
     rough = stylus.filtered_profile(sampled_wave(2.5e-6), SPACING, band)
     assert stylus.profile_rms(rough) == pytest.approx(1e-7 / math.sqrt(2), rel=1e-3)
@@ -123,11 +121,9 @@ def test_a_profile_that_the_instrument_has_filtered_needs_no_short_cutoff():
     ],
 )
 def test_profiles_that_cannot_be_filtered_are_refused(points, spacing, message, refused):
-    """Too coarse for the short filter, too short for the long one."""
     refused(message, stylus.filtered_profile, np.zeros(points), spacing, BAND)
 
 
 @pytest.mark.parametrize(('short', 'long'), [(1e-3, 1e-4), (1e-6, math.nan), (-1e-6, 1e-3)])
 def test_a_band_upside_down_is_refused(short, long, refused):
-    """Cut-offs are finite, the long one is the longer."""
     refused('cut_off', ProfileBand, cutoff_short=short, cutoff_long=long)

@@ -24,13 +24,10 @@ def cosine(amplitude=1e-7, waves=(3, 2)):
     return Tile(heights=amplitude * np.cos(phase), length=SIZE[0], width=SIZE[1])
 
 
-def test_moments_of_a_wave_are_those_of_its_slopes():
+def test_moments_and_factors_of_a_wave():
     number = 2 * math.pi * math.hypot(3 / SIZE[0], 2 / SIZE[1])
     for order in range(3):
         assert cosine().moment(order) == pytest.approx(0.5 * (1e-7 * number**order) ** 2)
-
-
-def test_a_factor_on_the_transform_multiplies_each_wave():
     tile = cosine()
     number = 2 * math.pi * math.hypot(3 / SIZE[0], 2 / SIZE[1])
     halved = tile.filtered(np.where(np.isclose(tile.wave_number, number), 0.5, 0.0))
@@ -57,14 +54,11 @@ def test_a_tile_holds_the_waves_of_its_draw():
     assert tile.heights.mean() == pytest.approx(0.0, abs=1e-18)
 
 
-def test_waves_shorter_than_asked_for_are_left_out():
+def test_shorter_waves_are_left_out_and_another_field_is_another_surface():
     tile = draw_tile(spectrum(), 3, size=SIZE, shape=SHAPE, shortest=6e-6)
     power = np.abs(np.fft.rfft2(tile.heights))
     short = tile.wave_number > 2 * math.pi / 5.5e-6
     assert power[short].max() < 1e-9 * power.max()
-
-
-def test_another_field_of_a_seed_is_another_surface():
     one, other = (
         draw_tile(spectrum(), 1, size=SIZE, shape=SHAPE, field=field).heights.ravel()
         for field in (0, 1)

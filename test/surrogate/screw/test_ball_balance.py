@@ -221,9 +221,7 @@ def test_weak_friction_leaves_the_motion_without_gross_slip(screw, load, flank):
 
 @FEW
 @given(SCREWS, FRICTION, SPEEDS, LOADS, SIGNS)
-def test_the_other_flank_turned_the_other_way_is_the_same_ball(
-    screw, friction, speed, load, sense
-):
+def test_the_other_flank_is_the_same_ball(screw, friction, speed, load, sense):
     """Half a turn about n: t, b, k, flank and speed change sign, nothing else."""
     first = coulomb(screw, sense * speed, friction, axial_force=load, flank=1)
     second = coulomb(screw, -sense * speed, friction, axial_force=load, flank=-1)
@@ -296,12 +294,8 @@ def test_absurd_friction_converges_or_says_so(screw, friction, sense):
 
 
 def assert_unknown(found):
-    """Assert that a balance that failed gives no number."""
-    assert found.status in (
-        BalanceStatus.STALLED,
-        BalanceStatus.OUT_OF_RANGE,
-        BalanceStatus.UNDETERMINED,
-    )
+    expected = (BalanceStatus.STALLED, BalanceStatus.OUT_OF_RANGE, BalanceStatus.UNDETERMINED)
+    assert found.status in expected
     assert found.motion is None
     assert math.isnan(found.torque)
     assert math.isnan(found.energy_torque)
@@ -312,7 +306,6 @@ def assert_unknown(found):
 
 
 def test_failures_give_no_numbers(screw):
-    """An iteration cut short, and no friction at all."""
     short = coulomb(
         screw, SPEED, 0.05, normal_force=27.6, settings=BalanceSettings(newton_limit=1)
     )
@@ -324,7 +317,6 @@ def test_failures_give_no_numbers(screw):
 
 
 def test_an_unloaded_ball_is_legal(screw):
-    """No contact, no loss, no motion to speak of."""
     for given_load in ({'normal_force': 0.0}, {'axial_force': 0.0}):
         found = coulomb(screw, SPEED, 0.05, **given_load)
         assert found.status is BalanceStatus.UNLOADED
@@ -347,7 +339,6 @@ def test_an_unloaded_ball_is_legal(screw):
     ],
 )
 def test_inputs_that_make_no_sense_are_refused(screw, given_input, text):
-    """What, value, unit, allowed."""
     laws = {f'{side}_traction': coulomb_traction(screw, side, 0.05) for side in SIDES}
     with pytest.raises(InputError, match=text):
         balance_ball(screw, **{'speed': SPEED, **laws, **given_input})

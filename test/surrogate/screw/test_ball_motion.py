@@ -44,9 +44,8 @@ def test_kinematics_table(table, screw, flank):
         for side in SIDES:
             along, across = ball_motion.slip_field(screw, side, motion, 0.0, 0.0)
             assert along == pytest.approx(0.0, abs=1e-12)
-            assert abs(across) * 1e3 == pytest.approx(
-                float(row['helical_slip_per_contact_mm_s']), abs=0.006
-            )
+            expected = float(row['helical_slip_per_contact_mm_s'])
+            assert abs(across) * 1e3 == pytest.approx(expected, abs=0.006)
 
 
 @given(RATES, RATES, st.tuples(RATES, RATES, RATES), ANGLES, ANGLES, FLANKS)
@@ -93,7 +92,6 @@ def test_spins_add_up_to_that_of_the_screw(speed, rotation, angle, flank):
 
 
 def test_the_even_split_has_the_spin_of_the_rates(screw):
-    """Half the spin at each contact, on both flanks."""
     for flank in (1, -1):
         motion = ball_motion.no_slip_motion(screw, 10.0, flank)
         for side in SIDES:
@@ -115,6 +113,5 @@ def test_points_keep_their_shape(screw):
 def test_slip_floor_follows_slow_motion_only(screw):
     """1 % of the helical slip, at most 1e-4 m/s, the same both ways."""
     assert ball_motion.slip_floor(screw, 1e3) == ball_motion.slip_floor(screw, -1e3) == 1e-4
-    assert ball_motion.slip_floor(screw, 1.0) == pytest.approx(
-        0.01 * no_slip_rates(screw).helical_slip
-    )
+    expected = 0.01 * no_slip_rates(screw).helical_slip
+    assert ball_motion.slip_floor(screw, 1.0) == pytest.approx(expected)

@@ -76,13 +76,18 @@ def test_coulomb_ellipse_is_that_of_hertz(screw):
     assert y.max() == pytest.approx(float(ellipse.semi_axis_y), rel=0.01)
 
 
-def test_uniform_slip_gives_the_whole_friction(screw):
+def test_uniform_slip_gives_the_whole_friction_and_a_higher_floor_less(screw):
     """Force mu Q against the slip, power mu Q V."""
     law = coulomb_traction(screw, 'screw', 0.05)
     wrench = integrate_traction(screw, 'screw', law, 27.6, np.array([0.3, -0.4, 0, 0, 0]))
     assert wrench.values[0] == pytest.approx(-0.6 * 0.05 * 27.6, rel=1e-6)
     assert wrench.values[1] == pytest.approx(0.8 * 0.05 * 27.6, rel=1e-6)
     assert wrench.power == pytest.approx(0.05 * 27.6 * 0.5, rel=1e-6)
+    law, motion = coulomb_traction(screw, 'screw', 0.05), np.array([1e-3, 0, 0, 0, 0])
+    soft = integrate_traction(screw, 'screw', law, 10.0, motion, slip_floor=1e-2)
+    hard = integrate_traction(screw, 'screw', law, 10.0, motion, slip_floor=1e-9)
+    assert soft.values[0] == pytest.approx(-0.5 / math.sqrt(101), rel=1e-9)
+    assert hard.values[0] == pytest.approx(-0.5 / math.sqrt(1.01), rel=1e-9)
 
 
 def test_pure_spin_on_a_circle(screw):
@@ -96,8 +101,6 @@ def test_pure_spin_on_a_circle(screw):
 @pytest.mark.parametrize('law', LAWS.values(), ids=LAWS)
 @given(motion=MOTIONS, load=st.floats(1.0, 100.0), direction=st.sampled_from([1.0, -1.0]))
 def test_derivatives_and_power(law, motion, load, direction):
-    """Derivatives agree with central differences, the power with forces times rates."""
-
     def values(at, force):
         return integrate_traction(SCREW, 'nut', law, force, at, direction=direction).values
 
@@ -155,15 +158,6 @@ def test_a_sample_has_about_the_friction(solved):
     assert LAWS['coulomb'].sample() is LAWS['coulomb']
 
 
-def test_a_higher_floor_softens_the_law(screw):
-    """The floor of the call counts where it is above that of the law."""
-    law, motion = coulomb_traction(screw, 'screw', 0.05), np.array([1e-3, 0, 0, 0, 0])
-    soft = integrate_traction(screw, 'screw', law, 10.0, motion, slip_floor=1e-2)
-    hard = integrate_traction(screw, 'screw', law, 10.0, motion, slip_floor=1e-9)
-    assert soft.values[0] == pytest.approx(-0.5 / math.sqrt(101), rel=1e-9)
-    assert hard.values[0] == pytest.approx(-0.5 / math.sqrt(1.01), rel=1e-9)
-
-
 def test_solved_contact_sums_as_its_friction(solved):
     """Forces, spin moment and power of `contact_friction` with the same slip field."""
     motion = no_slip_motion(SCREW, 60.0)
@@ -204,7 +198,6 @@ def test_a_share_from_elsewhere_bears_boundary_friction(solved):
 
 
 def test_inputs_that_make_no_sense_are_refused(solved, screw, refused):
-    """A contact without solution, a negative coefficient, no floor."""
     refused('without_solved_contact', solved_traction, replace(solved, status=Status.STALLED))
     refused('slip_floor_0', solved_traction, solved, slip_floor=0.0)
     refused('coefficient_0_1', coulomb_traction, screw, 'nut', -0.1)

@@ -13,15 +13,14 @@ from surrogate.ehl import Settings
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.formulas.sliding import ellipse_nodes
-from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.parameters import OperatingPoint
 from surrogate.screw import closed_form, ScrewSettings, solve_screw
 
 RPM = math.pi / 30
 WARM = 313.15
 
 
-def solve(screw: Screw, oil: Lubricant, rpm, load, kelvin=WARM) -> closed_form.ScrewResult:
-    """Solve at rev/min."""
+def solve(screw, oil, rpm, load, kelvin=WARM):
     return closed_form.solve(screw, oil, np.asarray(rpm) * RPM, load, kelvin)
 
 
@@ -35,7 +34,6 @@ def test_ellipse_nodes_integrate_the_hertz_pressure_and_its_moment():
 
 
 def test_torque_is_the_sum_of_its_parts(screw, oil):
-    """Sliding and rolling of four contacts and the parasitic torque add up."""
     dragging = replace(screw, parasitic_torque=0.02, parasitic_torque_rate=1e-3)
     result = solve(dragging, oil, 600.0, 1000.0)
     parts = sum(c.sliding_torque + c.rolling_torque for c in result.contacts)
@@ -63,16 +61,12 @@ def test_torque_has_an_interior_minimum_and_rcs_falls(screw, oil):
     assert np.all(np.diff(result.rcs[result.rcs > 0]) < 0)
 
 
-def test_at_rest_the_asperities_carry_everything(screw, oil):
-    """The limit of slow motion: RCS 1, boundary friction, and no jump from the slowest speed."""
+def test_at_rest_the_asperities_carry_everything_and_rub_by_the_slip_arm(screw, oil):
+    """Torque above the helical part of mu_a times the Hertz-weighted slip arm."""
     rest, crawl = solve(screw, oil, 0.0, 1000.0), solve(screw, oil, 1e-9, 1000.0)
     assert rest.rcs == 1.0
     assert rest.friction_coefficient == pytest.approx(screw.roughness.asperity_friction)
     assert rest.friction_torque == pytest.approx(crawl.friction_torque, rel=1e-3)
-
-
-def test_a_boundary_lubricated_contact_rubs_by_the_slip_arm(screw, oil):
-    """At rest the torque is mu_a times the Hertz-weighted slip arm, above its helical part."""
     rest = solve(screw, oil, 0.0, 0.0)
     normal = sum(float(c.normal_force) for c in rest.contacts) * screw.loaded_balls_per_nut
     helical = screw.roughness.asperity_friction * normal * no_slip_rates(screw).helical_slip
@@ -82,7 +76,6 @@ def test_a_boundary_lubricated_contact_rubs_by_the_slip_arm(screw, oil):
 @settings(max_examples=40)
 @given(st.floats(0.0, 2000.0), st.floats(0.0, 3.9), st.floats(283.0, 353.0))
 def test_friction_does_not_know_the_direction_of_the_load(rpm, ratio, kelvin):
-    """Two equal nuts: the sign of the load picks the nut, not the friction."""
     from surrogate.parameters import load_lubricant, load_screw
 
     screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
@@ -108,18 +101,14 @@ def test_a_share_by_the_film_ratio_takes_the_place_of_the_topography(screw, oil)
     assert found.rcs == found.asperity_share == 0.0
 
 
-def test_an_unloaded_nut_costs_nothing(screw, oil):
-    """Past unloading the relieved nut has no film, no contact and no loss."""
+def test_an_unloaded_nut_and_no_preload_cost_nothing(screw, oil):
+    """At zero load without preload there is no film to speak of and no friction."""
     result = solve(screw, oil, 600.0, 1.01 * UNLOADING_RATIO * screw.preload)
     for contact in result.contacts[2:]:
         assert contact.normal_force == contact.sliding_torque == contact.rolling_torque == 0
         assert np.isnan(contact.central_film)
     assert result.worst_contact in (0, 1)
     assert np.isfinite(result.friction_torque)
-
-
-def test_without_preload_and_load_nothing_is_pressed(screw, oil):
-    """Zero preload is legal; at zero load there is no film to speak of and no friction."""
     loose = replace(screw, preload=0.0)
     result = solve(loose, oil, 600.0, [0.0, 500.0])
     assert result.friction_torque[0] == 0.0
@@ -128,7 +117,6 @@ def test_without_preload_and_load_nothing_is_pressed(screw, oil):
 
 
 def test_many_points_are_many_single_points(screw, oil):
-    """An array of points gives, bit for bit, what each point gives by itself."""
     rpm, load = np.array([10.0, 600.0, 2000.0]), np.array([-3000.0, 0.0, 2000.0])
     many = solve(screw, oil, rpm, load)
     for i in range(3):

@@ -40,8 +40,8 @@ def record(rpm, load, settings=SETTINGS):
     return point, full_record(SCREW, OIL, point, settings)
 
 
-def test_record_has_the_keys_of_the_formulas_and_is_plain_json():
-    """One reader serves both tiers; the page prints it."""
+def test_record_has_the_keys_of_the_formulas_and_parts_that_add_up():
+    """Plain JSON; sliding and rolling of all contacts are the torque without parasitic part."""
     point, found = record(60, 800.0)
     formulas = closed_form_record(SCREW, OIL, point)
     assert formulas.keys() <= found.keys()
@@ -49,6 +49,12 @@ def test_record_has_the_keys_of_the_formulas_and_is_plain_json():
     assert found['tier'] == 'full'
     assert json.loads(json.dumps(to_json(found), allow_nan=False))
     assert '(estimate)' not in page(found)
+    parts = sum(c['sliding_torque_Nm'] + c['rolling_torque_Nm'] for c in found['contacts'])
+    assert parts == pytest.approx(found['friction_torque_Nm'], rel=1e-9)
+    assert found['energy_error'] < 1e-8
+    assert found['rcs'] == max(c['rcs'] for c in found['contacts'])
+    worst = max(found['contacts'], key=lambda c: (c['rcs'], -c['film_ratio']))
+    assert found['worst_contact'] == {'nut': worst['nut'], 'side': worst['side']}
 
 
 def test_the_heating_factor_is_that_by_which_a_starved_contact_is_slowed():
@@ -71,30 +77,16 @@ def test_the_heating_factor_is_that_by_which_a_starved_contact_is_slowed():
     assert flooded < told['inlet_heating_factor'] < 1.0
 
 
-def test_parts_of_the_contacts_add_up_to_the_torque():
-    """Sliding and rolling of all four contacts are the friction torque without parasitic part."""
-    _, found = record(60, 800.0)
-    parts = sum(c['sliding_torque_Nm'] + c['rolling_torque_Nm'] for c in found['contacts'])
-    assert parts == pytest.approx(found['friction_torque_Nm'], rel=1e-9)
-    assert found['energy_error'] < 1e-8
-    assert found['rcs'] == max(c['rcs'] for c in found['contacts'])
-    worst = max(found['contacts'], key=lambda c: (c['rcs'], -c['film_ratio']))
-    assert found['worst_contact'] == {'nut': worst['nut'], 'side': worst['side']}
-
-
 def test_friction_coefficient_lies_between_film_and_boundary():
-    """At rest it is the boundary coefficient, with a film well below it."""
     _, rest = record(0, 500.0)
     _, moving = record(600, 500.0)
-    assert rest['friction_coefficient'] == pytest.approx(
-        SCREW.roughness.asperity_friction, rel=0.02
-    )
+    expected = SCREW.roughness.asperity_friction
+    assert rest['friction_coefficient'] == pytest.approx(expected, rel=0.02)
     assert 0 < moving['friction_coefficient'] < 0.5 * rest['friction_coefficient']
 
 
 @pytest.mark.parametrize('settings', [SETTINGS, STANDING], ids=['rolling', 'standing'])
 def test_friction_is_integrated_with_the_slip_of_the_balance(settings):
-    """On screw and nut alike, the power over the slip field is that which the ball loses."""
     point = OperatingPoint(speed=60 * math.pi / 30, load=800.0, temperature=313.15)
     # Contacts under the very forces of the balance.
     agreed = replace(settings, coupling_tolerance=1e-4)
@@ -149,7 +141,6 @@ def test_coarse_waves_and_moved_forces_are_warned_about():
 
 
 def test_idle_nut_and_failure_give_a_reason():
-    """No number without a contact, and none after a solve that failed."""
     _, idle = record(600, 3.0 * SCREW.preload)
     assert [bool(c['reason']) for c in idle['contacts']] == [False, False, True, True]
     assert idle['normal_force_relieved_N'] == 0.0

@@ -31,16 +31,13 @@ def record(screw, oil):
     return onset_record(screw, oil, 0.0, KELVIN)
 
 
-def test_both_states_stand_in_the_record(record):
+def test_both_states_and_their_bounds_stand_in_the_record(record, screw, oil):
     new, run = record['states']['new'], record['states']['run_in']
     assert new['speed_rad_s'] > run['speed_rad_s'] > 0
     low, high = run['speed_range_rad_s']
     assert low < run['speed_rad_s'] < high < new['speed_rad_s']
     assert new['cutting_pressure_Pa'] == 7e9
     assert record['working_load_stated'] is False
-
-
-def test_the_range_is_that_of_the_bounds_of_the_sheet(screw, oil, record):
     low = run_in_at(screw, screw.roughness.run_in_low)
     found = onset_point(low, oil, 0.0, KELVIN)['speed_rad_s']
     assert record['states']['run_in']['speed_range_rad_s'][0] == found
@@ -73,17 +70,13 @@ def test_the_page_says_where_contact_is_sure_and_where_possible(record):
     assert 'assumed: it unloads the relieved nut' in page
 
 
-def test_a_profile_traced_after_running_in_has_one_state(screw, oil, record):
+def test_a_profile_traced_after_running_in_has_one_state_that_larger_loads_cut(screw, oil, record):
     traced = with_raceway(screw, state='run_in', traced='run_in')
     found = onset_record(traced, oil, 0.0, KELVIN)
     assert list(found['states']) == ['run_in']
     speed = found['states']['run_in']['speed_rad_s']
     assert speed == record['states']['new']['speed_rad_s']
     assert 'over the range' not in onset_page(found)
-
-
-def test_a_load_beyond_the_working_load_cuts_too(screw, oil):
-    traced = with_raceway(screw, state='run_in', traced='run_in')
     assert onset_record(traced, oil, -5000.0, KELVIN)['working_load_N'] == 5000.0
     found = onset_record(replace(traced, working_load=900.0), oil, 500.0, KELVIN)
     assert (found['working_load_N'], found['working_load_stated']) == (900.0, True)
@@ -133,7 +126,6 @@ def test_the_picture_falls_with_the_cutting_pressure(screw, oil, record, monkeyp
 
 
 def test_the_picture_stays_among_pressures_that_a_sheet_may_state(screw, oil, record, monkeypatch):
-    """For the hardest and the softest one, under the load that cuts."""
     cut = []
 
     def speeds(pressed, lubricant, load, kelvin, pressures):

@@ -64,18 +64,13 @@ def test_torque_from_loads_is_that_of_the_lost_power(rpm, load):
     assert found.load_change < 0.01
 
 
-def test_preload_alone_loses_power_and_has_no_efficiency():
-    """Both nuts carry the preload; nothing drives the screw."""
+def test_preload_alone_loses_power_and_the_nuts_share_their_contacts():
+    """Both nuts carry the preload; nothing drives the screw; each contact has its own ball."""
     found = at(600, 0.0)
     assert found.normal_forces[0] == pytest.approx(found.normal_forces[1])
     assert found.efficiency == 0
     assert not found.back_driving
     assert found.driving_torque == pytest.approx(found.friction_torque, rel=1e-8)
-
-
-def test_nuts_with_one_load_share_their_contacts():
-    """Without axial load both nuts have the same two contacts, each with its own ball."""
-    found = at(600, 0.0)
     first, second, third, fourth = found.contacts
     assert first.pressed is third.pressed
     assert second.pressed is fourth.pressed
@@ -85,7 +80,6 @@ def test_nuts_with_one_load_share_their_contacts():
 
 
 def test_a_warm_start_saves_work_and_changes_nothing():
-    """From a point 20 % slower, rough: the same numbers, fewer Newton iterations."""
     near = at(20, 400.0, STANDING)
     point = OperatingPoint(speed=24 * math.pi / 30, load=400.0, temperature=WARM)
     warm = solve_screw(SCREW, OIL, point, settings=STANDING, start=near)
@@ -111,7 +105,6 @@ def test_full_tier_is_near_the_formulas_at_full_film():
 
 
 def test_beyond_unloading_the_relieved_nut_is_idle():
-    """Its contacts are not solved and lose nothing; zero preload is the same at any load."""
     found = at(600, 3.0 * SCREW.preload)
     assert found.converged, found.status
     assert found.normal_forces[1] == 0.0
@@ -135,7 +128,6 @@ def test_a_nut_about_to_unload_is_idle_and_named():
 
 
 def test_the_raceway_belongs_to_the_draw():
-    """The same for every side and load; another draw is another place."""
     first, again, other = (draw_stated(SCREW.roughness, None, draw) for draw in (3, 3, 4))
     x, y = np.linspace(-4e-5, 4e-5, 9), np.linspace(-3e-4, 3e-4, 9)
     assert np.array_equal(first.heights(x, y), again.heights(x, y))
@@ -195,12 +187,7 @@ def test_energy_holds_whatever_the_roughness_does(settings, load):
 
 
 def test_all_load_on_asperities_is_coulomb_friction():
-    """
-    At rest the torque is that of balls balanced between contacts of that coefficient.
-
-    One nut pushes against the motion, the other with it.
-
-    """
+    """At rest: one nut pushes balls of that coefficient against the motion, the other with it."""
     rest, floor = at(0, 0.0, ROLLING), slip_floor(SCREW, CREEP)
     first, second = (
         coulomb_traction(SCREW, side, SCREW.roughness.asperity_friction, slip_floor=floor)
@@ -296,7 +283,6 @@ def test_parasitic_torque_is_added_and_never_hidden_in_friction():
 
 
 def test_a_contact_that_fails_is_named_and_leaves_no_number():
-    """The status says which; everything else is NaN."""
     settings = ScrewSettings(smooth=Settings(newton_limit=1), kinematics='smooth')
     found = at(600, 500.0, settings)
     assert not found.converged

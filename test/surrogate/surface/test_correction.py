@@ -36,12 +36,11 @@ SOLUTIONS = st.builds(
 )
 
 
-def turn(surface, cell) -> tuple[int, int, int]:
-    """Return a cell of the surface."""
+def turn(surface, cell):
     return tuple(number % count for number, count in zip(cell, surface.cells))
 
 
-def place(surface, cell, fractions) -> tuple[float, float, float]:
+def place(surface, cell, fractions):
     """Return speed, load and temperature at fractions of a cell; passes over those outside."""
     s, load, heat = (
         float(axis[i] + (axis[i + 1] - axis[i]) * fraction)
@@ -52,14 +51,13 @@ def place(surface, cell, fractions) -> tuple[float, float, float]:
     return speed, load, heat
 
 
-def at(where, speed_sign=1.0) -> SimpleNamespace:
-    """Return the point of a full solve."""
+def at(where, speed_sign=1.0):
     return SimpleNamespace(
         speed=speed_sign * where[0], opposing_load=where[1], temperature=where[2]
     )
 
 
-def solution(surface, where, drawn) -> SimpleNamespace:
+def solution(surface, where, drawn):
     """Return a solution that differs from the surface by factors, and with other shares."""
     found, (factors, shares) = surface.lookup(*where), drawn
     values = {name: factor * getattr(found, name) for name, factor in zip(FIELDS, factors)}
@@ -120,9 +118,7 @@ def test_signs_and_ranges_hold(shipped, cell, fractions, drawn, others):
 @both
 @settings(max_examples=60)
 @given(CELLS, FRACTIONS, SOLUTIONS, FRACTIONS, st.integers(0, 2), st.sampled_from([0, 1]))
-def test_the_pull_and_its_slope_vanish_at_the_faces(
-    shipped, cell, fractions, drawn, others, axis, side
-):
+def test_the_pull_vanishes_at_the_faces(shipped, cell, fractions, drawn, others, axis, side):
     """A step h from a face the torque is pulled by no more than a multiple of h squared."""
     where = place(shipped, cell, fractions)
     corrected = shipped.with_correction(at(where), solution(shipped, where, drawn))
@@ -276,13 +272,11 @@ def test_a_newer_solve_beside_a_node_replaces_both_sides_of_the_older():
     ],
 )
 def test_what_cannot_correct_is_one_sentence(where, solved, sentence, refused):
-    """Outside, at a node, not converged, impossible numbers."""
     assert NEAREST == 0.01
     refused(sentence, SHIPPED.with_correction, at(where), SimpleNamespace(**solved))
 
 
 def test_masked_cells_are_not_corrected(surface_data, refused):
-    """Where the surface has no number there is nothing to pull."""
     mask = surface_data.mask.copy()
     mask[:, :, 4] = True
     holed = Surface(replace(surface_data, mask=mask))

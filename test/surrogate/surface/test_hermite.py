@@ -32,7 +32,6 @@ def curve(nodes, values, breaks=NONE):
 
 
 def interpolate(nodes, values, x, breaks=NONE):
-    """Evaluate at one place."""
     return curve(nodes, values, breaks)(x)
 
 
@@ -50,7 +49,6 @@ def test_rising_data_rise_between_the_nodes(widths, rises):
 
 
 def test_straight_lines_are_exact_and_nodes_are_hit():
-    """Linear data have their slope, and a node gives its value."""
     nodes = np.array([0.0, 1.0, 3.0, 4.0])
     assert monotone_slopes(nodes, 2 * nodes + 1) == pytest.approx(np.full(4, 2.0))
     values = np.array([1.0, 5.0, 2.0, 2.0])
@@ -96,16 +94,12 @@ def test_smooth_monotone_data_converge_at_second_order_or_better():
     assert error(16) / error(32) > 4
 
 
-def test_a_break_keeps_a_kink():
+def test_a_break_keeps_a_kink_and_changes_nothing_at_an_end():
     """|x| is exact with a break at zero, and rounded off without."""
     nodes = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
     with_break = interpolate(nodes, np.abs(nodes), 0.3, np.array([0.0]))
     assert with_break == pytest.approx(0.3, abs=1e-15)
     assert interpolate(nodes, np.abs(nodes), 0.3) < 0.29
-
-
-def test_breaks_at_the_ends_change_nothing():
-    """A break node at an end of the axis has only one side anyway."""
     nodes = np.array([0.0, 1.0, 2.0])
     assert split_at(nodes, np.array([0.0, 2.0])) == [slice(0, 3)]
     assert first_rows(nodes, np.array([1.0])) == [0, 2]

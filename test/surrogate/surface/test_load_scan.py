@@ -16,7 +16,6 @@ SHIPPED = [Surface.load(shipped_surface(tier=tier)) for tier in ('closed_form', 
 
 
 def scanned(surface, speed, temperature):
-    """Return the scanned loads and their driving torques."""
     scan(surface.tables, speed, temperature)
     return np.array(surface.tables.scan_loads), np.array(surface.tables.scan_torques)
 
@@ -35,9 +34,8 @@ def looked_up(surface, speed, temperature):
 @settings(max_examples=30)
 def test_the_scan_is_the_lookup(surface, speed, temperature):
     loads, torques = scanned(surface, speed, temperature)
-    np.testing.assert_allclose(
-        torques, looked_up(surface, speed, temperature), rtol=1e-12, atol=1e-12
-    )
+    expected = looked_up(surface, speed, temperature)
+    np.testing.assert_allclose(torques, expected, rtol=1e-12, atol=1e-12)
     assert np.isfinite(torques).any()
     assert (loads[0], loads[-1]) == surface.load_range
 

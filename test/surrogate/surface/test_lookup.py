@@ -4,7 +4,6 @@
 
 from dataclasses import replace
 import math
-from pathlib import Path
 import tracemalloc
 
 from hypothesis import given, settings
@@ -16,7 +15,7 @@ from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.screw import closed_form
 from surrogate.surface import FIELDS, shipped_surface, Surface, Validity
 from surrogate.surface.aims import EFFICIENCY_TOLERANCE, RCS_TOLERANCE
-from surrogate.surface.file import ENSEMBLE_VERSION, read, SurfaceData, write
+from surrogate.surface.file import ENSEMBLE_VERSION, read, write
 
 SPEEDS = st.floats(0.06, 229.0)
 LOADS = st.floats(-3960.0, 3960.0)
@@ -30,23 +29,19 @@ OFF_FLOOR, LEAST_ON_FLOOR = 1.01, 0.9
 
 
 @pytest.fixture(scope='module')
-def surface(surface_data: SurfaceData) -> Surface:
-    """Return the nominal surface, freshly built."""
+def surface(surface_data):
     return Surface(surface_data)
 
 
-def floor_of(surface: Surface) -> float:
-    """Return the film floor of the oil [m]."""
+def floor_of(surface):
     return float(surface.header['inputs']['lubricant']['film_floor'])
 
 
-def node_speed(data: SurfaceData, i: int, j: int, k: int) -> float:
-    """Return the speed of a node."""
+def node_speed(data, i, j, k):
     return math.exp(data.speed_coordinate[i] + data.log_onset[j, k])
 
 
 def test_shipped_closed_form_is_the_one_that_is_built(surface):
-    """The shipped file holds what the builder builds today."""
     assert SHIPPED.header == surface.header
     point = (62.8, 1000.0, 313.15)
     for name in FIELDS:
@@ -63,9 +58,8 @@ def test_lookup_is_exact_at_the_nodes(surface, surface_data):
             continue
         found = surface.lookup(speed, float(data.load[j]), float(data.temperature[k]))
         for name in FIELDS:
-            assert getattr(found, name) == pytest.approx(
-                float(data.fields[name][i, j, k]), rel=1e-11, abs=1e-15
-            )
+            expected = float(data.fields[name][i, j, k])
+            assert getattr(found, name) == pytest.approx(expected, rel=1e-11, abs=1e-15)
         checked += 1
     assert checked > 500
 
@@ -80,9 +74,8 @@ def test_lookup_agrees_with_the_model(speed, load, kelvin):
     solved = closed_form.solve(screw, oil, speed, load, kelvin)
     found = SHIPPED.lookup(speed, load, kelvin)
     if abs(load) > 0.25 * screw.preload:
-        assert found.efficiency == pytest.approx(
-            torque.efficiency(float(solved.friction_torque), load, screw.lead), abs=0.003
-        )
+        expected = torque.efficiency(float(solved.friction_torque), load, screw.lead)
+        assert found.efficiency == pytest.approx(expected, abs=0.003)
     assert found.rcs == pytest.approx(float(solved.rcs), abs=0.003)
     assert found.film_ratio == pytest.approx(float(solved.film_ratio), rel=0.01)
 
@@ -90,20 +83,11 @@ def test_lookup_agrees_with_the_model(speed, load, kelvin):
 @both
 @settings(max_examples=60)
 @given(SPEEDS, st.floats(1.001, 3.0), LOADS, KELVINS)
-def test_rcs_never_rises_with_speed(shipped, speed, factor, load, kelvin):
-    """A monotone field stays monotone between the nodes."""
+def test_rcs_never_rises_and_film_never_thins_with_speed(shipped, speed, factor, load, kelvin):
+    """The film strictly; in the full tier once it is off the floor."""
     faster = min(speed * factor, 229.0)
     slow, fast = (shipped.lookup(w, load, kelvin) for w in (speed, faster))
     assert fast.rcs <= slow.rcs + 1e-9
-
-
-@both
-@settings(max_examples=60)
-@given(SPEEDS, st.floats(1.001, 3.0), LOADS, KELVINS)
-def test_film_never_thins_with_speed(shipped, speed, factor, load, kelvin):
-    """Strictly; in the full tier once the film is off the floor."""
-    faster = min(speed * factor, 229.0)
-    slow, fast = (shipped.lookup(w, load, kelvin) for w in (speed, faster))
     if shipped.tier == 'full' and slow.central_film <= OFF_FLOOR * floor_of(shipped):
         assert fast.central_film >= LEAST_ON_FLOOR * floor_of(shipped)
     else:
@@ -151,7 +135,6 @@ def test_lookup_is_continuous(shipped, speed, load, kelvin, name):
     ],
 )
 def test_outside_is_an_answer_and_never_a_number(shipped, point, validity):
-    """No extrapolation: NaN and the reason."""
     found = shipped.lookup(*point)
     assert found.validity is validity
     for name in (*FIELDS, 'efficiency', 'driving_torque', 'rcs_error', 'efficiency_error'):
@@ -166,7 +149,6 @@ EDGES = [0.0, 5e-324, 2.2e-308, 2.3e-308, 1e-200, 60.0, 1000.0, 300.0, 1e308, 1.
 @both
 @given(*[st.sampled_from([*EDGES, *(-edge for edge in EDGES)]) | st.floats()] * 3)
 def test_every_float_has_an_answer(shipped, speed, load, kelvin):
-    """Numbers with VALID, NaN without, and nothing raises."""
     found = shipped.lookup(speed, load, kelvin)
     told = (found.friction_torque, found.rcs, found.film_ratio, found.efficiency)
     assert all(map(math.isfinite, told)) is (found.validity is Validity.VALID)
@@ -176,7 +158,6 @@ def test_every_float_has_an_answer(shipped, speed, load, kelvin):
 
 @both
 def test_limits_of_the_ranges_belong_to_the_surface(shipped):
-    """Each end of each range can be looked up."""
     for speed in shipped.speed_range:
         for load in shipped.load_range:
             for kelvin in shipped.temperature_range:
@@ -258,8 +239,7 @@ def test_memory_is_at_most_four_times_the_file(tier):
     assert used <= 4 * path.stat().st_size
 
 
-def test_a_surface_of_another_screw_or_oil_is_refused(tmp_path: Path, surface_data, refused):
-    """The sentence names both."""
+def test_a_surface_of_another_screw_or_oil_is_refused(tmp_path, surface_data, refused):
     path = tmp_path / 'other.npz'
     write(path, surface_data)
     assert Surface.load(path, screw='nominal', oil='iso_vg_68').tier == 'closed_form'
@@ -267,7 +247,7 @@ def test_a_surface_of_another_screw_or_oil_is_refused(tmp_path: Path, surface_da
     refused('built_lubricant_iso_vg_68', Surface.load, path, oil='iso_vg_32')
 
 
-def with_draws(data: SurfaceData) -> SurfaceData:
+def with_draws(data):
     """Return the surface with an ensemble: deviations that grow with speed, errors a third."""
     deviation = np.exp(0.1 * data.speed_coordinate)[:, None, None] * np.ones_like(data.mask)
     return replace(
@@ -301,7 +281,6 @@ def test_spread_over_draws_is_looked_up(surface_data):
 
 
 def test_spread_does_not_touch_the_fields(surface_data):
-    """With draws or without, the fields are the same."""
     plain, drawn = Surface(surface_data), Surface(with_draws(surface_data))
     point = (62.8, 1000.0, 313.15)
     for name in FIELDS:
@@ -349,9 +328,7 @@ def test_the_worst_contact_is_that_of_the_nearest_node(surface_data, axis, fract
 @pytest.mark.parametrize(
     ('speed', 'validity'), [(1e-8, Validity.SPEED_BELOW_RANGE), (1e8, Validity.SPEED_ABOVE_RANGE)]
 )
-def test_a_speed_off_the_nodes_has_no_answer_whatever_range_is_stated(
-    surface_data, speed, validity
-):
+def test_a_speed_off_the_nodes_has_no_answer(surface_data, speed, validity):
     """Nothing is extrapolated where the stated range is wider than the nodes."""
     header = surface_data.header
     settings = header['settings'] | {'speed_range': [1e-9, 1e9]}

@@ -46,13 +46,8 @@ def test_a_record_comes_back_bit_for_bit(number, share, flag, counts):
     again = from_array(Whole, as_array(record)[0])
     assert repr(again) == repr(record)
     assert as_array(again).tobytes() == as_array(record).tobytes()
-    assert [type(getattr(again, field.name)) for field in dataclasses.fields(again)] == [
-        int,
-        float,
-        bool,
-        list,
-        list,
-    ]
+    expected = [int, float, bool, list, list]
+    assert [type(getattr(again, field.name)) for field in dataclasses.fields(again)] == expected
     assert [type(each) for each in (*again.counts, *again.shares)] == [int] * 3 + [float] * 2
 
 

@@ -9,7 +9,6 @@ from surrogate.surface import FIELDS, SolvedPoint, SurfacePoint
 
 
 def test_fields_are_those_of_a_surface():
-    """In their order, with what tells how far they hold."""
     names = [field.name for field in fields(SolvedPoint)]
     assert tuple(name for name in names if name in FIELDS) == FIELDS
     assert set(names) - set(FIELDS) == {'converged', 'status', 'worst_contact', 'rcs_deviation'}
@@ -17,7 +16,6 @@ def test_fields_are_those_of_a_surface():
 
 
 def test_a_point_that_is_not_solved_has_no_numbers():
-    """All NaN, the worst contact unknown."""
     none = SolvedPoint(converged=False)
     assert all(math.isnan(getattr(none, name)) for name in FIELDS)
     assert none.worst_contact == -1

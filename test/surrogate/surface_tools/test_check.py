@@ -17,12 +17,11 @@ from surrogate.surface_tools.check import check_surface, STATED_FACTOR
 DATA = read(shipped_surface(tier='closed_form'))
 
 
-def always() -> bool:
-    """Tell that there is time."""
+def always():
     return True
 
 
-def with_solver(monkeypatch, solve) -> list[tuple[float, float, float]]:
+def with_solver(monkeypatch, solve):
     """Make the full tier solve by a function; return the points that it is asked for."""
     asked = []
 
@@ -49,7 +48,6 @@ def test_a_good_surface_passes(says):
 
 
 def test_another_seed_means_other_points():
-    """The same seed the same ones."""
     first, again, other = (check_surface(DATA, 10, seed, always) for seed in (1, 1, 2))
     assert first == again != other
 
@@ -80,17 +78,13 @@ def test_what_does_not_converge_is_counted_and_not_compared(monkeypatch):
     assert none.unsolved == 10
 
 
-def test_errors_that_the_file_understates_fail():
+def test_errors_that_the_file_understates_fail_and_those_it_does_not_state_are_said():
     """A file whose stated errors are a hundredth of the true ones is not believed."""
     lying = replace(DATA, errors={name: 0.01 * error for name, error in DATA.errors.items()})
     result = check_surface(lying, 30, 1, always)
     assert result.efficiency <= EFFICIENCY_TOLERANCE
     assert not result.passed
     assert result.stated['rcs'] > STATED_FACTOR
-
-
-def test_errors_that_the_file_does_not_state_are_said():
-    """They are not held against it."""
     silent = {name: np.full_like(error, np.nan) for name, error in DATA.errors.items()}
     result = check_surface(replace(DATA, errors=silent), 5, 1, always)
     assert result.passed

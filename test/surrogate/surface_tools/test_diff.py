@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.surface import shipped_surface, Surface
-from surrogate.surface.file import read, SurfaceData, write
+from surrogate.surface.file import read, write
 from surrogate.surface_tools.diff import diff_record, zone_limits
 
 COMMAND = ('surface', 'diff')
@@ -27,14 +27,15 @@ def coarse(monkeypatch):
     monkeypatch.setattr('surrogate.surface_tools.diff.LINES', (7, 3))
 
 
-def scaled(data: SurfaceData, **factors: float) -> SurfaceData:
-    """Return a surface with some fields multiplied."""
+def scaled(data, **factors):
     fields = {name: factors.get(name, 1.0) * values for name, values in data.fields.items()}
     return replace(data, fields=fields)
 
 
 def test_equal_surfaces_do_not_differ(run, capsys, monkeypatch):
-    """Zero everywhere, exit code 0, in words and as JSON."""
+    """Zero everywhere, exit code 0, in words and as JSON, also by the name of a tier."""
+    assert run('closed_form', CLOSED_FORM) == 0
+    assert capsys.readouterr().out.endswith('within the tolerances\n')
     assert run(CLOSED_FORM, CLOSED_FORM) == 0
     text = capsys.readouterr().out
     assert 'inputs and settings: the same' in text
@@ -48,19 +49,12 @@ def test_equal_surfaces_do_not_differ(run, capsys, monkeypatch):
     assert found['exceeded'] == []
 
 
-def test_a_surface_may_be_a_shipped_tier(run, capsys):
-    """As for the other commands on a file."""
-    assert run('closed_form', CLOSED_FORM) == 0
-    assert capsys.readouterr().out.endswith('within the tolerances\n')
-
-
 def test_a_scaled_field_differs_by_its_scale():
     """A torque 1 % higher: the largest difference is 1 % of the largest torque, no other field."""
     fields = diff_record(DATA, scaled(DATA, friction_torque=1.01))['fields']
     at = fields['friction_torque']['at']
-    assert fields['friction_torque']['max'] == pytest.approx(
-        0.01 * SHIPPED.lookup(*at).friction_torque
-    )
+    expected = 0.01 * SHIPPED.lookup(*at).friction_torque
+    assert fields['friction_torque']['max'] == pytest.approx(expected)
     assert fields['friction_torque']['p95'] < fields['friction_torque']['max']
     assert fields['rcs']['max'] == 0.0
     assert 0 < fields['efficiency']['max'] < 0.01
@@ -99,7 +93,6 @@ def test_differences_beyond_the_tolerances_exit_with_1(run, tmp_path, capsys):
 
 
 def test_an_answer_of_one_alone_is_a_difference(run, tmp_path, capsys):
-    """A hole in one of the surfaces."""
     mask = DATA.mask.copy()
     mask[:, 5, :] = True
     write(tmp_path / 'holed.npz', replace(DATA, mask=mask))
@@ -119,12 +112,7 @@ def test_other_inputs_are_listed(run, tmp_path, capsys, screw, oil, says):
     assert says('temperature_9_nodes') in text
 
 
-def test_nothing_in_common_is_one_sentence(refused):
-    """Ranges that do not meet."""
+def test_ranges_that_do_not_meet_and_a_tolerance_that_is_no_number_are_refused(refused, run):
     warm = replace(DATA, temperature=DATA.temperature + 100.0)
     refused('surfaces_have_temperature', diff_record, DATA, warm)
-
-
-def test_a_tolerance_must_be_a_number(run, refused):
-    """Not a number would accept nothing and say nothing."""
     refused('rcs_tolerance_nan', run, CLOSED_FORM, CLOSED_FORM, '--rcs-tolerance', np.nan)

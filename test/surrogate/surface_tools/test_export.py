@@ -70,12 +70,7 @@ def test_a_table_holds_every_node(run, tmp_path):
     assert {row['converged'] for row in rows} == {'1'}
 
 
-def test_what_cannot_be_written_is_one_sentence(run, tmp_path, refused):
-    """A directory in the way."""
+def test_what_cannot_be_written_is_one_sentence(run, tmp_path, refused, monkeypatch):
     refused('cannot_written_regular', run, '--csv', tmp_path)
-
-
-def test_netcdf_without_xarray_names_the_extra(run, tmp_path, monkeypatch, refused):
-    """The sentence says what to install."""
     monkeypatch.setitem(sys.modules, 'xarray', None)
     refused('install_extra_netcdf', run, '--netcdf', tmp_path / 'a.nc')

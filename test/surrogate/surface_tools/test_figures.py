@@ -25,12 +25,10 @@ def coarse(monkeypatch):
 
 @pytest.fixture(scope='module')
 def part():
-    """Return the surface at 40 degC."""
     return figures.cut(SHIPPED, 313.15)
 
 
-def titles(figure) -> list[str]:
-    """Return the titles of the panels."""
+def titles(figure):
     return [axes.get_title() for axes in figure.axes if axes.get_title()]
 
 
@@ -45,7 +43,6 @@ def test_a_slice_is_the_lookup(part):
 
 
 def test_zone_classes_are_the_limits(part):
-    """Each point is in the class that its own numbers say."""
     classes = figures.zone_classes(part)
     rcs, efficiency = part.fields['rcs'], part.fields['efficiency']
     judged = np.broadcast_to(np.abs(part.load)[:, None] >= part.light, rcs.shape)
@@ -55,7 +52,6 @@ def test_zone_classes_are_the_limits(part):
 
 
 def test_panels_and_axes(coarse):
-    """Six panels with units; the limits are in the titles."""
     figure = figures.figure_surface(SHIPPED, 313.15)
     assert titles(figure) == [
         'Efficiency, line: 0.85',
@@ -81,14 +77,12 @@ def test_what_strips_differ_by_is_shown_when_it_is_known(coarse):
 
 
 def test_a_surface_without_answers_is_drawn(coarse):
-    """Masked everywhere: the panels say that nothing is known."""
     hidden = Surface(replace(DATA, mask=np.ones_like(DATA.mask)))
     figure = figures.figure_surface(hidden, 313.15)
     assert [text.get_text() for text in figure.axes[0].texts] == ['not known']
 
 
 def test_pictures_per_temperature(run, tmp_path, capsys):
-    """A PNG each, small enough for a report; nothing else in the directory."""
     assert run('--out', tmp_path / 'a', '--temperature-degC', 30, 62.5) == 0
     paths = sorted((tmp_path / 'a').iterdir())
     assert [path.name for path in paths] == ['surface_30degC.png', 'surface_62.5degC.png']
@@ -98,11 +92,9 @@ def test_pictures_per_temperature(run, tmp_path, capsys):
 
 @pytest.mark.parametrize('celsius', [9.9, 80.1])
 def test_a_temperature_that_is_not_covered(run, tmp_path, celsius, refused):
-    """One sentence with the range."""
     refused('degc_surface_covers', run, '--out', tmp_path, '--temperature-degC', celsius)
 
 
 def test_without_matplotlib_the_extra_is_named(run, tmp_path, monkeypatch, refused):
-    """The sentence says what to install."""
     monkeypatch.setitem(sys.modules, 'surrogate.surface_tools.figures', None)
     refused('install_extra_plot', run, '--out', tmp_path)

@@ -14,27 +14,20 @@ from surrogate.surface_tools.limit import limit_error, limit_errors, limit_speed
 
 @pytest.fixture(name='surface')
 def load_surface(surface_data):
-    """Return the surface of formulas."""
     return Surface(surface_data)
 
 
 @pytest.mark.parametrize('load', [-900.0, 0.0, 3300.0])
 def test_speed_at_the_limit_is_found(surface, load):
-    """The lookup says the limit there."""
     speed = limit_speed(surface, load, 313.15)
     assert surface.lookup(speed, load, 313.15).rcs == pytest.approx(RCS_LIMIT, rel=1e-6)
 
 
-def test_no_limit_where_rcs_stays_on_one_side(surface_data):
-    """No point is found, and nothing is solved."""
+def test_no_limit_where_rcs_stays_on_one_side_or_an_answer_is_missing(surface_data, surface):
     rcs = np.zeros_like(surface_data.fields['rcs'])
     calm = replace(surface_data, fields={**surface_data.fields, 'rcs': rcs})
     assert limit_speed(Surface(calm), 0.0, 313.15) is None
     assert not list(limit_errors(calm, 3, 1, lambda: True))
-
-
-def test_no_limit_where_an_answer_is_missing(surface_data, surface):
-    """A masked node beside the limit is no error of the search."""
     s = math.log(limit_speed(surface, 0.0, 313.15) / surface.onset_speed(0.0, 313.15))
     mask = surface_data.mask.copy()
     mask[np.searchsorted(surface_data.speed_coordinate, s) - 1] = True
@@ -51,12 +44,7 @@ def test_a_curve_that_is_moved_along_the_speed_is_off_by_as_much(surface, shift)
 
 
 def test_formulas_have_their_limit_within_a_hundredth_of_the_speed(surface_data):
-    """
-    Solved again at random points, the same for one seed; a moved onset is seen.
-
-    The largest is near 2100 N, where another contact becomes the worst one.
-
-    """
+    """The largest is near 2100 N, where another contact becomes the worst; a moved one is seen."""
     found = list(limit_errors(surface_data, 8, 1, lambda: True))
     assert len(found) == 8
     assert max(abs(one.error) for one in found) < 1e-2

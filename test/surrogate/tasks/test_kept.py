@@ -17,6 +17,5 @@ def test_kept_results_are_returned_and_failures_told(tmp_path, capsys):
     with TaskStore(out, 'test 1') as store:
         assert len(store) == 1
     assert store_path(out).exists()
-    assert run_kept(out, 'test 1', plain_result, {'other name': {'value': 1.0}}) == {
-        'other name': {'value': 1.0}
-    }
+    expected = {'other name': {'value': 1.0}}
+    assert run_kept(out, 'test 1', plain_result, {'other name': {'value': 1.0}}) == expected

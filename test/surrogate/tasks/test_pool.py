@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tasks on real processes: same results for any workers, and none lost with its worker."""
 
-from collections.abc import Iterator
 import contextlib
 import importlib
 import os
@@ -111,13 +110,12 @@ def tasks(tmp_path_factory):
 
 @pytest.fixture(scope='module')
 def pool(tasks):
-    """Return a pool of two workers for tests that need no other one."""
     with open_pool(2) as workers:
         yield workers
 
 
 @pytest.fixture
-def pipes(tmp_path: Path) -> dict[str, str]:
+def pipes(tmp_path):
     """Return named pipes: a task says hello with its process number, then waits at the gate."""
     names = {name: str(tmp_path / name) for name in ('hello', 'second', 'gate')}
     for path in names.values():
@@ -125,16 +123,16 @@ def pipes(tmp_path: Path) -> dict[str, str]:
     return names
 
 
-def read(path: str) -> str:
+def read(path):
     """Return what one writer says on a named pipe."""
     with open(path) as pipe:
         return pipe.read()
 
 
-def killer(pipes: dict[str, str], seen: list[int]) -> threading.Thread:
+def killer(pipes, seen):
     """Kill the worker that begins the waiting task first, and let the second one pass."""
 
-    def work() -> None:
+    def work():
         seen.append(int(read(pipes['hello'])))
         os.kill(seen[0], signal.SIGKILL)
         seen.append(int(read(pipes['hello'])))
@@ -145,22 +143,19 @@ def killer(pipes: dict[str, str], seen: list[int]) -> threading.Thread:
     return thread
 
 
-def numbers(count: int) -> dict[str, dict[str, float]]:
-    """Return inputs of many small tasks."""
+def numbers(count):
     return {f'task {number}': {'x': number / 7} for number in range(count)}
 
 
 def test_results_do_not_depend_on_workers(tasks, pool):
-    """One process or two: the same results, in the order of the inputs."""
     found = []
     with open_pool(1) as alone:
         both = [run_tasks(workers, tasks.root, numbers(20)) for workers in (alone, pool)]
     for outcomes in both:
         assert list(outcomes) == list(numbers(20))
         found.append([outcome.result for outcome in outcomes.values()])
-        assert {outcome.worker.partition('/')[0] for outcome in outcomes.values()} == {
-            worker_name().partition('/')[0]
-        }
+        expected = {worker_name().partition('/')[0]}
+        assert {outcome.worker.partition('/')[0] for outcome in outcomes.values()} == expected
     assert found[0] == found[1]
     assert found[0] == [tasks.root(inputs) for inputs in numbers(20).values()]
 
@@ -227,16 +222,20 @@ def test_what_an_earlier_run_tells_late_is_not_heard(tasks, monkeypatch):
 
 
 def test_a_task_that_kills_its_workers_ends_as_a_sentence(tasks, pool):
-    """It is given up after a few tries, and costs no other task its result."""
-    inputs = {f'{number}': {'x': number, 'kill': number == 3} for number in range(10)}
-    outcomes = run_tasks(pool, tasks.kill_worker, inputs)
-    assert outcomes['3'].sentence == f'its worker was lost {MOST_TRIES} times'
-    assert len(set(outcomes['3'].lost)) == MOST_TRIES
-    for name, outcome in outcomes.items():
-        assert outcome.result == (None if name == '3' else {'x': int(name)})
+    """Also by half a message in a pipe; given up after a few tries, it costs no other result."""
+    inputs = {f'{one}': {'x': one, 'kill': one == 3, 'cut': one == 3} for one in range(10)}
+    for task, result in (
+        (tasks.kill_worker, lambda number: {'x': number}),
+        (tasks.send_half, lambda number: {'text': 1000 * 'x'}),
+    ):
+        outcomes = run_tasks(pool, task, inputs)
+        assert outcomes['3'].sentence == f'its worker was lost {MOST_TRIES} times'
+        assert len(set(outcomes['3'].lost)) == MOST_TRIES
+        for name, outcome in outcomes.items():
+            assert outcome.result == (None if name == '3' else result(int(name)))
 
 
-def test_a_module_that_ends_its_process_is_told(tmp_path: Path, monkeypatch):
+def test_a_module_that_ends_its_process_is_told(tmp_path, monkeypatch):
     """Every process that imports it ends: a sentence, and no endless loop."""
     (tmp_path / 'deadly_tasks.py').write_text(
         f'import os\nif os.getpid() != {os.getpid()}:\n    os._exit(3)\n'
@@ -250,7 +249,7 @@ def test_a_module_that_ends_its_process_is_told(tmp_path: Path, monkeypatch):
     assert outcome.sentence == f'its worker was lost {MOST_TRIES} times'
 
 
-def test_a_module_that_workers_do_not_have_is_told(tmp_path: Path, monkeypatch, says):
+def test_a_module_that_workers_do_not_have_is_told(tmp_path, monkeypatch, says):
     """The other tasks go on."""
     (tmp_path / 'gone_tasks.py').write_text('def task(inputs):\n    return {}\n')
     with monkeypatch.context() as here:
@@ -261,16 +260,7 @@ def test_a_module_that_workers_do_not_have_is_told(tmp_path: Path, monkeypatch, 
     assert outcome.sentence == says('module_named_gone_tasks')
 
 
-def test_a_kill_in_the_middle_of_a_result_is_only_a_lost_worker(tasks, pool):
-    """Half a message in a pipe stops neither the other tasks nor the end of the pool."""
-    inputs = {f'{number}': {'cut': number == 3} for number in range(10)}
-    outcomes = run_tasks(pool, tasks.send_half, inputs)
-    assert outcomes['3'].sentence == f'its worker was lost {MOST_TRIES} times'
-    for name, outcome in outcomes.items():
-        assert outcome.result == (None if name == '3' else {'text': 1000 * 'x'})
-
-
-def test_kept_results_are_not_solved_again(tasks, pool, tmp_path: Path):
+def test_kept_results_are_not_solved_again(tasks, pool, tmp_path):
     """The second run solves what has failed alone; both give the same results."""
     inputs = {**numbers(5), 'bad': {'x': -1.0}}
     told: list[str] = []
@@ -293,7 +283,7 @@ def test_a_worker_has_one_thread_and_ignores_ctrl_c(tasks, pool):
 
 
 @contextlib.contextmanager
-def parent(tmp_path: Path, tasks, pipes: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
+def parent(tmp_path, tasks, pipes):
     """Start a program with two workers at work, in a session of its own."""
     script = tmp_path / 'parent.py'
     script.write_text(PARENT)
@@ -314,7 +304,7 @@ def parent(tmp_path: Path, tasks, pipes: dict[str, str]) -> Iterator[subprocess.
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_no_worker_outlives_its_parent(tasks, tmp_path: Path, pipes, number):
+def test_no_worker_outlives_its_parent(tasks, tmp_path, pipes, number):
     """
     Ctrl-C reaches the whole group, a kill the parent alone: all are gone, no one chatters.
 
@@ -368,6 +358,5 @@ def test_a_wrong_pool_is_one_sentence(monkeypatch, workers, dask, sentence, refu
 
 
 def test_dask_that_is_not_installed_names_the_extra(monkeypatch, refused):
-    """The sentence says what to install."""
     monkeypatch.setitem(sys.modules, 'distributed', None)
     refused('install_extra_dask', open_pool, 2, 'local')

@@ -15,31 +15,24 @@ DEADLINE = 600.0  # [s] which only ends a hang
 
 @pytest.fixture
 def began():
-    """Return the list of what was begun."""
     return []
 
 
 @pytest.fixture
 def workers(began):
-    """Return two workers."""
     with SpawnedWorkers(2, lambda arguments, worker: began.append((arguments, worker))) as pool:
         yield pool
 
 
-def test_calls_return_and_raise(workers, began, refused):
+def test_calls_return_and_raise_and_map_keeps_the_order(workers, began, refused):
     """What the function returns or raises is what the future has."""
     assert workers.submit(math.sqrt, 9.0).result(DEADLINE) == 3.0
     refused('math_domain_error', workers.submit(math.sqrt, -1.0).result, DEADLINE)
     assert [arguments for arguments, _ in began] == [(9.0,), (-1.0,)]
-
-
-def test_map_keeps_the_order(workers):
-    """As every executor does."""
     assert list(workers.map(operator.neg, range(20))) == [-n for n in range(20)]
 
 
 def test_a_lost_process_is_the_loss_of_its_call(workers):
-    """The next call finds another process."""
     with pytest.raises(LostWorker):
         workers.submit(os._exit, 3).result(DEADLINE)
     assert workers.submit(abs, -1).result(DEADLINE) == 1

@@ -4,7 +4,6 @@
 
 import json
 import math
-from pathlib import Path
 import resource
 import signal
 import struct
@@ -44,8 +43,7 @@ def bits(value):
     return [bits(part) for part in value] if isinstance(value, list) else (value, type(value))
 
 
-def filled(out: Path, number: int = 3) -> bytes:
-    """Keep some results and return the bytes of the file."""
+def filled(out, number=3):
     with TaskStore(out, WORK) as store:
         for one in range(number):
             store.put(f'key{one}', {'rcs': one / 3})
@@ -80,8 +78,7 @@ def test_a_key_is_the_content(refused):
     refused('json_compliant', task_key, WORK, {'speed': math.nan})
 
 
-def test_only_plain_results_are_kept(tmp_path: Path):
-    """An array, or a key that would be taken for a float, is refused and nothing is written."""
+def test_only_plain_results_are_kept(tmp_path):
     with TaskStore(tmp_path / 'map.npz', WORK) as store:
         for result in ({'a': np.zeros(3)}, {'$float': '1'}, {1: 2.0}):
             with pytest.raises(TypeError):
@@ -90,7 +87,7 @@ def test_only_plain_results_are_kept(tmp_path: Path):
     assert plain_result({'a': (np.float64(0.5), 1)}) == {'a': [0.5, 1]}
 
 
-def test_a_torn_end_is_dropped_wherever_it_was_torn(tmp_path: Path):
+def test_a_torn_end_is_dropped_wherever_it_was_torn(tmp_path):
     """Cut after any byte, the file keeps every whole line and takes the next result."""
     out = tmp_path / 'map.npz'
     whole = filled(out)
@@ -124,7 +121,7 @@ def test_a_damaged_line_costs_that_line_alone(tmp_path_factory, data):
             assert store.get(f'key{number}') in (None, {'rcs': number / 3})
 
 
-def test_a_kill_loses_the_result_in_hand_at_most(tmp_path: Path):
+def test_a_kill_loses_the_result_in_hand_at_most(tmp_path):
     """SIGKILL at work: whatever was said to be kept is kept, and the next run goes on."""
     out, said = tmp_path / 'map.npz', -1
     for count in (1, 5, 50):
@@ -142,7 +139,7 @@ def test_a_kill_loses_the_result_in_hand_at_most(tmp_path: Path):
             assert store.get(f'{said:064d}') == {'value': said / 7}
 
 
-def test_results_of_another_version_are_refused(tmp_path: Path, refused):
+def test_results_of_another_version_are_refused(tmp_path, refused):
     """One sentence that names both versions and the command that clears the file."""
     out = tmp_path / 'map.npz'
     before = filled(out)
@@ -158,15 +155,14 @@ def test_results_of_another_version_are_refused(tmp_path: Path, refused):
 
 
 @pytest.mark.parametrize('content', [b'hello', b'hello\n', b'{}\n', b'[1]\n'])
-def test_something_else_is_not_a_store(tmp_path: Path, content, refused):
-    """A file of another kind is neither read nor written over."""
+def test_something_else_is_not_a_store(tmp_path, content, refused):
     out = tmp_path / 'map.npz'
     store_path(out).write_bytes(content)
     refused('store_results', TaskStore, out, WORK)
     assert store_path(out).read_bytes() == content
 
 
-def test_two_builds_do_not_share_a_store(tmp_path: Path):
+def test_two_builds_do_not_share_a_store(tmp_path):
     """The second is told so; when the first is done it may."""
     out = tmp_path / 'map.npz'
     with TaskStore(out, WORK), pytest.raises(SurfaceError, match='in use by another build of'):
@@ -175,7 +171,7 @@ def test_two_builds_do_not_share_a_store(tmp_path: Path):
         assert len(store) == 0
 
 
-def test_a_full_disk_costs_nothing_that_was_kept(tmp_path: Path):
+def test_a_full_disk_costs_nothing_that_was_kept(tmp_path):
     """A real limit on the size of a file: one sentence, the file as it was, and on it goes."""
     out = tmp_path / 'map.npz'
     size = len(filled(out))
@@ -195,8 +191,7 @@ def test_a_full_disk_costs_nothing_that_was_kept(tmp_path: Path):
         assert again.dropped == 0
 
 
-def test_a_place_that_cannot_be_written_is_one_sentence(tmp_path: Path, refused):
-    """A directory in the way, a file where a directory is needed."""
+def test_a_place_that_cannot_be_written_is_one_sentence(tmp_path, refused):
     store_path(tmp_path / 'a.npz').mkdir()
     (tmp_path / 'file').write_text('')
     for out in (tmp_path / 'a.npz', tmp_path / 'file' / 'b.npz'):
@@ -204,7 +199,7 @@ def test_a_place_that_cannot_be_written_is_one_sentence(tmp_path: Path, refused)
     refused('cannot_removed', clear, tmp_path / 'a.npz')
 
 
-def test_floats_are_hexadecimal_on_file(tmp_path: Path):
+def test_floats_are_hexadecimal_on_file(tmp_path):
     """A person can read the lines; a list of floats is one word each."""
     out = tmp_path / 'map.npz'
     with TaskStore(out, WORK) as store:

@@ -10,8 +10,6 @@ from surrogate.tasks.table import read_table, write_table
 
 @dataclass(frozen=True)
 class Line:
-    """A line with a value of every kind."""
-
     name: str
     count: int
     good: bool

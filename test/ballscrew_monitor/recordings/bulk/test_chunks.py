@@ -32,13 +32,11 @@ def written():
 
 
 def contents(found):
-    """Return the messages in their order."""
     ends = found.begin + found.size
     return [found.data[begin:end] for begin, end in zip(found.begin, ends)]
 
 
 def change(stream, at, data):
-    """Write over some bytes of a file."""
     stream.seek(at)
     stream.write(data)
 
@@ -46,16 +44,20 @@ def change(stream, at, data):
 EXPECTED = [bytes([number]) * (number + 1) for number in range(COUNT)]
 
 
-def test_all_messages_of_a_chunk_are_found(written):
+def test_a_chunk_is_read_and_an_index_of_a_part_or_damage_is_not_believed(written, refused):
     found = read_chunk(*written)
     assert contents(found) == EXPECTED
     assert found.log_time.tolist() == list(range(COUNT))
     assert len(np.unique(found.channel)) == 2
-
-
-def test_channels_are_those_of_the_topics(written):
     assert list(chunk_indexes(written[0], ['/b'])[1].values()) == ['/b']
     assert chunk_indexes(written[0], ['/c']) == ([], {})
+    stream, place = written
+    change(stream, place.chunk_start_offset + place.chunk_length, b'\x0f')
+    assert contents(read_chunk(stream, place)) == EXPECTED
+    change(stream, place.chunk_start_offset + place.chunk_length - 3, b'\xff')
+    refused('checksum_wrong', read_chunk, stream, place)
+    change(stream, place.chunk_start_offset, b'\x01')
+    refused('chunk_stands', read_chunk, stream, place)
 
 
 @pytest.mark.parametrize('offset', [0, 5, 10**6, 2**63])
@@ -68,17 +70,3 @@ def test_an_index_that_lies_is_not_believed(written, offset):
         struct.pack('<Q', offset),
     )
     assert contents(read_chunk(stream, place)) == EXPECTED
-
-
-def test_an_index_of_a_part_is_not_believed(written):
-    stream, place = written
-    change(stream, place.chunk_start_offset + place.chunk_length, b'\x0f')
-    assert contents(read_chunk(stream, place)) == EXPECTED
-
-
-def test_damage_is_told(written, refused):
-    stream, place = written
-    change(stream, place.chunk_start_offset + place.chunk_length - 3, b'\xff')
-    refused('checksum_wrong', read_chunk, stream, place)
-    change(stream, place.chunk_start_offset, b'\x01')
-    refused('chunk_stands', read_chunk, stream, place)

@@ -92,13 +92,17 @@ def test_only_messages_with_equal_lengths_and_texts_fit():
     assert fits(layout, first, others, *different) == [True] * 2 + [False] * 5
 
 
-def test_stamps_are_read_from_the_header():
+def test_stamps_are_in_the_header_and_nested_messages_have_places():
     message = wrench(1.0)
     message.header.stamp.sec, message.header.stamp.nanosec = -5, 999_999_999
     data = serialize_message(message)
     layout = Layout(data, WrenchStamped)
     stamps = layout.stamps(data, np.zeros(1, dtype=np.int64))
     assert stamps.tolist() == [-5 * 10**9 + 999_999_999]
+    status = DiagnosticStatus(name='n', values=[KeyValue(key='k', value='v')])
+    message = DiagnosticArray(status=[status, status])
+    layout = Layout(serialize_message(message), DiagnosticArray)
+    assert fits(layout, message) == [True]
 
 
 @pytest.mark.parametrize(
@@ -115,10 +119,3 @@ def test_stamps_are_read_from_the_header():
 def test_a_message_without_places_has_no_layout(kind, data):
     with pytest.raises(NoLayout):
         Layout(data, kind)
-
-
-def test_nested_messages_in_lists_have_places():
-    status = DiagnosticStatus(name='n', values=[KeyValue(key='k', value='v')])
-    message = DiagnosticArray(status=[status, status])
-    layout = Layout(serialize_message(message), DiagnosticArray)
-    assert fits(layout, message) == [True]

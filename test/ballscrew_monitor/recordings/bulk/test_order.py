@@ -1,11 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""
-The entries of a bag are what its messages say one by one, in the same order.
-
-They are put into order by arrays as one by one.
-
-"""
+"""Entries put into order by arrays are what the messages of a bag say one by one."""
 
 import heapq
 import itertools
@@ -183,7 +178,6 @@ def alone(bag, axes):
 
 
 def at_once(bag, axes):
-    """Return the batches of entries."""
     return list(ordered_entries(bag, axes, PERIOD, on_done=lambda share: None))
 
 
@@ -240,7 +234,6 @@ def test_files_that_overlap_and_chunks_out_of_order(tmp_path, axes, monkeypatch)
 
 
 def damaged(path, at):
-    """Change one byte of a file."""
     data = bytearray(path.read_bytes())
     data[at] ^= 0x55
     path.write_bytes(data)
@@ -262,8 +255,8 @@ def test_a_damaged_chunk_is_named_and_the_rest_is_used(tmp_path, axes, layout):
     assert 0.6 * whole < found < whole
 
 
-def test_damage_that_is_read_twice_is_noted_once(tmp_path, axes):
-    write(tmp_path / 'bag.mcap', steady(400), chunk_size=2000)
+def test_damage_is_noted_once_and_an_error_unless_it_is_asked_for(tmp_path, axes, refused):
+    write(tmp_path / 'bag.mcap', steady(100), chunk_size=2000)
     damaged(tmp_path / 'bag.mcap', 2500)
     bag = Bag(tmp_path / 'bag.mcap', salvage=True)
     at_once(bag, axes)
@@ -271,11 +264,6 @@ def test_damage_that_is_read_twice_is_noted_once(tmp_path, axes):
     at_once(bag, axes)
     assert bag.notes == once
     assert len(once) == 1
-
-
-def test_damage_is_an_error_unless_it_is_asked_for(tmp_path, axes, refused):
-    write(tmp_path / 'bag.mcap', steady(100), chunk_size=2000)
-    damaged(tmp_path / 'bag.mcap', 2500)
     refused('truncated_damaged_chunk', at_once, Bag(tmp_path / 'bag.mcap'), axes)
 
 
@@ -344,14 +332,11 @@ def test_batches_come_in_the_order_of_a_heap(steps, cuts):
     assert values == one_by_one(found)
 
 
-def test_stamps_decades_apart_are_put_into_order_too():
+def test_stamps_decades_apart_are_ordered_and_arrivals_wait():
     found = entries([BEGIN, BEGIN, BEGIN], [0, BEGIN // MS, 1], [0, 1, 0])
     order = StampOrder()
     parts = [order.push(found), order.finish()]
     assert joined(parts).value.tolist() == [1.0, 2.0, 0.0]
-
-
-def test_arrivals_wait_until_nothing_earlier_can_come():
     found = entries([BEGIN + 3 * MS, BEGIN + MS, BEGIN + 2 * MS], [0, 0, 0], [0, 0, 0])
     arrivals = Arrivals(1000 * MS)
     first = arrivals.push(found, BEGIN + 3 * MS)

@@ -11,7 +11,6 @@ LEAD_MM = 10.0
 
 
 def mill_columns(rows=ROWS):
-    """Return the columns of the log by name."""
     time = np.arange(rows) / RATE
     columns = {}
     for number, axis in enumerate('XYZ'):
@@ -35,7 +34,6 @@ def mill_columns(rows=ROWS):
 
 
 def write_table(path, columns, *, separator=',', form='{:.5g}'):
-    """Write columns of numbers or texts as a CSV file; return its path."""
     names = list(columns)
     lines = [separator.join(names)]
     for row in zip(*columns.values(), strict=True):
@@ -47,18 +45,15 @@ def write_table(path, columns, *, separator=',', form='{:.5g}'):
 
 @pytest.fixture
 def mill_log(tmp_path):
-    """Return the log as a file, with a text in its last column."""
     columns = mill_columns() | {'Machining_Process': ['Prep'] * ROWS}
     return write_table(tmp_path / 'mill.csv', columns)
 
 
 @pytest.fixture(scope='session')
 def write_csv():
-    """Return the function that writes columns as a CSV file."""
     return write_table
 
 
 @pytest.fixture(scope='session')
 def mill():
-    """Return the function that makes the columns of the log."""
     return mill_columns

@@ -32,16 +32,13 @@ def test_a_guess_is_a_map_that_works_unedited(mill_log, tmp_path, capsys, says):
     assert f'parameters: those of {mill_log}' in captured.err
 
 
-def test_what_is_missing_is_named(mill_log, tmp_path, capsys):
+def test_what_is_missing_or_superfluous_is_named(mill_log, tmp_path, capsys, short_bag, refused):
     assert cli.main(['import', str(mill_log)]) == 2
     assert '--config is missing; --guess prints' in capsys.readouterr().err
     assert cli.main(['import', str(mill_log), '--config', str(tmp_path / 'map.yaml')]) == 2
     assert '--out is missing' in capsys.readouterr().err
     assert cli.main(['replay', str(mill_log)]) == 2
     assert 'a table needs a map: ballscrew import' in capsys.readouterr().err
-
-
-def test_a_bag_needs_no_import(short_bag, tmp_path, refused):
     for log in (short_bag, short_bag / 'short.mcap'):
         refused('bag_needs_import', print_guess, log)
     refused('cannot_read', print_guess, Path(tmp_path / 'nothing.csv'))

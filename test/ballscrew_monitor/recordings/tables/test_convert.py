@@ -40,13 +40,11 @@ TYPES = {
 
 
 def converted(log, out):
-    """Return the bag of a log by the map that is guessed."""
     convert(log, make_map(guess(log).content), out)
     return Bag(out)
 
 
 def states_of(bag):
-    """Return for each axis the states of all its samples, as what matters of them."""
     values = parameters_of(bag)
     found = {axis: [] for axis in values['axes']}
     for axis in values['axes']:
@@ -73,17 +71,28 @@ def check_every_sample(bag, rows):
 
 @pytest.fixture(scope='module')
 def mill_bag(tmp_path_factory, write_csv, mill):
-    """Return the bag of the small log."""
     folder = tmp_path_factory.mktemp('mill')
     return converted(write_csv(folder / 'mill.csv', mill()), folder / 'bag')
 
 
-def test_every_sample_of_the_small_log_is_judged_or_refused_with_a_reason(mill_bag):
+def test_every_sample_is_judged_with_parameters_given_else_own_else_nominal(mill_bag, short_bag):
     assert mill_bag.types == TYPES
     check_every_sample(mill_bag, 300)
+    given = values_for(mill_bag, NOMINAL, NOMINAL)
+    assert (given.values['axes'], given.is_given, given.is_nominal) == (['x'], True, False)
+    own = values_for(mill_bag, None, NOMINAL)
+    assert (own.values['axes'], own.is_given, own.is_nominal) == (['x', 'y', 'z'], False, False)
+    assert own.origin == f'those of {mill_bag.path}'
+    nominal = values_for(Bag(short_bag), None, NOMINAL)
+    assert (nominal.values, nominal.is_nominal) == (parameters.read_file(NOMINAL), True)
+    assert nominal.origin.endswith('the nominal ones')
+    said = values_for(mill_bag, None, NOMINAL).said
+    assert {'axes', 'y.load.topic', 'x.temperature.default'} <= said
+    assert 'x.limits.rcs' not in said
+    assert not values_for(Bag(short_bag), None, NOMINAL).said
 
 
-def test_the_bag_says_what_it_was_made_of(mill_bag):
+def test_the_bag_says_what_it_was_made_of_and_so_does_the_file_alone(mill_bag):
     facts = facts_of(mill_bag)
     assert facts.source == 'mill.csv'
     assert facts.mapping['axes']['x']['speed'] == {'column': 'X1_ActualVelocity'}
@@ -98,28 +107,7 @@ def test_the_bag_says_what_it_was_made_of(mill_bag):
     together = next(one for one in said if one.startswith('assumed of mill.csv, all axes: '))
     assert 'lead_mm = 10.0' in together
     assert 'time.rate_Hz = 10.0' in together
-
-
-def test_the_file_alone_says_it_too(mill_bag):
     assert Bag(mill_bag.files[0]).metadata == mill_bag.metadata
-
-
-def test_parameters_are_those_given_else_its_own_else_the_nominal(mill_bag, short_bag):
-    given = values_for(mill_bag, NOMINAL, NOMINAL)
-    assert (given.values['axes'], given.is_given, given.is_nominal) == (['x'], True, False)
-    own = values_for(mill_bag, None, NOMINAL)
-    assert (own.values['axes'], own.is_given, own.is_nominal) == (['x', 'y', 'z'], False, False)
-    assert own.origin == f'those of {mill_bag.path}'
-    nominal = values_for(Bag(short_bag), None, NOMINAL)
-    assert (nominal.values, nominal.is_nominal) == (parameters.read_file(NOMINAL), True)
-    assert nominal.origin.endswith('the nominal ones')
-
-
-def test_what_somebody_gave_a_value_is_told_from_defaults(mill_bag, short_bag):
-    said = values_for(mill_bag, None, NOMINAL).said
-    assert {'axes', 'y.load.topic', 'x.temperature.default'} <= said
-    assert 'x.limits.rcs' not in said
-    assert not values_for(Bag(short_bag), None, NOMINAL).said
 
 
 def test_the_text_of_parameters_holds_what_is_said_and_what_is_not_usual():

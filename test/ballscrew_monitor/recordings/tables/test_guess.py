@@ -15,8 +15,6 @@ SPEED = 100.0 * np.sin(TIME)
 
 @pytest.fixture
 def guessed(tmp_path, write_csv):
-    """Return a function that guesses at a log of columns."""
-
     def make(columns, **how):
         return guess(write_csv(tmp_path / 'log.csv', columns, **how))
 
@@ -41,10 +39,6 @@ def test_a_mill_log_is_understood(mill_log):
     assert all(entry['reason'] for entry in assumed.values())
     assert any('spindle' in note for note in made.notes)
     assert any('axis z: the load is not known' in note for note in made.notes)
-
-
-def test_the_text_is_a_map_as_it_stands(mill_log):
-    made = guess(mill_log)
     assert make_map(yaml.safe_load(made.text)).rate == 10.0
     assert yaml.safe_load(made.text) == made.content
 
@@ -74,11 +68,13 @@ def test_units_in_names_are_not_assumed(guessed):
     assert not [key for key in made.content['assumed'] if key.endswith('.unit')]
 
 
-def test_a_log_of_one_axis_needs_no_letter(guessed):
+def test_logs_of_one_axis_need_no_letter(guessed):
     made = guessed({'Timestamp': 1.7e9 + TIME, 'Velocity': SPEED, 'Force': SPEED}, form='{:.12g}')
     assert list(made.content['axes']) == ['x']
     assert made.content['time'] == {'column': 'Timestamp', 'unit': 's'}
     assert 'time.epoch' not in made.content['assumed']
+    made = guessed({'t': TIME, 'motor_rpm': SPEED, 'nut_speed': SPEED, 'slide_force': SPEED})
+    assert list(made.content['axes']) == ['x']
 
 
 @pytest.mark.parametrize(
@@ -90,11 +86,15 @@ def test_position_and_time_tell_the_unit_of_the_speed(factor, unit, guessed):
     assert made.content['assumed']['x.speed.unit']['value'] == unit
 
 
-def test_the_rate_cannot_always_be_told(guessed):
+def test_what_cannot_be_told_is_said_or_refused(guessed, refused):
     made = guessed({'x_vel': SPEED, 'x_force': SPEED})
     entry = made.content['assumed']['time.rate_Hz']
     assert entry['value'] > 0
     assert 'nothing in it tells the rate' in entry['reason']
+    refused('column_looks_like', guessed, {'a': TIME, 'b': TIME})
+    made = guessed({'t': TIME, 'x_speed_furlong': SPEED, 'x_force': SPEED})
+    reason = made.content['assumed']['x.speed.unit']['reason']
+    assert reason.startswith('x_speed_furlong states none that is known')
 
 
 def test_of_a_long_log_the_first_rows_tell_the_rate_and_all_the_ranges(guessed, monkeypatch, says):
@@ -107,17 +107,10 @@ def test_of_a_long_log_the_first_rows_tell_the_rate_and_all_the_ranges(guessed, 
     assert not any('never moves' in note for note in made.notes)
 
 
-def test_what_is_odd_is_said(guessed, says):
+def test_what_is_odd_is_said_and_a_column_of_texts_is_left_out(guessed, says, refused):
     made = guessed({'t': TIME, 'x_vel_m_s': SPEED, 'y_vel': 0 * SPEED, 'x_force': SPEED})
     assert says('moves_up_100') in made.notes
     assert 'axis y never moves: its speed is always 0' in made.notes
-
-
-def test_a_log_without_a_speed_is_refused(guessed, refused):
-    refused('column_looks_like', guessed, {'a': TIME, 'b': TIME})
-
-
-def test_a_column_of_texts_is_left_out(guessed, refused):
     words = ['fast'] * len(TIME)
     made = guessed({'t': TIME, 'x_vel': SPEED, 'y_vel': words, 'x_force': SPEED})
     assert list(made.content['axes']) == ['x']
@@ -170,28 +163,14 @@ def test_axes_are_told_by_the_words_in_which_names_differ(guessed, says):
     assert list(make_map(made.content).axes[0].columns) == ['speed', 'load', 'temperature']
 
 
-def test_two_readings_of_one_speed_are_one_axis(guessed):
-    made = guessed({'t': TIME, 'motor_rpm': SPEED, 'nut_speed': SPEED, 'slide_force': SPEED})
-    assert list(made.content['axes']) == ['x']
-
-
-def test_a_time_by_name_comes_before_one_by_unit(guessed):
+def test_a_time_by_name_comes_before_one_by_unit_and_one_that_does_not_rise_is_said(guessed):
     columns = {'served_ms': TIME * 1e3, 'time_s': TIME, 'x_vel': SPEED, 'x_force': SPEED}
     assert guessed(columns).content['time']['column'] == 'time_s'
     del columns['time_s']
     assert guessed(columns).content['time'] == {'column': 'served_ms', 'unit': 'ms'}
-
-
-def test_a_time_that_does_not_rise_is_said(guessed):
     made = guessed({'Zeit_ms': 0 * TIME, 'x_vel': SPEED, 'x_force': SPEED})
     reason = made.content['assumed']['time.rate_Hz']['reason']
     assert reason.startswith('the log has no time that rises (Zeit_ms)')
-
-
-def test_a_unit_that_is_not_known_is_not_said_to_be_missing(guessed):
-    made = guessed({'t': TIME, 'x_speed_furlong': SPEED, 'x_force': SPEED})
-    reason = made.content['assumed']['x.speed.unit']['reason']
-    assert reason.startswith('x_speed_furlong states none that is known')
 
 
 def test_a_speed_without_a_number_is_none_and_the_position_is_used(guessed, says):

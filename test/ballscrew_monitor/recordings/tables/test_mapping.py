@@ -29,7 +29,6 @@ GOOD = {
 
 
 def changed(**changes):
-    """Return the good map with values at dotted places; None takes one out."""
     content = copy.deepcopy(GOOD)
     for name, value in changes.items():
         *path, leaf = name.split('__')

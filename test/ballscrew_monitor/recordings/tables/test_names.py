@@ -43,19 +43,13 @@ def test_a_name_says_axis_quantity_and_unit(column, place, axis, kind, unit):
     assert (named.place, named.axis, named.kind, named.unit) == (place, axis, kind, unit)
 
 
-def test_the_word_of_an_axis_is_what_says_neither_quantity_nor_unit():
+def test_the_word_the_number_and_the_rank_of_an_axis():
     names = ('a_speed_m_per_min', 'left actual force [N]', 'Speed 2', 'oil_temp_degC')
     words = [word_of_the_axis(read_name(name)) for name in names]
     assert words == ['a', 'left', '2', '']
-
-
-def test_what_is_measured_comes_before_what_is_asked_for():
+    named = [read_name(name) for name in ('X1_vel', 'Y1_vel', 'Y2_vel', 'axis3_vel')]
+    assert axis_names(named) == {'x1': 'x', 'y1': 'y1', 'y2': 'y2', 'axis3': 'axis3'}
     names = ('X_ActualVelocity', 'X_Velocity', 'X_OutputVelocity', 'X_CommandVelocity')
     ranks = [read_name(name).rank for name in names]
     assert ranks == sorted(ranks, reverse=True)
     assert len(set(ranks)) == len(ranks)
-
-
-def test_the_number_of_an_axis_goes_where_there_is_one_of_its_letter():
-    named = [read_name(name) for name in ('X1_vel', 'Y1_vel', 'Y2_vel', 'axis3_vel')]
-    assert axis_names(named) == {'x1': 'x', 'y1': 'y1', 'y2': 'y2', 'axis3': 'axis3'}

@@ -20,10 +20,8 @@ def text_log(tmp_path, text):
 
 def test_numbers_come_as_they_are(tmp_path):
     table = open_table(text_log(tmp_path, 'a,b,c\n1,2,x\n3,4e1,y\n'), ['b', 'a'])
-    assert {name: list(values) for name, values in table.head(99).items()} == {
-        'a': [1, 3],
-        'b': [2, 40],
-    }
+    expected = {'a': [1, 3], 'b': [2, 40]}
+    assert {name: list(values) for name, values in table.head(99).items()} == expected
     assert table.rows == 2
     assert not table.notes
 
@@ -92,13 +90,10 @@ def test_a_column_is_read_in_the_form_of_most_cells(tmp_path, monkeypatch, block
     np.testing.assert_array_equal(table.head(99)['t'], [1, np.nan, 3])
 
 
-def test_cells_without_a_number_are_unknown_and_counted(tmp_path, says):
+def test_cells_without_a_finite_number_are_unknown_and_counted(tmp_path, says, refused):
     table = open_table(text_log(tmp_path, 'a,b\n1,2\n1,oops\n1,\n1'), ['a', 'b'])
     assert np.isnan(table.head(99)['b']).tolist() == [False, True, True, True]
     assert table.notes[0].endswith(says('column_b'))
-
-
-def test_cells_that_are_no_finite_number_are_unknown_and_counted(tmp_path, refused, says):
     table = open_table(text_log(tmp_path, 'a\n1\nNaN\ninf\n4\n'), ['a'])
     np.testing.assert_array_equal(table.head(99)['a'], [1, np.nan, np.nan, 4])
     np.testing.assert_array_equal(table.readings['a'].extremes, [1, 4])
@@ -130,8 +125,14 @@ def test_what_cannot_be_read_is_one_sentence(text, expected, tmp_path, says):
     assert '\n' not in str(caught.value)
 
 
-def test_a_log_that_is_not_there_is_one_sentence(tmp_path, refused):
+def test_what_is_not_there_or_not_converted_is_a_sentence(tmp_path, refused, monkeypatch):
     refused('cannot_read_such', column_names, tmp_path / 'log.csv')
+
+    def fail(texts):
+        raise pl.exceptions.InvalidOperationError('conversion failed\nmore of it')
+
+    monkeypatch.setattr(cells, '_points', fail)
+    refused('column_string_cannot', open_table, text_log(tmp_path, 'a\n1\n'), ['a'])
 
 
 def test_parquet_is_read_with_its_types(tmp_path, refused):
@@ -167,11 +168,3 @@ def test_times_and_durations_of_parquet_are_seconds(tmp_path, unit):
     np.testing.assert_array_equal(table.head(99)['span'], [1.5, np.nan, 3600.0])
     np.testing.assert_array_equal(table.head(99)['clock'], [2.0, 3600.0, np.nan])
     assert len(table.notes) == 2
-
-
-def test_a_column_that_cannot_be_converted_is_one_sentence(tmp_path, monkeypatch, refused):
-    def fail(texts):
-        raise pl.exceptions.InvalidOperationError('conversion failed\nmore of it')
-
-    monkeypatch.setattr(cells, '_points', fail)
-    refused('column_string_cannot', open_table, text_log(tmp_path, 'a\n1\n'), ['a'])

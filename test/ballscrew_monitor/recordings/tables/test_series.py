@@ -24,7 +24,6 @@ AXIS = {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'mm/s'}}
 
 
 def joined(series):
-    """Return all rows of a series at once."""
     blocks = list(series.blocks())
     axes = [
         types.SimpleNamespace(
@@ -60,7 +59,6 @@ def read(tmp_path, write_csv, request, monkeypatch):
 
 @pytest.fixture
 def small_reads(monkeypatch):
-    """Let tables be read a hundred rows at a time."""
     monkeypatch.setattr(read_module, 'BLOCK', 100)
 
 
@@ -85,35 +83,26 @@ def test_quantities_are_those_of_the_screw(read):
     assert found.temperature == pytest.approx([40.0, 20.0])
 
 
-def test_the_force_of_no_torque_is_no_negative_zero():
-    assert math.copysign(1.0, force_of(np.zeros(1), lead=0.01, efficiency=0.9)[0]) == 1.0
-
-
 def test_rotary_units_need_no_lead_and_scale_and_offset_come_first(read):
     speed = {'column': 'v', 'unit': 'rev/min', 'scale': 2.0, 'offset': 60.0}
     made = read({'t': [0, 1], 'v': [0, 30]}, AXIS | {'speed': speed})
     assert made.axes[0].speed == pytest.approx([2 * math.pi, 4 * math.pi])
 
 
-def test_an_unknown_load_is_no_zero(read):
+def test_an_unknown_load_is_no_zero_and_speed_may_be_the_slope_of_position(read):
     made = read({'t': [0, 1], 'v': [1, 1]}, AXIS | {'load': {'unknown': 'no sensor'}})
     assert np.isnan(made.axes[0].load).all()
-
-
-def test_the_speed_may_be_the_slope_of_the_position(read):
+    assert math.copysign(1.0, force_of(np.zeros(1), lead=0.01, efficiency=0.9)[0]) == 1.0
     axis = {'lead_mm': 10.0, 'position': {'column': 'p', 'unit': 'm'}}
     made = read({'t': [0, 1, 2, 2], 'p': [0.0, 0.01, 0.02, 0.02]}, axis)
     assert made.axes[0].speed[:2] == pytest.approx([2 * math.pi] * 2)
     assert np.isnan(made.axes[0].speed[-1])
 
 
-def test_a_rate_makes_stamps(read):
+def test_a_rate_makes_stamps_and_a_time_of_the_universal_clock_stays(read):
     made = read({'v': [1, 2, 3]}, rate_Hz=10.0, epoch='2000-01-01T00:00:00Z')
     assert np.diff(made.stamps).tolist() == [10**8] * 2
     assert made.usual_period == pytest.approx(0.1)
-
-
-def test_a_time_of_the_universal_clock_stays(read):
     made = read({'t': [1_767_323_045_500, 1_767_323_046_500], 'v': [1, 2]}, column='t', unit='ms')
     assert made.stamps.tolist() == [1_767_323_045_500_000_000, 1_767_323_046_500_000_000]
 
@@ -130,10 +119,16 @@ def test_huge_times_are_refused_in_one_sentence(times, epoch, read, refused):
     refused('give_stamps_after', read, {'t': times, 'v': [1, 2, 3]}, column='t', unit='s', **epoch)
 
 
-def test_rows_out_of_order_are_sorted_and_counted(read, says):
+def test_rows_out_of_order_without_a_time_or_after_a_gap_are_said(read, says, refused):
     made = read({'t': [0, 2, 1, 3], 'v': [0, 2, 1, 3]})
     assert made.axes[0].speed == pytest.approx(np.arange(4) * 0.2 * math.pi)
     assert made.notes[0].endswith(says('1_rows_earlier'))
+    made = read({'t': ['0', '', '2'], 'v': [1, 2, 3]})
+    assert len(made.stamps) == len(made.axes[0].speed) == 2
+    assert made.notes[-1].endswith('1 rows without a time are left out')
+    refused('holds_1_rows', read, {'t': ['0', '', ''], 'v': [1, 2, 3]})
+    made = read({'t': [0, 0.1, 0.2, 3600, 3600.1], 'v': [1] * 5})
+    assert says('1_gap_longer') in made.notes[0]
 
 
 @pytest.mark.parametrize('spread', [2, 40, 1000])
@@ -180,18 +175,6 @@ def test_rows_in_reverse_are_joined_once(small_reads, tmp_path, write_csv, monke
     assert sum(moved) <= 3 * 5000  # not once per block
 
 
-def test_rows_without_a_time_are_left_out_and_counted(read, refused):
-    made = read({'t': ['0', '', '2'], 'v': [1, 2, 3]})
-    assert len(made.stamps) == len(made.axes[0].speed) == 2
-    assert made.notes[-1].endswith('1 rows without a time are left out')
-    refused('holds_1_rows', read, {'t': ['0', '', ''], 'v': [1, 2, 3]})
-
-
-def test_huge_gaps_are_said(read, says):
-    made = read({'t': [0, 0.1, 0.2, 3600, 3600.1], 'v': [1] * 5})
-    assert says('1_gap_longer') in made.notes[0]
-
-
 @pytest.fixture
 def notes(tmp_path, write_csv):
     """Return a function that imports speeds stated in a unit, and returns what is said of them."""
@@ -231,20 +214,14 @@ def test_the_unit_that_fits_is_named_where_another_is_stated(notes, factor, unit
         assert all(f'in {stated} says: {unit} fits' in note for note in found)
 
 
-def test_a_gap_and_a_row_without_a_number_say_nothing(notes):
+def test_a_gap_noise_and_rest_say_nothing_a_wrong_sign_or_factor_is_told(notes):
     late = np.where(np.arange(400) < 200, TIME, TIME + 30.0)
     position = np.where(np.arange(400) < 200, POSITION, POSITION + 5e3)
     position[50] = np.nan
     assert not notes(SPEED, 'mm/s', position, late)
-
-
-def test_the_sign_and_a_factor_of_no_unit_are_told(notes):
-    assert notes(-SPEED, 'mm/s')[0].endswith('one of both has the wrong sign of its scale')
-    assert notes(3.0 * SPEED, 'mm/s')[0].endswith('the time and the lead')
-
-
-def test_what_is_not_of_one_motion_or_at_rest_is_not_compared(notes):
     noise = np.random.default_rng(1).normal(size=400)
     assert not notes(1e3 * noise, 'mm/s')
     assert not notes(0.0 * SPEED, 'mm/s')
     assert not notes(SPEED, 'mm/s', 0.0 * POSITION)
+    assert notes(-SPEED, 'mm/s')[0].endswith('one of both has the wrong sign of its scale')
+    assert notes(3.0 * SPEED, 'mm/s')[0].endswith('the time and the lead')

@@ -27,12 +27,9 @@ def test_the_median_is_right_but_for_the_width_of_a_bin(block, count):
     assert found.gaps() == (steps > 100 * np.median(steps)).sum()
 
 
-def test_equal_steps_are_told_to_the_last_bit():
+def test_equal_steps_are_told_to_the_last_bit_and_one_of_exactly_a_hundred_is_no_gap():
     assert counted(np.arange(10.0) * 12_345_678.0, 3).median == 12_345_678.0
     assert counted(np.zeros(4), 4).median == 0.0
     assert counted(np.zeros(4), 4).gaps() == 0
-
-
-def test_a_step_of_exactly_a_hundred_is_no_gap():
     for last, gaps in ((100.0, 0), (101.0, 1)):
         assert counted(np.cumsum([0.0, *[7.0] * 9, 7.0 * last]), 4).gaps() == gaps

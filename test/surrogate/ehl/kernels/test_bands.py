@@ -55,7 +55,6 @@ def apply(planes, x):
 
 
 def inner(shape, part=slice(None)):
-    """Return 1 on the inner nodes of some rows."""
     thick = np.zeros(shape, np.float32)
     thick[1:-1, 1:-1] = 1
     thick[np.setdiff1d(np.arange(shape[0]), np.arange(shape[0])[part])] = 0

@@ -14,7 +14,6 @@ from surrogate.ehl.system import evaluate
 
 
 def test_dot_is_numpys():
-    """Sum of products, in any order."""
     a, b = np.random.default_rng(1).normal(size=(2, 1001))
     assert dot(a, b) == pytest.approx(a @ b, rel=1e-12)
 

@@ -12,7 +12,6 @@ NEIGHBOURS = ((0, 0), (-1, 0), (1, 0), (0, -1), (0, 1), (-2, 0))
 
 
 def test_stencil_is_the_sum_over_the_planes():
-    """Six neighbours of the film pressure and of the gap; the border is no row."""
     rng = np.random.default_rng(1)
     planes, film_lift = rng.normal(size=(2, 6, 9, 8)), rng.normal(size=(2, 9, 8))
     expected = np.zeros((9, 8))
@@ -27,7 +26,6 @@ def test_stencil_is_the_sum_over_the_planes():
 
 
 def test_load_is_the_weighted_sum():
-    """Weights belong to the columns."""
     total, weights = np.random.default_rng(2).normal(size=(9, 8)), np.arange(8.0)
     assert load_of(total, weights) == pytest.approx((total * weights).sum())
 

@@ -21,7 +21,6 @@ def make_planes():
 
 
 def marked(*nodes):
-    """Return a mask of nodes."""
     mask = np.zeros(SHAPE, bool)
     for node in nodes:
         mask[node] = True
@@ -76,14 +75,12 @@ CONTACTS = {
 
 
 def inner(field):
-    """Return a field without its border."""
     return field[1:-1, 1:-1]
 
 
 @pytest.mark.parametrize('contact', CONTACTS.values(), ids=CONTACTS)
 @pytest.mark.parametrize('across', [SHAPE[1], SHAPE[1] - 1], ids=('even', 'odd'))
 def test_many_steps_solve_the_rows_of_all_lines(planes, contact, across):
-    """From zero as from anywhere, for an even and an odd number of lines."""
     contact, planes = contact[:, :across], planes[..., :across]
     rhs, start = np.random.default_rng(8).normal(size=(2, SHAPE[0], across))
     start[[0, -1]] = start[:, [0, -1]] = 0
@@ -101,9 +98,8 @@ def test_a_step_solves_every_other_line(planes):
     assert not once[:, ::2].any()
     assert rows(planes, contact, once)[1:-1, 1:-1:2] == pytest.approx(rhs[1:-1, 1:-1:2], abs=1e-12)
     np.testing.assert_array_equal(twice[:, 1::2], once[:, 1::2])
-    assert rows(planes, contact, twice)[1:-1, 2:-1:2] == pytest.approx(
-        rhs[1:-1, 2:-1:2], abs=1e-12
-    )
+    expected = rhs[1:-1, 2:-1:2]
+    assert rows(planes, contact, twice)[1:-1, 2:-1:2] == pytest.approx(expected, abs=1e-12)
 
 
 def test_half_of_a_symmetric_field_is_solved_as_the_whole(planes):
@@ -141,7 +137,6 @@ def test_lines_of_a_period_reach_across_its_sides(planes, contact):
 
 @pytest.mark.parametrize('across', [7, 8])
 def test_kinds_join_to_what_was_parted(across):
-    """Bit for bit."""
     field, again = np.random.default_rng(11).normal(size=(5, across)), np.zeros((5, across))
     kinds = np.zeros((2, 5, line.lines_of_a_kind(across)))
     line.part(field, kinds)
@@ -171,7 +166,6 @@ def test_film_lines_solve_the_rows_of_contact_nodes(planes, contact):
 
 @pytest.mark.parametrize('contact', CONTACTS.values(), ids=CONTACTS)
 def test_the_box_changes_no_bit(planes, contact):
-    """Same as on the whole grid after one step and after three."""
     rng = np.random.default_rng(7)
     rhs, total = rng.normal(size=(2, *SHAPE))
     total[[0, -1]] = total[:, [0, -1]] = 0
@@ -181,7 +175,6 @@ def test_the_box_changes_no_bit(planes, contact):
 
 
 def test_the_box_has_a_node_to_spare_off_the_border():
-    """Ends are excluded; nothing is in the box of no contact."""
     assert contact_box(CONTACTS['inside']) == (3, 9, 4, 11)
     assert contact_box(CONTACTS['at all borders']) == WHOLE
     assert contact_box(CONTACTS['one']) == (2, 5, 11, 13)

@@ -42,7 +42,6 @@ def rows_of(film, mass, carried, stride=1):
 
 @pytest.mark.parametrize('stride', [1, 2, 3])
 def test_rows_are_the_plain_twins(film, stride):
-    """Node by node; the rows that columns from outside reach are of order 1."""
     rng = np.random.default_rng(4)
     mass, carried = 0.05 * rng.random((2, 9, 8)) + 0.01
     rows, _, _, out = rows_of(film, mass, carried, stride)
@@ -78,9 +77,8 @@ def test_at_rest_it_is_the_upstream_wedge(film):
     before = np.vstack([mass[:1], mass[:-1]])
     _, _, _, steady = rows_of(film, before, 0 * mass)
     carried = np.vstack([steady[:1], steady[:-1]])
-    assert rows_of(film, before, carried)[0][1:-1, 1:-1] == pytest.approx(
-        rows[1:-1, 1:-1], rel=1e-12, abs=1e-16
-    )
+    found = rows_of(film, before, carried)[0][1:-1, 1:-1]
+    assert found == pytest.approx(rows[1:-1, 1:-1], rel=1e-12, abs=1e-16)
 
 
 def test_dissipation_is_flow_times_rise(film):
@@ -102,7 +100,6 @@ def test_dissipation_is_flow_times_rise(film):
 
 
 def test_shear_thins_as_the_plain_twin(film):
-    """The fluidity grows by sinh(S)/S, its logarithm falls by as much; the border stays."""
     rng = np.random.default_rng(7)
     pressure, thinned = rng.random((9, 8)), film.copy()
     thin_by_shear(pressure, thinned, 30.0, 20.0)

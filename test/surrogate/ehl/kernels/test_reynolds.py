@@ -90,7 +90,6 @@ def assembled(pressure, gap, contact, law, order, inlet, fading=FADING):
 @pytest.mark.parametrize('order', [1.0, 1.3, 2.0])
 @pytest.mark.parametrize('fading', [0.0, 2.5, 4.0])
 def test_rows_are_the_plain_twins(fields, law, order, fading):
-    """Same numbers for both laws and every order of the wedge."""
     pressure, gap, contact, inlet = fields
     rows, _, _ = assembled(pressure, gap, contact, law, order, inlet, fading)
     twin = plain_rows(pressure, gap, contact, law, order, inlet, fading)
@@ -121,13 +120,11 @@ def test_planes_are_the_derivatives(fields, law, fading):
 
 
 def test_fluid_is_the_published_law():
-    """Roelands of the lubricant module and Barus with exponent 1."""
     eta, alpha, pressure = 0.05, 2e-8, 1.1e9
     growth = np.log(eta) + 9.67
     log, slope, density, _ = fluid_at(1.0, pressure, growth, alpha * 1.96e8 / growth, 0.34)
-    assert eta * np.exp(log) == pytest.approx(
-        float(viscosity_roelands_1966(pressure, eta, alpha)), rel=1e-12
-    )
+    expected = float(viscosity_roelands_1966(pressure, eta, alpha))
+    assert eta * np.exp(log) == pytest.approx(expected, rel=1e-12)
     assert density == pytest.approx((5.9e8 + 1.34 * pressure) / (5.9e8 + pressure), rel=1e-12)
     log, slope, density, compression = fluid_at(1.0, pressure, alpha * 1.96e8, 1.0, 0.0)
     assert (log, slope) == pytest.approx((alpha * pressure, alpha * pressure), rel=1e-12)

@@ -28,13 +28,11 @@ def march(raceway, strip=LINE, transits=1.0, **settings):
 
 
 def flat(x, y):
-    """Return a raceway without roughness."""
     return 0.0 * x * y
 
 
 @pytest.fixture(scope='module')
 def smooth():
-    """Return the march of the smooth strip."""
     return march(flat)
 
 
@@ -57,7 +55,6 @@ def test_a_strip_of_an_ellipse_has_its_pressure_and_length_there(place):
 
 
 def test_a_smooth_strip_carries_its_load(smooth):
-    """On a film that is the same all across."""
     assert smooth.status is MarchStatus.CONVERGED
     assert smooth.rcs.value == 0.0
     area = (smooth.x_nodes[1] - smooth.x_nodes[0]) * LINE.width / LINE.columns
@@ -136,11 +133,9 @@ def test_the_strip_repeats():
     ],
 )
 def test_a_strip_that_is_none_is_one_sentence(change, sentence, refused):
-    """What, value, unit, allowed."""
     refused(sentence, replace, LINE, **change)
 
 
 def test_a_place_outside_the_ellipse_is_one_sentence(refused):
-    """There is no contact."""
     contact = Contact(radius_x=2.589e-3, radius_y=77.39e-3, reduced_modulus=226.4e9)
     refused('strip_place_1', strip_at, contact, 27.6, 1.0, 50e-6, 96)

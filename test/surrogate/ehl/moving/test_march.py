@@ -14,7 +14,6 @@ from surrogate.ehl.newton import solve_grid
 
 
 def flat(x, y):
-    """Return a raceway without roughness."""
     return 0.0 * x * y
 
 
@@ -71,7 +70,7 @@ def test_a_standing_raceway_comes_to_the_steady_solution(circular, semi_axis, tr
 
 
 @pytest.mark.parametrize('length', [1.0, 2.0])
-def test_a_wave_keeps_the_amplitude_of_the_published_curve(
+def test_a_wave_keeps_its_published_amplitude(
     circular, smooth_march, semi_axis, transverse, length
 ):
     """Ad/Ai = 1/(1 + 0.15 n + 0.015 n^2), n = (lambda/a) sqrt(M/L): Venner, Lubrecht."""
@@ -201,18 +200,14 @@ def test_a_stalled_march_says_so(circular, semi_axis, transverse, monkeypatch):
     ],
 )
 def test_bad_settings_are_one_sentence(circular, change, sentence, refused):
-    """What, value, allowed."""
     refused(sentence, circular, flat, **change)
 
 
-def test_a_raceway_must_go_on_for_ever(circular, refused):
-    """An array ends, and heights that are not finite are none."""
+def test_raceways_that_end_and_fewer_transits_than_places_are_refused(
+    circular, refused, moes_case
+):
     refused('strip_has_end', circular, np.zeros((65, 65)))
     refused('finite', circular, lambda x, y: np.nan * x * y)
-
-
-def test_settings_are_those_of_the_module(moes_case, refused):
-    """The default march of a smooth nominal raceway asks for as many transits as places."""
     contact, oil, condition, _ = moes_case(100, 10, 'roelands_dh')
     with refused('each_4_places'):
         march_contact(contact, oil, condition, flat, transits=2.0, settings=MarchSettings())

@@ -33,16 +33,12 @@ def column(rcs):
     )
 
 
-def test_the_onset_of_a_power_law_is_its_own():
+def test_the_onset_of_a_power_law_is_its_own_in_a_scattered_column_too():
     """RCS = 0.01 (u0/u)^6 passes 0.01 at u0, whatever means are taken of a slow ramp."""
     ramp = column(lambda u: 0.01 * (0.013 / u) ** 6)
     for transits in (1.0, 2.0):
         assert ramp.onset(transits=transits) == pytest.approx(0.013, rel=0.03)
     assert ramp.onset(rcs=0.3) == pytest.approx(0.013 * (0.01 / 0.3) ** (1 / 6), rel=0.03)
-
-
-def test_the_onset_of_a_scattered_column_is_that_of_its_trend():
-    """Scatter of a factor two that falls now and then."""
     rng = np.random.default_rng(1)
     ramp = column(lambda u: 0.01 * (0.013 / u) ** 6 * rng.uniform(0.4, 1.6, u.size))
     assert ramp.onset() == pytest.approx(0.013, rel=0.1)
@@ -50,12 +46,10 @@ def test_the_onset_of_a_scattered_column_is_that_of_its_trend():
 
 @pytest.mark.parametrize('level', [0.0, 1.0])
 def test_an_onset_that_is_not_on_the_ramp_is_nan(level):
-    """Never touched, or touched at all speeds."""
     assert math.isnan(column(lambda u: level + 0.0 * u).onset())
 
 
 def test_means_keep_the_sum():
-    """Every step counts once, whatever it is the mean of."""
     ramp = replace(column(lambda u: u), loss_factor=1 + np.geomspace(0.1, 0.001, 400))
     speeds, means = ramp.means(4.0)
     assert means.size == 10
@@ -104,7 +98,6 @@ def test_down_and_up_enclose_the_standing_speed():
 
 
 def test_a_ramp_without_an_end_is_one_sentence(refused):
-    """Two speeds, different and above 0."""
     with refused('speeds'):
         moving.ramp_strip(STRIP, OIL, (0.1, 0.1), rough, transits=2.0, settings=SETTINGS)
     with refused('transits_0_5'):
