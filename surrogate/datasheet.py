@@ -250,7 +250,8 @@ def _value(spec: Any, raw: Any, where: str) -> Any:
 def _number(spec: Any, raw: Any, where: str) -> Any:
     key, rules = key_of(spec), spec.metadata
     if isinstance(raw, bool) or not isinstance(raw, (int, float)):
-        hint = ' (write 1.0e-8, not 1e-8)' if isinstance(raw, str) else ''
+        exponent = isinstance(raw, str) and re.fullmatch(r'[-+.\d]+e[-+]?\d+', raw, re.I)
+        hint = ' (write 1.0e-8, not 1e-8)' if exponent else ''
         raise InputError(
             f'{where}: {key} is {raw!r}, allowed is a number '
             f'from {rules["low"]:g} to {rules["high"]:g}{hint}'

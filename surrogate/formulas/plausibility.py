@@ -55,7 +55,7 @@ def check_plausible(screw: Screw) -> None:
         balls = max(1, round(screw.loaded_balls_per_nut * screw.static_rating / fit))
         raise InputError(
             f'screw: {_rating(screw)}, allowed is {GIGA * low:g} to {GIGA * high:g} GPa: '
-            f'{fit / MILLI:.3g} kN or {balls} balls would fit'
+            f'{float(f"{fit / MILLI:.3g}"):g} kN or {balls} balls would fit'
         )
     low, high = (share * screw.static_rating for share in (LEAST_PRELOAD, MOST_PRELOAD))
     if 0 < screw.preload < low:
