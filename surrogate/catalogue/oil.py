@@ -12,8 +12,6 @@ from surrogate.formulas.viscosity_index import viscosity_at_100_astm_d2270
 from surrogate.parameters import Lubricant
 from surrogate.units import MICRO, ZERO_CELSIUS
 
-KINDS = {'oil': 'iso', 'grease': 'grease'}
-"""Beginning of the name of a sheet."""
 DENSITY_SLOPE = 0.64
 """Usual loss of density of an oil [kg/m3/K]."""
 GREASE_FACTOR, WORST_FACTOR = 0.7, 0.5
@@ -45,6 +43,7 @@ def oil_of(given: CatalogueOil) -> tuple[Lubricant, dict[str, str]]:
 
     """
     kinematic, base = given.iso_vg, BASES[given.base or 'mineral']
+    kind = 'grease' if given.kind == 'grease' else given.base or 'mineral'
     warm = stated(given.density_15, base.density)
     density = derived(
         warm.value - 25 * DENSITY_SLOPE, f'from {warm.value:g} at 15 degC, {warm.note}'
@@ -53,7 +52,7 @@ def oil_of(given: CatalogueOil) -> tuple[Lubricant, dict[str, str]]:
     return noted_sheet(
         Lubricant,
         {
-            'name': given.name or f'{KINDS[given.kind or "oil"]}_vg_{MICRO * kinematic:g}',
+            'name': given.name or f'{kind}_vg_{MICRO * kinematic:g}',
             'source': given.source or 'Values of a data sheet, completed by ballscrew oil new.',
             'reference_temperature': Noted(40 + ZERO_CELSIUS, 'given, that of ISO VG'),
             'viscosity': derived(kinematic * density.value, 'kinematic viscosity times density'),

@@ -99,7 +99,7 @@ class CatalogueOil(Checked):
 
     NEEDED: ClassVar[tuple[tuple[str, ...], ...]] = (('iso_vg',),)
 
-    name: str | None = _asked('name (default iso_vg_NUMBER)', text(*NAME))
+    name: str | None = _asked('name (default such as mineral_vg_46)', text(*NAME))
     source: str | None = _asked('where the numbers come from', text())
     iso_vg: float = _number('ISO VG, of a grease that of its base oil', '', 1e-6, 2.0, 1e4)
     viscosity_index: float | None = _number(

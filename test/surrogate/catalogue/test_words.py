@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a person is asked for: every word has a flag, and what is missing is named by it."""
+"""Words of a catalogue: every word has a flag, and what is missing is named by it."""
 
 from dataclasses import fields
 

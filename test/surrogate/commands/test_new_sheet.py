@@ -70,7 +70,7 @@ def test_without_flags_a_terminal_is_asked(run, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr('sys.stdin.isatty', lambda: True)
     monkeypatch.setattr('builtins.input', lambda text: asked.append(text) or answers.get(text, ''))
     assert run('oil', 'new') == 0
-    assert load_lubricant('iso_vg_46.yaml').kinematic_viscosity_40 == pytest.approx(46e-6)
+    assert load_lubricant('mineral_vg_46.yaml').kinematic_viscosity_40 == pytest.approx(46e-6)
     assert 'density at 15 degC (default by the base) [kg_m3]: ' in asked
 
 
@@ -91,7 +91,7 @@ def test_a_sheet_is_not_written_over(run, tmp_path, refused):
     refused('there_already', run, 'oil', 'new', '--iso-vg', 46, '--out', path)
     assert path.read_text() == 'mine'
     assert run('oil', 'new', '--iso-vg', 46, '--out', path, '--force') == 0
-    assert load_lubricant(str(path)).name == 'iso_vg_46'
+    assert load_lubricant(str(path)).name == 'mineral_vg_46'
 
 
 def test_flags_that_do_not_suffice_are_refused(run, refused, monkeypatch):
