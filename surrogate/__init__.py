@@ -15,6 +15,7 @@ formulas       closed-form tier, a published law a function, author and year in 
 raceway        rough surfaces: fractal, measured, identified
 ehl            one contact, smooth, mixed, dry or rolling; kernels: arrays alone
 asperities     what touches as roughness rolls: summits that yield, onset, law
+catalogue      sheets out of a catalogue: given, derived or typical
 contact        a contact as a file: case, record, pictures
 screw          one point of the full tier: contacts, balance of the balls, torque
 builder        datasheet to surface: tiers, sweeps; full: nodes, errors

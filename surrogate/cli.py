@@ -9,6 +9,7 @@ from typing import Any
 from surrogate.commands.contact import add_contact_command
 from surrogate.commands.figures import add_figures_command
 from surrogate.commands.identify import add_identify_command, BagReader
+from surrogate.commands.new_sheet import add_new_commands
 from surrogate.commands.onset import add_onset_command
 from surrogate.commands.point import add_point_command
 from surrogate.commands.surface import add_surface_command
@@ -33,6 +34,7 @@ def add_commands(subparsers: Any, read_bag: BagReader | None = None) -> None:
     `read_bag` is what `identify` reads a bag with.
 
     """
+    add_new_commands(subparsers)
     add_point_command(subparsers)
     add_onset_command(subparsers)
     add_contact_command(subparsers)

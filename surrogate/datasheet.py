@@ -86,7 +86,7 @@ def block(cls: type, *, default: Any = MISSING) -> Any:
     return field(default=default, metadata={'block': cls})
 
 
-def _key(spec: Any) -> str:
+def key_of(spec: Any) -> str:
     """Return the key on file of a declared field."""
     unit = spec.metadata.get('unit')
     return f'{spec.name}_{unit}' if unit else str(spec.name)
@@ -142,12 +142,12 @@ def read_yaml(path: Path) -> Any:
 
 def read_sheet(cls: type[Sheet], path: Path) -> Sheet:
     """Read a YAML file whose keys are those that `cls` declares; raises InputError."""
-    return _from_mapping(cls, read_yaml(path), str(path))
+    return sheet_of(cls, read_yaml(path), str(path))
 
 
 def changed_sheet(sheet: Sheet, content: dict[str, Any], where: str) -> Sheet:
     """Return a sheet with some values changed, by their keys on file; raises InputError."""
-    specs = {_key(spec): spec for spec in fields(sheet)}  # type: ignore[arg-type]
+    specs = {key_of(spec): spec for spec in fields(sheet)}  # type: ignore[arg-type]
     _check_retired(type(sheet), content, where)
     for key in content:
         if key not in specs:
@@ -170,12 +170,13 @@ def find_sheet(name_or_path: str, folder: str) -> Path:
     )
 
 
-def _from_mapping(cls: type[Sheet], content: Any, where: str) -> Sheet:
+def sheet_of(cls: type[Sheet], content: Any, where: str) -> Sheet:
+    """Return a sheet out of its keys and values; raises InputError, which says `where`."""
     if not isinstance(content, dict):
         raise InputError(
             f'{where}: must be a mapping of keys to values, got {type(content).__name__}'
         )
-    specs = {_key(spec): spec for spec in fields(cls)}  # type: ignore[arg-type]
+    specs = {key_of(spec): spec for spec in fields(cls)}  # type: ignore[arg-type]
     _check_retired(cls, content, where)
     _check_keys(specs, content, where)
     values = {specs[key].name: _value(specs[key], raw, where) for key, raw in content.items()}
@@ -223,12 +224,12 @@ def _unknown_key(key: str, specs: dict[str, Any]) -> str:
 
 
 def _value(spec: Any, raw: Any, where: str) -> Any:
-    key, rules = _key(spec), spec.metadata
+    key, rules = key_of(spec), spec.metadata
     if 'block' in rules:
-        keys = [_key(one) for one in fields(rules['block'])]
+        keys = [key_of(one) for one in fields(rules['block'])]
         if isinstance(raw, list) and len(raw) == len(keys):
             raw = dict(zip(keys, raw, strict=True))
-        return _from_mapping(rules['block'], raw, f'{where}: {key}')
+        return sheet_of(rules['block'], raw, f'{where}: {key}')
     if 'text' in rules:
         if not isinstance(raw, str) or not re.fullmatch(rules['text'], raw.strip()):
             raise InputError(f'{where}: {key} is {raw!r}, allowed is {rules["allowed"]}')
@@ -247,9 +248,10 @@ def _value(spec: Any, raw: Any, where: str) -> Any:
 
 
 def _number(spec: Any, raw: Any, where: str) -> Any:
-    key, rules = _key(spec), spec.metadata
+    key, rules = key_of(spec), spec.metadata
     if isinstance(raw, bool) or not isinstance(raw, (int, float)):
-        hint = ' (write 1.0e-8, not 1e-8)' if isinstance(raw, str) else ''
+        exponent = isinstance(raw, str) and re.fullmatch(r'[-+.\d]+e[-+]?\d+', raw, re.I)
+        hint = ' (write 1.0e-8, not 1e-8)' if exponent else ''
         raise InputError(
             f'{where}: {key} is {raw!r}, allowed is a number '
             f'from {rules["low"]:g} to {rules["high"]:g}{hint}'
@@ -267,5 +269,5 @@ def _check_range(where: str, spec: Any, value: float) -> None:
     if not inside or (whole and value != int(value)):
         kind = 'a whole number from ' if whole else ''
         raise InputError(
-            f'{where}: {_key(spec)} is {value:g}, allowed is {kind}{low:g} to {high:g}'
+            f'{where}: {key_of(spec)} is {value:g}, allowed is {kind}{low:g} to {high:g}'
         )

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Datasheets written back to YAML: the keys, units and blocks from which they are read."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 import textwrap
 from typing import Any
 
+from surrogate.datasheet import key_of
 from surrogate.files import InputError, replace_file
 from surrogate.parameters import Lubricant, Screw
 import yaml
@@ -17,21 +18,43 @@ DIGITS = 12
 WIDTH = 99
 
 
-def write_sheet(path: str | Path, sheet: Screw | Lubricant, comments: Sequence[str] = ()) -> None:
+def write_sheet(
+    path: str | Path,
+    sheet: Screw | Lubricant,
+    comments: Sequence[str] = (),
+    notes: Mapping[str, str] | None = None,
+) -> None:
     """
     Write a datasheet whole or not at all, under lines of comment.
+
+    `notes` stand behind values, by the key on file; one in a block is `roughness.rms_um`.
 
     Reading it gives `sheet` to twelve digits. Raises InputError when it cannot be written.
 
     """
     path = Path(path)
-    head = [line for text in comments for line in textwrap.wrap(text, WIDTH - 2)]
+    head = [
+        line
+        for text in comments
+        for line in textwrap.wrap(text, WIDTH - 2, break_on_hyphens=False)
+    ]
     body = yaml.safe_dump(_on_file(sheet), sort_keys=False, allow_unicode=True, width=WIDTH)
-    text = ''.join(f'# {line}\n' for line in head) + body
+    lines = [*(f'# {line}' for line in head), *_noted(body, notes or {})]
+    text = ''.join(f'{line}\n' for line in lines)
     try:
         replace_file(path, text.encode())
     except OSError as error:
         raise InputError(f'{path}: the datasheet cannot be written, {error.strerror}') from None
+
+
+def _noted(body: str, notes: Mapping[str, str]) -> Iterator[str]:
+    """Yield the lines of a sheet, each with the note behind it."""
+    block = ''
+    for line in body.splitlines():
+        key = line.partition(':')[0]
+        name = f'{block}.{key.strip()}' if line.startswith(' ') else key
+        block = block if line.startswith(' ') else key
+        yield f'{line}  # {notes[name]}' if name in notes else line
 
 
 def _on_file(sheet: Any) -> dict[str, Any]:
@@ -41,11 +64,9 @@ def _on_file(sheet: Any) -> dict[str, Any]:
         value, rules = getattr(sheet, spec.name), spec.metadata
         if value is None:
             continue  # absent on file
-        unit = rules.get('unit')
-        key = f'{spec.name}_{unit}' if unit else spec.name
         if 'block' in rules:
             value = _on_file(value)
         elif 'factor' in rules and not rules.get('whole'):
             value = float(f'{value / rules["factor"] - rules["shift"]:.{DIGITS}g}')
-        content[key] = value
+        content[key_of(spec)] = value
     return content

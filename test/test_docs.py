@@ -49,7 +49,7 @@ FOREIGN = re.compile(
 OPENING = re.compile(
     r'(What|From|Which|Just|How|Where|When|Why|Who|Whose|Whether|Whatever|Takes|Makes|Says)\b'
 )
-COMMAND = re.compile(r'ballscrew ((?:surface )?[a-z]+)((?: [^`\n#]*)?)')
+COMMAND = re.compile(r'ballscrew ((?:(?:surface|screw|oil) )?[a-z]+)((?: [^`\n#]*)?)')
 MOST_PAGES, MOST_WORDS = 10, 900
 
 

@@ -45,7 +45,7 @@ OFFLINE_FLOORS = (
     ('datasheet_writer', 'formulas', 'tasks'),
     ('ehl',),
     ('asperities',),
-    ('contact', 'screw'),
+    ('catalogue', 'contact', 'screw'),
     ('builder',),
     ('surface_tools', 'identify', 'paper', 'on_demand'),
     ('commands',),

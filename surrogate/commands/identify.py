@@ -10,9 +10,9 @@ import sys
 from typing import Any
 
 from surrogate.commands.output import add_json, show
-from surrogate.commands.point import add_inputs
+from surrogate.commands.point import add_inputs, load_inputs
 from surrogate.files import InputError
-from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
+from surrogate.parameters import Lubricant, Screw
 from surrogate.progress import Progress
 from surrogate.units import ZERO_CELSIUS
 
@@ -105,7 +105,7 @@ def _identify(args: argparse.Namespace) -> int:
     from surrogate.identify.record import identification_record, page
 
     _check(args)
-    screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
+    screw, lubricant = load_inputs(args)
     run = _run(args, screw, lubricant)
     fitted = tuple(FITTED[name] for name in dict.fromkeys(args.fit))
     contacts = _contacts(args, screw, lubricant, run, fitted)

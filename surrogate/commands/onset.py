@@ -7,8 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from surrogate.commands.output import add_json, show
-from surrogate.commands.point import add_inputs, add_temperature, oil_temperature, picture, prepare
-from surrogate.parameters import load_lubricant, load_screw
+from surrogate.commands.point import (
+    add_inputs,
+    add_temperature,
+    load_inputs,
+    oil_temperature,
+    picture,
+    prepare,
+)
 
 
 def add_onset_command(subparsers: Any) -> None:
@@ -32,7 +38,7 @@ def add_onset_command(subparsers: Any) -> None:
 def _onset(args: argparse.Namespace) -> int:
     from surrogate.screw.onset import onset_page, onset_record
 
-    screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
+    screw, lubricant = load_inputs(args)
     if args.plot:
         prepare(args.plot)
     record = onset_record(screw, lubricant, args.load, oil_temperature(args, lubricant))

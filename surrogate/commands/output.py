@@ -3,7 +3,8 @@
 """Output of commands: a page for people, or JSON for programs."""
 
 import argparse
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+import sys
 from typing import Any, TypeVar
 
 from surrogate.files import json_text
@@ -19,3 +20,9 @@ def add_json(parser: argparse.ArgumentParser) -> None:
 def show(record: Record, page: Callable[[Record], str], *, json: bool) -> None:
     """Print a record as JSON in SI units, or the page of it."""
     print(json_text(record) if json else page(record))
+
+
+def tell(sentences: Iterable[str]) -> None:
+    """Print what a person should look at again, beside the output."""
+    for sentence in sentences:
+        print(f'ballscrew: {sentence}', file=sys.stderr)

@@ -8,7 +8,7 @@ import sys
 import time
 from typing import Any
 
-from surrogate.commands.output import add_json, show
+from surrogate.commands.output import add_json, show, tell
 from surrogate.files import InputError
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, OperatingPoint, Screw
 from surrogate.surface.shipped import SHIPPED_TIERS
@@ -55,6 +55,16 @@ def add_inputs(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def load_inputs(args: argparse.Namespace) -> tuple[Screw, Lubricant]:
+    """Return the sheets of screw and oil; refuses what no screw has, and tells what is unusual."""
+    from surrogate.formulas.plausibility import check_plausible, doubts
+
+    screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
+    check_plausible(screw)
+    tell(doubts(screw))
+    return screw, lubricant
+
+
 def add_operating_point(parser: argparse.ArgumentParser, *, required: bool) -> None:
     """Add speed, load and temperature, the first two `required` or not."""
     parser.add_argument(
@@ -91,7 +101,7 @@ def _point(args: argparse.Namespace) -> int:
     from surrogate.screw.closed_form_record import closed_form_record, page
 
     _check(args)
-    screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
+    screw, lubricant = load_inputs(args)
     kelvin = oil_temperature(args, lubricant)
     point = OperatingPoint(speed=args.speed_rpm * RPM, load=args.load, temperature=kelvin)
     if args.plot:

@@ -12,11 +12,10 @@ from typing import Any
 
 from surrogate.builder.tiers import build_surface, default_settings, find_tier, TIERS
 from surrogate.commands.output import add_json, show
-from surrogate.commands.point import add_inputs
+from surrogate.commands.point import add_inputs, load_inputs
 from surrogate.commands.surface_inspect import add_inspect_commands
 from surrogate.commands.sweep import add_sweep_command, add_workers
 from surrogate.files import InputError
-from surrogate.parameters import load_lubricant, load_screw
 from surrogate.progress import Progress
 from surrogate.surface import find_surface
 from surrogate.surface.file import read, write
@@ -74,7 +73,7 @@ def _add_info(parser: argparse.ArgumentParser) -> None:
 
 
 def _build(args: argparse.Namespace) -> int:
-    screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
+    screw, lubricant = load_inputs(args)
     ranges: dict[str, Any] = {}
     if args.speed_range:
         low, high = _range('--speed-range', 'rpm', args.speed_range, lowest=0.0)

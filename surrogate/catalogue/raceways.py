@@ -1,0 +1,86 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Typical raceways by the process that makes them.
+
+What no published number was found for is named as assumed.
+
+"""
+
+from dataclasses import dataclass
+
+from surrogate.catalogue.noted import derived, Noted, stated, typical
+from surrogate.catalogue.words import CatalogueScrew
+from surrogate.raceway.fractal import Lay
+from surrogate.raceway.standards import CUTOFF_SHORT, RA_OVER_RQ
+from surrogate.raceway.stated import HARDNESS
+from surrogate.units import RPM, TURN
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Process:
+    """Raceway of a process: Ra [m], lay, D n [m rad/s], the first two with range and source."""
+
+    ra: float
+    ra_words: str
+    lay: Lay
+    lay_words: str
+    dn: float
+
+
+PROCESSES = {
+    'ground': Process(
+        ra=0.16e-6,
+        ra_words='0.16, 0.1 to 0.4; a maker: below 0.2; a published study: 0.1',
+        lay='longitudinal',
+        lay_words='the wheel leaves ridges along the thread',
+        dn=90 * RPM,
+    ),
+    'rolled': Process(
+        ra=0.3e-6,
+        ra_words='0.3, 0.1 to 0.8, assumed',
+        lay='longitudinal',
+        lay_words='assumed: ground dies print their ridges along the thread',
+        dn=70 * RPM,
+    ),
+    'whirled': Process(
+        ra=0.3e-6,
+        ra_words='0.3, 0.2 to 0.8, assumed',
+        lay='transverse',
+        lay_words='assumed: edges between successive cuts lie across the thread',
+        dn=90 * RPM,
+    ),
+}
+"""D n by HIWIN Ballscrews BS-08-2-EN-1704-K, section 3.7.6, where whirled screws are peeled."""
+ROLLED = ('7', '10')
+"""Accuracy classes of rolled screws, unless the process is given."""
+
+
+def process_of(given: CatalogueScrew) -> str:
+    """Return the process, by the accuracy class where it is not given."""
+    return given.process or ('rolled' if given.accuracy in ROLLED else 'ground')
+
+
+def raceway_of(given: CatalogueScrew) -> dict[str, Noted]:
+    """Return the roughness of a raceway, its long cut-off always stated."""
+    process = PROCESSES[process_of(given)]
+    ra = stated(given.ra, typical(process.ra, process.ra_words))
+    return {
+        'rms': derived(ra.value / RA_OVER_RQ, f'1.25 Ra, {ra.note}'),
+        'cutoff_long': stated(
+            given.cutoff_long, typical(0.25e-3, '0.08 to 0.8: as Ra was measured')
+        ),
+        'cutoff_short': typical(CUTOFF_SHORT, 'ISO 3274'),
+        'fractal_dimension': typical(2.5, '2.3 to 2.7'),
+        'lay': typical(process.lay, process.lay_words),
+        'fan_angle': typical(TURN / 36, '0 to 20'),
+        'hardness': typical(HARDNESS, '6.5 to 7.5: 58 to 62 HRC'),
+        'run_in_pressure': typical(3e9, '2 to 5'),
+        'run_in_low': typical(2e9, 'lowest likely'),
+        'run_in_high': typical(5e9, 'highest likely'),
+        'state': typical('run_in', 'after weeks of operation; new before'),
+        'traced': typical('new', 'before running in'),
+        'scale_ratio': typical(1.5, '1.2 to 2: generator of waves'),
+        'ridges': typical(10, '5 to 20: generator of waves'),
+        'asperity_friction': typical(0.1, '0.08 to 0.12: mineral oil on steel'),
+    }

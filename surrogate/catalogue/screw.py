@@ -1,0 +1,107 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Sheet of a ball screw out of a catalogue."""
+
+from dataclasses import replace
+import math
+from typing import Any
+
+from surrogate.asperities.running_in import working_load
+from surrogate.catalogue.noted import derived, Noted, noted_sheet, stated, typical
+from surrogate.catalogue.raceways import process_of, PROCESSES, raceway_of
+from surrogate.catalogue.words import CatalogueScrew
+from surrogate.formulas.plausibility import check_plausible, rated_pressure, rating_by_hertz
+from surrogate.parameters import Screw
+from surrogate.units import GIGA, MILLI
+
+OVER_NOMINAL = 0.2
+"""Ball circle less nominal diameter, over the ball diameter [-]."""
+BALL_OVER_LEAD, BALL_OVER_DIAMETER = 0.635, 0.2
+"""Usual ball diameter over lead, and the largest over the nominal diameter [-]."""
+PRELOAD_SHARE = 0.05
+"""Usual preload over C [-]."""
+MEASURED = typical(0.0, '0 until ballscrew identify gives it')
+STEEL = {
+    'young_modulus': typical(206e9, '200 to 212: bearing steel'),
+    'poisson_ratio': typical(0.3, '0.28 to 0.30'),
+    'density': typical(7850.0, '7800 to 7850'),
+}
+
+
+def screw_of(given: CatalogueScrew) -> tuple[Screw, dict[str, str]]:
+    """
+    Return the sheet of a screw, and what is given, derived or typical by the keys on file.
+
+    Raises InputError for numbers that no screw has.
+
+    """
+    values = _values(given)
+    if given.static_rating is None:
+        # The load that presses a ball by a given pressure follows from any rating.
+        draft, _ = noted_sheet(Screw, values | {'static_rating': Noted(1e6, '')})
+        rating = derived(rating_by_hertz(draft), 'presses each ball by 4.2 GPa, as in ISO 76')
+    else:
+        rating = Noted(given.static_rating, 'given')
+    screw, notes = noted_sheet(Screw, values | {'static_rating': rating})
+    check_plausible(screw)
+    notes['static_rating_kN'] += (
+        f'; {GIGA * rated_pressure(screw):.2f} GPa on a ball, usual 4.0 to 4.5'
+    )
+    load = derived(working_load(screw), '2.83 preloads, which unload the relieved nut')
+    return replace(screw, working_load=load.value), notes | {'working_load_N': load.note}
+
+
+def _values(given: CatalogueScrew) -> dict[str, Any]:
+    """Return all values but the static rating and the working load."""
+    diameter, ball = _diameters(given)
+    nominal = MILLI * (given.nominal_diameter or diameter.value)
+    side, process = typical(0.54, '0.515 to 0.555'), process_of(given)
+    return {
+        'name': given.name or f'screw_{nominal:g}x{MILLI * given.lead:g}',
+        'source': given.source or 'Values of a catalogue, completed by ballscrew screw new.',
+        'pitch_radius': Noted(0.5 * diameter.value, diameter.note),
+        'lead': Noted(given.lead, 'given'),
+        'ball_diameter': ball,
+        'contact_angle': typical(math.pi / 4, '40 to 50'),
+        'conformity_screw': side,
+        'conformity_nut': side,
+        'loaded_balls_per_nut': _balls(given, diameter.value, ball.value),
+        'preload': _preload(given),
+        'speed_limit': typical(PROCESSES[process].dn, f'50 to 180: {process}'),
+        'parasitic_torque': MEASURED,
+        'parasitic_torque_rate': MEASURED,
+        'hysteresis_loss': typical(0.0, '0 to 0.01'),
+        'raceway': STEEL,
+        'ball': STEEL,
+        'roughness': raceway_of(given),
+    }
+
+
+def _diameters(given: CatalogueScrew) -> tuple[Noted, Noted]:
+    """Return the diameter of the ball circle and that of a ball."""
+    nominal = given.nominal_diameter or given.pitch_diameter or math.nan
+    usual = min(BALL_OVER_LEAD * given.lead, BALL_OVER_DIAMETER * nominal)
+    ball = stated(given.ball_diameter, derived(usual, '0.635 leads, 0.2 diameters at most'))
+    if given.pitch_diameter is not None:
+        return Noted(given.pitch_diameter, 'given, as a diameter'), ball
+    circle = nominal + OVER_NOMINAL * ball.value
+    return derived(circle, 'half of nominal and 0.2 (0 to 0.3) ball diameters'), ball
+
+
+def _balls(given: CatalogueScrew, diameter: float, ball: float) -> Noted:
+    """Return the balls that fill the turns on a ball circle [m] with balls of a diameter [m]."""
+    if given.balls is not None:
+        return Noted(given.balls, 'given')
+    circle = math.hypot(math.pi * diameter, given.lead)
+    turns = given.turns or math.nan
+    return Noted(int(turns * circle / ball), f'derived ({turns:g} turns)')
+
+
+def _preload(given: CatalogueScrew) -> Noted:
+    """Return the preload, as a force or as a share of C."""
+    if given.preload is not None or given.dynamic_rating is None:
+        return Noted(given.preload, 'given')
+    share, rating = given.preload_share, given.dynamic_rating
+    words = 'given' if share is not None else 'usual 2 to 10 %'
+    share = PRELOAD_SHARE if share is None else share
+    return derived(share * rating, f'{100 * share:g} % of C {rating / MILLI:g} kN, {words}')

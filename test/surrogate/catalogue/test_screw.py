@@ -1,0 +1,78 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Screws out of a catalogue: what is given stays, the rest follows."""
+
+import math
+import re
+
+import pytest
+from surrogate.catalogue.screw import screw_of
+from surrogate.catalogue.words import CatalogueScrew
+from surrogate.datasheet_writer import write_sheet
+from surrogate.formulas.plausibility import rated_pressure
+from surrogate.parameters import load_screw
+
+SIZE = {'nominal_diameter': 0.02, 'lead': 0.005, 'turns': 4.0, 'dynamic_rating': 10910.0}
+
+
+def test_every_value_has_a_note(tmp_path):
+    """Given, derived with its way, or typical with its range, behind each number on file."""
+    screw, notes = screw_of(CatalogueScrew(**SIZE))
+    write_sheet(tmp_path / 'screw.yaml', screw, notes=notes)
+    values = (tmp_path / 'screw.yaml').read_text().splitlines()[2:]
+    bare = [line for line in values if not re.search(r'  # (given|derived|typical)\b', line)]
+    assert bare == ['raceway:', 'ball:', 'roughness:']
+    assert notes['lead_mm'] == 'given'
+    assert notes['preload_N'] == 'derived (5 % of C 10.91 kN, usual 2 to 10 %)'
+    assert notes['roughness.fractal_dimension'] == 'typical (2.3 to 2.7)'
+    assert load_screw(str(tmp_path / 'screw.yaml')).name == screw.name == 'screw_20x5'
+
+
+def test_what_follows_from_the_size():
+    """Ball circle, balls, preload and the load that unloads a nut."""
+    screw, _ = screw_of(CatalogueScrew(**SIZE, ball_diameter=3.175e-3))
+    assert screw.pitch_radius == pytest.approx(10.32e-3)
+    circle = math.hypot(math.pi * 20.635e-3, 5e-3)
+    assert screw.loaded_balls_per_nut == int(4 * circle / 3.175e-3) == 81
+    assert screw.preload == pytest.approx(545.5)
+    assert screw.working_load == pytest.approx(2**1.5 * 545.5, rel=1e-3)
+    assert rated_pressure(screw) == pytest.approx(4.2e9, rel=1e-3)
+
+
+def test_the_nominal_screw_out_of_its_catalogue_values(screw):
+    """Three turns on its ball circle hold the balls of the published study."""
+    given = CatalogueScrew(pitch_diameter=0.032, lead=0.01, turns=3.02, preload=990.0)
+    found, notes = screw_of(given)
+    assert found.pitch_radius == screw.pitch_radius
+    assert notes['pitch_radius_mm'] == 'given, as a diameter'
+    given = CatalogueScrew(
+        pitch_diameter=0.032,
+        lead=0.01,
+        balls=51,
+        ball_diameter=5.953e-3,
+        preload=990.0,
+        static_rating=55e3,
+    )
+    found, notes = screw_of(given)
+    assert found.static_rating == screw.static_rating
+    assert found.loaded_balls_per_nut == screw.loaded_balls_per_nut
+    assert notes['preload_N'] == notes['loaded_balls_per_nut'] == 'given'
+
+
+def test_the_nominal_sheet_stays_as_published():
+    """Isotropic with D 2.68, whatever is typical of ground raceways."""
+    roughness = load_screw('nominal').roughness
+    assert (roughness.lay, roughness.fractal_dimension) == ('isotropic', 2.68)
+    assert roughness.rms == pytest.approx(0.12e-6)
+
+
+def test_a_share_of_c_is_the_preload():
+    screw, notes = screw_of(CatalogueScrew(**SIZE, preload_share=0.08))
+    assert screw.preload == pytest.approx(872.8)
+    assert notes['preload_N'] == 'derived (8 % of C 10.91 kN, given)'
+
+
+def test_numbers_that_no_screw_has_are_refused(refused):
+    """Before a sheet is written."""
+    few = {**SIZE, 'turns': None, 'balls': 10000, 'static_rating': 23560.0}
+    refused('balls_10000', screw_of, CatalogueScrew(**few))
