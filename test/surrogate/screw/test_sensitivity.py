@@ -11,9 +11,11 @@ from surrogate.parameters import OperatingPoint
 from surrogate.screw.closed_form import solve
 from surrogate.screw.onset import onset_point, run_in_at, with_raceway
 from surrogate.screw.sensitivity import (
+    INTERPOLATION,
     numerical_band,
     sensitivity_page,
     sensitivity_record,
+    surface_bands,
     unknown_band,
 )
 from surrogate.screw.uncertain_inputs import INPUTS, LEFT_OUT, ScrewCase
@@ -120,6 +122,17 @@ def test_the_band_of_numerics_is_that_of_the_law(screw, record):
     ridges = with_raceway(screw, lay='longitudinal', fan_angle=0.2)
     assert numerical_band(ridges)[1] == pytest.approx(BANDS['longitudinal'])
     assert 1.3 < numerical_band(screw, 0.02)[1] < 1.31
+
+
+def test_a_surface_has_the_band_of_the_inputs_that_move_it(screw, oil, record):
+    """At the preload: of all that is quick, Rq and the dimension."""
+    point = OperatingPoint(speed=0.0, load=0.0, temperature=oil.reference_temperature)
+    used = [*QUICK, BY_NAME['rms'], BY_NAME['fractal_dimension']]
+    found = sensitivity_record(screw, oil, point, inputs=used)
+    assert surface_bands(screw, oil) == {
+        'limit_band': pytest.approx(found['unknown_band']),
+        'numerical_band': numerical_band(screw, INTERPOLATION),
+    }
 
 
 def test_running_in_is_an_input_of_a_raceway_that_has_run_in(screw, oil):
