@@ -241,6 +241,7 @@ def surface_info_message(
         default_temperature=celsius(default_temperature),
     )
     message.limit_factor_low, message.limit_factor_high = surface.limit_band
+    message.numerical_factor_low, message.numerical_factor_high = surface.numerical_band
     message.corrected_speed = [float(one.speed) for one in surface.corrections]
     message.corrected_load = [float(one.opposing_load) for one in surface.corrections]
     message.corrected_temperature = [
