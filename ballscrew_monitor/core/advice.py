@@ -32,10 +32,16 @@ VALID = int(Validity.VALID)
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Advice:
-    """Nearest good speed [rad/s] and load [N], machine frame, NaN if there is none."""
+    """
+    Nearest good speed [rad/s] and load [N], machine frame, NaN if there is none.
+
+    Whether asperities `carry` surely or perhaps, empty where they do not or that is not known.
+
+    """
 
     target_speed: float = NAN
     target_load: float = NAN
+    carry: str = ''
 
     @property
     def text(self) -> str:
@@ -48,7 +54,8 @@ class Advice:
             )
         if math.isfinite(self.target_load):
             parts.append(f'at this speed load with {self.target_load:.4g} N')
-        return ' or '.join(parts)
+        doubt = f'; asperities {self.carry} carry here' if parts and self.carry else ''
+        return ' or '.join(parts) + doubt
 
 
 class Criterion(NamedTuple):
@@ -89,7 +96,19 @@ class Advisor:
     @functools.cached_property
     def advice(self) -> Advice:
         """Return the nearest speed and load that clear at the point, its direction kept."""
-        return Advice(target_speed=self._speed(), target_load=self._load())
+        speed, load = self._speed(), self._load()
+        return Advice(target_speed=speed, target_load=load, carry=self._carry())
+
+    def _carry(self) -> str:
+        """Say whether RCS passes its limit wherever in both bands of the surface that may lie."""
+        surface, point = self.surface, self.point
+        least = min(*surface.limit_band, *surface.numerical_band)
+        place = opposing_load_of(point), point.temperature
+        here = surface.lookup(abs(point.speed), *place).rcs
+        if math.isnan(least) or not here >= self.limits.rcs:
+            return ''
+        sure = surface.lookup(abs(point.speed) / least, *place).rcs >= self.limits.rcs
+        return 'surely' if sure else 'perhaps'
 
     def _speed(self) -> float:
         """Return the nearest screw speed [rad/s] that clears at this load; NaN for none."""

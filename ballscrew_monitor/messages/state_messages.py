@@ -240,6 +240,7 @@ def surface_info_message(
         default_temperature=celsius(settings.default_temperature),
     )
     message.limit_factor_low, message.limit_factor_high = surface.limit_band
+    message.numerical_factor_low, message.numerical_factor_high = surface.numerical_band
     for one in surface.corrections:
         message.corrected_speed.append(float(one.speed))
         message.corrected_load.append(float(one.opposing_load))

@@ -263,6 +263,6 @@ def map_legend(case: AxisCase, chart: OperatingMap) -> list[tuple[tuple[str, ...
         text = 'RCS limit with the coldest and the warmest oil'
         entries.insert(4, (('rcs', 'line', '6 4'), text))
     if chart.banded:
-        text = 'RCS limit, its range by boundary film and running in'
+        text = 'RCS limit, its range by what is not known'
         entries.insert(4, (('rcs', 'line', '8 3 2 3'), text))
     return entries

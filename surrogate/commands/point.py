@@ -11,6 +11,7 @@ from typing import Any
 from surrogate.commands.output import add_json, show, tell
 from surrogate.files import InputError
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, OperatingPoint, Screw
+from surrogate.progress import Progress
 from surrogate.surface.shipped import SHIPPED_TIERS
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -26,7 +27,6 @@ def add_point_command(subparsers: Any) -> None:
     parser.add_argument(
         '--tier',
         choices=('closed_form', 'full'),
-        default=SHIPPED_TIERS[0],
         help='model: four solved contacts and balanced balls (default), or published formulas',
     )
     parser.add_argument(
@@ -38,9 +38,17 @@ def add_point_command(subparsers: Any) -> None:
     parser.add_argument(
         '--inlet-heating', action='store_true', help='full tier: films thinned by inlet shear'
     )
+    parser.add_argument(
+        '--sensitivity',
+        action='store_true',
+        help='closed form: onset, torque and zone over the likely range of each input (a minute)',
+    )
     add_json(parser)
     parser.add_argument(
-        '--plot', type=Path, metavar='DIR', help='full tier: directory for a picture (PNG)'
+        '--plot',
+        type=Path,
+        metavar='DIR',
+        help='full tier or sensitivity: directory for a picture (PNG)',
     )
     parser.set_defaults(handler=_point)
 
@@ -106,6 +114,8 @@ def _point(args: argparse.Namespace) -> int:
     point = OperatingPoint(speed=args.speed_rpm * RPM, load=args.load, temperature=kelvin)
     if args.plot:
         prepare(args.plot)
+    if args.sensitivity:
+        return _sensitivity(args, screw, lubricant, point)
     solution = None
     if args.tier == 'full':
         solution, record = _full(args, screw, lubricant, point)
@@ -118,10 +128,32 @@ def _point(args: argparse.Namespace) -> int:
 
 
 def _check(args: argparse.Namespace) -> None:
+    if args.sensitivity and args.tier == 'full':
+        raise InputError('--sensitivity is given with --tier full, allowed is the closed form')
+    args.tier = args.tier or ('closed_form' if args.sensitivity else SHIPPED_TIERS[0])
     for name in FULL_ONLY:
         given = getattr(args, name)
-        if given is not None and given is not False and args.tier != 'full':
-            raise InputError(f'--{name.replace("_", "-")} needs --tier full')
+        drawn = name == 'plot' and args.sensitivity
+        if given is not None and given is not False and args.tier != 'full' and not drawn:
+            other = ' or --sensitivity' * (name == 'plot')
+            raise InputError(f'--{name.replace("_", "-")} needs --tier full{other}')
+
+
+def _sensitivity(
+    args: argparse.Namespace, screw: Screw, lubricant: Lubricant, point: OperatingPoint
+) -> int:
+    """Show what each input changes; seconds for each that changes the topography."""
+    from surrogate.screw.sensitivity import sensitivity_page, sensitivity_record
+
+    progress = Progress(0, 'inputs')
+    try:
+        record = sensitivity_record(screw, lubricant, point, progress=progress.show)
+    finally:
+        progress.close()
+    show(record, sensitivity_page, json=args.json)
+    if args.plot:
+        picture(args.plot, 'sensitivity_figure', 'draw_sensitivity', record)
+    return 0
 
 
 def _full(

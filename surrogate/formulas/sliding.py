@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.formulas.geometry import Hertz, Side
+from surrogate.formulas.geometry import Hertz, hertz, screw_contact, Side
 from surrogate.formulas.kinematics import slip_arm
 from surrogate.formulas.lubricant import (
     LubricantState,
@@ -109,6 +109,20 @@ def sliding_friction(
         torque=np.sum(traction * arm * area, axis=-1),
         friction_coefficient=np.divide(force, normal, out=np.zeros_like(force), where=normal > 0),
     )
+
+
+def mean_sliding_speed(screw: Screw, side: Side, load: float, speed: float) -> float:
+    """
+    Return the mean sliding speed [m/s] of a contact under its Hertz pressure.
+
+    Normal `load` [N], screw `speed` [rad/s]; by the motion without friction.
+
+    """
+    ellipse = hertz(screw_contact(screw, side), load)
+    x, y, weight = ellipse_nodes()
+    semi_x, semi_y = ellipse.semi_axis_x, ellipse.semi_axis_y
+    arm = slip_arm(screw, side, semi_x * x, semi_y * y, semi_y)
+    return float(abs(speed) * np.average(arm, weights=weight * np.sqrt(1 - x * x - y * y)))
 
 
 def hysteresis_force(loss: float, load: float, semi_axis_x: float, radius_x: float) -> float:

@@ -17,6 +17,7 @@ from surrogate.formulas.film import (
 )
 from surrogate.formulas.geometry import helix_angle, screw_contact
 from surrogate.formulas.load_sharing import nut_forces, UNLOADING_RATIO
+from surrogate.formulas.sliding import mean_sliding_speed
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.ball import roughness_sentence
 from surrogate.screw import closed_form
@@ -25,6 +26,8 @@ from surrogate.units import RPM, ZERO_CELSIUS
 
 CONSTANT_FRICTION = 0.005
 """Effective friction coefficient of the constant-friction comparator [-]."""
+WEAR = 'asperity_pressure_Pa', 'asperity_power_W'
+"""Keys of the load on asperities per Hertz area, and times the sliding speed."""
 FORMULAS = ('central_film_hamrock_dowson_1977', rolling_force_biboulet_houpert_2010.__name__)
 STATUS = 'closed form: published formulas, asperity contact by the topography'
 
@@ -43,7 +46,10 @@ def closed_form_record(
     load = point.opposing_load
     result = closed_form.solve(screw, lubricant, abs(point.speed), load, point.temperature)
     friction_torque, film_ratio = float(result.friction_torque), float(result.film_ratio)
-    contacts = [_contact_record(contact) for contact in result.contacts]
+    contacts = [
+        with_wear(_contact_record(one), _slides(screw, one, point.speed))
+        for one in result.contacts
+    ]
     worst = contacts[int(result.worst_contact)]
     return {
         'tier': closed_form.TIER,
@@ -64,6 +70,7 @@ def closed_form_record(
         'back_driving': torque.is_back_driving(friction_torque, load, screw.lead),
         'rcs': float(result.rcs),
         'asperity_share': float(result.asperity_share),
+        **most_wear(contacts),
         'film_ratio': film_ratio,
         'regime': regime_of(film_ratio).word,
         'central_film_m': float(result.central_film),
@@ -80,6 +87,25 @@ def closed_form_record(
         'comparators': _comparators(screw, point, result.contacts[0]),
         'wall_s': time.perf_counter() - started,
     }
+
+
+def with_wear(contact: dict[str, Any], sliding: float) -> dict[str, Any]:
+    """Return the record of a contact with its numbers of wear, mean `sliding` speed [m/s]."""
+    if not contact['normal_force_N']:
+        return contact | dict.fromkeys(WEAR, 0.0)
+    carried = contact['asperity_share'] * contact['normal_force_N']
+    area = math.pi * contact['semi_axis_x_m'] * contact['semi_axis_y_m']
+    return contact | dict(zip(WEAR, (carried / area, carried * sliding), strict=True))
+
+
+def most_wear(contacts: list[dict[str, Any]]) -> dict[str, float]:
+    """Return each number of wear of the contact that has the most of it."""
+    return {name: float(np.max([contact[name] for contact in contacts])) for name in WEAR}
+
+
+def _slides(screw: Screw, contact: closed_form.ContactResult, speed: float) -> float:
+    """Return the mean sliding speed [m/s] of a contact at a screw speed [rad/s]."""
+    return mean_sliding_speed(screw, contact.side, float(contact.normal_force), speed)
 
 
 def _contact_record(contact: closed_form.ContactResult) -> dict[str, Any]:
@@ -192,6 +218,11 @@ def page(record: Mapping[str, Any]) -> str:
         ('friction torque', f'{record["friction_torque_Nm"]:.4f} N m'),
         ('driving torque', f'{record["driving_torque_Nm"]:.4f} N m'),
         ('regime', f'{record["regime"]}, Lambda {record["film_ratio"]:.2f}'),
+        (
+            'asperity wear',
+            f'{1e-6 * record["asperity_pressure_Pa"]:.3g} MPa, '
+            f'{1e3 * record["asperity_power_W"]:.3g} mW load times sliding',
+        ),
         (
             'RCS',
             f'{100 * record["rcs"]:.2f} %'

@@ -6,15 +6,16 @@ import math
 import time
 from typing import Any
 
+import numpy as np
 from surrogate.asperities.law import BANDS
 from surrogate.formulas.geometry import opposite_flank_approach, SIDES
 from surrogate.formulas.inlet_heating import heating_factor
 from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.ball import roughness_sentence
-from surrogate.screw.closed_form_record import closed_form_record
+from surrogate.screw.closed_form_record import closed_form_record, most_wear, with_wear
 from surrogate.screw.contacts import ScrewSettings, shortest_on_grid, smooth_film
-from surrogate.screw.nut import rolling_force, ScrewContact
+from surrogate.screw.nut import contact_slip, rolling_force, ScrewContact
 from surrogate.screw.solve import ScrewSolution, solve_screw, TIER
 from surrogate.surface import regime_of
 from surrogate.units import GIGA
@@ -55,7 +56,10 @@ def solution_record(
 ) -> dict[str, Any]:
     """Return a solved point as plain numbers, SI units, NaN where unknown."""
     formulas = closed_form_record(screw, lubricant, point)
-    contacts = [_contact_record(screw, found, contact) for contact in found.contacts]
+    contacts = [
+        with_wear(_contact_record(screw, found, contact), _slides(screw, contact))
+        for contact in found.contacts
+    ]
     worst = found.contacts[found.worst_contact]
     return formulas | {
         'tier': TIER,
@@ -78,6 +82,7 @@ def solution_record(
         'rcs': found.rcs,
         'rcs_deviation': found.rcs_deviation,
         'asperity_share': found.asperity_share,
+        **most_wear(contacts),
         'asperity_law': law_sentence(screw, settings),
         'roughness': roughness_sentence(screw.roughness, screw.ball_roughness),
         'film_ratio': found.film_ratio,
@@ -146,6 +151,15 @@ def _unknown(reason: str) -> dict[str, Any]:
         'rolling_torque_Nm',
     )
     return {'reason': reason} | dict.fromkeys(names, math.nan)
+
+
+def _slides(screw: Screw, contact: ScrewContact) -> float:
+    """Return the mean sliding speed under the pressure of a contact [m/s], NaN if not balanced."""
+    if contact.solved is None or contact.motion is None:
+        return math.nan
+    pressed = contact.solved.pressed
+    slip = np.hypot(*contact_slip(screw, pressed, contact.side, contact.motion))
+    return float(np.average(slip, weights=pressed.pressure))
 
 
 def _speed(contact: ScrewContact) -> float:

@@ -89,8 +89,16 @@ class Surface:
 
     @property
     def limit_band(self) -> tuple[float, float]:
-        """Least and largest limit of RCS in speed over that in force [-]."""
-        low, high = self.header.get('limit_band', (math.nan, math.nan))
+        """Least and largest limit of RCS in speed over that in force by what is not known [-]."""
+        return self._band('limit_band')
+
+    @property
+    def numerical_band(self) -> tuple[float, float]:
+        """Least and largest limit of RCS in speed over that in force by law and lookup [-]."""
+        return self._band('numerical_band')
+
+    def _band(self, name: str) -> tuple[float, float]:
+        low, high = self.header.get(name, (math.nan, math.nan))
         return float(low), float(high)
 
     @property

@@ -56,6 +56,7 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
             if name in data.deviations or name in data.standard_errors
         },
         'limit_band': data.header.get('limit_band'),
+        'numerical_band': data.header.get('numerical_band'),
         'accuracy_reached': data.header.get('reached'),
         'settings': dict(data.header['settings']),
         'provenance': dict(data.provenance),
@@ -127,13 +128,13 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
 
 def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
     """Yield what a full-tier builder says of its result."""
-    if record['limit_band'] is not None:
-        low, high = record['limit_band']
-        yield (
-            f'  contact      begins between {low:.2g} and {high:.2g} times the stated speed, by '
-            'the ranges'
-        )
-        yield '               of the boundary film and, where it applies, of running in'
+    for name, words in (('limit_band', 'what is not known'), ('numerical_band', 'the numerics')):
+        if record[name] is not None:
+            low, high = record[name]
+            yield (
+                f'  contact      begins between {low:.2g} and {high:.2g} times the stated speed, '
+                f'by {words}'
+            )
     if record['accuracy_reached'] is not None:
         yield (
             '  accuracy     the worst held-out point has '

@@ -48,7 +48,7 @@ class Slice:
     The surface at one temperature: speed [rev/min], load [N], fields [load, speed].
 
     Load below which no efficiency is judged [N]; least and largest limit of RCS in speed over that
-    of the fields [-], NaN if not known.
+    of the fields [-] by the line that shows it, NaN if not known.
 
     """
 
@@ -56,7 +56,7 @@ class Slice:
     load: Array
     fields: dict[str, Array]
     light: float
-    band: tuple[float, float]
+    bands: dict[str, tuple[float, float]]
 
 
 def cut(surface: Surface, temperature: float) -> Slice:
@@ -73,7 +73,8 @@ def cut(surface: Surface, temperature: float) -> Slice:
         for name in names
     }
     light = LIGHT_LOAD * surface.preload
-    return Slice(speed=speed / RPM, load=load, fields=fields, light=light, band=surface.limit_band)
+    bands = {'dashed': surface.limit_band, 'dotted': surface.numerical_band}
+    return Slice(speed=speed / RPM, load=load, fields=fields, light=light, bands=bands)
 
 
 def draw_surface(folder: Path, surface: Surface, temperatures: Sequence[float]) -> Iterator[Path]:
@@ -137,15 +138,15 @@ def _limit(axes: Axes, part: Slice, values: Array, levels: list[float]) -> None:
             axes.clabel(lines, fmt='%g', fontsize=7)
 
 
-def _limit_band(axes: Axes, part: Slice, rcs: Array) -> None:
-    """Draw where the limit of RCS may lie, by the ranges of boundary film and running in."""
+def _limit_bands(axes: Axes, part: Slice, rcs: Array) -> None:
+    """Draw where the limit of RCS may lie, by what is not known and by the numerics."""
     known = rcs[np.isfinite(rcs)]
     if not (known.size and known.min() < RCS_LIMIT < known.max()):
         return
-    for factor in part.band:
-        if math.isfinite(factor):
+    for style, band in part.bands.items():
+        for factor in filter(math.isfinite, band):
             speed = factor * part.speed
-            axes.contour(speed, part.load, rcs, levels=[RCS_LIMIT], linestyles='dashed', **LIMIT)
+            axes.contour(speed, part.load, rcs, levels=[RCS_LIMIT], linestyles=style, **LIMIT)
 
 
 def _draw_efficiency(figure: Figure, axes: Axes, part: Slice) -> None:
@@ -157,10 +158,13 @@ def _draw_efficiency(figure: Figure, axes: Axes, part: Slice) -> None:
 def _draw_rcs(figure: Figure, axes: Axes, part: Slice) -> None:
     values = part.fields['rcs']
     norm = LogNorm(1e-4, 1.0)
-    title = f'RCS, line: {RCS_LIMIT}' + ', dashed: its band' * math.isfinite(part.band[0])
+    words = zip(part.bands.items(), ('not known', 'numerics'), strict=True)
+    title = f'RCS, line: {RCS_LIMIT}' + ''.join(
+        f', {style}: {text}' for (style, band), text in words if math.isfinite(band[0])
+    )
     _map(figure, axes, part, np.maximum(values, 1e-4), title, '[-]', norm=norm)
     _limit(axes, part, values, [RCS_LIMIT])
-    _limit_band(axes, part, values)
+    _limit_bands(axes, part, values)
 
 
 def _draw_film_ratio(figure: Figure, axes: Axes, part: Slice) -> None:

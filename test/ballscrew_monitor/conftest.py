@@ -97,7 +97,7 @@ class ConstantSurface:
     oil_name = 'water'
     preload = 1000.0
     lead = 0.01
-    limit_band = (0.75, 1.5)
+    limit_band, numerical_band = (0.75, 1.5), (0.8, 1.25)
     speed_range = (0.1, 100.0)
     load_range = (-4000.0, 4000.0)
     temperature_range = (283.15, 353.15)

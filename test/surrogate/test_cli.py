@@ -2,11 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The offline commands as a user types them."""
 
+from functools import partial
 import json
 
 import numpy as np
 import pytest
-from surrogate.files import InputError
+from surrogate.files import InputError, json_text
+from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
+from surrogate.screw.sensitivity import sensitivity_page, sensitivity_record
+from surrogate.screw.uncertain_inputs import INPUTS
+from surrogate.units import RPM, ZERO_CELSIUS
 
 COMMAND = ('point',)
 NEGATIVE = ('-5e-324', '-1e3', '-1E+3', '-.5e1', '-5.', '-0')
@@ -147,6 +152,28 @@ def test_options_of_the_full_tier(run, tmp_path, capsys):
     blocked.write_text('')
     with pytest.raises(InputError, match='--plot: .*file cannot be made'):
         run(*words, '--tier', 'full', '--plot', blocked)
+
+
+def test_sensitivity_is_a_table_json_or_a_picture_of_the_closed_form(
+    run, capsys, monkeypatch, tmp_path
+):
+    """With progress on stderr; here of the inputs that leave the topography."""
+    pytest.importorskip('matplotlib')
+    quick = [one for one in INPUTS if one.part == 'lubricant']
+    short = partial(sensitivity_record, inputs=quick)
+    monkeypatch.setattr('surrogate.screw.sensitivity.sensitivity_record', short)
+    sheets = load_screw('nominal'), load_lubricant('iso_vg_68')
+    point = OperatingPoint(speed=600 * RPM, load=500.0, temperature=40 + ZERO_CELSIUS)
+    words = ('--screw', 'nominal', '--speed-rpm', '600', '--load-N', '500', '--sensitivity')
+    assert run(*words, '--plot', tmp_path) == 0
+    printed = capsys.readouterr()
+    assert printed.out == sensitivity_page(record := short(*sheets, point)) + '\n'
+    assert '3/3 inputs' in printed.err
+    assert f'{tmp_path}/sensitivity_nominal_iso_vg_68.png' in printed.err
+    assert run(*words, '--json') == 0
+    assert json.loads(capsys.readouterr().out) == json.loads(json_text(record))
+    with pytest.raises(InputError, match='--sensitivity is given with --tier full'):
+        run(*words, '--tier', 'full')
 
 
 def test_oil_that_is_no_liquid_is_named_with_its_temperature(run):

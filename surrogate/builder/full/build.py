@@ -20,7 +20,7 @@ from surrogate.builder.full.nodes import Nodes, surface_nodes
 from surrogate.builder.full.ratios import ratios_at, Run, solve_ratios, solved_grid
 from surrogate.builder.full.settings import FullSettings
 from surrogate.parameters import Lubricant, Screw
-from surrogate.screw.onset import onset_speeds, run_in_at, run_in_range, with_raceway
+from surrogate.screw.sensitivity import surface_bands
 from surrogate.screw.solve import TIER
 from surrogate.surface import FIELDS, Surface
 from surrogate.surface.file import format_version, SurfaceData
@@ -41,12 +41,12 @@ def build_full(
     check_ranges(settings, lubricant)
     nodes = surface_nodes(screw, lubricant, settings)
     # Before any solve: a raceway may not bear the lowest pressure of its range.
-    band = limit_band(screw, lubricant)
+    bands = surface_bands(screw, lubricant)
     data = _surface(screw, lubricant, settings, nodes, run)
     held_out = _held_out(data, screw, lubricant, settings, run)
     errors = cell_errors(data, held_out, screw, settings)
     reached = max((one.miss for one in held_out), default=None)
-    header = {**data.header, 'limit_band': band, 'reached': reached}
+    header = {**data.header, **bands, 'reached': reached}
     return replace(data, errors=errors, header=header)
 
 
@@ -94,35 +94,6 @@ def rcs_deviation(s: Array, rcs: Array, deviation: float) -> Array:
         along(np.clip(s + apart, s[0], s[-1])) for apart in (-0.5 * deviation, 0.5 * deviation)
     )
     return np.asarray(slower - faster)
-
-
-def limit_band(screw: Screw, lubricant: Lubricant) -> list[float]:
-    """
-    Return the least and the largest onset speed that may be, over the stated one [-].
-
-    At the preload and the reference temperature: over the range of floors of the oil and, where
-    the profile was traced on a new raceway that has run in, over that of the pressure at which
-    this cuts the summits, up to none of it.
-
-    """
-    low, high = screw, screw
-    if (screw.roughness.state, screw.roughness.traced) == ('run_in', 'new'):
-        low = run_in_at(screw, run_in_range(screw)[0])
-        high = with_raceway(screw, state='new')
-    place = np.array([0.0]), np.array([lubricant.reference_temperature])
-    least, stated, most = (
-        float(onset_speeds(one, _with_floor(lubricant, floor), *place)[0, 0])
-        for one, floor in (
-            (low, lubricant.film_floor_low),
-            (screw, lubricant.film_floor),
-            (high, lubricant.film_floor_high),
-        )
-    )
-    return [least / stated, most / stated]
-
-
-def _with_floor(lubricant: Lubricant, floor: float) -> Lubricant:
-    return replace(lubricant, film_floor=floor, film_floor_low=floor, film_floor_high=floor)
 
 
 def _held_out(

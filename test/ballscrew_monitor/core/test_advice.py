@@ -66,12 +66,37 @@ def test_advice_under_a_light_load(core):
     assert found == pytest.approx(100.0, rel=1e-4)
 
 
-def test_advice_is_a_sentence_and_an_optimal_point_its_own(core, says):
+def test_advice_is_a_sentence(core, says):
     assert Advice().text == ''
     advice = advise(core.point(speed=5.0), core.surface(rcs=faster_is_better), core.limits())
-    assert advice.text == 'at this load run at 30 rad/s (286 rev/min)'
+    assert advice.text == says('surely')
     both = Advice(target_speed=30.0, target_load=-1500.0)
     assert both.text == says('this_load_run')
+
+
+@pytest.mark.parametrize(
+    ('speed', 'limits', 'numerics', 'carry'),
+    [
+        (20.0, (0.6, 1.5), (0.8, 1.25), 'perhaps'),  # 20 is between 0.6 and 0.8 of 30
+        (20.0, (0.8, 1.5), (0.6, 1.25), 'perhaps'),
+        (17.9, (0.8, 1.5), (0.6, 1.25), 'surely'),
+        (29.0, (0.99, 1.5), (0.99, 1.25), 'surely'),
+        (20.0, (0.6, 1.5), (math.nan, math.nan), 'perhaps'),
+        (20.0, (math.nan, math.nan), (math.nan, math.nan), ''),
+        (30.0, (0.6, 1.5), (0.8, 1.25), ''),  # too little efficiency is another warning
+    ],
+)
+def test_contact_is_sure_slower_than_both_bands(core, speed, limits, numerics, carry):
+    """And perhaps between them; not said of a surface that does not know."""
+    surface = core.surface(rcs=faster_is_better)
+    surface.limit_band, surface.numerical_band = limits, numerics
+    advice = advise(core.point(speed=speed), surface, core.limits())
+    assert advice.carry == carry
+    assert (f'; asperities {carry} carry here' in advice.text) == bool(carry)
+    assert Advice(carry='surely').text == ''  # nothing helps
+
+
+def test_an_optimal_point_is_its_own_advice(core):
     point = core.point(speed=7.0, axial_load=-600.0)
     expected = Advice(target_speed=7.0, target_load=-600.0)
     assert advise(point, core.surface(), core.limits()) == expected

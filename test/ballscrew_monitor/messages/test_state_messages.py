@@ -104,6 +104,7 @@ def test_a_surface_as_a_message(core):
     assert (message.error_field, list(message.error_max), list(message.error_p95)) == expected
     assert message.default_temperature == pytest.approx(40.0)
     assert (message.limit_factor_low, message.limit_factor_high) == (0.75, 1.5)
+    assert (message.numerical_factor_low, message.numerical_factor_high) == (0.8, 1.25)
 
 
 @pytest.mark.parametrize(

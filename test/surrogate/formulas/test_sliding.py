@@ -7,7 +7,13 @@ import math
 import numpy as np
 import pytest
 from surrogate.formulas.geometry import hertz, screw_contact
-from surrogate.formulas.sliding import ellipse_nodes, hysteresis_force
+from surrogate.formulas.lubricant import lubricant_state
+from surrogate.formulas.sliding import (
+    ellipse_nodes,
+    hysteresis_force,
+    mean_sliding_speed,
+    sliding_friction,
+)
 
 
 @pytest.mark.parametrize('side', ['screw', 'nut'])
@@ -24,3 +30,15 @@ def test_hysteresis_is_the_work_on_the_front_half(screw, side):
     found = hysteresis_force(0.01, 27.6, float(ellipse.semi_axis_x), contact.radius_x)
     assert found == pytest.approx(lost, rel=1e-3)
     assert math.isclose(hysteresis_force(0.0, 27.6, 5e-5, 3e-3), 0.0)
+
+
+@pytest.mark.parametrize('side', ['screw', 'nut'])
+def test_mean_sliding_is_the_loss_over_the_friction_of_a_dry_contact(screw, oil, side):
+    """In either direction."""
+    load, speed = np.array(27.6), np.array(60.0)
+    ellipse = hertz(screw_contact(screw, side), load)
+    state = lubricant_state(oil, np.array(313.15))
+    film, share = np.array(1e-7), np.array(1.0)
+    lost = sliding_friction(screw, side, ellipse, film, share, state, speed).torque * speed
+    friction = screw.roughness.asperity_friction * 27.6
+    assert mean_sliding_speed(screw, side, 27.6, -60.0) == pytest.approx(lost / friction, rel=1e-3)

@@ -69,11 +69,12 @@ def test_panels_and_axes(coarse):
 def test_what_strips_differ_by_is_shown_when_it_is_known(coarse):
     """In place of the regime, which the lines of the film ratio tell; the limit gets its band."""
     header = {**DATA.header, 'format_version': ENSEMBLE_VERSION, 'limit_band': [0.5, 1.4]}
+    header['numerical_band'] = [0.8, 1.25]
     drawn = replace(DATA, header=header, deviations={'rcs': 0.1 * DATA.fields['rcs']})
     shown = titles(figures.figure_surface(Surface(drawn), 313.15))
     assert 'RCS over strips' in shown
     assert 'Regime by Lambda' not in shown
-    assert 'RCS, line: 0.01, dashed: its band' in shown
+    assert 'RCS, line: 0.01, dashed: not known, dotted: numerics' in shown
 
 
 def test_a_surface_without_answers_is_drawn(coarse):

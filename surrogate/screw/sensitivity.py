@@ -1,0 +1,246 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Sensitivity of onset, friction torque and zone to each input, one at a time, and two bands of it.
+
+One band holds what is not known of screw and oil, the other what the law and the lookup are off
+by. They are never merged: measurements narrow the first alone.
+
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.asperities.law import BANDS, SLOPE
+from surrogate.files import InputError
+from surrogate.formulas import torque
+from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.progress import OnProgress
+from surrogate.screw import closed_form
+from surrogate.screw.uncertain_inputs import INPUTS, LEFT_OUT, ScrewCase, Varied
+from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT, RCS_RELATIVE_TOLERANCE
+from surrogate.units import RPM, ZERO_CELSIUS
+
+Array = NDArray[np.float64]
+ONSET, TORQUE = 'onset_speed_rad_s', 'friction_torque_Nm'
+RCS_SPEED, EFFICIENCY_SPEED = 'rcs_limit_speed_rad_s', 'efficiency_limit_speed_rad_s'
+ENDS = 'low', 'stated', 'high'
+AROUND = 2.5
+"""Factor about the onset within which RCS passes the limit of the zone [-]."""
+SPEEDS = 60
+"""Speeds among which a limit of the zone is looked for [-]."""
+INTERPOLATION = RCS_RELATIVE_TOLERANCE / -SLOPE
+"""Logarithm of the speed by which a surface may be off at the limit of RCS [-]."""
+
+
+def sensitivity_record(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    *,
+    inputs: Iterable[Varied] = INPUTS,
+    progress: OnProgress = lambda done, total: None,
+) -> dict[str, Any]:
+    """
+    Return what each input changes at a point, the largest effect on the onset first.
+
+    SI units, but the values of an input are in the unit of its `key`. Speeds and torque are those
+    of the closed form. `progress(done, total)` counts inputs. Raises InputError if all is smooth.
+
+    """
+    if not screw.composite_rms:
+        raise InputError('screw: raceway and ball are smooth, allowed is a rough one')
+    case = ScrewCase(screw=screw, lubricant=lubricant, point=point)
+    used = [one for one in inputs if one.bounds(case)]
+    progress(0, len(used))
+    stated, rows = _outcome(case), []
+    for done, one in enumerate(used):
+        rows.append(_row(one, case, stated))
+        progress(done + 1, len(used))
+    rows.sort(key=lambda row: _spread(row['onset_factors']), reverse=True)
+    return {
+        'screw': screw.name,
+        'oil': lubricant.name,
+        'speed_rad_s': point.speed,
+        'load_N': point.load,
+        'temperature_K': point.temperature,
+        'stated': stated,
+        'inputs': rows,
+        'unknown_band': _without(rows),
+        'numerical_band': numerical_band(screw),
+        'measure': _narrowed(rows),
+    }
+
+
+def _row(one: Varied, case: ScrewCase, stated: Mapping[str, float]) -> dict[str, Any]:
+    """Return what one input changes, NaN at an end that the model refuses, with its sentence."""
+    rules, ends, found, refused = one.rules(case), one.bounds(case), [], ''
+    assert ends is not None  # those without were left out
+    for value in ends:
+        try:
+            found.append(_outcome(one.at(case, value)) if value != one.stated(case) else stated)
+        except InputError as error:
+            found.append(dict.fromkeys(stated, math.nan))
+            refused = str(error)
+    shown = (
+        None if value is None else value / rules['factor'] - rules['shift']
+        for value in (ends[0], one.stated(case), ends[1])
+    )
+    return {
+        'key': f'{one.name}_{rules["unit"]}'.rstrip('_'),
+        **dict(zip(ENDS, shown, strict=True)),
+        'reason': one.reason,
+        'measured': one.measured,
+        'refused': refused,
+        'onset_factors': [end[ONSET] / stated[ONSET] for end in found],
+        'at_low': found[0],
+        'at_high': found[1],
+    }
+
+
+def _outcome(case: ScrewCase) -> dict[str, float]:
+    """Return onset, friction torque and both limits of the zone, NaN where there is none."""
+    onset, point = case.onset or math.nan, case.point
+    near = onset * np.geomspace(1 / AROUND, AROUND, SPEEDS)
+    most = case.screw.speed_limit / (2 * case.screw.pitch_radius)
+    wide = np.geomspace(min(near[0], most), most, SPEEDS)
+    speed = np.concatenate([[abs(point.speed)], near, wide])
+    load = point.opposing_load
+    found = closed_form.solve(case.screw, case.lubricant, speed, load, point.temperature)
+    slow, fast = found.rcs[1:-SPEEDS], found.friction_torque[-SPEEDS:]
+    with np.errstate(divide='ignore'):
+        contact = np.log(slow / RCS_LIMIT)
+    lead = case.screw.lead
+    efficiency = np.array([torque.efficiency(loss, load, lead) for loss in fast.tolist()])
+    light = abs(load) < LIGHT_LOAD * case.screw.preload
+    return {
+        ONSET: onset,
+        TORQUE: float(found.friction_torque[0]),
+        RCS_SPEED: _fastest(near, contact),
+        EFFICIENCY_SPEED: math.nan if light else _fastest(wide, efficiency - EFFICIENCY_LIMIT),
+    }
+
+
+def _fastest(speed: Array, spare: Array) -> float:
+    """Return the speed [rad/s] at which something spare [-] runs out, NaN where it does not."""
+    last = np.flatnonzero(spare[:-1] >= 0)[-1:]
+    if not last.size or not spare[-1] < 0:
+        return math.nan
+    k = int(last[0])
+    share = spare[k] / (spare[k] - spare[k + 1])
+    return float(speed[k] * (speed[k + 1] / speed[k]) ** share)
+
+
+def _spread(factors: Sequence[float]) -> float:
+    """Return how far the onset moves between the ends, as a logarithm [-]; a NaN is most."""
+    logs = np.log([*factors, 1.0])
+    return float(np.nan_to_num(logs.max() - logs.min(), nan=math.inf))
+
+
+def unknown_band(factors: Sequence[Sequence[float]]) -> list[float]:
+    """
+    Return the least and the largest onset speed over the stated one by what is not known [-].
+
+    The inputs are independent, so the logarithms of their `factors` at both ends [-] add up as
+    squares, each side for itself; NaN where one is not known.
+
+    """
+    logs = np.log(np.reshape(factors, (-1, 2)))
+    low, high = np.minimum(logs.min(axis=1), 0.0), np.maximum(logs.max(axis=1), 0.0)
+    return [
+        math.exp(-np.hypot.reduce(low, initial=0.0)),
+        math.exp(np.hypot.reduce(high, initial=0.0)),
+    ]
+
+
+def _without(rows: Sequence[Mapping[str, Any]], *measured: str) -> list[float]:
+    """Return the band of inputs of which some are `measured`."""
+    known = ('', *measured)
+    return unknown_band([row['onset_factors'] for row in rows if row['measured'] not in known])
+
+
+def _narrowed(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return the measurement that narrows the band most, then the next, with what is left."""
+    done: list[dict[str, Any]] = []
+    for _ in range(2):
+        names = [one['measurement'] for one in done]
+        left = {row['measured']: _without(rows, *names, row['measured']) for row in rows}
+        best = min(left, key=lambda name: _spread(left[name]))
+        done.append({'measurement': best, 'unknown_band': left[best]})
+    return done
+
+
+def numerical_band(screw: Screw, interpolation: float = 0.0) -> list[float]:
+    """
+    Return the least and the largest onset speed over the stated one by law and lookup [-].
+
+    Nine of ten marched strips lie within that of the law; `interpolation` of a surface is the
+    logarithm of a speed [-].
+
+    """
+    off = math.hypot(math.log(BANDS[screw.roughness.lay]), interpolation)
+    return [math.exp(-off), math.exp(off)]
+
+
+def surface_bands(screw: Screw, lubricant: Lubricant) -> dict[str, list[float]]:
+    """
+    Return both bands at the preload and the reference temperature, as a surface has them.
+
+    Of the inputs that take seconds only those count that change the band.
+
+    """
+    point = OperatingPoint(speed=0.0, load=0.0, temperature=lubricant.reference_temperature)
+    case = ScrewCase(screw=screw, lubricant=lubricant, point=point)
+    ends = [(one, one.bounds(case) or ()) for one in INPUTS if one.name not in LEFT_OUT]
+    factors = [
+        [one.at(case, value).onset / case.onset for value in pair] for one, pair in ends if pair
+    ]
+    return {
+        'limit_band': unknown_band(factors),
+        'numerical_band': numerical_band(screw, INTERPOLATION),
+    }
+
+
+def sensitivity_page(record: Mapping[str, Any]) -> str:
+    """Return the lines that a person reads."""
+    return '\n'.join(_lines(record))
+
+
+def _lines(record: Mapping[str, Any]) -> Iterator[str]:
+    onset = record['stated'][ONSET]
+    yield (
+        f'{record["screw"]}, {record["oil"]}: {record["speed_rad_s"] / RPM:g} rev/min, '
+        f'{record["load_N"]:g} N, {record["temperature_K"] - ZERO_CELSIUS:g} degC, closed form'
+    )
+    yield _line('', ('low', 'stated', 'high'), ('onset', 'torque', 'RCS 0.01', 'eta 0.85'))
+    yield _line('', ('',) * 3, ('rev/min', 'N m', 'rev/min', 'rev/min'))
+    yield _line('as stated', ('',) * 3, _cells(record['stated']))
+    for row in record['inputs']:
+        values = ['-' if row[end] is None else f'{row[end]:.4g}' for end in ENDS]
+        found = _cells(row['at_low'], row['at_high'])
+        yield _line(row['key'], values, found) + f'  {row["refused"] or row["reason"]}'
+    for words, name in (('not known', 'unknown_band'), ('numerics', 'numerical_band')):
+        low, high = record[name]
+        yield (
+            f'  {words:10} contact begins at {low:.2g} to {high:.2g} times the stated speed: '
+            f'{low * onset / RPM:.3g} to {high * onset / RPM:.3g} rev/min'
+        )
+    for word, one in zip(('measure', 'then'), record['measure'], strict=True):
+        low, high = one['unknown_band']
+        yield f'  {word:10} {one["measurement"]}: {low:.2g} to {high:.2g} times is left'
+
+
+def _line(key: str, values: Sequence[str], found: Sequence[str]) -> str:
+    columns = [f'{value:>8}' for value in values] + [f'{text:>16}' for text in found]
+    return f'  {key:22}' + ''.join(columns)
+
+
+def _cells(*ends: Mapping[str, float]) -> list[str]:
+    """Return the numbers of one or two ends per column."""
+    return [
+        ' to '.join(f'{float(f"{end[name] / unit:.3g}"):g}' for end in ends).replace('nan', '-')
+        for name, unit in ((ONSET, RPM), (TORQUE, 1.0), (RCS_SPEED, RPM), (EFFICIENCY_SPEED, RPM))
+    ]

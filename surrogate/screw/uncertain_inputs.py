@@ -1,0 +1,149 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Inputs of a screw, its oil and its operating point, each with the range in which it may lie."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
+import math
+from typing import Any, Literal
+
+from surrogate.asperities.running_in import working_pressure
+from surrogate.formulas.geometry import SIDES
+from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.raceway.standards import long_cutoff_iso_21920, RA_OVER_RQ
+from surrogate.raceway.stated import Roughness
+from surrogate.screw.onset import ABOVE, onset_point, run_in_at, run_in_range, with_raceway
+
+Part = Literal['point', 'lubricant', 'screw', 'roughness']
+Ends = tuple[float, float]
+FLOORS = 'film_floor_low', 'film_floor_high'
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ScrewCase:
+    """A screw with its oil at an operating point."""
+
+    screw: Screw
+    lubricant: Lubricant
+    point: OperatingPoint
+
+    @property
+    def roughness(self) -> Roughness:
+        """Roughness of the raceway."""
+        return self.screw.roughness
+
+    def changed(self, part: Part, **values: float) -> 'ScrewCase':
+        """Return a case with other values [SI] in one of its parts."""
+        if part == 'roughness':
+            return replace(self, screw=with_raceway(self.screw, **values))
+        return replace(self, **{part: replace(getattr(self, part), **values)})
+
+    @property
+    def onset(self) -> float:
+        """Screw speed at which contact begins [rad/s]."""
+        place = self.point.opposing_load, self.point.temperature
+        return onset_point(self.screw, self.lubricant, *place)['speed_rad_s']
+
+
+@dataclass(frozen=True, slots=True)
+class Varied:
+    """
+    An input, a field of a part of a case, with the range in which it may lie.
+
+    The `reason` of the range, and how the input is measured, empty for one that is in no band. The
+    range is `times` below and above the stated value [-], or `plus` [SI], or `ends` say it [SI],
+    None where a sheet has no such input. Fields that change `also`.
+
+    """
+
+    part: Part
+    name: str
+    reason: str
+    measured: str = ''
+    times: float = 1.0
+    plus: float = 0.0
+    ends: Callable[[ScrewCase], Ends | None] | None = None
+    also: tuple[str, ...] = ()
+
+    def stated(self, case: ScrewCase) -> float | None:
+        """Return the stated value [SI], None where there is none."""
+        value: float | None = getattr(getattr(case, self.part), self.name)
+        return value
+
+    def bounds(self, case: ScrewCase) -> Ends | None:
+        """Return the ends [SI] within what a sheet may state, None where it has no such input."""
+        ends = self.ends(case) if self.ends is not None else self._around(self.stated(case))
+        if ends is None:
+            return None
+        rules = self.rules(case)
+        least, most = ((rules[end] + rules['shift']) * rules['factor'] for end in ('low', 'high'))
+        return max(ends[0], least), min(ends[1], most)
+
+    def _around(self, value: float | None) -> Ends | None:
+        return (value / self.times - self.plus, value * self.times + self.plus) if value else None
+
+    def rules(self, case: ScrewCase) -> Mapping[str, Any]:
+        """Return what a sheet states of the field: unit, factor, limits."""
+        every = fields(getattr(case, self.part))
+        return next(spec.metadata for spec in every if spec.name == self.name)
+
+    def at(self, case: ScrewCase, value: float) -> ScrewCase:
+        """Return a case in which the input has a value [SI]."""
+        if self.name in ('hardness', 'run_in_pressure'):
+            return replace(case, screw=run_in_at(case.screw, value))
+        return case.changed(self.part, **dict.fromkeys((self.name, *self.also), value))
+
+
+def _floors(case: ScrewCase) -> Ends:
+    return case.lubricant.film_floor_low, case.lubricant.film_floor_high
+
+
+def _cutoffs(case: ScrewCase) -> Ends | None:
+    """Return the neighbours of the long cut-off by the table, None where the sheet states it."""
+    if case.roughness.cutoff_long is not None or not case.roughness.rms:
+        return None
+    middle = long_cutoff_iso_21920(RA_OVER_RQ * case.roughness.rms)
+    return middle / math.sqrt(10), middle * math.sqrt(10)
+
+
+def _runs_in(case: ScrewCase) -> bool:
+    return (case.roughness.state, case.roughness.traced) == ('run_in', 'new')
+
+
+def _pressures(case: ScrewCase) -> Ends | None:
+    """Return the pressures from the lowest of running in up to none of it."""
+    return (run_in_range(case.screw)[0], case.roughness.hardness) if _runs_in(case) else None
+
+
+def _hardness(case: ScrewCase) -> Ends | None:
+    """Return hardnesses that bear the contact, None where running in cuts the summits."""
+    if _runs_in(case):
+        return None
+    hardness = case.roughness.hardness
+    borne = ABOVE * max(working_pressure(case.screw, side) for side in SIDES)
+    return min(max(hardness / 1.15, borne), hardness), 1.15 * hardness
+
+
+SENSOR, SAMPLE = 'oil temperature at the nut', 'viscosity of a sample of the oil'
+TRACE, RUN = 'trace of the raceway as it runs', 'torque at slow speeds'
+"""Measurements; the last finds what no gauge tells, boundary film and supply of oil."""
+INPUTS = (
+    Varied('point', 'temperature', '5 K from sensor to contact', SENSOR, plus=5.0),
+    Varied('lubricant', 'viscosity', 'width of an ISO 3448 grade', SAMPLE, times=1.1),
+    Varied('lubricant', 'film_floor', 'range of the oil sheet', RUN, ends=_floors, also=FLOORS),
+    Varied('lubricant', 'film_factor', 'grease or little oil leave 0.7', RUN, times=1 / 0.7),
+    Varied('roughness', 'rms', 'traces of a raceway differ by 10 %', TRACE, times=1.1),
+    Varied('roughness', 'fractal_dimension', 'fits to traces differ by 0.1', TRACE, plus=0.1),
+    Varied('roughness', 'rms_slope', 'traces of a raceway differ by 20 %', TRACE, times=1.2),
+    Varied('roughness', 'cutoff_long', 'not stated: rows beside it', TRACE, ends=_cutoffs),
+    Varied('roughness', 'run_in_pressure', 'lowest, to not run in', TRACE, ends=_pressures),
+    Varied('roughness', 'hardness', '58 to 64 HRC', 'hardness of the raceway', ends=_hardness),
+    Varied('screw', 'preload', 'setting and wear', 'torque without load', times=1.2),
+    Varied(
+        'screw', 'conformity_screw', 'grinding', 'contour', plus=0.01, also=('conformity_nut',)
+    ),
+    Varied('roughness', 'cutoff_short', 'scatter of tiles, in no band', times=2.0),
+)
+"""Inputs with their ranges: those of the sheets if they state any, else a usual spread."""
+LEFT_OUT = ('hardness', 'preload', 'conformity_screw', 'cutoff_short')
+"""Inputs that take seconds and hardly move the band: a surface leaves them out."""

@@ -1,0 +1,229 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Sensitivity to the inputs, its bands and its picture."""
+
+from dataclasses import fields, replace
+import math
+
+import pytest
+from surrogate.asperities.law import BANDS
+from surrogate.parameters import OperatingPoint
+from surrogate.screw.closed_form import solve
+from surrogate.screw.onset import onset_point, run_in_at, with_raceway
+from surrogate.screw.sensitivity import (
+    INTERPOLATION,
+    numerical_band,
+    sensitivity_page,
+    sensitivity_record,
+    surface_bands,
+    unknown_band,
+)
+from surrogate.screw.uncertain_inputs import INPUTS, LEFT_OUT, ScrewCase
+from surrogate.units import RPM
+
+POINT = OperatingPoint(speed=600 * RPM, load=500.0, temperature=313.15)
+QUICK = [one for one in INPUTS if one.part in ('point', 'lubricant')]
+BY_NAME = {one.name: one for one in INPUTS}
+
+
+@pytest.fixture(scope='module')
+def record(screw, oil):
+    """Return the record of the inputs that leave the topography, with Rq."""
+    return sensitivity_record(screw, oil, POINT, inputs=[*QUICK, BY_NAME['rms']])
+
+
+def row_of(record, key):
+    return next(row for row in record['inputs'] if row['key'] == key)
+
+
+def test_what_is_stated_is_what_onset_and_point_say(screw, oil, record):
+    stated = record['stated']
+    assert stated['onset_speed_rad_s'] == onset_point(screw, oil, 500.0, 313.15)['speed_rad_s']
+    found = solve(screw, oil, [POINT.speed, *list_of_limits(stated)], 500.0, 313.15)
+    assert stated['friction_torque_Nm'] == found.friction_torque[0]
+    assert found.rcs[1] == pytest.approx(0.01, rel=0.01)
+    ideal = 500.0 * screw.lead / (2 * math.pi)
+    assert ideal / (ideal + found.friction_torque[2]) == pytest.approx(0.85, rel=1e-3)
+
+
+def list_of_limits(stated):
+    return stated['rcs_limit_speed_rad_s'], stated['efficiency_limit_speed_rad_s']
+
+
+def test_five_kelvin_move_the_onset_by_a_third(record):
+    colder, warmer = row_of(record, 'temperature_degC')['onset_factors']
+    assert 1.3 < warmer < 1.4
+    assert 1.3 < 1 / colder < 1.4
+
+
+def test_more_floor_heat_and_roughness_begin_to_touch_sooner(record):
+    """More film does the opposite, and the limit of RCS goes with the onset."""
+    for key in ('film_floor_nm', 'temperature_degC', 'rms_um'):
+        low, high = row_of(record, key)['onset_factors']
+        assert low < 1 < high
+    for key in ('viscosity_Pa_s', 'film_factor'):
+        low, high = row_of(record, key)['onset_factors']
+        assert low > 1 >= high
+    for row in record['inputs']:
+        for end, factor in zip(('at_low', 'at_high'), row['onset_factors'], strict=True):
+            moved = row[end]['rcs_limit_speed_rad_s'] / record['stated']['rcs_limit_speed_rad_s']
+            assert moved == pytest.approx(factor, rel=0.1)
+
+
+def test_values_are_in_the_unit_of_the_key_and_ends_in_that_of_the_sheet(record):
+    floor = row_of(record, 'film_floor_nm')
+    assert [floor[end] for end in ('low', 'stated', 'high')] == pytest.approx([1.0, 3.0, 5.0])
+    heat = row_of(record, 'temperature_degC')
+    assert [heat[end] for end in ('low', 'stated', 'high')] == pytest.approx([35.0, 40.0, 45.0])
+    # Flooded is the most that a sheet may state, and changes nothing.
+    factor = row_of(record, 'film_factor')
+    assert (factor['low'], factor['high'], factor['onset_factors'][1]) == (0.7, 1.0, 1.0)
+    assert factor['at_high'] == record['stated']
+
+
+def test_an_input_without_a_range_changes_nothing(screw, oil):
+    """And leaves a band of the other inputs alone."""
+    sure = replace(oil, film_floor_low=oil.film_floor, film_floor_high=oil.film_floor)
+    found = sensitivity_record(screw, sure, POINT, inputs=[BY_NAME['film_floor']])
+    assert found['inputs'][0]['onset_factors'] == [1.0, 1.0]
+    assert found['unknown_band'] == [1.0, 1.0]
+
+
+def test_the_largest_effect_stands_first_and_what_is_measured_leaves_the_band(record):
+    first, *_ = record['inputs']
+    assert first['key'] == 'film_floor_nm'
+    low, high = record['unknown_band']
+    assert low < min(min(row['onset_factors']) for row in record['inputs'])
+    assert high > max(max(row['onset_factors']) for row in record['inputs'])
+    one, two = record['measure']
+    assert (one['measurement'], two['measurement']) == (
+        'torque at slow speeds',
+        'oil temperature at the nut',
+    )
+    assert low < one['unknown_band'][0] < two['unknown_band'][0] < 1
+    left = [row_of(record, key)['onset_factors'] for key in ('viscosity_Pa_s', 'rms_um')]
+    assert two['unknown_band'] == pytest.approx(unknown_band(left))
+
+
+def test_independent_inputs_add_up_as_squares_of_logarithms():
+    assert unknown_band([]) == [1.0, 1.0]
+    assert unknown_band([[0.5, 1.5]]) == pytest.approx([0.5, 1.5])
+    assert unknown_band([[0.5, 2.0], [2.0, 0.5]]) == pytest.approx(
+        [0.5 ** math.sqrt(2), 2 ** math.sqrt(2)]
+    )
+    # Both ends below: nothing above.
+    assert unknown_band([[0.8, 0.9]]) == pytest.approx([0.8, 1.0])
+    assert all(map(math.isnan, unknown_band([[math.nan, 1.5]])))
+
+
+def test_the_band_of_numerics_is_that_of_the_law(screw, record):
+    """By the lay, whatever is known of the inputs; a lookup adds a little."""
+    assert record['numerical_band'] == pytest.approx([1 / 1.3, 1.3])
+    ridges = with_raceway(screw, lay='longitudinal', fan_angle=0.2)
+    assert numerical_band(ridges)[1] == pytest.approx(BANDS['longitudinal'])
+    assert 1.3 < numerical_band(screw, 0.02)[1] < 1.31
+
+
+def test_a_surface_has_the_band_of_the_inputs_that_move_it(screw, oil, record):
+    """At the preload: of all that is quick, Rq and the dimension."""
+    point = OperatingPoint(speed=0.0, load=0.0, temperature=oil.reference_temperature)
+    used = [*QUICK, BY_NAME['rms'], BY_NAME['fractal_dimension']]
+    found = sensitivity_record(screw, oil, point, inputs=used)
+    assert surface_bands(screw, oil) == {
+        'limit_band': pytest.approx(found['unknown_band']),
+        'numerical_band': numerical_band(screw, INTERPOLATION),
+    }
+
+
+def test_running_in_is_an_input_of_a_raceway_that_has_run_in(screw, oil):
+    """From the lowest pressure that bears to none of it; hardness takes its place on a new one."""
+    new = ScrewCase(screw=screw, lubricant=oil, point=POINT)
+    run_in = replace(new, screw=with_raceway(screw, state='run_in'))
+    traced = replace(new, screw=with_raceway(screw, state='run_in', traced='run_in'))
+    running, hard = BY_NAME['run_in_pressure'], BY_NAME['hardness']
+    assert running.bounds(run_in) == (screw.roughness.run_in_low, screw.roughness.hardness)
+    assert hard.bounds(run_in) is None
+    assert running.bounds(new) is running.bounds(traced) is None
+    low, high = hard.bounds(new)
+    assert low < 7e9 < high
+    assert hard.bounds(traced) == (low, high)
+    assert running.at(run_in, 2e9).screw == run_in_at(run_in.screw, 2e9)
+    assert hard.at(new, low).roughness.cutting_pressure == low
+
+
+def test_a_long_cutoff_is_an_input_where_the_sheet_leaves_it_to_the_table(screw, oil):
+    case = ScrewCase(screw=screw, lubricant=oil, point=POINT)
+    free = replace(case, screw=with_raceway(screw, cutoff_long=None))
+    cutoff = BY_NAME['cutoff_long']
+    assert cutoff.bounds(case) is None
+    assert cutoff.bounds(free) == pytest.approx((0.079e-3, 0.79e-3), rel=0.01)
+    assert cutoff.at(free, 0.8e-3).roughness.cutoff_long == 0.8e-3
+
+
+def test_every_end_of_every_input_is_a_sheet(screw, oil):
+    """Also at the ends of what a sheet may state, and both conformities at once."""
+    groove = replace(screw, conformity_screw=0.505, conformity_nut=0.505)
+    sloped = with_raceway(groove, fractal_dimension=None, rms_slope=0.02)
+    for one in INPUTS:
+        found = 0
+        for sheet in (groove, sloped, with_raceway(groove, cutoff_long=None, state='run_in')):
+            case = ScrewCase(screw=sheet, lubricant=oil, point=POINT)
+            ends = one.bounds(case) or ()
+            found += len(ends)
+            assert all(one.at(case, value) for value in ends)
+        assert found
+    low, _ = BY_NAME['conformity_screw'].bounds(
+        ScrewCase(screw=groove, lubricant=oil, point=POINT)
+    )
+    assert low == 0.501
+    nut = BY_NAME['conformity_screw'].at(ScrewCase(screw=groove, lubricant=oil, point=POINT), low)
+    assert nut.screw.conformity_nut == 0.501
+    assert set(LEFT_OUT) < {one.name for one in INPUTS}
+    assert {spec.name for spec in fields(OperatingPoint)} >= {'temperature'}
+
+
+def test_an_end_that_the_model_refuses_is_not_known(screw, oil, refused):
+    """It leaves a band that is not known, and the page has the sentence."""
+    soft = dict.fromkeys(('hardness', 'run_in_low', 'run_in_pressure', 'run_in_high'), 1.8e9)
+    heavy = [replace(BY_NAME['preload'], times=3.0)]
+    found = sensitivity_record(with_raceway(screw, **soft), oil, POINT, inputs=heavy)
+    assert math.isnan(found['inputs'][0]['onset_factors'][1])
+    assert all(map(math.isnan, found['unknown_band']))
+    assert 'see working_load_N, run_in_pressure_GPa' in sensitivity_page(found)
+    refused('smooth', sensitivity_record, with_raceway(screw, rms=0.0), oil, POINT)
+
+
+def test_the_page_has_a_line_per_input_and_keeps_the_bands_apart(record):
+    page = sensitivity_page(record)
+    assert '600 rev/min, 500 N, 40 degC, closed form' in page
+    assert page.count('\n  film_floor_nm ') == 1
+    low, high = record['unknown_band']
+    assert f'not known  contact begins at {low:.2g} to {high:.2g} times the stated speed' in page
+    assert 'numerics   contact begins at 0.77 to 1.3 times' in page
+    assert 'measure    torque at slow speeds: ' in page
+    assert 'then       oil temperature at the nut: ' in page
+
+
+def test_a_light_load_has_no_limit_of_efficiency(screw, oil):
+    point = replace(POINT, load=100.0)
+    found = sensitivity_record(screw, oil, point, inputs=QUICK[:1])
+    assert math.isnan(found['stated']['efficiency_limit_speed_rad_s'])
+    assert sensitivity_page(found).splitlines()[3].split()[-1] == '-'
+
+
+def test_the_picture_has_a_bar_per_end_and_the_bands(record, tmp_path):
+    pytest.importorskip('matplotlib')
+    from surrogate.screw.sensitivity_figure import draw_sensitivity, figure_sensitivity
+
+    figure = figure_sensitivity(record)
+    assert [axes.get_title() for axes in figure.axes] == [
+        'Contact begins',
+        'Friction torque',
+        'Efficiency falls to 0.85',
+    ]
+    bars = 2 * len(record['inputs'])
+    assert [len(axes.patches) for axes in figure.axes] == [bars + 2, bars, bars]
+    words = [text.get_text() for text in figure.axes[0].get_yticklabels()]
+    assert words[:2] == ['numerics', 'not known']
+    assert words[-1] == 'film_floor_nm  1 to 5'
+    assert draw_sensitivity(tmp_path, record).name == 'sensitivity_nominal_iso_vg_68.png'
