@@ -39,7 +39,9 @@ def screw_of(given: CatalogueScrew) -> tuple[Screw, dict[str, str]]:
     if given.static_rating is None:
         # The load that presses a ball by a given pressure follows from any rating.
         draft, _ = noted_sheet(Screw, values | {'static_rating': Noted(1e6, '')})
-        rating = derived(rating_by_hertz(draft), 'presses each ball by 4.2 GPa, as in ISO 76')
+        rating = derived(
+            rating_by_hertz(draft), 'presses each ball by 4.2 GPa, ISO 76; makers 0.7 to 1.1 of it'
+        )
     else:
         rating = Noted(given.static_rating, 'given')
     screw, notes = noted_sheet(Screw, values | {'static_rating': rating})

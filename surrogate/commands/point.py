@@ -64,13 +64,18 @@ def add_inputs(parser: argparse.ArgumentParser) -> None:
 
 
 def load_inputs(args: argparse.Namespace) -> tuple[Screw, Lubricant]:
-    """Return the sheets of screw and oil; refuses what no screw has, and tells what is unusual."""
+    """Return the sheets of screw and oil; raises InputError, also for what no screw has."""
+    screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
+    examine(screw)
+    return screw, lubricant
+
+
+def examine(screw: Screw) -> None:
+    """Tell what is unusual in a sheet; raises InputError for what no screw has."""
     from surrogate.formulas.plausibility import check_plausible, doubts
 
-    screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
     check_plausible(screw)
     tell(doubts(screw))
-    return screw, lubricant
 
 
 def add_operating_point(parser: argparse.ArgumentParser, *, required: bool) -> None:

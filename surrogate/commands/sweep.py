@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from surrogate.commands.point import examine
+
 
 def add_sweep_command(actions: Any) -> None:
     """Add the subcommand to those of `surface`."""
@@ -37,6 +39,8 @@ def _sweep(args: argparse.Namespace) -> int:
     from surrogate.tasks.workers import open_pool
 
     items = load_catalogue(args.catalogue)
+    for screw in dict.fromkeys(item.screw for item in items):
+        examine(screw)
     report = SweepReport(args.catalogue, items, args.out)
     report.write()
     progress = Progress(len(items), 'surfaces')

@@ -54,7 +54,7 @@ def check_plausible(screw: Screw) -> None:
     if not low <= pressure <= high:
         balls = max(1, round(screw.loaded_balls_per_nut * screw.static_rating / fit))
         raise InputError(
-            f'screw: {_rating(screw)}, allowed is {GIGA * low:g} to {GIGA * high:g} GPa: '
+            f'{screw.name}: {_rating(screw)}, allowed is {GIGA * low:g} to {GIGA * high:g} GPa: '
             f'{float(f"{fit / MILLI:.3g}"):g} kN or {balls} balls would fit'
         )
     low, high = (share * screw.static_rating for share in (LEAST_PRELOAD, MOST_PRELOAD))
@@ -62,7 +62,7 @@ def check_plausible(screw: Screw) -> None:
         kilo = MILLI * screw.preload
         fit = kilo if low <= kilo <= high else USUAL_PRELOAD * screw.static_rating
         raise InputError(
-            f'screw: preload_N is {screw.preload:g} N with static_rating_kN '
+            f'{screw.name}: preload_N is {screw.preload:g} N with static_rating_kN '
             f'{screw.static_rating / MILLI:g} kN, allowed is 0 or {low:.3g} N and more: '
             f'{fit:.4g} N would fit'
         )
@@ -70,7 +70,8 @@ def check_plausible(screw: Screw) -> None:
 
 def doubts(screw: Screw) -> list[str]:
     """Return a sentence for each number that is possible but unusual."""
-    return [*_doubts_of_size(screw), *_doubts_of_roughness(screw.roughness)]
+    found = (*_doubts_of_size(screw), *_doubts_of_roughness(screw.roughness))
+    return [f'{screw.name}: {text}' for text in found]
 
 
 def _rating(screw: Screw) -> str:
@@ -86,12 +87,12 @@ def _doubts_of_size(screw: Screw) -> Iterator[str]:
     turns = screw.loaded_balls_per_nut * screw.ball_diameter / circle
     if turns * screw.ball_diameter < LEAST_FILL * 2 * screw.pitch_radius:
         yield (
-            f'screw: pitch_radius_mm is {radius:g} mm, on which the balls fill {turns:.2g} turns: '
+            f'pitch_radius_mm is {radius:g} mm, on which the balls fill {turns:.2g} turns: '
             f'if it is the diameter, {radius / 2:g} mm would fit'
         )
     if not USUAL[0] <= rated_pressure(screw) <= USUAL[1]:
         fit = rating_by_hertz(screw) / MILLI
-        yield f'screw: {_rating(screw)}, usual is 4 to 4.5 GPa: {fit:.3g} kN would fit'
+        yield f'{_rating(screw)}, usual is 4 to 4.5 GPa: {fit:.3g} kN would fit'
 
 
 def _doubts_of_roughness(sheet: Roughness) -> Iterator[str]:
