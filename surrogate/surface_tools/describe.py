@@ -131,9 +131,9 @@ def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
         low, high = record['limit_band']
         yield (
             f'  contact      begins between {low:.2g} and {high:.2g} times the stated speed, by '
-            'the ranges'
+            'the calibration or'
         )
-        yield '               of the boundary film and, where it applies, of running in'
+        yield '               the ranges of the boundary film and, where it applies, of running in'
     if record['accuracy_reached'] is not None:
         yield (
             '  accuracy     the worst held-out point has '

@@ -123,9 +123,11 @@ def limit_band(screw: Screw, lubricant: Lubricant) -> list[float]:
 
     At the preload and the reference temperature: over the range of floors of the oil and, where
     the profile was traced on a new raceway that has run in, over that of the pressure at which
-    this cuts the summits, up to none of it.
+    this cuts the summits, up to none of it. A calibrated onset has its own band instead.
 
     """
+    if screw.roughness.onset_band is not None:
+        return [1 / screw.roughness.onset_band, screw.roughness.onset_band]
     low, high = screw, screw
     if (screw.roughness.state, screw.roughness.traced) == ('run_in', 'new'):
         low = run_in_at(screw, run_in_range(screw)[0])

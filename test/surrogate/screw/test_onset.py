@@ -6,13 +6,12 @@ from dataclasses import replace
 import math
 
 import pytest
-from surrogate.asperities.law import law_of
+from surrogate.asperities.law import BANDS, law_of
 from surrogate.formulas.geometry import screw_contact
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.onset import (
-    BANDS,
     extrapolated,
     onset_page,
     onset_point,
