@@ -3,9 +3,10 @@
 """
 Parasitic torque of a screw, and what else was asked for, from torque measured without load.
 
-Least squares over the points of a run, at every onset factor where that is asked for. The torque on the screw is the friction torque with the
+Least squares over the points of a run. The torque on the screw is the friction torque with the
 sign of the motion, the share of the load, and where both directions were measured an offset that
-does not change sign. Intervals hold 95 % by Student's t from the Jacobian.
+does not change sign. Intervals hold 95 % by Student's t from the Jacobian, that of an onset factor
+by its profile.
 
 """
 
@@ -77,7 +78,12 @@ class Identification:
 
     def value(self, name: str) -> float:
         """Return the value of a parameter in SI units, NaN when it was not identified."""
-        return next((one.value for one in self.estimates if one.name == name), math.nan)
+        one = self.estimate(name)
+        return math.nan if one is None else one.value
+
+    def estimate(self, name: str) -> ParameterEstimate | None:
+        """Return the estimate of a parameter, None when it was not identified."""
+        return next((one for one in self.estimates if one.name == name), None)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

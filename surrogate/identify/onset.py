@@ -16,7 +16,8 @@ import math
 
 import numpy as np
 from scipy.stats import t as student
-from surrogate.identify.data import Array
+from surrogate.asperities.law import NINE_OF_TEN
+from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.intervals import CONFIDENCE, student_factor
 from surrogate.identify.model import ContactModel, ONSET_BOUNDS
 from surrogate.screw.onset import onset_point, with_raceway
@@ -103,8 +104,17 @@ def _crossing(over: Array, factors: Array, none: float) -> float:
     return float(np.exp(low + share * (high - low)))
 
 
-def onset_ends(contacts: ContactModel, load: float, factors: tuple[float, ...]) -> list[float]:
-    """Return the screw speeds of the onset [rad/s] by factors [-], under the load of the run [N]."""
+def onset_speeds(
+    contacts: ContactModel, run: NoLoadRun, factors: tuple[float, float, float]
+) -> list[float]:
+    """Return the screw speeds of the onset [rad/s] under the load of a run, by factors [-]."""
     oil, plain = contacts.lubricant, with_raceway(contacts.screw, onset_factor=1.0)
+    load = abs(float(run.load.mean()))
     speed = onset_point(plain, oil, load, oil.reference_temperature)['speed_rad_s']
     return [factor * speed for factor in factors]
+
+
+def calibrated_band(low: float, high: float) -> float:
+    """Return the factor within which nine of ten onsets lie [-], by a 95 % interval."""
+    narrower = NINE_OF_TEN / float(student.ppf(0.5 * (1 + CONFIDENCE), math.inf))
+    return float((high / low) ** (0.5 * narrower))

@@ -15,12 +15,7 @@ import math
 import numpy as np
 from surrogate.files import InputError
 from surrogate.identify.data import Array, NoLoadRun
-from surrogate.identify.model import (
-    ContactModel,
-    FRICTION_BOUNDS,
-    ONSET_BOUNDS,
-    VISCOSITY_BOUNDS,
-)
+from surrogate.identify.model import ContactModel, FRICTION_BOUNDS, ONSET_BOUNDS, VISCOSITY_BOUNDS
 from surrogate.parameters import Screw
 from surrogate.units import RPM
 

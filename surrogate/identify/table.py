@@ -6,8 +6,8 @@ Friction torque of contacts at the points of a run, from a small table.
 Pressure and film of a contact follow the product of viscosity and speed, so contacts are solved
 once per node of that product. Shear does not: the pressure-viscosity law bends with the oil, and
 boundary friction acts in the balance of the balls. So the balls are balanced again on the solved
-contacts for every viscosity, friction coefficient and onset of the table, which is cheap. Where the
-onset is identified, the formulas of the closed-form tier fill such a table, too.
+contacts for every viscosity, friction coefficient and onset of the table, which is cheap. Where
+the onset is identified, the formulas of the closed-form tier fill such a table, too.
 
 """
 
@@ -150,7 +150,11 @@ def _axes(
     frictions: Sequence[float],
 ) -> _Axes:
     """Return the axes for what is fitted; friction coefficients [-] where they are."""
-    oil, load, sheet = anchored(lubricant, run.mean_temperature), _load(screw, run), screw.roughness
+    oil, load, sheet = (
+        anchored(lubricant, run.mean_temperature),
+        _load(screw, run),
+        screw.roughness,
+    )
     factors = _factors(_thickness(oil, run), 'viscosity_factor' in fitted)
     stated = np.array([sheet.asperity_friction])
     return _Axes(
@@ -164,9 +168,7 @@ def _axes(
     )
 
 
-def _model(
-    axes: _Axes, run: NoLoadRun, tier: str, torque: Array, shares: Array
-) -> ContactModel:
+def _model(axes: _Axes, run: NoLoadRun, tier: str, torque: Array, shares: Array) -> ContactModel:
     """Return the contacts of a run by a table of torque [N m], shares [-] at its speeds."""
     thick, speed = _thickness(axes.oil, run), np.abs(run.speed)
 

@@ -112,8 +112,8 @@ class Roughness(Checked):
         if (self.calibrated is None) != (self.onset_band is None):
             given = 'calibrated' if self.onset_band is None else 'onset_band'
             raise InputError(
-                f'roughness: {given} is given alone, allowed are both of calibrated and onset_band '
-                'or neither'
+                f'roughness: {given} is given alone, allowed are both of calibrated and '
+                'onset_band or neither'
             )
 
     @property
