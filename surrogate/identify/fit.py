@@ -148,20 +148,34 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
         values = _fit(problem, at(factor), {'onset_factor': ''}, sigma).values
         return float(np.sum((problem.residual(values) / sigma) ** 2))
 
+    def along(scan: OnsetScan) -> Identification:
+        start, held = at(scan.best), {}
+        if not scan.closed:
+            factor, reason = scan.bound(float(problem.start[place]))
+            kept = 'not told without the onset: kept as in the datasheet'
+            start, held = at(factor), {'onset_factor': reason, 'asperity_friction': kept}
+        held = problem.without_effect(start) | held
+        fit = _fit(problem, start, held, sigma)
+        return _result(problem, fit, _scatter(problem, fit, held, sigma), sigma)
+
     freedom = len(sigma) - len(problem.names)
     scan = scan_onset(cost, freedom)
-    start, held = at(scan.best), {}
-    if not scan.closed:
-        factor, reason = scan.bound(float(problem.start[place]))
-        start, held = at(factor), {'onset_factor': reason}
-    held = problem.without_effect(start) | held
-    fit = _fit(problem, start, held, sigma)
-    found = _result(problem, fit, _scatter(problem, fit, held, sigma), sigma)
+    found = along(scan)
+    if scan.closed and not _turns_up(problem.run, found):
+        # The curvature of the rolling loss alone is no sign of contact.
+        scan = replace(scan, low=0.0)
+        found = along(scan)
     estimates = tuple(
         _profiled(one, scan, freedom) if one.name == 'onset_factor' else one
         for one in found.estimates
     )
     return replace(found, estimates=estimates)
+
+
+def _turns_up(run: NoLoadRun, found: Identification) -> bool:
+    """Tell whether the contacts rise towards low speed by more than the scatter of a point."""
+    slowest = int(np.abs(run.speed).argmin())
+    return bool(found.contacts[slowest] - found.contacts.min() > found.band[slowest])
 
 
 def _profiled(one: ParameterEstimate, scan: OnsetScan, freedom: int) -> ParameterEstimate:

@@ -15,7 +15,13 @@ import math
 import numpy as np
 from surrogate.files import InputError
 from surrogate.identify.data import Array, NoLoadRun
-from surrogate.identify.model import ContactModel, FRICTION_BOUNDS, ONSET_BOUNDS, VISCOSITY_BOUNDS
+from surrogate.identify.model import (
+    ContactModel,
+    FRICTION_BOUNDS,
+    ONSET_BOUNDS,
+    ONSET_FRICTIONS,
+    VISCOSITY_BOUNDS,
+)
 from surrogate.parameters import Screw
 from surrogate.units import RPM
 
@@ -172,7 +178,8 @@ def _rows(
     if 'viscosity_factor' in fitted:
         rows.append(('viscosity_factor', 0.1, *VISCOSITY_BOUNDS, 1.0))
     if 'asperity_friction' in fitted:
-        rows.append(('asperity_friction', 0.01, *FRICTION_BOUNDS, rough.asperity_friction))
+        ends = ONSET_FRICTIONS if 'onset_factor' in fitted else FRICTION_BOUNDS
+        rows.append(('asperity_friction', 0.01, *ends, rough.asperity_friction))
     if 'onset_factor' in fitted:
         rows.append(('onset_factor', 0.1, *ONSET_BOUNDS, rough.onset_factor))
     if 'seal_torque' in fitted:

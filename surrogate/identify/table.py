@@ -41,8 +41,8 @@ NODES_PER_DECADE, FEWEST_NODES, MOST_SPEEDS = 10, 5, 10
 """Nodes of viscosity times speed; up to so many measured speeds are solved as they are."""
 APART = 1.05
 """Least ratio of neighbouring speeds that are nodes themselves [-]."""
-FACTORS = 5
-"""Viscosities of the table where it has more than one."""
+FACTORS, FEW_FACTORS = 5, 3
+"""Viscosities of the table where they are identified, and where they spread with the oil alone."""
 FRICTIONS = (FRICTION_BOUNDS[0], 0.05, 0.1, 0.15, 0.2, FRICTION_BOUNDS[1])
 """Friction coefficients of the table where it is identified [-]."""
 LINEAR = FRICTION_BOUNDS
@@ -235,7 +235,7 @@ def _factors(thick: Array, fitted: bool) -> Array:
         low, high = VISCOSITY_BOUNDS[0] * low, VISCOSITY_BOUNDS[1] * high
     if high / low - 1 < SAME_VISCOSITY:
         return np.ones(1)
-    return np.geomspace(low, high, FACTORS)
+    return np.geomspace(low, high, FACTORS if fitted else FEW_FACTORS)
 
 
 def _nodes(speed: Array, factors: Array) -> Array:
@@ -295,5 +295,11 @@ def _weights(nodes: Array, places: Array) -> Array:
     """Return the weight of every node at every place, of the cubic spline through the nodes."""
     if len(nodes) == 1:
         return np.ones((len(places), 1))
-    spline = CubicSpline(nodes, np.eye(len(nodes)))
+    spline = _splines(tuple(nodes.tolist()))
     return np.asarray(spline(np.clip(places, nodes[0], nodes[-1])))
+
+
+@lru_cache(maxsize=16)
+def _splines(nodes: tuple[float, ...]) -> CubicSpline:
+    """Return the splines that are 1 at one node and 0 at the others."""
+    return CubicSpline(nodes, np.eye(len(nodes)))
