@@ -3,7 +3,7 @@
 """
 Fit the onset factor of synthetic machines whose truth lies outside the fit.
 
-Run `python studies/onset_machines.py [--machines N] [--fast N] [--out DIR]`: the nominal screw without load
+Run `python studies/onset_machines.py [--machines N] [--fast N]`: the nominal screw without load
 on a staircase of 14 speeds in both directions. RCS and rolling loss below the onset of each
 machine are those of one marched strip of `asperity_marches.csv` that was held out of the fit of
 the law; the onset is off by a drawn factor. Boundary friction, viscosity and parasitic parts are

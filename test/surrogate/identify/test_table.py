@@ -67,7 +67,9 @@ def test_few_speeds_are_solved_as_they_are(formulas):
     assert formulas == pytest.approx([60 * RPM, 200 * RPM, 600 * RPM])
     assert told == [(0, 3), (1, 3), (2, 3), (3, 3)]
     exact = closed_form_model(SCREW, OIL, run)
-    np.testing.assert_allclose(model.torque(1.0, 0.1, 1.0), exact.torque(1.0, 0.1, 1.0), rtol=1e-12)
+    np.testing.assert_allclose(
+        model.torque(1.0, 0.1, 1.0), exact.torque(1.0, 0.1, 1.0), rtol=1e-12
+    )
     np.testing.assert_allclose(model.asperity_share, exact.asperity_share, rtol=1e-12)
     assert model.tier == 'full'
 
@@ -94,7 +96,7 @@ def test_viscosity_and_friction_are_met_over_their_ranges(formulas):
     model, exact = solved_model(SCREW, OIL, run, BOTH), closed_form_model(SCREW, OIL, run)
     assert len(formulas) == len(set(formulas)) == 24
     for factor, friction in ((0.5, 0.02), (1.0, 0.1), (0.8, 0.13), (2.0, 0.3), (1.5, 0.06)):
-        found, expected = (one.torque(factor, friction) for one in (model, exact))
+        found, expected = (one.torque(factor, friction, 1.0) for one in (model, exact))
         assert_met(found, expected)
 
 
@@ -108,7 +110,7 @@ def test_temperatures_of_the_points_are_met(formulas):
 def test_known_answers_come_out_of_the_table(formulas):
     """The whole fit on the table, torque by the formulas themselves."""
     run = run_at(np.concatenate([np.geomspace(50, 2000, 10), -np.geomspace(60, 1800, 9)]))
-    exact = closed_form_model(SCREW, OIL, run).torque(1.2, 0.08)
+    exact = closed_form_model(SCREW, OIL, run).torque(1.2, 0.08, 1.0)
     torque = run.direction * (exact + 0.12) + 4e-4 * run.speed + 0.03
     run = replace(run, torque=torque)
     found = identify(SCREW, run, solved_model(SCREW, OIL, run, BOTH), BOTH)

@@ -213,6 +213,8 @@ def test_the_band_is_the_onset_under_other_floors(data, screw, oil):
     assert low == pytest.approx(speeds[0] / speeds[1])
     sure = replace(oil, film_floor_low=oil.film_floor, film_floor_high=oil.film_floor)
     assert limit_band(screw, sure) == pytest.approx([1.0, 1.0])
+    calibrated = with_raceway(screw, calibrated='2026-11-24', onset_band=1.25)
+    assert limit_band(calibrated, oil) == [0.8, 1.25]
 
 
 def test_the_band_of_a_run_in_raceway_is_that_of_its_pressures_too(screw, oil):
