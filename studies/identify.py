@@ -65,11 +65,11 @@ def show(label, found):
 
 def check_table(screw, oil, model, contacts):
     """Print the error of the table where its nodes are not, for two viscosities."""
-    error = model.torque(1.0, screw.roughness.asperity_friction)[: len(SPEEDS)] / contacts - 1
+    error = model.torque(1.0, screw.roughness.asperity_friction, 1.0)[: len(SPEEDS)] / contacts - 1
     for speed, one in zip(SPEEDS, error, strict=True):
         print(f'table at {speed / RPM:5.0f} rev/min: {100 * one:6.2f} %')
     found, thick = (
-        model.torque(THICK, screw.roughness.asperity_friction),
+        model.torque(THICK, screw.roughness.asperity_friction, 1.0),
         thickened(anchored(oil, WARM), THICK),
     )
     for place in THICK_SPEEDS:
@@ -108,7 +108,7 @@ def check_intervals(screw, oil):
     speed = np.concatenate([speed, -speed])
     run = no_load_run({'speed': speed, 'torque': speed}, source='synthetic', temperature=WARM)
     contacts = closed_form_model(screw, oil, run)
-    friction = contacts.torque(1.0, screw.roughness.asperity_friction)
+    friction = contacts.torque(1.0, screw.roughness.asperity_friction, 1.0)
     drag = np.sign(speed) * (friction + CONSTANT) + RATE * speed + OFFSET
     truth = (CONSTANT, RATE, OFFSET)
     for loss in ('linear', 'soft_l1'):

@@ -185,27 +185,40 @@ def law_of(screw: Screw) -> AsperityLaw:
     """
     Return the law of the raceways of a screw in the state that its sheet names.
 
-    Raises InputError as `running_tiles` does. It takes seconds, once for each topography.
+    The onset factor of the sheet acts here alone. Raises InputError as `running_tiles` does. It
+    takes seconds, once for each topography.
 
     """
-    return _law(
-        replace(
-            screw,
-            name='',
-            source='',
-            roughness=replace(screw.roughness, asperity_friction=0.0),
-            parasitic_torque=0.0,
-            parasitic_torque_rate=0.0,
-            hysteresis_loss=0.0,
-            flank_clearance=None,
-        )
+    topography = replace(
+        screw,
+        name='',
+        source='',
+        roughness=replace(
+            screw.roughness,
+            asperity_friction=0.0,
+            onset_factor=1.0,
+            onset_band=None,
+            calibrated=None,
+        ),
+        parasitic_torque=0.0,
+        parasitic_torque_rate=0.0,
+        hysteresis_loss=0.0,
+        flank_clearance=None,
     )
+    return _law(topography, screw.roughness.onset_factor, band_of(screw))
+
+
+def band_of(screw: Screw) -> float:
+    """Return the factor within which nine of ten onsets lie [-], by calibration or marches."""
+    return screw.roughness.onset_band or BANDS[screw.roughness.lay]
 
 
 @lru_cache(maxsize=32)
-def _law(screw: Screw) -> AsperityLaw:
-    band = BANDS[screw.roughness.lay]
-    return AsperityLaw(
-        onsets={side: onset_of(screw, side) for side in SIDES},
-        deviation=math.log(band) / NINE_OF_TEN,
-    )
+def _law(screw: Screw, factor: float, band: float) -> AsperityLaw:
+    onsets = {side: replace(onset, factor=factor) for side, onset in _onsets(screw).items()}
+    return AsperityLaw(onsets=onsets, deviation=math.log(band) / NINE_OF_TEN)
+
+
+@lru_cache(maxsize=32)
+def _onsets(screw: Screw) -> dict[Side, TopographyOnset]:
+    return {side: onset_of(screw, side) for side in SIDES}

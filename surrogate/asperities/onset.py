@@ -39,9 +39,15 @@ LOG_SPEEDS = np.linspace(math.log(1e-5), math.log(1e2), 140)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TopographyOnset:
-    """Onset of contact on one raceway: its acting roughness, None where all is smooth."""
+    """
+    Onset of contact on one raceway.
+
+    Its acting roughness, None where all is smooth, and the speed over that which this tells [-].
+
+    """
 
     acting: ActingRoughness | None
+    factor: float = 1.0
 
     def speeds(self, line: Line, oil: ContactLubricant, floor: float) -> Array:
         """
@@ -59,7 +65,7 @@ class TopographyOnset:
         reduction = M1**0.75 / np.sqrt(L) / every.semi_axis
         film = central_film_line(every, speed, oil.viscosity, oil.pressure_viscosity)
         wanted = film_at_onset(self.acting.height(reduction, pressure), floor, pressure)
-        return _fastest_root(np.log(film) - np.log(wanted))
+        return self.factor * _fastest_root(np.log(film) - np.log(wanted))
 
     def speed(self, contact: Contact, load: float, oil: ContactLubricant, floor: float) -> float:
         """Return the onset speed [m/s] in the middle of a contact under a load [N]."""

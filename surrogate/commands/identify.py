@@ -18,7 +18,7 @@ from surrogate.units import ZERO_CELSIUS
 
 FITTED = {'viscosity': 'viscosity_factor', 'asperity_friction': 'asperity_friction'}
 """What `--fit` takes, and the parameter that it means."""
-COLUMN_OPTIONS = ('speed_column', 'torque_column')
+COLUMN_OPTIONS = ('speed_column', 'torque_column', 'torque_constant')
 BAG_OPTIONS = (
     'speed_topic',
     'speed_field',
@@ -56,6 +56,11 @@ def add_identify_command(subparsers: Any, read_bag: BagReader | None = None) -> 
         help='identify this, too; may be repeated',
     )
     parser.add_argument(
+        '--onset',
+        action='store_true',
+        help='identify where contact begins, too, from the torque that turns up at low speed',
+    )
+    parser.add_argument(
         '--tier',
         choices=('closed_form', 'full'),
         default='closed_form',
@@ -82,6 +87,12 @@ def _add_columns(group: Any) -> None:
             metavar='NAME',
             help=f'column with its unit at the end, in place of {usual}',
         )
+    group.add_argument(
+        '--torque-constant',
+        type=float,
+        metavar='K',
+        help='torque on the screw over the current in current_A [N m/A]',
+    )
 
 
 def _add_topics(group: Any) -> None:
@@ -107,7 +118,7 @@ def _identify(args: argparse.Namespace) -> int:
     _check(args)
     screw, lubricant = load_inputs(args)
     run = _run(args, screw, lubricant)
-    fitted = tuple(FITTED[name] for name in dict.fromkeys(args.fit))
+    fitted = _fitted(args)
     contacts = _contacts(args, screw, lubricant, run, fitted)
     found = identify(screw, run, contacts, fitted, loss=args.loss)
     record = identification_record(screw, run, contacts, found)
@@ -115,12 +126,33 @@ def _identify(args: argparse.Namespace) -> int:
     if args.out and found.converged:
         _write(args.out, screw, lubricant, run, contacts, found)
     if args.plot:
-        _plot(args.plot, run, found, f'{screw.name}, {lubricant.name}, tier {contacts.tier}')
+        title = f'{screw.name}, {lubricant.name}, tier {contacts.tier}'
+        _plot(args.plot, run, found, title, record['onset'])
     return 0 if found.converged else 1
 
 
+def _fitted(args: argparse.Namespace) -> tuple[str, ...]:
+    """Return the parameters that are fitted beside the parasitic torque."""
+    if args.onset:
+        from surrogate.identify.onset import FITTED as WITH_ONSET
+
+        return WITH_ONSET
+    return tuple(FITTED[name] for name in dict.fromkeys(args.fit))
+
+
 def _check(args: argparse.Namespace) -> None:
-    """Raise InputError for a temperature that no oil has, and for an output that is an input."""
+    """
+    Raise InputError for options that contradict.
+
+    Those are other fits beside the onset, a temperature that no oil has, and an output that is an
+    input.
+
+    """
+    if args.onset and (args.fit or args.loss != 'linear'):
+        raise InputError(
+            '--onset fits the asperity friction with it by least squares, allowed is neither '
+            '--fit nor --loss beside it'
+        )
     kelvin = ZERO_CELSIUS if args.temperature is None else args.temperature + ZERO_CELSIUS
     if not 0 < kelvin < math.inf:
         raise InputError(
@@ -151,7 +183,10 @@ def _run(args: argparse.Namespace, screw: Screw, lubricant: Lubricant) -> Any:
     if not bag:
         columns, notes = (
             read_drag_csv(
-                args.data, speed_column=args.speed_column, torque_column=args.torque_column
+                args.data,
+                speed_column=args.speed_column,
+                torque_column=args.torque_column,
+                torque_constant=args.torque_constant,
             ),
             (),
         )
@@ -189,6 +224,10 @@ def _contacts(
 
         report = Progress(0, 'speeds solved').show
         return solved_model(screw, lubricant, run, fitted, progress=report)
+    if args.onset:
+        from surrogate.identify.table import formula_model
+
+        return formula_model(screw, lubricant, run, fitted)
     from surrogate.identify.model import closed_form_model
 
     return closed_form_model(screw, lubricant, run)
@@ -198,10 +237,13 @@ def _write(
     out: Path, screw: Screw, lubricant: Lubricant, run: Any, contacts: Any, found: Any
 ) -> None:
     """Write the screw, and beside it the oil where its viscosity was identified."""
+    from datetime import date
+
     from surrogate.datasheet_writer import write_sheet
     from surrogate.identify.record import identified_oil, identified_screw
 
-    write_sheet(out, identified_screw(screw, run, contacts, found))
+    day = date.today().isoformat()
+    write_sheet(out, identified_screw(screw, run, contacts, found, day))
     print(out, file=sys.stderr)
     if 'viscosity_factor' in [one.name for one in found.estimates]:
         oil = _oil_sheet(out)
@@ -209,7 +251,7 @@ def _write(
         print(oil, file=sys.stderr)
 
 
-def _plot(folder: Path, run: Any, found: Any, title: str) -> None:
+def _plot(folder: Path, run: Any, found: Any, title: str, onset: Any) -> None:
     """Draw the picture; only this needs matplotlib."""
     try:
         from surrogate.identify.figures import draw_identification
@@ -217,6 +259,6 @@ def _plot(folder: Path, run: Any, found: Any, title: str) -> None:
         raise InputError('--plot needs matplotlib: install the extra `plot`') from None
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        print(draw_identification(folder, run, found, title), file=sys.stderr)
+        print(draw_identification(folder, run, found, title, onset), file=sys.stderr)
     except OSError as error:
         raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None

@@ -4,8 +4,8 @@
 Measured torque over speed without load: what an identification starts from, and its CSV.
 
 The first line of a CSV that is no comment (#) names the columns, each with its unit: speed_rpm or
-speed_rad_s and torque_Nm or torque_mNm; if wanted torque_std_Nm, load_N and temperature_degC. Any
-other column is left alone.
+speed_rad_s and torque_Nm or torque_mNm, or current_A with a torque constant; if wanted
+torque_std_Nm, load_N and temperature_degC. Any other column is left alone.
 
 """
 
@@ -25,12 +25,13 @@ Array = NDArray[np.float64]
 UNITS: dict[str, dict[str, tuple[float, float]]] = {
     'speed': {'rpm': (RPM, 0.0), 'rad_s': (1.0, 0.0)},
     'torque': {'Nm': (1.0, 0.0), 'mNm': (1e-3, 0.0)},
+    'current': {'A': (1.0, 0.0), 'mA': (1e-3, 0.0)},
     'torque_std': {'Nm': (1.0, 0.0), 'mNm': (1e-3, 0.0)},
     'load': {'N': (1.0, 0.0), 'kN': (1e3, 0.0)},
     'temperature': {'degC': (1.0, ZERO_CELSIUS), 'K': (1.0, 0.0)},
 }
 """Factor and shift to SI of each unit of each quantity."""
-NEEDED = ('speed', 'torque')
+MEASURED = ('torque', 'current')
 STANDSTILL = 0.01
 """Screw speed below which friction has no sure direction [rad/s]."""
 
@@ -105,27 +106,37 @@ def no_load_run(
 
 
 def read_drag_csv(
-    path: str | Path, *, speed_column: str | None = None, torque_column: str | None = None
+    path: str | Path,
+    *,
+    speed_column: str | None = None,
+    torque_column: str | None = None,
+    torque_constant: float | None = None,
 ) -> dict[str, Array]:
     """
     Read the columns of a CSV in SI units; raises InputError with file, line and cell.
 
     `speed_column` and `torque_column` name columns with a unit at their end, such as
-    motor_speed_rpm, in place of speed_rpm and torque_Nm.
+    motor_speed_rpm, in place of speed_rpm and torque_Nm. With a `torque_constant` [N m/A] a
+    current stands for the torque.
 
     """
     path = Path(path)
     lines = _lines(path)
     number, header = lines[0]
     names = _cells(header)
-    chosen = {'speed': speed_column, 'torque': torque_column}
-    found = {name: _find(path, names, name, chosen.get(name)) for name in UNITS}
+    measured = 'torque' if torque_constant is None else 'current'
+    chosen = {'speed': speed_column, measured: torque_column}
+    _refuse_bare_current(path, names, torque_column, torque_constant)
+    found = {name: _find(path, names, name, chosen.get(name), measured) for name in UNITS}
     columns = {name: place for name, place in found.items() if place is not None}
     rows = [_row(path, line, text, len(names), columns) for line, text in lines[1:]]
     if not rows:
         raise InputError(f'{path}: has no numbers below line {number}, which names the columns')
     table = np.array(rows)
-    return {name: table[:, column] for column, name in enumerate(columns)}
+    read = {name: table[:, column] for column, name in enumerate(columns)}
+    if torque_constant is not None:
+        read['torque'] = torque_constant * read.pop('current')
+    return read
 
 
 def _lines(path: Path) -> list[tuple[int, str]]:
@@ -150,10 +161,34 @@ def _cells(line: str) -> list[str]:
     return [cell.strip().strip('"') for cell in re.split(r'[,;\t]', line.strip())]
 
 
+def _refuse_bare_current(
+    path: Path, names: list[str], torque_column: str | None, constant: float | None
+) -> None:
+    """Refuse a current without its constant [N m/A], and a constant that is no number."""
+    known = [f'torque_{unit}' for unit in UNITS['torque']]
+    currents = [name for name in names if name in [f'current_{one}' for one in UNITS['current']]]
+    if constant is None and currents and not torque_column and not set(known) & set(names):
+        raise InputError(
+            f'{path}: has {currents[0]} and no torque, allowed is a current with '
+            '--torque-constant K, torque on the screw over current [N m/A]'
+        )
+    if constant is not None and not (math.isfinite(constant) and constant):
+        raise InputError(
+            f'--torque-constant is {constant:g} N m/A, allowed is a finite number other than 0'
+        )
+
+
 def _find(
-    path: Path, names: list[str], quantity: str, chosen: str | None
+    path: Path, names: list[str], quantity: str, chosen: str | None, measured: str
 ) -> tuple[int, float, float] | None:
-    """Return place, factor and shift of the column of a quantity, None where it may be absent."""
+    """
+    Return place, factor and shift of the column of a quantity, None where it may be absent.
+
+    `measured` is what gives the torque, torque or current; the other one is left alone.
+
+    """
+    if quantity in MEASURED and quantity != measured:
+        return None
     units = UNITS[quantity]
     allowed = ', '.join(f'{quantity}_{unit}' for unit in units)
     if chosen is None:
@@ -166,7 +201,7 @@ def _find(
     if len(hits) > 1:
         raise InputError(f'{path}: {" and ".join(hits)} both stand for the {quantity}, keep one')
     if not hits:
-        if chosen is None and quantity not in NEEDED:
+        if chosen is None and quantity not in ('speed', measured):
             return None
         raise InputError(
             f'{path}: column {chosen or allowed.replace(", ", " or ")} is missing, the file has '

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Picture of an identification: measured and modelled torque over speed, and the residual."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -10,7 +12,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 import numpy as np
 from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.fit import Identification
-from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, VERMILION
+from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, ORANGE, VERMILION
 from surrogate.units import MILLI, RPM
 
 DIRECTIONS = ((1.0, 'o', 'positive'), (-1.0, 's', 'negative'))
@@ -20,15 +22,27 @@ HEADROOM = 1.35
 """Top of the residual axis over what the points need [-]: the legend lies above them."""
 
 
-def draw_identification(folder: Path, run: NoLoadRun, found: Identification, title: str) -> Path:
+def draw_identification(
+    folder: Path,
+    run: NoLoadRun,
+    found: Identification,
+    title: str,
+    onset: Mapping[str, Any] | None = None,
+) -> Path:
     """Write `identify.png` to a folder and return its path."""
-    return draw_picture(folder / 'identify.png', lambda: figure_identification(run, found, title))
+    return draw_picture(
+        folder / 'identify.png', lambda: figure_identification(run, found, title, onset)
+    )
 
 
-def figure_identification(run: NoLoadRun, found: Identification, title: str) -> Figure:
-    """Return torque over speed above, the residual below."""
+def figure_identification(
+    run: NoLoadRun, found: Identification, title: str, onset: Mapping[str, Any] | None = None
+) -> Figure:
+    """Return torque over speed above with the onset of the record, the residual below."""
     figure = new_figure(7.0, 6.2)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[1.6, 1.0])
+    if onset is not None:
+        _draw_onset(upper, onset)
     _draw_torque(upper, run, found)
     _draw_residual(lower, run, found)
     upper.set_title(title)
@@ -72,6 +86,18 @@ def _draw_torque(axes: Axes, run: NoLoadRun, found: Identification) -> None:
     axes.set_ylim(0 if (run.direction * run.torque > 0).all() else None)
     axes.set_ylabel('torque along the motion [mN m]')
     axes.legend(frameon=False)
+
+
+def _draw_onset(axes: Axes, onset: Mapping[str, Any]) -> None:
+    """Mark the onset with its interval, or with its bound alone."""
+    names = ('speed_rad_s', 'speed_low_rad_s', 'speed_high_rad_s')
+    speed, low, high = (onset[name] / RPM for name in names)
+    if onset['reason']:
+        label = 'onset taken, no upturn'
+    else:
+        axes.axvspan(low, high, color=ORANGE, alpha=0.2, linewidth=0)
+        label = 'onset, extrapolated'
+    axes.axvline(speed, color=ORANGE, linestyle='--', label=label)
 
 
 def _draw_residual(axes: Axes, run: NoLoadRun, found: Identification) -> None:

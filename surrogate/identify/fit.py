@@ -5,12 +5,13 @@ Parasitic torque of a screw, and what else was asked for, from torque measured w
 
 Least squares over the points of a run. The torque on the screw is the friction torque with the
 sign of the motion, the share of the load, and where both directions were measured an offset that
-does not change sign. Intervals hold 95 % by Student's t from the Jacobian.
+does not change sign. Intervals hold 95 % by Student's t from the Jacobian, that of an onset factor
+by its profile.
 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 from typing import Any, Literal
 
@@ -19,6 +20,7 @@ from scipy.optimize import least_squares
 from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.intervals import correlation, covariance, student_factor, undetermined
 from surrogate.identify.model import ContactModel
+from surrogate.identify.onset import OnsetScan, scan_onset
 from surrogate.identify.problem import drag_problem, DragProblem
 from surrogate.parameters import Screw
 
@@ -76,7 +78,12 @@ class Identification:
 
     def value(self, name: str) -> float:
         """Return the value of a parameter in SI units, NaN when it was not identified."""
-        return next((one.value for one in self.estimates if one.name == name), math.nan)
+        one = self.estimate(name)
+        return math.nan if one is None else one.value
+
+    def estimate(self, name: str) -> ParameterEstimate | None:
+        """Return the estimate of a parameter, None when it was not identified."""
+        return next((one for one in self.estimates if one.name == name), None)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -109,20 +116,75 @@ def identify(
     """
     Fit the parasitic torque of `screw` to a run.
 
-    `fitted` may name viscosity_factor and asperity_friction. A parameter at the end of its range,
-    or on which no point depends, gets no interval. With the loss soft_l1 a point counts less the
+    `fitted` may name viscosity_factor and asperity_friction, and the three of the onset together.
+    A parameter at the end of its range, or on which no point depends, gets no interval; the onset
+    factor has that of its profile or a bound. With the loss soft_l1 a point counts less the
     further it is off. Raises InputError for a run that cannot tell.
 
     """
     problem = drag_problem(screw, run, contacts, fitted)
     sigma = np.ones_like(run.torque) if run.torque_std is None else run.torque_std
-    held = problem.without_effect()
+    if 'onset_factor' in fitted:
+        return _identify_onset(problem, sigma)
+    held = problem.without_effect(problem.start)
     fit = _fit(problem, problem.start, held, sigma)
     for _ in range(ROBUST_ROUNDS if loss == 'soft_l1' else 0):
         # The first spread still has the points in it that are far off.
         spread = MEDIAN_TO_SPREAD * float(np.median(np.abs(problem.residual(fit.values)) / sigma))
         fit = _fit(problem, fit.values, held, sigma, spread) if spread > 0 else fit
     return _result(problem, fit, _scatter(problem, fit, held, sigma), sigma)
+
+
+def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
+    """Fit everything at each onset factor, then with the factor free or at its bound."""
+    place = problem.names.index('onset_factor')
+
+    def at(factor: float) -> Array:
+        start = problem.start.copy()
+        start[place] = factor
+        return start
+
+    def cost(factor: float) -> float:
+        values = _fit(problem, at(factor), {'onset_factor': ''}, sigma).values
+        return float(np.sum((problem.residual(values) / sigma) ** 2))
+
+    def along(scan: OnsetScan) -> Identification:
+        start, held = at(scan.best), {}
+        if not scan.closed:
+            factor, reason = scan.bound(float(problem.start[place]))
+            kept = 'not told without the onset: kept as in the datasheet'
+            start, held = at(factor), {'onset_factor': reason, 'asperity_friction': kept}
+        held = problem.without_effect(start) | held
+        fit = _fit(problem, start, held, sigma)
+        return _result(problem, fit, _scatter(problem, fit, held, sigma), sigma)
+
+    freedom = len(sigma) - len(problem.names)
+    scan = scan_onset(cost, freedom)
+    found = along(scan)
+    if scan.closed and not _turns_up(problem.run, found):
+        # The curvature of the rolling loss alone is no sign of contact.
+        scan = replace(scan, low=0.0)
+        found = along(scan)
+    estimates = tuple(
+        _profiled(one, scan, freedom) if one.name == 'onset_factor' else one
+        for one in found.estimates
+    )
+    return replace(found, estimates=estimates)
+
+
+def _turns_up(run: NoLoadRun, found: Identification) -> bool:
+    """Tell whether the contacts rise towards low speed by more than the scatter of a point."""
+    slowest = int(np.abs(run.speed).argmin())
+    return bool(found.contacts[slowest] - found.contacts.min() > found.band[slowest])
+
+
+def _profiled(one: ParameterEstimate, scan: OnsetScan, freedom: int) -> ParameterEstimate:
+    """Return the onset factor with the interval of its profile, where it has one."""
+    if not scan.closed:
+        return one
+    low, high = scan.interval(one.value, freedom)
+    error = one.value * math.log(high / low) / (2 * student_factor(freedom))
+    return replace(one, low=low, high=high, standard_error=error, reason='')
 
 
 def _fit(

@@ -22,6 +22,10 @@ VISCOSITY_BOUNDS = (0.5, 2.0)
 """Viscosity factor [-]: beyond, the sheet is that of another oil or the temperature is wrong."""
 FRICTION_BOUNDS = (0.02, 0.3)
 """Boundary friction coefficient [-] of steel in mineral oil, dry of additives to badly fed."""
+ONSET_FRICTIONS = (0.05, 0.3)
+"""The same where the onset is identified [-]: below, nothing turns the torque up."""
+ONSET_BOUNDS = (0.1, 10.0)
+"""Onset speed over that which the topography tells [-]: beyond, the sheet is of another screw."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -29,13 +33,14 @@ class ContactModel:
     """
     What the contacts of a run do.
 
-    `torque` returns their friction torque [N m] at every point, for a viscosity factor [-] and an
-    asperity friction coefficient [-]; `asperity_share` [-] of the worst contact at every point,
-    for the datasheets; tier; screw without parasitic torque; oil anchored at the run.
+    `torque` returns their friction torque [N m] at every point, for a viscosity factor [-], an
+    asperity friction coefficient [-] and an onset factor [-]; `asperity_share` [-] of the worst
+    contact at every point, for the datasheets; tier; screw without parasitic torque; oil anchored
+    at the run.
 
     """
 
-    torque: Callable[[float, float], Array]
+    torque: Callable[[float, float, float], Array]
     asperity_share: Array
     tier: str
     screw: Screw
@@ -70,11 +75,9 @@ def thickened(lubricant: Lubricant, factor: float) -> Lubricant:
     )
 
 
-def bare(screw: Screw, friction: float | None = None) -> Screw:
-    """Return the screw without parasitic torque, with another asperity friction [-] if given."""
-    rough = screw.roughness
-    if friction is not None:
-        rough = replace(rough, asperity_friction=friction)
+def bare(screw: Screw, **roughness: float) -> Screw:
+    """Return the screw without parasitic torque, with other keys of its roughness."""
+    rough = replace(screw.roughness, **roughness)  # type: ignore[arg-type]
     return replace(screw, parasitic_torque=0.0, parasitic_torque_rate=0.0, roughness=rough)
 
 
@@ -84,11 +87,10 @@ def closed_form_model(screw: Screw, lubricant: Lubricant, run: NoLoadRun) -> Con
     speed, load = np.abs(run.speed), run.direction * run.load
 
     @lru_cache(maxsize=64)
-    def torque(factor: float, friction: float) -> Array:
-        found = closed_form.solve(
-            bare(screw, friction), thickened(oil, factor), speed, load, run.temperature
-        )
-        return found.friction_torque
+    def torque(factor: float, friction: float, onset: float) -> Array:
+        rough = bare(screw, asperity_friction=friction, onset_factor=onset)
+        thick = thickened(oil, factor)
+        return closed_form.solve(rough, thick, speed, load, run.temperature).friction_torque
 
     share = closed_form.solve(bare(screw), oil, speed, load, run.temperature).asperity_share
     return ContactModel(

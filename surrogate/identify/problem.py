@@ -3,8 +3,8 @@
 """
 Model fitted to a run: torque on the screw by its parameters, with their ranges and scales.
 
-The parasitic parts and the offset are linear with exact derivatives; viscosity and asperity
-friction act through the contacts.
+The parasitic parts, the offset and the seal are linear with exact derivatives; viscosity, asperity
+friction and onset act through the contacts.
 
 """
 
@@ -15,7 +15,13 @@ import math
 import numpy as np
 from surrogate.files import InputError
 from surrogate.identify.data import Array, NoLoadRun
-from surrogate.identify.model import ContactModel, FRICTION_BOUNDS, VISCOSITY_BOUNDS
+from surrogate.identify.model import (
+    ContactModel,
+    FRICTION_BOUNDS,
+    ONSET_BOUNDS,
+    ONSET_FRICTIONS,
+    VISCOSITY_BOUNDS,
+)
 from surrogate.parameters import Screw
 from surrogate.units import RPM
 
@@ -23,6 +29,10 @@ SPARE_POINTS, SPEED_SPAN = 2, 2.0
 """Points beyond the number of parameters, largest speed over smallest [-]: the least accepted."""
 LARGEST_TORQUE = 1e3
 """Upper bound of both parasitic parts, that of the datasheet [N m], [N m s/rad]."""
+SEAL_SLIDING = 0.015
+"""Sliding speed over which the boundary friction of a seal fades [m/s], at the pitch radius."""
+ONSET_SPEEDS, SAME_SPEED = 6, 1.05
+"""Speeds from which on an onset is fitted; ratio from which on two of them differ [-]."""
 STEP = 1e-3
 """Step of the differences over a parameter's range [-]."""
 NO_EFFECT = 1e-6
@@ -57,16 +67,23 @@ class DragProblem:
             run.direction * (self.contact_torque(values) + given['parasitic_torque'])
             + given['parasitic_torque_rate'] * run.speed
             + given.get('torque_offset', 0.0)
+            + given.get('seal_torque', 0.0) * self._seal()
             + self.load_torque
         )
+
+    def _seal(self) -> Array:
+        """Return the share of the friction of a seal that fades with the speed, signed [-]."""
+        sliding = self.contacts.screw.pitch_radius * np.abs(self.run.speed)
+        return self.run.direction * np.exp(-sliding / SEAL_SLIDING)
 
     def contact_torque(self, values: Array) -> Array:
         """Return the friction torque of the contacts [N m]."""
         given = dict(zip(self.names, values, strict=True))
-        friction = self.contacts.screw.roughness.asperity_friction
+        sheet = self.contacts.screw.roughness
         return self.contacts.torque(
             float(given.get('viscosity_factor', 1.0)),
-            float(given.get('asperity_friction', friction)),
+            float(given.get('asperity_friction', sheet.asperity_friction)),
+            float(given.get('onset_factor', sheet.onset_factor)),
         )
 
     def residual(self, values: Array) -> Array:
@@ -80,6 +97,7 @@ class DragProblem:
             'parasitic_torque': run.direction,
             'parasitic_torque_rate': run.speed,
             'torque_offset': np.ones_like(run.speed),
+            'seal_torque': self._seal(),
         }
         columns = [
             exact[name] if name in exact else run.direction * self._slope(values, place)
@@ -95,9 +113,9 @@ class DragProblem:
         rise = self.contact_torque(up) - self.contact_torque(down)
         return np.asarray(rise / (up[place] - down[place]))
 
-    def without_effect(self) -> dict[str, str]:
-        """Return the parameters on which no point depends, with the reason."""
-        change = np.abs(self.jacobian(self.start)).max(axis=0) * (self.high - self.low)
+    def without_effect(self, values: Array) -> dict[str, str]:
+        """Return the parameters on which no point depends near `values`, with the reason."""
+        change = np.abs(self.jacobian(values)).max(axis=0) * (self.high - self.low)
         none = change < NO_EFFECT * np.abs(self.run.torque).max()
         return {
             name: 'no point depends on it: kept as in the datasheet'
@@ -150,7 +168,7 @@ def _rows(
     """Return name, scale, bounds and value in the datasheet of each parameter."""
     size = float(np.abs(run.torque).mean()) or 1.0
     rate = size / float(np.abs(run.speed).max())
-    rough = screw.roughness.asperity_friction
+    rough = screw.roughness
     rows = [
         ('parasitic_torque', size, 0.0, LARGEST_TORQUE, screw.parasitic_torque),
         ('parasitic_torque_rate', rate, 0.0, LARGEST_TORQUE, screw.parasitic_torque_rate),
@@ -160,7 +178,12 @@ def _rows(
     if 'viscosity_factor' in fitted:
         rows.append(('viscosity_factor', 0.1, *VISCOSITY_BOUNDS, 1.0))
     if 'asperity_friction' in fitted:
-        rows.append(('asperity_friction', 0.01, *FRICTION_BOUNDS, rough))
+        ends = ONSET_FRICTIONS if 'onset_factor' in fitted else FRICTION_BOUNDS
+        rows.append(('asperity_friction', 0.01, *ends, rough.asperity_friction))
+    if 'onset_factor' in fitted:
+        rows.append(('onset_factor', 0.1, *ONSET_BOUNDS, rough.onset_factor))
+    if 'seal_torque' in fitted:
+        rows.append(('seal_torque', size, 0.0, LARGEST_TORQUE, 0.0))
     return rows
 
 
@@ -178,9 +201,27 @@ def _check(problem: DragProblem) -> None:
             f'{run.source}: the speeds reach from {speed.min():.4g} to {speed.max():.4g} rev/min, '
             f'allowed is a span of {SPEED_SPAN:g} to 1 or more'
         )
+    if 'onset_factor' in problem.names:
+        _check_onset(problem, speed)
     drag = float((run.direction * (run.torque - problem.load_torque)).mean())
     if not run.both_directions and drag <= 0:
         raise InputError(
             f'{run.source}: the mean friction torque is {drag:.3g} N m, allowed is more than 0: '
             'friction has the sign of the motion, so torque and speed must agree in sign'
+        )
+
+
+def _check_onset(problem: DragProblem, speed: Array) -> None:
+    """Refuse few speeds [rev/min], and raceways that never touch."""
+    ordered = np.sort(speed)
+    number = 1 + int((ordered[1:] >= SAME_SPEED * ordered[:-1]).sum())
+    if number < ONSET_SPEEDS:
+        raise InputError(
+            f'{problem.run.source}: has {number} speeds, allowed are {ONSET_SPEEDS} or more for '
+            'the onset of contact, from below the upturn of the torque to well above it'
+        )
+    if not problem.contacts.screw.composite_rms:
+        raise InputError(
+            'screw: raceway and balls are smooth, allowed for the onset of contact is an Rq above '
+            '0 in roughness'
         )

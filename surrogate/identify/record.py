@@ -13,6 +13,7 @@ from surrogate.formulas.torque import drag_torque_catalogue
 from surrogate.identify.data import NoLoadRun
 from surrogate.identify.fit import Identification, ParameterEstimate
 from surrogate.identify.model import ContactModel, thickened
+from surrogate.identify.onset import calibrated_band, onset_speeds
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw import closed_form
 from surrogate.units import RPM, ZERO_CELSIUS
@@ -23,6 +24,8 @@ UNITS = {
     'torque_offset': 'N m',
     'viscosity_factor': '-',
     'asperity_friction': '-',
+    'onset_factor': '-',
+    'seal_torque': 'N m',
 }
 """Unit of each parameter."""
 CLOSED_FORM_SHARE = 0.1
@@ -56,6 +59,7 @@ def identification_record(
         'temperature_K': run.mean_temperature,
         'parameters': [_estimate_record(one) for one in found.estimates],
         'correlation': {'of': list(found.correlated), 'matrix': found.correlation.tolist()},
+        'onset': _onset_record(run, contacts, found),
         'offset_force_N': found.value('torque_offset') * 2 * math.pi / screw.lead,
         'residual_rms_Nm': found.rms,
         'residual_rms_before_Nm': found.rms_before,
@@ -77,6 +81,25 @@ def _estimate_record(one: ParameterEstimate) -> dict[str, Any]:
         'high': one.high,
         'standard_error': one.standard_error,
         'reason': one.reason,
+    }
+
+
+def _onset_record(
+    run: NoLoadRun, contacts: ContactModel, found: Identification
+) -> dict[str, Any] | None:
+    """Return the onset of the raceway under the load of the run, None where it was not asked."""
+    onset = found.estimate('onset_factor')
+    if onset is None:
+        return None
+    speed, low, high = onset_speeds(contacts, run, (onset.value, onset.low, onset.high))
+    torque = run.direction * found.after
+    return {
+        'speed_rad_s': speed,
+        'speed_low_rad_s': low,
+        'speed_high_rad_s': high,
+        'turns_up_rad_s': abs(float(run.speed[np.argmin(torque)])),
+        'band': calibrated_band(onset.low, onset.high),
+        'reason': onset.reason,
     }
 
 
@@ -102,7 +125,8 @@ def _warnings(
         )
     warnings += _at_zero(contacts, found)
     touching = int((contacts.asperity_share > CLOSED_FORM_SHARE).sum())
-    if touching and contacts.tier == closed_form.TIER:
+    calibrated = found.estimate('onset_factor') is not None
+    if touching and contacts.tier == closed_form.TIER and not calibrated:
         warnings.append(
             f'{touching} of {len(run.speed)} points have an asperity share above '
             f'{CLOSED_FORM_SHARE:g}, which the closed-form tier misjudges'
@@ -118,6 +142,11 @@ def _warnings(
         warnings.append(
             f'the load is up to {load:.4g} N, above {MOST_LOAD:g} of the preload: what the '
             'model misses under load counts as parasitic'
+        )
+    if calibrated:
+        warnings.append(
+            'the onset factor holds what sheet, running in, film floor and law are off by '
+            'together: it tells neither the hardness nor any other key of the sheet'
         )
     return warnings + _entangled(found)
 
@@ -144,13 +173,23 @@ def _entangled(found: Identification) -> list[str]:
 
 
 def identified_screw(
-    screw: Screw, run: NoLoadRun, contacts: ContactModel, found: Identification
+    screw: Screw, run: NoLoadRun, contacts: ContactModel, found: Identification, day: str = ''
 ) -> Screw:
-    """Return the datasheet with what was found, and in its source from where."""
-    friction = found.value('asperity_friction')
+    """
+    Return the datasheet with what was found, and in its source from where.
+
+    An onset that has an interval is calibrated on the `day`; another one is no calibration.
+
+    """
+    friction, onset = found.value('asperity_friction'), found.estimate('onset_factor')
     rough = screw.roughness
     if not math.isnan(friction):
         rough = replace(rough, asperity_friction=friction)
+    if onset is not None:
+        band = None if onset.reason else calibrated_band(onset.low, onset.high)
+        rough = replace(
+            rough, onset_factor=onset.value, onset_band=band, calibrated=day if band else None
+        )
     return replace(
         screw,
         name=screw.name.removesuffix(SUFFIX) + SUFFIX,
@@ -201,6 +240,7 @@ def page(record: Mapping[str, Any]) -> str:
             f'{record["points"]} points of {record["data"]}, {low:.4g} to {high:.4g} rev/min, '
             f'{record["temperature_K"] - ZERO_CELSIUS:.4g} degC',
             *(f'  {_row(one)}' for one in record['parameters']),
+            *_onset_rows(record['onset']),
             *_offset_row(record),
             f'  {"residual, rms":22} {record["residual_rms_Nm"]:.4g} N m, '
             f'{record["residual_rms_before_Nm"]:.4g} N m with the datasheet',
@@ -211,6 +251,23 @@ def page(record: Mapping[str, Any]) -> str:
             *(f'  warning: {text}' for text in record['warnings']),
         ]
     )
+
+
+def _onset_rows(onset: Mapping[str, Any] | None) -> list[str]:
+    if onset is None:
+        return []
+    speed, low, high, turn = (
+        onset[name] / RPM
+        for name in ('speed_rad_s', 'speed_low_rad_s', 'speed_high_rad_s', 'turns_up_rad_s')
+    )
+    if onset['reason']:
+        return [f'  {"contact begins":22} {speed:.3g} rev/min are taken: {onset["reason"]}']
+    return [
+        f'  {"contact begins":22} {speed:.3g} rev/min ({low:.3g} to {high:.3g}), extrapolated '
+        f'from the torque that turns up below {turn:.3g} rev/min:',
+        f'  {"":22} RCS 0.01 itself does not show in a torque; within {onset["band"]:.3g} in nine '
+        'of ten',
+    ]
 
 
 def _offset_row(record: Mapping[str, Any]) -> list[str]:

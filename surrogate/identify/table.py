@@ -1,17 +1,19 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Friction torque of solved contacts at the points of a run, from a small table.
+Friction torque of contacts at the points of a run, from a small table.
 
 Pressure and film of a contact follow the product of viscosity and speed, so contacts are solved
 once per node of that product. Shear does not: the pressure-viscosity law bends with the oil, and
 boundary friction acts in the balance of the balls. So the balls are balanced again on the solved
-contacts for every viscosity and every friction coefficient of the table, which is cheap.
+contacts for every viscosity, friction coefficient and onset of the table, which is cheap. Where
+the onset is identified, the formulas of the closed-form tier fill such a table, too.
 
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 import math
 
 import numpy as np
@@ -24,11 +26,13 @@ from surrogate.identify.model import (
     bare,
     ContactModel,
     FRICTION_BOUNDS,
+    ONSET_BOUNDS,
     thickened,
     VISCOSITY_BOUNDS,
 )
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.progress import OnProgress
+from surrogate.screw import closed_form
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw, TIER
 from surrogate.units import RPM
@@ -37,10 +41,14 @@ NODES_PER_DECADE, FEWEST_NODES, MOST_SPEEDS = 10, 5, 10
 """Nodes of viscosity times speed; up to so many measured speeds are solved as they are."""
 APART = 1.05
 """Least ratio of neighbouring speeds that are nodes themselves [-]."""
-FACTORS = 5
-"""Viscosities of the table where it has more than one."""
+FACTORS, FEW_FACTORS = 5, 3
+"""Viscosities of the table where they are identified, and where they spread with the oil alone."""
 FRICTIONS = (FRICTION_BOUNDS[0], 0.05, 0.1, 0.15, 0.2, FRICTION_BOUNDS[1])
 """Friction coefficients of the table where it is identified [-]."""
+LINEAR = FRICTION_BOUNDS
+"""Friction coefficients of the table by formulas [-], in which the torque is linear in it."""
+ONSETS = np.geomspace(*ONSET_BOUNDS, 25)
+"""Onset factors of the table where they are identified [-]."""
 ROUNDING = 1e-9
 """Relative difference of loads that are equal [-]."""
 TEMPERATURE_SPREAD, LOAD_SPREAD = 10.0, 0.1
@@ -50,30 +58,48 @@ SAME_VISCOSITY = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class _Table:
+class _Axes:
     """
-    Friction torque [N m] by speed at the mean viscosity, viscosity and asperity friction.
+    Axes of a table, and its place.
 
-    Axes: speeds [rad/s], viscosities over the mean one [-], friction coefficients [-]; asperity
-    share [-] at each speed.
+    Speeds at the mean viscosity [rad/s], viscosities over the mean one [-], friction coefficients
+    [-], onset factors [-]; screw, oil anchored at the run, axial load [N].
 
     """
 
     nodes: Array
     factors: Array
     frictions: Array
-    torque: Array
-    shares: Array
+    onsets: Array
+    screw: Screw
+    oil: Lubricant
+    load: float
 
-    def at(self, speed: Array, thickness: Array, friction: float) -> Array:
-        """Return the torque [N m] at speeds [rad/s] and viscosities over the mean one [-]."""
+    def screws(self) -> list[list[Screw]]:
+        """Return the screw of every friction coefficient and onset factor."""
+        return [
+            [bare(self.screw, asperity_friction=one, onset_factor=onset) for onset in self.onsets]
+            for one in self.frictions
+        ]
+
+    def at(self, torque: Array, speed: Array, thickness: Array, onset: float) -> Array:
+        """
+        Return the torque [N m] by point and friction coefficient.
+
+        At speeds [rad/s] and viscosities over the mean one [-], of a table of torque [N m].
+
+        """
+        begun = _weights(np.log(self.onsets), np.log([onset]))[0]
         return np.einsum(
-            'pn,pv,pf,nvf->p',
+            'pn,pv,nvf->pf',
             _weights(np.log(self.nodes), np.log(speed * thickness)),
             _weights(np.log(self.factors), np.log(thickness)),
-            _weights(self.frictions, np.full(len(speed), friction)),
-            self.torque,
+            torque @ begun,
         )
+
+    def of(self, rows: Array, friction: float) -> Array:
+        """Return the torque [N m] of every point at one friction coefficient [-]."""
+        return np.asarray(rows @ _weights(self.frictions, np.array([friction]))[0])
 
 
 def solved_model(
@@ -93,20 +119,69 @@ def solved_model(
     converge.
 
     """
-    oil, load = anchored(lubricant, run.mean_temperature), _load(screw, run)
-    thick, speed = _thickness(oil, run), np.abs(run.speed)
-    frictions = np.array([screw.roughness.asperity_friction])
-    if 'asperity_friction' in fitted:
-        frictions = np.unique((*FRICTIONS, *frictions))
-    factors = _factors(thick, 'viscosity_factor' in fitted)
-    nodes, told = _nodes(speed, factors), progress or _nobody
-    table = _solve_table(screw, oil, load, nodes, factors, frictions, settings, told)
+    axes = _axes(screw, lubricant, run, fitted, FRICTIONS)
+    return _model(axes, run, TIER, *_solve_table(axes, settings, progress or _nobody))
+
+
+def formula_model(
+    screw: Screw, lubricant: Lubricant, run: NoLoadRun, fitted: Sequence[str] = ()
+) -> ContactModel:
+    """Return what interpolates such a table of the closed-form tier; raises InputError as well."""
+    axes = _axes(screw, lubricant, run, fitted, LINEAR)
+    torque = [
+        [[_formula(axes, rough, factor).friction_torque for rough in row] for row in axes.screws()]
+        for factor in axes.factors.tolist()
+    ]
+    share = _formula(axes, bare(screw), 1.0).asperity_share
+    return _model(axes, run, closed_form.TIER, np.moveaxis(np.array(torque), -1, 0), share)
+
+
+def _formula(axes: _Axes, screw: Screw, factor: float) -> closed_form.ScrewResult:
+    oil = thickened(axes.oil, factor)
+    speeds, kelvin = axes.nodes / factor, axes.oil.reference_temperature
+    return closed_form.solve(screw, oil, speeds, axes.load, kelvin)
+
+
+def _axes(
+    screw: Screw,
+    lubricant: Lubricant,
+    run: NoLoadRun,
+    fitted: Sequence[str],
+    frictions: Sequence[float],
+) -> _Axes:
+    """Return the axes for what is fitted; friction coefficients [-] where they are."""
+    oil, load, sheet = (
+        anchored(lubricant, run.mean_temperature),
+        _load(screw, run),
+        screw.roughness,
+    )
+    factors = _factors(_thickness(oil, run), 'viscosity_factor' in fitted)
+    stated = np.array([sheet.asperity_friction])
+    return _Axes(
+        nodes=_nodes(np.abs(run.speed), factors),
+        factors=factors,
+        frictions=np.unique((*frictions, *stated)) if 'asperity_friction' in fitted else stated,
+        onsets=ONSETS if 'onset_factor' in fitted else np.array([sheet.onset_factor]),
+        screw=screw,
+        oil=oil,
+        load=load,
+    )
+
+
+def _model(axes: _Axes, run: NoLoadRun, tier: str, torque: Array, shares: Array) -> ContactModel:
+    """Return the contacts of a run by a table of torque [N m], shares [-] at its speeds."""
+    thick, speed = _thickness(axes.oil, run), np.abs(run.speed)
+
+    @lru_cache(maxsize=256)
+    def rows(factor: float, onset: float) -> Array:
+        return axes.at(torque, speed, thick * factor, onset)
+
     return ContactModel(
-        torque=lambda factor, friction: table.at(speed, thick * factor, friction),
-        asperity_share=np.interp(np.log(speed * thick), np.log(nodes), table.shares),
-        tier=TIER,
-        screw=bare(screw),
-        lubricant=oil,
+        torque=lambda factor, friction, onset: axes.of(rows(factor, onset), friction),
+        asperity_share=np.interp(np.log(speed * thick), np.log(axes.nodes), shares),
+        tier=tier,
+        screw=bare(axes.screw),
+        lubricant=axes.oil,
     )
 
 
@@ -115,24 +190,18 @@ def _nobody(done: int, total: int) -> None:
 
 
 def _solve_table(
-    screw: Screw,
-    oil: Lubricant,
-    load: float,
-    nodes: Array,
-    factors: Array,
-    frictions: Array,
-    settings: ScrewSettings | None,
-    progress: OnProgress,
-) -> _Table:
-    torque, shares = np.empty((len(nodes), len(factors), len(frictions))), np.empty(len(nodes))
-    progress(0, len(nodes))
+    axes: _Axes, settings: ScrewSettings | None, progress: OnProgress
+) -> tuple[Array, Array]:
+    """Return torque [N m] and shares [-] of solved contacts."""
+    torque, shares = [], np.empty(len(axes.nodes))
+    progress(0, len(axes.nodes))
     found: ScrewSolution | None = None
-    for number, node in enumerate(nodes):
-        found = _solve(bare(screw), oil, node, load, settings, found)
+    for number, node in enumerate(axes.nodes.tolist()):
+        found = _solve(bare(axes.screw), axes.oil, node, axes.load, settings, found)
         shares[number] = found.asperity_share
-        torque[number] = _rebalanced(screw, oil, node, load, found, factors, frictions, settings)
-        progress(number + 1, len(nodes))
-    return _Table(nodes=nodes, factors=factors, frictions=frictions, torque=torque, shares=shares)
+        torque.append(_rebalanced(axes, node, found, settings))
+        progress(number + 1, len(axes.nodes))
+    return np.array(torque), shares
 
 
 def _load(screw: Screw, run: NoLoadRun) -> float:
@@ -166,7 +235,7 @@ def _factors(thick: Array, fitted: bool) -> Array:
         low, high = VISCOSITY_BOUNDS[0] * low, VISCOSITY_BOUNDS[1] * high
     if high / low - 1 < SAME_VISCOSITY:
         return np.ones(1)
-    return np.geomspace(low, high, FACTORS)
+    return np.geomspace(low, high, FACTORS if fitted else FEW_FACTORS)
 
 
 def _nodes(speed: Array, factors: Array) -> Array:
@@ -194,24 +263,19 @@ def _solve(
 
 
 def _rebalanced(
-    screw: Screw,
-    oil: Lubricant,
-    node: float,
-    load: float,
-    found: ScrewSolution,
-    factors: Array,
-    frictions: Array,
-    settings: ScrewSettings | None,
-) -> Array:
-    """Return the friction torque [N m] for every viscosity and friction coefficient."""
-    table = np.empty((len(factors), len(frictions)))
-    for row, factor in enumerate(factors):
-        thick, point = thickened(oil, factor), _point(oil, node / factor, load)
-        for column, friction in enumerate(frictions):
-            rough = bare(screw, float(friction))
-            balanced = rebalance_screw(rough, thick, point, found, settings=settings)
-            table[row, column] = _converged(balanced, node).friction_torque
-    return table
+    axes: _Axes, node: float, found: ScrewSolution, settings: ScrewSettings | None
+) -> list[list[list[float]]]:
+    """Return the friction torque [N m] for every viscosity, friction coefficient and onset."""
+
+    def torque(rough: Screw, factor: float) -> float:
+        thick, point = thickened(axes.oil, factor), _point(axes.oil, node / factor, axes.load)
+        balanced = rebalance_screw(rough, thick, point, found, settings=settings)
+        return _converged(balanced, node).friction_torque
+
+    return [
+        [[torque(rough, factor) for rough in row] for row in axes.screws()]
+        for factor in axes.factors.tolist()
+    ]
 
 
 def _point(oil: Lubricant, speed: float, load: float) -> OperatingPoint:
@@ -231,5 +295,11 @@ def _weights(nodes: Array, places: Array) -> Array:
     """Return the weight of every node at every place, of the cubic spline through the nodes."""
     if len(nodes) == 1:
         return np.ones((len(places), 1))
-    spline = CubicSpline(nodes, np.eye(len(nodes)))
+    spline = _splines(tuple(nodes.tolist()))
     return np.asarray(spline(np.clip(places, nodes[0], nodes[-1])))
+
+
+@lru_cache(maxsize=16)
+def _splines(nodes: tuple[float, ...]) -> CubicSpline:
+    """Return the splines that are 1 at one node and 0 at the others."""
+    return CubicSpline(nodes, np.eye(len(nodes)))

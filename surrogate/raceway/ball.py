@@ -67,6 +67,7 @@ def roughness_sentence(roughness: Roughness, ball: BallRoughness | None) -> str:
     words = f'raceway ({state}): {raceway.sentence}, {roughness.lay}'
     if not roughness.rms:
         words = 'raceway: smooth'
+    words += f', {roughness.calibration}' if roughness.calibration else ''
     if ball is None:
         return f'{words}; ball: smooth, not stated'
     grade = f' ({ball.grade})' if ball.grade else ''

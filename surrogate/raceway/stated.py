@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import math
 from typing import ClassVar, Literal
 
-from surrogate.datasheet import Checked, choice, count, quantity
+from surrogate.datasheet import Checked, choice, count, quantity, text
 from surrogate.files import InputError
 from surrogate.raceway.fractal import DIMENSIONS, Lay
 from surrogate.raceway.spectrum import RoughnessSpectrum
@@ -22,6 +22,8 @@ from surrogate.units import GIGA
 State = Literal['run_in', 'new']
 HARDNESS = 7e9
 """Hardness of rolling bearing steel of 60 HRC [Pa]."""
+ONSET_FACTORS = 0.05, 20.0
+"""Least and largest onset speed over that which the topography tells [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -37,6 +39,10 @@ class Roughness(Checked):
     stands for yield and mild wear of running in together, with its lowest and highest likely
     value. Ratio of neighbouring wavelengths and ridges of the generator [-]; boundary friction
     coefficient [-].
+
+    `onset_factor` is the onset speed of contact over that which the topography tells [-]. One that
+    was fitted on the machine has the day, `calibrated`, and the factor within which nine of ten
+    lie, `onset_band` [-].
 
     """
 
@@ -67,11 +73,17 @@ class Roughness(Checked):
     scale_ratio: float = quantity('', 1.0, 1.01, 10.0, default=1.5)
     ridges: int = count(1, 1000, default=10)
     asperity_friction: float = quantity('', 1.0, 0.0, 1.0)
+    onset_factor: float = quantity('', 1.0, *ONSET_FACTORS, default=1.0)
+    onset_band: float | None = quantity('', 1.0, 1.0, 100.0, default=None)
+    calibrated: str | None = text(
+        r'\d{4}-\d\d-\d\d', "a day in quotes, '2026-11-24'", default=None
+    )
 
     def __post_init__(self) -> None:
         """Check every range, and that waves with these numbers exist."""
         Checked.__post_init__(self)
         self._check_yield()
+        self._check_calibration()
         spectrum = spectrum_of(self)
         if self.rms_slope is not None:
             # Only a stated slope is worth the time that scipy takes to load.
@@ -94,6 +106,22 @@ class Roughness(Checked):
                 'roughness: traced is run_in and state is new, allowed is state: run_in for a '
                 'profile that was traced after running in'
             )
+
+    def _check_calibration(self) -> None:
+        """Check that a calibration has its day and its band."""
+        if (self.calibrated is None) != (self.onset_band is None):
+            given = 'calibrated' if self.onset_band is None else 'onset_band'
+            raise InputError(
+                f'roughness: {given} is given alone, allowed are both of calibrated and '
+                'onset_band or neither'
+            )
+
+    @property
+    def calibration(self) -> str:
+        """Say by what the onset was calibrated, empty where the topography alone tells it."""
+        if self.calibrated is None:
+            return ''
+        return f'onset calibrated on {self.calibrated} within {self.onset_band:.3g}'
 
     @property
     def cutting_pressure(self) -> float:

@@ -7,7 +7,7 @@ import time
 from typing import Any
 
 import numpy as np
-from surrogate.asperities.law import BANDS
+from surrogate.asperities.law import band_of
 from surrogate.formulas.geometry import opposite_flank_approach, SIDES
 from surrogate.formulas.inlet_heating import heating_factor
 from surrogate.formulas.starvation import starved_speed
@@ -200,9 +200,10 @@ def law_sentence(screw: Screw, settings: ScrewSettings) -> str:
     if not screw.composite_rms:
         return 'no roughness'
     state = 'new' if sheet.state == 'new' else 'run in'
+    band = f'onset by the topography, within {band_of(screw):g} of nine of ten marches'
     return (
         f'roughness that rolls, {state}, summits cut at {GIGA * sheet.cutting_pressure:g} GPa; '
-        f'onset by the topography, within {BANDS[sheet.lay]:g} of nine of ten marches'
+        f'{sheet.calibration or band}'
     )
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.asperities.law import BANDS, law_of
+from surrogate.asperities.law import band_of, law_of
 from surrogate.asperities.running_in import working_load, working_pressure
 from surrogate.files import InputError
 from surrogate.formulas.geometry import screw_contact, SIDES
@@ -106,22 +106,24 @@ def onset_record(
     """
     Return the onsets of a screw, new and run in, under a load [N] at a temperature [K], SI units.
 
-    A profile that was traced after running in has the latter alone.
+    A profile that was traced after running in has the latter alone, and a raceway whose onset was
+    calibrated the state in which that was done.
 
     """
     _check_place(lubricant, load, temperature)
     stated = screw.working_load is not None
     if abs(load) > working_load(screw):
         screw = replace(screw, working_load=abs(load))
-    band, states = BANDS[screw.roughness.lay], {}
+    band, states = band_of(screw), {}
     sheet, place = screw.roughness, (lubricant, load, temperature)
-    for state in ['run_in'] if sheet.traced == 'run_in' else ['new', 'run_in']:
+    alone = sheet.traced == 'run_in' or sheet.calibrated
+    for state in [sheet.state] if alone else ['new', 'run_in']:
         raceway = with_raceway(screw, state=state)
         states[state] = onset_point(raceway, *place) | {
             'cutting_pressure_Pa': raceway.roughness.cutting_pressure,
             'band': [1 / band, band],
         }
-    if 'new' in states:
+    if len(states) > 1:
         states['run_in']['speed_range_rad_s'] = onset_over_pressure(
             screw, *place, run_in_range(screw)
         )

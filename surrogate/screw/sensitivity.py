@@ -177,11 +177,12 @@ def numerical_band(screw: Screw, interpolation: float = 0.0) -> list[float]:
     """
     Return the least and the largest onset speed over the stated one by law and lookup [-].
 
-    Nine of ten marched strips lie within that of the law; `interpolation` of a surface is the
-    logarithm of a speed [-].
+    Nine of ten marched strips lie within that of the law, which a calibration takes out;
+    `interpolation` of a surface is the logarithm of a speed [-].
 
     """
-    off = math.hypot(math.log(BANDS[screw.roughness.lay]), interpolation)
+    law = 1.0 if screw.roughness.onset_band else BANDS[screw.roughness.lay]
+    off = math.hypot(math.log(law), interpolation)
     return [math.exp(-off), math.exp(off)]
 
 
@@ -189,19 +190,21 @@ def surface_bands(screw: Screw, lubricant: Lubricant) -> dict[str, list[float]]:
     """
     Return both bands at the preload and the reference temperature, as a surface has them.
 
-    Of the inputs that take seconds only those count that change the band.
+    Of the inputs that take seconds only those count that change the band. A calibrated onset has
+    the band of its calibration.
 
     """
+    numerics = numerical_band(screw, INTERPOLATION)
+    calibrated = screw.roughness.onset_band
+    if calibrated:
+        return {'limit_band': [1 / calibrated, calibrated], 'numerical_band': numerics}
     point = OperatingPoint(speed=0.0, load=0.0, temperature=lubricant.reference_temperature)
     case = ScrewCase(screw=screw, lubricant=lubricant, point=point)
     ends = [(one, one.bounds(case) or ()) for one in INPUTS if one.name not in LEFT_OUT]
     factors = [
         [one.at(case, value).onset / case.onset for value in pair] for one, pair in ends if pair
     ]
-    return {
-        'limit_band': unknown_band(factors),
-        'numerical_band': numerical_band(screw, INTERPOLATION),
-    }
+    return {'limit_band': unknown_band(factors), 'numerical_band': numerics}
 
 
 def sensitivity_page(record: Mapping[str, Any]) -> str:

@@ -15,6 +15,7 @@ from surrogate.asperities.law import (
     law_of,
     LEAST_LOSS,
     loss_at,
+    NINE_OF_TEN,
     ONSET_RCS,
     rcs_at,
     share_at,
@@ -127,3 +128,21 @@ def test_a_screw_has_one_law_whatever_does_not_touch_its_raceways():
     assert law_of(other) is law_of(SCREW)
     run_in = replace(SCREW, roughness=replace(SCREW.roughness, state='run_in'))
     assert law_of(run_in) is not law_of(SCREW)
+
+
+def test_the_onset_factor_scales_the_onset_and_nothing_else():
+    """RCS over the speed by that of the onset stays, and a calibration sets the band."""
+    faster = replace(SCREW, roughness=replace(SCREW.roughness, onset_factor=1.5))
+    usual, law = law_of(SCREW), law_of(faster)
+    onset, scaled = (one.onsets['screw'].speed(CONTACT, LOAD, OIL, FLOOR) for one in (usual, law))
+    assert scaled == pytest.approx(1.5 * onset)
+    assert law.deviation == usual.deviation
+    for over in (0.3, 0.8, 1.2):
+        slow, fast = (
+            contact_at(over * speed, law=one) for one, speed in ((usual, onset), (law, scaled))
+        )
+        assert fast.rcs == pytest.approx(slow.rcs)
+        assert fast.loss_factor == pytest.approx(slow.loss_factor)
+    sheet = replace(faster.roughness, calibrated='2026-11-24', onset_band=1.15)
+    sure = law_of(replace(SCREW, roughness=sheet))
+    assert sure.deviation == pytest.approx(math.log(1.15) / NINE_OF_TEN)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The identify command as a user types it."""
 
+from datetime import date
 import json
 import math
 import sys
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.screw import closed_form
+from surrogate.screw.onset import with_raceway
 
 COMMAND = ('identify',)
 
@@ -106,6 +108,26 @@ def test_datasheets_that_are_read_are_not_written_over(run, data, tmp_path, refu
     with refused('datasheet_given'):
         run(data, '--oil', tmp_path / 'other_oil.yaml', '--out', tmp_path / 'other.yaml')
     assert mine.read_text(encoding='utf-8') == before
+
+
+def test_the_onset_makes_a_calibrated_sheet(run, tmp_path, capsys, refused):
+    """From a current; the sheet says the day and the band, the picture shows the onset."""
+    machine = with_raceway(SCREW, onset_factor=0.5)
+    rpm = np.geomspace(4, 1200, 12)
+    drag = closed_form.solve(machine, OIL, rpm * math.pi / 30, 0.0, 313.15).friction_torque + 0.05
+    data = tmp_path / 'staircase.csv'
+    lines = [f'{speed},{torque / 0.4}' for speed, torque in zip(rpm, drag, strict=True)]
+    data.write_text('\n'.join(['speed_rpm,current_A', *lines]), encoding='utf-8')
+    sheet, words = tmp_path / 'found.yaml', ('--onset', '--torque-constant', 0.4)
+    assert run(data, *words, '--out', sheet, '--plot', tmp_path, '--json') == 0
+    onset = json.loads(capsys.readouterr().out)['onset']
+    found = load_screw(str(sheet)).roughness
+    assert found.onset_factor == pytest.approx(0.5, rel=0.03)
+    assert found.onset_band == pytest.approx(onset['band'])
+    assert date.fromisoformat(found.calibrated)
+    assert (tmp_path / 'identify.png').exists()
+    refused('onset_beside', run, data, *words, '--fit', 'viscosity')
+    refused('onset_beside', run, data, *words, '--loss', 'soft_l1')
 
 
 def test_options_that_mean_nothing_are_refused(run, data, tmp_path, refused):

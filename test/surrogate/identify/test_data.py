@@ -58,7 +58,8 @@ def test_a_column_named_by_hand_needs_its_unit_and_a_file_a_text(csv, refused, t
         ('', 'empty_line_names'),
         ('# nothing\n', 'empty_line_names'),
         ('speed_rpm,torque_Nm\n', 'has_numbers_below'),
-        ('speed_rpm,current_A\n1,2\n', 'column_torque_nm_torque_mnm'),
+        ('speed_rpm,power_W\n1,2\n', 'column_torque_nm_torque_mnm'),
+        ('speed_rpm,current_A\n1,2\n', 'current_constant'),
         ('torque_Nm\n1\n', 'column_speed_rpm_speed_rad_s'),
         ('speed_Nm,torque_rpm\n1,2\n', 'column_speed_nm_has'),
         ('speed_rpm,torque_lbfin\n1,2\n', 'column_torque_lbfin_has'),
@@ -74,6 +75,16 @@ def test_a_column_named_by_hand_needs_its_unit_and_a_file_a_text(csv, refused, t
 )
 def test_a_mistake_is_one_sentence_with_its_line(csv, text, sentence, refused):
     refused(sentence, read_drag_csv, csv(text))
+
+
+def test_a_current_counts_with_its_constant(csv, refused):
+    """In place of a torque that stands beside it, also by the name of a column."""
+    path = csv('speed_rpm,current_mA,torque_Nm,motor_A\n60,2000,9,3\n')
+    assert read_drag_csv(path, torque_constant=0.1)['torque'] == pytest.approx([0.2])
+    named = read_drag_csv(path, torque_constant=-0.1, torque_column='motor_A')
+    assert named['torque'] == pytest.approx([-0.3])
+    assert read_drag_csv(path)['torque'] == [9.0]
+    refused('no_constant', read_drag_csv, path, torque_constant=0.0)
 
 
 def test_points_at_standstill_are_left_out_and_counted():

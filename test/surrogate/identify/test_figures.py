@@ -30,3 +30,22 @@ def test_curves_bands_and_points_share_the_speed_axis(screw, oil):
     points = upper.containers[0].lines[0]
     np.testing.assert_allclose(points.get_xdata(), SPEEDS)
     assert upper.get_ylabel().endswith('[mN m]')
+
+
+@pytest.mark.parametrize('reason', ['', 'the torque does not turn up'])
+def test_the_onset_is_marked_with_its_interval_or_as_taken(screw, oil, reason):
+    """A line over the speeds, and a band only where the data tell one."""
+    speed = np.array(SPEEDS) * RPM
+    columns = {'speed': speed, 'torque': 0.1 + 1e-4 * speed}
+    run = no_load_run(columns, source='made up', temperature=oil.reference_temperature, notes=())
+    found = identify(screw, run, closed_form_model(screw, oil, run), ())
+    onset = {
+        'speed_rad_s': 200 * RPM,
+        'speed_low_rad_s': 150 * RPM,
+        'speed_high_rad_s': 260 * RPM,
+        'reason': reason,
+    }
+    axes = figures.figure_identification(run, found, 'made up', onset).axes[0]
+    (line,) = (one for one in axes.get_lines() if one.get_label().startswith('onset'))
+    np.testing.assert_allclose(line.get_xdata(), 200.0)
+    assert len(axes.patches) == (0 if reason else 1)

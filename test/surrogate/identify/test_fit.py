@@ -29,7 +29,11 @@ def recording(speed=SPEED, *, factor=1.0, friction=0.1, offset=0.0, noise=None, 
         {'speed': speed, 'torque': speed} | columns, source='synthetic', temperature=WARM
     )
     contacts = closed_form_model(SCREW, OIL, blank)
-    drag = np.sign(speed) * (contacts.torque(factor, friction) + CONSTANT) + RATE * speed + offset
+    drag = (
+        np.sign(speed) * (contacts.torque(factor, friction, 1.0) + CONSTANT)
+        + RATE * speed
+        + offset
+    )
     drag = drag + blank.load * SCREW.lead / (2 * math.pi)
     return replace(blank, torque=drag if noise is None else drag + noise), contacts
 

@@ -67,7 +67,9 @@ def test_few_speeds_are_solved_as_they_are(formulas):
     assert formulas == pytest.approx([60 * RPM, 200 * RPM, 600 * RPM])
     assert told == [(0, 3), (1, 3), (2, 3), (3, 3)]
     exact = closed_form_model(SCREW, OIL, run)
-    np.testing.assert_allclose(model.torque(1.0, 0.1), exact.torque(1.0, 0.1), rtol=1e-12)
+    np.testing.assert_allclose(
+        model.torque(1.0, 0.1, 1.0), exact.torque(1.0, 0.1, 1.0), rtol=1e-12
+    )
     np.testing.assert_allclose(model.asperity_share, exact.asperity_share, rtol=1e-12)
     assert model.tier == 'full'
 
@@ -85,10 +87,10 @@ def test_many_speeds_share_a_few_nodes_and_temperatures_are_met(formulas):
     model = solved_model(SCREW, OIL, run)
     assert len(formulas) == 18
     exact = closed_form_model(SCREW, OIL, run)
-    assert_met(model.torque(1.0, 0.1), exact.torque(1.0, 0.1))
+    assert_met(model.torque(1.0, 0.1, 1.0), exact.torque(1.0, 0.1, 1.0))
     run = run_at(np.geomspace(50, 2000, 12), temperature=np.linspace(WARM - 4, WARM + 4, 12))
     model, exact = solved_model(SCREW, OIL, run), closed_form_model(SCREW, OIL, run)
-    np.testing.assert_allclose(model.torque(1.0, 0.1), exact.torque(1.0, 0.1), rtol=2e-3)
+    np.testing.assert_allclose(model.torque(1.0, 0.1, 1.0), exact.torque(1.0, 0.1, 1.0), rtol=2e-3)
 
 
 def test_viscosity_and_friction_are_met_over_their_ranges(formulas):
@@ -96,14 +98,14 @@ def test_viscosity_and_friction_are_met_over_their_ranges(formulas):
     model, exact = solved_model(SCREW, OIL, run, BOTH), closed_form_model(SCREW, OIL, run)
     assert len(formulas) == len(set(formulas)) == 24
     for factor, friction in ((0.5, 0.02), (1.0, 0.1), (0.8, 0.13), (2.0, 0.3), (1.5, 0.06)):
-        found, expected = (one.torque(factor, friction) for one in (model, exact))
+        found, expected = (one.torque(factor, friction, 1.0) for one in (model, exact))
         assert_met(found, expected)
 
 
 def test_known_answers_come_out_of_the_table(formulas):
     """The whole fit on the table, torque by the formulas themselves."""
     run = run_at(np.concatenate([np.geomspace(50, 2000, 10), -np.geomspace(60, 1800, 9)]))
-    exact = closed_form_model(SCREW, OIL, run).torque(1.2, 0.08)
+    exact = closed_form_model(SCREW, OIL, run).torque(1.2, 0.08, 1.0)
     torque = run.direction * (exact + 0.12) + 4e-4 * run.speed + 0.03
     run = replace(run, torque=torque)
     found = identify(SCREW, run, solved_model(SCREW, OIL, run, BOTH), BOTH)
@@ -117,7 +119,7 @@ def test_solved_contacts_and_a_known_answer():
     model = solved_model(SCREW, OIL, run, settings=SMOOTH)
     points = [OperatingPoint(speed=speed, load=0.0, temperature=WARM) for speed in run.speed]
     exact = [solve_screw(SCREW, OIL, one, settings=SMOOTH).friction_torque for one in points]
-    np.testing.assert_allclose(model.torque(1.0, 0.1), exact, rtol=1e-5)
+    np.testing.assert_allclose(model.torque(1.0, 0.1, 1.0), exact, rtol=1e-5)
     run = replace(run, torque=np.array(exact) + 0.12 + 4e-4 * run.speed)
     found = identify(SCREW, run, model)
     assert [one.value for one in found.estimates] == pytest.approx((0.12, 4e-4), rel=1e-4)

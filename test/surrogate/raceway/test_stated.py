@@ -58,6 +58,19 @@ def test_each_state_is_cut_at_its_own_pressure(state, traced, pressure):
     assert sheet.cutting_pressure == pressure
 
 
+def test_a_calibration_has_its_day_and_its_band(refused):
+    """The sentence of results says both."""
+    sheet = replace(STATED, onset_factor=0.6, calibrated='2026-11-24', onset_band=1.15)
+    assert sheet.calibration == 'onset calibrated on 2026-11-24 within 1.15'
+    assert roughness_sentence(sheet, None).startswith(roughness_sentence(STATED, None)[:20])
+    assert sheet.calibration in roughness_sentence(sheet, None)
+    assert replace(STATED, onset_factor=0.6).calibration == ''
+    with refused('given_alone', name='onset_band'):
+        replace(STATED, onset_band=1.15)
+    with refused('given_alone', name='calibrated'):
+        replace(STATED, calibrated='2026-11-24')
+
+
 def test_pressures_may_be_equal():
     """One that is sure, up to the hardness."""
     same = dict.fromkeys(('hardness', 'run_in_pressure', 'run_in_low', 'run_in_high'), 5e9)

@@ -5,18 +5,20 @@
 from dataclasses import replace
 import math
 
+import numpy as np
 import pytest
-from surrogate.asperities.law import law_of
+from surrogate.asperities.law import BANDS, law_of
 from surrogate.formulas.geometry import screw_contact
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force
+from surrogate.screw import closed_form
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.onset import (
-    BANDS,
     extrapolated,
     onset_page,
     onset_point,
     onset_record,
+    onset_speeds,
     run_in_at,
     with_raceway,
 )
@@ -81,6 +83,24 @@ def test_a_profile_traced_after_running_in_has_one_state_that_larger_loads_cut(s
     found = onset_record(replace(traced, working_load=900.0), oil, 500.0, KELVIN)
     assert (found['working_load_N'], found['working_load_stated']) == (900.0, True)
     assert 'cut under 900 N, ' in onset_page(found)
+
+
+def test_a_calibrated_raceway_has_the_state_and_the_band_of_its_calibration(screw, oil, record):
+    """Every onset of a surface follows, and the page says the day."""
+    sheet = with_raceway(screw, onset_factor=0.5, onset_band=1.15, calibrated='2026-11-24')
+    found = onset_record(sheet, oil, 0.0, KELVIN)
+    assert list(found['states']) == ['new']
+    state = found['states']['new']
+    assert state['band'] == [1 / 1.15, 1.15]
+    assert state['speed_rad_s'] == pytest.approx(0.5 * record['states']['new']['speed_rad_s'])
+    assert 'onset calibrated on 2026-11-24 within 1.15' in onset_page(found)
+    place = np.array([0.0, 500.0]), np.array([KELVIN])
+    usual, scaled = (onset_speeds(one, oil, *place) for one in (screw, sheet))
+    np.testing.assert_allclose(scaled, 0.5 * usual)
+    speeds = np.array([5.0, 20.0, 40.0])
+    rcs = closed_form.solve(screw, oil, speeds, 0.0, KELVIN).rcs
+    slower = closed_form.solve(sheet, oil, 0.5 * speeds, 0.0, KELVIN).rcs
+    np.testing.assert_allclose(slower, rcs, rtol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -206,9 +206,13 @@ def test_what_makes_no_sense_is_refused_before_any_work(screw, oil, refused):
 
 
 def test_the_bands_are_those_of_the_sensitivity(data, screw, oil):
-    """Found before the nodes are solved."""
+    """Found before the nodes are solved; a calibration has its own."""
     bands = surface_bands(screw, oil)
     assert {name: data.header[name] for name in bands} == bands
+    calibrated = with_raceway(screw, calibrated='2026-11-24', onset_band=1.25)
+    found = surface_bands(calibrated, oil)
+    assert found['limit_band'] == [0.8, 1.25]
+    assert found['numerical_band'][1] < bands['numerical_band'][1]
 
 
 def test_info_says_where_contact_begins_and_what_was_reached(data, tmp_path):

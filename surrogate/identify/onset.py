@@ -1,0 +1,120 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Onset factor of a machine from the upturn of its torque at low speed: profile, interval, bound.
+
+One lumped factor on the onset speed: it holds what sheet, running in, film floor and law are off
+by together. The upturn lies well below the onset, at which RCS is 0.01 and no torque shows, so
+the interval adds the scatter of marched strips about the curve of the law by which the onset is
+extrapolated.
+
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+import math
+
+import numpy as np
+from scipy.stats import t as student
+from surrogate.asperities.law import NINE_OF_TEN
+from surrogate.identify.data import Array, NoLoadRun
+from surrogate.identify.intervals import CONFIDENCE, student_factor
+from surrogate.identify.model import ContactModel, ONSET_BOUNDS
+from surrogate.screw.onset import onset_point, with_raceway
+
+FITTED = ('asperity_friction', 'onset_factor', 'seal_torque')
+"""What is fitted beside the parasitic torque where the onset is."""
+SCANNED = np.geomspace(*ONSET_BOUNDS, 49)
+"""Onset factors at which the rest is fitted [-]."""
+EXTRAPOLATION = 0.17
+"""Standard deviation of the logarithm of the onset between a marched strip and the curve of the
+law laid through its RCS at a half and a quarter of that speed, 57 marches [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class OnsetScan:
+    """
+    Sum of squared residuals at each of `SCANNED`, and where it is least.
+
+    Best factor [-] and ends of the interval by the profile [-], 0 and infinity where the data set
+    none.
+
+    """
+
+    costs: Array
+    best: float
+    low: float
+    high: float
+
+    def interval(self, value: float, freedom: int) -> tuple[float, float]:
+        """Return the ends of the 95 % interval about a value [-], extrapolation and all."""
+        wide = student_factor(freedom) * EXTRAPOLATION
+        ends = math.log(value / self.low), math.log(self.high / value)
+        below, above = (math.hypot(end, wide) for end in ends)
+        return value * math.exp(-below), value * math.exp(above)
+
+    def bound(self, stated: float) -> tuple[float, str]:
+        """Return factor [-] and reason where one end is open; the stated factor if it may be."""
+        wide = math.exp(float(student.ppf(CONFIDENCE, math.inf)) * EXTRAPOLATION)
+        if not self.low and math.isinf(self.high):
+            return stated, 'the torque tells nothing of it: kept as in the datasheet'
+        if not self.low:
+            most = self.high * wide
+            reason = f'the torque does not turn up at low speed: at most {most:.3g} (95 %)'
+            return min(stated, most), reason
+        least = self.low / wide
+        reason = f'the torque does not rise at high speed: at least {least:.3g} (95 %)'
+        return max(stated, least), reason
+
+    @property
+    def closed(self) -> bool:
+        """Tell whether the data set both ends."""
+        return self.low > 0 and math.isfinite(self.high)
+
+
+def scan_onset(cost: Callable[[float], float], freedom: int) -> OnsetScan:
+    """
+    Return the profile of a fit over the onset factor, with `freedom` degrees of freedom.
+
+    `cost` fits the rest at a factor [-] and returns the sum of squared residuals. The interval
+    holds the factors whose cost is within t^2 of the least one's mean square.
+
+    """
+    costs = np.array([cost(factor) for factor in SCANNED.tolist()])
+    best = int(costs.argmin())
+    excess = (costs - costs[best]) * freedom / max(costs[best], np.finfo(float).tiny)
+    over = excess - student_factor(freedom) ** 2
+    return OnsetScan(
+        costs=costs,
+        best=float(SCANNED[best]),
+        low=_crossing(over[best::-1], SCANNED[best::-1], 0.0),
+        high=_crossing(over[best:], SCANNED[best:], math.inf),
+    )
+
+
+def _crossing(over: Array, factors: Array, none: float) -> float:
+    """Return the last factor that is allowed, from the best on outwards."""
+    outside = over > 0
+    # Beyond a rise the profile may fall again; what lies there is allowed, too.
+    last = int(np.flatnonzero(~outside)[-1])
+    if last == len(over) - 1:
+        return none
+    share = over[last] / (over[last] - over[last + 1])
+    low, high = np.log(factors[last : last + 2])
+    return float(np.exp(low + share * (high - low)))
+
+
+def onset_speeds(
+    contacts: ContactModel, run: NoLoadRun, factors: tuple[float, float, float]
+) -> list[float]:
+    """Return the screw speeds of the onset [rad/s] under the load of a run, by factors [-]."""
+    oil, plain = contacts.lubricant, with_raceway(contacts.screw, onset_factor=1.0)
+    load = abs(float(run.load.mean()))
+    speed = onset_point(plain, oil, load, oil.reference_temperature)['speed_rad_s']
+    return [factor * speed for factor in factors]
+
+
+def calibrated_band(low: float, high: float) -> float:
+    """Return the factor within which nine of ten onsets lie [-], by a 95 % interval."""
+    narrower = NINE_OF_TEN / float(student.ppf(0.5 * (1 + CONFIDENCE), math.inf))
+    return float((high / low) ** (0.5 * narrower))

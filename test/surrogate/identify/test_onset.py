@@ -1,0 +1,170 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The profile over the onset factor: ends of known curves, bounds, and fits of known answers."""
+
+from dataclasses import replace
+import math
+
+import numpy as np
+import pytest
+from surrogate.identify.data import no_load_run
+from surrogate.identify.fit import identify
+from surrogate.identify.intervals import student_factor
+from surrogate.identify.model import ONSET_BOUNDS
+from surrogate.identify.onset import (
+    calibrated_band,
+    EXTRAPOLATION,
+    FITTED,
+    onset_speeds,
+    OnsetScan,
+    scan_onset,
+)
+from surrogate.identify.record import identification_record, identified_screw, page
+from surrogate.identify.table import formula_model
+from surrogate.parameters import load_lubricant, load_screw
+from surrogate.screw.onset import onset_point
+from surrogate.units import RPM
+
+SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+WARM, FREEDOM = 313.15, 18
+SLOW = np.geomspace(5.0, 1000.0, 12) * RPM
+FAST = np.geomspace(400.0, 2000.0, 12) * RPM
+FACTOR, FRICTION, CONSTANT, RATE, SEAL = 0.6, 0.08, 0.05, 3e-4, 4e-3
+
+
+def parabola(centre, error):
+    """Return the cost over the logarithm of the factor of a fit with a standard `error` [-]."""
+    return lambda factor: FREEDOM + (math.log(factor / centre) / error) ** 2
+
+
+def staircase(speed):
+    """Return a run of a known onset on a staircase [rad/s], and its contacts."""
+    speed = np.concatenate([speed, -speed])
+    columns = {'speed': speed, 'torque': speed, 'torque_std': 1e-4 + 0 * speed}
+    run = no_load_run(columns, source='staircase', temperature=WARM)
+    contacts = formula_model(SCREW, OIL, run, FITTED)
+    seal = SEAL * np.exp(-SCREW.pitch_radius * np.abs(speed) / 0.015)
+    drag = contacts.torque(1.0, FRICTION, FACTOR) + CONSTANT + seal
+    noise = 1e-4 * np.random.default_rng(5).standard_normal(len(speed))
+    return replace(run, torque=run.direction * drag + RATE * speed + noise), contacts
+
+
+@pytest.fixture(scope='module')
+def slow():
+    return staircase(SLOW)
+
+
+@pytest.fixture(scope='module')
+def found(slow):
+    return identify(SCREW, *slow, FITTED)
+
+
+def test_a_parabola_has_the_interval_of_its_error():
+    scan = scan_onset(parabola(1.0, 0.3), FREEDOM)
+    assert scan.closed
+    assert scan.best == pytest.approx(1.0)
+    width = 0.3 * student_factor(FREEDOM)
+    assert math.log(scan.high) == pytest.approx(width, rel=0.02)
+    assert math.log(scan.low) == pytest.approx(-width, rel=0.02)
+    low, high = scan.interval(1.0, FREEDOM)
+    extrapolated = student_factor(FREEDOM) * math.hypot(0.3, EXTRAPOLATION)
+    assert math.log(high / low) == pytest.approx(2 * extrapolated, rel=0.02)
+
+
+def test_a_profile_that_falls_again_allows_what_lies_there():
+    """Of two valleys both belong to the interval."""
+    one, other = parabola(0.5, 0.1), parabola(3.0, 0.1)
+    scan = scan_onset(lambda factor: min(one(factor), 1.0 + other(factor)), FREEDOM)
+    assert scan.best == pytest.approx(0.5, rel=0.05)
+    assert scan.low < 0.5 < 3.0 < scan.high
+
+
+@pytest.mark.parametrize(
+    ('centre', 'stated', 'kept', 'words'),
+    [
+        (ONSET_BOUNDS[0], 1.0, False, 'does not turn up at low speed: at most'),
+        (ONSET_BOUNDS[0], 0.1, True, 'does not turn up at low speed: at most'),
+        (ONSET_BOUNDS[1], 1.0, False, 'does not rise at high speed: at least'),
+        (ONSET_BOUNDS[1], 10.0, True, 'does not rise at high speed: at least'),
+    ],
+)
+def test_an_open_end_is_a_bound(centre, stated, kept, words):
+    """The stated factor stays where the bound allows it."""
+    scan = scan_onset(parabola(centre, 0.3), FREEDOM)
+    assert not scan.closed
+    value, reason = scan.bound(stated)
+    assert words in reason
+    assert (value == stated) is kept
+    end = scan.high if 'most' in words else scan.low
+    beyond = math.exp(1.645 * EXTRAPOLATION)
+    assert kept or value == pytest.approx(
+        end * beyond if 'most' in words else end / beyond, rel=1e-3
+    )
+
+
+def test_a_flat_profile_tells_nothing():
+    flat = OnsetScan(costs=np.ones(3), best=1.0, low=0.0, high=math.inf)
+    value, reason = flat.bound(0.7)
+    assert value == 0.7
+    assert 'tells nothing' in reason
+
+
+def test_the_band_of_nine_of_ten_is_narrower_than_the_interval():
+    assert calibrated_band(math.exp(-1.96), math.exp(1.96)) == pytest.approx(
+        math.exp(1.645), rel=1e-3
+    )
+
+
+def test_known_answers_come_out_together(found):
+    """Onset, boundary friction, seal and both parasitic parts."""
+    assert found.converged
+    assert found.value('onset_factor') == pytest.approx(FACTOR, rel=0.03)
+    assert found.value('asperity_friction') == pytest.approx(FRICTION, rel=0.02)
+    assert found.value('parasitic_torque') == pytest.approx(CONSTANT, rel=0.02)
+    assert found.value('parasitic_torque_rate') == pytest.approx(RATE, rel=0.03)
+    assert found.value('seal_torque') == pytest.approx(SEAL, rel=0.1)
+    onset = found.estimate('onset_factor')
+    assert onset.low < FACTOR < onset.high
+    assert math.log(onset.high / onset.low) > 4 * EXTRAPOLATION
+
+
+def test_the_sheet_is_calibrated_and_says_so(slow, found):
+    """A surface from it begins to touch where the machine does."""
+    run, contacts = slow
+    sheet = identified_screw(SCREW, run, contacts, found, '2026-11-24')
+    assert sheet.roughness.calibration.startswith('onset calibrated on 2026-11-24 within 1.3')
+    begins = [onset_point(one, OIL, 0.0, WARM)['speed_rad_s'] for one in (SCREW, sheet)]
+    factor = found.value('onset_factor')
+    assert begins[1] == pytest.approx(factor * begins[0])
+    assert onset_speeds(contacts, run, (factor, 1.0, 1.0))[:2] == pytest.approx(begins[::-1])
+
+
+def test_the_page_says_what_is_extrapolated(slow, found, says):
+    record = identification_record(SCREW, *slow, found)
+    assert record['onset']['speed_low_rad_s'] < record['onset']['speed_rad_s']
+    assert record['onset']['turns_up_rad_s'] < record['onset']['speed_rad_s']
+    assert says('rcs_itself') in page(record)
+    assert says('lumped') in record['warnings']
+
+
+def test_without_an_upturn_there_is_a_bound_and_no_calibration(says):
+    run, contacts = staircase(FAST)
+    found = identify(SCREW, run, contacts, FITTED)
+    onset = found.estimate('onset_factor')
+    assert math.isnan(onset.low)
+    assert says('turn_up') in onset.reason
+    assert FACTOR <= float(onset.reason.split('at most ')[1].split()[0]) < 3
+    assert found.value('asperity_friction') == SCREW.roughness.asperity_friction
+    sheet = identified_screw(SCREW, run, contacts, found, '2026-11-24')
+    assert sheet.roughness.calibration == ''
+    assert 'does not turn up' in page(identification_record(SCREW, run, contacts, found))
+
+
+def test_runs_that_tell_no_onset_are_refused(slow, refused):
+    """Few speeds, and raceways that never touch."""
+    run, contacts = slow
+    two = np.tile([5 * RPM, 900 * RPM], 6)
+    few = replace(run, speed=two, torque=two, torque_std=None)
+    refused('two_speeds', identify, SCREW, few, contacts, FITTED)
+    smooth = replace(SCREW, roughness=replace(SCREW.roughness, rms=0.0))
+    refused('smooth', identify, smooth, run, replace(contacts, screw=smooth), FITTED)
