@@ -6,14 +6,8 @@ import dataclasses
 import enum
 import math
 
-from ballscrew_monitor.core.conversions import (
-    celsius,
-    Direction,
-    machine_nut,
-    Nut,
-    opposing_load,
-    signed,
-)
+from ballscrew_monitor.core import conversions
+from ballscrew_monitor.core.conversions import celsius, Direction, Nut
 from surrogate.surface import Found, Regime, regime_of, Surface
 
 NAN = math.nan
@@ -141,8 +135,8 @@ def estimate_from(point: MachinePoint, numbers: Found, *, rcs_limit: float) -> P
         numbers=numbers,
         rcs=numbers.rcs,
         efficiency=numbers.efficiency,
-        machine_torque=signed(numbers.driving_torque, point.direction),
-        worst_nut=machine_nut(numbers.worst_nut, point.axial_load),
+        machine_torque=conversions.signed(numbers.driving_torque, point.direction),
+        worst_nut=conversions.machine_nut(numbers.worst_nut, point.axial_load),
         regime=regime_of(numbers.film_ratio),
         contact_state=contact_state_of(numbers.rcs, limit=rcs_limit),
     )
@@ -150,7 +144,7 @@ def estimate_from(point: MachinePoint, numbers: Found, *, rcs_limit: float) -> P
 
 def opposing_load_of(point: MachinePoint) -> float:
     """Return the load [N] of a point that opposes its motion."""
-    return opposing_load(point.axial_load, point.direction)
+    return conversions.opposing_load(point.axial_load, point.direction)
 
 
 def _missing_text(point: MachinePoint) -> str:

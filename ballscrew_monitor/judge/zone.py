@@ -12,22 +12,16 @@ Functions of the subset that numba compiles; `row` is a `Row`, the others as in 
 import math
 from typing import Any
 
+from ballscrew_monitor.core import judgement
 from ballscrew_monitor.core.estimate import PointSource, PointValidity
-from ballscrew_monitor.core.judgement import (
-    Code,
-    efficiency_to_clear,
-    Level,
-    rcs_to_clear,
-    Reason,
-    Zone,
-)
+from ballscrew_monitor.core.judgement import efficiency_to_clear, rcs_to_clear, Reason
 from ballscrew_monitor.judge.records import EVENT_BEGINS, EVENT_ENDS, LIGHT_LOAD, STANDSTILL
 
 HELD = int(PointSource.HELD)
 VALID, NO_INPUT = int(PointValidity.VALID), int(PointValidity.NO_INPUT)
-NO_ZONE, OPTIMAL, OUTSIDE = map(int, Zone)
-_, OK, WARN = map(int, Level)
-RCS_HIGH, EFFICIENCY_LOW = int(Code.RCS_HIGH), int(Code.EFFICIENCY_LOW)
+NO_ZONE, OPTIMAL, OUTSIDE = map(int, judgement.Zone)
+_, OK, WARN = map(int, judgement.Level)
+RCS_HIGH, EFFICIENCY_LOW = int(judgement.Code.RCS_HIGH), int(judgement.Code.EFFICIENCY_LOW)
 NO_SPEED, NO_LOAD = int(Reason.NO_SPEED), int(Reason.NO_LOAD)
 NO_TEMPERATURE, NO_TORQUE = int(Reason.NO_TEMPERATURE), int(Reason.NO_TORQUE)
 NO_INPUTS, NO_DERIVED_LOAD = int(Reason.NO_INPUTS), int(Reason.NO_DERIVED_LOAD)

@@ -19,25 +19,16 @@ from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
 from ballscrew_monitor.core.inputs import InputStatus
 from ballscrew_monitor.core.state import Event, MonitorSettings, State, TIMES, WINDOW
 from ballscrew_monitor.judge.views import SOURCES
-from ballscrew_msgs.msg import (
-    BallScrewState,
-    Finding,
-    InputHealth,
-    OperatingPoint,
-    OutOfZone,
-    PointResult,
-    SurfaceInfo,
-    WindowStatistics,
-)
+from ballscrew_msgs import msg
 from builtin_interfaces.msg import Time
 from surrogate.surface import Surface
 
-TIERS = {'closed_form': PointResult.TIER_CLOSED_FORM, 'full': PointResult.TIER_FULL}
+TIERS = {'closed_form': msg.PointResult.TIER_CLOSED_FORM, 'full': msg.PointResult.TIER_FULL}
 NAN = math.nan
 NO_ADVICE = Advice()
 NUMBERS = tuple(
     name
-    for name, kind in PointResult.get_fields_and_field_types().items()
+    for name, kind in msg.PointResult.get_fields_and_field_types().items()
     if kind == 'double' and name not in ('efficiency', 'rcs')
 )
 """The numbers of a surface that a PointResult repeats under the same name."""
@@ -48,7 +39,7 @@ def fill_time(message: Time, stamp: int) -> None:
     message.sec, message.nanosec = divmod(stamp, SECOND)
 
 
-def fill_point(message: OperatingPoint, point: MachinePoint) -> None:
+def fill_point(message: msg.OperatingPoint, point: MachinePoint) -> None:
     """Fill in an operating point."""
     message.speed = float(point.speed)
     message.axial_load = float(point.axial_load)
@@ -63,7 +54,7 @@ def fill_point(message: OperatingPoint, point: MachinePoint) -> None:
     message.axial_load_uncertainty = float(point.axial_load_uncertainty)
 
 
-def read_point(message: OperatingPoint, *, default_temperature: float) -> MachinePoint:
+def read_point(message: msg.OperatingPoint, *, default_temperature: float) -> MachinePoint:
     """
     Return the point of an evaluation request, its direction that of the speed.
 
@@ -82,7 +73,7 @@ def read_point(message: OperatingPoint, *, default_temperature: float) -> Machin
     )
 
 
-def fill_result(message: PointResult, result: PointEstimate, tier: int) -> None:
+def fill_result(message: msg.PointResult, result: PointEstimate, tier: int) -> None:
     """Fill in what the model says, `tier` a TIER_ constant."""
     numbers = result.numbers
     message.validity = int(result.validity)
@@ -100,9 +91,9 @@ def fill_result(message: PointResult, result: PointEstimate, tier: int) -> None:
     message.contact_state = int(result.contact_state)
 
 
-def finding_message(finding: judgement.Finding, advice: Advice = NO_ADVICE) -> Finding:
+def finding_message(finding: judgement.Finding, advice: Advice = NO_ADVICE) -> msg.Finding:
     """Return a finding as a message, with the advice on it."""
-    return Finding(
+    return msg.Finding(
         code=int(finding.code),
         severity=int(finding.severity),
         value=float(finding.value),
@@ -114,7 +105,7 @@ def finding_message(finding: judgement.Finding, advice: Advice = NO_ADVICE) -> F
     )
 
 
-def fill_window(message: WindowStatistics, window: states.WindowStatistics) -> None:
+def fill_window(message: msg.WindowStatistics, window: states.WindowStatistics) -> None:
     """Fill in the statistics of a window."""
     message.count = window.count
     for name in WINDOW:
@@ -124,7 +115,7 @@ def fill_window(message: WindowStatistics, window: states.WindowStatistics) -> N
         setattr(message, f'{name}_max', float(extremes.high))
 
 
-def fill_input(message: InputHealth, status: InputStatus) -> None:
+def fill_input(message: msg.InputHealth, status: InputStatus) -> None:
     """Fill in the status of one input."""
     message.name = status.source.name.lower()
     message.state = int(status.state)
@@ -154,10 +145,10 @@ class StateWriter:
     def __init__(self, axis: str, tier: int) -> None:
         """Begin with an empty message, `tier` a TIER_ constant."""
         self.tier = tier
-        self._message = BallScrewState(axis=axis, inputs=[InputHealth() for _ in SOURCES])
+        self._message = msg.BallScrewState(axis=axis, inputs=[msg.InputHealth() for _ in SOURCES])
         self._message.header.frame_id = axis
 
-    def write(self, state: State) -> BallScrewState:
+    def write(self, state: State) -> msg.BallScrewState:
         """Return the message of `state`; it is good until the next call."""
         message = self._message
         fill_time(message.header.stamp, state.stamp)
@@ -178,7 +169,7 @@ class StateWriter:
         return message
 
 
-def _fill_judgement(message: BallScrewState, state: State) -> None:
+def _fill_judgement(message: msg.BallScrewState, state: State) -> None:
     message.level = int(state.level)
     message.event_id = state.event_id
     message.zone = int(state.verdict.zone)
@@ -203,9 +194,9 @@ def plain_values(state: State) -> dict[str, float | str | bool]:
     }
 
 
-def out_of_zone_message(axis: str, event: Event, *, shelved: bool) -> OutOfZone:
+def out_of_zone_message(axis: str, event: Event, *, shelved: bool) -> msg.OutOfZone:
     """Return an event as a message; event 0 is inactive and says that there has been none."""
-    message = OutOfZone(
+    message = msg.OutOfZone(
         axis=axis,
         event_id=event.number,
         active=event.active,
@@ -223,10 +214,10 @@ def out_of_zone_message(axis: str, event: Event, *, shelved: bool) -> OutOfZone:
 
 def surface_info_message(
     axis: str, surface: Surface, settings: MonitorSettings, *, stamp: int
-) -> SurfaceInfo:
+) -> msg.SurfaceInfo:
     """Return what a surface is and what is judged with it, `stamp` [ns]."""
     errors = surface.errors
-    message = SurfaceInfo(
+    message = msg.SurfaceInfo(
         axis=axis,
         screw=surface.screw_name,
         oil=surface.oil_name,

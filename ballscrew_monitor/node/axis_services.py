@@ -8,7 +8,7 @@ axis.
 
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 import functools
 from typing import Any
 
@@ -72,16 +72,21 @@ class AxisServices:
             response.message = '; '.join(failed) or 'the node is not configured'
             return response
         try:
-            done = act(publishers)
-            broken = _defects(publishers)
-            problem = self._changed(publishers, act.__name__.strip('_'))
-            done += f', not kept: {problem}' if problem else ''
-            response.message = '; '.join([done, *failed, *broken])
-            response.success = not broken
+            self._answer(response, publishers, act(publishers), act.__name__.strip('_'), failed)
         except InputError as error:
             response.message = f'kept the old surface: {error}'
             self._node.get_logger().error(response.message)
         return response
+
+    def _answer(
+        self, response: Any, publishers: Publishers, done: str, name: str, failed: Sequence[str]
+    ) -> None:
+        """Keep what the service of a name has changed, and say what is done and what is not."""
+        broken = _defects(publishers)
+        problem = self._changed(publishers, name)
+        done += f', not kept: {problem}' if problem else ''
+        response.message = '; '.join([done, *failed, *broken])
+        response.success = not broken
 
     def _reload(self, publishers: Publishers) -> str:
         """Swap the surfaces for the files as they are now, if all of them verify."""
@@ -131,16 +136,10 @@ class AxisServices:
             return
         for publisher in publishers.values():
             publisher.guarded('its shelving', publisher.shelve, shelving)
-        names = _names(publishers)
-        broken = _defects(publishers)
-        response.success = not broken
-        response.message = f'no longer shelved: {names}'
-        if shelving.until:
-            response.message = f'shelved until {clock_text(shelving.until)}: {names}'
+        until = f'shelved until {clock_text(shelving.until)}' if shelving.until else ''
         fill_time(response.until, shelving.until)
-        problem = self._changed(publishers, 'shelve')
-        response.message += f', not kept: {problem}' if problem else ''
-        response.message = '; '.join([response.message, *broken])
+        done = f'{until or "no longer shelved"}: {_names(publishers)}'
+        self._answer(response, publishers, done, 'shelve', ())
 
 
 def not_built(axis: str, reason: str) -> str:

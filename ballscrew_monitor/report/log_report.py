@@ -12,18 +12,10 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.declared import keys, plain
 from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.recordings.summary import EventRecord
+from ballscrew_monitor.report import logs
 from ballscrew_monitor.report.judged_bag import judged_bag
 from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare
 from ballscrew_monitor.report.log_page import maps_of, report_page
-from ballscrew_monitor.report.logs import (
-    EVENTS,
-    JUDGED,
-    PAGE,
-    PICTURE,
-    replace_report,
-    STATES,
-    SUMMARY,
-)
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.printed import summary_record
 from ballscrew_monitor.report.store import RowStore, scratch_folder
@@ -92,7 +84,9 @@ def report_log(
     """
     with scratch_folder(out) as folder:
         store, made = RowStore(folder), folder / MADE
-        with judged_bag(bag, parameters.values, made / JUDGED, parameters.metadata) as add_state:
+        with judged_bag(
+            bag, parameters.values, made / logs.JUDGED, parameters.metadata
+        ) as add_state:
             log = judge_log(
                 bag,
                 parameters,
@@ -100,17 +94,17 @@ def report_log(
                 rows=store,
                 on_state=add_state,
             )
-        store.write(made / STATES)
+        store.write(made / logs.STATES)
         on_share(STORED_SHARE)
-        write_events(made / EVENTS, log)
-        replace_file(made / SUMMARY, json_text(summary_record(log)).encode())
+        write_events(made / logs.EVENTS, log)
+        replace_file(made / logs.SUMMARY, json_text(summary_record(log)).encode())
         maps = maps_of(log)
-        replace_file(made / PAGE, report_page(log, maps).encode())
+        replace_file(made / logs.PAGE, report_page(log, maps).encode())
         if picture and maps:
             from ballscrew_monitor.report.picture import draw_log  # slow to load, seldom needed
 
-            draw_log(log, maps, made / PICTURE)
-        replace_report(made, out)
+            draw_log(log, maps, made / logs.PICTURE)
+        logs.replace_report(made, out)
         on_share(1.0)
         return _result(log)
 

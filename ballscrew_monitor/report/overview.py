@@ -9,7 +9,8 @@ import math
 from urllib.parse import quote
 
 from ballscrew_monitor.recordings.words import counted, duration, NONE, percent
-from ballscrew_monitor.report.log_report import AxisLine, LogResult, PAGE
+from ballscrew_monitor.report.log_report import AxisLine, LogResult
+from ballscrew_monitor.report.logs import PAGE
 from ballscrew_monitor.report.page import element, joined, Markup, page, table, TableCell, TableRow
 
 SCRIPTS = ('format.js', 'table.js', 'overview.js')

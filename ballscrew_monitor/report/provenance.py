@@ -179,7 +179,7 @@ def _torque_reasons(forward: float, backward: float) -> list[str]:
         return ['Only one direction was recorded, so friction and offset cannot be told apart.']
     # What rounding leaves of equal means is no torque.
     friction, offset = (round(0.5 * mean, 6) for mean in (forward - backward, forward + backward))
-    said = [
+    return [
         f'The part that turns with the direction, {number(friction)} N m, is '
         + (
             'friction that the model does not know: wipers, recirculation, bearings, guides. '
@@ -189,7 +189,6 @@ def _torque_reasons(forward: float, backward: float) -> list[str]:
         ),
         f'The part that does not, {number(offset)} N m, is weight of the axis, or a wrong zero.',
     ]
-    return said
 
 
 def inputs_part(case: AxisCase) -> Markup:

@@ -10,7 +10,7 @@ from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import replay
-from ballscrew_monitor.recordings.summary import Summarizer, Summary
+from ballscrew_monitor.recordings.summary import Summary, summary_of
 from ballscrew_monitor.settings.parameters import read_file
 import pytest
 
@@ -34,18 +34,19 @@ def judge():
 
 
 def _judge(bag, parameters):
-    summarizer, rows, causes, inputs = Summarizer(), [], {}, {}
-    for state, event in replay(Bag(bag), read_file(parameters)):
-        summarizer.add_state(state)
-        if event is not None:
-            summarizer.add_event(event)
-            causes[event.event_id] = Code(event.cause.code).name
-        rows.append(_row(state))
-        inputs = {
-            health.name: (health.state, health.dropped, health.received, health.lag)
-            for health in state.inputs
-        }
-    return Judgement(rows=rows, causes=causes, summary=summarizer.result(), inputs=inputs)
+    rows, causes, inputs = [], {}, {}
+
+    def said():
+        for state, event in replay(Bag(bag), read_file(parameters)):
+            yield state
+            if event is not None:
+                yield event
+                causes[event.event_id] = Code(event.cause.code).name
+            rows.append(_row(state))
+            for health in state.inputs:
+                inputs[health.name] = health.state, health.dropped, health.received, health.lag
+
+    return Judgement(summary=summary_of(said()), rows=rows, causes=causes, inputs=inputs)
 
 
 def _row(state):

@@ -5,7 +5,7 @@
 import contextlib
 from pathlib import Path
 
-from ballscrew_monitor.report import log_report
+from ballscrew_monitor.report import logs
 from ballscrew_monitor.report.logs import (
     find_logs,
     folder_names,
@@ -96,16 +96,16 @@ def test_tables_count_beside_a_bag_where_they_are_asked_for_and_a_map_is_for_the
 
 @pytest.mark.parametrize('tables', [False, True])
 def test_reports_that_are_there_already_are_no_recordings(tmp_path, tables):
-    made = (log_report.PAGE, log_report.STATES, log_report.EVENTS, log_report.SUMMARY)
+    made = (logs.PAGE, logs.STATES, logs.EVENTS, logs.SUMMARY)
     for report in (tmp_path, tmp_path / 'one', tmp_path / 'reports' / 'a'):
-        judged = report / log_report.JUDGED
+        judged = report / logs.JUDGED
         touch(*(report / name for name in made), judged / 'j.mcap', judged / 'metadata.yaml')
     touch(tmp_path / 'a.mcap', tmp_path / 'one' / 'one.mcap')
     assert names(find_logs([tmp_path], tables=tables), tmp_path) == ['a.mcap', 'one']
 
 
 def test_the_folder_of_the_reports_to_come_holds_no_recordings(tmp_path):
-    touch(tmp_path / 'a.csv', tmp_path / 'out' / 'b' / log_report.STATES)
+    touch(tmp_path / 'a.csv', tmp_path / 'out' / 'b' / logs.STATES)
     found = find_logs([tmp_path], tables=True, out=tmp_path / 'one' / '..' / 'out')
     assert names(found, tmp_path) == ['a.csv']
 
