@@ -197,6 +197,7 @@ def test_the_largest_content_is_read_and_one_beyond_all_memory_is_refused(tmp_pa
 
 
 def test_a_device_is_not_written_over(surface_data, refused):
+    refused('regular_file', file.write, '/dev/null', surface_data)
     assert Path('/dev/null').is_char_device()
 
 
