@@ -141,5 +141,5 @@ def test_ranges_name_formulas_and_groups_and_leaving_one_is_told():
             assert hasattr(laws.Groups, name)
             assert low < high
     _, g = moes(500, 10, 25.0)
-    expected = 'radius_ratio 25 (fitted 1 to 20)'
+    expected = ('radius_ratio 25 (fitted 1 to 20)',)
     assert laws.outside_range('central_film_nijenbanning_1994', g) == expected

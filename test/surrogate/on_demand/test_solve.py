@@ -66,12 +66,9 @@ def test_what_is_uncertain_is_the_rcs_between_strips_in_strict_json(solved):
     assert frame['standard_errors']['friction_torque'] is None
 
 
-def test_draws_of_older_clients_are_ignored(solved):
+def test_draws_are_ignored_and_steps_name_every_contact_from_begin_to_end(solved):
     found, _ = solved
     assert solve_point(request() | {'draws': 16}).means == found.means
-
-
-def test_steps_go_from_begin_to_end_and_name_every_contact(solved):
     _, steps = solved
     fractions = [step['fraction'] for step in steps]
     assert fractions == sorted(fractions)

@@ -117,14 +117,11 @@ def test_without_numba_the_lookup_is_interpreted(monkeypatch):
     assert [bits(row) for row in found] == [bits(row) for row in expected]
 
 
-def test_a_lookup_leaves_what_it_does_not_judge():
+def test_a_lookup_leaves_what_it_does_not_judge_and_no_point_is_none():
     rows = as_array(Found(max_pressure=7.0))
     for speed in (50.0, math.nan):
         LOOK_UP(SURFACES[1].array_tables, speed, 1000.0, 311.0, rows[0])
         assert rows[0]['max_pressure'] == 7.0
         assert (rows[0]['validity'] == Validity.VALID) is not math.isnan(rows[0]['rcs'])
-
-
-def test_no_point_at_all():
     nothing = np.empty(0)
     assert not len(batch.look_up_many(SURFACES[0], nothing, nothing, nothing))

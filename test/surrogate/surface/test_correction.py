@@ -182,14 +182,22 @@ def test_provenance_and_hash():
     assert (one.corrections[0].speed, one.corrections[0].opposing_load) == first[:2]
 
 
-def test_a_cell_holds_the_newest_correction():
-    """A second solve in a cell replaces the first, as if that had never been."""
+def test_the_newest_solve_in_a_cell_or_beside_its_node_replaces_the_older():
+    """As if that had never been; else a step would be left on the face between two cells."""
     first, second = (62.8, 1000.0, 313.0), (62.9, 1001.0, 313.01)
     solved, newer = SimpleNamespace(rcs=0.2), SimpleNamespace(rcs=0.3)
     both = SHIPPED.with_correction(at(first), solved).with_correction(at(second), newer)
     alone = SHIPPED.with_correction(at(second), newer)
     assert both.sha256 == alone.sha256
     assert str(both.lookup(*first)) == str(alone.lookup(*first))
+    node = float(AXES['full'][2][3])
+    speed = amid(node)
+    older = FULL.with_correction(at((speed, 1234.0, node)), SimpleNamespace(rcs=0.2))
+    newer = older.with_correction(at((speed, 1234.0, node + 2.0)), SimpleNamespace(rcs=0.3))
+    alone = FULL.with_correction(at((speed, 1234.0, node + 2.0)), SimpleNamespace(rcs=0.3))
+    assert newer.sha256 == alone.sha256
+    below = (speed, 1234.0, node - 0.1)
+    assert str(newer.lookup(*below)) == str(FULL.lookup(*below))
 
 
 def amid(kelvin):
@@ -239,18 +247,6 @@ def test_a_point_on_a_node_of_temperature_corrects_both_sides(beside):
     assert above - here == pytest.approx(here - below, abs=1e-8)
     far = (speed, 1234.0, node + 0.6 * width)
     assert str(made.lookup(*far)) == str(FULL.lookup(*far))
-
-
-def test_a_newer_solve_beside_a_node_replaces_both_sides_of_the_older():
-    """Else a step would be left on the face between them."""
-    node = float(AXES['full'][2][3])
-    speed = amid(node)
-    older = FULL.with_correction(at((speed, 1234.0, node)), SimpleNamespace(rcs=0.2))
-    newer = older.with_correction(at((speed, 1234.0, node + 2.0)), SimpleNamespace(rcs=0.3))
-    alone = FULL.with_correction(at((speed, 1234.0, node + 2.0)), SimpleNamespace(rcs=0.3))
-    assert newer.sha256 == alone.sha256
-    below = (speed, 1234.0, node - 0.1)
-    assert str(newer.lookup(*below)) == str(FULL.lookup(*below))
 
 
 @pytest.mark.parametrize(

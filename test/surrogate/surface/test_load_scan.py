@@ -40,14 +40,11 @@ def test_the_scan_is_the_lookup(surface, speed, temperature):
     assert (loads[0], loads[-1]) == surface.load_range
 
 
-def test_the_loads_are_the_nodes_and_places_between():
+def test_loads_are_nodes_and_places_between_with_corrections_and_drag(surface_data):
     surface = SHIPPED[0]
     loads, _ = scanned(surface, 30.0, 313.15)
     assert (np.diff(loads) > 0).all()
     assert len(loads) == SPLITS * surface.cells[1] + 1
-
-
-def test_the_scan_knows_the_corrections():
     surface = SHIPPED[1]
     point = SimpleNamespace(speed=62.8, opposing_load=1020.0, temperature=313.15)
     torque = surface.lookup(62.8, 1020.0, 313.15).friction_torque
@@ -57,6 +54,12 @@ def test_the_scan_knows_the_corrections():
     _, torques = scanned(pulled, 62.8, 313.15)
     assert (torques != before).any()
     np.testing.assert_allclose(torques, looked_up(pulled, 62.8, 313.15), rtol=1e-12)
+    header = dict(surface_data.header)
+    screw = header['inputs']['screw'] | {'parasitic_torque': 0.1, 'parasitic_torque_rate': 1e-3}
+    header['inputs'] = header['inputs'] | {'screw': screw}
+    surface = Surface(replace(surface_data, header=header))
+    for made, drag in ((surface, (0.1, 1e-3)), (SHIPPED[0], (0.0, 0.0))):
+        assert (made.tables.parasitic_torque, made.tables.parasitic_torque_rate) == drag
 
 
 @pytest.mark.parametrize(
@@ -64,12 +67,3 @@ def test_the_scan_knows_the_corrections():
 )
 def test_outside_there_is_no_torque(speed, temperature):
     assert np.isnan(scanned(SHIPPED[0], speed, temperature)[1]).all()
-
-
-def test_the_drag_is_the_parasitic_part(surface_data):
-    header = dict(surface_data.header)
-    screw = header['inputs']['screw'] | {'parasitic_torque': 0.1, 'parasitic_torque_rate': 1e-3}
-    header['inputs'] = header['inputs'] | {'screw': screw}
-    surface = Surface(replace(surface_data, header=header))
-    for made, drag in ((surface, (0.1, 1e-3)), (SHIPPED[0], (0.0, 0.0))):
-        assert (made.tables.parasitic_torque, made.tables.parasitic_torque_rate) == drag

@@ -82,7 +82,9 @@ def test_the_zone_begins_where_rcs_falls_below_its_limit():
     assert zone_limits(SHIPPED, 1000.0, 353.15, (1.0, 200.0)) is None
 
 
-def test_differences_beyond_the_tolerances_exit_with_1(run, tmp_path, capsys):
+def test_differences_beyond_the_tolerances_and_answers_of_one_alone_are_told(
+    run, tmp_path, capsys
+):
     """The sentence says what, how much and what is allowed; a wider tolerance accepts it."""
     other = tmp_path / 'other.npz'
     write(other, scaled(DATA, friction_torque=1.02))
@@ -90,9 +92,6 @@ def test_differences_beyond_the_tolerances_exit_with_1(run, tmp_path, capsys):
     assert 'efficiency differs by 0.0' in capsys.readouterr().out
     words = ('--efficiency-tolerance', 0.02, '--zone-tolerance', 0.1)
     assert run(CLOSED_FORM, other, *words) == 0
-
-
-def test_an_answer_of_one_alone_is_a_difference(run, tmp_path, capsys):
     mask = DATA.mask.copy()
     mask[:, 5, :] = True
     write(tmp_path / 'holed.npz', replace(DATA, mask=mask))

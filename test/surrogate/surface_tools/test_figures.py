@@ -32,7 +32,7 @@ def titles(figure):
     return [axes.get_title() for axes in figure.axes if axes.get_title()]
 
 
-def test_a_slice_is_the_lookup(part):
+def test_a_slice_is_the_lookup_and_its_zone_classes_are_the_limits(part):
     """Load along the rows, speed in rev/min along the columns, both ends included."""
     j, i = 100, 120
     speed = part.speed[i] * np.pi / 30
@@ -40,9 +40,6 @@ def test_a_slice_is_the_lookup(part):
     assert part.fields['rcs'][j, i] == pytest.approx(found.rcs, rel=1e-9)
     assert part.fields['efficiency'][j, i] == pytest.approx(found.efficiency, rel=1e-9)
     assert np.isfinite(part.fields['rcs']).all()
-
-
-def test_zone_classes_are_the_limits(part):
     classes = figures.zone_classes(part)
     rcs, efficiency = part.fields['rcs'], part.fields['efficiency']
     judged = np.broadcast_to(np.abs(part.load)[:, None] >= part.light, rcs.shape)
