@@ -20,9 +20,11 @@ class FullSettings(SurfaceSettings):
 
     """
 
+    speed_nodes: int = 22
     load_cells: int = 6
     idle_halvings: int = 3
     unloaded_cells: int = 4
+    temperature_nodes: int = 5
     held_out: int = 24
     seed: int = 1
 
