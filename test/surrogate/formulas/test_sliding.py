@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sliding friction over an ellipse and elastic hysteresis, against closed forms."""
 
+from dataclasses import replace
 import math
 
 import numpy as np
 import pytest
 from surrogate.formulas.geometry import hertz, screw_contact
-from surrogate.formulas.sliding import ellipse_nodes, hysteresis_force
+from surrogate.formulas.lubricant import lubricant_state
+from surrogate.formulas.sliding import ellipse_nodes, hysteresis_force, sliding_friction
 
 
 @pytest.mark.parametrize('side', ['screw', 'nut'])
@@ -24,3 +26,20 @@ def test_hysteresis_is_the_work_on_the_front_half(screw, side):
     found = hysteresis_force(0.01, 27.6, float(ellipse.semi_axis_x), contact.radius_x)
     assert found == pytest.approx(lost, rel=1e-3)
     assert math.isclose(hysteresis_force(0.0, 27.6, 5e-5, 3e-3), 0.0)
+
+
+def test_a_limiting_shear_stress_bounds_the_oil_alone(screw, oil):
+    """A high limit changes no bit; a low one is nearly Coulomb friction."""
+
+    def friction(share, touching=0.0):
+        state = lubricant_state(replace(oil, limiting_shear_share=share), 313.15)
+        ellipse = hertz(screw_contact(screw, 'screw'), np.array([27.6]))
+        given = np.array([150e-9]), np.array([touching]), state, np.array([60.0])
+        return sliding_friction(screw, 'screw', ellipse, *given)
+
+    assert friction(0.2).torque.tobytes() == friction(None).torque.tobytes()
+    assert friction(0.02).torque < friction(None).torque
+    low = friction(0.01).friction_coefficient
+    assert 0.008 < low < 0.01  # the rim shears below the limit
+    mixed = friction(0.01, touching=0.5).friction_coefficient
+    assert mixed == pytest.approx(0.5 * low + 0.5 * 0.1, rel=1e-6)
