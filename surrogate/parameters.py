@@ -7,8 +7,9 @@ Temperatures are kelvin inside and degC on file.
 
 """
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 import math
+from typing import Any
 
 from surrogate.datasheet import block, Checked, count, DATA, find_sheet, quantity, read_sheet, text
 from surrogate.files import InputError
@@ -137,7 +138,9 @@ class Lubricant(Checked):
 
     `film_floor` [m] is the film below which a node counts as punctured, by default the 3 nm of a
     boundary film of an oil with anti-wear additives, with its lowest and highest likely value;
-    `film_factor` [-] is the share of the fully flooded film that starvation or grease leaves.
+    `film_factor` [-] is the share of the fully flooded film that starvation or grease leaves;
+    `limiting_shear_share` [-] the largest shear stress of the oil over the pressure, None without
+    such a limit.
 
     """
 
@@ -158,6 +161,7 @@ class Lubricant(Checked):
     film_floor_low: float = quantity('nm', 1e-9, 0.1, 100.0, default=1e-9)
     film_floor_high: float = quantity('nm', 1e-9, 0.1, 100.0, default=5e-9)
     film_factor: float = quantity('', 1.0, 0.05, 1.0, default=1.0)
+    limiting_shear_share: float | None = quantity('', 1.0, 0.01, 0.2, default=None)
 
     def __post_init__(self) -> None:
         """Check every range, that oil thins when warm, and that the range holds the reference."""
@@ -179,6 +183,10 @@ class Lubricant(Checked):
                 f'{self.minimum_temperature - ZERO_CELSIUS:g} to '
                 f'{self.maximum_temperature - ZERO_CELSIUS:g} degC (the range of the sheet)'
             )
+
+    def stated(self) -> dict[str, Any]:
+        """Return the values by name; an option that is absent leaves no trace."""
+        return {name: value for name, value in asdict(self).items() if value is not None}
 
     def _check_film_floor(self) -> None:
         slack = 1 + 1e-9  # the rounding of the conversion must not refuse the bound itself

@@ -265,7 +265,7 @@ def surface_header(
         'format': FORMAT,
         'format_version': FORMAT_VERSION,
         'tier': tier,
-        'inputs': {'screw': asdict(screw), 'lubricant': asdict(lubricant)},
+        'inputs': {'screw': asdict(screw), 'lubricant': lubricant.stated()},
         'settings': {
             name: list(value) if isinstance(value, tuple) else value
             for name, value in asdict(settings).items()

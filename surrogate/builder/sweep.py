@@ -199,7 +199,7 @@ def _inputs(item: Item) -> dict[str, Any]:
         'settings': tier.settings,
         'build': tier.build,
         'screw': asdict(item.screw),
-        'lubricant': asdict(item.lubricant),
+        'lubricant': item.lubricant.stated(),
         'ranges': {name: list(ends) for name, ends in item.ranges.items()},
     }
 

@@ -4,7 +4,7 @@
 Friction over a solved contact: Eyring where the film carries, boundary where it is punctured.
 
 The traction on a surface opposes its slip against the other. It is mu_a p on punctured nodes and
-tau0 asinh(eta(p) |slip| / (tau0 h)) elsewhere in the pressurised area.
+tau0 asinh(eta(p) |slip| / (tau0 h)) elsewhere in the pressurised area, up to the limit of the oil.
 
 """
 
@@ -15,7 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from surrogate.ehl import ContactLubricant, ContactSolution, punctured_nodes
 from surrogate.files import InputError
-from surrogate.formulas.lubricant import viscosity_roelands_1966
+from surrogate.formulas.lubricant import (
+    limiting_shear_stress_bair_winer_1979,
+    viscosity_roelands_1966,
+)
 
 Array = NDArray[np.float64]
 Film = Literal['local', 'central']
@@ -24,11 +27,12 @@ Film = Literal['local', 'central']
 @dataclass(frozen=True, kw_only=True, slots=True)
 class NodeStrengths:
     """
-    What makes the friction force of each node of a contact, boundary + eyring asinh(rate slip).
+    What makes the friction force of each node, boundary + min(eyring asinh(rate slip), limit).
 
     Places `x` along the entrainment, `y` across [m]; `boundary` [N], the friction force of
     punctured nodes, which slip does not change; `eyring` [N], Eyring stress times area of the
-    nodes that shear, and `rate` [s/m], eta(p)/(tau0 h) there. All arrays of one shape.
+    nodes that shear, and `rate` [s/m], eta(p)/(tau0 h) there; `limit` [N], the largest force of
+    the oil, infinite where it has none. All arrays of one shape.
 
     """
 
@@ -37,10 +41,11 @@ class NodeStrengths:
     boundary: Array
     eyring: Array
     rate: Array
+    limit: Array
 
     def sheared(self, speed: Array | float) -> Array:
         """Return the friction force of the oil [N] at each node at a slip `speed` [m/s]."""
-        return np.asarray(self.eyring * np.arcsinh(self.rate * speed))
+        return np.minimum(self.eyring * np.arcsinh(self.rate * speed), self.limit)
 
     def taken(self, nodes: slice | NDArray[np.bool_], weight: float = 1.0) -> 'NodeStrengths':
         """Return some of the nodes, each of which stands for `weight` of them [-]."""
@@ -50,6 +55,7 @@ class NodeStrengths:
             boundary=weight * self.boundary[nodes],
             eyring=weight * self.eyring[nodes],
             rate=self.rate[nodes],
+            limit=weight * self.limit[nodes],
         )
 
 
@@ -106,11 +112,16 @@ def node_strengths(
     wet = ~dry & (solution.film_pressure > 0) & (thickness > 0)
     viscosity = viscosity_of(solution.lubricant, solution.film_pressure)
     touching = dry.astype(float) if asperity_share is None else np.full(x.shape, asperity_share)
+    limit, share = np.full(x.shape, np.inf), solution.lubricant.limiting_shear_share
+    if share is not None:
+        largest = limiting_shear_stress_bair_winer_1979(solution.film_pressure, share)
+        limit = (1 - touching) * area * largest
     return NodeStrengths(
         x=x,
         y=y,
         boundary=touching * asperity_friction * solution.pressure * area,
         eyring=np.where(wet, (1 - touching) * stress * area, 0.0),
+        limit=limit,
         rate=np.divide(viscosity, stress * thickness, out=np.zeros_like(x), where=wet),
     )
 

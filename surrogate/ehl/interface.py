@@ -47,7 +47,8 @@ class ContactLubricant:
     Oil at the temperature of one contact.
 
     Ambient viscosity [Pa s], pressure-viscosity coefficient [1/Pa], Eyring stress [Pa]; `law` is
-    'roelands_dh' (Roelands viscosity, Dowson-Higginson density) or 'barus_incompressible'.
+    'roelands_dh' (Roelands viscosity, Dowson-Higginson density) or 'barus_incompressible'; largest
+    shear stress over the pressure [-], None without a limit.
 
     """
 
@@ -55,12 +56,15 @@ class ContactLubricant:
     pressure_viscosity: float
     eyring_stress: float = 5e6
     law: Law = 'roelands_dh'
+    limiting_shear_share: float | None = None
 
     def __post_init__(self) -> None:
         """Check the numbers."""
         _require('viscosity', self.viscosity, 'Pa s', 1e-4, 100.0)
         _require('pressure_viscosity', self.pressure_viscosity, '1/Pa', 1e-10, 1e-7)
         _require('eyring_stress', self.eyring_stress, 'Pa', 1e4, 1e9)
+        if self.limiting_shear_share is not None:
+            _require('limiting_shear_share', self.limiting_shear_share, '-', 0.0, 1.0)
         if self.law not in ('roelands_dh', 'barus_incompressible'):
             raise InputError(
                 f'law is {self.law!r}, allowed is roelands_dh or barus_incompressible'

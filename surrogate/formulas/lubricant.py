@@ -24,7 +24,8 @@ class LubricantState:
     """
     Oil at ambient pressure and one or many temperatures.
 
-    Viscosity [Pa s], pressure-viscosity coefficient [1/Pa], density [kg/m3], Eyring stress [Pa].
+    Viscosity [Pa s], pressure-viscosity coefficient [1/Pa], density [kg/m3], Eyring stress [Pa],
+    largest shear stress over the pressure [-], None without a limit.
 
     """
 
@@ -32,6 +33,7 @@ class LubricantState:
     pressure_viscosity: Array
     density: Array
     eyring_stress: float
+    limiting_shear_share: float | None = None
 
 
 def kinematic_viscosity_astm_d341(temperature: ArrayLike, at_40: float, at_100: float) -> Array:
@@ -84,6 +86,7 @@ def lubricant_state(lubricant: Lubricant, temperature: ArrayLike) -> LubricantSt
         pressure_viscosity=pressure_viscosity_gold_2001(lubricant.pressure_viscosity, ratio),
         density=density,
         eyring_stress=lubricant.eyring_stress,
+        limiting_shear_share=lubricant.limiting_shear_share,
     )
 
 
@@ -114,3 +117,13 @@ def shear_stress_eyring_1936(
     """
     newtonian = np.asarray(viscosity) * np.asarray(shear_rate)
     return np.asarray(eyring_stress * np.arcsinh(newtonian / eyring_stress))
+
+
+def limiting_shear_stress_bair_winer_1979(pressure: ArrayLike, share: float) -> Array:
+    """
+    Largest shear stress [Pa] that an oil bears under `pressure` [Pa].
+
+    tau_L = Lambda p with the `share` Lambda [-]: Bair, Winer, J. Lubr. Technol. 101 (1979) 258.
+
+    """
+    return np.asarray(share * np.asarray(pressure))

@@ -3,9 +3,9 @@
 """
 Sliding friction over a Hertzian ellipse with one film thickness, by slip power.
 
-The film part shears by Eyring's law under the local pressure, the asperity part by a boundary
-coefficient; both oppose the local slip. The power over the ellipse gives the torque, its mean the
-coefficient.
+The film part shears by Eyring's law under the local pressure, up to the limit of the oil, the
+asperity part by a boundary coefficient; both oppose the local slip. The power over the ellipse
+gives the torque, its mean the coefficient.
 
 """
 
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from surrogate.formulas.geometry import Hertz, hertz, screw_contact, Side
 from surrogate.formulas.kinematics import slip_arm
 from surrogate.formulas.lubricant import (
+    limiting_shear_stress_bair_winer_1979,
     LubricantState,
     shear_stress_eyring_1936,
     viscosity_roelands_1966,
@@ -99,6 +100,9 @@ def sliding_friction(
     thickness = np.broadcast_to(film[..., None], slip.shape)
     rate = np.divide(slip, thickness, out=np.zeros_like(slip), where=thickness > 0)
     sheared = shear_stress_eyring_1936(viscosity, rate, oil.eyring_stress)
+    if oil.limiting_shear_share is not None:
+        largest = limiting_shear_stress_bair_winer_1979(pressure, oil.limiting_shear_share)
+        sheared = np.minimum(sheared, largest)
     traction = (1 - share[..., None]) * sheared + share[
         ..., None
     ] * screw.roughness.asperity_friction * pressure

@@ -18,13 +18,14 @@ def sum_friction(
     boundary: Array,
     eyring: Array,
     rate: Array,
+    limit: Array,
     motion: Array,
     radius: float,
     deformed: float,
     slip_floor: float,
 ) -> tuple[Array, Array, Array, float]:
     """
-    Add up -f V/|V| over places, f = boundary + eyring asinh(rate |V|).
+    Add up -f V/|V| over places, f = boundary + min(eyring asinh(rate |V|), limit).
 
     Places [m], strengths as in `Traction`, motion against the raceway [m/s, rad/s], radius of the
     ball and Heathcote's [m]. Returns forces and moments (5), their derivatives by the motion (5,
@@ -45,8 +46,9 @@ def sum_friction(
             shear = rate[n] * speed
             root = math.sqrt(1 + shear * shear)
             # asinh of what is not negative: log1p stays exact for weak shear.
-            force += eyring[n] * math.log1p(shear + shear * shear / (1 + root))
-            slope = eyring[n] * rate[n] / root
+            sheared = eyring[n] * math.log1p(shear + shear * shear / (1 + root))
+            force += min(sheared, limit[n])
+            slope = eyring[n] * rate[n] / root if sheared < limit[n] else 0.0
         drag = force / speed
         bend = (slope - drag) / (speed * speed)
         power += drag * square

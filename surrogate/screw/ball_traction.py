@@ -55,11 +55,12 @@ class Traction(Protocol):
     def places(self, load: float) -> tuple[Array, Array]:
         """Return x along the entrainment and y across it [m] under a `load` [N]."""
 
-    def strengths(self, load: float) -> tuple[Array, Array, Array]:
+    def strengths(self, load: float) -> tuple[Array, Array, Array, Array]:
         """
-        Return what makes the friction force of each place, boundary + eyring asinh(rate slip).
+        Return what makes the friction of each place.
 
-        Boundary and Eyring force [N], rate [s/m].
+        Boundary and Eyring force [N], rate [s/m] and limit [N]: boundary + min(eyring asinh(rate
+        slip), limit).
 
         """
 
@@ -110,10 +111,10 @@ class CoulombTraction:
         size = math.cbrt(load)
         return size * self.x, size * self.y
 
-    def strengths(self, load: float) -> tuple[Array, Array, Array]:
+    def strengths(self, load: float) -> tuple[Array, Array, Array, Array]:
         """Return mu N [N] of each place under `load` [N], and no oil."""
         none = np.zeros_like(self.share)
-        return self.coefficient * load * self.share, none, none
+        return self.coefficient * load * self.share, none, none, none
 
     def sample(self) -> 'CoulombTraction':
         """Return itself: a quadrature has no place too many."""
@@ -143,10 +144,10 @@ class SolvedTraction:
         """Return the nodes x, y [m], the same under any `load` [N]."""
         return self.nodes.x, self.nodes.y
 
-    def strengths(self, load: float) -> tuple[Array, Array, Array]:
-        """Return mu_a p and tau0 times the area of each node, scaled to `load` [N], the rate."""
+    def strengths(self, load: float) -> tuple[Array, Array, Array, Array]:
+        """Return the strengths of each node, the forces scaled to `load` [N]."""
         scale, nodes = load / self.load, self.nodes
-        return scale * nodes.boundary, scale * nodes.eyring, nodes.rate
+        return scale * nodes.boundary, scale * nodes.eyring, nodes.rate, scale * nodes.limit
 
     def sample(self) -> 'SolvedTraction':
         """Return every `SAMPLE`-th node, each for as many; itself where nodes are few."""

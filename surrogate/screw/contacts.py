@@ -283,6 +283,7 @@ def oil_at(lubricant: Lubricant, temperature: float) -> ContactLubricant:
             viscosity=float(oil.viscosity),
             pressure_viscosity=float(oil.pressure_viscosity),
             eyring_stress=oil.eyring_stress,
+            limiting_shear_share=oil.limiting_shear_share,
         )
     except InputError as error:
         raise InputError(

@@ -80,6 +80,16 @@ def test_shipped_oils_have_their_viscosity_boundary_film_and_a_source(name):
     assert oil.film_factor == 1.0
 
 
+def test_an_oil_may_state_a_limiting_shear_stress():
+    """Its values have no trace of a limit that is absent: hashes of inputs stay."""
+    oil = load_lubricant('iso_vg_68')
+    assert oil.limiting_shear_share is None
+    assert 'limiting_shear_share' not in oil.stated()
+    limited = replace(oil, limiting_shear_share=0.07)
+    assert limited.stated() == oil.stated() | {'limiting_shear_share': 0.07}
+    assert lubricant_state(limited, 313.15).limiting_shear_share == 0.07
+
+
 MISTAKES = [
     ('lead_mm: 10.0\n', '', 'missing_lead_mm'),
     ('lead_mm: 10.0', 'lead_mm: 10.0\nfriction: 0.1', 'unknown_friction_name'),

@@ -42,7 +42,7 @@ def chain_inputs(
     """Return a chain: `load` [N] at least 0, `temperature` [K], falling `speeds` [rad/s]."""
     return {
         'screw': asdict(screw),
-        'lubricant': asdict(lubricant),
+        'lubricant': lubricant.stated(),
         'load': load,
         'temperature': temperature,
         'speeds': speeds,

@@ -95,6 +95,22 @@ def test_traction_is_that_of_each_node_by_the_laws(solved, film):
     assert found.asperity_coefficient == pytest.approx(boundary.sum() * area / 27.6, rel=1e-12)
 
 
+def test_a_limiting_shear_stress_bounds_the_oil_alone(solved):
+    """A high limit changes next to nothing, a low one makes Coulomb friction of the oil's part."""
+    free = contact_friction(solved, slip_x=0.02, asperity_share=0.2)
+
+    def limited(share):
+        oil = replace(solved.lubricant, limiting_shear_share=share)
+        found = contact_friction(replace(solved, lubricant=oil), slip_x=0.02, asperity_share=0.2)
+        assert found.asperity_coefficient == free.asperity_coefficient
+        return found
+
+    assert limited(1.0).coefficient == pytest.approx(free.coefficient, rel=1e-4)
+    assert limited(1e-4).film_coefficient == pytest.approx(0.8 * 1e-4, rel=1e-2)
+    assert limited(0.02).film_coefficient < free.film_coefficient
+    assert (limited(0.02).traction <= (0.8 * 0.02 + 0.2 * 0.1) * solved.pressure * 1.001).all()
+
+
 def test_dry_contact_has_the_boundary_coefficient(nominal, raceway):
     """At rest all load is on punctured nodes; a mixed contact lies between."""
     settings = Settings(nx=65, ny=65, domain=(-2.6, 1.4, 1.4), open_inlet=True)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sliding friction over an ellipse and elastic hysteresis, against closed forms."""
 
+from dataclasses import replace
 import math
 
 import numpy as np
@@ -42,3 +43,20 @@ def test_mean_sliding_is_the_loss_over_the_friction_of_a_dry_contact(screw, oil,
     lost = sliding_friction(screw, side, ellipse, film, share, state, speed).torque * speed
     friction = screw.roughness.asperity_friction * 27.6
     assert mean_sliding_speed(screw, side, 27.6, -60.0) == pytest.approx(lost / friction, rel=1e-3)
+
+
+def test_a_limiting_shear_stress_bounds_the_oil_alone(screw, oil):
+    """A high limit changes no bit; a low one is nearly Coulomb friction."""
+
+    def friction(share, touching=0.0):
+        state = lubricant_state(replace(oil, limiting_shear_share=share), 313.15)
+        ellipse = hertz(screw_contact(screw, 'screw'), np.array([27.6]))
+        given = np.array([150e-9]), np.array([touching]), state, np.array([60.0])
+        return sliding_friction(screw, 'screw', ellipse, *given)
+
+    assert friction(0.2).torque.tobytes() == friction(None).torque.tobytes()
+    assert friction(0.02).torque < friction(None).torque
+    low = friction(0.01).friction_coefficient
+    assert 0.008 < low < 0.01  # the rim shears below the limit
+    mixed = friction(0.01, touching=0.5).friction_coefficient
+    assert mixed == pytest.approx(0.5 * low + 0.5 * 0.1, rel=1e-6)

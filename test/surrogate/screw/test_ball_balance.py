@@ -262,6 +262,7 @@ def test_a_solved_contact_scales_with_its_load(screw):
         boundary=np.array([0.0, 0.3, 0.0]),
         eyring=np.array([0.2, 0.0, 0.4]),
         rate=np.array([300.0, 0.0, 50.0]),
+        limit=np.full(3, np.inf),
     )
     law = SolvedTraction(nodes=nodes, load=20.0)
     for given_load in ({'normal_force': 21.0}, {'axial_force': 15.0}):
