@@ -100,7 +100,7 @@ def _crossing(over: Array, factors: Array, none: float) -> float:
     if last == len(over) - 1:
         return none
     share = over[last] / (over[last] - over[last + 1])
-    low, high = np.log(factors[last : last + 2])
+    low, high = np.log(factors[[last, last + 1]])
     return float(np.exp(low + share * (high - low)))
 
 
