@@ -7,7 +7,7 @@ from typing import Any
 
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.units import RPM
-from surrogate.validation.numbers import FAST, torque_table, ValidationCase
+from surrogate.validation.ours import FAST, torque_table, ValidationCase
 from surrogate.validation.sources import PUBLISHED, PublishedValue, WITHOUT_NUMBER
 
 

@@ -11,8 +11,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from surrogate.validation import numbers
-from surrogate.validation.numbers import ValidationCase
+from surrogate.validation import ours
+from surrogate.validation.ours import ValidationCase
 
 Verdict = Literal['agrees', 'differs', 'not comparable']
 
@@ -55,7 +55,7 @@ PUBLISHED = (
         low=1.0,
         high=1.0,
         tolerance=0.15,
-        ours=numbers.waves_over_curve,
+        ours=ours.waves_over_curve,
         reason='the curve is a fit that joins its ends; ours changes by 1 % on finer grids',
     ),
     PublishedValue(
@@ -65,7 +65,7 @@ PUBLISHED = (
         low=1.0,
         high=1.0,
         tolerance=0.05,
-        ours=numbers.short_wave,
+        ours=ours.short_wave,
         reason='a quarter of the half length long; shorter ones lose less',
     ),
     PublishedValue(
@@ -74,7 +74,7 @@ PUBLISHED = (
         read='abstract',
         low=0.6,
         high=1.2,
-        ours=numbers.film_ratio_at_onset,
+        ours=ours.film_ratio_at_onset,
         reason='RCS 0.01 of a new raceway; the law of contact is fitted to marches, not to this',
     ),
     PublishedValue(
@@ -83,7 +83,7 @@ PUBLISHED = (
         read='abstract: can be more than 10 to 15 %',
         low=0.1,
         high=1.0,
-        ours=numbers.load_on_film,
+        ours=ours.load_on_film,
         reason='a quarter of the onset speed and slower, where no strip was marched; the law lets '
         'the share of the film fall with the speed',
     ),
@@ -94,7 +94,7 @@ PUBLISHED = (
         low=0.1,
         high=0.1,
         tolerance=0.1,
-        ours=numbers.run_in_speeds,
+        ours=ours.run_in_speeds,
         reason='ours over 2 to 5 GPa, the assumed range of the pressure that cuts summits; theirs '
         'slides much and wears mildly',
     ),
@@ -104,7 +104,7 @@ PUBLISHED = (
         read='abstract: up to 17 %',
         low=0.0,
         high=0.17,
-        ours=numbers.run_in_height,
+        ours=ours.run_in_height,
         reason='cut at 3 GPa',
     ),
     PublishedValue(
@@ -113,7 +113,7 @@ PUBLISHED = (
         read='abstract: 1, without the formula of f',
         low=1.0,
         high=1.0,
-        ours=numbers.film_parameter_at_onset,
+        ours=ours.film_parameter_at_onset,
         comparable=False,
         reason='ours for f of 0 and 1, new raceway: the onset agrees if f is small, and lies at '
         'thicker films if not; Spk of tiles lacks the waves that are longer than they are',
@@ -125,7 +125,7 @@ PUBLISHED = (
         low=1.0,
         high=1.0,
         tolerance=0.1,
-        ours=numbers.rolling_over_formula,
+        ours=ours.rolling_over_formula,
         reason='both isothermal; ours with oil 1.4 semi-axes wide and the meniscus at 1 mm, and '
         'with other widths and menisci it is another',
     ),
@@ -136,7 +136,7 @@ PUBLISHED = (
         low=1.0,
         high=1.0,
         tolerance=0.1,
-        ours=numbers.rough_rolling_over_formula,
+        ours=ours.rough_rolling_over_formula,
         reason='the formula is that of smooth surfaces; ripples that roll through add the rest, '
         'by the law that is fitted to marches',
     ),
@@ -147,7 +147,7 @@ PUBLISHED = (
         low=0.16,
         high=0.47,
         unit='N m',
-        ours=numbers.drag_torque,
+        ours=ours.drag_torque,
         reason='ours are the contacts alone; wipers, recirculation and balls against balls are '
         'the parasitic torque, to be identified',
     ),

@@ -20,7 +20,8 @@ def test_the_document_holds_the_tables_of_the_command(record):
     for table in validation_page(record).split('\n\n'):
         head = table.splitlines()[0]
         assert text.count(head) == 1
-        kept = text[text.index(head) :].split('\n\n')[0]
+        first = text.index(head)
+        kept = text[first:].split('\n\n')[0]
         assert NUMBER.sub('#', kept) == NUMBER.sub('#', table)
         numbers = [[float(one) for one in NUMBER.findall(part)] for part in (kept, table)]
         assert numbers[0] == pytest.approx(numbers[1], rel=0.03, abs=0.011)

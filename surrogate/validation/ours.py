@@ -86,7 +86,7 @@ class ValidationCase:
 
     @cached_property
     def load(self) -> float:
-        """Normal force under preload [N]."""
+        """Return the normal force under preload [N]."""
         return float(normal_force(self.screw, self.screw.preload))
 
     def raceway(self, state: str) -> Screw:
