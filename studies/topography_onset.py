@@ -3,9 +3,11 @@
 """
 Marched onsets of contact beside those that the topography tells, and their scatter.
 
-Usage: python studies/topography_onset.py [--march NAME]. Reads results/asperity_marches.csv, in
-which each row is a strip whose tile was marched under a falling speed, and draws the picture of
-docs/theory/running_in.md. With --march it marches one row again (one to ten minutes).
+Usage: python studies/topography_onset.py [--march NAME] [--benchmark].
+
+Reads results/asperity_marches.csv, in which each row is a strip whose tile was marched under a
+falling speed, and draws the picture of docs/theory/running_in.md. With --march it marches one row
+again (one to ten minutes), with --benchmark it writes what others need to solve each row.
 
 """
 
@@ -39,6 +41,9 @@ if TYPE_CHECKING:
 
 RESULTS = Path('studies/results/asperity_marches.csv')
 PICTURE = Path('docs/pictures/topography_onset.png')
+BENCHMARK = Path('studies/benchmark')
+HEIGHT_UNIT = 2e-11
+"""Unit of the heights of a benchmark, whole numbers of 16 bits [m]."""
 BIASED = NODE_FACTOR * LAG_FACTOR
 """Onset that the law tells over that of marches on 5 x 4 nodes under a falling speed [-]."""
 ALONG, ACROSS, TRANSITS, TURN = 5.0, 4.0, 12.0, 2.0
@@ -143,6 +148,48 @@ def march(one: Strip) -> None:
     print(f'{ramp.status.value} {ramp.steps} steps, {ramp.wall_time:.0f} s')
 
 
+def benchmark(rows: list[dict[str, str]]) -> None:
+    """Write the topography of each row, and a table of its contact with what was marched."""
+    (BENCHMARK / 'topographies').mkdir(parents=True, exist_ok=True)
+    table = [benchmark_row(row, strip_of(row)) for row in rows]
+    with (BENCHMARK / 'strips.csv').open('w', encoding='utf-8', newline='') as file:
+        writer = csv.DictWriter(file, list(table[0]), lineterminator='\n')
+        writer.writeheader()
+        writer.writerows(table)
+
+
+def benchmark_row(row: dict[str, str], one: Strip) -> dict[str, str]:
+    """Write one topography; return its contact and its results in SI units."""
+    tile, line = one.tile, one.strip
+    np.savez_compressed(
+        BENCHMARK / 'topographies' / f'{one.name}.npz',
+        heights=np.rint(tile.heights / HEIGHT_UNIT).astype(np.int16),
+        unit_m=HEIGHT_UNIT,
+        length_m=tile.length,
+        width_m=tile.width,
+    )
+    numbers = {
+        'radius_m': line.radius,
+        'reduced_modulus_Pa': line.reduced_modulus,
+        'hertz_pressure_Pa': line.max_pressure,
+        'half_length_m': line.semi_axis,
+        'viscosity_Pa_s': one.oil.viscosity,
+        'pressure_viscosity_1_Pa': one.oil.pressure_viscosity,
+        'film_floor_m': one.film_floor,
+        'shortest_wave_m': one.shortest,
+        'rms_height_m': tile.heights.std(),
+        'onset_speed_m_s': one.onset,
+        'onset_film_m': 1e-9 * float(row['film_nm']),
+    }
+    marched = ('rcs_half', 'rcs_quarter', 'loss_onset', 'loss_half')
+    given = {'strip': one.name, 'role': row['role'], 'cut_GPa': row['cut_GPa']}
+    return (
+        given
+        | {name: f'{value:.6g}' for name, value in numbers.items()}
+        | {name: row[name] for name in marched}
+    )
+
+
 def picture(told: np.ndarray, marched: np.ndarray, other: np.ndarray) -> 'Figure':
     """Return told over marched onsets [m/s]; `other` are those of other draws than the first."""
     figure = new_figure(5.6, 5.0)
@@ -167,11 +214,15 @@ def main() -> None:
     """Compare all rows of the table, or march one."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--march', metavar='NAME')
+    parser.add_argument('--benchmark', action='store_true')
     args = parser.parse_args()
     with RESULTS.open(encoding='utf-8', newline='') as file:
         rows = list(csv.DictReader(file))
     if args.march:
         march(strip_of(next(row for row in rows if row['march'] == args.march)))
+        return
+    if args.benchmark:
+        benchmark(rows)
         return
     strips = [strip_of(row) for row in rows]
     told, marched = (np.array([getattr(one, key) for one in strips]) for key in ('told', 'onset'))

@@ -14,6 +14,7 @@ from surrogate.commands.onset import add_onset_command
 from surrogate.commands.point import add_point_command
 from surrogate.commands.surface import add_surface_command
 from surrogate.commands.sweep import add_workers
+from surrogate.commands.validate import add_validate_command
 
 __all__ = ['add_commands', 'add_workers', 'Parser']
 
@@ -40,4 +41,5 @@ def add_commands(subparsers: Any, read_bag: BagReader | None = None) -> None:
     add_contact_command(subparsers)
     add_identify_command(subparsers, read_bag)
     add_figures_command(subparsers)
+    add_validate_command(subparsers)
     add_surface_command(subparsers)

@@ -72,6 +72,7 @@ SLOW = (
     'surrogate/tasks/test_spawned.py',
     'surrogate/tasks/test_store.py',
     'surrogate/test_cli.py',
+    'surrogate/validation/test_page.py',
     'test_conftest.py',
     'test_interfaces.py',
     'test_linters.py',

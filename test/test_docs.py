@@ -22,6 +22,7 @@ PAGES = [
     *sorted(DOCS.rglob('*.md')),
     ROOT / 'bags' / 'README.md',
     ROOT / 'studies' / 'README.md',
+    ROOT / 'studies' / 'benchmark' / 'README.md',
 ]
 SOURCES = [
     path

@@ -47,7 +47,7 @@ OFFLINE_FLOORS = (
     ('asperities',),
     ('catalogue', 'contact', 'screw'),
     ('builder',),
-    ('surface_tools', 'identify', 'paper', 'on_demand'),
+    ('surface_tools', 'identify', 'paper', 'on_demand', 'validation'),
     ('commands',),
     ('cli',),
 )

@@ -103,7 +103,7 @@ def amplitude_reduction_venner_1997(
     Return the deformed over the undeformed amplitude of a wave that rolls through a line [-].
 
     1/(1 + 0.125 n + 0.04 n^2), n = (lambda/b) M1^(3/4)/L^(1/2), ridges across the track, pure
-    rolling, small amplitudes: Venner, Couhier, Lubrecht, Greenwood, Leeds-Lyon 32 (1997) 259.
+    rolling, small amplitudes: Venner, Couhier, Lubrecht, Greenwood, Tribol. Ser. 32 (1997) 103.
     Wavelength [m], half width of the Hertz zone [m], M1 and L as `moes_line` has them [-].
 
     """

@@ -1,0 +1,290 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Our numbers where published ones stand, from the functions that solve points and surfaces.
+
+All are those of the nominal screw with ISO VG 68 at the temperature of its sheet, without axial
+load.
+
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.asperities.law import law_of
+from surrogate.asperities.running_in import running_tiles
+from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
+from surrogate.ehl.moving import march_strip, MarchSettings, strip_at
+from surrogate.formulas.film import (
+    central_film_hamrock_dowson_1977,
+    Groups,
+    groups,
+    minimum_film_hamrock_dowson_1977,
+    rolling_force_biboulet_houpert_2010,
+)
+from surrogate.formulas.geometry import Contact, screw_contact
+from surrogate.formulas.kinematics import no_slip_rates
+from surrogate.formulas.line import (
+    amplitude_reduction_venner_1997,
+    central_film_line,
+    line_at,
+    moes_line,
+)
+from surrogate.formulas.load_sharing import normal_force
+from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.screw.contacts import oil_at, ScrewSettings
+from surrogate.screw.onset import onset_over_pressure, onset_point, run_in_range, with_raceway
+from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
+from surrogate.units import RPM
+
+Array = NDArray[np.float64]
+WAVES = (0.25, 0.5, 1.0)
+"""Lengths of the waves that are marched, over the half length of the contact [-]."""
+WAVE_SPEED, WAVE_HEIGHT = 0.1, 0.1
+"""Entrainment speed of those marches [m/s], amplitude of the waves over the film [-]."""
+LOADS, SPEEDS = (5.0, 27.6, 100.0), (100.0, 600.0, 1500.0)
+"""Normal forces [N] and screw speeds [rev/min] at which rolling forces are compared."""
+WIDTHS = (1.3, 2.0, 3.0, 6.0)
+"""Half widths of the oil across the track over the semi-axis [-]; the last fills the groove."""
+FAST, SLOW = 600.0, 100.0
+"""Screw speeds at which torques are compared [rev/min]."""
+THIN_FILMS = (0.05, 0.1)
+"""Film ratios at which the share of the load on the film is compared [-]."""
+NEWTONIAN = 1e8
+"""Eyring stress of an oil that does not thin before it reaches its limiting stress [Pa]."""
+PRODUCTION = Settings(error_estimate=False)
+CORE = 0.4
+"""Share of the material ratio curve that the secant of the core spans, ISO 25178-2 [-]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ValidationCase:
+    """The screw and the oil that published numbers are compared on."""
+
+    screw: Screw
+    lubricant: Lubricant
+
+    @property
+    def temperature(self) -> float:
+        """Temperature of the oil [K]."""
+        return self.lubricant.reference_temperature
+
+    @cached_property
+    def oil(self) -> ContactLubricant:
+        """Return the oil of a contact."""
+        return oil_at(self.lubricant, self.temperature)
+
+    @property
+    def contact(self) -> Contact:
+        """Return the contact of the ball with the screw."""
+        return screw_contact(self.screw, 'screw')
+
+    @cached_property
+    def load(self) -> float:
+        """Return the normal force under preload [N]."""
+        return float(normal_force(self.screw, self.screw.preload))
+
+    def raceway(self, state: str) -> Screw:
+        """Return the screw with its raceway new or run in."""
+        return with_raceway(self.screw, state=state)
+
+    def onset(self, state: str) -> Mapping[str, float]:
+        """Return where contact begins, SI units."""
+        return onset_point(self.raceway(state), self.lubricant, 0.0, self.temperature)
+
+    def point(self, rpm: float) -> OperatingPoint:
+        """Return the point at a speed [rev/min]."""
+        return OperatingPoint(speed=rpm * RPM, load=0.0, temperature=self.temperature)
+
+    @cached_property
+    def solved(self) -> ScrewSolution:
+        """Return the screw at the faster speed."""
+        return solve_screw(self.screw, self.lubricant, self.point(FAST))
+
+    @cached_property
+    def rolling(self) -> list[dict[str, float]]:
+        """Return rolling forces over load and speed beside the formula, SI units."""
+        return [self._rolling(load, rpm) for load in LOADS for rpm in SPEEDS]
+
+    @property
+    def rolling_over_width(self) -> dict[float, float]:
+        """Return rolling forces over that of the formula by the width of the oil [-]."""
+        found = [self._rolling(self.load, FAST, wide(width)) for width in WIDTHS]
+        return {
+            width: one['smooth_over_formula'] for width, one in zip(WIDTHS, found, strict=True)
+        }
+
+    def _rolling(
+        self, load: float, rpm: float, settings: Settings = PRODUCTION
+    ) -> dict[str, float]:
+        """Return the rolling force at a normal force [N] and a screw speed [rev/min]."""
+        speed = no_slip_rates(self.screw).entrainment * rpm * RPM
+        condition = Condition(load=load, entrainment_speed=speed)
+        place = self.contact, condition, self.oil, self.lubricant.film_floor
+        found = solve_contact(self.contact, self.oil, condition, settings=settings)
+        g = self.groups(load, speed)
+        formula = float(rolling_force_biboulet_houpert_2010(self.contact, g))
+        ratio = found.whole_rolling_force / formula
+        return {
+            'load_N': load,
+            'speed_rad_s': rpm * RPM,
+            'moes_load': float(g.moes_load),
+            'domain_over_formula': found.rolling_force / formula,
+            'smooth_over_formula': ratio,
+            'rough_over_formula': law_of(self.screw).contact('screw', *place).loss_factor * ratio,
+        }
+
+    def groups(self, load: float, speed: float) -> Groups:
+        """Return the groups of the contact at a normal force [N] and an entrainment [m/s]."""
+        oil = self.oil
+        return groups(self.contact, load, speed, oil.viscosity, oil.pressure_viscosity)
+
+    @cached_property
+    def waves(self) -> list[tuple[float, float]]:
+        """Return what is left of waves by pure rolling, and by the published curve [-]."""
+        return [self._wave(length) for length in WAVES]
+
+    def _wave(self, length: float) -> tuple[float, float]:
+        """Return the same for one wave, its length over the half length of the contact [-]."""
+        strip = strip_at(self.contact, self.load, 0.0, 1e-5, 4)
+        given = strip.line, WAVE_SPEED, self.oil.viscosity, self.oil.pressure_viscosity
+        height = WAVE_HEIGHT * float(central_film_line(*given))
+        number = 2 * math.pi / (length * strip.semi_axis)
+        march = march_strip(
+            strip,
+            self.oil,
+            WAVE_SPEED,
+            lambda x, y: height * np.cos(number * x) + 0 * y,
+            transits=2.0,
+            settings=MarchSettings(nx=129, places=1, film_floor=1e-10),
+        )
+        curve = amplitude_reduction_venner_1997(length, 1.0, *moes_line(*given))
+        return math.sqrt(2) * float(march.centre_films.std()) / height, float(curve)
+
+
+def wide(width: float) -> Settings:
+    """Return how to solve a contact with oil far in front of it and so wide, semi-axes [-]."""
+    domain = (-16.0, 1.5, width)
+    return replace(PRODUCTION, nx=601, ny=129, domain=domain, open_inlet=True)
+
+
+def waves_over_curve(case: ValidationCase) -> list[float]:
+    """Return the amplitudes that are left over those of the published curve [-]."""
+    return [found / curve for found, curve in case.waves]
+
+
+def short_wave(case: ValidationCase) -> list[float]:
+    """Return what is left of the shortest wave [-]."""
+    return [case.waves[0][0]]
+
+
+def film_ratio_at_onset(case: ValidationCase) -> list[float]:
+    """Return the film ratio at the onset of a new raceway [-]."""
+    return [case.onset('new')['central_film_m'] / case.screw.composite_rms]
+
+
+def load_on_film(case: ValidationCase) -> list[float]:
+    """Return the shares of the load that thin films carry [-]."""
+    speeds = np.geomspace(1e-4, 1.0, 200)
+    line = line_at(case.contact, case.load, 0.0)
+    film = central_film_line(line, speeds, case.oil.viscosity, case.oil.pressure_viscosity)
+    wanted = np.log(np.array(THIN_FILMS) * case.screw.composite_rms)
+    speed = np.exp(np.interp(wanted, np.log(film), np.log(speeds)))
+    place = case.contact, case.load, case.oil, case.lubricant.film_floor
+    return (1 - law_of(case.raceway('new')).touching('screw', *place, speed)[1]).tolist()
+
+
+def run_in_speeds(case: ValidationCase) -> list[float]:
+    """Return the onset after running in over that of a new raceway, over its pressures [-]."""
+    pressures = run_in_range(case.screw)
+    place = case.lubricant, 0.0, case.temperature
+    found = onset_over_pressure(case.raceway('new'), *place, pressures)
+    return [speed / case.onset('new')['speed_rad_s'] for speed in found]
+
+
+def run_in_height(case: ValidationCase) -> list[float]:
+    """Return by which share running in lowers the rms height of the tiles [-]."""
+    new, worn = (
+        np.mean([tile.heights.std() for tile in running_tiles(case.raceway(state), 'screw')])
+        for state in ('new', 'run_in')
+    )
+    return [float(1 - worn / new)]
+
+
+def film_parameter_at_onset(case: ValidationCase) -> list[float]:
+    """Return (h_m + f h_c)/Spk at the onset of a new raceway for f of 0 and 1 [-]."""
+    g = case.groups(case.load, case.onset('new')['entrainment_speed_m_s'])
+    films = [
+        float(formula(case.contact, g))
+        for formula in (minimum_film_hamrock_dowson_1977, central_film_hamrock_dowson_1977)
+    ]
+    tiles = running_tiles(case.raceway('new'), 'screw')
+    peaks = float(np.mean([reduced_peak_height(tile.heights) for tile in tiles]))
+    return [films[0] / peaks, sum(films) / peaks]
+
+
+def reduced_peak_height(heights: Array) -> float:
+    """
+    Return Spk [m] of heights [m]: ISO 25178-2, by the secant of the core with the least slope.
+
+    The summits above the core as a triangle of equal area.
+
+    """
+    curve = np.sort(heights, axis=None)[::-1]
+    span = round(CORE * curve.size)
+    drops = curve[: curve.size - span] - curve[span:]
+    first = int(drops.argmin())
+    top = curve[first] + first / span * drops[first]
+    above = curve[curve > top] - top
+    return float(2 * above.mean()) if above.size else 0.0
+
+
+def rolling_over_formula(case: ValidationCase) -> list[float]:
+    """Return rolling forces of smooth contacts over those of the formula, not light ones [-]."""
+    return [one['smooth_over_formula'] for one in case.rolling if one['load_N'] > LOADS[0]]
+
+
+def rough_rolling_over_formula(case: ValidationCase) -> list[float]:
+    """Return the same for rolling forces with roughness [-]."""
+    return [one['rough_over_formula'] for one in case.rolling if one['load_N'] > LOADS[0]]
+
+
+def drag_torque(case: ValidationCase) -> list[float]:
+    """Return the friction torque of the contacts at the slower speed [N m]."""
+    return [solve_screw(case.screw, case.lubricant, case.point(SLOW)).friction_torque]
+
+
+def torque_table(case: ValidationCase) -> dict[str, float]:
+    """Return the friction torque at the faster speed under other laws and inlets [N m]."""
+    given, point = ScrewSettings(), case.point(FAST)
+    oils: dict[str, dict[str, Any]] = {
+        'Eyring stress 5 MPa, no limit': {},
+        'the same, limiting shear stress 0.08 p': {'limiting_shear_share': 0.08},
+        'the same, limiting shear stress 0.05 p': {'limiting_shear_share': 0.05},
+        'Eyring stress 2 MPa': {'eyring_stress': 2e6},
+        'Eyring stress 10 MPa': {'eyring_stress': 1e7},
+        'Newtonian up to 0.05 p': {'eyring_stress': NEWTONIAN, 'limiting_shear_share': 0.05},
+        'Newtonian up to 0.08 p': {'eyring_stress': NEWTONIAN, 'limiting_shear_share': 0.08},
+    }
+    inlets = {
+        f'meniscus at {length} mm': replace(
+            given, smooth=replace(given.smooth, meniscus_length=1e-3 * length)
+        )
+        for length in (0.3, 3.0)
+    } | {
+        'oil across the whole groove': replace(given, smooth=wide(WIDTHS[-1])),
+        'inlet heating': replace(given, inlet_heating=True),
+    }
+    found = {
+        name: rebalance_screw(case.screw, replace(case.lubricant, **oil), point, case.solved)
+        for name, oil in oils.items()
+    } | {
+        name: solve_screw(case.screw, case.lubricant, point, settings=settings)
+        for name, settings in inlets.items()
+    }
+    return {name: solution.friction_torque for name, solution in found.items()}
