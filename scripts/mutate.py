@@ -44,9 +44,14 @@ COVERED = {
     'surrogate/screw/contacts.py': 'solve full_record',
     'surrogate/screw/nut.py': 'solve full_record',
     'surrogate/screw/solve.py': 'full_record',
+    'surrogate/screw/uncertain_inputs.py': 'sensitivity',
 }
 """Tests of a file beside the one that mirrors it, in the same folder; quick ones first."""
-PICTURES = ('surrogate/screw/figures.py', 'surrogate/screw/onset_figure.py')
+PICTURES = (
+    'surrogate/screw/figures.py',
+    'surrogate/screw/onset_figure.py',
+    'surrogate/screw/sensitivity_figure.py',
+)
 KERNELS = 'surrogate/screw/ball_sums.py'
 """What is compiled wherever it runs, and so is only changed with the compiler off."""
 COMPILING = (

@@ -83,4 +83,5 @@ def raceway_of(given: CatalogueScrew) -> dict[str, Noted]:
         'scale_ratio': typical(1.5, '1.2 to 2: generator of waves'),
         'ridges': typical(10, '5 to 20: generator of waves'),
         'asperity_friction': typical(0.1, '0.08 to 0.12: mineral oil on steel'),
+        'onset_factor': typical(1.0, '1 until ballscrew identify --onset gives it'),
     }

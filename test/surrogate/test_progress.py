@@ -10,6 +10,8 @@ from surrogate.progress import bar, Progress
 
 
 class Terminal(io.StringIO):
+    """A stream that says that it is a terminal."""
+
     def isatty(self):
         return True
 

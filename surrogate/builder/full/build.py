@@ -17,7 +17,7 @@ from surrogate.builder.closed_form import check_ranges, check_rough, solve_grid,
 from surrogate.builder.full.chain import chain_inputs, solved_chain
 from surrogate.builder.full.held_out import cell_errors, held_out_points, HeldOut, judged
 from surrogate.builder.full.nodes import Nodes, surface_nodes
-from surrogate.builder.full.ratios import ratios_at, Run, solve_ratios, solved_grid
+from surrogate.builder.full.ratios import ratios_at, Run, solve_ratios, solved_grid, with_floor
 from surrogate.builder.full.settings import FullSettings
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.sensitivity import surface_bands
@@ -60,7 +60,9 @@ def _surface(
     axes = nodes.s, nodes.load, nodes.temperature
     found = solve_grid(screw, lubricant, *axes, nodes.log_onset)
     deviation = rcs_deviation(nodes.s, found['rcs'], law_of(screw).deviation)
-    fields = {name: found[name] * ratios.get(name, 1.0) for name in FIELDS}
+    formulas = with_floor({name: found[name] for name in FIELDS}, screw, lubricant)
+    solved = {name: values * ratios.get(name, 1.0) for name, values in formulas.items()}
+    fields = with_floor(solved, screw, lubricant)
     mask = failed | ~np.all([np.isfinite(values) for values in fields.values()], axis=0)
     for values in (*fields.values(), deviation):
         values[mask] = np.nan

@@ -41,6 +41,7 @@ TEMPERATURES = 3
 """Number of solved temperatures."""
 SENSES = ('opposing', 'assisting')
 """Load against the motion, and with it."""
+FILMS = 'central_film', 'minimum_film'
 NEXT_TO_A_FAILURE = 1e-9
 """Interpolated share of failed points above which a node has one beside it [-]."""
 Results = Mapping[str, Mapping[str, Any] | None]
@@ -102,20 +103,30 @@ def solve_ratios(
     NaN where a point did not converge. Raises InputError if none did.
 
     """
-    formulas = closed_form.solve(
+    found = closed_form.solve(
         screw, lubricant, grid.speeds[:, None, None], grid.loads[:, None], grid.temperature
     )
+    formulas = with_floor({name: getattr(found, name) for name in CORRECTED}, screw, lubricant)
     shape = (len(SENSES), len(grid.speeds), len(grid.loads), len(grid.temperature))
     logs = {name: np.full(shape, np.nan) for name in CORRECTED}
     for (j, k), chain in _solved_chains(screw, lubricant, grid, run):
         for sense, points in enumerate((chain.opposing, chain.assisting)):
             for i, point in enumerate(reversed(points)):
                 for name in CORRECTED if point.converged else ():
-                    ratio = getattr(point, name) / getattr(formulas, name)[i, j, k]
+                    ratio = getattr(point, name) / formulas[name][i, j, k]
                     logs[name][sense, i, j, k] = math.log(ratio)
     if np.isnan(logs['friction_torque']).all():
         raise InputError('screw: no point of the surface converged, see the reasons above')
     return logs
+
+
+def with_floor(
+    fields: Mapping[str, Array], screw: Screw, lubricant: Lubricant
+) -> dict[str, Array]:
+    """Return fields of formulas whose films end at the film floor, as those of solves do."""
+    floors = dict.fromkeys(FILMS, lubricant.film_floor)
+    floors['film_ratio'] = lubricant.film_floor / screw.composite_rms
+    return {name: np.maximum(values, floors.get(name, -np.inf)) for name, values in fields.items()}
 
 
 def _solved_chains(

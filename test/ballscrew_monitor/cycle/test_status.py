@@ -88,6 +88,8 @@ def test_progress(part, left, expected):
 
 
 class Terminal(io.StringIO):
+    """A stream that says it is a terminal."""
+
     def isatty(self):
         return True
 

@@ -17,6 +17,8 @@ LOAD = int(Source.LOAD)
 
 
 class Input:
+    """The load of one axis."""
+
     def __init__(self, timeout=10, max_lag=10**9, configured=1):
         self.memory = Memory()
         self.settings = Settings(timeout=[timeout] * INPUTS, max_lag=max_lag)

@@ -54,6 +54,8 @@ class Source:
 
 
 class Listener:
+    """What the node says."""
+
     def __init__(self, node):
         self.states = node.states()
         self._node = node

@@ -33,6 +33,8 @@ SOLVING = 'contact'  # a word of the stages of a solve
 
 
 class Goal:
+    """A goal that was sent, and what has come back."""
+
     def __init__(self, node, client, request):
         self._node = node
         self.feedback = []
@@ -67,6 +69,8 @@ class Goal:
 
 
 class Solves:
+    """What asks the node for solves."""
+
     def __init__(self, node):
         self._node = node
         # Room for answers to as many goals as a test sends at once.

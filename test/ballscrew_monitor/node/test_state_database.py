@@ -19,6 +19,8 @@ LIMIT = 400_000  # [B]
 
 
 class Opened(StateDatabase):
+    """A database that is opened at once."""
+
     def __init__(self, folder, limit=LIMIT):
         self.damage, self.notices = [], []
         super().__init__(folder, limit, damage=self.damage, notices=self.notices)

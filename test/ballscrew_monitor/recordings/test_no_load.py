@@ -186,7 +186,7 @@ def test_the_command_finds_the_parasitic_torque_in_a_bag(tmp_path, capsys):
         assert values[name]['high'] - values[name]['low'] < 0.2 * true
     assert 'windows of 0.5 s are steady' in record['notes'][0]
     point = OperatingPoint(speed=600 * math.pi / 30, load=0.0, temperature=313.15)
-    words = ['point', '--speed-rpm', '600', '--load-N', '0', '--json']
+    words = ['point', '--tier', 'closed_form', '--speed-rpm', '600', '--load-N', '0', '--json']
     assert cli.main([*words, '--screw', str(tmp_path / 'found.yaml')]) == 0
     found = json.loads(capsys.readouterr().out)['friction_torque_Nm']
     bare = float(closed_form.solve(SCREW, OIL, point.speed, 0.0, 313.15).friction_torque)

@@ -21,6 +21,8 @@ axes:
 
 
 class Shown:
+    """Takes what a bar would show."""
+
     def __init__(self):
         self.lines = []
 

@@ -153,6 +153,8 @@ def test_no_text_ends_the_element_that_holds_it():
 
 
 class Tags(HTMLParser):
+    """Collects the tags and the text of a page."""
+
     def __init__(self):
         super().__init__()
         self.tags, self.text = [], ''

@@ -74,7 +74,8 @@ def test_nodes_are_what_solves_give(data, screw, oil, stand_in):
         place = speed, float(data.load[j]), float(data.temperature[k])
         formula = closed_form.solve(screw, oil, *place)
         assert data.fields['rcs'][i, j, k] == pytest.approx(float(formula.rcs), rel=1e-9)
-        assert data.fields['central_film'][i, j, k] == pytest.approx(0.9 * formula.central_film)
+        film = max(0.9 * float(formula.central_film), oil.film_floor)
+        assert data.fields['central_film'][i, j, k] == pytest.approx(film, rel=0.01)
         if low <= speed <= high:
             torque = stand_in.torque(*place) * float(formula.friction_torque)
             assert data.fields['friction_torque'][i, j, k] == pytest.approx(torque, rel=2e-3)

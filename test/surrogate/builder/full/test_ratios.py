@@ -14,6 +14,7 @@ from surrogate.builder.full.ratios import (
     solve_ratios,
     solved_grid,
     TEMPERATURES,
+    with_floor,
 )
 from surrogate.builder.full.settings import default_full_settings
 from surrogate.files import InputError
@@ -139,6 +140,16 @@ def test_ratios_are_solved_over_formulas(screw, oil, settings, stand_in):
         assert torque[sense, i, j, k] == pytest.approx(np.log(wanted))
     assert logs['central_film'][0, i, j, k] == pytest.approx(np.log(0.9))
     assert logs['film_ratio'][0, i, j, k] == pytest.approx(0.0)
+
+
+def test_films_of_formulas_end_at_the_floor(screw, oil):
+    """The film ratio with them; a torque has no floor."""
+    fields = dict.fromkeys(CORRECTED, np.array([1e-12, 1e-5]))
+    found = with_floor(fields, screw, oil)
+    assert found['central_film'] == pytest.approx([oil.film_floor, 1e-5])
+    assert found['minimum_film'] == pytest.approx([oil.film_floor, 1e-5])
+    assert found['film_ratio'] == pytest.approx([oil.film_floor / screw.composite_rms] * 2)
+    assert np.array_equal(found['friction_torque'], fields['friction_torque'])
 
 
 def test_nothing_that_converges_is_one_sentence(screw, oil, settings):
