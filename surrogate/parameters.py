@@ -121,6 +121,11 @@ class Screw(Checked):
         return self.ball_roughness.height if self.ball_roughness is not None else 0.0
 
     @property
+    def fastest_speed(self) -> float:
+        """Screw speed at the limit of D n [rad/s]."""
+        return self.speed_limit / (2 * self.pitch_radius)
+
+    @property
     def composite_rms(self) -> float:
         """Rq of raceway and ball together [m], 0 when both are smooth."""
         return math.hypot(self.roughness.rms, self._ball_rms)

@@ -61,7 +61,7 @@ def default_settings(screw: Screw) -> SurfaceSettings:
     """Return 0.05 rad/s to the screw's speed limit, four preloads either way, 10 to 80 degC."""
     reach = LOADS_IN_PRELOADS * screw.preload or LOADS_IN_RATINGS * screw.static_rating
     return SurfaceSettings(
-        speed_range=(SLOWEST_SPEED, screw.speed_limit / (2 * screw.pitch_radius)),
+        speed_range=(SLOWEST_SPEED, screw.fastest_speed),
         load_range=(-reach, reach),
         temperature_range=(10 + ZERO_CELSIUS, 80 + ZERO_CELSIUS),
     )

@@ -105,7 +105,7 @@ def _outcome(case: ScrewCase) -> dict[str, float]:
     """Return onset, friction torque and both limits of the zone, NaN where there is none."""
     onset, point = case.onset or math.nan, case.point
     near = onset * np.geomspace(1 / AROUND, AROUND, SPEEDS)
-    most = case.screw.speed_limit / (2 * case.screw.pitch_radius)
+    most = case.screw.fastest_speed
     wide = np.geomspace(min(near[0], most), most, SPEEDS)
     speed = np.concatenate([[abs(point.speed)], near, wide])
     load = point.opposing_load

@@ -3,27 +3,26 @@
 """Marched strips of the table and what their topography tells."""
 
 import csv
-import importlib.util
 from pathlib import Path
 
 import pytest
 
 STUDIES = Path(__file__).resolve().parents[2] / 'studies'
-SPEC = importlib.util.spec_from_file_location('topography_onset', STUDIES / 'topography_onset.py')
-assert SPEC is not None
-assert SPEC.loader is not None
-STUDY = importlib.util.module_from_spec(SPEC)
+
+
+@pytest.fixture(scope='module', name='marches')
+def load_marches(study):
+    return study('topography_onset')
 
 
 @pytest.fixture(scope='module')
 def rows():
-    SPEC.loader.exec_module(STUDY)
     with (STUDIES / 'results' / 'asperity_marches.csv').open(encoding='utf-8') as file:
         return {row['march']: row for row in csv.DictReader(file)}
 
 
 @pytest.mark.parametrize('name', ['n4_new', 'd25_new', 's3_H3', 'long_new', 'f8_nD26d38_H4'])
-def test_the_topography_tells_the_onset_of_a_marched_strip(rows, name):
+def test_the_topography_tells_the_onset_of_a_marched_strip(rows, marches, name):
     """Two screws, two cuts and none, a lay; the last was marched after the fit."""
-    one = STUDY.strip_of(rows[name])
+    one = marches.strip_of(rows[name])
     assert 1 / 1.2 < one.told / one.onset < 1.2

@@ -11,7 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 from surrogate.asperities.law import law_of
 from surrogate.builder.closed_form import check_ranges, check_rough, solve_grid, surface_header
 from surrogate.builder.full.chain import chain_inputs, solved_chain
@@ -59,9 +58,10 @@ def _surface(
     ratios, failed = ratios_at(logs, grid, nodes, lubricant)
     axes = nodes.s, nodes.load, nodes.temperature
     found = solve_grid(screw, lubricant, *axes, nodes.log_onset)
-    deviation = rcs_deviation(nodes.s, found['rcs'], law_of(screw).deviation)
+    deviation = _rcs_deviation(screw, lubricant, nodes)
     formulas = with_floor({name: found[name] for name in FIELDS}, screw, lubricant)
     solved = {name: values * ratios.get(name, 1.0) for name, values in formulas.items()}
+    # Between two solved points a ratio may take a film that lies on the floor below it.
     fields = with_floor(solved, screw, lubricant)
     mask = failed | ~np.all([np.isfinite(values) for values in fields.values()], axis=0)
     for values in (*fields.values(), deviation):
@@ -83,17 +83,11 @@ def _surface(
     )
 
 
-def rcs_deviation(s: Array, rcs: Array, deviation: float) -> Array:
-    """
-    Return the change of RCS [-] where the onset is off by half of its deviation either way.
-
-    `s` are the mapped speeds [-], the first axis of `rcs`; `deviation` is that of the logarithm
-    of the onset [-].
-
-    """
-    along = PchipInterpolator(s, rcs)
+def _rcs_deviation(screw: Screw, lubricant: Lubricant, nodes: Nodes) -> Array:
+    """Return the change of RCS [-] where the onset is off by half of its deviation either way."""
+    half, axes = 0.5 * law_of(screw).deviation, (nodes.load, nodes.temperature, nodes.log_onset)
     slower, faster = (
-        along(np.clip(s + apart, s[0], s[-1])) for apart in (-0.5 * deviation, 0.5 * deviation)
+        solve_grid(screw, lubricant, nodes.s + apart, *axes)['rcs'] for apart in (-half, half)
     )
     return np.asarray(slower - faster)
 

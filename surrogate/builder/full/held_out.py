@@ -92,9 +92,7 @@ def load_bands(screw: Screw, settings: FullSettings) -> list[Ends]:
     Both nuts loaded, the relieved one near unloading, and idle.
 
     """
-    low, high = settings.load_range
-    least = 0.0 if low <= 0 <= high else min(abs(low), abs(high))
-    most, idle = max(abs(low), abs(high)), idle_load(screw)
+    (least, most), idle = settings.load_sizes, idle_load(screw)
     marks = [least, *(mark for mark in (NEAR_IDLE * idle, idle) if least < mark < most), most]
     return list(zip(marks, marks[1:]))
 

@@ -87,7 +87,7 @@ def beside_idle(screw: Screw) -> tuple[float, float]:
 
 def _magnitudes(screw: Screw, settings: FullSettings) -> Array:
     """Return the magnitudes of the loads [N]: below the idle load, and above it."""
-    most, (below, above) = max(map(abs, settings.load_range)), beside_idle(screw)
+    (_, most), (below, above) = settings.load_sizes, beside_idle(screw)
     if above <= 0:
         # Without preload there is no contact at zero load: nodes crowd towards it.
         cells = settings.load_cells + settings.unloaded_cells

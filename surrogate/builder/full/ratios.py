@@ -23,6 +23,7 @@ from surrogate.builder.full.chain import chain_inputs, solved_chain, SolvedChain
 from surrogate.builder.full.nodes import beside_idle, LIGHTEST, Nodes
 from surrogate.builder.full.settings import FullSettings
 from surrogate.files import InputError
+from surrogate.formulas.film import film_ratio
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.parameters import Lubricant, Screw
@@ -80,9 +81,7 @@ def solved_grid(screw: Screw, lubricant: Lubricant, settings: FullSettings) -> S
 
 def _pieces(screw: Screw, settings: FullSettings) -> Iterator[Array]:
     """Yield loads [N] up to the idle load and beyond it, as far as the range reaches."""
-    low, high = settings.load_range
-    least = 0.0 if low <= 0 <= high else min(abs(low), abs(high))
-    most, (below, above) = max(abs(low), abs(high)), beside_idle(screw)
+    (least, most), (below, above) = settings.load_sizes, beside_idle(screw)
     if above <= 0:
         yield np.geomspace(max(least, LIGHTEST * most), most, len(LOADS))
         return
@@ -125,7 +124,7 @@ def with_floor(
 ) -> dict[str, Array]:
     """Return fields of formulas whose films end at the film floor, as those of solves do."""
     floors = dict.fromkeys(FILMS, lubricant.film_floor)
-    floors['film_ratio'] = lubricant.film_floor / screw.composite_rms
+    floors['film_ratio'] = float(film_ratio(lubricant.film_floor, screw.composite_rms))
     return {name: np.maximum(values, floors.get(name, -np.inf)) for name, values in fields.items()}
 
 

@@ -25,8 +25,15 @@ class FullSettings(SurfaceSettings):
     idle_halvings: int = 3
     unloaded_cells: int = 4
     temperature_nodes: int = 5
-    held_out: int = 24
+    held_out: int = 60
     seed: int = 1
+
+    @property
+    def load_sizes(self) -> tuple[float, float]:
+        """Return the least and the largest magnitude of the loads in the range [N]."""
+        low, high = self.load_range
+        sizes = abs(low), abs(high)
+        return 0.0 if low <= 0 <= high else min(sizes), max(sizes)
 
     def __post_init__(self) -> None:
         """Check the numbers that are not ranges."""
