@@ -31,6 +31,7 @@ LOOKUP = {
 FLOORS = (
     ('core',),
     ('judge',),
+    ('health',),
     ('settings', 'messages'),
     ('recordings',),
     ('node', 'report'),
