@@ -5,6 +5,7 @@
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import InputState, Source, StampSource, Why
 from ballscrew_monitor.judge import inputs
 from ballscrew_monitor.judge.records import Event, INPUTS, Memory, RATE_SAMPLES, Settings, SHOWN
@@ -85,6 +86,41 @@ def test_rate_is_the_mean_over_the_last_samples(count):
     assert load.status().rate == 32.0
     inputs.forget(load.memory, LOAD)
     assert math.isnan(load.status().rate)
+
+
+def test_what_is_forgotten_is_as_at_the_beginning_and_the_counts_stay():
+    load = Input(timeout=1, max_lag=0)
+    for stamp in (1, 2, 40, 80, 160):
+        load.accept(stamp, stamp + 1)
+    load.refuse(Why.OTHER_JOINTS)
+    load.refuse(Why.NOT_A_NUMBER)
+    inputs.forget(load.memory, LOAD)
+    fresh = Memory()
+    for name in ('known', 'refusal', 'stamps_taken', 'lags_taken', 'long_gaps', 'others'):
+        assert getattr(load.memory, name)[LOAD] == getattr(fresh, name)[LOAD], name
+    assert (load.memory.received[LOAD], load.memory.dropped[LOAD]) == (7, 2)
+
+
+@pytest.mark.parametrize(
+    ('configured', 'known', 'now', 'expected'),
+    [
+        (0, True, 10, (PointSource.UNKNOWN, PointSource.DEFAULT)),
+        (1, False, 10, (PointSource.UNKNOWN, PointSource.UNKNOWN)),
+        (1, True, 10, (PointSource.MEASURED, PointSource.MEASURED)),
+        (1, True, 11, (PointSource.HELD, PointSource.HELD)),
+    ],
+)
+def test_the_source_of_a_value_follows_from_topic_sample_and_age(configured, known, now, expected):
+    load = Input(configured=configured)
+    if known:
+        for source in (LOAD, Source.TEMPERATURE):
+            event = Event(source=int(source), stamp=0, arrival=0)
+            inputs.accept(load.memory, load.settings, event, 1.0)
+    found = [
+        inputs.standing_of(load.memory, load.settings, int(source), now)
+        for source in (LOAD, Source.TEMPERATURE)
+    ]
+    assert found == list(expected)
 
 
 @given(st.lists(st.integers(-1000, 1000), min_size=1, max_size=70))

@@ -115,6 +115,8 @@ def test_a_hole_or_a_change_spoils_only_the_cells_beside_it():
     assert np.isnan(slopes[3])
     assert np.all(np.isfinite(np.delete(slopes, 3)))
     assert slopes[[0, 1, 5, 6]] == pytest.approx(expected[[0, 1, 5, 6]])
+    assert slopes[[2, 4]] == pytest.approx([3.0, 9.0])  # secants of 1 to 2 and of 4 to 5
+    assert not monotone_slopes(nodes, np.array([0.0, *[-0.0] * 6])).any()
     nodes = np.arange(9.0)
     values = np.exp(-nodes)
     changed = values.copy()
