@@ -189,10 +189,12 @@ def _read(database: sqlite3.Connection, axis: str, place: str) -> KeptHealth:
     """Return what can be read of an axis, and how many rows cannot."""
     bad = 0
 
-    def read(table: str, read_row: Any) -> list[tuple[Any, Any]]:
+    def read(table: str, order: str, read_row: Any) -> list[tuple[Any, Any]]:
         nonlocal bad
         found = []
-        for row in database.execute(f'SELECT * FROM {table} WHERE axis = ?', (axis,)):
+        for row in database.execute(
+            f'SELECT * FROM {table} WHERE axis = ? ORDER BY {order}', (axis,)
+        ):
             try:
                 found.append((row, read_row(row)))
             except (ValueError, KeyError, TypeError):
@@ -200,12 +202,12 @@ def _read(database: sqlite3.Connection, axis: str, place: str) -> KeptHealth:
         return found
 
     points: dict[int, list[ComparablePoint]] = {}
-    for row, point in read('points', point_of):
+    for row, point in read('points', 'first_day, rowid', point_of):
         points.setdefault(row['baseline'], []).append(point)
-    bins = [one for _, one in read('spectrum', bin_of)]
+    bins = [one for _, one in read('spectrum', 'first_day, rowid', bin_of)]
     baselines = [
         baseline_of(row, points.get(row['number'], []))
-        for row, _ in read('baselines', lambda row: baseline_of(row, []))
+        for row, _ in read('baselines', 'number', lambda row: baseline_of(row, []))
     ]
     history = by_place(points.get(HISTORY, [])).values()
     notes = (f'{place}: {bad} rows of axis {axis} cannot be read, they do not count',)
