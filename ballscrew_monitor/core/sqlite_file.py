@@ -74,6 +74,16 @@ def is_empty(database: sqlite3.Connection, version: int) -> bool:
     return not tables
 
 
+def has_room(database: sqlite3.Connection, file: Path, limit: int) -> bool:
+    """Tell whether the journal of a file can take more: its part of a `limit` [B]."""
+    journal = file.with_name(f'{file.name}-wal')
+    if size_of(journal) <= (1.0 - SHARE) * limit:
+        return True
+    # Somebody reads, and it could not begin again.
+    database.execute('PRAGMA wal_checkpoint(TRUNCATE)').fetchall()
+    return not size_of(journal)
+
+
 def let_go(database: sqlite3.Connection | None, *, alone: bool = False) -> None:
     """Close a connection, if there is one; `alone` leaves one file, which anybody can read."""
     if database is None:

@@ -87,7 +87,12 @@ class GatherMemory:
 
 @dataclasses.dataclass(slots=True)
 class Gathered:
-    """A stretch in numbers alone, fields and units as those of `Stretch`."""
+    """
+    A stretch in numbers alone, as in `Stretch`.
+
+    start [ns], duration [s], speed [rad/s], axial_load [N], temperature [K], motor_torque [N m].
+
+    """
 
     start: int = 0
     duration: float = 0.0

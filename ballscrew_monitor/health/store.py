@@ -10,6 +10,8 @@ belongs to the node by the lock of its state.
 """
 
 from collections.abc import Iterable
+import contextlib
+import dataclasses
 from pathlib import Path
 import sqlite3
 from typing import Any
@@ -17,6 +19,7 @@ from typing import Any
 from ballscrew_monitor.core.sqlite_file import (
     BAD,
     connected,
+    has_room,
     is_empty,
     is_passing,
     let_go,
@@ -25,7 +28,8 @@ from ballscrew_monitor.core.sqlite_file import (
     SHARE,
     USED,
 )
-from ballscrew_monitor.health.points import aged, by_place
+from ballscrew_monitor.health.bands import period_of
+from ballscrew_monitor.health.points import aged
 from ballscrew_monitor.health.records import Baseline, ComparablePoint, SpectrumBin
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.store_rows import (
@@ -40,6 +44,7 @@ from ballscrew_monitor.health.store_rows import (
     point_row,
     SPECTRUM_COLUMNS,
 )
+from surrogate.files import InputError
 
 FILE = 'health.sqlite3'
 VERSION = 1
@@ -49,6 +54,11 @@ MOST_BASELINES = 20
 """Baselines of an axis that are kept, the newest ones."""
 HISTORY = 0
 """Number that points of no baseline have in place of one."""
+WHICH = {'points': f'baseline = {HISTORY} AND', 'spectrum': ''}
+"""Tables of the history, and what tells its rows from those of baselines."""
+READ: dict[str, Any] = {'points': point_of, 'spectrum': bin_of, 'baselines': baseline_of}
+ORDERS = {'points': 'first_day, rowid', 'spectrum': 'first_day, rowid', 'baselines': 'number'}
+DAYS = 'SELECT DISTINCT first_day, days '
 TABLES = f"""
 CREATE TABLE points (axis TEXT, baseline INTEGER, {POINT_COLUMNS});
 CREATE INDEX points_of ON points (axis, baseline, first_day);
@@ -75,7 +85,12 @@ class HealthStore:
         self.file, self.limit = folder / FILE, limit
         self._database: Any = None
 
-    def open(self) -> list[str]:
+    @property
+    def is_open(self) -> bool:
+        """Tell whether the file is open, and still there."""
+        return self._database is not None and self.file.exists()
+
+    def load(self) -> list[str]:
         """
         Open the file, made where there is none; return sentences on what was set aside.
 
@@ -108,9 +123,12 @@ class HealthStore:
         """
         Put points and bins in the place of those of their periods, all or nothing.
 
-        A period is replaced as one: points and bins must be all that it has.
+        A period is replaced as one: points and bins must be all that it has. Raises InputError
+        while somebody who reads keeps the journal from being cleared, and sqlite3.Error.
 
         """
+        if not has_room(self._database, self.file, self.limit):
+            raise InputError(f'{self.file} takes no more: somebody has been reading it for long')
         with self._database as database:
             database.execute('BEGIN IMMEDIATE')
             _replace(database, axis, list(points), list(spectrum))
@@ -131,14 +149,11 @@ class HealthStore:
         """Merge older days of an axis, `today` in days since 1970; return what is to be said."""
         with self._database as database:
             database.execute('BEGIN IMMEDIATE')
-            kept = _read(database, axis, str(self.file))
-            found = aged(kept.points, today)
-            bins = merged_bins(kept.spectrum, today)
-            points = (*found.points, *found.future)
-            if len(points) < len(kept.points) or len(bins) < len(kept.spectrum):
-                _clear(database, axis)
-                _replace(database, axis, list(points), bins)
-        return (*kept.notes, *found.notes)
+            found = aged(_taken(database, 'points', axis, today), today)
+            bins = merged_bins(_taken(database, 'spectrum', axis, today), today)
+            _insert(database, 'points', _point_rows(axis, HISTORY, found.points + found.future))
+            _insert(database, 'spectrum', [{'axis': axis, **bin_row(one)} for one in bins])
+        return found.notes
 
     def close(self) -> None:
         """Leave one file, which anybody can read."""
@@ -152,7 +167,7 @@ class HealthStore:
                 database.execute('BEGIN IMMEDIATE')
                 for statement in TABLES.split(';'):
                     database.execute(statement)
-        for table in ('points', 'spectrum', 'baselines'):
+        for table in READ:
             database.execute(f'SELECT * FROM {table} LIMIT 1').fetchall()
 
     def _make_room(self, database: sqlite3.Connection) -> None:
@@ -165,7 +180,7 @@ class HealthStore:
                 return
             axis, first, last, _ = oldest
             until = first + (last - first) // 16
-            for table, which in (('points', 'baseline = 0 AND'), ('spectrum', '')):
+            for table, which in WHICH.items():
                 database.execute(
                     f'DELETE FROM {table} WHERE {which} axis = ? AND first_day <= ?', (axis, until)
                 )
@@ -187,31 +202,54 @@ def read_health(folder: Path) -> dict[str, KeptHealth]:
 
 def _read(database: sqlite3.Connection, axis: str, place: str) -> KeptHealth:
     """Return what can be read of an axis, and how many rows cannot."""
-    bad = 0
-
-    def read(table: str, order: str, read_row: Any) -> list[tuple[Any, Any]]:
-        nonlocal bad
-        found = []
-        for row in database.execute(
-            f'SELECT * FROM {table} WHERE axis = ? ORDER BY {order}', (axis,)
-        ):
-            try:
-                found.append((row, read_row(row)))
-            except (ValueError, KeyError, TypeError):
-                bad += 1
-        return found
-
     points: dict[int, list[ComparablePoint]] = {}
-    for row, point in read('points', 'first_day, rowid', point_of):
+    found = {
+        table: database.execute(
+            f'SELECT * FROM {table} WHERE axis = ? ORDER BY {order}', (axis,)
+        ).fetchall()
+        for table, order in ORDERS.items()
+    }
+    read = {table: _readable(READ[table], rows) for table, rows in found.items()}
+    for row, point in read['points']:
         points.setdefault(row['baseline'], []).append(point)
-    bins = [one for _, one in read('spectrum', 'first_day, rowid', bin_of)]
     baselines = [
-        baseline_of(row, points.get(row['number'], []))
-        for row, _ in read('baselines', 'number', lambda row: baseline_of(row, []))
+        dataclasses.replace(one, points=tuple(points.get(row['number'], ())))
+        for row, one in read['baselines']
     ]
-    history = by_place(points.get(HISTORY, [])).values()
-    notes = (f'{place}: {bad} rows of axis {axis} cannot be read, they do not count',)
-    return KeptHealth(tuple(history), tuple(bins), tuple(baselines), notes if bad else ())
+    bad = sum(len(found[table]) - len(read[table]) for table in found)
+    return KeptHealth(
+        points=tuple(points.get(HISTORY, ())),
+        spectrum=tuple(one for _, one in read['spectrum']),
+        baselines=tuple(baselines),
+        notes=(f'{place}: {bad} rows of axis {axis} cannot be read, they do not count',)
+        if bad
+        else (),
+    )
+
+
+def _readable(read_row: Any, rows: Iterable[Any]) -> list[tuple[Any, Any]]:
+    """Return rows with what they say, those that say something."""
+    found = []
+    for row in rows:
+        with contextlib.suppress(ValueError, KeyError, TypeError):
+            found.append((row, read_row(row)))
+    return found
+
+
+def _taken(database: sqlite3.Connection, table: str, axis: str, today: int) -> list[Any]:
+    """Take the records of the periods that age changes out of a table, and those to come."""
+    kept = f'FROM {table} WHERE {WHICH[table]} axis = ?'
+    periods = {(one, days) for one, days in database.execute(DAYS + kept, (axis,)).fetchall()}
+    aim = {period: period_of(*period, today) for period in periods}
+    changed = {period for period in periods if aim[period] != period}
+    changed |= {aim[period] for period in changed}
+    changed |= {period for period in periods if period[0] > today}
+    rows: list[Any] = []
+    for period in sorted(changed):
+        found = (axis, *period)
+        rows += database.execute(f'SELECT * {kept} AND first_day = ? AND days = ?', found)
+        database.execute(f'DELETE {kept} AND first_day = ? AND days = ?', found)
+    return [record for _, record in _readable(READ[table], rows)]
 
 
 def _replace(
@@ -221,22 +259,14 @@ def _replace(
     spectrum: list[SpectrumBin],
 ) -> None:
     """Replace the periods of points and of bins, in a transaction that has begun."""
-    for table, which, records in (
-        ('points', f'baseline = {HISTORY} AND', points),
-        ('spectrum', '', spectrum),
-    ):
+    for table, records in (('points', points), ('spectrum', spectrum)):
         periods = {(one.first_day, one.days) for one in records}
         database.executemany(
-            f'DELETE FROM {table} WHERE {which} axis = ? AND first_day = ? AND days = ?',
+            f'DELETE FROM {table} WHERE {WHICH[table]} axis = ? AND first_day = ? AND days = ?',
             [(axis, *period) for period in periods],
         )
     _insert(database, 'points', _point_rows(axis, HISTORY, points))
     _insert(database, 'spectrum', [{'axis': axis, **bin_row(one)} for one in spectrum])
-
-
-def _clear(database: sqlite3.Connection, axis: str) -> None:
-    database.execute('DELETE FROM points WHERE axis = ? AND baseline = ?', (axis, HISTORY))
-    database.execute('DELETE FROM spectrum WHERE axis = ?', (axis,))
 
 
 def _point_rows(axis: str, number: int, points: Iterable[ComparablePoint]) -> list[dict[str, Any]]:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of the database of health, and what they say; numbers that are not known are NULL."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 import dataclasses
 import math
 from typing import Any, NamedTuple
@@ -101,9 +101,9 @@ def baseline_row(baseline: Baseline) -> dict[str, Any]:
     return _row(BASELINE, baseline, {})
 
 
-def baseline_of(row: Any, points: Iterable[ComparablePoint]) -> Baseline:
-    """Return the baseline of a row with its points; raises as `point_of` does."""
-    return Baseline(points=tuple(points), **_values(BASELINE, row))
+def baseline_of(row: Any) -> Baseline:
+    """Return the baseline of a row, without its points; raises as `point_of` does."""
+    return Baseline(**_values(BASELINE, row))
 
 
 def _row(types: Mapping[str, Any], record: Any, more: Mapping[str, Any]) -> dict[str, Any]:
@@ -112,16 +112,20 @@ def _row(types: Mapping[str, Any], record: Any, more: Mapping[str, Any]) -> dict
 
 
 def _values(types: Mapping[str, Any], row: Any) -> dict[str, Any]:
-    return {name: _value(name, kind, row[name]) for name, kind in types.items()}
+    columns = dict(
+        zip(row.keys(), row, strict=True)
+    )  # a row looks for a name from column to column
+    return {name: _value(name, kind, columns[name]) for name, kind in types.items()}
 
 
 def _value(name: str, kind: Any, value: Any) -> Any:
     if kind is float:
-        value = NAN if value is None else float(value)
-        if not (math.isfinite(value) or (name in UNKNOWN and math.isnan(value))):
-            raise ValueError(f'{name} is {value!r}')
+        if value is None and name in UNKNOWN:
+            return NAN
+        if type(value) is float and math.isfinite(value):
+            return value
+    elif type(value) is kind:
+        return value
     elif kind is bool and value in (0, 1):
-        value = bool(value)
-    if type(value) is not kind:
-        raise ValueError(f'{name} is {value!r}')
-    return value
+        return bool(value)
+    raise ValueError(f'{name} is {value!r}')

@@ -22,6 +22,7 @@ from ballscrew_monitor.core.memory import AxisRecord, read_record, TYPES
 from ballscrew_monitor.core.sqlite_file import (
     BAD,
     connected,
+    has_room,
     is_empty,
     is_passing,
     let_go,
@@ -98,12 +99,8 @@ class StateDatabase:
         Raises InputError at the limit, sqlite3.Error and OSError.
 
         """
-        journal = self._file.with_name(f'{FILE}-wal')
-        if size_of(journal) > (1.0 - SHARE) * self.limit:
-            # Somebody reads, and it could not begin again.
-            self._database.execute('PRAGMA wal_checkpoint(TRUNCATE)').fetchall()
-            if size_of(journal):
-                raise InputError(at_limit(self.folder, self.limit))
+        if not has_room(self._database, self._file, self.limit):
+            raise InputError(at_limit(self.folder, self.limit))
         with self._database as database:
             database.execute('BEGIN IMMEDIATE')
             _write(database, entries, records, SHARE * self.limit)

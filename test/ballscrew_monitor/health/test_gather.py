@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Stretches of known motions: their means, where they begin and end, and what is none."""
+"""Stretches of known motions: their means, where they begin and end, and what counts as one."""
 
 import math
 

@@ -16,6 +16,7 @@ from ballscrew_monitor.health.records import Baseline, LoadSource, SpectrumBin
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.store import FILE, HealthStore, LIMIT, read_health
 import pytest
+from surrogate.files import InputError
 
 YEARS = 10
 PLACES = {1: 60, 7: 120, 28: 240}
@@ -23,7 +24,7 @@ KILLED = """
 import dataclasses, pathlib, sys
 from ballscrew_monitor.health.store import HealthStore, read_health
 store = HealthStore(pathlib.Path(sys.argv[1]))
-store.open()
+store.load()
 point = store.read('x').points[0]
 for number in range(10**6):
     places = [point.place._replace(load=load) for load in range(40)]
@@ -41,7 +42,7 @@ def make_store(tmp_path):
         def make(folder=tmp_path, **changes):
             store = HealthStore(folder, **changes)
             stack.callback(store.close)
-            store.said = store.open()
+            store.said = store.load()
             return store
 
         yield make
@@ -267,7 +268,7 @@ def test_rows_that_cannot_be_read_are_counted_and_the_others_stand(
         ('surface', 'NULL'),
     ],
 )
-def test_no_column_of_a_point_holds_what_is_none(make, motion, tmp_path, column, value):
+def test_a_column_with_what_nobody_writes_spoils_its_row(make, motion, tmp_path, column, value):
     store = make()
     store.replace('x', [motion.point()])
     store.close()
@@ -284,3 +285,29 @@ def test_a_passing_failure_sets_nothing_aside(make, motion, tmp_path):
         with pytest.raises(sqlite3.OperationalError, match='locked'):
             make()
     assert by_place(make().read('x').points) == by_place([motion.point()])
+
+
+def test_somebody_who_reads_without_an_end_does_not_let_the_journal_grow(
+    make, motion, tmp_path, refused
+):
+    limit = 400_000
+    store, place = make(limit=limit), motion.point().place
+    many = [motion.point(place=place._replace(load=one)) for one in range(60)]
+    store.replace('x', many)
+    with contextlib.closing(sqlite3.connect(tmp_path / FILE, isolation_level=None)) as reader:
+        reader.execute('BEGIN')
+        reader.execute('SELECT count(*) FROM points').fetchall()
+        with contextlib.suppress(InputError):
+            for _ in range(1000):
+                store.replace('x', many)
+        refused('takes_no_more', store.replace, 'x', many)
+    store.replace('x', many)
+    assert (tmp_path / f'{FILE}-wal').stat().st_size < limit / 2
+
+
+def test_a_store_is_open_until_it_is_closed_or_removed(make, tmp_path):
+    store = make()
+    assert store.is_open
+    (tmp_path / FILE).unlink()
+    assert not store.is_open
+    assert not HealthStore(tmp_path).is_open
