@@ -77,7 +77,8 @@ def learned(
         )
     why = ''
     for day in days[end:]:  # longer than stated where there are few stretches
-        chosen = days[first] * DAY, (day + 1) * DAY
+        length = max((point.days for point in usable if point.first_day == day), default=1)
+        chosen = days[first] * DAY, (day + length) * DAY
         picked = _picked(usable, *chosen)
         why = _too_little(picked, _motion_within(spent, *chosen))
         if not why:

@@ -35,8 +35,9 @@ SPECTRUM: dict[str, Any] = {
 BASELINE: dict[str, Any] = {
     field.name: field.type for field in dataclasses.fields(Baseline) if field.name != 'points'
 }
-UNKNOWN = {'residual', 'axial_load', 'energy_measured', 'energy_expected'}
-"""Numbers that may not be known."""
+POINT_UNKNOWN = {'residual'}
+BIN_UNKNOWN = {'axial_load', 'energy_measured', 'energy_expected'}
+"""Numbers of a point and of a bin that may not be known."""
 
 
 def _columns(types: Mapping[str, Any]) -> str:
@@ -74,7 +75,7 @@ def point_row(point: ComparablePoint) -> dict[str, Any]:
 
 def point_of(row: Any) -> ComparablePoint:
     """Return the point of a row; raises ValueError or TypeError for what nobody has written."""
-    values = _values(POINT, row)
+    values = _values(POINT, row, POINT_UNKNOWN)
     place = Place(**{name: values.pop(column) for name, column in BANDS.items()})
     values['load_source'] = LoadSource(values['load_source'])
     if min(values['stretches'], values['days']) < 1 or abs(place.direction) != 1:
@@ -89,7 +90,7 @@ def bin_row(one: SpectrumBin) -> dict[str, Any]:
 
 def bin_of(row: Any) -> SpectrumBin:
     """Return the bin of a row; raises as `point_of` does."""
-    values = _values(SPECTRUM, row)
+    values = _values(SPECTRUM, row, BIN_UNKNOWN)
     times = np.frombuffer(values.pop('wear_time'), dtype='<f8').tolist()
     if values['time'] <= 0.0 or not all(time >= 0.0 for time in times):
         raise ValueError(f'a bin of {values["time"]} s')
@@ -103,7 +104,7 @@ def baseline_row(baseline: Baseline) -> dict[str, Any]:
 
 def baseline_of(row: Any) -> Baseline:
     """Return the baseline of a row, without its points; raises as `point_of` does."""
-    return Baseline(**_values(BASELINE, row))
+    return Baseline(**_values(BASELINE, row, set()))
 
 
 def _row(types: Mapping[str, Any], record: Any, more: Mapping[str, Any]) -> dict[str, Any]:
@@ -111,16 +112,18 @@ def _row(types: Mapping[str, Any], record: Any, more: Mapping[str, Any]) -> dict
     return {name: None if value != value else value for name, value in values.items()}
 
 
-def _values(types: Mapping[str, Any], row: Any) -> dict[str, Any]:
+def _values(types: Mapping[str, Any], row: Any, unknown: set[str]) -> dict[str, Any]:
     columns = dict(
         zip(row.keys(), row, strict=True)
     )  # a row looks for a name from column to column
-    return {name: _value(name, kind, columns[name]) for name, kind in types.items()}
+    return {
+        name: _value(name, kind, columns[name], name in unknown) for name, kind in types.items()
+    }
 
 
-def _value(name: str, kind: Any, value: Any) -> Any:
+def _value(name: str, kind: Any, value: Any, may_be_unknown: bool) -> Any:
     if kind is float:
-        if value is None and name in UNKNOWN:
+        if value is None and may_be_unknown:
             return NAN
         if type(value) is float and math.isfinite(value):
             return value

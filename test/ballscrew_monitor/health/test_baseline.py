@@ -91,6 +91,16 @@ def test_few_stretches_make_it_longer_until_there_are_enough(days, says):
     assert learned([few], over=0.1 * HOUR) == says('too_few_stretches')
 
 
+def test_weeks_of_an_old_store_count_as_they_are(motion):
+    weeks = [
+        motion.point(first_day=7 * week, days=7, duration=5 * HOUR, stretches=30)
+        for week in range(2500, 2504)
+    ]
+    found = learned(weeks, today=motion.today)
+    assert found.points == tuple(weeks[:2])
+    assert (found.begin, found.end) == (17500 * DAY, 17514 * DAY)
+
+
 def test_derived_loads_make_no_baseline(days, motion):
     derived = motion.point(load_source=LoadSource.DERIVED, duration=99 * HOUR, stretches=999)
     assert isinstance(learned([derived]), str)

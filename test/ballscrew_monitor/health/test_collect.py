@@ -2,16 +2,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows taken one by one, interpreted, and in blocks, compiled: the same to the last bit."""
 
+import dataclasses
 import math
+from pathlib import Path
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.health.collect import Collector
 from ballscrew_monitor.health.gather import GatherSettings
+from ballscrew_monitor.health.points import add
 from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.columns import joined
+from ballscrew_monitor.recordings.replay import replay_columns
+from ballscrew_monitor.settings import parameters
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
+
+CONFIG = Path(__file__).resolve().parents[3] / 'config' / 'nominal_cycle.yaml'
 
 
 def one_by_one(collector, motion, rows):
@@ -62,6 +72,27 @@ def test_both_ways_give_the_same_bits(motion, surface, seed, cuts):
     wanted = one_by_one(Collector(surface, free), motion, rows)
     found = in_blocks(Collector(surface, free), rows, cuts)
     assert repr(found) == repr(wanted)  # NaN is NaN
+
+
+def test_a_torque_beyond_the_model_is_found_in_a_recording(nominal_bag, surface):
+    """The nominal cycle, with the torque of the model and 0.03 N m more against every motion."""
+    values = parameters.read_file(CONFIG) | {'x.publish_period': 0.1}
+    *blocks, _ = replay_columns(Bag(nominal_bag), values)
+    columns, points = joined(blocks), {}
+    torque = columns.machine_torque + 0.03 * np.sign(columns.speed)
+    measured = np.full(len(columns), PointSource.MEASURED, dtype=np.uint8)
+    collector = Collector(surface)
+    found = collector.take_many(
+        dataclasses.replace(columns, motor_torque=torque, motor_torque_source=measured)
+    )
+    for stretch in found.stretches:
+        assert add(points, stretch, surface) == ''
+    assert len(points) > 15
+    for point in points.values():
+        assert point.residual * point.place.direction == pytest.approx(0.03, rel=0.1)
+    bins = [one for one in collector.finish().bins if one.energy_measured > 0.0]
+    more = sum(one.energy_measured - one.energy_expected for one in bins)
+    assert more == pytest.approx(0.03 * sum(one.angle for one in bins), rel=0.02)
 
 
 def test_more_stretches_than_there_is_room_for(motion, surface, monkeypatch):

@@ -260,6 +260,7 @@ def test_rows_that_cannot_be_read_are_counted_and_the_others_stand(
     ('column', 'value'),
     [
         ('torque_squares', 'NULL'),
+        ('axial_load', 'NULL'),
         ('motor_torque', '9e999'),
         ('load_source', '7'),
         ('direction_band', '0'),
