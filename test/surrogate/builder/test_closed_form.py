@@ -11,6 +11,7 @@ from surrogate.builder.closed_form import (
     build_closed_form,
     default_settings,
     load_nodes,
+    surface_header,
     temperature_nodes,
 )
 from surrogate.formulas.lubricant import lubricant_state
@@ -83,6 +84,18 @@ def test_more_nodes_mean_smaller_errors(screw, oil):
     )
     for name in ('friction_torque', 'film_ratio', 'rcs'):
         assert fine[name][1] < 0.5 * coarse[name][1]
+
+
+def test_header_states_the_numbers_of_service(screw, oil):
+    """Beside the inputs, which they leave as they are."""
+    rated = replace(screw, dynamic_rating=25e3)
+    bare, stated = (
+        surface_header(one, oil, default_settings(screw), [], 'closed_form')
+        for one in (screw, rated)
+    )
+    assert stated['inputs'] == bare['inputs']
+    assert set(bare['service']) == {'sliding_per_speed'}
+    assert stated['service'] == bare['service'] | {'dynamic_rating': 25e3}
 
 
 def test_same_inputs_same_hash(screw, oil):
