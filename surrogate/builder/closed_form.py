@@ -267,7 +267,8 @@ def surface_header(
         'format_version': FORMAT_VERSION,
         'tier': tier,
         'inputs': {'screw': screw.stated(), 'lubricant': lubricant.stated()},
-        'service': {**screw.service(), 'sliding_per_speed': largest_sliding(screw)},
+        'service': screw.service(),
+        'sliding_m_per_rad': largest_sliding(screw),
         'settings': {
             name: list(value) if isinstance(value, tuple) else value
             for name, value in asdict(settings).items()

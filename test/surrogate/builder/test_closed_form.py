@@ -15,6 +15,7 @@ from surrogate.builder.closed_form import (
     temperature_nodes,
 )
 from surrogate.formulas.lubricant import lubricant_state
+from surrogate.formulas.sliding import largest_sliding
 from surrogate.screw import closed_form
 from surrogate.screw.onset import onset_speeds
 from surrogate.surface import FIELDS, Surface, Validity
@@ -94,8 +95,9 @@ def test_header_states_the_numbers_of_service(screw, oil):
         for one in (screw, rated)
     )
     assert stated['inputs'] == bare['inputs']
-    assert set(bare['service']) == {'sliding_per_speed'}
-    assert stated['service'] == bare['service'] | {'dynamic_rating': 25e3}
+    assert bare['service'] == {}
+    assert stated['service'] == {'dynamic_rating': 25e3}
+    assert stated['sliding_m_per_rad'] == bare['sliding_m_per_rad'] == largest_sliding(screw)
 
 
 def test_same_inputs_same_hash(screw, oil):
