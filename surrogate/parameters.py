@@ -114,6 +114,13 @@ class Screw(Checked):
                 f'screw: preload_N is {self.preload:g} N, allowed is up to static_rating_kN '
                 f'({self.static_rating * 1e-3:g} kN)'
             )
+        if (self.free_length is None) != (self.support is None):
+            given, other = 'free_length_mm', 'support'
+            if self.free_length is None:
+                given, other = other, given
+            raise InputError(
+                f'screw: {given} is given without {other}, allowed is both or neither'
+            )
         if self._ball_rms:
             self._check_balls()
 
