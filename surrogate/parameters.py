@@ -9,9 +9,19 @@ Temperatures are kelvin inside and degC on file.
 
 from dataclasses import asdict, dataclass
 import math
-from typing import Any
+from typing import Any, ClassVar
 
-from surrogate.datasheet import block, Checked, count, DATA, find_sheet, quantity, read_sheet, text
+from surrogate.datasheet import (
+    block,
+    Checked,
+    choice,
+    count,
+    DATA,
+    find_sheet,
+    quantity,
+    read_sheet,
+    text,
+)
 from surrogate.files import InputError
 from surrogate.raceway.standards import long_cutoff_iso_21920, RA_OVER_RQ
 from surrogate.raceway.stated import BallRoughness, Roughness
@@ -30,6 +40,8 @@ __all__ = [
 ]
 
 NAME = (r'[A-Za-z0-9][A-Za-z0-9_.-]*', 'letters, digits and _ . - (it becomes a file name)')
+SUPPORTS = ('fixed_fixed', 'fixed_supported', 'supported_supported', 'fixed_free')
+"""How the bearings of a screw hold its ends."""
 VISCOSITY_MISMATCH = 2.0
 """Largest factor between the dynamic viscosity and kinematic viscosity times density [-]."""
 
@@ -56,7 +68,12 @@ class Screw(Checked):
     None where not known; `working_load`, the largest axial load in operation [N], None where that
     which unloads the relieved nut stands for it; without `ball_roughness` the balls are smooth.
 
+    `dynamic_rating` of one nut [N], `free_length` of the screw between its bearings [m] and how
+    they `support` it are None where not stated. No contact depends on these three.
+
     """
+
+    SERVICE: ClassVar[tuple[str, ...]] = ('dynamic_rating', 'free_length', 'support')
 
     name: str = text(*NAME)
     source: str = text()
@@ -69,12 +86,15 @@ class Screw(Checked):
     loaded_balls_per_nut: int = count(1, 10000)
     preload: float = quantity('N', 1.0, 0.0, 1e6)
     static_rating: float = quantity('kN', 1e3, 0.1, 1e5)
+    dynamic_rating: float | None = quantity('kN', 1e3, 0.1, 1e5, default=None)
     speed_limit: float = quantity('m_rev_min', RPM, 1.0, 1000.0)
     parasitic_torque: float = quantity('Nm', 1.0, 0.0, 1e3, default=0.0)
     parasitic_torque_rate: float = quantity('Nm_s', 1.0, 0.0, 1e3, default=0.0)
     hysteresis_loss: float = quantity('', 1.0, 0.0, 0.1, default=0.0)
     flank_clearance: float | None = quantity('um', 1e-6, 0.0, 1000.0, default=None)
     working_load: float | None = quantity('N', 1.0, 0.0, 1e6, default=None)
+    free_length: float | None = quantity('mm', 1e-3, 10.0, 20000.0, default=None)
+    support: str | None = choice(*SUPPORTS, default=None)
     raceway: Material = block(Material)
     ball: Material = block(Material)
     roughness: Roughness = block(Roughness)
@@ -94,8 +114,24 @@ class Screw(Checked):
                 f'screw: preload_N is {self.preload:g} N, allowed is up to static_rating_kN '
                 f'({self.static_rating * 1e-3:g} kN)'
             )
+        if (self.free_length is None) != (self.support is None):
+            given, other = 'free_length_mm', 'support'
+            if self.free_length is None:
+                given, other = other, given
+            raise InputError(
+                f'screw: {given} is given without {other}, allowed is both or neither'
+            )
         if self._ball_rms:
             self._check_balls()
+
+    def stated(self) -> dict[str, Any]:
+        """Return the values by name on which a solve depends."""
+        return {name: value for name, value in asdict(self).items() if name not in self.SERVICE}
+
+    def service(self) -> dict[str, Any]:
+        """Return the values by name that are stated for life, critical speed and buckling."""
+        values = {name: getattr(self, name) for name in self.SERVICE}
+        return {name: value for name, value in values.items() if value is not None}
 
     def _check_balls(self) -> None:
         """Check that what balls share with the raceway gives them waves."""

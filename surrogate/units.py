@@ -16,3 +16,5 @@ MILLI, MICRO, NANO = 1e3, 1e6, 1e9
 """How many of the small unit one SI unit has: a film [m] times NANO is in nm."""
 GIGA = 1e-9
 """How many of the large unit one SI unit has: a pressure [Pa] times GIGA is in GPa."""
+KILOWATT_HOUR = 3.6e6
+"""One kilowatt-hour [J]."""

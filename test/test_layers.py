@@ -112,6 +112,8 @@ def test_online_half_imports_the_lookup_alone(path):
         'options.py': {'surrogate.cli'},
         # The bar of both halves, text alone.
         'cycle': {'surrogate.progress'},
+        # Plain arithmetic of published laws.
+        'health': {'surrogate.formulas.grades', 'surrogate.formulas.life'},
         'recordings': {'surrogate.progress'},
         # The page over many recordings, on the workers of the sweeps, and the style of pictures.
         'report': {'surrogate.progress'} | PLOTTING | TASKS,
@@ -183,7 +185,7 @@ def test_what_must_start_quickly_loads_nothing_heavy(module, heavy):
 
 def test_node_loads_of_surrogate_what_the_lookup_needs():
     """The process that watches the machine holds nothing of the solver, plots or recordings."""
-    needed = loaded_by('import surrogate.surface, surrogate.units')
+    needed = loaded_by('import surrogate.surface, surrogate.formulas.grades, surrogate.formulas.life')
     loaded = loaded_by('import ballscrew_monitor.node.run')
     assert not {name for name in loaded - needed if name.split('.')[0] == 'surrogate'}
     assert not loaded & {'matplotlib', 'mcap', 'scipy'}

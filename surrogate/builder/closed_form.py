@@ -22,6 +22,8 @@ from surrogate.builder.tiers import screw_and_oil
 from surrogate.files import InputError
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.formulas.lubricant import lubricant_state
+from surrogate.formulas.shaft import service_of
+from surrogate.formulas.sliding import largest_sliding
 from surrogate.parameters import Lubricant, Screw
 from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
@@ -265,7 +267,9 @@ def surface_header(
         'format': FORMAT,
         'format_version': FORMAT_VERSION,
         'tier': tier,
-        'inputs': {'screw': asdict(screw), 'lubricant': lubricant.stated()},
+        'inputs': {'screw': screw.stated(), 'lubricant': lubricant.stated()},
+        'service': service_of(screw),
+        'sliding_m_per_rad': largest_sliding(screw),
         'settings': {
             name: list(value) if isinstance(value, tuple) else value
             for name, value in asdict(settings).items()

@@ -69,6 +69,7 @@ def _values(given: CatalogueScrew) -> dict[str, Any]:
         'conformity_nut': side,
         'loaded_balls_per_nut': _balls(given, diameter.value, ball.value),
         'preload': _preload(given),
+        'dynamic_rating': Noted(given.dynamic_rating, 'given'),
         'speed_limit': typical(PROCESSES[process].dn, f'50 to 180: {process}'),
         'parasitic_torque': MEASURED,
         'parasitic_torque_rate': MEASURED,

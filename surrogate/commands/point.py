@@ -111,10 +111,12 @@ def add_temperature(parser: argparse.ArgumentParser) -> None:
 
 def _point(args: argparse.Namespace) -> int:
     """Solve a point; exit code 1 when it is not converged."""
+    from surrogate.formulas.shaft import shaft_doubts
     from surrogate.screw.closed_form_record import closed_form_record, page
 
     _check(args)
     screw, lubricant = load_inputs(args)
+    tell(shaft_doubts(screw, abs(args.speed_rpm) * RPM, abs(args.load)))
     kelvin = oil_temperature(args, lubricant)
     point = OperatingPoint(speed=args.speed_rpm * RPM, load=args.load, temperature=kelvin)
     if args.plot:

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from surrogate.formulas.grades import double_log, OFFSET, slope_astm_d341, WARM
 from surrogate.parameters import Lubricant
 
 Array = NDArray[np.float64]
@@ -43,14 +44,9 @@ def kinematic_viscosity_astm_d341(temperature: ArrayLike, at_40: float, at_100: 
     log log (nu + 0.7) = A - B log T with nu in mm2/s: ASTM D341, valid from 2 to 2e7 mm2/s.
 
     """
-
-    def double_log(viscosity: float) -> float:
-        return math.log10(math.log10(viscosity * 1e6 + 0.7))
-
-    warm, hot = math.log10(313.15), math.log10(373.15)
-    slope = (double_log(at_40) - double_log(at_100)) / (hot - warm)
-    exponent = double_log(at_40) - slope * (np.log10(temperature) - warm)
-    return np.asarray((10.0 ** (10.0**exponent) - 0.7) * 1e-6)
+    cooler = np.log10(temperature) - math.log10(WARM)
+    exponent = double_log(at_40) - slope_astm_d341(at_40, at_100) * cooler
+    return np.asarray((10.0 ** (10.0**exponent) - OFFSET) * 1e-6)
 
 
 def pressure_viscosity_gold_2001(reference: float, viscosity_ratio: ArrayLike) -> Array:

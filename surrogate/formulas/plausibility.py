@@ -13,7 +13,8 @@ import math
 
 from surrogate.files import InputError
 from surrogate.formulas.geometry import helix_angle, hertz, screw_contact, SIDES
-from surrogate.formulas.load_sharing import normal_force
+from surrogate.formulas.load_sharing import normal_force, UNLOADING_RATIO
+from surrogate.formulas.shaft import shaft_doubts
 from surrogate.parameters import Screw
 from surrogate.raceway.scaling import scale_spectrum
 from surrogate.raceway.standards import CUTOFFS, RA_OVER_RQ
@@ -70,7 +71,12 @@ def check_plausible(screw: Screw) -> None:
 
 def doubts(screw: Screw) -> list[str]:
     """Return a sentence for each number that is possible but unusual."""
-    found = (*_doubts_of_size(screw), *_doubts_of_roughness(screw.roughness))
+    load = screw.working_load or UNLOADING_RATIO * screw.preload
+    found = (
+        *_doubts_of_size(screw),
+        *_doubts_of_roughness(screw.roughness),
+        *shaft_doubts(screw, screw.fastest_speed, load, ', by the sheet'),
+    )
     return [f'{screw.name}: {text}' for text in found]
 
 

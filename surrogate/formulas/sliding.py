@@ -13,8 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.formulas.geometry import Hertz, hertz, screw_contact, Side
+from surrogate.formulas.geometry import Hertz, hertz, screw_contact, Side, SIDES
 from surrogate.formulas.kinematics import slip_arm
+from surrogate.formulas.load_sharing import normal_force, working_preload
 from surrogate.formulas.lubricant import (
     limiting_shear_stress_bair_winer_1979,
     LubricantState,
@@ -127,6 +128,12 @@ def mean_sliding_speed(screw: Screw, side: Side, load: float, speed: float) -> f
     semi_x, semi_y = ellipse.semi_axis_x, ellipse.semi_axis_y
     arm = slip_arm(screw, side, semi_x * x, semi_y * y, semi_y)
     return float(abs(speed) * np.average(arm, weights=weight * np.sqrt(1 - x * x - y * y)))
+
+
+def largest_sliding(screw: Screw) -> float:
+    """Return the larger mean sliding of both sides under preload, per screw angle [m/rad]."""
+    load = float(normal_force(screw, working_preload(screw)))
+    return max(mean_sliding_speed(screw, side, load, 1.0) for side in SIDES)
 
 
 def hysteresis_force(loss: float, load: float, semi_axis_x: float, radius_x: float) -> float:

@@ -111,7 +111,7 @@ class ContactFields:
 
 def inputs_hash(screw: Screw, lubricant: Lubricant, law: str = '') -> str:
     """Return the beginning of the hash of datasheets, version of the law and what a row means."""
-    text = repr((VERSION, asdict(screw), lubricant.stated(), law))
+    text = repr((VERSION, screw.stated(), lubricant.stated(), law))
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 

@@ -10,7 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 import pytest
 from surrogate.formulas.lubricant import lubricant_state
-from surrogate.parameters import BallRoughness, DATA, load_lubricant, load_screw, OperatingPoint
+from surrogate.parameters import (
+    BallRoughness,
+    DATA,
+    load_lubricant,
+    load_screw,
+    OperatingPoint,
+    Screw,
+)
 from surrogate.raceway.ball import ball_of
 from surrogate.raceway.fractal import PublishedRoughness
 from surrogate.units import ZERO_CELSIUS
@@ -88,6 +95,15 @@ def test_an_oil_may_state_a_limiting_shear_stress():
     limited = replace(oil, limiting_shear_share=0.07)
     assert limited.stated() == oil.stated() | {'limiting_shear_share': 0.07}
     assert lubricant_state(limited, 313.15).limiting_shear_share == 0.07
+
+
+def test_what_no_contact_depends_on_leaves_no_trace_among_the_inputs(screw):
+    """A rating, a length and supports: surfaces and kept chains of a screw stay valid."""
+    assert screw.service() == {}
+    rated = replace(screw, dynamic_rating=25e3, free_length=1.0, support='fixed_free')
+    assert rated.stated() == screw.stated()
+    assert not set(screw.stated()) & set(Screw.SERVICE)
+    assert rated.service() == {'dynamic_rating': 25e3, 'free_length': 1.0, 'support': 'fixed_free'}
 
 
 MISTAKES = [

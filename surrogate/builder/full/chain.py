@@ -41,7 +41,7 @@ def chain_inputs(
 ) -> dict[str, Any]:
     """Return a chain: `load` [N] at least 0, `temperature` [K], falling `speeds` [rad/s]."""
     return {
-        'screw': asdict(screw),
+        'screw': screw.stated(),
         'lubricant': lubricant.stated(),
         'load': load,
         'temperature': temperature,

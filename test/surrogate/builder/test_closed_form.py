@@ -11,9 +11,11 @@ from surrogate.builder.closed_form import (
     build_closed_form,
     default_settings,
     load_nodes,
+    surface_header,
     temperature_nodes,
 )
 from surrogate.formulas.lubricant import lubricant_state
+from surrogate.formulas.sliding import largest_sliding
 from surrogate.screw import closed_form
 from surrogate.screw.onset import onset_speeds
 from surrogate.surface import FIELDS, Surface, Validity
@@ -83,6 +85,19 @@ def test_more_nodes_mean_smaller_errors(screw, oil):
     )
     for name in ('friction_torque', 'film_ratio', 'rcs'):
         assert fine[name][1] < 0.5 * coarse[name][1]
+
+
+def test_header_states_the_numbers_of_service(screw, oil):
+    """Beside the inputs, which they leave as they are."""
+    rated = replace(screw, dynamic_rating=25e3)
+    bare, stated = (
+        surface_header(one, oil, default_settings(screw), [], 'closed_form')
+        for one in (screw, rated)
+    )
+    assert stated['inputs'] == bare['inputs']
+    assert bare['service'] == {}
+    assert stated['service'] == {'dynamic_rating': 25e3}
+    assert stated['sliding_m_per_rad'] == bare['sliding_m_per_rad'] == largest_sliding(screw)
 
 
 def test_same_inputs_same_hash(screw, oil):

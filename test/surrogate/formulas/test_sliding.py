@@ -8,10 +8,12 @@ import math
 import numpy as np
 import pytest
 from surrogate.formulas.geometry import hertz, screw_contact
+from surrogate.formulas.load_sharing import normal_force
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.formulas.sliding import (
     ellipse_nodes,
     hysteresis_force,
+    largest_sliding,
     mean_sliding_speed,
     sliding_friction,
 )
@@ -31,6 +33,14 @@ def test_hysteresis_is_the_work_on_the_front_half(screw, side):
     found = hysteresis_force(0.01, 27.6, float(ellipse.semi_axis_x), contact.radius_x)
     assert found == pytest.approx(lost, rel=1e-3)
     assert math.isclose(hysteresis_force(0.0, 27.6, 5e-5, 3e-3), 0.0)
+
+
+def test_largest_sliding_is_that_of_a_ball_under_preload(screw):
+    """Of the side that slides more; without preload a light load stands for it."""
+    load = float(normal_force(screw, screw.preload))
+    sides = [mean_sliding_speed(screw, side, load, 1.0) for side in ('screw', 'nut')]
+    assert largest_sliding(screw) == max(sides)
+    assert 0 < largest_sliding(replace(screw, preload=0.0)) < max(sides)
 
 
 @pytest.mark.parametrize('side', ['screw', 'nut'])

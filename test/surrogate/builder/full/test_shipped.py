@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The shipped full-tier surface: whole, of today's datasheets, and what the solver gives."""
 
-from dataclasses import asdict
 import itertools
 import math
 
@@ -24,7 +23,7 @@ CLOSED_FORM = Surface.load(find_surface('closed_form'))
 
 def test_file_is_of_the_datasheets_and_small(screw, oil):
     """A datasheet that changes asks for another build; the package stays small."""
-    assert DATA.header['inputs'] == {'screw': asdict(screw), 'lubricant': oil.stated()}
+    assert DATA.header['inputs'] == {'screw': screw.stated(), 'lubricant': oil.stated()}
     assert SURFACE.tier == 'full'
     assert PATH.stat().st_size < LARGEST
 
@@ -33,7 +32,7 @@ def test_file_is_of_the_datasheets_and_small(screw, oil):
 def test_each_generic_size_has_a_surface_of_its_sheet(name, oil):
     """Without a node that is missing, within twice the error that is aimed at."""
     data = read(find_surface('full', name, oil.name))
-    sheet = asdict(load_screw(name))
+    sheet = load_screw(name).stated()
     assert data.header['inputs'] == {'screw': sheet, 'lubricant': oil.stated()}
     assert not data.mask.any()
     assert 0 < data.header['reached'] < 2
