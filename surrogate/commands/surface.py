@@ -10,6 +10,7 @@ from pathlib import Path
 import sys
 from typing import Any
 
+from surrogate.builder.companions import build_companions
 from surrogate.builder.tiers import build_surface, default_settings, find_tier, TIERS
 from surrogate.commands.output import add_json, show
 from surrogate.commands.point import add_inputs, load_inputs
@@ -55,6 +56,12 @@ def _add_build(parser: argparse.ArgumentParser) -> None:
             help=f'{name} range [{unit}]',
         )
     parser.add_argument('--out', type=Path, help='file to write (default SCREW_OIL.npz)')
+    parser.add_argument(
+        '--with-preloads',
+        action='store_true',
+        help='also write companions at 100, 80, 60 and 40 %% of the preload, by formulas alone, '
+        'from which health tells the preload',
+    )
     add_workers(parser)
     parser.set_defaults(handler=_build)
 
@@ -92,6 +99,9 @@ def _build(args: argparse.Namespace) -> int:
         )
     write(out, data)
     print(f'{out}: tier {args.tier}, {data.mask.size} nodes, sha256 {data.sha256}')
+    if args.with_preloads:
+        for file in build_companions(screw, lubricant, ranges, out):
+            print(f'{file}: companion at another preload')
     return 0
 
 

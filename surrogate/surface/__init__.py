@@ -17,7 +17,7 @@ from surrogate.surface.load_scan import is_inside, scan, scan_part
 from surrogate.surface.lookup import Surface
 from surrogate.surface.point import solved_point, SurfacePoint, Validity
 from surrogate.surface.regime import FILM_RATIO_LIMITS, Regime, regime_of, REGIMES
-from surrogate.surface.shipped import find_surface, shipped_surface
+from surrogate.surface.shipped import companion_path, find_surface, PRELOAD_SHARES, shipped_surface
 from surrogate.surface.solved import SolvedPoint
 from surrogate.surface.tables import SurfaceTables
 
@@ -27,6 +27,7 @@ __all__ = [
     'FIELDS',
     'FILM_RATIO_LIMITS',
     'Found',
+    'companion_path',
     'find_surface',
     'HasOperatingPoint',
     'is_inside',
@@ -38,6 +39,7 @@ __all__ = [
     'scan',
     'scan_part',
     'SurfaceTables',
+    'PRELOAD_SHARES',
     'RCS_LIMIT',
     'Regime',
     'regime_of',

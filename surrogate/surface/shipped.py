@@ -8,6 +8,8 @@ from surrogate.surface.file import SurfaceError, TIERS
 
 SHIPPED_TIERS = ('full', 'closed_form')
 """Tiers of shipped surfaces, the one that is taken first coming first."""
+PRELOAD_SHARES = (1.0, 0.8, 0.6, 0.4)
+"""Parts of the preload for which companions of a surface are built [-]."""
 SHIPPED = Path(__file__).parent.parent / 'data' / 'surfaces'
 
 
@@ -45,3 +47,8 @@ def shipped_surface(
         f'no surface {f"of tier {tier} " if tier else ""}is shipped for screw {screw!r} and oil '
         f'{oil!r}, shipped are {shipped or "none"}'
     )
+
+
+def companion_path(surface: Path, share: float) -> Path:
+    """Return where the companion of a surface file at a `share` of its preload [-] lies."""
+    return surface.with_name(f'{surface.stem}_preload{round(100 * share)}.npz')

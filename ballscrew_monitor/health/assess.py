@@ -1,0 +1,249 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Normal or worse: what is kept of an axis, held against its baseline.
+
+The condition is worse only where the change of the drag lies beyond the tolerance with 99.9 %
+confidence, so that a look every day for years seldom warns of nothing.
+
+"""
+
+from collections.abc import Sequence
+import dataclasses
+import math
+from typing import Any
+
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.health.bands import day_of
+from ballscrew_monitor.health.baseline import changed_screw
+from ballscrew_monitor.health.causes import causes_of, FEWEST_GROUPS
+from ballscrew_monitor.health.change import Change, change_between, parts_of, select
+from ballscrew_monitor.health.companions import Companions
+from ballscrew_monitor.health.damage import rated_of
+from ballscrew_monitor.health.energy import energy_quantities, student
+from ballscrew_monitor.health.life import life_quantities, shaft_notes, unknown
+from ballscrew_monitor.health.lubrication import (
+    boundary_note,
+    lubrication_rate,
+    opposed,
+    severity_quantities,
+)
+from ballscrew_monitor.health.model import Model
+from ballscrew_monitor.health.preload import preload_of
+from ballscrew_monitor.health.records import (
+    Baseline,
+    Cause,
+    ComparablePoint,
+    Condition,
+    Health,
+    Quantity,
+    SpectrumBin,
+)
+from ballscrew_monitor.health.remedies import remedies_of
+from ballscrew_monitor.health.words import advice_of, verdict_of
+from surrogate.surface import Surface
+
+TOLERANCE = 0.03
+"""Change of the drag that counts as normal [-]."""
+SURE = 1.9
+"""Half width of the 99.9 % interval over that of 95 %."""
+RECENT = 28
+"""Days that count as now, if the last week has too little [-]."""
+SHORT = 7
+FEWEST_STRETCHES = 10
+"""Stretches in common places that a comparison needs."""
+DRAG = 'drag change'
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class HealthSettings:
+    """
+    What health is told: limits of the zone, the user's CO2 factor [kg/kWh], NaN for none.
+
+    `speed_allowed`: advice may name another speed, which a process may not allow.
+
+    """
+
+    limits: Limits
+    co2_per_kwh: float = math.nan
+    speed_allowed: bool = False
+
+
+def assess(
+    axis: str,
+    now: int,
+    baseline: Baseline | str,
+    points: Sequence[ComparablePoint],
+    spectrum: Sequence[SpectrumBin],
+    surface: Surface,
+    companions: Companions | str,
+    settings: HealthSettings,
+) -> Health:
+    """
+    Return the health of an axis at `now` [ns].
+
+    `baseline` is one, or a sentence why there is none yet; so are `companions`. `points` and
+    `spectrum` are all that is kept.
+
+    """
+    today = day_of(now)
+    known = baseline if isinstance(baseline, Baseline) else None
+    model = Model(surface, companions if isinstance(companions, Companions) else None)
+    recent = _recent(points, today)
+    change = None if known is None else change_between(known.points, recent, model)
+    if change is not None and change.stretches < FEWEST_STRETCHES:
+        change = None
+    reason = _reason(baseline, points, recent, change)
+    causes = [] if change is None else causes_of(change, model)
+    drag = _drag(change, reason)
+    condition = _condition(change)
+    preload = preload_of(change, model, reason, companions)
+    found = [
+        *_drags(change, drag, reason),
+        preload,
+        *_others(points, spectrum, surface, known, today, settings),
+    ]
+    notes = _notes(surface, known, points, recent, change, today)
+    remedy = remedies_of(
+        recent, surface, settings.limits, speed_allowed=settings.speed_allowed
+    ).text
+    return Health(
+        axis=axis,
+        stamp=now,
+        condition=condition,
+        verdict=verdict_of(axis, condition, drag, preload, causes),
+        advice=advice_of(condition, causes) or ('' if _is_usual(notes) else remedy),
+        quantities=found,
+        causes=causes,
+        baseline=known,
+        notes=notes,
+    )
+
+
+def _recent(points: Sequence[ComparablePoint], today: int) -> list[ComparablePoint]:
+    """Return the points of the last week, or of the last four where that has too few."""
+    week = [one for one in points if one.first_day + one.days > today - SHORT]
+    if sum(one.stretches for one in week) >= FEWEST_STRETCHES:
+        return week
+    return [one for one in points if one.first_day + one.days > today - RECENT]
+
+
+def _reason(
+    baseline: Baseline | str,
+    points: Sequence[ComparablePoint],
+    recent: Sequence[ComparablePoint],
+    change: Change | None,
+) -> str:
+    """Return why the change of the drag is not known, empty where it is."""
+    if change is not None:
+        return ''
+    if not points:
+        return 'not known: no steady motion with a measured torque and an independent load yet'
+    if isinstance(baseline, str):
+        return f'not known yet: {baseline}'
+    if not recent:
+        return f'not known: no steady motion with a measured torque in the last {RECENT} days'
+    return (
+        f'not known yet: fewer than {FEWEST_STRETCHES} stretches at speeds, loads and directions '
+        'that the baseline has, too'
+    )
+
+
+def _drag(change: Change | None, reason: str) -> Quantity:
+    if change is None:
+        return unknown(DRAG, '-', reason)
+    return _interval(DRAG, '-', change.common, change.deviation, change)
+
+
+def _interval(name: str, unit: str, value: float, deviation: float, change: Change) -> Quantity:
+    reach = student(change.freedom) * deviation
+    return Quantity(
+        name=name,
+        unit=unit,
+        value=value,
+        low=value - reach,
+        high=value + reach,
+        evidence=f'{change.stretches} stretches at {len(change.groups)} places of the baseline',
+    )
+
+
+def _condition(change: Change | None) -> Condition:
+    """Return the condition by the drag: what its interval excludes."""
+    if change is None:
+        return Condition.UNKNOWN
+    reach = student(change.freedom) * change.deviation
+    if abs(change.common) - SURE * reach > TOLERANCE:
+        return Condition.WORSE
+    return Condition.NORMAL if reach <= 2.0 * TOLERANCE else Condition.UNKNOWN
+
+
+def _drags(change: Change | None, drag: Quantity, reason: str) -> list[Quantity]:
+    """Return the change of the drag, by direction, and its constant and proportional parts."""
+    parts = None if change is None else parts_of(change)
+    if change is None or parts is None:
+        why = reason or 'not known: all places have one speed'
+        rest = [unknown('constant drag', 'N m', why), unknown('drag per speed', 'N m s/rad', why)]
+    else:
+        (constant, rate), (apart, rate_apart) = parts
+        rest = [
+            _interval('constant drag', 'N m', constant, apart, change),
+            _interval('drag per speed', 'N m s/rad', rate, rate_apart, change),
+        ]
+    ways = [] if change is None else list(_ways(change))
+    return [drag, *ways, *rest]
+
+
+def _ways(change: Change) -> Any:
+    for name, sign in (('forward', 1), ('backward', -1)):
+        value, deviation = select(change, [one.direction == sign for one in change.groups])
+        if math.isfinite(value):
+            yield _interval(f'{DRAG} {name}', '-', value, deviation, change)
+
+
+def _others(
+    points: Sequence[ComparablePoint],
+    spectrum: Sequence[SpectrumBin],
+    surface: Surface,
+    baseline: Baseline | None,
+    today: int,
+    settings: HealthSettings,
+) -> list[Quantity]:
+    """Return life, lubrication and energy."""
+    rated = rated_of(surface.header)
+    return [
+        *life_quantities(spectrum, rated, today),
+        lubrication_rate(points, surface, rated, today),
+        *severity_quantities(spectrum, baseline, today),
+        *energy_quantities(spectrum, baseline, today, co2_per_kwh=settings.co2_per_kwh),
+    ]
+
+
+def _notes(
+    surface: Surface,
+    baseline: Baseline | None,
+    points: Sequence[ComparablePoint],
+    recent: Sequence[ComparablePoint],
+    change: Change | None,
+    today: int,
+) -> list[str]:
+    notes = [boundary_note(points, baseline, surface, today)]
+    if baseline is not None:
+        changes = [] if change is None else change.relative.tolist()
+        notes.append(changed_screw(baseline, surface.screw_name, changes))
+    if change is not None and len(change.groups) < FEWEST_GROUPS:
+        notes.append(
+            f'the cause is not known: at fewer than {FEWEST_GROUPS} places every cause fits'
+        )
+    speed = max((abs(one.speed) for one in recent), default=0.0)
+    load = max((abs(opposed(one)) for one in recent), default=0.0)
+    return [one for one in (*notes, *shaft_notes(surface.header, speed, load)) if one]
+
+
+def _is_usual(notes: Sequence[str]) -> bool:
+    """Tell whether boundary running is this axis's normal, so that no remedy is advised."""
+    return any('is normal for this axis' in one for one in notes)
+
+
+def likely(causes: Sequence[Cause]) -> Cause | None:
+    """Return the cause that fits best, if any does."""
+    return next((one for one in causes if not one.excluded), None)
