@@ -14,6 +14,7 @@ with a wiper that the model does not know, ripple and noise. The bytes are the s
 import argparse
 from collections.abc import Iterator
 import dataclasses
+import functools
 import math
 from pathlib import Path
 import sys
@@ -121,9 +122,15 @@ def months(cause: str) -> list[Month]:
     return [Month(number=n, preload=1.0 - n * loss) for n in range(MONTHS)]
 
 
+@functools.cache
+def programme() -> Motion:
+    """Return the motion that is the same in all months."""
+    return simulate(PROGRAMME)
+
+
 def motion_of(month: Month) -> Motion:
     """Return the programme with the oil of a month."""
-    motion = simulate(PROGRAMME)
+    motion = programme()
     season = -SEASON * math.cos(2 * math.pi * month.number / MONTHS)
     warmed = 1.0 - np.exp(-motion.time / WARM_TIME)
     return dataclasses.replace(motion, oil=MEAN_OIL + season + WARMING * warmed)
