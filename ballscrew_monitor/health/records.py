@@ -62,9 +62,10 @@ class ComparablePoint:
     The stretches of one place and one period of days under one surface.
 
     Means over `stretches`, each counted once: speed [rad/s], signed; axial_load [N];
-    temperature [K]; motor_torque [N m]. `torque_squares` [N2 m2] is the sum of the squared
-    deviations of their residual from its mean. `first_day` counts days since 1970 (UTC); a period
-    has 1, 7 or 28 `days`. `duration` [s] is the sum; `surface` begins the hash of the surface.
+    temperature [K]; motor_torque [N m], and `residual` [N m], what it exceeds the torque of that
+    surface by. `torque_squares` [N2 m2] is the sum of the squared deviations of the residual from
+    its mean. `first_day` counts days since 1970 (UTC); a period has 1, 7 or 28 `days`. `duration`
+    [s] is the sum; `surface` begins the hash of the surface.
 
     """
 
@@ -78,6 +79,7 @@ class ComparablePoint:
     axial_load: float
     temperature: float
     motor_torque: float
+    residual: float = NAN
     torque_squares: float = 0.0
     load_source: LoadSource = LoadSource.MEASURED
     temperature_measured: bool = True
@@ -89,7 +91,8 @@ class Baseline:
     What normal is: the stretches from `begin` to `end` [ns], and why they were chosen.
 
     `named_at` [ns] is when it was named, 0 for one that was learned over the first hours in
-    motion. `points` are kept with it, so that merging of older days leaves it as it is.
+    motion. `points` are kept with it, so that merging of older days leaves it as it is. `screw`
+    is the datasheet of the surface in use.
 
     """
 
@@ -97,6 +100,7 @@ class Baseline:
     end: int
     reason: str
     named_at: int = 0
+    screw: str = ''
     points: tuple[ComparablePoint, ...] = ()
 
 
@@ -172,7 +176,8 @@ class SpectrumBin:
 
     `axial_load` [N] is the mean opposing load, positive against the motion; `angle` [rad] of
     motion counted up; `speed` [rad/s] its mean; `time` in motion [s]; `wear_time` [s] by class of
-    severity; energies lost by the model and as measured [J].
+    severity; energies lost by the model and as measured [J]. `energy_expected` [J] is what the
+    model says of the time that was measured; it and `energy_measured` are NaN without such a time.
 
     """
 
@@ -186,6 +191,7 @@ class SpectrumBin:
     wear_time: tuple[float, ...] = ()
     energy_lost: float = 0.0
     energy_measured: float = NAN
+    energy_expected: float = NAN
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -3,9 +3,9 @@
 """
 Database of what outlives the node: `state.sqlite3` in a directory for one node alone.
 
-What is written at a time is one transaction and is on the disk when `write` returns. A write-ahead
-log lets others read meanwhile; where it cannot work there is a rollback journal. A database that
-is damaged or of another version is renamed, and an empty one takes its place.
+What is written at a time is one transaction and is on the disk when `write` returns. Others read
+meanwhile. A database that is damaged or of another version is renamed, and an empty one takes its
+place.
 
 """
 
@@ -19,21 +19,28 @@ import sqlite3
 from typing import Any
 
 from ballscrew_monitor.core.memory import AxisRecord, read_record, TYPES
+from ballscrew_monitor.core.sqlite_file import (
+    BAD,
+    connected,
+    has_room,
+    is_empty,
+    is_passing,
+    let_go,
+    opened_to_read,
+    set_file_aside,
+    SHARE,
+    size_of,
+    USED,
+)
 from ballscrew_monitor.node.former_files import read_former, set_aside
 from ballscrew_monitor.node.state_records import by_key, Corrections, Entry, Record, Records
 from surrogate.files import InputError
 
 FILE = 'state.sqlite3'
-PARTS = ('', '-wal', '-shm', '-journal')  # of the file, by the names that SQLite gives
 VERSION = 1
 UNWRITABLE = 'cannot be written'
 IN_USE = 'is in use by another node of this name'
-DAMAGED = 'is damaged'
-OTHER_VERSION = 'is of another version'
-BUSY = 1.0  # [s] to wait for somebody who reads
 CHUNK = 500  # entries that are appended at a time
-SHARE = 0.75  # of the limit for the database, the rest is for its journal
-NETWORK = {'9p', 'afs', 'ceph', 'cifs', 'fuse.sshfs', 'lustre', 'nfs', 'nfs4', 'smb3', 'vboxsf'}
 SQL = {int: 'INTEGER', bool: 'INTEGER', float: 'REAL', str: 'TEXT'}
 TABLES = f"""
 CREATE TABLE axes ({', '.join(f'"{name}" {SQL[kind]}' for name, kind in TYPES.items())},
@@ -43,11 +50,6 @@ CREATE TABLE events (number INTEGER PRIMARY KEY, time TEXT, stamp_ns INTEGER, ax
     kind TEXT, facts TEXT);
 PRAGMA user_version = {VERSION}
 """
-USED = """
-SELECT (page_count - freelist_count) * page_size
-    FROM pragma_page_count, pragma_freelist_count, pragma_page_size
-"""
-"""Bytes of the pages in use."""
 READ: dict[str, Any] = {'axes': read_record, 'corrections': Corrections.read}
 TABLE_OF = {AxisRecord: 'axes', Corrections: 'corrections'}
 
@@ -80,11 +82,12 @@ class StateDatabase:
         self.disconnect()
         try:
             return self._load()
-        except (sqlite3.DatabaseError, ValueError, KeyError, TypeError) as error:
-            if _is_passing(error):
+        except BAD as error:
+            if is_passing(error):
                 raise
             numbers = self._last_numbers()
-            self._set_aside(error)
+            self.disconnect()
+            self._damage.append(set_file_aside(self._file, error))
         self._load()
         self.write([], numbers)
         return by_key(numbers)
@@ -96,29 +99,21 @@ class StateDatabase:
         Raises InputError at the limit, sqlite3.Error and OSError.
 
         """
-        journal = self._file.with_name(f'{FILE}-wal')
-        if _size(journal) > (1.0 - SHARE) * self.limit:
-            # Somebody reads, and it could not begin again.
-            self._database.execute('PRAGMA wal_checkpoint(TRUNCATE)').fetchall()
-            if _size(journal):
-                raise InputError(at_limit(self.folder, self.limit))
+        if not has_room(self._database, self._file, self.limit):
+            raise InputError(at_limit(self.folder, self.limit))
         with self._database as database:
             database.execute('BEGIN IMMEDIATE')
             _write(database, entries, records, SHARE * self.limit)
 
     def disconnect(self) -> None:
         """Let go of the file, but not of the directory."""
-        if self._database is not None:
-            with contextlib.suppress(sqlite3.Error):
-                self._database.close()
+        let_go(self._database)
         self._database = None
 
     def close(self) -> None:
         """Leave one whole file, which anybody can read, and let another node have it."""
-        if self._database is not None:
-            with contextlib.suppress(sqlite3.Error):
-                self._database.execute('PRAGMA journal_mode = DELETE')
-        self.disconnect()
+        let_go(self._database, alone=True)
+        self._database = None
         if self._lock >= 0:
             os.close(self._lock)
         self._lock = -1
@@ -139,18 +134,11 @@ class StateDatabase:
 
     def _load(self) -> Records:
         """Return what the file holds; raises ValueError or KeyError for what no node has left."""
-        database = self._database = self._connected()
-        ((version,),) = database.execute('PRAGMA user_version')
-        ((tables,),) = database.execute('SELECT count(*) FROM sqlite_master')
-        if not version and not tables:
+        database = self._database = connected(self._file, self.limit)
+        if is_empty(database, VERSION):
             self._create()
-        elif version != VERSION:
-            raise ValueError(f'{OTHER_VERSION} ({version}, known is {VERSION})')
-        ((fault,),) = database.execute('PRAGMA quick_check(1)')
-        if fault != 'ok':
-            raise ValueError(fault.splitlines()[-1])
         self._notices += set_aside(self.folder)
-        if _size(self._file) > SHARE * self.limit:  # a limit of before was larger
+        if size_of(self._file) > SHARE * self.limit:  # a limit of before was larger
             _make_room(database, SHARE * self.limit)
             database.executescript('VACUUM; PRAGMA wal_checkpoint(TRUNCATE)')
         return by_key(
@@ -158,33 +146,6 @@ class StateDatabase:
             for table, read in READ.items()
             for row in database.execute(f'SELECT * FROM {table}')
         )
-
-    def _connected(self) -> sqlite3.Connection:
-        """Return a connection with a write-ahead log, or with what works in its place."""
-        if not on_network(self.folder):
-            with contextlib.suppress(sqlite3.OperationalError):
-                return self._set_up('journal_mode = WAL')
-        # Who is alone can read the write-ahead log of before without shared memory.
-        return self._set_up('locking_mode = EXCLUSIVE', 'journal_mode = TRUNCATE')
-
-    def _set_up(self, *journal: str) -> sqlite3.Connection:
-        database = sqlite3.connect(
-            self._file, timeout=BUSY, isolation_level=None, check_same_thread=False
-        )
-        size = self.limit // 16
-        settings = (
-            *('locking_mode = NORMAL', 'synchronous = FULL', 'temp_store = MEMORY'),
-            *(f'journal_size_limit = {size}', f'wal_autocheckpoint = {max(1, size // 4096)}'),
-        )
-        try:
-            for setting in (*journal, *settings):
-                database.execute(f'PRAGMA {setting}').fetchall()
-            database.executescript('BEGIN IMMEDIATE; ROLLBACK')  # tries the journal
-        except sqlite3.Error:
-            database.close()
-            raise
-        database.row_factory = sqlite3.Row
-        return database
 
     def _create(self) -> None:
         """Make the tables, and take over what a node of a former version has left."""
@@ -205,18 +166,6 @@ class StateDatabase:
                 found.append(read_record(blank | {'event': row['event']}))
         return found
 
-    def _set_aside(self, why: Exception) -> None:
-        """Rename the database, with the journal that belongs to it."""
-        self.disconnect()
-        for part in PARTS:
-            one = self._file.with_name(FILE + part)
-            aside = one.with_name(f'{FILE}.aside{part}')
-            aside.unlink(missing_ok=True)
-            if one.exists():
-                one.replace(aside)
-        what = str(why) if str(why).startswith(OTHER_VERSION) else f'{DAMAGED} ({why})'
-        self._damage.append(f'{self._file} {what}, moved to {FILE}.aside')
-
 
 def read_entries(folder: Path) -> list[Entry]:
     """
@@ -225,48 +174,15 @@ def read_entries(folder: Path) -> list[Entry]:
     Raises InputError if there is none, or none that can be read.
 
     """
-    file = folder / FILE
-    if not file.is_file():
-        raise InputError(f'{folder} has no {FILE}: name the state_dir of a node')
-    try:
-        place = f'{file.absolute().as_uri()}?mode=ro'
-        with contextlib.closing(sqlite3.connect(place, uri=True, timeout=BUSY)) as database:
-            (version,) = database.execute('PRAGMA user_version').fetchone()
-            if version != VERSION:
-                raise InputError(f'{file} {OTHER_VERSION} ({version}, known is {VERSION})')
-            # At once: somebody who reads on and on keeps the journal from being cleared.
-            rows = database.execute('SELECT * FROM events ORDER BY number').fetchall()
-            return [Entry(*row[1:]) for row in rows]
-    except sqlite3.Error as error:
-        raise InputError(f'{file} cannot be read, {error}') from None
+    with opened_to_read(folder, FILE, VERSION) as database:
+        # At once: somebody who reads on and on keeps the journal from being cleared.
+        rows = database.execute('SELECT * FROM events ORDER BY number').fetchall()
+        return [Entry(*row[1:]) for row in rows]
 
 
 def at_limit(folder: Path, limit: int) -> str:
     """Return that there is no room below the `limit` [B] of a folder."""
     return f'{folder} is at its state_limit of {limit / 1e6:g} MB'
-
-
-def on_network(folder: Path, mounts: Path = Path('/proc/self/mountinfo')) -> bool:
-    """Tell whether a folder is on a file system that other machines may share."""
-    device = folder.stat().st_dev
-    number = f'{os.major(device)}:{os.minor(device)}'
-    with contextlib.suppress(OSError):
-        lines = [line.partition(' - ') for line in mounts.read_text().splitlines()]
-        kinds = {right.split()[0] for left, _, right in lines if left.split()[2] == number}
-        return bool(kinds & NETWORK)
-    return False
-
-
-def _is_passing(error: Exception) -> bool:
-    """Tell whether the file is as it should be, and only cannot be had now."""
-    code = getattr(error, 'sqlite_errorcode', sqlite3.SQLITE_ERROR) & 0xFF
-    return isinstance(error, sqlite3.OperationalError) and code != sqlite3.SQLITE_ERROR
-
-
-def _size(file: Path) -> int:
-    with contextlib.suppress(FileNotFoundError):
-        return file.stat().st_size
-    return 0
 
 
 def _write(

@@ -7,6 +7,7 @@ import math
 from pathlib import Path
 import re
 
+from ballscrew_monitor.core import sqlite_file
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Level
@@ -268,7 +269,7 @@ SENTENCES = [
     diagnostics.KEPT,
     'the program failed at',
     *(state_database.UNWRITABLE, state_database.IN_USE),
-    *(state_database.DAMAGED, state_database.OTHER_VERSION, restart_state.SILENT),
+    *(sqlite_file.DAMAGED, sqlite_file.OTHER_VERSION, restart_state.SILENT),
 ]
 BEGINNINGS = [
     diagnostics.CLOCK_STANDS,

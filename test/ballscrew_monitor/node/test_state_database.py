@@ -3,14 +3,13 @@
 """The database: whole or as before, for one node, within its limit, whatever becomes of it."""
 
 import contextlib
-import os
 import random
 import shutil
 import sqlite3
 
+from ballscrew_monitor.core import sqlite_file
 from ballscrew_monitor.core.memory import AxisRecord
-from ballscrew_monitor.node import state_database
-from ballscrew_monitor.node.state_database import FILE, on_network, read_entries, StateDatabase
+from ballscrew_monitor.node.state_database import FILE, read_entries, StateDatabase
 from ballscrew_monitor.node.state_records import by_key, Corrections, entry_of, Kind
 import pytest
 from surrogate.files import InputError
@@ -118,26 +117,13 @@ def test_where_no_write_ahead_log_works_a_journal_is_rolled_back(make, tmp_path,
     shutil.copytree(tmp_path / 'killed', place)
     (place / f'{FILE}-shm').unlink()
     if why == 'network':
-        monkeypatch.setattr(state_database, 'on_network', lambda folder: True)
+        monkeypatch.setattr(sqlite_file, 'on_network', lambda folder: True)
     else:
         (place / f'{FILE}-shm').mkdir()
     database = make(place)
     assert (database.setting('journal_mode'), database.setting('synchronous')) == ('truncate', 2)
     database.fill(2)
     assert (database.event, stamps(place)) == (1, [1, 2])
-
-
-def test_a_file_system_of_another_machine_is_known_by_its_name(tmp_path):
-    device = tmp_path.stat().st_dev
-    number = f'{os.major(device)}:{os.minor(device)}'
-    mounts = tmp_path / 'mountinfo'
-    for kind, other, expected in (('nfs4', 'ext4', True), ('ext4', 'nfs4', False)):
-        mounts.write_text(
-            f'22 1 {number} / / rw,relatime shared:1 - {kind} server:/x rw\n'
-            f'23 1 0:999 / /mnt rw - {other} /dev/vdb rw\n'
-        )
-        assert on_network(tmp_path, mounts) is expected
-    assert not on_network(tmp_path, tmp_path / 'missing')
 
 
 def spoil(folder, *statements):
