@@ -12,6 +12,7 @@ the same every time.
 """
 
 import argparse
+from collections.abc import Sequence
 import dataclasses
 import math
 from pathlib import Path
@@ -112,10 +113,10 @@ CYCLE = (
 )
 
 
-def starts() -> tuple[tuple[float, Phase], ...]:
+def starts(phases: Sequence[Phase] = CYCLE) -> tuple[tuple[float, Phase], ...]:
     """Return every phase with its begin [s]."""
-    times = np.cumsum([0.0] + [phase.duration for phase in CYCLE])
-    return tuple(zip(times.tolist(), CYCLE))
+    times = np.cumsum([0.0] + [phase.duration for phase in phases])
+    return tuple(zip(times.tolist(), phases))
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -129,29 +130,32 @@ class Motion:
     oil: Array
 
 
-def simulate() -> Motion:
-    """Return the cycle without sensors, on a fine grid of times."""
-    time = np.arange(0.0, sum(phase.duration for phase in CYCLE), FINE_STEP)
-    number = np.searchsorted([begin for begin, _ in starts()], time, side='right') - 1
-    target = np.array([phase.speed for phase in CYCLE])[number] / 60.0 * LEAD
+def simulate(phases: Sequence[Phase] = CYCLE) -> Motion:
+    """Return the phases without sensors, on a fine grid of times."""
+    time = np.arange(0.0, sum(phase.duration for phase in phases), FINE_STEP)
+    number = np.searchsorted([begin for begin, _ in starts(phases)], time, side='right') - 1
+    target = np.array([phase.speed for phase in phases])[number] / 60.0 * LEAD
     velocity = _smooth(_limit_slope(target, ACCELERATION * FINE_STEP), JERK_TIME)
     acceleration = np.gradient(velocity, FINE_STEP)
     along = np.tanh(velocity / 2e-4)  # direction of motion
     friction = along * GUIDE_FRICTION + GUIDE_DAMPING * velocity
-    load = -TABLE_MASS * acceleration - friction - along * _cutting_force(time, number, velocity)
+    cut = along * _cutting_force(phases, time, number, velocity)
+    load = -TABLE_MASS * acceleration - friction - cut
     angle = np.cumsum(velocity) * FINE_STEP * 2 * math.pi / LEAD
     return Motion(
         time=time, angle=angle, speed=velocity * 2 * math.pi / LEAD, load=load, oil=_oil(time)
     )
 
 
-def _cutting_force(time: Array, number: NDArray[np.int64], velocity: Array) -> Array:
+def _cutting_force(
+    phases: Sequence[Phase], time: Array, number: NDArray[np.int64], velocity: Array
+) -> Array:
     """Return the force along the feed [N]: engagement, tooth passing and spindle runout."""
-    level = np.array([phase.cut for phase in CYCLE])[number]
-    tooth = np.array([phase.tooth for phase in CYCLE])[number]
+    level = np.array([phase.cut for phase in phases])[number]
+    tooth = np.array([phase.tooth for phase in phases])[number]
     moving = (
         np.abs(velocity)
-        > 0.5 * np.abs(np.array([phase.speed for phase in CYCLE])[number]) / 60.0 * LEAD
+        > 0.5 * np.abs(np.array([phase.speed for phase in phases])[number]) / 60.0 * LEAD
     )
     engaged = _smooth(np.where(moving, level, 0.0), ENGAGEMENT_TIME)
     ripple = 0.05 * np.sin(2 * math.pi * tooth * time) ** 2 + 0.02 * np.sin(

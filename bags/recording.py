@@ -7,7 +7,7 @@ The bytes are the same every time.
 
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 import dataclasses
 from pathlib import Path
 
@@ -74,10 +74,19 @@ def _header(stamp: int, frame: str) -> Header:
     return Header(stamp=Time(sec=seconds, nanosec=rest), frame_id=frame)
 
 
-def write_bag(directory: Path, records: Iterable[Record]) -> None:
-    """Write the bag to `directory`, which appears, or is replaced, only when it is complete."""
+def write_bag(
+    directory: Path, records: Iterable[Record], texts: Mapping[str, str] | None = None
+) -> None:
+    """
+    Write the bag to `directory`, which appears, or is replaced, only when it is complete.
+
+    `texts` are its metadata, such as the parameters to judge it with.
+
+    """
     # Uncompressed, so that the bytes do not depend on the version of a compressor.
     with whole_bag(directory, directory.resolve().name, compress=False) as writer:
+        if texts:
+            writer.add_metadata(texts)
         for topic in TOPICS:
             writer.add_topic(topic)
         for record in records:

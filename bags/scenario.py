@@ -199,10 +199,17 @@ def parameters(scenario: Scenario) -> dict[str, Any]:
     """Return the content of the parameter file: that of the nominal cycle and what differs."""
     content: dict[str, Any] = yaml.safe_load(NOMINAL_PARAMETERS.read_text())
     (node,) = content.values()
-    for name, value in scenario.parameters.items():
+    nested(scenario.parameters, node['ros__parameters'])
+    return content
+
+
+def nested(values: Mapping[str, Any], within: dict[str, Any] | None = None) -> dict[str, Any]:
+    """Return parameters by full name as sections within sections, or added to those `within`."""
+    made = {} if within is None else within
+    for name, value in values.items():
         *groups, leaf = name.split('.')
-        place = node['ros__parameters']
+        place = made
         for group in groups:
             place = place.setdefault(group, {})
         place[leaf] = value
-    return content
+    return made

@@ -1,0 +1,257 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Generate twelve monthly logs of a feed axis that loses its preload, or gets another oil.
+
+The screw is iso3408_40x10 in ISO VG 68. A month has one log of 14 min at 20 Hz: speed, load, oil
+and motor torque of the same programme, with the oil of the season. The preload falls in a straight
+line from that of the datasheet to 40 % of it; or the axis runs in ISO VG 32 from the sixth month
+on. The torque is that of the closed form at this preload and in this oil, never that of a surface,
+with a wiper that the model does not know, ripple and noise. The bytes are the same every time.
+
+"""
+
+import argparse
+from collections.abc import Iterator
+import dataclasses
+import functools
+import math
+from pathlib import Path
+import sys
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.log_facts import PREFIX
+from lubrication_scenarios import TORQUE_PARAMETERS
+from nominal_cycle import Array, FINE_STEP, LEAD, Motion, Phase, simulate
+import numpy as np
+from recording import (
+    AXIAL_LOAD,
+    BEGIN,
+    joint_state,
+    JOINT_STATES,
+    OIL_TEMPERATURE,
+    Record,
+    temperature,
+    wrench,
+    write_bag,
+)
+from scenario import nested
+from scipy.interpolate import RegularGridInterpolator
+from surrogate.formulas.torque import driving_torque
+from surrogate.parameters import load_lubricant, load_screw
+from surrogate.screw import closed_form
+from surrogate.units import ZERO_CELSIUS
+import yaml
+
+SCREW, OIL, OTHER_OIL = 'iso3408_40x10', 'iso_vg_68', 'iso_vg_32'
+MONTHS, MONTH = 12, 30 * 86_400 * SECOND
+"""Number of logs, and the time [ns] from one to the next."""
+LAST_PRELOAD = 0.4
+"""Preload of the last month over that of the first [-]."""
+CHANGED = 5
+"""Number of the first month in the other oil, the first of all is 0."""
+PERIOD, OIL_PERIOD = 0.05, 1.0
+"""Times between samples [s]: speed, load and torque; oil."""
+WIPER, SEAL, SEAL_SPEED = 0.04, 0.02, 5.0
+"""Torque of the wipers [N m], what they add near standstill, and where it fades [rad/s]."""
+INERTIA = 0.002
+"""Moment of inertia of the screw [kg m2]."""
+RIPPLE, NOISE = 0.02, 0.01
+"""Ripple of the friction once a revolution [-], standard deviation of a torque sample [N m]."""
+MEAN_OIL, SEASON, WARMING, WARM_TIME = 27.0, 6.0, 9.0, 300.0
+"""Oil at the begin [degC], swing over the year and rise in a log [K], time of the rise [s]."""
+SLOWEST = 0.05
+SPEED_NODES = np.linspace(0.0, math.asinh(240.0 / SLOWEST), 91)
+LOAD_NODES, OIL_NODES = np.linspace(0.0, 1800.0, 5), np.linspace(20.0, 44.0, 4)
+"""Nodes of the friction of a month: arsinh of the speed over the slowest [-], [N], [degC]."""
+SEED = 40
+
+
+def _to_and_fro(speed: float, duration: float, cut: float = 0.0, back: float = 0.0):
+    """Yield a pass at a speed [rev/min] for a duration [s] under a cut [N], and one back."""
+    yield Phase(name='pass', duration=duration, speed=speed, cut=cut)
+    yield Phase(name='turn', duration=0.4)
+    yield Phase(name='pass', duration=duration, speed=-speed, cut=back)
+    yield Phase(name='turn', duration=0.4)
+
+
+def _part(cut: float) -> Iterator[Phase]:
+    """Yield one workpiece under a cut [N], about two minutes."""
+    yield from _to_and_fro(2000.0, 1.9)
+    yield from _to_and_fro(50.0, 10.0, 0.8 * cut)  # rough cut at 0.5 m/min, idle back
+    yield from _to_and_fro(100.0, 9.0, cut, 0.7 * cut)
+    yield from _to_and_fro(1500.0, 2.2)
+    yield from _to_and_fro(300.0, 6.0, 0.6 * cut)
+    yield from _to_and_fro(20.0, 7.0)  # touch probe
+    yield from _to_and_fro(180.0, 8.0, 0.3 * cut, 0.3 * cut)
+    yield from _to_and_fro(2000.0, 1.9)
+    yield from _to_and_fro(600.0, 3.5)
+    yield Phase(name='change of the workpiece', duration=12.0)
+
+
+PROGRAMME = (
+    Phase(name='drives on', duration=2.0),
+    *_to_and_fro(300.0, 2.0),
+    *(
+        phase
+        for cut in (600.0, 1500.0, 900.0, 1200.0, 600.0, 1500.0, 900.0)
+        for phase in _part(cut)
+    ),
+)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Month:
+    """A month by its number, the first is 0: preload over that of the datasheet [-], oil."""
+
+    number: int
+    preload: float = 1.0
+    oil: str = OIL
+
+    @property
+    def begin(self) -> int:
+        """Stamp of the begin of its log [ns]."""
+        return BEGIN + self.number * MONTH
+
+
+def months(cause: str) -> list[Month]:
+    """Return the twelve months of a cause, `preload` or `oil`."""
+    if cause == 'oil':
+        return [Month(number=n, oil=OTHER_OIL if n >= CHANGED else OIL) for n in range(MONTHS)]
+    loss = (1.0 - LAST_PRELOAD) / (MONTHS - 1)
+    return [Month(number=n, preload=1.0 - n * loss) for n in range(MONTHS)]
+
+
+@functools.cache
+def programme() -> Motion:
+    """Return the motion that is the same in all months."""
+    return simulate(PROGRAMME)
+
+
+def motion_of(month: Month) -> Motion:
+    """Return the programme with the oil of a month."""
+    motion = programme()
+    season = -SEASON * math.cos(2 * math.pi * month.number / MONTHS)
+    warmed = 1.0 - np.exp(-motion.time / WARM_TIME)
+    return dataclasses.replace(motion, oil=MEAN_OIL + season + WARMING * warmed)
+
+
+def friction(month: Month, speed: Array, load: Array, oil: Array) -> Array:
+    """
+    Return the friction torque [N m] of the screw in a month by the closed form.
+
+    |w| [rad/s], |load| [N], oil [degC]; solved at nodes, cubic between them.
+
+    """
+    screw = load_screw(SCREW)
+    solved = closed_form.solve(
+        dataclasses.replace(screw, preload=month.preload * screw.preload),
+        load_lubricant(month.oil),
+        np.maximum(SLOWEST * np.sinh(SPEED_NODES), SLOWEST)[:, None, None],
+        LOAD_NODES[None, :, None],
+        OIL_NODES[None, None, :] + ZERO_CELSIUS,
+    )
+    axes = SPEED_NODES, LOAD_NODES, OIL_NODES
+    between = RegularGridInterpolator(axes, solved.friction_torque, method='cubic')
+    return np.asarray(between(np.stack([np.arcsinh(speed / SLOWEST), load, oil], axis=-1)))
+
+
+def torque_of(month: Month, motion: Motion) -> Array:
+    """Return the motor torque at the screw [N m, machine frame], without ripple and noise."""
+    speed, along = np.abs(motion.speed), np.tanh(motion.speed / 0.1)
+    drag = friction(month, speed, np.abs(motion.load), motion.oil)
+    drag += WIPER + SEAL * np.exp(-speed / SEAL_SPEED)
+    acceleration = np.gradient(motion.speed, motion.time)
+    return driving_torque(along * drag, -motion.load, LEAD) + INERTIA * acceleration
+
+
+def samples_of(motion: Motion) -> Motion:
+    """Return the motion at the times of its samples."""
+    step = round(PERIOD / FINE_STEP)
+    fields = dataclasses.asdict(motion).items()
+    return Motion(**{name: values[step::step] for name, values in fields})
+
+
+def records_of(month: Month, *, noise: bool = True) -> list[Record]:
+    """Return every message of a month in the order of log time."""
+    random, fine = np.random.Generator(np.random.PCG64([SEED, month.number])), motion_of(month)
+    motion = samples_of(fine)
+    torque = torque_of(month, motion)
+    oil = motion.oil
+    load = motion.load
+    if noise:
+        drag = torque - driving_torque(0.0, -load, LEAD)
+        torque = torque + RIPPLE * drag * np.sin(motion.angle)
+        torque += random.normal(0.0, NOISE, torque.size)
+        load = load + random.normal(0.0, 4.0, load.size)
+        oil = np.round(oil + random.normal(0.0, 0.05, oil.size), 1)
+    made = list(_messages(month, motion, torque, load, oil))
+    return sorted(made, key=lambda record: (record.log_time, record.topic))
+
+
+def _messages(
+    month: Month, motion: Motion, torque: Array, load: Array, oil: Array
+) -> Iterator[Record]:
+    """Yield the messages of a month; the oil comes more slowly than the rest."""
+    slower = round(OIL_PERIOD / PERIOD)
+    columns = motion.time, motion.angle, motion.speed, torque, load, oil
+    for number, (time, angle, speed, effort, force, warm) in enumerate(
+        zip(*(column.tolist() for column in columns), strict=True)
+    ):
+        stamp = month.begin + round(time * SECOND)
+        yield _record(JOINT_STATES.name, stamp, 400_000, joint_state(stamp, angle, speed, effort))
+        yield _record(AXIAL_LOAD.name, stamp, 200_000, wrench(stamp, force))
+        if number % slower == 0:
+            yield _record(OIL_TEMPERATURE.name, stamp, 100_000, temperature(stamp, warm))
+
+
+def _record(topic: str, stamp: int, delay: int, data: bytes) -> Record:
+    return Record(topic=topic, stamp=stamp, log_time=stamp + delay, data=data)
+
+
+def parameters_text() -> str:
+    """Return the parameters of the node to judge the logs with."""
+    values = {
+        'axes': ['x'],
+        'x.screw': SCREW,
+        'x.oil': OIL,
+        'x.publish_period': 0.1,
+        'x.temperature.topic': 'oil_temperature',
+        **TORQUE_PARAMETERS,
+    }
+    content = {'/**/ballscrew_monitor': {'ros__parameters': nested(values)}}
+    return yaml.safe_dump(content, sort_keys=False)
+
+
+def generate(directory: Path, cause: str = 'preload') -> Iterator[Path]:
+    """Write a bag for each month, with the parameters in its metadata; yield their paths."""
+    texts = {f'{PREFIX}parameters': parameters_text()}
+    for month in months(cause):
+        path = directory / f'month_{month.number + 1:02}'
+        write_bag(path, records_of(month), texts)
+        yield path
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Generate the logs from the command line."""
+    parser = argparse.ArgumentParser(description='Generate twelve monthly logs of a feed axis.')
+    parser.add_argument(
+        '--out',
+        type=Path,
+        default=Path(__file__).with_name('monthly_logs'),
+        help='directory in which each month gets its bag (default: %(default)s)',
+    )
+    parser.add_argument(
+        '--cause',
+        choices=['preload', 'oil'],
+        default='preload',
+        help='what changes: preload to 40 %%, or the oil to ISO VG 32 (default: %(default)s)',
+    )
+    args = parser.parse_args(arguments)
+    for path in generate(args.out, args.cause):
+        print(path)
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

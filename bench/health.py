@@ -1,0 +1,107 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Play axis-years of known truth and print how good the health is that is made of them.
+
+Usage: python bench/health.py [--runs N] [--clean N] [--coverage N] [--seed S] [--kept FILE]
+[--logs DIR]. Each year is a draw of programmes, seasons and of what the model does not know, with
+one change or none; it is given as comparable points, day by day, and assessed once a week. FILE
+keeps the friction of the screw and its surfaces, which take a minute, between runs. With DIR
+twenty short logs are made there and go through replay as well.
+
+"""
+
+import argparse
+from pathlib import Path
+
+from ballscrew_monitor.health.assess import assess, HealthSettings
+from health_parts.machine import Ground, solve_ground
+from health_parts.score import Assess, Score, score
+from health_parts.years import draw_year, Kind, Truth
+import numpy as np
+from surrogate.progress import Progress
+
+AIMED_LOSS = 0.10
+PRELOADS = (Truth.PRELOAD_10, Truth.PRELOAD_20, Truth.PRELOAD_38)
+
+
+def assess_with(ground: Ground) -> Assess:
+    """Return the assessment with the surfaces of the screw."""
+    surface = ground.surfaces[1.0]
+
+    def ask(now, baseline, points):
+        return assess('x', now, baseline, points, (), surface, ground.surfaces, HealthSettings())
+
+    return ask
+
+
+def scores_of(ground: Ground, kind: Kind, seeds: range, progress: Progress) -> list[Score]:
+    """Return the scores of years of a kind."""
+    found = []
+    for seed in seeds:
+        found.append(score(draw_year(ground, kind, seed), assess_with(ground)))
+        progress.step()
+    return found
+
+
+def row_of(name: str, scores: list[Score]) -> str:
+    """Return a row of the table."""
+    known = [one for one in scores if not one.problem]
+    sizes = np.array([one.size for one in known])
+    found = sizes[np.isfinite(sizes)]
+    days = sum(one.clean_days for one in known)
+    early = sum(one.early_alarms for one in known)
+    held = {
+        quantity: [one.held[quantity] for one in known if quantity in one.held]
+        for quantity in ('drag', 'preload')
+    }
+    cells = [
+        name,
+        f'{len(known)}',
+        percent(found.size, len(known)),
+        f'{100 * np.median(found):.0f}' if found.size else '',
+        f'{100 * np.quantile(found, 0.9):.0f}' if found.size else '',
+        percent(int((found <= AIMED_LOSS).sum()), len(known)),
+        f'{1000 * early / days:.2f}' if days else '',
+        *(percent(sum(one), len(one)) for one in held.values()),
+        percent(sum(one.is_right for one in known), len(known)),
+    ]
+    return '| ' + ' | '.join(cells) + ' |'
+
+
+def percent(part: int, total: int) -> str:
+    """Return a share in percent, nothing of nothing."""
+    return f'{100 * part / total:.0f} %' if total else ''
+
+
+HEAD = (
+    '| change | years | found | size when found, median [%] | nine of ten [%] | found at 10 % | '
+    'false alarms per 1000 days | drag held | preload held | cause right |\n' + '|---' * 10 + '|'
+)
+
+
+def main() -> None:
+    """Draw, assess and print."""
+    parser = argparse.ArgumentParser(description=__doc__.split('\n\n')[0].strip())
+    parser.add_argument('--runs', type=int, default=200, help='years of each change')
+    parser.add_argument('--clean', type=int, default=20, help='years without a change')
+    parser.add_argument('--seed', type=int, default=1000, help='the first one')
+    parser.add_argument('--kept', type=Path, help='file that keeps what is solved once')
+    asked = parser.parse_args()
+    ground = solve_ground(asked.kept)
+    kinds = [(Kind(truth=truth), asked.runs) for truth in Truth if truth.value]
+    kinds = [(Kind(truth=Truth.NOTHING), asked.clean), *kinds]
+    progress = Progress(sum(number for _, number in kinds), 'years')
+    rows = [
+        row_of(kind.truth.name, scores_of(ground, kind, _seeds(asked.seed, number), progress))
+        for kind, number in kinds
+    ]
+    print(HEAD, *rows, sep='\n')
+
+
+def _seeds(first: int, number: int) -> range:
+    return range(first, first + number)
+
+
+if __name__ == '__main__':
+    main()
