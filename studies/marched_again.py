@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What moves the onset of one marched strip: start of the tile, range and fall of the speed, reading.
+Onset of one marched strip over start of the tile, range and fall of the speed, and reading.
 
 Usage: python studies/marched_again.py STRIP [--starts N] [--speeds FIRST LAST] [--transits N], or
 python studies/marched_again.py STRIP --standing SPEED ...; speeds in m/s.

@@ -35,7 +35,7 @@ from surrogate.units import RPM, ZERO_CELSIUS
 RESULTS = Path('studies/results/random_screws.csv')
 OILS = 'iso_vg_32', 'iso_vg_68', 'iso_vg_100'
 SETTINGS = ScrewSettings(smooth=Settings(nx=65, ny=65, error_estimate=False))
-BETWEEN = 3.0
+BETWEEN = 30.0
 """Factor on the onset of the middle of the contact within which that of all of it lies [-]."""
 
 
@@ -85,7 +85,7 @@ def draw(seed: int) -> tuple[CatalogueScrew, str, float, float]:
 def closed_form_onset(screw: Screw, oil: Lubricant, load: float, temperature: float) -> float:
     """Return the fastest screw speed at which RCS is 0.01 [rad/s], closed-form tier."""
     middle = onset_point(screw, oil, load, temperature)['speed_rad_s']
-    speeds = middle * np.geomspace(BETWEEN, 1 / BETWEEN, 121)
+    speeds = middle * np.geomspace(BETWEEN, 1 / BETWEEN, 241)
     rcs = solve(screw, oil, speeds, load, temperature).rcs
     last = int(np.argmax(rcs >= ONSET_RCS))
     ends = np.log(np.maximum(rcs[[last - 1, last]], 1e-9))

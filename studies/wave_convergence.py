@@ -13,7 +13,7 @@ is there is not marched again. Last it prints the table of docs/theory/running_i
 
 import argparse
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 from pathlib import Path
 
@@ -171,24 +171,30 @@ def onset(rows: Sequence[Part]) -> float:
     return math.exp(np.interp(math.log(ONSET_RCS), ends, logs[[low, high]]))
 
 
+def longer_than(wave: float) -> float:
+    """Return the next longer wave [um], itself for the longest."""
+    return WAVES[max(WAVES.index(wave) - 1, 0)]
+
+
 def report(rows: Sequence[Part]) -> list[str]:
     """Return the table of the onsets, each over that with the next longer waves."""
     lines = [
         '| march | nodes | onset [mm/s] | over the wave before | failed |',
         '|---|---|---|---|---|',
     ]
-    before = math.nan
+    onsets: dict[Case, float] = {}
     for case in CASES:
         parts_of = [row for row in rows if row.march == case.name]
         if not parts_of:
             continue
         found, one = onset(parts_of), parts_of[0]
-        ratio = f'{found / before:.2f}' if case.shortest_um != WAVES[0] else ''
+        before = onsets.get(replace(case, shortest_um=longer_than(case.shortest_um)), math.nan)
+        ratio = '' if math.isnan(before) else f'{found / before:.2f}'
         lines.append(
             f'| {case.name} | {one.nodes_along} x {one.nodes_across} | {1e3 * found:.0f} '
             f'| {ratio} | {one.failed} of {one.steps} |'
         )
-        before = found
+        onsets[case] = found
     return lines
 
 
