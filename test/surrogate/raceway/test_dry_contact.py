@@ -102,6 +102,34 @@ def test_high_summits_yield_all_and_the_area_is_the_load_over_the_hardness(share
     assert found.contact_share == pytest.approx(share, rel=0.05)
 
 
+@pytest.mark.parametrize('hardness', [math.inf, 5e9, 3e9])
+def test_area_pressure_and_what_sinks_are_those_of_an_independent_solver(hardness):
+    """Elastic and with summits that yield, as ContactMechanics has them."""
+    mechanics = pytest.importorskip('ContactMechanics')
+    optimization = pytest.importorskip('ContactMechanics.Optimization')
+    topography = pytest.importorskip('SurfaceTopography')
+    tile, mean = rough(4, 3.0), 1e9
+    size, cell = (tile.length, tile.width), tile.length * tile.width / tile.heights.size
+    theirs = optimization.constrained_conjugate_gradients(
+        mechanics.PeriodicFFTElasticHalfSpace(tile.heights.shape, MODULUS, size),
+        topography.Topography(tile.heights, size, periodic=True),
+        hardness=None if math.isinf(hardness) else hardness * cell,
+        external_force=mean * tile.length * tile.width,
+        pentol=1e-13,
+    )
+    assert theirs.success
+    pressure, gap = np.abs(theirs.jac) / cell, theirs.x - tile.heights - theirs.offset
+    found = press(tile, MODULUS, mean, hardness=hardness)
+    assert found.contact_share == pytest.approx((pressure > 0).mean(), abs=1e-3)
+    assert np.abs(found.pressure - pressure).sum() < 3e-4 * pressure.sum()
+    assert found.gap == pytest.approx(gap, abs=0.1e-9)
+    sunk = np.where(pressure >= hardness * (1 - 1e-9), np.maximum(-gap, 0.0), 0.0)
+    assert (sunk.max() > 50e-9) == (hardness < math.inf)
+    if hardness < math.inf:
+        lower, _ = run_in(tile, MODULUS, mean, hardness)
+        assert tile.heights - lower.heights == pytest.approx(sunk, abs=0.1e-9)
+
+
 @pytest.mark.parametrize('mean', [0.0, 7e9, 9e9, math.nan])
 def test_a_mean_pressure_that_no_raceway_carries_is_refused(mean, refused):
     refused('mean_pressure_below', press, rough(1), MODULUS, mean, hardness=7e9)
