@@ -13,7 +13,7 @@ import itertools
 import math
 
 from ballscrew_monitor.core.conversions import Direction, opposing_load
-from ballscrew_monitor.health.damage import Rated
+from ballscrew_monitor.health.damage import Rated, recent
 from ballscrew_monitor.health.energy import FEWEST_DAYS, student, within
 from ballscrew_monitor.health.life import HOUR, KNOWN_SHARE, NO_RATING, RECENT, unknown
 from ballscrew_monitor.health.records import Baseline, ComparablePoint, Quantity, SpectrumBin
@@ -49,14 +49,14 @@ def lubrication_rate(
     name, unit = 'lubrication part of the burn rate', '-'
     if rated is None:
         return unknown(name, unit, NO_RATING)
-    recent = [one for one in points if one.first_day + one.days > today - RECENT]
+    latest = recent(points, today, RECENT)
     films = {id(one): _film_ratio(surface, one) for one in points}
-    for some, when in ((recent, f'the last {RECENT} days'), (points, 'all days')):
+    for some, when in ((latest, f'the last {RECENT} days'), (points, 'all days')):
         reason = _film_reason(some, films, when)
         if reason:
             return unknown(name, unit, reason)
     found = [
-        _mean_slowness(recent, films, rated, *case) / _mean_slowness(points, films, rated, *case)
+        _mean_slowness(latest, films, rated, *case) / _mean_slowness(points, films, rated, *case)
         for case in _cases()
     ]
     return Quantity(
@@ -135,8 +135,8 @@ def severity_quantities(
     between periods of days. `today` counts days since 1970.
 
     """
-    recent = [one for one in bins if one.first_day + one.days > today - RECENT]
-    times, known = _times(recent), sum(map(sum, (one.wear_time for one in recent)))
+    latest = recent(bins, today, RECENT)
+    times, known = _times(latest), sum(map(sum, (one.wear_time for one in latest)))
     if known < HOUR:
         reason = f'not known yet: severity of {known / MINUTE:.3g} min of motion, needed are 60'
         return [unknown('severity shift', 'classes', reason)]
@@ -151,7 +151,7 @@ def severity_quantities(
         )
         for place, time in enumerate(times)
     ]
-    return [*shares, _shift(recent, bins, baseline)]
+    return [*shares, _shift(latest, bins, baseline)]
 
 
 def boundary_note(
@@ -163,10 +163,10 @@ def boundary_note(
     `today` counts days since 1970.
 
     """
-    recent = [one for one in points if one.first_day + one.days > today - RECENT]
-    if baseline is None or not recent or not baseline.points:
+    latest = recent(points, today, RECENT)
+    if baseline is None or not latest or not baseline.points:
         return ''
-    before, now = (_boundary_share(some, surface) for some in (baseline.points, recent))
+    before, now = (_boundary_share(some, surface) for some in (baseline.points, latest))
     if not before >= NORMAL_BOUNDARY or not now <= before + BOUNDARY_SLACK:
         return ''
     return (
@@ -176,12 +176,12 @@ def boundary_note(
 
 
 def _shift(
-    recent: Iterable[SpectrumBin], bins: Iterable[SpectrumBin], baseline: Baseline | None
+    latest: Iterable[SpectrumBin], bins: Iterable[SpectrumBin], baseline: Baseline | None
 ) -> Quantity:
     name, unit = 'severity shift', 'classes'
     if baseline is None:
         return unknown(name, unit, 'not known yet: there is no baseline')
-    sides = [_daily_means(some) for some in (within(bins, baseline), recent)]
+    sides = [_daily_means(some) for some in (within(bins, baseline), latest)]
     if min(map(len, sides)) < FEWEST_DAYS:
         return unknown(
             name,

@@ -53,7 +53,8 @@ def life_iso_3408_2006(rating: float, load: float) -> float:
     L = (C / F)^3 1e6: ISO 3408-5:2006, 7.2. Dynamic `rating` C [N], `load` in the nut F [N].
 
     """
-    return RATED_LIFE * (rating / load) ** 3 if load else math.inf
+    worn = (abs(load) / rating) ** 3
+    return RATED_LIFE / worn if worn else math.inf
 
 
 def equivalent_load_iso_3408_2006(spectrum: Iterable[tuple[float, float]]) -> float:
