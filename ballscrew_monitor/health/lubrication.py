@@ -30,6 +30,8 @@ from surrogate.units import MINUTE
 NAN = math.nan
 CONTAMINATION = (0.3, 0.5, 0.8)
 """Least, usual and largest contamination factor eC of a lubricated axis [-], ISO 281, table 13."""
+THRUST = 3.0
+"""Divisor of the fatigue limit for thrust bearings in ISO 281 [-]; a radial bearing has 1."""
 FILM_SLACK = 1.3
 """Factor within which the film ratio is known [-]."""
 NORMAL_BOUNDARY, BOUNDARY_SLACK = 0.2, 0.1
@@ -88,7 +90,7 @@ def _mean_slowness(
     points: Iterable[ComparablePoint],
     films: Mapping[int, float],
     rated: Rated,
-    contamination: float,
+    limit_share: float,
     film_slack: float,
 ) -> float:
     """Return the mean of 1 / a over the damage of points [-]."""
@@ -100,19 +102,19 @@ def _mean_slowness(
         load, _ = nut_forces_iso_3408_2006(one.axial_load, rated.preload)
         damage = abs(one.speed) * one.duration / life_iso_3408_2006(rated.dynamic_rating, load)
         kappa = viscosity_ratio_iso_1281_2008(film_slack * films[id(one)])
-        ratio = contamination * limit / load if load else math.inf
+        ratio = limit_share * limit / load if load else math.inf
         spent += damage
         worn += damage / life_factor_iso_281_2007(kappa, ratio)
     return worn / spent if spent else NAN
 
 
 def _cases() -> Iterator[tuple[float, float]]:
-    """Yield contamination factors with factors on the film, the usual ones first."""
+    """Yield what stands before Cu / P with factors on the film, the usual ones first."""
     least, usual, most = CONTAMINATION
-    yield usual, 1.0
-    for contamination in (least, most):
+    yield usual / THRUST, 1.0
+    for share in (least / THRUST, most):
         for slack in (1 / FILM_SLACK, FILM_SLACK):
-            yield contamination, slack
+            yield share, slack
 
 
 def _film_ratio(surface: Surface, point: ComparablePoint) -> float:
