@@ -185,7 +185,8 @@ def test_what_must_start_quickly_loads_nothing_heavy(module, heavy):
 
 def test_node_loads_of_surrogate_what_the_lookup_needs():
     """The process that watches the machine holds nothing of the solver, plots or recordings."""
-    needed = loaded_by('import surrogate.surface, surrogate.formulas.grades, surrogate.formulas.life')
+    laws = 'surrogate.formulas.grades, surrogate.formulas.life'
+    needed = loaded_by(f'import surrogate.surface, {laws}')
     loaded = loaded_by('import ballscrew_monitor.node.run')
     assert not {name for name in loaded - needed if name.split('.')[0] == 'surrogate'}
     assert not loaded & {'matplotlib', 'mcap', 'scipy'}

@@ -11,9 +11,9 @@ nut were always the pressed one, which is the most; loads that change nuts use u
 from collections.abc import Iterable, Mapping
 import dataclasses
 import math
-from typing import Any
+from typing import Any, TypeVar
 
-from ballscrew_monitor.health.records import SpectrumBin
+from ballscrew_monitor.health.records import ComparablePoint, SpectrumBin
 from surrogate.files import InputError
 from surrogate.formulas.life import (
     combined_damage,
@@ -24,6 +24,7 @@ from surrogate.formulas.life import (
 from surrogate.units import TURN
 
 NAN = math.nan
+Item = TypeVar('Item', SpectrumBin, ComparablePoint)
 WITHIN_BAND = 1.13
 """Largest mean cube of loads in a band, whose ends differ by 1.5, over the cube of their mean."""
 SHARED_LEAST = 2.0 ** (1 / SLOPE - 1)
@@ -41,9 +42,13 @@ class Rated:
 
     def __post_init__(self) -> None:
         """Refuse ratings that are not above zero."""
-        for name in ('dynamic_rating', 'static_rating', 'pitch_diameter'):
-            check_range(name, getattr(self, name), 0.0 < getattr(self, name) < math.inf, 'above 0')
-        check_range('preload', self.preload, 0.0 <= self.preload < math.inf, 'at least 0')
+        above = ('dynamic_rating', 'N'), ('static_rating', 'N'), ('pitch_diameter', 'm')
+        for name, unit in above:
+            value = getattr(self, name)
+            if not 0.0 < value < math.inf:
+                raise InputError(f'life: {name} is {value:g} {unit}, allowed is above 0')
+        if not 0.0 <= self.preload < math.inf:
+            raise InputError(f'life: preload is {self.preload:g} N, allowed is at least 0')
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -78,6 +83,11 @@ def rated_of(header: Mapping[str, Any], preload_share: float = 1.0) -> Rated | N
         preload=preload_share * float(screw['preload']),
         pitch_diameter=2 * float(screw['pitch_radius']),
     )
+
+
+def recent(items: Iterable[Item], today: int, days: int) -> list[Item]:
+    """Return bins or points whose period reaches into the last days, `today` counted."""
+    return [one for one in items if one.first_day + one.days > today - days + 1]
 
 
 def damage_of(bins: Iterable[SpectrumBin], rated: Rated, load_uncertainty: float) -> Damage:
@@ -117,8 +127,3 @@ def _times(loads: Iterable[tuple[float, float]], factor: float) -> list[tuple[fl
 
 def _has_load(one: SpectrumBin) -> bool:
     return math.isfinite(one.axial_load)
-
-
-def check_range(name: str, value: float, sound: bool, allowed: str) -> None:
-    if not sound:
-        raise InputError(f'life: {name} is {value:g}, allowed is {allowed}')

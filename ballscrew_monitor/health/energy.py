@@ -13,6 +13,7 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.health.damage import recent
 from ballscrew_monitor.health.records import Baseline, Quantity, SpectrumBin
 from surrogate.files import InputError
 from surrogate.units import KILOWATT_HOUR, MINUTE
@@ -55,10 +56,10 @@ def energy_quantities(
     """
     if not (math.isnan(co2_per_kwh) or 0.0 <= co2_per_kwh < math.inf):
         raise InputError(f'energy: co2_per_kwh is {co2_per_kwh:g} kg/kWh, allowed is at least 0')
-    recent = [one for one in bins if one.first_day + one.days > today - RECENT]
-    now = ratio_of(recent)
-    lost = _lost(recent, now)
-    share, beyond = _against(recent, bins, baseline, now, lost)
+    latest = recent(bins, today, RECENT)
+    now = ratio_of(latest)
+    lost = _lost(latest, now)
+    share, beyond = _against(bins, baseline, now, lost)
     found = [lost, share, beyond]
     if not math.isnan(co2_per_kwh):
         found.append(_scaled(beyond, 'CO2 beyond the baseline', 'kg', co2_per_kwh))
@@ -111,10 +112,10 @@ def student(freedom: int) -> float:
     return z + first / nu + second / nu**2 + third / nu**3
 
 
-def _lost(recent: Sequence[SpectrumBin], now: Ratio) -> Quantity:
+def _lost(bins: Sequence[SpectrumBin], now: Ratio) -> Quantity:
     """Return the energy lost: by the model, times what was measured over what it expects."""
-    modelled = sum(one.energy_lost for one in recent) / KILOWATT_HOUR
-    hours = sum(one.time for one in recent) / (60 * MINUTE)
+    modelled = sum(one.energy_lost for one in bins) / KILOWATT_HOUR
+    hours = sum(one.time for one in bins) / (60 * MINUTE)
     name, unit = 'energy lost', 'kWh'
     reason = _few_days(now, f'the last {RECENT} days')
     if reason:
@@ -130,11 +131,7 @@ def _lost(recent: Sequence[SpectrumBin], now: Ratio) -> Quantity:
 
 
 def _against(
-    recent: Sequence[SpectrumBin],
-    bins: Sequence[SpectrumBin],
-    baseline: Baseline | None,
-    now: Ratio,
-    lost: Quantity,
+    bins: Sequence[SpectrumBin], baseline: Baseline | None, now: Ratio, lost: Quantity
 ) -> tuple[Quantity, Quantity]:
     """Return energy over that of the baseline at equal motion, and the part beyond it."""
     names = ('energy against the baseline', '-'), ('energy beyond the baseline', 'kWh')

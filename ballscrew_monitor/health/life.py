@@ -13,14 +13,15 @@ import math
 from typing import Any
 
 from ballscrew_monitor.health.damage import (
-    check_range,
     Damage,
     damage_of,
     Rated,
+    recent,
     SHARED_LEAST,
     WITHIN_BAND,
 )
 from ballscrew_monitor.health.records import Quantity, SpectrumBin
+from surrogate.files import InputError
 from surrogate.units import MINUTE, RPM
 
 NAN = math.nan
@@ -62,12 +63,14 @@ def life_quantities(
     where not known, which are counted at the mean damage per turn of all that was seen.
 
     """
-    check_range('load_uncertainty', load_uncertainty, 0.0 <= load_uncertainty < 1.0, 'from 0 to 1')
+    if not 0.0 <= load_uncertainty < 1.0:
+        raise InputError(
+            f'life: load_uncertainty is {load_uncertainty:g}, allowed is 0 to below 1'
+        )
     if rated is None:
         return [unknown(name, unit, NO_RATING) for name, unit in NAMES.items()]
     now, every = (
-        damage_of(some, rated, load_uncertainty)
-        for some in ([one for one in bins if one.first_day + one.days > today - RECENT], bins)
+        damage_of(some, rated, load_uncertainty) for some in (recent(bins, today, RECENT), bins)
     )
     reasons = _reason(now, f'the last {RECENT} days'), _reason(every, 'all days')
     return list(_quantities(now, every, reasons, turns_before))
@@ -100,18 +103,18 @@ def _quantities(
     now: Damage, every: Damage, reasons: tuple[str, str], turns_before: float
 ) -> Iterator[Quantity]:
     life, hours, share, left, rate = NAMES
-    recent, whole = reasons
+    lately, whole = reasons
     text = f'ISO 3408-5, {now.turns:.3g} revolutions in {now.time / HOUR:.3g} h of motion'
     for name, amount in ((life, now.turns), (hours, now.time / HOUR)):
-        yield _inverse(name, NAMES[name], amount, now, recent, text)
+        yield _inverse(name, NAMES[name], amount, now, lately, text)
     before = 0.0 if math.isnan(turns_before) else turns_before
     used = every.scaled(1 + before / every.turns if every.turns else NAN)
     seen = 'since monitoring began; revolutions before it are not known'
     if not math.isnan(turns_before):
         seen = f'with {before:.3g} revolutions before monitoring'
     yield _told(share, '-', used, whole, f'ISO 3408-5 and Palmgren, {seen}')
-    yield _left(left, now, used, recent or whole, text)
-    yield _rate(rate, now, every, recent or whole)
+    yield _left(left, now, used, lately or whole, text)
+    yield _rate(rate, now, every, lately or whole)
 
 
 def _left(

@@ -13,7 +13,7 @@ import itertools
 import math
 
 from ballscrew_monitor.core.conversions import Direction, opposing_load
-from ballscrew_monitor.health.damage import Rated
+from ballscrew_monitor.health.damage import Rated, recent
 from ballscrew_monitor.health.energy import FEWEST_DAYS, student, within
 from ballscrew_monitor.health.life import HOUR, KNOWN_SHARE, NO_RATING, RECENT, unknown
 from ballscrew_monitor.health.records import Baseline, ComparablePoint, Quantity, SpectrumBin
@@ -30,6 +30,8 @@ from surrogate.units import MINUTE
 NAN = math.nan
 CONTAMINATION = (0.3, 0.5, 0.8)
 """Least, usual and largest contamination factor eC of a lubricated axis [-], ISO 281, table 13."""
+THRUST = 3.0
+"""Divisor of the fatigue limit for thrust bearings in ISO 281 [-]; a radial bearing has 1."""
 FILM_SLACK = 1.3
 """Factor within which the film ratio is known [-]."""
 NORMAL_BOUNDARY, BOUNDARY_SLACK = 0.2, 0.1
@@ -49,14 +51,14 @@ def lubrication_rate(
     name, unit = 'lubrication part of the burn rate', '-'
     if rated is None:
         return unknown(name, unit, NO_RATING)
-    recent = [one for one in points if one.first_day + one.days > today - RECENT]
+    latest = recent(points, today, RECENT)
     films = {id(one): _film_ratio(surface, one) for one in points}
-    for some, when in ((recent, f'the last {RECENT} days'), (points, 'all days')):
+    for some, when in ((latest, f'the last {RECENT} days'), (points, 'all days')):
         reason = _film_reason(some, films, when)
         if reason:
             return unknown(name, unit, reason)
     found = [
-        _mean_slowness(recent, films, rated, *case) / _mean_slowness(points, films, rated, *case)
+        _mean_slowness(latest, films, rated, *case) / _mean_slowness(points, films, rated, *case)
         for case in _cases()
     ]
     return Quantity(
@@ -88,7 +90,7 @@ def _mean_slowness(
     points: Iterable[ComparablePoint],
     films: Mapping[int, float],
     rated: Rated,
-    contamination: float,
+    limit_share: float,
     film_slack: float,
 ) -> float:
     """Return the mean of 1 / a over the damage of points [-]."""
@@ -100,19 +102,19 @@ def _mean_slowness(
         load, _ = nut_forces_iso_3408_2006(one.axial_load, rated.preload)
         damage = abs(one.speed) * one.duration / life_iso_3408_2006(rated.dynamic_rating, load)
         kappa = viscosity_ratio_iso_1281_2008(film_slack * films[id(one)])
-        ratio = contamination * limit / load if load else math.inf
+        ratio = limit_share * limit / load if load else math.inf
         spent += damage
         worn += damage / life_factor_iso_281_2007(kappa, ratio)
     return worn / spent if spent else NAN
 
 
 def _cases() -> Iterator[tuple[float, float]]:
-    """Yield contamination factors with factors on the film, the usual ones first."""
+    """Yield what stands before Cu / P with factors on the film, the usual ones first."""
     least, usual, most = CONTAMINATION
-    yield usual, 1.0
-    for contamination in (least, most):
+    yield usual / THRUST, 1.0
+    for share in (least / THRUST, most):
         for slack in (1 / FILM_SLACK, FILM_SLACK):
-            yield contamination, slack
+            yield share, slack
 
 
 def _film_ratio(surface: Surface, point: ComparablePoint) -> float:
@@ -135,8 +137,8 @@ def severity_quantities(
     between periods of days. `today` counts days since 1970.
 
     """
-    recent = [one for one in bins if one.first_day + one.days > today - RECENT]
-    times, known = _times(recent), sum(map(sum, (one.wear_time for one in recent)))
+    latest = recent(bins, today, RECENT)
+    times, known = _times(latest), sum(map(sum, (one.wear_time for one in latest)))
     if known < HOUR:
         reason = f'not known yet: severity of {known / MINUTE:.3g} min of motion, needed are 60'
         return [unknown('severity shift', 'classes', reason)]
@@ -151,7 +153,7 @@ def severity_quantities(
         )
         for place, time in enumerate(times)
     ]
-    return [*shares, _shift(recent, bins, baseline)]
+    return [*shares, _shift(latest, bins, baseline)]
 
 
 def boundary_note(
@@ -163,10 +165,10 @@ def boundary_note(
     `today` counts days since 1970.
 
     """
-    recent = [one for one in points if one.first_day + one.days > today - RECENT]
-    if baseline is None or not recent or not baseline.points:
+    latest = recent(points, today, RECENT)
+    if baseline is None or not latest or not baseline.points:
         return ''
-    before, now = (_boundary_share(some, surface) for some in (baseline.points, recent))
+    before, now = (_boundary_share(some, surface) for some in (baseline.points, latest))
     if not before >= NORMAL_BOUNDARY or not now <= before + BOUNDARY_SLACK:
         return ''
     return (
@@ -176,12 +178,12 @@ def boundary_note(
 
 
 def _shift(
-    recent: Iterable[SpectrumBin], bins: Iterable[SpectrumBin], baseline: Baseline | None
+    latest: Iterable[SpectrumBin], bins: Iterable[SpectrumBin], baseline: Baseline | None
 ) -> Quantity:
     name, unit = 'severity shift', 'classes'
     if baseline is None:
         return unknown(name, unit, 'not known yet: there is no baseline')
-    sides = [_daily_means(some) for some in (within(bins, baseline), recent)]
+    sides = [_daily_means(some) for some in (within(bins, baseline), latest)]
     if min(map(len, sides)) < FEWEST_DAYS:
         return unknown(
             name,

@@ -53,7 +53,8 @@ def life_iso_3408_2006(rating: float, load: float) -> float:
     L = (C / F)^3 1e6: ISO 3408-5:2006, 7.2. Dynamic `rating` C [N], `load` in the nut F [N].
 
     """
-    return RATED_LIFE * (rating / load) ** 3 if load else math.inf
+    worn = (abs(load) / rating) ** 3
+    return RATED_LIFE / worn if worn else math.inf
 
 
 def equivalent_load_iso_3408_2006(spectrum: Iterable[tuple[float, float]]) -> float:
@@ -110,7 +111,7 @@ def fatigue_limit_iso_281_2007(static_rating: float, pitch_diameter: float) -> f
     Return the load below which ISO 281 expects no fatigue [N], by the rule for ball bearings.
 
     Cu = C0 / 22 for pitch diameters up to 100 mm, times (100 mm / Dpw)^(1/2) beyond: ISO 281:2007,
-    B.3.3. `static_rating` C0 [N], `pitch_diameter` Dpw [m].
+    (B.18), (B.19). `static_rating` C0 [N], `pitch_diameter` Dpw [m].
 
     """
     size = min(1.0, math.sqrt(LARGEST_PITCH / pitch_diameter))
@@ -131,11 +132,11 @@ def viscosity_ratio_iso_1281_2008(film_ratio: float) -> float:
 
 def life_factor_iso_281_2007(viscosity_ratio: float, limit_ratio: float) -> float:
     """
-    Return the life modification factor of radial ball bearings [-], 0.1 to 50.
+    Return the life modification factor of ball bearings [-], 0.1 to 50.
 
     a = 0.1 [1 - (2.5671 - C / kappa^p)^0.83 (eC Cu / P)^(1/3)]^(-9.3): ISO 281:2007, (31) to (33).
     `viscosity_ratio` kappa [-], `limit_ratio` eC Cu / P [-] with the contamination factor eC, the
-    fatigue limit Cu and the load P.
+    fatigue limit Cu and the load P; thrust bearings have eC Cu / (3 P) instead, (37) to (39).
 
     """
     if math.isnan(viscosity_ratio) or math.isnan(limit_ratio):
