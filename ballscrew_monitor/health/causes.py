@@ -29,6 +29,8 @@ FEWEST_GROUPS = 3
 """Groups of places without which no pattern tells causes apart."""
 STEPS = 41
 """Sizes that are tried of each cause."""
+GRIDS, FEWEST_STEPS = 3, 6
+"""Most grids, each within the one before, and steps that an interval should have."""
 
 
 class Candidate(NamedTuple):
@@ -200,15 +202,22 @@ def birge(chi: float, groups: int) -> float:
 
 
 def _fit(candidate: Candidate, change: Change, model: Model, inverse: Array) -> Fit | None:
-    sizes = np.linspace(candidate.low, candidate.high, STEPS)
-    chis = np.array([_chi(candidate, change, model, inverse, size) for size in sizes])
-    if not np.isfinite(chis).any():
-        return None
-    place = int(np.nanargmin(chis))
-    size, chi = _vertex(sizes, chis, place)
-    limit = chi + INTERVAL * birge(chi, len(change.groups))
-    low, high = _crossing(sizes, chis, place, limit, -1), _crossing(sizes, chis, place, limit, 1)
-    return Fit(candidate, size, low, high, chi)
+    """Return the fit of a cause, its grid drawn closer until the interval has several steps."""
+    low, high = candidate.low, candidate.high
+    for _ in range(GRIDS):
+        sizes: Array = np.linspace(low, high, STEPS)
+        chis = np.array([_chi(candidate, change, model, inverse, size) for size in sizes])
+        if not np.isfinite(chis).any():
+            return None
+        place = int(np.nanargmin(chis))
+        size, chi = _vertex(sizes, chis, place)
+        limit = chi + INTERVAL * birge(chi, len(change.groups))
+        ends = [_crossing(sizes, chis, place, limit, step) for step in (-1, 1)]
+        step = float(sizes[1] - sizes[0])
+        if ends[1] - ends[0] > FEWEST_STEPS * step:
+            break
+        low, high = max(size - 2.0 * step, candidate.low), min(size + 2.0 * step, candidate.high)
+    return Fit(candidate, size, ends[0], ends[1], chi)
 
 
 def _chi(candidate: Candidate, change: Change, model: Model, inverse: Array, size: float) -> float:
