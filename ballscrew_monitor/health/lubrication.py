@@ -32,7 +32,7 @@ CONTAMINATION = (0.3, 0.5, 0.8)
 """Least, usual and largest contamination factor eC of a lubricated axis [-], ISO 281, table 13."""
 THRUST = 3.0
 """Divisor of the fatigue limit for thrust bearings in ISO 281 [-]; a radial bearing has 1."""
-FILM_SLACK = 1.3
+FILM_SLACK = 1.5
 """Factor within which the film ratio is known [-]."""
 NORMAL_BOUNDARY, BOUNDARY_SLACK = 0.2, 0.1
 """Share of boundary running that makes it normal, and growth that still is [-]."""
