@@ -131,7 +131,7 @@ def severity_quantities(
     bins: Sequence[SpectrumBin], baseline: Baseline | None, today: int
 ) -> list[Quantity]:
     """
-    Return the share of the motion in each class of severity now, and the shift of the mean class.
+    Return the share of the motion in classes of severity now, and the shift of the mean class.
 
     A shift of 1 is ten times the severity, as the classes are cut; its interval is by the scatter
     between periods of days. `today` counts days since 1970.
@@ -152,6 +152,7 @@ def severity_quantities(
             evidence=text,
         )
         for place, time in enumerate(times)
+        if time > 0.0
     ]
     return [*shares, _shift(latest, bins, baseline)]
 
