@@ -14,7 +14,9 @@ twenty short logs are made there and go through replay as well.
 import argparse
 from pathlib import Path
 
+from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.assess import assess, HealthSettings
+from ballscrew_monitor.health.companions import Companions
 from health_parts.machine import Ground, solve_ground
 from health_parts.score import Assess, Score, score
 from health_parts.years import draw_year, Kind, Truth
@@ -22,15 +24,25 @@ import numpy as np
 from surrogate.progress import Progress
 
 AIMED_LOSS = 0.10
+LIMITS = Limits(
+    rcs=0.01,
+    efficiency=0.85,
+    light_load=0.0,
+    standstill_speed=0.3,
+    raise_delay=0,
+    clear_delay=0,
+    hysteresis=0.0,
+)
 PRELOADS = (Truth.PRELOAD_10, Truth.PRELOAD_20, Truth.PRELOAD_38)
 
 
 def assess_with(ground: Ground) -> Assess:
     """Return the assessment with the surfaces of the screw."""
-    surface = ground.surfaces[1.0]
+    surface, companions = ground.surfaces[1.0], Companions(ground.surfaces)
+    settings = HealthSettings(limits=LIMITS)
 
     def ask(now, baseline, points):
-        return assess('x', now, baseline, points, (), surface, ground.surfaces, HealthSettings())
+        return assess('x', now, baseline, points, (), surface, companions, settings)
 
     return ask
 
@@ -53,7 +65,7 @@ def row_of(name: str, scores: list[Score]) -> str:
     early = sum(one.early_alarms for one in known)
     held = {
         quantity: [one.held[quantity] for one in known if quantity in one.held]
-        for quantity in ('drag', 'preload')
+        for quantity in ('drag change', 'preload')
     }
     cells = [
         name,

@@ -21,8 +21,6 @@ import numpy as np
 
 NAN = math.nan
 WEEK = 7
-RECENT = 28
-"""Days before the assessment over which the drag is compared."""
 Assess = Callable[[int, Baseline, Sequence], Health]
 """Returns the health at a time [ns] out of a baseline and points."""
 
@@ -32,14 +30,16 @@ class Score:
     """
     What came of one year.
 
-    `size` of the change at the first alarm [-], NaN if there was none; alarms before the change
-    with the days that had none of it; whether each interval that was given holds the truth; the
-    cause that comes first at the end, and whether the right one was excluded.
+    `size` of the change and that of the drag at the first alarm [-], NaN if there was none;
+    alarms before the change with the days that had none of it; whether each interval that was
+    given holds the truth; the cause that comes first at the end, and whether the right one was
+    excluded.
 
     """
 
     truth: Truth
     size: float = NAN
+    drag: float = NAN
     early_alarms: int = 0
     clean_days: int = 0
     held: dict[str, bool] = dataclasses.field(default_factory=dict)
@@ -83,9 +83,10 @@ def score(year: Year, assess: Assess) -> Score:
     return Score(
         truth=truth,
         size=NAN if found is None else abs(float(year.size[found])),
+        drag=NAN if found is None else abs(true_drag(year, begin, found)),
         early_alarms=early,
         clean_days=max(min(changed, DAYS) - begin, 0),
-        held=held_by(year, final, DAYS - 1),
+        held=held_by(year, begin, final, DAYS - 1),
         first_cause=first_cause(final),
         right_excluded=any(c.excluded for c in final.causes if c.code in truth.value),
     )
@@ -114,9 +115,9 @@ def first_cause(health: Health) -> CauseCode | None:
     return max(left, key=lambda cause: cause.weight).code if left else None
 
 
-def held_by(year: Year, health: Health, day: int) -> dict[str, bool]:
+def held_by(year: Year, begin: int, health: Health, day: int) -> dict[str, bool]:
     """Return by quantity whether its interval holds the truth on a day, where it is given."""
-    truths = {'drag': true_drag(year, day), 'preload': true_preload(year, day)}
+    truths = {'drag change': true_drag(year, begin, day), 'preload': true_preload(year, day)}
     given = {one.name: one for one in health.quantities}
     return {
         name: holds(given[name], value)
@@ -131,10 +132,11 @@ def holds(quantity: Quantity, value: float) -> bool:
     return quantity.low <= scale * value <= quantity.high
 
 
-def true_drag(year: Year, day: int) -> float:
-    """Return by how much the friction of the recent days is changed [-]."""
-    recent = slice(day - RECENT + 1, day + 1)
-    return float(np.nanmean(year.drag[recent]) / np.nanmean(year.drag_before[recent]) - 1.0)
+def true_drag(year: Year, begin: int, day: int) -> float:
+    """Return the change of friction in the last week [-]; NaN where the torque is wrong."""
+    if year.kind.truth is Truth.TORQUE_GAIN:
+        return NAN
+    return year.drag_change(day - WEEK + 1, day, year.groups_until(begin))
 
 
 def true_preload(year: Year, day: int) -> float:
