@@ -3,15 +3,14 @@
 """
 Normal or worse: what is kept of an axis, held against its baseline.
 
-The condition is worse only where the change of the drag lies beyond the tolerance with 99.9 %
-confidence, so that a look every day for years seldom warns of nothing.
+The condition is worse only where the change of the drag, or the loss of preload, lies beyond the
+tolerance with 99.9 % confidence, so that a look every day for years seldom warns of nothing.
 
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 import dataclasses
 import math
-from typing import Any
 
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.bands import day_of
@@ -32,7 +31,6 @@ from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.preload import preload_of
 from ballscrew_monitor.health.records import (
     Baseline,
-    Cause,
     ComparablePoint,
     Condition,
     Health,
@@ -44,7 +42,7 @@ from ballscrew_monitor.health.words import advice_of, verdict_of
 from surrogate.surface import Surface
 
 TOLERANCE = 0.03
-"""Change of the drag that counts as normal [-]."""
+"""Change of the drag, or loss of preload, that counts as normal [-]."""
 SURE = 1.9
 """Half width of the 99.9 % interval over that of 95 %."""
 RECENT = 28
@@ -96,8 +94,8 @@ def assess(
     reason = _reason(baseline, points, recent, change)
     causes = [] if change is None else causes_of(change, model)
     drag = _drag(change, reason)
-    condition = _condition(change)
     preload = preload_of(change, model, reason, companions)
+    condition = _condition(change, preload)
     found = [
         *_drags(change, drag, reason),
         preload,
@@ -167,14 +165,20 @@ def _interval(name: str, unit: str, value: float, deviation: float, change: Chan
     )
 
 
-def _condition(change: Change | None) -> Condition:
-    """Return the condition by the drag: what its interval excludes."""
+def _condition(change: Change | None, preload: Quantity) -> Condition:
+    """Return the condition by drag and preload: what their intervals exclude."""
     if change is None:
         return Condition.UNKNOWN
     reach = student(change.freedom) * change.deviation
-    if abs(change.common) - SURE * reach > TOLERANCE:
+    lost = preload.is_known and _surely_lost(preload)
+    if lost or abs(change.common) - SURE * reach > TOLERANCE:
         return Condition.WORSE
     return Condition.NORMAL if reach <= 2.0 * TOLERANCE else Condition.UNKNOWN
+
+
+def _surely_lost(preload: Quantity) -> bool:
+    """Tell whether the preload is below normal with 99.9 % confidence."""
+    return preload.value + SURE * (preload.high - preload.value) < 1.0 - TOLERANCE
 
 
 def _drags(change: Change | None, drag: Quantity, reason: str) -> list[Quantity]:
@@ -193,7 +197,8 @@ def _drags(change: Change | None, drag: Quantity, reason: str) -> list[Quantity]
     return [drag, *ways, *rest]
 
 
-def _ways(change: Change) -> Any:
+def _ways(change: Change) -> Iterator[Quantity]:
+    """Yield the change in each direction that both have."""
     for name, sign in (('forward', 1), ('backward', -1)):
         value, deviation = select(change, [one.direction == sign for one in change.groups])
         if math.isfinite(value):
@@ -242,8 +247,3 @@ def _notes(
 def _is_usual(notes: Sequence[str]) -> bool:
     """Tell whether boundary running is this axis's normal, so that no remedy is advised."""
     return any('is normal for this axis' in one for one in notes)
-
-
-def likely(causes: Sequence[Cause]) -> Cause | None:
-    """Return the cause that fits best, if any does."""
-    return next((one for one in causes if not one.excluded), None)

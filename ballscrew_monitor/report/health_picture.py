@@ -11,7 +11,7 @@ from ballscrew_monitor.health.assess import DRAG, TOLERANCE
 from ballscrew_monitor.health.preload import NAME as PRELOAD
 from ballscrew_monitor.health.records import Condition, Health, Quantity
 from matplotlib.axes import Axes
-from matplotlib.dates import date2num
+from matplotlib.dates import AutoDateLocator, ConciseDateFormatter, date2num
 from matplotlib.figure import Figure
 import numpy as np
 from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, VERMILION
@@ -60,7 +60,9 @@ def _draw(panel: Axes, axis: str, name: str, courses: Sequence[Health]) -> None:
     )
     worse = [one.condition is Condition.WORSE for one, _ in told]
     panel.plot(dates[worse], values[worse], 'D', color=VERMILION, ms=7, label='worse')
-    panel.xaxis_date()
+    place = AutoDateLocator(maxticks=8)
+    panel.xaxis.set_major_locator(place)
+    panel.xaxis.set_major_formatter(ConciseDateFormatter(place))
     if any(worse):
         panel.legend(loc='best')
     panel.set(title=f'Axis {axis}: {title}, 95 % intervals', xlabel='date (UTC)', ylabel=label)
