@@ -15,8 +15,9 @@ import argparse
 from pathlib import Path
 
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.health.assess import assess, HealthSettings
+from ballscrew_monitor.health.assess import assess, compare, HealthSettings
 from ballscrew_monitor.health.companions import Companions
+from ballscrew_monitor.health.rows import DAY
 from health_parts.machine import Ground, solve_ground
 from health_parts.score import Assess, Score, score
 from health_parts.years import draw_year, Kind, Truth
@@ -41,10 +42,14 @@ def assess_with(ground: Ground) -> Assess:
     surface, companions = ground.surfaces[1.0], Companions(ground.surfaces)
     settings = HealthSettings(limits=LIMITS)
 
-    def ask(now, baseline, points):
+    def condition(last, baseline, points):
+        return compare(baseline, points, last, surface, companions).condition
+
+    def health(last, baseline, points):
+        now = (last + 1) * DAY - 1
         return assess('x', now, baseline, points, (), surface, companions, settings)
 
-    return ask
+    return Assess(condition, health)
 
 
 def scores_of(ground: Ground, kind: Kind, seeds: range, progress: Progress) -> list[Score]:
@@ -59,8 +64,8 @@ def scores_of(ground: Ground, kind: Kind, seeds: range, progress: Progress) -> l
 def row_of(name: str, scores: list[Score]) -> str:
     """Return a row of the table."""
     known = [one for one in scores if not one.problem]
-    sizes = np.array([one.size for one in known])
-    found = sizes[np.isfinite(sizes)]
+    sizes, drags = (np.array([getattr(one, of) for one in known]) for of in ('size', 'drag'))
+    found = np.isfinite(sizes)
     days = sum(one.clean_days for one in known)
     early = sum(one.early_alarms for one in known)
     held = {
@@ -70,15 +75,24 @@ def row_of(name: str, scores: list[Score]) -> str:
     cells = [
         name,
         f'{len(known)}',
-        percent(found.size, len(known)),
-        f'{100 * np.median(found):.0f}' if found.size else '',
-        f'{100 * np.quantile(found, 0.9):.0f}' if found.size else '',
-        percent(int((found <= AIMED_LOSS).sum()), len(known)),
-        f'{1000 * early / days:.2f}' if days else '',
+        percent(int(found.sum()), len(known)),
+        spread_of(sizes[found]),
+        spread_of(drags[found]),
+        percent(int((drags[found] <= AIMED_LOSS).sum()), len(known)),
+        f'{early} ({1000 * early / days:.2f})' if days else '',
         *(percent(sum(one), len(one)) for one in held.values()),
         percent(sum(one.is_right for one in known), len(known)),
+        percent(sum(one.is_named for one in known), len(known)),
+        f'{np.mean([len(one.causes) for one in known]):.1f}',
     ]
     return '| ' + ' | '.join(cells) + ' |'
+
+
+def spread_of(values: np.ndarray) -> str:
+    """Return median and ninth decile in percent, nothing of nothing."""
+    if not values.size:
+        return ''
+    return f'{100 * np.median(values):.0f}, {100 * np.quantile(values, 0.9):.0f}'
 
 
 def percent(part: int, total: int) -> str:
@@ -87,8 +101,9 @@ def percent(part: int, total: int) -> str:
 
 
 HEAD = (
-    '| change | years | found | size when found, median [%] | nine of ten [%] | found at 10 % | '
-    'false alarms per 1000 days | drag held | preload held | cause right |\n' + '|---' * 10 + '|'
+    '| change | years | found | its size when found, median and ninth decile [%] | drag then '
+    '[%] | found while the drag is at most 10 % off | alarms before (per 1000 days) | drag '
+    'held | preload held | likeliest cause right | named | number named |\n' + '|---' * 12 + '|'
 )
 
 
