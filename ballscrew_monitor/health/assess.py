@@ -11,10 +11,12 @@ tolerance with 99.9 % confidence, so that a look every day for years seldom warn
 from collections.abc import Iterator, Sequence
 import dataclasses
 import math
+from typing import NamedTuple
 
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import changed_screw
+from ballscrew_monitor.health.calibration import calibrated
 from ballscrew_monitor.health.causes import causes_of, FEWEST_GROUPS
 from ballscrew_monitor.health.change import Change, change_between, parts_of, select
 from ballscrew_monitor.health.companions import Companions
@@ -67,6 +69,22 @@ class HealthSettings:
     speed_allowed: bool = False
 
 
+class Compared(NamedTuple):
+    """
+    The recent days against the baseline, each quantity with its interval.
+
+    `change` is None where there is no comparison, and `reason` says why.
+
+    """
+
+    model: Model
+    change: Change | None
+    reason: str
+    drag: Quantity
+    preload: Quantity
+    condition: Condition
+
+
 def assess(
     axis: str,
     now: int,
@@ -86,16 +104,10 @@ def assess(
     """
     today = day_of(now)
     known = baseline if isinstance(baseline, Baseline) else None
-    model = Model(surface, companions if isinstance(companions, Companions) else None)
-    recent = _recent(points, today)
-    change = None if known is None else change_between(known.points, recent, model)
-    if change is not None and change.stretches < FEWEST_STRETCHES:
-        change = None
-    reason = _reason(baseline, points, recent, change)
-    causes = [] if change is None else causes_of(change, model)
-    drag = _drag(change, reason)
-    preload = preload_of(change, model, reason, companions)
-    condition = _condition(change, preload)
+    compared = compare(baseline, points, today, surface, companions)
+    change, reason, drag, preload, condition = compared[1:]
+    recent = recent_of(points, today)
+    causes = [] if change is None else causes_of(change, compared.model)
     found = [
         *_drags(change, drag, reason),
         preload,
@@ -118,7 +130,31 @@ def assess(
     )
 
 
-def _recent(points: Sequence[ComparablePoint], today: int) -> list[ComparablePoint]:
+def compare(
+    baseline: Baseline | str,
+    points: Sequence[ComparablePoint],
+    today: int,
+    surface: Surface,
+    companions: Companions | str,
+) -> Compared:
+    """Return how the days before the end of `today` compare with the baseline."""
+    known = baseline if isinstance(baseline, Baseline) else None
+    model = Model(
+        surface,
+        companions if isinstance(companions, Companions) else None,
+        None if known is None else calibrated(known.points, surface),
+    )
+    recent = recent_of(points, today)
+    change = None if known is None else change_between(known.points, recent, model)
+    if change is not None and change.stretches < FEWEST_STRETCHES:
+        change = None
+    reason = _reason(baseline, points, recent, change)
+    preload = preload_of(change, model, reason, companions)
+    condition = _condition(change, preload)
+    return Compared(model, change, reason, _drag(change, reason), preload, condition)
+
+
+def recent_of(points: Sequence[ComparablePoint], today: int) -> list[ComparablePoint]:
     """Return the points of the last week, or of the last four where that has too few."""
     week = [one for one in points if one.first_day + one.days > today - SHORT]
     if sum(one.stretches for one in week) >= FEWEST_STRETCHES:

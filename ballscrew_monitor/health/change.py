@@ -23,8 +23,12 @@ USUAL_SCATTER, USUAL_FREEDOM = 0.02, 4
 """Scatter between days that is expected before it is seen [-], and the days that it counts as."""
 LEAST_SCATTER = 0.005
 """Scatter between days of a group that is always there [-]."""
-SLOPE_DOUBT = 0.2
-"""Uncertainty of what the surface says of a difference in temperature [-]."""
+SLOPE_DOUBT = 0.05
+"""What the fitted surface may be wrong by between two temperatures, over the difference [-]."""
+WARMTH, UNMEASURED = 1.5, 10.0
+"""Standard deviation of the temperature of the contacts over the measured one, or without [K]."""
+WIPER_DRIFT = 0.1
+"""Standard deviation of the drag of a wiper from weeks to weeks, over that drag [-]."""
 
 
 class Group(NamedTuple):
@@ -93,7 +97,7 @@ def grouped(points: Iterable[ComparablePoint]) -> dict[Group, list[ComparablePoi
 
 def days_of(points: Sequence[ComparablePoint], model: Model) -> Days | None:
     """Return what a group comes to over the days of its points, None outside the surface."""
-    residuals = np.array([model.residual(one) for one in points])
+    residuals = model.residuals(points)
     known = np.isfinite(residuals)
     if not known.any():
         return None
@@ -131,11 +135,10 @@ def change_between(
     firsts, lasts = zip(*(pairs[group] for group in groups))
     friction = np.array([one.friction for one in firsts])
     change = np.array([b.residual - a.residual for a, b in zip(firsts, lasts)])
-    doubts = np.array([_doubt(model, a, b) for a, b in zip(firsts, lasts)])
     scatter, freedom = _scatter(firsts, friction)
     shares = _days_share(firsts) + _days_share(lasts)
     own = _own_variance(firsts, friction) + _own_variance(lasts, friction)
-    covariance = np.diag(own) + np.outer(doubts, doubts)
+    covariance = np.diag(own) + _doubt(model, firsts, lasts)
     covariance += scatter**2 * shares * np.outer(friction, friction)
     weights = friction / friction.sum()
     common = float(weights @ (change / friction))
@@ -231,10 +234,22 @@ def _own_variance(groups: Sequence[Days], friction: Array) -> Array:
     )
 
 
-def _doubt(model: Model, before: Days, now: Days) -> float:
-    """Return what the surface may be wrong by between two temperatures [N m]."""
-    speed, load, _ = model.place(before.point)
-    heats = before.point.temperature, now.point.temperature
-    cold, warm = (model.friction(speed, load, heat) for heat in heats)
-    apart = SLOPE_DOUBT * (warm - cold)
-    return apart if math.isfinite(apart) else 0.0
+def _doubt(model: Model, firsts: Sequence[Days], lasts: Sequence[Days]) -> Array:
+    """
+    Return the covariance of what groups share beside the days [N2 m2].
+
+    What the fit leaves open between both conditions, and what may come and go: warmth of the
+    contacts by another programme, drag of the wiper.
+
+    """
+    before, now = [one.point for one in firsts], [one.point for one in lasts]
+    slopes = model.slopes(now)
+    apart = np.nan_to_num(slopes - model.slopes(before))
+    measured = all(one.temperature_measured for one in (*before, *now))
+    drags = np.abs(model.calibration.values[1:3])
+    drifts = np.array([0.0, *(WIPER_DRIFT * drags), WARMTH if measured else UNMEASURED])
+    drifting = np.nan_to_num(slopes) * drifts
+    adjusted = SLOPE_DOUBT * (model.friction(now) - model.friction(before))
+    fitted = apart @ np.array(model.calibration.covariance) @ apart.T
+    adjusted = np.nan_to_num(adjusted)
+    return np.asarray(fitted + drifting @ drifting.T + np.outer(adjusted, adjusted))
