@@ -45,6 +45,8 @@ from surrogate.surface import Surface
 
 TOLERANCE = 0.03
 """Change of the drag, or loss of preload, that counts as normal [-]."""
+NARROW = 0.1
+"""Half width of the interval of the drag up to which an axis is called normal [-]."""
 SURE = 1.9
 """Half width of the 99.9 % interval over that of 95 %."""
 RECENT = 28
@@ -209,7 +211,7 @@ def _condition(change: Change | None, preload: Quantity) -> Condition:
     lost = preload.is_known and _surely_lost(preload)
     if lost or abs(change.common) - SURE * reach > TOLERANCE:
         return Condition.WORSE
-    return Condition.NORMAL if reach <= 2.0 * TOLERANCE else Condition.UNKNOWN
+    return Condition.NORMAL if reach <= NARROW else Condition.UNKNOWN
 
 
 def _surely_lost(preload: Quantity) -> bool:

@@ -76,7 +76,7 @@ class Axis:
                         duration=160.0,
                         torque_squares=8e-6,
                     )
-                    friction = self.model.friction(*self.model.place(point))
+                    friction = self.model.friction([point])[0]
                     torque = sign * (warm * friction + added(point, day))
                     found.append(dataclasses.replace(point, motor_torque=torque))
         return found

@@ -7,6 +7,7 @@ import math
 from types import SimpleNamespace
 
 from ballscrew_monitor.health import causes
+from ballscrew_monitor.health.calibration import calibrated, Calibration, EXPECTED
 from ballscrew_monitor.health.causes import birge, CANDIDATES, causes_of, fits_of
 from ballscrew_monitor.health.change import change_between, parts_of, select
 from ballscrew_monitor.health.companions import Companions, companions_beside, NONE_BUILT
@@ -67,7 +68,7 @@ def points(motion, model):
                             torque_squares=1e-6 * stretches,
                             residual=math.nan,
                         )
-                        drag = model.friction(*model.place(point)) + added(point)
+                        drag = model.friction([point])[0] + added(point)
                         torque = sign * (drag + model.ideal(point))
                         found.append(dataclasses.replace(point, motor_torque=torque))
         return found
@@ -78,19 +79,36 @@ def points(motion, model):
 def test_a_measured_torque_without_its_load_is_the_friction(points, model):
     """Torque = friction + load lead / 2 pi, each against the motion."""
     for point in points(lambda _: 0.03):
-        assert model.residual(point) == pytest.approx(0.03, abs=1e-12)
+        assert model.residuals([point])[0] == pytest.approx(0.03, abs=1e-12)
         ideal = model.ideal(point)
         assert abs(ideal) == pytest.approx(
             abs(point.axial_load) * model.surface.lead / TURN, rel=1e-12
         )
 
 
-def test_a_residual_is_taken_anew_where_the_surface_is_another_one(points, model):
-    one = dataclasses.replace(points()[0], residual=0.5, surface='another')
-    assert model.residual(one) == pytest.approx(0.0, abs=1e-12)
-    of_this = dataclasses.replace(one, surface=model.surface.base_sha256[:16])
-    assert model.residual(of_this) == 0.5
-    assert model.residual(dataclasses.replace(of_this, speed=-2.0)) == -0.5
+def test_a_residual_is_that_of_the_surface_in_use_whatever_was_kept(points, model):
+    kept = dataclasses.replace(points()[0], residual=0.5, surface='another')
+    assert model.residuals([kept])[0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_calibration_finds_factor_warmth_and_wiper_of_an_axis(surface, points):
+    """The friction of known values is fitted again, within the doubt that the fit states."""
+    true = Calibration((1.1, 0.05, 0.0, 3.0))
+    of_axis = Model(surface, None, true)
+    made = [
+        dataclasses.replace(
+            one, motor_torque=math.copysign(1.0, one.speed) * float(drag + of_axis.ideal(one))
+        )
+        for heat in (303.0, 313.0, 323.0)
+        for one, drag in zip(
+            points(days=1, temperature=heat), of_axis.friction(points(days=1, temperature=heat))
+        )
+    ]
+    found = calibrated(made, surface)
+    apart = np.array(found.values) - true.values
+    assert (np.abs(apart) < 3.0 * np.sqrt(np.diag(found.covariance))).all()
+    assert Model(surface, None, found).residuals(made) == pytest.approx(0.0, abs=0.01)
+    assert calibrated([], surface).values == tuple(EXPECTED)
 
 
 @given(part=st.floats(-0.4, 0.4))
@@ -108,7 +126,7 @@ def test_a_relative_change_is_found_and_lies_in_its_interval(surface, motion, pa
                     axial_load=0.0,
                     residual=math.nan,
                 )
-                torque = factor * model.friction(*model.place(point))
+                torque = factor * model.friction([point])[0]
                 found.append(dataclasses.replace(point, motor_torque=torque))
         return found
 
@@ -131,13 +149,11 @@ def test_only_groups_of_both_times_are_compared_and_none_gives_none(points, mode
     assert change_between(before, away, model) is None
 
 
-def test_more_days_narrow_the_interval_and_another_temperature_widens_it(points, model):
+def test_more_days_narrow_the_interval(points, model):
     before = points()
     few = change_between(before, points(days=1, first=40), model)
     many = change_between(before, points(days=7, first=40), model)
-    warm = change_between(before, points(days=7, first=40, temperature=323.0), model)
     assert many.deviation < few.deviation
-    assert many.deviation < warm.deviation
     assert many.freedom == 4 + 4  # five days, and what is expected counts as four
 
 
@@ -173,7 +189,7 @@ def test_a_planted_cause_is_named_first_with_its_size(code, points, model):
     assert (first.code, first.excluded) == (code, False)
     assert first.size.value == pytest.approx(size, rel=0.05)
     assert first.size.low <= size <= first.size.high
-    assert first.weight > 0.9
+    assert first.weight > 0.5
     assert sum(one.weight for one in (first, *others)) == pytest.approx(1.0)
     assert any(one.excluded for one in others)
 

@@ -60,7 +60,7 @@ def history(model, number, wiper):
                 temperature=313.0,
                 motor_torque=0.0,
             )
-            friction = model.friction(*model.place(point)) + wiper
+            friction = model.friction([point])[0] + wiper
             points.append(dataclasses.replace(point, motor_torque=sign * friction))
     one = SpectrumBin(
         first_day=FIRST + MONTH * number,
