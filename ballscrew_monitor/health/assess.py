@@ -33,6 +33,7 @@ from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.preload import preload_of
 from ballscrew_monitor.health.records import (
     Baseline,
+    Cause,
     ComparablePoint,
     Condition,
     Health,
@@ -85,6 +86,7 @@ class Compared(NamedTuple):
     drag: Quantity
     preload: Quantity
     condition: Condition
+    causes: Sequence[Cause]
 
 
 def assess(
@@ -107,9 +109,8 @@ def assess(
     today = day_of(now)
     known = baseline if isinstance(baseline, Baseline) else None
     compared = compare(baseline, points, today, surface, companions)
-    change, reason, drag, preload, condition = compared[1:]
+    _, change, reason, drag, preload, condition, causes = compared
     recent = recent_of(points, today)
-    causes = [] if change is None else causes_of(change, compared.model)
     found = [
         *_drags(change, drag, reason),
         preload,
@@ -151,9 +152,10 @@ def compare(
     if change is not None and change.stretches < FEWEST_STRETCHES:
         change = None
     reason = _reason(baseline, points, recent, change)
-    preload = preload_of(change, model, reason, companions)
+    causes = [] if change is None else causes_of(change, model)
+    preload = preload_of(change, model, reason, companions, causes)
     condition = _condition(change, preload)
-    return Compared(model, change, reason, _drag(change, reason), preload, condition)
+    return Compared(model, change, reason, _drag(change, reason), preload, condition, causes)
 
 
 def recent_of(points: Sequence[ComparablePoint], today: int) -> list[ComparablePoint]:

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Which causes explain a change: each has a pattern over speed, load and direction, and one size.
+Causes of a change: each has a pattern over speed, load and direction, and one size.
 
 The size is that of the least chi squared over a grid; a cause whose least one lies too far above
 that of the best does not fit.

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-How the friction has changed since the baseline, at equal speed, load and direction.
+Change of the friction since the baseline, at equal speed, load and direction.
 
 The surface in use adjusts what differs in speed, load and temperature within a group of places. A
 day is the unit of the scatter: all of its stretches share the warmth of the machine.

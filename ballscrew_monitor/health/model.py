@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What the surface in use says at comparable points, and at other temperatures, preloads and films.
+Friction by the surface in use at comparable points, other temperatures, preloads and films.
 
 Friction torques are those of the screw, positive against the motion, NaN outside the surface.
 

@@ -8,6 +8,7 @@ of least chi squared; the shift is known to a few kelvin where the oil temperatu
 
 """
 
+from collections.abc import Sequence
 import math
 
 from ballscrew_monitor.health.causes import birge, INTERVAL
@@ -15,7 +16,7 @@ from ballscrew_monitor.health.change import Change
 from ballscrew_monitor.health.companions import Companions, NONE_BUILT
 from ballscrew_monitor.health.life import unknown
 from ballscrew_monitor.health.model import Model
-from ballscrew_monitor.health.records import Quantity
+from ballscrew_monitor.health.records import Cause, CauseCode, Quantity
 import numpy as np
 
 NAME = 'preload'
@@ -28,13 +29,24 @@ WIDEST = 0.4
 
 
 def preload_of(
-    change: Change | None, model: Model, reason: str, companions: Companions | str
+    change: Change | None,
+    model: Model,
+    reason: str,
+    companions: Companions | str,
+    causes: Sequence[Cause] = (),
 ) -> Quantity:
-    """Return the preload over that of the baseline, with an interval, or why it is not known."""
+    """
+    Return the preload over that of the baseline, with an interval, or why it is not known.
+
+    It is not known where a change of the preload is among the excluded `causes`.
+
+    """
     if change is None:
         return unknown(NAME, '-', reason)
     if isinstance(companions, str):
         return unknown(NAME, '-', companions or NONE_BUILT)
+    if any(one.excluded and one.code is CauseCode.PRELOAD_LOST for one in causes):
+        return unknown(NAME, '-', 'not known: something else has changed the friction more')
     measured = all(one.temperature_measured for one in change.points)
     chis = np.array([_chi(change, model, share, measured) for share in SHARES])
     if not np.isfinite(chis).any():
@@ -42,7 +54,7 @@ def preload_of(
     best = int(np.nanargmin(chis))
     spare = max(len(change.groups) - 1, 1)
     within = SHARES[chis <= chis[best] + INTERVAL * birge(float(chis[best]), spare)]
-    if within[-1] - within[0] > WIDEST:
+    if within[-1] - within[0] > WIDEST or best == 0:
         why = 'wiper, warmth and preload look alike at these speeds and loads'
         more = '' if measured else '; measure the oil temperature'
         return unknown(NAME, '-', f'not known: {why}{more}')

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What recordings hold of the health of an axis, and its health after each of them."""
+"""The part of recordings that the health of an axis rests on, and its health after each."""
 
 from collections.abc import Iterator, Mapping, Sequence
 import dataclasses

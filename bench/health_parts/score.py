@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What the assessment of a year is worth: when it found the change, and what it said of it.
+Score of the assessment of a year: when it found the change, and its words for it.
 
 The axis is assessed every two weeks. Where that says worse for the first time, the days since the
 time before are gone through by halves for the first of them.
