@@ -60,10 +60,12 @@ def _draw(panel: Axes, axis: str, name: str, courses: Sequence[Health]) -> None:
     )
     worse = [one.condition is Condition.WORSE for one, _ in told]
     panel.plot(dates[worse], values[worse], 'D', color=VERMILION, ms=7, label='worse')
+    margin = 0.03 * max(float(np.ptp(dates)), 1.0)
+    panel.set_xlim(dates.min() - margin, dates.max() + margin)
     place = AutoDateLocator(maxticks=8)
     panel.xaxis.set_major_locator(place)
     panel.xaxis.set_major_formatter(ConciseDateFormatter(place))
-    if any(worse):
+    if np.isfinite(values[worse]).any():
         panel.legend(loc='best')
     panel.set(title=f'Axis {axis}: {title}, 95 % intervals', xlabel='date (UTC)', ylabel=label)
     if not np.isfinite(values).any():
