@@ -17,7 +17,7 @@ from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import changed_screw
 from ballscrew_monitor.health.calibration import calibrated
-from ballscrew_monitor.health.causes import causes_of, FEWEST_GROUPS
+from ballscrew_monitor.health.causes import causes_of, FEWEST_GROUPS, Fit, fits_of, is_certain
 from ballscrew_monitor.health.change import Change, change_between, parts_of, select
 from ballscrew_monitor.health.companions import Companions
 from ballscrew_monitor.health.damage import rated_of
@@ -75,12 +75,14 @@ class Compared(NamedTuple):
     """
     The recent days against the baseline, each quantity with its interval.
 
-    `change` is None where there is no comparison, and `reason` says why.
+    `change` is None where there is no comparison, and `reason` says why; `fits` are those of the
+    causes, the best first.
 
     """
 
     model: Model
     change: Change | None
+    fits: list[Fit]
     reason: str
     drag: Quantity
     preload: Quantity
@@ -107,9 +109,15 @@ def assess(
     today = day_of(now)
     known = baseline if isinstance(baseline, Baseline) else None
     compared = compare(baseline, points, today, surface, companions)
-    change, reason, drag, preload, condition = compared[1:]
+    change, reason, drag, preload = (
+        compared.change,
+        compared.reason,
+        compared.drag,
+        compared.preload,
+    )
+    condition = compared.condition
     recent = recent_of(points, today)
-    causes = [] if change is None else causes_of(change, compared.model)
+    causes = [] if change is None else causes_of(change, compared.fits)
     found = [
         *_drags(change, drag, reason),
         preload,
@@ -152,8 +160,9 @@ def compare(
         change = None
     reason = _reason(baseline, points, recent, change)
     preload = preload_of(change, model, reason, companions)
-    condition = _condition(change, preload)
-    return Compared(model, change, reason, _drag(change, reason), preload, condition)
+    fits = [] if change is None else fits_of(change, model)
+    condition = _condition(change, model, fits, preload)
+    return Compared(model, change, fits, reason, _drag(change, reason), preload, condition)
 
 
 def recent_of(points: Sequence[ComparablePoint], today: int) -> list[ComparablePoint]:
@@ -203,13 +212,16 @@ def _interval(name: str, unit: str, value: float, deviation: float, change: Chan
     )
 
 
-def _condition(change: Change | None, preload: Quantity) -> Condition:
-    """Return the condition by drag and preload: what their intervals exclude."""
+def _condition(
+    change: Change | None, model: Model, fits: Sequence[Fit], preload: Quantity
+) -> Condition:
+    """Return the condition by the intervals of drag and preload, or the pattern of a cause."""
     if change is None:
         return Condition.UNKNOWN
     reach = student(change.freedom) * change.deviation
     lost = preload.is_known and _surely_lost(preload)
-    if lost or abs(change.common) - SURE * reach > TOLERANCE:
+    certain = lost or is_certain(change, model, fits, TOLERANCE)
+    if certain or abs(change.common) - SURE * reach > TOLERANCE:
         return Condition.WORSE
     return Condition.NORMAL if reach <= NARROW else Condition.UNKNOWN
 
