@@ -17,7 +17,7 @@ from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import changed_screw
 from ballscrew_monitor.health.calibration import calibrated
-from ballscrew_monitor.health.causes import causes_of, FEWEST_GROUPS
+from ballscrew_monitor.health.causes import causes_of, FEWEST_GROUPS, Fit, fits_of, is_certain
 from ballscrew_monitor.health.change import Change, change_between, parts_of, select
 from ballscrew_monitor.health.companions import Companions
 from ballscrew_monitor.health.damage import rated_of
@@ -152,9 +152,10 @@ def compare(
     if change is not None and change.stretches < FEWEST_STRETCHES:
         change = None
     reason = _reason(baseline, points, recent, change)
-    causes = [] if change is None else causes_of(change, model)
+    fits = [] if change is None else fits_of(change, model)
+    causes = [] if change is None else causes_of(change, fits)
     preload = preload_of(change, model, reason, companions, causes)
-    condition = _condition(change, preload)
+    condition = _condition(change, model, fits, preload)
     return Compared(model, change, reason, _drag(change, reason), preload, condition, causes)
 
 
@@ -205,13 +206,16 @@ def _interval(name: str, unit: str, value: float, deviation: float, change: Chan
     )
 
 
-def _condition(change: Change | None, preload: Quantity) -> Condition:
-    """Return the condition by drag and preload: what their intervals exclude."""
+def _condition(
+    change: Change | None, model: Model, fits: Sequence[Fit], preload: Quantity
+) -> Condition:
+    """Return the condition by the intervals of drag and preload, or the pattern of a cause."""
     if change is None:
         return Condition.UNKNOWN
     reach = student(change.freedom) * change.deviation
     lost = preload.is_known and _surely_lost(preload)
-    if lost or abs(change.common) - SURE * reach > TOLERANCE:
+    certain = lost or is_certain(change, model, fits, TOLERANCE)
+    if certain or abs(change.common) - SURE * reach > TOLERANCE:
         return Condition.WORSE
     return Condition.NORMAL if reach <= NARROW else Condition.UNKNOWN
 

@@ -25,6 +25,8 @@ INTERVAL = 3.84
 """Chi squared above the least one at the ends of a 95 % interval, one degree of freedom."""
 EXCLUDED = 9.21
 """Chi squared above that of the best cause from which one does not fit: 99 %, two of freedom."""
+CERTAIN = 15.0
+"""Chi squared that the best cause of nine must gain, so that looks of years seldom err."""
 FEWEST_GROUPS = 3
 """Groups of places without which no pattern tells causes apart."""
 STEPS = 41
@@ -183,9 +185,24 @@ def fits_of(change: Change, model: Model) -> list[Fit]:
     return sorted((one for one in found if one is not None), key=lambda one: one.chi)
 
 
-def causes_of(change: Change, model: Model) -> list[Cause]:
+def is_certain(change: Change, model: Model, fits: Sequence[Fit], tolerance: float) -> bool:
+    """
+    Tell whether a cause explains the change and no change at all does not.
+
+    It must lower chi squared by CERTAIN, and be a mean change above a `tolerance` [-].
+
+    """
+    if len(change.groups) < FEWEST_GROUPS or not fits:
+        return False
+    best = fits[0]
+    nothing = float(change.change @ np.linalg.inv(change.covariance) @ change.change)
+    gained = (nothing - best.chi) / birge(best.chi, len(change.groups))
+    pattern = np.abs(best.candidate.pattern(model, change, best.size))
+    return gained > CERTAIN and float(pattern.sum()) > tolerance * float(change.friction.sum())
+
+
+def causes_of(change: Change, fits: Sequence[Fit]) -> list[Cause]:
     """Return all causes with their weights, the best first; those that do not fit are excluded."""
-    fits = fits_of(change, model)
     if len(change.groups) < FEWEST_GROUPS or not fits:
         return []
     best, scale = fits[0].chi, birge(fits[0].chi, len(change.groups))

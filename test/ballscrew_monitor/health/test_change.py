@@ -185,7 +185,7 @@ PLANTED = {
 def test_a_planted_cause_is_named_first_with_its_size(code, points, model):
     size, added = PLANTED[code]
     change = change_between(points(), points(lambda one: added(model, one), first=40), model)
-    first, *others = causes_of(change, model)
+    first, *others = causes_of(change, fits_of(change, model))
     assert (first.code, first.excluded) == (code, False)
     assert first.size.value == pytest.approx(size, rel=0.05)
     assert first.size.low <= size <= first.size.high
@@ -206,7 +206,8 @@ def test_a_starved_film_raises_the_friction_where_asperities_carry(points, model
 
 def test_causes_need_three_places_and_every_code_has_one_row(points, model):
     now = [one for one in points(first=40) if one.place.speed == 0 and one.place.load == 0]
-    assert causes_of(change_between(points(), now, model), model) == []
+    change = change_between(points(), now, model)
+    assert causes_of(change, fits_of(change, model)) == []
     codes = [one.code for one in CANDIDATES]
     assert len(set(codes)) == len(codes)
     assert set(CauseCode) - set(codes) == {CauseCode.WARMER_THAN_MEASURED}
