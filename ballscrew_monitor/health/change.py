@@ -222,9 +222,10 @@ def _scatter(groups: Sequence[Days], friction: Array) -> tuple[float, float, int
     for one, torque in zip(groups, friction):
         for day, residual in zip(one.days, one.residuals):
             apart.setdefault(day, []).append(((residual - one.residual) / torque, torque))
-    daily, rest = [], []
-    for day in apart.values():
-        values, weights = zip(*day)
+    daily: list[float] = []
+    rest: list[float] = []
+    for pairs in apart.values():
+        values, weights = zip(*pairs)
         daily.append(float(np.average(values, weights=weights)))
         rest += [value - daily[-1] for value in values]
     freedom = len(daily) - 1
