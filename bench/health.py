@@ -3,10 +3,10 @@
 """
 Play axis-years of known truth and print how good the health is that is made of them.
 
-Usage: python bench/health.py [--runs N] [--clean N] [--seed S]. Each year is a draw of
-programmes, seasons and of what the model does not know, with one change or none; it is given as
-comparable points, day by day, and assessed once a week. Two years of each kind are drawn unless
-more are asked for: they take minutes.
+Usage: python bench/health.py [--runs N] [--clean N] [--seed S]. A year is a draw of programmes,
+seasons and of what the model does not know, with one change or none. It is given as comparable
+points, day by day, and assessed every four weeks. Two years of each kind are drawn unless more are
+asked for: they take minutes.
 
 """
 
@@ -75,7 +75,7 @@ def row_of(name: str, scores: list[Score]) -> str:
         f'{len(known)}',
         percent(int(found.sum()), len(known)),
         spread_of(sizes[found]),
-        spread_of(drags[found]),
+        spread_of(drags[np.isfinite(drags)]),
         percent(int((drags[found] <= AIMED_LOSS).sum()), len(known)),
         f'{early} ({1000 * early / days:.2f})' if days else '',
         *(percent(sum(one), len(one)) for one in held.values()),
@@ -116,11 +116,10 @@ def main() -> None:
     kinds = [(Kind(truth=truth), asked.runs) for truth in Truth if truth.value]
     kinds = [(Kind(truth=Truth.NOTHING), asked.clean), *kinds]
     progress = Progress(sum(number for _, number in kinds), 'years')
-    rows = [
-        row_of(kind.truth.name, scores_of(ground, kind, _seeds(asked.seed, number), progress))
-        for kind, number in kinds
-    ]
-    print(HEAD, *rows, sep='\n')
+    print(HEAD)
+    for kind, number in kinds:
+        scores = scores_of(ground, kind, _seeds(asked.seed, number), progress)
+        print(row_of(kind.truth.name, scores), flush=True)
 
 
 def _seeds(first: int, number: int) -> range:

@@ -65,7 +65,7 @@ class Case:
 
     @property
     def strip(self) -> Strip:
-        """The strip with its tile."""
+        """Return the strip with its tile."""
         varied = {
             'march': self.name,
             'draw': f'{self.draw}',

@@ -3,7 +3,7 @@
 """
 Score of the assessment of a year: when it found the change, and its words for it.
 
-The axis is assessed every two weeks. Where that says worse for the first time, the days since the
+The axis is assessed every four weeks. Where that says worse for the first time, the days since the
 time before are gone through by halves for the first of them.
 
 """
@@ -30,7 +30,7 @@ import numpy as np
 NAN = math.nan
 NAMED = 0.25
 """Weight over that of the likeliest from which a cause is named [-]."""
-WEEK, PERIOD = 7, 14
+WEEK, PERIOD = 7, 28
 """Days that count as now, and days between two assessments."""
 
 
