@@ -42,7 +42,8 @@ def node_speed(data, i, j, k):
 
 
 def test_shipped_closed_form_is_the_one_that_is_built(surface):
-    assert SHIPPED.header == surface.header
+    # What a build states beside it, for life and severity, makes no other surface.
+    assert SHIPPED.header == {name: surface.header[name] for name in SHIPPED.header}
     point = (62.8, 1000.0, 313.15)
     for name in FIELDS:
         shipped, built = (getattr(one.lookup(*point), name) for one in (SHIPPED, surface))
