@@ -25,14 +25,14 @@ def opened_log(
     Raises InputError when there is no log, or a map is missing or too much.
 
     """
-    with tempfile.TemporaryDirectory(prefix='ballscrew_log_') as folder:
-        bag = Bag(_bag_of(path, mapping, Path(folder), shown), salvage=True)
+    with contextlib.ExitStack() as made:
+        bag = Bag(_bag_of(path, mapping, made, shown), salvage=True)
         bag.path = path  # what is said is said of the log
         yield bag
 
 
-def _bag_of(path: Path, mapping: Path | None, folder: Path, shown: Shown) -> Path:
-    """Return where the log at `path` is as a bag: itself, or made of a table below `folder`."""
+def _bag_of(path: Path, mapping: Path | None, made: contextlib.ExitStack, shown: Shown) -> Path:
+    """Return where the log at `path` is as a bag: itself, or made of a table until `made` ends."""
     if not path.exists():
         raise InputError(f'log {path} does not exist, it must be a bag, a CSV or a Parquet file')
     if path.is_dir() or is_bag(path):
@@ -50,9 +50,10 @@ def _bag_of(path: Path, mapping: Path | None, folder: Path, shown: Shown) -> Pat
     from ballscrew_monitor.recordings.tables.convert import convert
     from ballscrew_monitor.recordings.tables.mapping import read_map
 
-    made = folder / (path.stem or 'log')
-    convert(path, read_map(mapping), made, shown=shown)
-    return made
+    folder = made.enter_context(tempfile.TemporaryDirectory(prefix='ballscrew_log_'))
+    bag = Path(folder) / (path.stem or 'log')
+    convert(path, read_map(mapping), bag, shown=shown)
+    return bag
 
 
 def _check_bag(path: Path, mapping: Path | None) -> None:
