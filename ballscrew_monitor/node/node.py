@@ -22,7 +22,6 @@ from ballscrew_monitor.node.output_topics import LatchedTopics
 from ballscrew_monitor.node.parameter_store import ParameterStore
 from ballscrew_monitor.node.restart_state import RestartState, state_directory
 from ballscrew_monitor.node.solve_server import SolveServer
-from ballscrew_monitor.node.solver_process import SolverProcess
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import Axis, build_axes, named_topics
 from ballscrew_monitor.settings.qos import check_overrides, longest_period
@@ -81,7 +80,7 @@ class BallscrewMonitor(LifecycleNode):
         )
         publishers = self._axis_publishers
         self._kept = KeptAxes(self, state, publishers, self._on_kept, clock=self._steady)
-        self._solves = SolveServer(self, SolverProcess, self._find_publisher)
+        self._solves = SolveServer(self, self._find_publisher)
         AxisServices(self, self._values, publishers, self._failed, self._unknown, self._on_service)
 
     def start(self) -> None:

@@ -29,7 +29,7 @@ from ballscrew_monitor.settings.axis import is_configured, load_surface, scaling
 from surrogate.surface import Surface
 
 if TYPE_CHECKING:  # it asks for packages that printing does not need
-    from ballscrew_monitor.report.store import RowStore
+    from ballscrew_monitor.report.log_report import RowStore
 
 Blocks = Callable[[], Iterable[JudgedColumns]]
 """Gives the blocks of rows of an axis in order, as often as it is called."""

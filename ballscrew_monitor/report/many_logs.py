@@ -11,11 +11,10 @@ from typing import Any
 
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.tables.convert import PASSES
-from ballscrew_monitor.report.log_report import AxisLine, LogResult, report_log
+from ballscrew_monitor.report.log_report import AxisLine, LogResult, remove_left, report_log
 from ballscrew_monitor.report.logs import folder_names, map_for
 from ballscrew_monitor.report.overview import LogEntry, overview_page
 from ballscrew_monitor.report.parameters import parameters_for
-from ballscrew_monitor.report.store import remove_left
 from surrogate.files import replace_file, to_json
 from surrogate.progress import Progress
 from surrogate.tasks.pool import run_tasks, TaskOutcome
