@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Products of the parameter table: checks, files, and the table for the documentation.
+Products of the parameter table: defaults, checks, and files of parameters.
 
 The rows of `AXIS_ROWS` hold for every axis, under its name; `{axis}` in a default is that name.
 
@@ -207,55 +207,3 @@ def flatten(section: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
         else:
             flat[f'{prefix}{key}'] = value
     return flat
-
-
-def example_yaml() -> str:
-    """Return the example parameter file: every parameter of one axis, with its comment."""
-    lines = [
-        '# Every parameter of ballscrew_monitor with its default, made from the table in',
-        '# ballscrew_monitor/settings/parameter_table.py. Numbers need a decimal point.',
-        f'/**/{NODE_NAME}:',
-        '  ros__parameters:',
-    ]
-    for row in NODE_ROWS:
-        lines += _example_lines(row, row.name, row.name, 4)
-    lines += ['    # Axis x; each axis of `axes` has such a group.', '    x:']
-    group = ''
-    for row in AXIS_ROWS:
-        head, _, leaf = row.name.rpartition('.')
-        if head != group and head:
-            lines.append(f'      {head}:')
-        group = head
-        lines += _example_lines(row, f'x.{row.name}', leaf, 8 if head else 6)
-    return '\n'.join(lines) + '\n'
-
-
-def _example_lines(row: ParameterRow, name: str, leaf: str, indent: int) -> list[str]:
-    space = ' ' * indent
-    unit = f'[{row.unit}]' if row.unit else ''
-    allowed = f'Allowed: {row.allowed}.' if row.allowed else ''
-    said = (f'{row.text.rstrip(".")}.', unit, allowed, f'Changes {row.change.value}.')
-    facts = filter(None, said)
-    return [f'{space}# {" ".join(facts)}', f'{space}{leaf}: {_yaml(default_of(name, row))}']
-
-
-def _yaml(value: Any) -> str:
-    if isinstance(value, bool):
-        return 'true' if value else 'false'
-    return repr(value)
-
-
-def markdown_table() -> str:
-    """Return the table of all parameters for docs/reference/parameters.md."""
-    lines = [
-        '| parameter | default | allowed | unit | changes | meaning |',
-        '|---|---|---|---|---|---|',
-    ]
-    for prefix, rows in (('', NODE_ROWS), ('<axis>.', AXIS_ROWS)):
-        for row in rows:
-            default = str(row.default).replace('{axis}', '<axis>')
-            lines.append(
-                f'| `{prefix}{row.name}` | `{default}` | {row.allowed} | {row.unit} '
-                f'| {row.change.value} | {row.text} |'
-            )
-    return '\n'.join(lines) + '\n'

@@ -4,6 +4,7 @@
 
 import math
 import pathlib
+import runpy
 
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.parameter_row import Change
@@ -12,7 +13,9 @@ import pytest
 from surrogate.files import InputError
 import yaml
 
-CONFIG = pathlib.Path(__file__).resolve().parents[3] / 'config'
+TREE = pathlib.Path(__file__).resolve().parents[3]
+CONFIG = TREE / 'config'
+PAGES = runpy.run_path(str(TREE / 'scripts' / 'parameter_pages.py'))
 ROWS = parameters.table(['x'])
 
 
@@ -100,13 +103,14 @@ def test_each_axis_has_parameters_of_its_own():
     assert sum(name.startswith('x.') for name in values) == len(AXIS_ROWS)
 
 
-def test_the_files_of_examples_and_the_readme_are_those_of_the_table():
-    assert (CONFIG / 'example.yaml').read_text() == parameters.example_yaml()
+def test_the_example_and_the_page_are_those_of_the_table():
+    for path, text in PAGES['pages']().items():
+        assert path.read_text(encoding='utf-8') == text
     assert parameters.read_file(CONFIG / 'example.yaml') == parameters.defaults(['x'])
-    assert len(parameters.flatten(yaml.safe_load(parameters.example_yaml()))) == len(ROWS)
+    assert len(parameters.flatten(yaml.safe_load(PAGES['example_yaml']()))) == len(ROWS)
     values = parameters.read_file(CONFIG / 'nominal_cycle.yaml')
     assert values['x.temperature.topic'] == 'oil_temperature'
-    lines = parameters.markdown_table().splitlines()
+    lines = PAGES['markdown_table']().splitlines()
     assert len(lines) == 2 + len(ROWS)
     assert {line.count('|') for line in lines} == {7}
     assert any('| `<axis>.limits.rcs` | `0.01` |' in line for line in lines)
