@@ -16,7 +16,7 @@ import sys
 import threading
 from typing import Any
 
-from ballscrew_monitor.clients.surroundings import spun
+from ballscrew_monitor.clients.doctor import spun
 from ballscrew_monitor.core.conversions import direction_of, opposing_load
 from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
 from ballscrew_monitor.recordings.words import say

@@ -15,10 +15,9 @@ from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import MonitorSettings, Shelving, State
 from ballscrew_monitor.messages import diagnostics, state_messages
 from ballscrew_monitor.messages.state_messages import TIERS
-from ballscrew_monitor.node.alarm import Alarm
+from ballscrew_monitor.node.alarm import Alarm, LatchedTopics, PlainTopics, quiet_publishers
 from ballscrew_monitor.node.journal import NodeJournal
 from ballscrew_monitor.node.kept_axes import KeptAxes
-from ballscrew_monitor.node.output_topics import LatchedTopics, PlainTopics, quiet_publishers
 from ballscrew_monitor.node.state_records import Corrections, Kind, point_facts
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import state_qos

@@ -12,13 +12,12 @@ from ballscrew_monitor.core.inputs import InputSample, Refusal
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.core.tick_grid import TickGrid
 from ballscrew_monitor.messages import diagnostics
-from ballscrew_monitor.node.alarm import end_all
+from ballscrew_monitor.node.alarm import end_all, LatchedTopics
 from ballscrew_monitor.node.axis_publisher import AxisPublisher, STATE_QOS
 from ballscrew_monitor.node.axis_services import AxisServices, not_built
 from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.journal import NodeJournal
 from ballscrew_monitor.node.kept_axes import KeptAxes
-from ballscrew_monitor.node.output_topics import LatchedTopics
 from ballscrew_monitor.node.parameter_store import ParameterStore
 from ballscrew_monitor.node.restart_state import RestartState, state_directory
 from ballscrew_monitor.node.solve_server import SolveServer

@@ -19,11 +19,10 @@ from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.messages.state_messages import out_of_zone_message, StateWriter, TIERS
 from ballscrew_monitor.recordings.axis_run import AxisRun, judged_parts, Part, TimedState
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bulk.decode import readers_by_topic
+from ballscrew_monitor.recordings.bulk.decode import decode, named_instead, readers_by_topic
 from ballscrew_monitor.recordings.bulk.entries import Entries
 from ballscrew_monitor.recordings.bulk.order import OnDone, ordered_entries
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
-from ballscrew_monitor.recordings.decoding import decode, named_instead
 from ballscrew_monitor.recordings.own_recording import is_as_recorded, OwnRecording
 from ballscrew_monitor.settings.axis import Axis, build_axis
 from ballscrew_monitor.settings.topics import absolute, input_topics, with_types

@@ -13,12 +13,11 @@ from typing import Any, TYPE_CHECKING
 from ballscrew_monitor.core.interrupts import DONE, FAILED
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_files import is_table
-from ballscrew_monitor.recordings.decoding import silence
+from ballscrew_monitor.recordings.bulk.decode import silence
 from ballscrew_monitor.recordings.opener import opened_log
-from ballscrew_monitor.recordings.progress import shown_progress
 from ballscrew_monitor.recordings.replay import axes_for
 from ballscrew_monitor.recordings.tables.mapping import read_map
-from ballscrew_monitor.recordings.words import counted, say
+from ballscrew_monitor.recordings.words import counted, say, shown_progress
 from ballscrew_monitor.report.judging import AxisCase, judge_log, LogCase
 from ballscrew_monitor.report.logs import find_logs, left_out, map_for, PAGE, SUMMARY
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for

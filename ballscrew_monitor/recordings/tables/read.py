@@ -14,8 +14,8 @@ import dataclasses
 from pathlib import Path
 import re
 
-from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables.cells import Array, Cells, first_line, Reading, UNREADABLE
+from ballscrew_monitor.recordings.words import Shown, silent
 import numpy as np
 import polars as pl
 from surrogate.files import InputError

@@ -15,12 +15,12 @@ from pathlib import Path
 
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.estimates import FACTOR, NEAR
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.read import open_table
 from ballscrew_monitor.recordings.tables.times import joined, line, Rows, Stamps, Times
+from ballscrew_monitor.recordings.words import Shown, silent
 import numpy as np
 from surrogate.units import TURN
 

@@ -7,10 +7,10 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import SECOND, TIME_UNITS
-from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
 from ballscrew_monitor.recordings.tables.read import BLOCK, Table
+from ballscrew_monitor.recordings.words import Shown, silent
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError

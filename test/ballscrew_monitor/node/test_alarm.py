@@ -7,7 +7,7 @@ import math
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.messages.state_messages import plain_values
-from ballscrew_monitor.node.output_topics import TYPES
+from ballscrew_monitor.node.alarm import TYPES
 import numpy as np
 from rclpy.serialization import deserialize_message, serialize_message
 from surrogate.surface import Regime
