@@ -32,7 +32,7 @@ from ballscrew_monitor.cycle.node_process import confined, NodeProcess, ros_envi
 from ballscrew_monitor.cycle.outcome import LOG, Outcome, Plan, RECORDING, speed_health
 from ballscrew_monitor.cycle.status import progress_bar, state_cells, StatusLine
 from ballscrew_monitor.recordings.bag_writer import BagWriter
-from ballscrew_monitor.recordings.player import Played, Player
+from ballscrew_monitor.recordings.player import Player
 from ballscrew_monitor.recordings.recorder import recorded_topics, Recorder
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.report.logs import remove_report
@@ -63,7 +63,6 @@ class Supervision:
         self._active: set[str] = set()
         self._reason = ''
         self._settled = threading.Event()
-        self._played: Played | None = None
         self._broken: BaseException | None = None
         self._started = contextlib.ExitStack()
         node = self._started.enter_context(started_node('ballscrew_run', domain))
@@ -106,7 +105,7 @@ class Supervision:
             failures=failures,
             recorded=self._writer.total,
             states={axis: self._state(axis) for axis in self._states},
-            lateness=self._played.lateness if self._played else 0.0,
+            lateness=self._player.lateness,
             cpu_time=self._process.cpu_time,
         )
 
@@ -118,7 +117,7 @@ class Supervision:
         return found
 
     def _on_diagnostics(self, data: bytes) -> None:
-        if self._played is None and len(self._active) < len(self._plan.expected):
+        if len(self._active) < len(self._plan.expected):
             for status in deserialize_message(data, DiagnosticArray).status:
                 if status.level == DiagnosticStatus.ERROR and 'not configured: ' in status.message:
                     self._reason = status.message
@@ -150,10 +149,8 @@ class Supervision:
 
     def _play(self, stop: threading.Event) -> None:
         try:
-            played = self._player.play(stop)
-            if played.complete and not self._settled.wait(SETTLE_PATIENCE):
+            if self._player.play(stop) and not self._settled.wait(SETTLE_PATIENCE):
                 self._player.run_on(self._settled.is_set, RUN_ON_PATIENCE, stop)
-            self._played = played
         except BaseException as error:  # handed to the main thread
             self._broken = error
 

@@ -71,7 +71,7 @@ def say(*notes: str) -> None:
 
 PATIENCE = 2.0  # [s] of work before anything is said
 Shown = Callable[[float, str], contextlib.AbstractContextManager[Callable[[float], None]]]
-"""Shows how far a total of some unit is done: `shown_progress`, or `silent` in its place."""
+"""Shows how far a total of some unit is done, as `shown_progress` does."""
 
 
 @contextlib.contextmanager
@@ -95,9 +95,3 @@ def shown_progress(
         yield show
     finally:
         bar.close()
-
-
-@contextlib.contextmanager
-def silent(total: float, unit: str) -> Iterator[Callable[[float], None]]:
-    """Give what shows nothing of a total of some unit."""
-    yield lambda share: None

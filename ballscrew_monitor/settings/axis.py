@@ -213,9 +213,9 @@ def derivation_of(name: str, values: Mapping[str, Any]) -> LoadDerivation | None
 def _torque_unit(name: str, values: Mapping[str, Any]) -> float:
     """Return the torque at the screw [N m] that one unit of the input is."""
     leaves = ('constant', 'rated', 'gear_ratio')
-    motor = conversions.MotorData(**{leaf: values[f'{name}.torque.{leaf}'] for leaf in leaves})
+    motor = {leaf: values[f'{name}.torque.{leaf}'] for leaf in leaves}
     try:
-        return conversions.torque_unit(values[f'{name}.torque.unit'], motor)
+        return conversions.torque_unit(values[f'{name}.torque.unit'], **motor)
     except InputError as error:
         raise InputError(f'parameters {name}.torque: {error}') from None
 

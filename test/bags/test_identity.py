@@ -137,7 +137,7 @@ def again(folder):
     """Return what a replay of the recording says, and what it says of the notes of the node."""
     (path,) = folder.iterdir()
     bag = Bag(path)
-    parts = replay_parts(bag, recorded_values(bag), columns=False)
+    parts = replay_parts(bag, recorded_values(bag))
     said = [text_of(part.state) for part in parts if isinstance(part, TimedState)]
     return said, ' '.join(bag.remarks)
 

@@ -27,8 +27,8 @@ from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, read_map, TableMap
-from ballscrew_monitor.recordings.tables.series import Agreement, Block, read_series, Series
-from ballscrew_monitor.recordings.words import say, Shown, shown_progress, silent
+from ballscrew_monitor.recordings.tables.series import Block, Fit, fits_of, read_series, Series
+from ballscrew_monitor.recordings.words import say, Shown, shown_progress
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import load_surface, MOTOR_TORQUE
 from ballscrew_monitor.settings.topics import absolute
@@ -47,7 +47,9 @@ BLOCK = 4096  # rows that are made at a time
 _STAMP = (1_234_567_891, 987_654_321)  # [s], [ns]
 
 
-def convert(path: Path, mapping: TableMap, out: Path, *, shown: Shown = silent) -> LogFacts:
+def convert(
+    path: Path, mapping: TableMap, out: Path, *, shown: Shown = shown_progress
+) -> LogFacts:
     """
     Write the log at `path` as a bag to the directory `out`; return what the bag says of itself.
 
@@ -68,10 +70,10 @@ def convert(path: Path, mapping: TableMap, out: Path, *, shown: Shown = silent) 
     )
     with whole_bag(out, out.resolve().name) as writer:
         writer.add_metadata(facts.texts())
-        agreement = Agreement(mapping, series.usual_period)
+        fits = fits_of(mapping, series.usual_period)
         with shown(series.count, 'rows written') as show:
-            _write(writer, series, agreement, show)
-        if found := agreement.notes():
+            _write(writer, series, fits, show)
+        if found := list(filter(None, (fit.note() for fit in fits))):
             facts = dataclasses.replace(facts, notes=(*facts.notes, *found))
             writer.add_metadata(facts.texts())
     return facts
@@ -148,13 +150,14 @@ def _derived(mapping: TableMap) -> list[Assumption]:
 
 
 def _write(
-    writer: BagWriter, series: Series, agreement: Agreement, show: Callable[[float], None]
+    writer: BagWriter, series: Series, fits: list[Fit], show: Callable[[float], None]
 ) -> None:
     """Write all rows and compare them; the topics are those of the first of them."""
     templates: dict[str, RowTemplate] = {}
     done = 0
     for block in series.blocks():
-        agreement.add(block)
+        for fit in fits:
+            fit.add(block)
         streams = []
         for name, message, numbers in _topics(block):
             if name not in templates:
