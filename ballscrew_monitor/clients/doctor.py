@@ -36,7 +36,7 @@ from ballscrew_monitor.messages.doctor import (
 from ballscrew_monitor.settings import axis as axis_settings
 from ballscrew_monitor.settings import parameters, qos
 from ballscrew_monitor.settings.middleware import notice
-from ballscrew_monitor.settings.topics import absolute
+from ballscrew_monitor.settings.parameters import absolute
 from rclpy.clock import Clock
 from rclpy.node import Node
 from rclpy.parameter import Parameter

@@ -36,8 +36,8 @@ from ballscrew_monitor.recordings.player import Player
 from ballscrew_monitor.recordings.recorder import recorded_topics, Recorder
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.report.logs import remove_report
+from ballscrew_monitor.settings.parameters import absolute, input_topics, output
 from ballscrew_monitor.settings.qos import started_node
-from ballscrew_monitor.settings.topics import absolute, input_topics, output
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.serialization import deserialize_message

@@ -278,7 +278,7 @@ class BallscrewMonitor(LifecycleNode):
         if state is None:
             return
         publisher.publish_state(state)
-        if publisher.is_dwelling(state) and not self._solves.busy:
+        if publisher.is_dwelling(state) and not self._solves.solver.busy:
             self.get_logger().info(f'axis {publisher.name}: solving the point where it dwells')
             self._solves.solve(publisher, state.point)
         now = self._steady.now().nanoseconds

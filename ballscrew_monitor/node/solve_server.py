@@ -81,7 +81,7 @@ class SolveServer:
         """Offer the action; `find_axis` returns an axis, or why it cannot be solved for."""
         self._node = node
         self._find_axis = find_axis
-        self._solver = Solver(SolverProcess)
+        self.solver = Solver(SolverProcess)
         self._goals: dict[Job, _Goal] = {}
         self._timer: Any = None
         self._server = _Server(
@@ -99,22 +99,17 @@ class SolveServer:
 
     def close(self, reason: str) -> None:
         """Stop all solves; their goals end with the reason."""
-        self._solver.close()
+        self.solver.close()
         for goal in list(self._goals.values()):
             self._finish(goal, Done(job=goal.job, end=End.FAILED, sentence=reason))
         self._rest()
-
-    @property
-    def busy(self) -> bool:
-        """Tell whether a solve is at work or waits."""
-        return self._solver.busy
 
     def solve(self, axis: AxisPublisher, point: MachinePoint) -> None:
         """Solve a point for the node itself, to correct the surface; the outcome is logged."""
         self._begin(axis, point, DEFAULT_TIMEOUT, None)
 
     def _on_goal(self, request: Any) -> GoalResponse:
-        refusal = self._solver.refusal
+        refusal = self.solver.refusal
         if not refusal:
             return GoalResponse.ACCEPT
         self._node.get_logger().warning(
@@ -141,7 +136,7 @@ class SolveServer:
     ) -> None:
         job = Job(request=request_of(axis.surface, point), timeout=timeout)
         self._goals[job] = _Goal(axis=axis, point=point, job=job, handle=handle)
-        self._solver.submit(job)
+        self.solver.submit(job)
         if self._timer is None:
             # On the steady clock: simulated time may stand, and the solver does not.
             self._timer = self._node.create_timer(
@@ -154,8 +149,8 @@ class SolveServer:
         for goal in self._goals.values():
             taken_back = goal.handle is not None and goal.handle.is_cancel_requested
             if taken_back and math.isnan(goal.job.cancelled):
-                self._solver.cancel(goal.job, now)
-        for done in self._solver.poll(now):
+                self.solver.cancel(goal.job, now)
+        for done in self.solver.poll(now):
             self._finish(self._goals[done.job], done)
         for goal in self._goals.values():
             self._tell(goal, now)

@@ -27,8 +27,8 @@ from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.middleware import notice
+from ballscrew_monitor.settings.parameters import absolute, input_topics
 from ballscrew_monitor.settings.qos import started_node
-from ballscrew_monitor.settings.topics import absolute, input_topics
 from builtin_interfaces.msg import Time
 from rclpy.duration import Duration
 from rclpy.node import Node

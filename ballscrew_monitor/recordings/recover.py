@@ -14,7 +14,7 @@ from pathlib import Path
 import struct
 from typing import Any, BinaryIO
 
-from ballscrew_monitor.recordings.bag_writer import ACTIVE, Announced, BagWriter, whole_bag
+from ballscrew_monitor.recordings.bag_writer import ACTIVE, BagWriter, whole_bag
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
@@ -142,8 +142,8 @@ def _target(file: Path) -> Path:
     return file.with_name(name) / f'{name}{SUFFIX}'
 
 
-def _topics(file: Path) -> dict[int, Announced]:
-    """Return the topics that hold a message, by the number of their channel."""
+def _topics(file: Path) -> dict[int, tuple[Channel, Schema]]:
+    """Return the channels that hold a message, by their numbers, each with its schema."""
     schemas: dict[int, Schema] = {}
     channels: dict[int, Channel] = {}
     used: set[int] = set()
@@ -155,33 +155,27 @@ def _topics(file: Path) -> dict[int, Announced]:
         elif isinstance(record, McapMessage):
             used.add(record.channel_id)
     return {
-        number: _announced(channels[number], schemas[channels[number].schema_id])
+        number: (channels[number], schemas[channels[number].schema_id])
         for number in sorted(used & channels.keys())
         if channels[number].schema_id in schemas
     }
 
 
-def _announced(channel: Channel, schema: Schema) -> Announced:
-    return Announced(
-        name=channel.topic,
-        type_name=schema.name,
-        definition=schema.data,
-        type_hash=channel.metadata.get('topic_type_hash', ''),
-        profiles=yaml.safe_load(channel.metadata.get('offered_qos_profiles', '')) or [],
-    )
-
-
-def _copy(file: Path, topics: dict[int, Announced], writer: BagWriter) -> None:
+def _copy(file: Path, topics: dict[int, tuple[Channel, Schema]], writer: BagWriter) -> None:
     """Copy messages and what the file says of itself."""
-    for topic in topics.values():
-        writer.announce(topic)
+    for channel, schema in topics.values():
+        said = channel.metadata
+        profiles = yaml.safe_load(said.get('offered_qos_profiles', '')) or []
+        kind = said.get('topic_type_hash', '')
+        names = channel.topic, schema.name
+        writer.announce(*names, schema.data, type_hash=kind, profiles=profiles)
     for message in whole_records(file):
         if isinstance(message, Metadata):
             writer.add_metadata(message.metadata, name=message.name)
         if not isinstance(message, McapMessage) or message.channel_id not in topics:
             continue
         writer.write(
-            topics[message.channel_id].name,
+            topics[message.channel_id][0].topic,
             message.data,
             log_time=message.log_time,
             publish_time=message.publish_time,

@@ -24,7 +24,7 @@ from ballscrew_monitor.recordings.bulk.entries import Entries
 from ballscrew_monitor.recordings.bulk.order import OnDone, ordered_entries
 from ballscrew_monitor.recordings.own_recording import is_as_recorded, OwnRecording
 from ballscrew_monitor.settings.axis import Axis, build_axis
-from ballscrew_monitor.settings.topics import absolute, input_topics, with_types
+from ballscrew_monitor.settings.parameters import absolute, input_topics, with_types
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from surrogate.files import InputError
 

@@ -18,8 +18,7 @@ from ballscrew_monitor.recordings.bag_writer import BagWriter, whole_bag
 from ballscrew_monitor.recordings.bulk.batches import Batch, batches, END
 from ballscrew_monitor.recordings.recorder import DIAGNOSTICS, recorded_topics
 from ballscrew_monitor.recordings.replay import answer
-from ballscrew_monitor.settings.parameters import NODE_NAME
-from ballscrew_monitor.settings.topics import input_topics, output, with_types
+from ballscrew_monitor.settings.parameters import input_topics, NODE_NAME, output, with_types
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import numpy as np
 

@@ -15,15 +15,13 @@ from ballscrew_monitor.core.inputs import Input, OpenInput, Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
 from ballscrew_monitor.judge.monitor import Monitor
-from ballscrew_monitor.settings.parameter_table import LOAD_SOURCES
+from ballscrew_monitor.settings.parameters import is_configured, MOTOR_TORQUE
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface, SurfaceError
 
 PLAUSIBLE = 3.0  # times the largest of the surface: what lies beyond is a glitch
-MOTOR_TORQUE = LOAD_SOURCES[1]
 _LOADED: weakref.WeakValueDictionary[str, Surface] = weakref.WeakValueDictionary()
 """Surfaces in use by their hash: their tables take megabytes."""
-OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
 UNITS = {
     Source.SPEED: tuple(conversions.SPEED_UNITS),
     Source.LOAD: tuple(conversions.LOAD_UNITS),
@@ -254,13 +252,6 @@ def _limits_of(name: str, values: Mapping[str, Any], preload: float) -> Limits:
         clear_delay=nanoseconds(values[prefix + 'clear_delay']),
         hysteresis=values[prefix + 'hysteresis'],
     )
-
-
-def is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool:
-    """Tell whether the axis `name` has an input; some may be left out, or be derived."""
-    if source is Source.LOAD and values[f'{name}.load.source'] == MOTOR_TORQUE:
-        return False
-    return source not in OPTIONAL or bool(values[f'{name}.{source.name.lower()}.topic'])
 
 
 def _input_of(

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Products of the parameter table: defaults, checks, and files of parameters.
+Products of the parameter table: defaults, checks, files of parameters, and names of topics.
 
 The rows of `AXIS_ROWS` hold for every axis, under its name; `{axis}` in a default is that name.
 
@@ -13,11 +13,14 @@ import pathlib
 import re
 from typing import Any
 
+from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.settings.parameter_row import BARE_LETTERS, BARE_WORDS, ParameterRow
-from ballscrew_monitor.settings.parameter_table import AXIS_ROWS, NODE_ROWS
+from ballscrew_monitor.settings.parameter_table import AXIS_ROWS, LOAD_SOURCES, NODE_ROWS
 from surrogate.files import InputError
 
 NODE_NAME = 'ballscrew_monitor'
+MOTOR_TORQUE = LOAD_SOURCES[1]
+OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
 # Parameters, or first parts of their names, that any node may be given; they are not of the table.
 ROS_NAMES = frozenset({'qos_overrides', 'start_type_description_service', 'use_sim_time'})
 _AXIS_NAME = re.compile(r'[a-z][a-z0-9_]*')
@@ -207,3 +210,42 @@ def flatten(section: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
         else:
             flat[f'{prefix}{key}'] = value
     return flat
+
+
+def is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool:
+    """Tell whether the axis `name` has an input; some may be left out, or be derived."""
+    if source is Source.LOAD and values[f'{name}.load.source'] == MOTOR_TORQUE:
+        return False
+    return source not in OPTIONAL or bool(values[f'{name}.{source.name.lower()}.topic'])
+
+
+def absolute(topic: str) -> str:
+    """Return the full name of a topic that a node in the root namespace names."""
+    return topic if topic.startswith('/') else f'/{topic}'
+
+
+def input_topics(values: Mapping[str, Any]) -> dict[str, str]:
+    """Return topic and type of every input configured in the parameters `values`."""
+    found = {}
+    for axis in values['axes']:
+        for source in reversed(Source):
+            prefix = f'{axis}.{source.name.lower()}'
+            topic = values[f'{prefix}.topic']
+            if topic and is_configured(axis, values, source):
+                found[absolute(topic)] = values[f'{prefix}.type']
+    return found
+
+
+def with_types(values: Mapping[str, Any], types: Mapping[str, str]) -> dict[str, Any]:
+    """Return the parameters with each empty message type filled in from `types` by topic."""
+    filled = dict(values)
+    for name, topic in values.items():
+        prefix, _, leaf = name.rpartition('.')
+        if leaf == 'topic' and topic and not values[f'{prefix}.type']:
+            filled[f'{prefix}.type'] = types.get(absolute(topic), '')
+    return filled
+
+
+def output(axis: str, name: str) -> str:
+    """Return the full name of an output of the node, such as `state`."""
+    return absolute(f'{NODE_NAME}/{axis}/{name}')

@@ -18,8 +18,7 @@ from ballscrew_monitor.recordings.own_recording import recorded_values
 from ballscrew_monitor.recordings.replay import replay_parts
 from ballscrew_monitor.recordings.retention import KeepSettings, Retention
 from ballscrew_monitor.settings.axis import build_axis
-from ballscrew_monitor.settings.parameters import read_file
-from ballscrew_monitor.settings.topics import absolute, input_topics
+from ballscrew_monitor.settings.parameters import absolute, input_topics, read_file
 import pytest
 from rclpy.serialization import deserialize_message
 from scenario import generate, PARAMETERS

@@ -21,7 +21,7 @@ from ballscrew_monitor.recordings.bulk.chunks import Messages
 from ballscrew_monitor.recordings.bulk.entries import Entries, entries_of, joined, Kind, made, Told
 from ballscrew_monitor.recordings.bulk.layout import Layout, NoLayout, reads_alike
 from ballscrew_monitor.settings.axis import Axis
-from ballscrew_monitor.settings.topics import absolute
+from ballscrew_monitor.settings.parameters import absolute
 import numpy as np
 from rclpy.serialization import deserialize_message
 

@@ -13,8 +13,7 @@ from ballscrew_monitor.core.fields import message_class, stamp_of
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.player import Choice, chosen, PAUSE, playable, Player
-from ballscrew_monitor.settings.parameters import read_file
-from ballscrew_monitor.settings.topics import input_topics
+from ballscrew_monitor.settings.parameters import input_topics, read_file
 from mcap.writer import Writer
 import pytest
 import rclpy

@@ -27,8 +27,7 @@ from ballscrew_monitor.report.log_report import (
     write_events,
 )
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
-from ballscrew_monitor.settings.parameters import read_file
-from ballscrew_monitor.settings.topics import absolute
+from ballscrew_monitor.settings.parameters import absolute, read_file
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray
 import numpy as np

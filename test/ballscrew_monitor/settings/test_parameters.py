@@ -169,3 +169,39 @@ def test_the_error_of_ros_for_mixed_types_is_told_with_its_cure():
     mixed = RuntimeError("Sequence should be of same type.\n Value type 'bool' do not belong at 3")
     assert parameters.explain(mixed).endswith("quote it, such as 'y'")
     assert parameters.explain(RuntimeError('other\n thing')) == 'other thing'
+
+
+def test_the_inputs_are_those_of_the_parameters():
+    """A load of the motor torque has no topic."""
+    speed = {'/joint_states': 'sensor_msgs/msg/JointState'}
+    assert parameters.input_topics(
+        parameters.read_file(CONFIG / 'nominal_cycle.yaml')
+    ) == speed | {
+        '/axial_load': 'geometry_msgs/msg/WrenchStamped',
+        '/oil_temperature': 'sensor_msgs/msg/Temperature',
+    }
+    assert parameters.input_topics(parameters.read_file(CONFIG / 'motor_current.yaml')) == speed
+
+
+def test_empty_types_are_filled_in_by_topic():
+    values = {
+        'axes': ['x'],
+        'x.speed.topic': 'speed',
+        'x.speed.type': '',
+        'x.load.topic': '/load',
+        'x.load.type': 'a/msg/B',
+        'x.torque.topic': '',
+        'x.torque.type': '',
+    }
+    filled = parameters.with_types(values, {'/speed': 'c/msg/D', '/load': 'e/msg/F'})
+    assert filled == values | {'x.speed.type': 'c/msg/D'}
+    assert parameters.with_types(values, {})['x.speed.type'] == ''
+
+
+def test_names_are_full():
+    assert (
+        parameters.absolute('joint_states')
+        == parameters.absolute('/joint_states')
+        == '/joint_states'
+    )
+    assert parameters.output('x', 'state') == '/ballscrew_monitor/x/state'

@@ -23,7 +23,7 @@ from ballscrew_monitor.recordings.bulk.order import (
 from ballscrew_monitor.recordings.message_definitions import message_definition
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axis
-from ballscrew_monitor.settings.topics import absolute
+from ballscrew_monitor.settings.parameters import absolute
 from geometry_msgs.msg import WrenchStamped
 from hypothesis import given
 from hypothesis import strategies as st
