@@ -26,15 +26,7 @@ from ballscrew_monitor.core.estimate import (
 from ballscrew_monitor.core.full_point import compare, Comparison, request_of, solved_at
 from ballscrew_monitor.messages.state_messages import fill_result, read_point, TIERS
 from ballscrew_monitor.node.axis_publisher import AxisPublisher
-from ballscrew_monitor.node.solver_process import (
-    Done,
-    End,
-    Job,
-    MOST_WAITING,
-    Solver,
-    SolverProcess,
-    Step,
-)
+from ballscrew_monitor.node.solver_process import Done, End, Job, MOST_WAITING, Solver, Step
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import PointResult
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
@@ -81,7 +73,7 @@ class SolveServer:
         """Offer the action; `find_axis` returns an axis, or why it cannot be solved for."""
         self._node = node
         self._find_axis = find_axis
-        self.solver = Solver(SolverProcess)
+        self.solver = Solver()
         self._goals: dict[Job, _Goal] = {}
         self._timer: Any = None
         self._server = _Server(

@@ -157,7 +157,7 @@ class Done:
 class Solver:
     """The queue, and the process that works on it."""
 
-    def __init__(self, start: Callable[[], SolverProcess]) -> None:
+    def __init__(self, start: Callable[[], SolverProcess] = SolverProcess) -> None:
         """Begin with nothing to do and no process."""
         self._start = start
         self._process: SolverProcess | None = None

@@ -22,8 +22,12 @@ import tempfile
 from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.bag_files import OWN
-from ballscrew_monitor.recordings.mcap_file import Integers, McapFile
-from ballscrew_monitor.recordings.message_definitions import message_definition, type_hash
+from ballscrew_monitor.recordings.mcap_file import (
+    Integers,
+    McapFile,
+    message_definition,
+    type_hash,
+)
 import numpy as np
 from surrogate.files import InputError, replace_file
 import yaml

@@ -20,7 +20,7 @@ from ballscrew_monitor.recordings.bulk.order import (
     REORDER,
     StampOrder,
 )
-from ballscrew_monitor.recordings.message_definitions import message_definition
+from ballscrew_monitor.recordings.mcap_file import message_definition
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axis
 from ballscrew_monitor.settings.parameters import absolute
