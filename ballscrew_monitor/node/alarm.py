@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The warning of one axis: its topic, its log, what people do to it; topics beside the state."""
+"""The warning of one axis: its topic, its log, what people do to it; topics that stay."""
 
 from collections.abc import Callable, Iterable
 import functools
@@ -9,7 +9,7 @@ from typing import Any, TYPE_CHECKING
 from ballscrew_monitor.core.conversions import clock_text, seconds
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.state import NOT_SHELVED, Shelving, State
-from ballscrew_monitor.messages.state_messages import out_of_zone_message, plain_values
+from ballscrew_monitor.messages.state_messages import out_of_zone_message
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts, totals_facts
 from ballscrew_monitor.settings.axis import Axis
@@ -20,15 +20,7 @@ from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
-from std_msgs.msg import Bool, Float64, String
 
-TYPES = {
-    'efficiency': Float64,
-    'rcs': Float64,
-    'film_ratio': Float64,
-    'regime': String,
-    'out_of_zone': Bool,
-}
 LATCHED_QOS = QoSProfile(
     depth=1,
     reliability=QoSReliabilityPolicy.RELIABLE,
@@ -56,30 +48,6 @@ class LatchedTopics:
         make = quiet_publishers(node)
         self.event = make(OutOfZone, f'~/{axis}/out_of_zone', LATCHED_QOS)
         self.info = make(SurfaceInfo, f'~/{axis}/surface_info', LATCHED_QOS)
-
-
-class PlainTopics:
-    """The plain topics of one axis, none unless they are `wanted`."""
-
-    def __init__(
-        self, node: LifecycleNode, axis: str, make: Callable[..., Any], qos: Any, *, wanted: bool
-    ) -> None:
-        """Make the publishers by `make`, which is given type, name and `qos`."""
-        self._node = node
-        kinds = TYPES if wanted else {}
-        self._publishers = {
-            name: make(kind, f'~/{axis}/plain/{name}', qos) for name, kind in kinds.items()
-        }
-
-    def publish(self, state: State) -> None:
-        """Publish a state."""
-        for name, value in plain_values(state).items() if self._publishers else ():
-            self._publishers[name].publish(TYPES[name](data=value))
-
-    def close(self) -> None:
-        """Destroy the publishers."""
-        for publisher in self._publishers.values():
-            self._node.destroy_lifecycle_publisher(publisher)
 
 
 if TYPE_CHECKING:  # which imports this module
