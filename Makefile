@@ -62,7 +62,7 @@ help:
 	@echo 'make mutate     change the sources in a sample of places and ask which test notices'
 	@echo '                SAMPLE=300 tries more places, SEED=2 others, ARGS names files'
 	@echo 'make format     put imports and code in the form that the checks ask for'
-	@echo 'make bench      measure solver, lookup and node, in under two minutes'
+	@echo 'make bench      measure solver, lookup, node and health, in some minutes'
 	@echo 'make docs       write pages of the API from the docstrings into build/api/'
 	@echo 'make fresh-test clone the last commit and run both there'
 	@echo 'make clean      remove everything that is made'

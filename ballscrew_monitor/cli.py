@@ -106,6 +106,13 @@ def _replay(args: argparse.Namespace) -> int:
     return replay_command(args, options.PARAMS)
 
 
+def _health(args: argparse.Namespace) -> int:
+    from ballscrew_monitor.report.health_command import health_command
+
+    raise_signals()
+    return health_command(args, options.PARAMS)
+
+
 def _import(args: argparse.Namespace) -> int:
     from ballscrew_monitor.recordings.tables.convert import make_bag, print_guess
 
@@ -200,6 +207,7 @@ def _play(args: argparse.Namespace) -> int:
 COMMANDS = {
     'run': (_run, 'play a bag into the real node over DDS and record what it says'),
     'replay': (_replay, 'judge a log without DDS, faster than real time'),
+    'health': (_health, 'tell whether axes are normal or worse, by their logs over months'),
     'import': (_import, 'make a bag of a machine log, CSV or Parquet'),
     'solve': (_solve, 'ask the running node for a full solve of a point'),
     'doctor': (_doctor, 'compare the running ROS graph with a parameter file, and say the cure'),
@@ -210,5 +218,5 @@ COMMANDS = {
 """Handler and help of each command; `options` adds what it may be told."""
 DISCOVERING = (_solve, _doctor, _play)
 """Commands that need others in the ROS graph."""
-WITH_ROS = (_run, _replay, _import, *DISCOVERING)
+WITH_ROS = (_run, _replay, _health, _import, *DISCOVERING)
 """Commands that need ROS; they put in order themselves what a signal would leave behind."""

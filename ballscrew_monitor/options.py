@@ -3,6 +3,7 @@
 """Options of the commands that need ROS, and their defaults."""
 
 import argparse
+import math
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +61,22 @@ def add_replay(parser: Parser) -> None:
     _add_file(parser, '--out', 'DIR', 'directory for the report, its tables and data')
     _add_switch(parser, '--json', 'print JSON')
     add_workers(parser)
+
+
+def add_health(parser: Parser) -> None:
+    """Add what `ballscrew health` may be told."""
+    text = 'bag directory or file, a folder of them; CSV or Parquet with --map'
+    _add_file(parser, 'logs', 'LOG', text, nargs='+')
+    _add_file(parser, '--map', 'FILE', 'map of the columns of a CSV or Parquet file')
+    text = f'parameters of the node (default those that a log carries, else {PARAMS_TEXT})'
+    _add_file(parser, '--params', 'FILE', text)
+    text = 'motion of the first logs that is normal (default 0.16, ten minutes)'
+    _add_number(parser, '--baseline-hours', 'H', text, default=0.16)
+    text = 'emission of the electricity [kg/kWh] (default none, no CO2 is told)'
+    _add_number(parser, '--co2-kg-per-kWh', 'X', text, default=math.nan)
+    _add_switch(parser, '--speed-advice', 'let the advice name other speeds: the process is free')
+    _add_file(parser, '--out', 'DIR', 'directory for health.json and health.png')
+    _add_switch(parser, '--json', 'print JSON')
 
 
 def add_import(parser: Parser) -> None:

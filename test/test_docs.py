@@ -52,7 +52,7 @@ OPENING = re.compile(
     r'(What|From|Which|Just|How|Where|When|Why|Who|Whose|Whether|Whatever|Takes|Makes|Says)\b'
 )
 COMMAND = re.compile(r'ballscrew ((?:(?:surface|screw|oil) )?[a-z]+)((?: [^`\n#]*)?)')
-MOST_PAGES, MOST_WORDS = 10, 900
+MOST_PAGES, MOST_WORDS = 11, 900
 
 
 def name_of(page):

@@ -185,7 +185,7 @@ class Examination:
             (axis, source)
             for axis in values['axes']
             for source in reversed(Source)
-            if axis_settings.is_configured(axis, values, source)
+            if parameters.is_configured(axis, values, source)
             and self._try(axis_settings.scaling_of, axis, values, source, 1.0) is not None
         ]
         for axis in values['axes']:

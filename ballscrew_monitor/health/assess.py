@@ -3,20 +3,21 @@
 """
 Normal or worse: what is kept of an axis, held against its baseline.
 
-The condition is worse only where the change of the drag lies beyond the tolerance with 99.9 %
-confidence, so that a look every day for years seldom warns of nothing.
+The condition is worse only where the change of the drag, or the loss of preload, lies beyond the
+tolerance with 99.9 % confidence, so that a look every day for years seldom warns of nothing.
 
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 import dataclasses
 import math
-from typing import Any
+from typing import NamedTuple
 
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import changed_screw
-from ballscrew_monitor.health.causes import causes_of, FEWEST_GROUPS
+from ballscrew_monitor.health.calibration import calibrated
+from ballscrew_monitor.health.causes import causes_of, FEWEST_GROUPS, Fit, fits_of, is_certain
 from ballscrew_monitor.health.change import Change, change_between, parts_of, select
 from ballscrew_monitor.health.companions import Companions
 from ballscrew_monitor.health.damage import rated_of
@@ -44,7 +45,9 @@ from ballscrew_monitor.health.words import advice_of, verdict_of
 from surrogate.surface import Surface
 
 TOLERANCE = 0.03
-"""Change of the drag that counts as normal [-]."""
+"""Change of the drag, or loss of preload, that counts as normal [-]."""
+NARROW = 0.1
+"""Half width of the interval of the drag up to which an axis is called normal [-]."""
 SURE = 1.9
 """Half width of the 99.9 % interval over that of 95 %."""
 RECENT = 28
@@ -69,6 +72,23 @@ class HealthSettings:
     speed_allowed: bool = False
 
 
+class Compared(NamedTuple):
+    """
+    The recent days against the baseline, each quantity with its interval.
+
+    `change` is None where there is no comparison, and `reason` says why.
+
+    """
+
+    model: Model
+    change: Change | None
+    reason: str
+    drag: Quantity
+    preload: Quantity
+    condition: Condition
+    causes: Sequence[Cause]
+
+
 def assess(
     axis: str,
     now: int,
@@ -88,16 +108,9 @@ def assess(
     """
     today = day_of(now)
     known = baseline if isinstance(baseline, Baseline) else None
-    model = Model(surface, companions if isinstance(companions, Companions) else None)
-    recent = _recent(points, today)
-    change = None if known is None else change_between(known.points, recent, model)
-    if change is not None and change.stretches < FEWEST_STRETCHES:
-        change = None
-    reason = _reason(baseline, points, recent, change)
-    causes = [] if change is None else causes_of(change, model)
-    drag = _drag(change, reason)
-    condition = _condition(change)
-    preload = preload_of(change, model, reason, companions)
+    compared = compare(baseline, points, today, surface, companions)
+    _, change, reason, drag, preload, condition, causes = compared
+    recent = recent_of(points, today)
     found = [
         *_drags(change, drag, reason),
         preload,
@@ -120,7 +133,33 @@ def assess(
     )
 
 
-def _recent(points: Sequence[ComparablePoint], today: int) -> list[ComparablePoint]:
+def compare(
+    baseline: Baseline | str,
+    points: Sequence[ComparablePoint],
+    today: int,
+    surface: Surface,
+    companions: Companions | str,
+) -> Compared:
+    """Return how the days before the end of `today` compare with the baseline."""
+    known = baseline if isinstance(baseline, Baseline) else None
+    model = Model(
+        surface,
+        companions if isinstance(companions, Companions) else None,
+        None if known is None else calibrated(known.points, surface),
+    )
+    recent = recent_of(points, today)
+    change = None if known is None else change_between(known.points, recent, model)
+    if change is not None and change.stretches < FEWEST_STRETCHES:
+        change = None
+    reason = _reason(baseline, points, recent, change)
+    fits = [] if change is None else fits_of(change, model)
+    causes = [] if change is None else causes_of(change, fits)
+    preload = preload_of(change, model, reason, companions, causes)
+    condition = _condition(change, model, fits, preload)
+    return Compared(model, change, reason, _drag(change, reason), preload, condition, causes)
+
+
+def recent_of(points: Sequence[ComparablePoint], today: int) -> list[ComparablePoint]:
     """Return the points of the last week, or of the last four where that has too few."""
     week = [one for one in points if one.first_day + one.days > today - SHORT]
     if sum(one.stretches for one in week) >= FEWEST_STRETCHES:
@@ -167,14 +206,23 @@ def _interval(name: str, unit: str, value: float, deviation: float, change: Chan
     )
 
 
-def _condition(change: Change | None) -> Condition:
-    """Return the condition by the drag: what its interval excludes."""
+def _condition(
+    change: Change | None, model: Model, fits: Sequence[Fit], preload: Quantity
+) -> Condition:
+    """Return the condition by the intervals of drag and preload, or the pattern of a cause."""
     if change is None:
         return Condition.UNKNOWN
     reach = student(change.freedom) * change.deviation
-    if abs(change.common) - SURE * reach > TOLERANCE:
+    lost = preload.is_known and _surely_lost(preload)
+    certain = lost or is_certain(change, model, fits, TOLERANCE)
+    if certain or abs(change.common) - SURE * reach > TOLERANCE:
         return Condition.WORSE
-    return Condition.NORMAL if reach <= 2.0 * TOLERANCE else Condition.UNKNOWN
+    return Condition.NORMAL if reach <= NARROW else Condition.UNKNOWN
+
+
+def _surely_lost(preload: Quantity) -> bool:
+    """Tell whether the preload is below normal with 99.9 % confidence."""
+    return preload.value + SURE * (preload.high - preload.value) < 1.0 - TOLERANCE
 
 
 def _drags(change: Change | None, drag: Quantity, reason: str) -> list[Quantity]:
@@ -193,7 +241,8 @@ def _drags(change: Change | None, drag: Quantity, reason: str) -> list[Quantity]
     return [drag, *ways, *rest]
 
 
-def _ways(change: Change) -> Any:
+def _ways(change: Change) -> Iterator[Quantity]:
+    """Yield the change in each direction that both have."""
     for name, sign in (('forward', 1), ('backward', -1)):
         value, deviation = select(change, [one.direction == sign for one in change.groups])
         if math.isfinite(value):
@@ -242,8 +291,3 @@ def _notes(
 def _is_usual(notes: Sequence[str]) -> bool:
     """Tell whether boundary running is this axis's normal, so that no remedy is advised."""
     return any('is normal for this axis' in one for one in notes)
-
-
-def likely(causes: Sequence[Cause]) -> Cause | None:
-    """Return the cause that fits best, if any does."""
-    return next((one for one in causes if not one.excluded), None)

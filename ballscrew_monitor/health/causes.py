@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Which causes explain a change: each has a pattern over speed, load and direction, and one size.
+Causes of a change: each has a pattern over speed, load and direction, and one size.
 
 The size is that of the least chi squared over a grid; a cause whose least one lies too far above
 that of the best does not fit.
@@ -25,10 +25,14 @@ INTERVAL = 3.84
 """Chi squared above the least one at the ends of a 95 % interval, one degree of freedom."""
 EXCLUDED = 9.21
 """Chi squared above that of the best cause from which one does not fit: 99 %, two of freedom."""
+CERTAIN = 15.0
+"""Chi squared that the best cause of nine must gain, so that looks of years seldom err."""
 FEWEST_GROUPS = 3
 """Groups of places without which no pattern tells causes apart."""
 STEPS = 41
 """Sizes that are tried of each cause."""
+GRIDS, FEWEST_STEPS = 3, 6
+"""Most grids, each within the one before, and steps that an interval should have."""
 
 
 class Candidate(NamedTuple):
@@ -181,9 +185,24 @@ def fits_of(change: Change, model: Model) -> list[Fit]:
     return sorted((one for one in found if one is not None), key=lambda one: one.chi)
 
 
-def causes_of(change: Change, model: Model) -> list[Cause]:
+def is_certain(change: Change, model: Model, fits: Sequence[Fit], tolerance: float) -> bool:
+    """
+    Tell whether a cause explains the change and no change at all does not.
+
+    It must lower chi squared by CERTAIN, and be a mean change above a `tolerance` [-].
+
+    """
+    if len(change.groups) < FEWEST_GROUPS or not fits:
+        return False
+    best = fits[0]
+    nothing = float(change.change @ np.linalg.inv(change.covariance) @ change.change)
+    gained = (nothing - best.chi) / birge(best.chi, len(change.groups))
+    pattern = np.abs(best.candidate.pattern(model, change, best.size))
+    return gained > CERTAIN and float(pattern.sum()) > tolerance * float(change.friction.sum())
+
+
+def causes_of(change: Change, fits: Sequence[Fit]) -> list[Cause]:
     """Return all causes with their weights, the best first; those that do not fit are excluded."""
-    fits = fits_of(change, model)
     if len(change.groups) < FEWEST_GROUPS or not fits:
         return []
     best, scale = fits[0].chi, birge(fits[0].chi, len(change.groups))
@@ -200,15 +219,22 @@ def birge(chi: float, groups: int) -> float:
 
 
 def _fit(candidate: Candidate, change: Change, model: Model, inverse: Array) -> Fit | None:
-    sizes = np.linspace(candidate.low, candidate.high, STEPS)
-    chis = np.array([_chi(candidate, change, model, inverse, size) for size in sizes])
-    if not np.isfinite(chis).any():
-        return None
-    place = int(np.nanargmin(chis))
-    size, chi = _vertex(sizes, chis, place)
-    limit = chi + INTERVAL * birge(chi, len(change.groups))
-    low, high = _crossing(sizes, chis, place, limit, -1), _crossing(sizes, chis, place, limit, 1)
-    return Fit(candidate, size, low, high, chi)
+    """Return the fit of a cause, its grid drawn closer until the interval has several steps."""
+    low, high = candidate.low, candidate.high
+    for _ in range(GRIDS):
+        sizes: Array = np.linspace(low, high, STEPS)
+        chis = np.array([_chi(candidate, change, model, inverse, size) for size in sizes])
+        if not np.isfinite(chis).any():
+            return None
+        place = int(np.nanargmin(chis))
+        size, chi = _vertex(sizes, chis, place)
+        limit = chi + INTERVAL * birge(chi, len(change.groups))
+        ends = [_crossing(sizes, chis, place, limit, step) for step in (-1, 1)]
+        step = float(sizes[1] - sizes[0])
+        if ends[1] - ends[0] > FEWEST_STEPS * step:
+            break
+        low, high = max(size - 2.0 * step, candidate.low), min(size + 2.0 * step, candidate.high)
+    return Fit(candidate, size, ends[0], ends[1], chi)
 
 
 def _chi(candidate: Candidate, change: Change, model: Model, inverse: Array, size: float) -> float:

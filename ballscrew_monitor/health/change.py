@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-How the friction has changed since the baseline, at equal speed, load and direction.
+Change of the friction since the baseline, at equal speed, load and direction.
 
 The surface in use adjusts what differs in speed, load and temperature within a group of places. A
 day is the unit of the scatter: all of its stretches share the warmth of the machine.
@@ -21,10 +21,19 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 USUAL_SCATTER, USUAL_FREEDOM = 0.02, 4
 """Scatter between days that is expected before it is seen [-], and the days that it counts as."""
-LEAST_SCATTER = 0.005
-"""Scatter between days of a group that is always there [-]."""
-SLOPE_DOUBT = 0.2
-"""Uncertainty of what the surface says of a difference in temperature [-]."""
+OWN_SCATTER, OWN_FREEDOM = 0.01, 10
+"""The same of one group apart from the others [-], and what it counts as."""
+SLOPE_DOUBT = 0.05
+"""
+What the fitted surface may be wrong by between two temperatures, over the difference [-].
+
+Once for all groups alike, and once for each of them.
+
+"""
+WARMTH, UNMEASURED = 1.2, 10.0
+"""Standard deviation of the temperature of the contacts over the measured one, or without [K]."""
+WIPER_DRIFT = 0.1
+"""Standard deviation of the drag of a wiper from weeks to weeks, over that drag [-]."""
 
 
 class Group(NamedTuple):
@@ -93,7 +102,7 @@ def grouped(points: Iterable[ComparablePoint]) -> dict[Group, list[ComparablePoi
 
 def days_of(points: Sequence[ComparablePoint], model: Model) -> Days | None:
     """Return what a group comes to over the days of its points, None outside the surface."""
-    residuals = np.array([model.residual(one) for one in points])
+    residuals = model.residuals(points)
     known = np.isfinite(residuals)
     if not known.any():
         return None
@@ -131,11 +140,11 @@ def change_between(
     firsts, lasts = zip(*(pairs[group] for group in groups))
     friction = np.array([one.friction for one in firsts])
     change = np.array([b.residual - a.residual for a, b in zip(firsts, lasts)])
-    doubts = np.array([_doubt(model, a, b) for a, b in zip(firsts, lasts)])
-    scatter, freedom = _scatter(firsts, friction)
+    scatter, own_scatter, freedom = _scatter(firsts, friction)
     shares = _days_share(firsts) + _days_share(lasts)
-    own = _own_variance(firsts, friction) + _own_variance(lasts, friction)
-    covariance = np.diag(own) + np.outer(doubts, doubts)
+    own = _own_variance(firsts, own_scatter * friction)
+    own += _own_variance(lasts, own_scatter * friction)
+    covariance = np.diag(own) + _doubt(model, firsts, lasts)
     covariance += scatter**2 * shares * np.outer(friction, friction)
     weights = friction / friction.sum()
     common = float(weights @ (change / friction))
@@ -202,18 +211,29 @@ def _mean_point(points: Sequence[ComparablePoint], counts: Array) -> ComparableP
     )
 
 
-def _scatter(groups: Sequence[Days], friction: Array) -> tuple[float, int]:
-    """Return the scatter that the days of a baseline share [-], and its degrees of freedom."""
+def _scatter(groups: Sequence[Days], friction: Array) -> tuple[float, float, int]:
+    """
+    Return the scatter between the days of a baseline [-], with the degrees of freedom.
+
+    What all groups of a day share comes first, then what a group has beside it.
+
+    """
     apart: dict[int, list[tuple[float, float]]] = {}
     for one, torque in zip(groups, friction):
         for day, residual in zip(one.days, one.residuals):
             apart.setdefault(day, []).append(((residual - one.residual) / torque, torque))
-    daily = [
-        np.average([a for a, _ in day], weights=[w for _, w in day]) for day in apart.values()
-    ]
+    daily: list[float] = []
+    rest: list[float] = []
+    for pairs in apart.values():
+        values, weights = zip(*pairs)
+        daily.append(float(np.average(values, weights=weights)))
+        rest += [value - daily[-1] for value in values]
     freedom = len(daily) - 1
     squares = float(np.sum(np.square(daily))) + USUAL_FREEDOM * USUAL_SCATTER**2
-    return math.sqrt(squares / (freedom + USUAL_FREEDOM)), freedom + USUAL_FREEDOM
+    own_freedom = max(len(rest) - len(daily) - len(groups), 0)
+    own_squares = float(np.sum(np.square(rest))) + OWN_FREEDOM * OWN_SCATTER**2
+    common = math.sqrt(squares / (freedom + USUAL_FREEDOM))
+    return common, math.sqrt(own_squares / (own_freedom + OWN_FREEDOM)), freedom + USUAL_FREEDOM
 
 
 def _days_share(groups: Sequence[Days]) -> float:
@@ -221,20 +241,33 @@ def _days_share(groups: Sequence[Days]) -> float:
     return 1.0 / len({day for one in groups for day in one.days})
 
 
-def _own_variance(groups: Sequence[Days], friction: Array) -> Array:
-    """Return the variance of each mean that no other group shares [N2 m2]."""
+def _own_variance(groups: Sequence[Days], scatter: Array) -> Array:
+    """Return the variance of each mean that no other group shares [N2 m2], `scatter` [N m]."""
     return np.array(
         [
-            one.spread**2 / one.stretches + (LEAST_SCATTER * torque) ** 2 / len(one.days)
-            for one, torque in zip(groups, friction)
+            one.spread**2 / one.stretches + own**2 / len(one.days)
+            for one, own in zip(groups, scatter)
         ]
     )
 
 
-def _doubt(model: Model, before: Days, now: Days) -> float:
-    """Return what the surface may be wrong by between two temperatures [N m]."""
-    speed, load, _ = model.place(before.point)
-    heats = before.point.temperature, now.point.temperature
-    cold, warm = (model.friction(speed, load, heat) for heat in heats)
-    apart = SLOPE_DOUBT * (warm - cold)
-    return apart if math.isfinite(apart) else 0.0
+def _doubt(model: Model, firsts: Sequence[Days], lasts: Sequence[Days]) -> Array:
+    """
+    Return the covariance of what groups share beside the days [N2 m2].
+
+    What the fit leaves open between both conditions, and what may come and go: warmth of the
+    contacts by another programme, drag of the wiper.
+
+    """
+    before, now = [one.point for one in firsts], [one.point for one in lasts]
+    slopes = model.slopes(now)
+    apart = np.nan_to_num(slopes - model.slopes(before))
+    measured = all(one.temperature_measured for one in (*before, *now))
+    drags = np.abs(model.calibration.values[1:3])
+    drifts = np.array([0.0, *(WIPER_DRIFT * drags), WARMTH if measured else UNMEASURED])
+    drifting = np.nan_to_num(slopes) * drifts
+    adjusted = SLOPE_DOUBT * (model.friction(now) - model.friction(before))
+    fitted = apart @ np.array(model.calibration.covariance) @ apart.T
+    adjusted = np.nan_to_num(adjusted)
+    alike = np.outer(adjusted, adjusted) + np.diag(adjusted**2)
+    return np.asarray(fitted + drifting @ drifting.T + alike)

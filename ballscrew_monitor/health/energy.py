@@ -118,6 +118,11 @@ def _lost(bins: Sequence[SpectrumBin], now: Ratio) -> Quantity:
     hours = sum(one.time for one in bins) / (60 * MINUTE)
     name, unit = 'energy lost', 'kWh'
     reason = _few_days(now, f'the last {RECENT} days')
+    if not reason and now.value <= 0.0:
+        reason = (
+            'not known: the measured torque is less than the load needs, as with a load of '
+            'another sign or unit'
+        )
     if reason:
         return Quantity(name=name, unit=unit, reason=reason)
     return Quantity(

@@ -32,7 +32,7 @@ CONTAMINATION = (0.3, 0.5, 0.8)
 """Least, usual and largest contamination factor eC of a lubricated axis [-], ISO 281, table 13."""
 THRUST = 3.0
 """Divisor of the fatigue limit for thrust bearings in ISO 281 [-]; a radial bearing has 1."""
-FILM_SLACK = 1.3
+FILM_SLACK = 1.5
 """Factor within which the film ratio is known [-]."""
 NORMAL_BOUNDARY, BOUNDARY_SLACK = 0.2, 0.1
 """Share of boundary running that makes it normal, and growth that still is [-]."""
@@ -131,7 +131,7 @@ def severity_quantities(
     bins: Sequence[SpectrumBin], baseline: Baseline | None, today: int
 ) -> list[Quantity]:
     """
-    Return the share of the motion in each class of severity now, and the shift of the mean class.
+    Return the share of the motion in classes of severity now, and the shift of the mean class.
 
     A shift of 1 is ten times the severity, as the classes are cut; its interval is by the scatter
     between periods of days. `today` counts days since 1970.
@@ -152,6 +152,7 @@ def severity_quantities(
             evidence=text,
         )
         for place, time in enumerate(times)
+        if time > 0.0
     ]
     return [*shares, _shift(latest, bins, baseline)]
 

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What the surface in use says at comparable points, and at other temperatures, preloads and films.
+Friction by the surface in use at comparable points, other temperatures, preloads and films.
 
 Friction torques are those of the screw, positive against the motion, NaN outside the surface.
 
@@ -10,9 +10,9 @@ Friction torques are those of the screw, positive against the motion, NaN outsid
 from collections.abc import Sequence
 import math
 
+from ballscrew_monitor.health.calibration import Calibration, places_of
 from ballscrew_monitor.health.companions import Companions
 from ballscrew_monitor.health.lubrication import opposed
-from ballscrew_monitor.health.points import surface_id
 from ballscrew_monitor.health.records import ComparablePoint
 import numpy as np
 from numpy.typing import NDArray
@@ -25,22 +25,25 @@ FILM_EXPONENT = 0.67
 
 
 class Model:
-    """A surface asked at the means of points, each place once."""
+    """A surface, fitted to one axis by a calibration, asked at the means of points."""
 
-    def __init__(self, surface: Surface, companions: Companions | None = None) -> None:
+    def __init__(
+        self,
+        surface: Surface,
+        companions: Companions | None = None,
+        calibration: Calibration | None = None,
+    ) -> None:
         """Ask `surface`; `companions` know other preloads."""
         self.surface, self.companions = surface, companions
-        self._known: dict[tuple[float, float, float], tuple[float, float]] = {}
+        self.calibration = calibration or Calibration()
 
-    def friction(self, speed: float, load: float, temperature: float) -> float:
-        """Return the friction torque [N m] at |w| [rad/s], opposing load [N] and [K]."""
-        return self._look_up(speed, load, temperature)[0]
+    def friction(self, points: Sequence[ComparablePoint]) -> Array:
+        """Return the friction torque of the model at points [N m], with that of the wiper."""
+        return self.calibration.friction(self.surface, places_of(points))
 
-    def residual(self, point: ComparablePoint) -> float:
-        """Return the measured less the modelled friction torque of a point [N m]."""
-        if point.surface == surface_id(self.surface) and math.isfinite(point.residual):
-            return math.copysign(1.0, point.speed) * point.residual
-        return self.measured(point) - self.friction(*self.place(point))
+    def residuals(self, points: Sequence[ComparablePoint]) -> Array:
+        """Return the measured less the modelled friction torque of points [N m]."""
+        return np.array([self.measured(one) for one in points]) - self.friction(points)
 
     def measured(self, point: ComparablePoint) -> float:
         """Return the measured friction torque of a point [N m]: the rest moves the load."""
@@ -51,53 +54,44 @@ class Model:
         """Return the torque of a screw without friction that moves the load of a point [N m]."""
         return opposed(point) * self.surface.lead / TURN
 
-    def place(self, point: ComparablePoint) -> tuple[float, float, float]:
-        """Return |w| [rad/s], opposing load [N] and temperature [K] of a point."""
-        return abs(point.speed), opposed(point), point.temperature
+    def slopes(self, points: Sequence[ComparablePoint]) -> Array:
+        """Return the derivatives of the friction by the values of the calibration."""
+        return self.calibration.slopes(self.surface, places_of(points))
 
     def warmer(self, points: Sequence[ComparablePoint], shift: float) -> Array:
-        """Return the change of friction [N m] where the oil is warmer by `shift` [K]."""
-        low, high = self.surface.temperature_range
-        return np.array(
-            [
-                self.friction(speed, load, min(max(heat + shift, low), high))
-                - self.friction(speed, load, heat)
-                for speed, load, heat in map(self.place, points)
-            ]
-        )
+        """Return the change of friction [N m] where the contacts are warmer by `shift` [K]."""
+        places = places_of(points)
+        return self._change(places, self.calibration.contacts(self.surface, places, shift))
 
     def starved(self, points: Sequence[ComparablePoint], factor: float) -> Array:
         """
         Return the change of friction [N m] where the film is `factor` of the flooded one [-].
 
-        Asperities carry what they carry at the slower speed of such a film. The friction of the
-        share that they take over is that of the slowest speed of the surface.
+        The friction is that of the slower speed whose flooded film is as thin: asperities carry
+        more, and rolling in less oil takes less. The closed form differs by at most 0.13 of it.
 
         """
-        return np.array([self._starved(*self.place(one), factor) for one in points])
-
-    def _starved(self, speed: float, load: float, heat: float, factor: float) -> float:
-        slowest = self.surface.speed_range[0]
-        thin = max(speed * factor ** (1.0 / FILM_EXPONENT), slowest)
-        friction, share = self._look_up(speed, load, heat)
-        _, more = self._look_up(thin, load, heat)
-        rubbing, whole = self._look_up(slowest, load, heat)
-        if not whole > share:
-            return 0.0
-        return (more - share) / (whole - share) * (rubbing - friction)
+        places = places_of(points)
+        slower = places.copy()
+        slower[:, 0] *= factor ** (1.0 / FILM_EXPONENT)
+        slower[:, 0] = np.maximum(slower[:, 0], self.surface.speed_range[0])
+        return self._change(places, self.calibration.contacts(self.surface, slower))
 
     def relieved(self, points: Sequence[ComparablePoint], share: float) -> Array:
         """Return the change of friction [N m] at a `share` of the preload [-], NaN unknown."""
         if self.companions is None:
             return np.full(len(points), np.nan)
-        places = [self.place(one) for one in points]
-        ratios = [self.companions.friction_ratio(*place, share) for place in places]
-        return np.array([self.friction(*at) * (r - 1.0) for at, r in zip(places, ratios)])
+        places = places_of(points)
+        here = self.calibration.contacts(self.surface, places)
+        low, high = self.surface.temperature_range
+        heats = np.clip(places[:, 2] + self.calibration.values[3], low, high)
+        ratios = [
+            self.companions.friction_ratio(speed, load, heat, share)
+            for (speed, load, _), heat in zip(places.tolist(), heats.tolist())
+        ]
+        return self._change(places, here * ratios)
 
-    def _look_up(self, speed: float, load: float, heat: float) -> tuple[float, float]:
-        """Return friction torque [N m] and RCS [-]."""
-        key = speed, load, heat
-        if key not in self._known:
-            found = self.surface.lookup(*key)
-            self._known[key] = float(found.friction_torque), float(found.rcs)
-        return self._known[key]
+    def _change(self, places: Array, contacts: Array) -> Array:
+        """Return what another friction of the contacts changes [N m]."""
+        here = self.calibration.contacts(self.surface, places)
+        return np.asarray(self.calibration.values[0] * (contacts - here))

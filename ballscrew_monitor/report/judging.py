@@ -25,10 +25,12 @@ from ballscrew_monitor.recordings.replay import ignore, replay_parts
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report.parameters import Assumed, AxisFacts, LogParameters
 from ballscrew_monitor.report.survey import Survey, Surveyor
-from ballscrew_monitor.settings.axis import is_configured, load_surface, scalings_of, settings_of
+from ballscrew_monitor.settings.axis import load_surface, scalings_of, settings_of, surface_file
+from ballscrew_monitor.settings.parameters import is_configured
 from surrogate.surface import Surface
 
-if TYPE_CHECKING:  # it asks for packages that printing does not need
+if TYPE_CHECKING:  # they ask for packages that printing does not need
+    from ballscrew_monitor.report.health_history import AxisHistory, HistoryMaker
     from ballscrew_monitor.report.log_report import RowStore
 
 Blocks = Callable[[], Iterable[JudgedColumns]]
@@ -78,6 +80,7 @@ class AxisCase:
     facts: AxisFacts = AxisFacts()
     nominal: bool = False
     numbered: bool = False
+    history: 'AxisHistory | None' = None
 
     @property
     def load_origin(self) -> str:
@@ -171,8 +174,15 @@ def badness(event: EventRecord) -> tuple[float, float]:
 class CaseMaker:
     """Takes the blocks of one axis in order, and makes its case of them."""
 
-    def __init__(self, axis: str, values: Mapping[str, Any]) -> None:
-        """Begin an axis of the parameters `values`; raises InputError without its surface."""
+    def __init__(
+        self, axis: str, values: Mapping[str, Any], make: 'type[HistoryMaker] | None' = None
+    ) -> None:
+        """
+        Begin an axis of the parameters `values`; raises InputError without its surface.
+
+        `make` makes what gathers its health, None for nothing.
+
+        """
         self._axis, self._values = axis, values
         self._surface = load_surface(axis, values)
         self._settings = settings_of(axis, values, self._surface)
@@ -181,10 +191,13 @@ class CaseMaker:
             standstill=self._settings.limits.standstill_speed,
             max_gap=self._settings.timeouts[Source.SPEED],
         )
+        self._history = None if make is None else make(self._surface)
 
     def add(self, block: JudgedColumns) -> None:
         """Take the next block of rows."""
         self._surveyor.add(block)
+        if self._history is not None:
+            self._history.add(block)
 
     def case(self, outcome: AxisOutcome, **known: Any) -> AxisCase:
         """Return the axis as it is after at least one row; `known` are more of its fields."""
@@ -199,8 +212,16 @@ class CaseMaker:
             },
             outcome=outcome,
             survey=self._surveyor.result(),
+            history=self._told(),
             **known,
         )
+
+    def _told(self) -> 'AxisHistory | None':
+        """Return what its health rests on, if that was gathered."""
+        if self._history is None:
+            return None
+        file = surface_file(self._axis, self._values)
+        return self._history.history(self._axis, file, self._settings.limits)
 
     def _setting(self, source: Source) -> InputSetting:
         prefix, values = f'{self._axis}.{source.name.lower()}', self._values
@@ -222,11 +243,13 @@ def judge_log(
     on_share: OnShare = ignore,
     rows: 'RowStore | None' = None,
     on_state: OnState | None = None,
+    health: 'type[HistoryMaker] | None' = None,
 ) -> LogCase:
     """
     Judge a recording and return what is said of it; its rows are kept in `rows`, if anywhere.
 
-    `on_state` is handed each state that would be published. Raises InputError when it cannot be
+    `on_state` is handed each state that would be published; `health` gathers that of each axis.
+    Raises InputError when it cannot be
     read with the parameters.
 
     """
@@ -237,7 +260,7 @@ def judge_log(
             outcomes.append(part)
         elif len(part):
             if part.axis not in makers:
-                makers[part.axis] = CaseMaker(part.axis, parameters.values)
+                makers[part.axis] = CaseMaker(part.axis, parameters.values, health)
             makers[part.axis].add(part)
             if rows is not None:
                 rows.add(part)

@@ -29,6 +29,7 @@ from ballscrew_monitor.recordings.declared import keys, plain
 from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report import logs
+from ballscrew_monitor.report.health_history import HistoryMaker
 from ballscrew_monitor.report.judged_bag import judged_bag
 from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare
 from ballscrew_monitor.report.log_page import maps_of, report_page
@@ -161,12 +162,18 @@ class AxisLine:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class LogResult:
-    """What became of a recording: a line for each axis, and those on which nothing was judged."""
+    """
+    What became of a recording: a line for each axis, and those on which nothing was judged.
+
+    `histories` are what the health of its axes rests on, as plain data.
+
+    """
 
     name: str
     lines: Sequence[AxisLine]
     unjudged: Sequence[str]
     notes: Sequence[str] = ()
+    histories: Sequence[dict[str, Any]] = ()
 
     @property
     def judged(self) -> bool:
@@ -202,6 +209,7 @@ def report_log(
                 on_share=lambda judged: on_share(JUDGED_SHARE * judged),
                 rows=store,
                 on_state=add_state,
+                health=HistoryMaker,
             )
         store.write(made / logs.STATES)
         on_share(STORED_SHARE)
@@ -236,7 +244,13 @@ def _result(log: LogCase) -> LogResult:
         _axis_line(axis, verdict, cases.get(axis))
         for axis, verdict in zip([*cases, *log.empty], verdicts_of(log), strict=True)
     ]
-    return LogResult(name=log.name, lines=lines, unjudged=log.unjudged, notes=log.notes)
+    return LogResult(
+        name=log.name,
+        lines=lines,
+        unjudged=log.unjudged,
+        notes=log.notes,
+        histories=[dataclasses.asdict(one.history) for one in log.axes if one.history],
+    )
 
 
 def _axis_line(axis: str, verdict: AxisVerdict, case: AxisCase | None) -> AxisLine:

@@ -8,13 +8,16 @@ import datetime
 import math
 from urllib.parse import quote
 
+from ballscrew_monitor.health.records import Condition
 from ballscrew_monitor.recordings.words import counted, duration, NONE, percent
+from ballscrew_monitor.report.health_history import healths, read_history
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
 from ballscrew_monitor.report.logs import PAGE
 from ballscrew_monitor.report.page import element, joined, Markup, page, table, TableCell, TableRow
 
 SCRIPTS = ('format.js', 'table.js', 'overview.js')
 WIDTH, HEIGHT, EDGE = 720.0, 110.0, 8.0  # of the picture of a trend [px]
+CONDITIONS = {Condition.NORMAL: 'good', Condition.WORSE: 'bad', Condition.UNKNOWN: 'unknown'}
 MARKS = {'good': 'optimal', 'bad': 'outside', 'unknown': 'unjudged'}
 
 
@@ -44,6 +47,7 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
     body = element(
         'main',
         element('h1', f'Ball screw reports: {counted(len(entries), "recording")}'),
+        *_healths(entries),
         _verdict(entries, listed),
         *(element('p', f'{note[:1].upper()}{note[1:]}.') for note in notes),
         *_failures(bad),
@@ -66,6 +70,24 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
         ),
     )
     return page('Ball screw reports', body, scripts=SCRIPTS)
+
+
+def _healths(entries: Sequence[LogEntry]) -> Iterable[Markup]:
+    """Yield a sentence for each axis with several recordings: is it normal or worse, and why."""
+    found = [
+        read_history(one) for entry in entries if entry.result for one in entry.result.histories
+    ]
+    for axis in dict.fromkeys(one.axis for one in found):
+        own = [one for one in found if one.axis == axis]
+        if len(own) > 1:
+            *_, last = healths(own)
+            text = (
+                f'{last.verdict} {last.advice[:1].upper()}{last.advice[1:]}.'
+                if last.advice
+                else last.verdict
+            )
+            kind = CONDITIONS[last.condition]
+            yield element('div', element('p', text, class_='sentence'), class_=f'verdict {kind}')
 
 
 def _verdict(entries: Sequence[LogEntry], listed: Sequence[Listed]) -> Markup:

@@ -5,6 +5,7 @@
 from collections.abc import Callable, Iterable, Mapping
 import contextlib
 import dataclasses
+from pathlib import Path
 from typing import Any
 import weakref
 
@@ -135,6 +136,12 @@ def resolved_topic(axis: str, source: Source, topic: str, resolve: Callable[[str
         ) from None
 
 
+def surface_file(name: str, values: Mapping[str, Any]) -> Path:
+    """Return the surface file of the axis `name`; raises SurfaceError when none is shipped."""
+    screw, oil = values[f'{name}.screw'], values[f'{name}.oil']
+    return find_surface(values[f'{name}.surface'], screw, oil)
+
+
 def load_surface(name: str, values: Mapping[str, Any]) -> Surface:
     """
     Return the verified surface of the axis `name`, one for all axes with the same content.
@@ -144,8 +151,7 @@ def load_surface(name: str, values: Mapping[str, Any]) -> Surface:
     """
     screw, oil = values[f'{name}.screw'], values[f'{name}.oil']
     try:
-        path = find_surface(values[f'{name}.surface'], screw, oil)
-        surface = Surface.load(path, screw=screw, oil=oil)
+        surface = Surface.load(surface_file(name, values), screw=screw, oil=oil)
     except SurfaceError as error:
         raise InputError(f'axis {name}: {error}') from None
     return _LOADED.setdefault(surface.sha256, surface)

@@ -10,15 +10,12 @@ interpolated by cubics. The product sees the surfaces of the states of its prelo
 
 import dataclasses
 import enum
-from pathlib import Path
-import pickle
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RegularGridInterpolator
 from surrogate.builder.closed_form import build_closed_form, SurfaceSettings
-from surrogate.files import replace_file
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.progress import Progress
 from surrogate.screw import closed_form
@@ -97,15 +94,10 @@ def _near(place: Array, number: int) -> NDArray[np.bool_]:
     return np.abs(place - number) < 1.0
 
 
-def solve_ground(kept: Path | None = None) -> Ground:
-    """Return what is solved once, out of the file in which it was `kept` where there is one."""
-    if kept is not None and kept.is_file():
-        friction_, data = pickle.loads(kept.read_bytes())
-    else:
-        friction_, data = _solve()
-        if kept is not None:
-            replace_file(kept, pickle.dumps((friction_, data)))
-    return Ground(friction_, {share: Surface(one) for share, one in data.items()})
+def solve_ground() -> Ground:
+    """Return what is solved once."""
+    solved, data = _solve()
+    return Ground(solved, {share: Surface(one) for share, one in data.items()})
 
 
 def _solve():

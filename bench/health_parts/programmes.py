@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What an axis does in a year: programmes of passes, days on which they run, and its oil.
+Year of an axis: programmes of passes, days on which they run, and its oil.
 
 A day has four blocks of two hours. In a block each pass of the programmes of the day is run some
 times; passes of one block and kind make one row.

@@ -1,30 +1,49 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What the assessment of a year is worth: when it found the change, and what it said of it.
+Score of the assessment of a year: when it found the change, and its words for it.
 
-The axis is assessed once a week. Where that says worse for the first time, the days since the week
-before are gone through by halves for the first of them.
+The axis is assessed every two weeks. Where that says worse for the first time, the days since the
+time before are gone through by halves for the first of them.
 
 """
 
 from collections.abc import Callable, Sequence
 import dataclasses
 import math
+from typing import NamedTuple
 
 from ballscrew_monitor.health.baseline import learned
-from ballscrew_monitor.health.records import Baseline, CauseCode, Condition, Health, Quantity
+from ballscrew_monitor.health.records import (
+    Baseline,
+    CauseCode,
+    ComparablePoint,
+    Condition,
+    Health,
+    Quantity,
+)
 from ballscrew_monitor.health.rows import DAY
 from health_parts.programmes import DAYS
 from health_parts.years import FIRST_DAY, Truth, Year
 import numpy as np
 
 NAN = math.nan
-WEEK = 7
-RECENT = 28
-"""Days before the assessment over which the drag is compared."""
-Assess = Callable[[int, Baseline, Sequence], Health]
-"""Returns the health at a time [ns] out of a baseline and points."""
+NAMED = 0.25
+"""Weight over that of the likeliest from which a cause is named [-]."""
+WEEK, PERIOD = 7, 14
+"""Days that count as now, and days between two assessments."""
+
+
+class Assess(NamedTuple):
+    """
+    The product with its surfaces.
+
+    Both take the last day, since 1970, a baseline and points; the condition alone is quicker.
+
+    """
+
+    condition: Callable[[int, Baseline, Sequence[ComparablePoint]], Condition]
+    health: Callable[[int, Baseline, Sequence[ComparablePoint]], Health]
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -32,25 +51,31 @@ class Score:
     """
     What came of one year.
 
-    `size` of the change at the first alarm [-], NaN if there was none; alarms before the change
-    with the days that had none of it; whether each interval that was given holds the truth; the
-    cause that comes first at the end, and whether the right one was excluded.
+    `size` of the change and that of the drag at the first alarm [-], NaN if there was none;
+    alarms before the change with the days that had none of it; whether each interval that was
+    given holds the truth; the causes that are named at the end, the likeliest first.
 
     """
 
     truth: Truth
     size: float = NAN
+    drag: float = NAN
     early_alarms: int = 0
     clean_days: int = 0
     held: dict[str, bool] = dataclasses.field(default_factory=dict)
-    first_cause: CauseCode | None = None
-    right_excluded: bool = False
+    causes: tuple[CauseCode, ...] = ()
+    condition: Condition = Condition.UNKNOWN
     problem: str = ''
 
     @property
     def is_right(self) -> bool:
-        """Tell whether the first cause is the true one."""
-        return self.first_cause in self.truth.value
+        """Tell whether the likeliest cause is the true one."""
+        return bool(self.causes) and self.causes[0] in self.truth.value
+
+    @property
+    def is_named(self) -> bool:
+        """Tell whether the true cause is among those named."""
+        return any(one in self.truth.value for one in self.causes)
 
 
 def score(year: Year, assess: Assess) -> Score:
@@ -62,32 +87,33 @@ def score(year: Year, assess: Assess) -> Score:
     begin = baseline.end // DAY - FIRST_DAY
     changed = _first_change(year)
 
-    def ask(day: int) -> Health:
-        now = (FIRST_DAY + day + 1) * DAY
-        return assess(now, baseline, [p for p in year.points if p.first_day <= FIRST_DAY + day])
+    def asked(day: int) -> tuple[int, Baseline, list[ComparablePoint]]:
+        last = FIRST_DAY + day
+        return last, baseline, [one for one in year.points if one.first_day <= last]
+
+    def is_worse(day: int) -> bool:
+        return assess.condition(*asked(day)) is Condition.WORSE
 
     early, before, found = 0, False, None
-    last = None
-    for day in range(begin + WEEK, DAYS, WEEK):
-        last = ask(day)
-        alarmed = last.condition is Condition.WORSE
-        if alarmed and not before and day < changed:
-            early += 1
+    for day in range(begin + PERIOD, DAYS, PERIOD):
+        alarmed = is_worse(day)
+        early += alarmed and not before and day < changed
+        before = alarmed
         if alarmed and day >= changed:
             found = day
             break
-        before = alarmed
     if found is not None:
-        found = _first_alarm(ask, max(found - WEEK, changed), found)
-    final = ask(DAYS - 1)
+        found = _first_alarm(is_worse, max(found - PERIOD, changed), found)
+    final = assess.health(*asked(DAYS - 1))
     return Score(
         truth=truth,
         size=NAN if found is None else abs(float(year.size[found])),
+        drag=NAN if found is None else abs(true_drag(year, begin, found)),
         early_alarms=early,
         clean_days=max(min(changed, DAYS) - begin, 0),
-        held=held_by(year, final, DAYS - 1),
-        first_cause=first_cause(final),
-        right_excluded=any(c.excluded for c in final.causes if c.code in truth.value),
+        held=held_by(year, begin, final, DAYS - 1),
+        causes=named_causes(final),
+        condition=final.condition,
     )
 
 
@@ -97,26 +123,26 @@ def _first_change(year: Year) -> int:
     return int(changed[0]) if changed.size else DAYS
 
 
-def _first_alarm(ask: Callable[[int], Health], low: int, high: int) -> int:
+def _first_alarm(is_worse: Callable[[int], bool], low: int, high: int) -> int:
     """Return the first day after `low` that says worse, `high` at the latest."""
     while high - low > 1:
         middle = (low + high) // 2
-        if ask(middle).condition is Condition.WORSE:
+        if is_worse(middle):
             high = middle
         else:
             low = middle
     return high
 
 
-def first_cause(health: Health) -> CauseCode | None:
-    """Return the cause with the most weight among those not excluded."""
+def named_causes(health: Health) -> tuple[CauseCode, ...]:
+    """Return the causes that the verdict names, as `words` does, the likeliest first."""
     left = [cause for cause in health.causes if not cause.excluded]
-    return max(left, key=lambda cause: cause.weight).code if left else None
+    return tuple(one.code for one in left if one.weight > NAMED * left[0].weight)
 
 
-def held_by(year: Year, health: Health, day: int) -> dict[str, bool]:
+def held_by(year: Year, begin: int, health: Health, day: int) -> dict[str, bool]:
     """Return by quantity whether its interval holds the truth on a day, where it is given."""
-    truths = {'drag': true_drag(year, day), 'preload': true_preload(year, day)}
+    truths = {'drag change': true_drag(year, begin, day), 'preload': true_preload(year, day)}
     given = {one.name: one for one in health.quantities}
     return {
         name: holds(given[name], value)
@@ -131,10 +157,11 @@ def holds(quantity: Quantity, value: float) -> bool:
     return quantity.low <= scale * value <= quantity.high
 
 
-def true_drag(year: Year, day: int) -> float:
-    """Return by how much the friction of the recent days is changed [-]."""
-    recent = slice(day - RECENT + 1, day + 1)
-    return float(np.nanmean(year.drag[recent]) / np.nanmean(year.drag_before[recent]) - 1.0)
+def true_drag(year: Year, begin: int, day: int) -> float:
+    """Return the change of friction in the last week [-]; NaN where the torque is wrong."""
+    if year.kind.truth is Truth.TORQUE_GAIN:
+        return NAN
+    return year.drag_change(day - WEEK + 1, day, year.groups_until(begin))
 
 
 def true_preload(year: Year, day: int) -> float:

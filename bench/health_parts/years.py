@@ -71,16 +71,33 @@ class Year:
     A year of points in the order of days, with what is true of it.
 
     `size` by day: preload lost, share of the film lost, of a new oil, wiper torque added over the
-    friction, gain added [-]; `drag` and `drag_before` [N m]: friction of each day at its
-    conditions, with the change and without, means over stretches.
+    friction, gain added [-]; of each row its `day`, its `group` of speed, load and direction, and
+    its friction with the change and without, `drag` and `drag_before` [N m].
 
     """
 
     kind: Kind
     points: tuple[ComparablePoint, ...]
     size: Array
+    day: NDArray[np.int64]
+    group: NDArray[np.int64]
     drag: Array
     drag_before: Array
+
+    def drag_change(self, first: int, last: int, groups: NDArray[np.int64]) -> float:
+        """Return by how much the friction of groups has changed in days, first to last [-]."""
+        chosen = (self.day >= first) & (self.day <= last) & np.isin(self.group, groups)
+        counts = np.bincount(self.group[chosen])
+        kept = counts > 0
+        now, before = (
+            np.bincount(self.group[chosen], values[chosen])[kept] / counts[kept]
+            for values in (self.drag, self.drag_before)
+        )
+        return float(now.sum() / before.sum() - 1.0) if kept.any() else np.nan
+
+    def groups_until(self, day: int) -> NDArray[np.int64]:
+        """Return the groups that were seen before a day."""
+        return np.unique(self.group[self.day < day])
 
 
 def draw_year(ground: Ground, kind: Kind, seed: int) -> Year:
@@ -100,9 +117,16 @@ def draw_year(ground: Ground, kind: Kind, seed: int) -> Year:
     spread = np.hypot(*noise)
     torque = torque + spread / np.sqrt(rows.count) * drawn.standard_normal(spread.size)
     squares = spread**2 * drawn.chisquare(np.maximum(rows.count - 1, 1e-9))
-    by_day = [_by_day(rows, values) for values in (drag * gain, before)]
-    points = _points(ground, kind, rows, seen, torque, squares)
-    return Year(kind=kind, points=points, size=size, drag=by_day[0], drag_before=by_day[1])
+    points, places = _points(ground, kind, rows, seen, torque, squares)
+    return Year(
+        kind=kind,
+        points=points,
+        size=size,
+        day=rows.day,
+        group=np.unique(places[:, [0, 1, 3]], axis=0, return_inverse=True)[1].ravel(),
+        drag=drag,
+        drag_before=before,
+    )
 
 
 def _noise(drawn: np.random.Generator) -> Array:
@@ -162,37 +186,32 @@ def _wander(drawn: np.random.Generator, far: float) -> Array:
     return np.asarray(np.exp(np.cumsum(drawn.normal(0.0, far / np.sqrt(DAYS), DAYS))))
 
 
-def _by_day(rows: Rows, values: Array) -> Array:
-    """Return the mean over the stretches of each day, NaN for a day without motion."""
-    sums = np.bincount(rows.day, rows.count * values, DAYS)
-    counts = np.bincount(rows.day, rows.count, DAYS)
-    return np.asarray(np.divide(sums, counts, out=np.full(DAYS, np.nan), where=counts > 0))
-
-
 def _points(
     ground: Ground, kind: Kind, rows: Rows, load: Array, torque: Array, squares: Array
-) -> tuple[ComparablePoint, ...]:
-    """Return the points of all days; the load is that of its sensor."""
+) -> tuple[tuple[ComparablePoint, ...], NDArray[np.int64]]:
+    """Return the points of all days, and the place of each row; the load is that of its sensor."""
     surface = ground.surfaces[1.0]
     along = np.sign(rows.speed)
     oil = rows.oil if kind.oil_measured else np.full_like(rows.oil, np.median(rows.oil))
     found = look_up_many(surface, np.abs(rows.speed), -along * load, oil)
     residual = torque - along * found['driving_torque']
-    places = [
-        place_of(
-            Stretch(
-                start=(FIRST_DAY + int(day)) * DAY + 8 * 3600 * SECOND,
-                duration=1.0,
-                samples=10,
-                speed=float(speed),
-                axial_load=float(force),
-                temperature=float(heat),
-                motor_torque=0.0,
+    places = np.array(
+        [
+            place_of(
+                Stretch(
+                    start=(FIRST_DAY + int(day)) * DAY + 8 * 3600 * SECOND,
+                    duration=1.0,
+                    samples=10,
+                    speed=float(speed),
+                    axial_load=float(force),
+                    temperature=float(heat),
+                    motor_torque=0.0,
+                )
             )
-        )
-        for day, speed, force, heat in zip(rows.day, rows.speed, load, oil, strict=True)
-    ]
-    keys = np.column_stack([rows.day, np.array(places)])
+            for day, speed, force, heat in zip(rows.day, rows.speed, load, oil, strict=True)
+        ]
+    )
+    keys = np.column_stack([rows.day, places])
     unique, inverse = np.unique(keys, axis=0, return_inverse=True)
     inverse = inverse.ravel()
     count = np.bincount(inverse, rows.count)
@@ -210,7 +229,7 @@ def _points(
     apart = (residual - means['residual'][inverse]) ** 2
     total = np.bincount(inverse, squares + rows.count * apart)
     spent = np.bincount(inverse, rows.count * rows.duration)
-    return tuple(
+    points = tuple(
         ComparablePoint(
             first_day=FIRST_DAY + int(key[0]),
             place=Place(*map(int, key[1:])),
@@ -223,3 +242,4 @@ def _points(
         )
         for i, key in enumerate(unique)
     )
+    return points, places

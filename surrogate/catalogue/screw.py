@@ -58,6 +58,7 @@ def _values(given: CatalogueScrew) -> dict[str, Any]:
     diameter, ball = _diameters(given)
     nominal = MILLI * (given.nominal_diameter or diameter.value)
     side, process = typical(0.54, '0.515 to 0.555'), process_of(given)
+    rating = given.dynamic_rating
     return {
         'name': given.name or f'screw_{nominal:g}x{MILLI * given.lead:g}',
         'source': given.source or 'Values of a catalogue, completed by ballscrew screw new.',
@@ -69,7 +70,7 @@ def _values(given: CatalogueScrew) -> dict[str, Any]:
         'conformity_nut': side,
         'loaded_balls_per_nut': _balls(given, diameter.value, ball.value),
         'preload': _preload(given),
-        'dynamic_rating': Noted(given.dynamic_rating, 'given'),
+        'dynamic_rating': Noted(rating, 'given') if rating is not None else None,
         'speed_limit': typical(PROCESSES[process].dn, f'50 to 180: {process}'),
         'parasitic_torque': MEASURED,
         'parasitic_torque_rate': MEASURED,

@@ -98,6 +98,7 @@ def test_bins_of_a_baseline():
         (days(TODAY - 9, 10, 1.0), None, 'no_baseline'),
         (days(TODAY - 9, 10, 1.0), BASELINE, 'baseline_days'),
         ([*days(FIRST, 9, 1.0), *days(TODAY, FEWEST_DAYS - 1, 1.0)], BASELINE, 'few_days'),
+        ([*days(FIRST, 9, 1.0), *days(TODAY - 9, 10, -0.5)], BASELINE, 'less_than_ideal'),
         (
             [*days(FIRST, 9, 1.0), *(lost(TODAY - at, 5.0 * (-1) ** at + 0.1) for at in range(4))],
             BASELINE,

@@ -112,7 +112,8 @@ def test_shares_of_severity_and_their_shift():
     before = [worn(TODAY - 100 + day, 0.0, 1.0) for day in range(9)]
     now = [worn(TODAY - day, 0.0, 0.25, 0.5, 0.25) for day in range(6)]
     found = {one.name: one for one in severity_quantities([*before, *now], baseline(), TODAY)}
-    assert [found[f'severity class {at}'].value for at in range(4)] == [0.0, 0.25, 0.5, 0.25]
+    assert [found[f'severity class {at}'].value for at in (1, 2, 3)] == [0.25, 0.5, 0.25]
+    assert 'severity class 0' not in found
     shift = found['severity shift']
     assert shift.value == pytest.approx(1.0)
     assert shift.low == pytest.approx(1.0)  # without scatter

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What would bring a programme into its zone, verified by the surface itself."""
+"""Remedies for a programme outside its zone, verified by the surface itself."""
 
 import copy
 import dataclasses

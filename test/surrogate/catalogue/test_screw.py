@@ -22,7 +22,7 @@ def test_every_value_has_a_note(tmp_path):
     values = (tmp_path / 'screw.yaml').read_text().splitlines()[2:]
     bare = [line for line in values if not re.search(r'  # (given|derived|typical)\b', line)]
     assert bare == ['raceway:', 'ball:', 'roughness:']
-    assert notes['lead_mm'] == 'given'
+    assert notes['lead_mm'] == notes['dynamic_rating_kN'] == 'given'
     assert notes['preload_N'] == 'derived (5 % of C 10.91 kN, usual 2 to 10 %)'
     assert notes['roughness.fractal_dimension'] == 'typical (2.3 to 2.7)'
     assert load_screw(str(tmp_path / 'screw.yaml')).name == screw.name == 'screw_20x5'
@@ -45,6 +45,8 @@ def test_the_nominal_screw_out_of_its_catalogue_values(screw):
     found, notes = screw_of(given)
     assert found.pitch_radius == screw.pitch_radius
     assert notes['pitch_radius_mm'] == 'given, as a diameter'
+    assert found.dynamic_rating is None
+    assert 'dynamic_rating_kN' not in notes
     given = CatalogueScrew(
         pitch_diameter=0.032,
         lead=0.01,

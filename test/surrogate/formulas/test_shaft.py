@@ -16,9 +16,10 @@ from surrogate.formulas.shaft import (
     service_of,
     shaft_doubts,
 )
-from surrogate.parameters import load_screw
+from surrogate.parameters import DATA, load_screw
 from surrogate.units import MILLI, RPM
 
+COMMAND = ('point',)
 THK = {
     'fixed_free': (3.4, 1.3),
     'supported_supported': (9.7, 5.0),
@@ -88,6 +89,18 @@ def test_a_shaft_that_is_too_long_is_told(screw, says):
     assert list(shaft_doubts(shaft, 2000 * RPM, 0.0)) == [says('point_speed')]
     speed, load = 0.8 * critical_speed(shaft), 0.5 * buckling_load(shaft)
     assert list(shaft_doubts(shaft, speed, load)) == []
+
+
+def test_commands_tell_it(run, tmp_path, capsys, says):
+    """The limits of the sheet, and then the point."""
+    sheet = tmp_path / 'long.yaml'
+    text = (DATA / 'screws' / 'nominal.yaml').read_text(encoding='utf-8')
+    sheet.write_text(f'{text}\nfree_length_mm: 3000.0\nsupport: fixed_free\n', encoding='utf-8')
+    point = '--tier', 'closed_form', '--speed-rpm', 2000, '--load-N', 0
+    assert run('--screw', sheet, *point) == 0
+    told = capsys.readouterr().err.splitlines()
+    keys = 'sheet_speed', 'sheet_load', 'point_speed'
+    assert told == [f'ballscrew: {says(key)}' for key in keys]
 
 
 @pytest.mark.parametrize(

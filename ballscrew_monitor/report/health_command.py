@@ -1,0 +1,121 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`ballscrew health`: whether an axis is normal or worse, by its recordings over months."""
+
+import argparse
+from collections.abc import Iterator, Mapping, Sequence
+import contextlib
+from pathlib import Path
+import sys
+from typing import Any
+
+from ballscrew_monitor.core.interrupts import DONE, FAILED
+from ballscrew_monitor.health.records import Health, Quantity
+from ballscrew_monitor.health.words import health_record
+from ballscrew_monitor.recordings.opener import opened_log
+from ballscrew_monitor.recordings.words import say
+from ballscrew_monitor.report.health_history import AxisHistory, healths, HistoryMaker
+from ballscrew_monitor.report.judging import judge_log
+from ballscrew_monitor.report.logs import find_logs, map_for
+from ballscrew_monitor.report.parameters import parameters_for
+from surrogate.files import InputError, json_text, replace_file
+from surrogate.progress import Progress
+from surrogate.surface import SurfaceError
+from surrogate.units import MINUTE
+
+HOUR = 60 * MINUTE
+RECORD, PICTURE = 'health.json', 'health.png'
+
+
+def health_command(args: argparse.Namespace, nominal: Path) -> int:
+    """Do what the command line asks for; return the exit code."""
+    logs = find_logs(args.logs, tables=args.map is not None, out=args.out)
+    with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
+        found = dict(_healths(list(_histories(logs, args, nominal)), args))
+        for last in (courses[-1] for courses in found.values()):
+            print('\n'.join(lines_of(last)))
+        if args.out is not None:
+            _write(args.out, found)
+    if args.json:
+        print(json_text(_records(found)))
+    return DONE if found else FAILED
+
+
+def _histories(
+    logs: Sequence[Path], args: argparse.Namespace, nominal: Path
+) -> Iterator[AxisHistory]:
+    """Yield what each recording holds of each axis; one that cannot be read stops no other."""
+    bar = Progress(len(logs), 'recordings')
+    try:
+        for number, log in enumerate(logs):
+            bar.show(number, len(logs))
+            try:
+                mapping = map_for(log, args.map, alone=len(logs) == 1)
+                with opened_log(log, mapping=mapping) as bag:
+                    case = judge_log(
+                        bag, parameters_for(bag, args.params, nominal), health=HistoryMaker
+                    )
+                yield from (axis.history for axis in case.axes if axis.history is not None)
+            except (InputError, SurfaceError) as error:
+                say(f'{log}: {error}')
+        bar.show(len(logs), len(logs))
+    finally:
+        bar.close()
+
+
+def _healths(
+    histories: Sequence[AxisHistory], args: argparse.Namespace
+) -> Iterator[tuple[str, list[Health]]]:
+    for axis in dict.fromkeys(one.axis for one in histories):
+        own = [one for one in histories if one.axis == axis]
+        yield (
+            axis,
+            list(
+                healths(
+                    own,
+                    over=args.baseline_hours * HOUR,
+                    co2_per_kwh=args.co2_kg_per_kWh,
+                    speed_allowed=args.speed_advice,
+                )
+            ),
+        )
+
+
+def lines_of(health: Health) -> list[str]:
+    """Return what is said of an axis, line by line."""
+    known = [f'  {one.name:<34} {_shown(one)}' for one in health.quantities if one.is_known]
+    silent = [f'  {one.name:<34} {one.reason}' for one in health.quantities if not one.is_known]
+    causes = [
+        f'  {"excluded" if one.excluded else f"{100 * one.weight:.0f} %":>8}  {one.text}'
+        for one in health.causes
+    ]
+    return [
+        health.verdict,
+        *([f'To do: {health.advice}.'] if health.advice else []),
+        *known,
+        *silent,
+        *(['causes:', *causes] if causes else []),
+        *(f'note: {note}' for note in health.notes),
+    ]
+
+
+def _shown(one: Quantity) -> str:
+    unit = '' if one.unit == '-' else f' {one.unit}'
+    return f'{one.value:.4g}{unit} ({one.low:.4g} to {one.high:.4g}); {one.evidence}'
+
+
+def _records(found: Mapping[str, Sequence[Health]]) -> dict[str, Any]:
+    """Return the last health of each axis, and its course, for JSON."""
+    return {
+        axis: health_record(courses[-1]) | {'course': [health_record(one) for one in courses]}
+        for axis, courses in found.items()
+    }
+
+
+def _write(out: Path, found: Mapping[str, Sequence[Health]]) -> None:
+    from ballscrew_monitor.report.health_picture import draw_health  # slow to load
+
+    out.mkdir(parents=True, exist_ok=True)
+    replace_file(out / RECORD, json_text(_records(found)).encode())
+    draw_health(found, out / PICTURE)
+    print(f'{out / RECORD} and {out / PICTURE}')

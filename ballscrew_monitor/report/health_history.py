@@ -1,0 +1,136 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The part of recordings that the health of an axis rests on, and its health after each."""
+
+from collections.abc import Iterator, Mapping, Sequence
+import dataclasses
+import math
+from pathlib import Path
+from typing import Any
+
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.health.assess import assess, HealthSettings
+from ballscrew_monitor.health.bands import day_of
+from ballscrew_monitor.health.baseline import learned, LEAST_MOTION
+from ballscrew_monitor.health.collect import Collected, Collector
+from ballscrew_monitor.health.companions import companions_beside
+from ballscrew_monitor.health.points import add, by_place, merged
+from ballscrew_monitor.health.records import (
+    ComparablePoint,
+    Health,
+    LoadSource,
+    Place,
+    SpectrumBin,
+)
+from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.health.spectrum import merged_bins
+from ballscrew_monitor.recordings.columns import JudgedColumns
+from surrogate.surface import Surface
+
+NAN = math.nan
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class AxisHistory:
+    """
+    What one recording holds of one axis: comparable points and the spectrum of its loads.
+
+    `surface` is the file it was judged with; `last` [ns] is the stamp of its last row.
+
+    """
+
+    axis: str
+    surface: str
+    limits: Limits
+    last: int
+    points: Sequence[ComparablePoint]
+    bins: Sequence[SpectrumBin]
+
+
+class HistoryMaker:
+    """Gathers the blocks of one axis in order."""
+
+    def __init__(self, surface: Surface) -> None:
+        """Begin with nothing; `surface` is that of the judgement."""
+        self._surface, self._collector = surface, Collector(surface)
+        self._points: dict[Any, ComparablePoint] = {}
+        self._bins: list[SpectrumBin] = []
+        self._last = 0
+
+    def add(self, block: JudgedColumns) -> None:
+        """Take the next rows."""
+        self._last = int(block.stamp[-1])
+        self._take(self._collector.take_many(block))
+
+    def history(self, axis: str, surface: Path, limits: Limits) -> AxisHistory:
+        """Return what came of all blocks."""
+        self._take(self._collector.finish())
+        return AxisHistory(
+            axis=axis,
+            surface=str(surface),
+            limits=limits,
+            last=self._last,
+            points=tuple(self._points.values()),
+            bins=tuple(merged_bins(self._bins)),
+        )
+
+    def _take(self, found: Collected) -> None:
+        for stretch in found.stretches:
+            add(self._points, stretch, self._surface)
+        self._bins += found.bins
+
+
+def read_history(record: Mapping[str, Any]) -> AxisHistory:
+    """Return a history of plain data, as `dataclasses.asdict` and JSON leave it."""
+    kept = dict(record)
+    points = [
+        ComparablePoint(
+            place=Place(*one.pop('place')), load_source=LoadSource(one.pop('load_source')), **one
+        )
+        for one in map(_known, kept.pop('points'))
+    ]
+    bins = [
+        SpectrumBin(
+            wear_time=tuple(one.pop('wear_time')), axial_load=one.pop('axial_load', NAN), **one
+        )
+        for one in map(_known, kept.pop('bins'))
+    ]
+    return AxisHistory(points=points, bins=bins, limits=Limits(**kept.pop('limits')), **kept)
+
+
+def _known(record: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the fields that are known; for the others the defaults stand."""
+    return {key: value for key, value in record.items() if value is not None}
+
+
+def healths(
+    histories: Sequence[AxisHistory],
+    *,
+    over: float = LEAST_MOTION,
+    co2_per_kwh: float = NAN,
+    speed_allowed: bool = False,
+) -> Iterator[Health]:
+    """
+    Yield the health of one axis after each of its recordings, in the order of their stamps.
+
+    The baseline is learned over the first `over` [s] in motion. All are held against the surface
+    of the last recording.
+
+    """
+    ordered = sorted(histories, key=lambda one: one.last)
+    file = Path(ordered[-1].surface)
+    surface = Surface.load(file)
+    companions = companions_beside(file, surface)
+    settings = HealthSettings(
+        limits=ordered[-1].limits, co2_per_kwh=co2_per_kwh, speed_allowed=speed_allowed
+    )
+    points: dict[Any, ComparablePoint] = {}
+    bins: list[SpectrumBin] = []
+    for one in ordered:
+        for key, point in by_place(one.points).items():
+            points[key] = merged(points[key], point) if key in points else point
+        bins = merged_bins([*bins, *one.bins])
+        kept = list(points.values())
+        baseline = learned(kept, over=over, screw=surface.screw_name, today=day_of(one.last) + 1)
+        now = (day_of(one.last) + 1) * DAY - 1
+        yield assess(one.axis, now, baseline, kept, bins, surface, companions, settings)

@@ -1,0 +1,83 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Drag and preload of each axis over dates, with their intervals."""
+
+from collections.abc import Mapping, Sequence
+import datetime
+from pathlib import Path
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.health.assess import DRAG, TOLERANCE
+from ballscrew_monitor.health.preload import NAME as PRELOAD
+from ballscrew_monitor.health.records import Condition, Health, Quantity
+from matplotlib.axes import Axes
+from matplotlib.dates import AutoDateLocator, ConciseDateFormatter, date2num
+from matplotlib.figure import Figure
+import numpy as np
+from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, VERMILION
+
+SHOWN = {
+    DRAG: ('change of the drag [%]', 0.0, 'drag at equal speed, load and direction'),
+    PRELOAD: ('preload over that of the baseline [%]', 100.0, 'preload left'),
+}
+WIDTH, HEIGHT = 8.0, 3.0  # [inch] of one quantity of one axis
+
+
+def draw_health(found: Mapping[str, Sequence[Health]], path: Path) -> None:
+    """Write the picture of the courses of axes to `path` (PNG)."""
+    draw_picture(path, lambda: figure_health(found))
+
+
+def figure_health(found: Mapping[str, Sequence[Health]]) -> Figure:
+    """Return a panel for each axis and quantity."""
+    figure = new_figure(WIDTH, HEIGHT * len(SHOWN) * len(found))
+    panels = figure.subplots(len(SHOWN) * len(found), 1, squeeze=False)[:, 0]
+    wanted = [(axis, name) for axis in found for name in SHOWN]
+    for panel, (axis, name) in zip(panels, wanted, strict=True):
+        _draw(panel, axis, name, found[axis])
+    return figure
+
+
+def _draw(panel: Axes, axis: str, name: str, courses: Sequence[Health]) -> None:
+    label, normal, title = SHOWN[name]
+    told = [(one, _named(one, name)) for one in courses]
+    dates = date2num([_date(one.stamp) for one, _ in told])
+    values, low, high = (
+        100.0 * np.array([getattr(quantity, part) for _, quantity in told])
+        for part in ('value', 'low', 'high')
+    )
+    panel.axhline(normal, color=GREY, lw=1.0)
+    if name == DRAG:
+        panel.axhspan(-100 * TOLERANCE, 100 * TOLERANCE, color=GREY, alpha=0.2, lw=0)
+    panel.errorbar(
+        dates,
+        values,
+        np.stack([values - low, high - values]),
+        color=BLUE,
+        fmt='o-',
+        ms=4,
+        capsize=3,
+    )
+    worse = [one.condition is Condition.WORSE for one, _ in told]
+    panel.plot(dates[worse], values[worse], 'D', color=VERMILION, ms=7, label='worse')
+    margin = 0.03 * max(float(np.ptp(dates)), 1.0)
+    panel.set_xlim(dates.min() - margin, dates.max() + margin)
+    place = AutoDateLocator(maxticks=8)
+    panel.xaxis.set_major_locator(place)
+    panel.xaxis.set_major_formatter(ConciseDateFormatter(place))
+    if np.isfinite(values[worse]).any():
+        panel.legend(loc='best')
+    panel.set(title=f'Axis {axis}: {title}, 95 % intervals', xlabel='date (UTC)', ylabel=label)
+    if not np.isfinite(values).any():
+        reason = told[-1][1].reason
+        panel.text(
+            0.5, 0.5, reason, transform=panel.transAxes, ha='center', va='center', wrap=True
+        )
+
+
+def _named(health: Health, name: str) -> Quantity:
+    return next(one for one in health.quantities if one.name == name)
+
+
+def _date(stamp: int) -> datetime.datetime:
+    return datetime.datetime.fromtimestamp(stamp / SECOND, tz=datetime.UTC)

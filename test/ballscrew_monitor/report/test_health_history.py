@@ -1,0 +1,148 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings of months: plain data and back, and the command that tells their health."""
+
+import dataclasses
+import json
+import math
+
+from ballscrew_monitor.cli import main
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.health.model import Model
+from ballscrew_monitor.health.records import (
+    ComparablePoint,
+    Condition,
+    Health,
+    Place,
+    Quantity,
+    SpectrumBin,
+)
+from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.report.health_history import AxisHistory, healths, read_history
+from ballscrew_monitor.report.health_picture import figure_health
+from ballscrew_monitor.report.log_report import AxisLine, LogResult
+from ballscrew_monitor.report.overview import LogEntry, overview_page
+import pytest
+from surrogate.files import to_json
+from surrogate.surface import shipped_surface, Surface
+
+LIMITS = Limits(
+    rcs=0.01,
+    efficiency=0.85,
+    light_load=661.0,
+    standstill_speed=0.5,
+    raise_delay=0,
+    clear_delay=0,
+    hysteresis=0.1,
+)
+FIRST, MONTH = 20_000, 30
+
+
+@pytest.fixture(scope='module')
+def months():
+    """Return histories of twelve months, each of one day, under a wiper that grows."""
+    model = Model(Surface.load(shipped_surface()))
+    return [history(model, number, 0.01 * number) for number in range(12)]
+
+
+def history(model, number, wiper):
+    points = []
+    for band, speed in enumerate((3.0, 12.0, 40.0, 120.0)):
+        for sign in (1, -1):
+            point = ComparablePoint(
+                first_day=FIRST + MONTH * number,
+                place=Place(band, 0, 0, sign),
+                surface='another',
+                stretches=8,
+                duration=160.0,
+                speed=sign * speed,
+                axial_load=0.0,
+                temperature=313.0,
+                motor_torque=0.0,
+            )
+            friction = model.friction([point])[0] + wiper
+            points.append(dataclasses.replace(point, motor_torque=sign * friction))
+    one = SpectrumBin(
+        first_day=FIRST + MONTH * number,
+        load_band=99,
+        axial_load=math.nan,
+        angle=1.0,
+        speed=10.0,
+        time=1280.0,
+        wear_time=(1.0, 2.0),
+    )
+    return AxisHistory(
+        axis='x',
+        surface=str(shipped_surface()),
+        limits=LIMITS,
+        last=(FIRST + MONTH * number) * DAY + 1,
+        points=tuple(points),
+        bins=(one,),
+    )
+
+
+def test_a_history_survives_json(months):
+    plain = json.loads(json.dumps(to_json(dataclasses.asdict(months[3]))))
+    found = read_history(plain)
+    assert list(found.points) == [
+        dataclasses.replace(one, residual=pytest.approx(math.nan, nan_ok=True))
+        for one in months[3].points
+    ]
+    (one,) = found.bins
+    assert (one.wear_time, one.time) == ((1.0, 2.0), 1280.0)
+    assert math.isnan(one.axial_load)
+    assert (found.axis, found.last, found.limits) == ('x', months[3].last, LIMITS)
+
+
+def test_health_follows_the_recordings_whatever_their_order(months):
+    courses = list(healths(months[::-1]))
+    assert [one.stamp // DAY for one in courses] == [FIRST + MONTH * n for n in range(12)]
+    assert courses[0].condition is not Condition.WORSE
+    assert courses[-1].condition is Condition.WORSE
+    assert 'a constant drag of +0.110 N m' in courses[-1].verdict
+    assert courses[-1].baseline.end == (FIRST + 1) * DAY
+
+
+def test_the_overview_begins_with_normal_or_worse(months):
+    line = AxisLine(axis='x', standing='bad', verdict='Outside: always')
+    entries = [
+        LogEntry(
+            name=f'month {number}',
+            folder=f'month_{number}',
+            result=LogResult(
+                name='m', lines=[line], unjudged=[], histories=[to_json(dataclasses.asdict(one))]
+            ),
+        )
+        for number, one in enumerate(months)
+    ]
+    page = overview_page(entries)
+    assert page.index('Axis x is worse') < page.index('ran outside the optimal zone')
+    assert 'Look at wipers, covers and bearings.' in page
+    alone = overview_page(entries[:1])
+    assert 'normal or worse' not in alone
+
+
+def test_a_picture_shows_what_is_known_and_says_why_the_rest_is_not():
+    reason = 'preload not known: build the surface with --with-preloads'
+    one = Health(
+        axis='x',
+        stamp=FIRST * DAY,
+        condition=Condition.WORSE,
+        verdict='',
+        quantities=[
+            Quantity(name='drag change', value=-0.2, low=-0.25, high=-0.15),
+            Quantity(name='preload', reason=reason),
+        ],
+    )
+    drag, preload = figure_health({'x': [one]}).axes
+    assert drag.get_ylabel() == 'change of the drag [%]'
+    assert preload.texts[0].get_text() == reason
+
+
+def test_the_command_tells_what_one_recording_lacks(capsys, tmp_path):
+    assert main(['health', 'bags/nominal_cycle', '--out', str(tmp_path), '--json']) == 0
+    record = json.loads(capsys.readouterr().out)['x']
+    assert record['condition'] == 'unknown'
+    assert 'no steady motion with a measured torque' in record['verdict']
+    assert (tmp_path / 'health.png').stat().st_size > 0
+    assert json.loads((tmp_path / 'health.json').read_text())['x']['course']
