@@ -114,7 +114,7 @@ def _health(args: argparse.Namespace) -> int:
 
 
 def _import(args: argparse.Namespace) -> int:
-    from ballscrew_monitor.recordings.tables.command import make_bag, print_guess
+    from ballscrew_monitor.recordings.tables.convert import make_bag, print_guess
 
     raise_signals()
     if args.guess:

@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.own_recording import recorded_values
-from ballscrew_monitor.recordings.replay import replay, replay_columns
+from ballscrew_monitor.recordings.replay import replay, replay_parts
 from ballscrew_monitor.report.log_report import LogResult, report_log
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.settings import parameters
@@ -150,13 +150,20 @@ def rows_of(asked: argparse.Namespace, folder: Path) -> list[Row]:
     recorded = recorded_values(own)
     torque, position = values(0.1, **TORQUE), values(0.1, **POSITION)
     return [
-        Row('1 kHz, columns', 2000, quick, lambda: replay_columns(quick, values(0.1))),
+        Row('1 kHz, columns', 2000, quick, lambda: replay_parts(quick, values(0.1), states=False)),
         Row('1 kHz, states each 0.1 s', 0, quick, lambda: replay(quick, values(0.1))),
         Row('1 kHz, report, end to end', 150, quick, lambda: [report(quick, folder / 'report')]),
-        Row('100 Hz, columns', 10000, long, lambda: replay_columns(long, values(0.1))),
-        Row('1 kHz, load of torque', 1000, quick, lambda: replay_columns(quick, torque)),
-        Row('1 kHz, speed of positions', 1000, quick, lambda: replay_columns(quick, position)),
-        Row('1 kHz, own recording', 500, own, lambda: replay_columns(own, recorded)),
+        Row('100 Hz, columns', 10000, long, lambda: replay_parts(long, values(0.1), states=False)),
+        Row(
+            '1 kHz, load of torque', 1000, quick, lambda: replay_parts(quick, torque, states=False)
+        ),
+        Row(
+            '1 kHz, speed of positions',
+            1000,
+            quick,
+            lambda: replay_parts(quick, position, states=False),
+        ),
+        Row('1 kHz, own recording', 500, own, lambda: replay_parts(own, recorded, states=False)),
     ]
 
 

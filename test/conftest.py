@@ -46,7 +46,7 @@ SLOW = (
     'ballscrew_monitor/report/test_command.py',
     'ballscrew_monitor/report/test_log_page.py',
     'ballscrew_monitor/report/test_memory.py',
-    'ballscrew_monitor/report/test_page_budget.py',
+    'ballscrew_monitor/report/test_buckets.py',
     'ballscrew_monitor/report/test_time_series.py',
     'ballscrew_monitor/test_cli.py',
     'ballscrew_monitor/test_signals.py',

@@ -16,7 +16,7 @@ import sys
 import threading
 from typing import Any
 
-from ballscrew_monitor.clients.surroundings import spun
+from ballscrew_monitor.clients.doctor import spun
 from ballscrew_monitor.core.conversions import direction_of, opposing_load
 from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
 from ballscrew_monitor.recordings.words import say
@@ -130,7 +130,8 @@ class _Conversation:
             return _complain(REJECTED)
         answer = handle.get_result_async()
         over = self._until(lambda: answer.done() or not client.server_is_ready())
-        _wipe()
+        if sys.stderr.isatty():
+            print('\r\x1b[K', end='', file=sys.stderr, flush=True)
         if not over:
             self._take_back(handle)
             return INTERRUPTED
@@ -183,11 +184,6 @@ def _show(message: Any) -> None:
     left = '' if math.isnan(step.seconds_left) else f', {step.seconds_left:.0f} s left'
     text = f'{100 * step.fraction:3.0f} %  {step.stage} {place}, iteration {step.iteration}{left}'
     print(f'\r{text}\x1b[K', end='', file=sys.stderr, flush=True)
-
-
-def _wipe() -> None:
-    if sys.stderr.isatty():
-        print('\r\x1b[K', end='', file=sys.stderr, flush=True)
 
 
 def _print(axis: str, result: Any, *, as_json: bool) -> int:

@@ -105,20 +105,6 @@ def temperature_scaling(unit: str, *, scale: float, offset: float) -> Scaling:
     return Scaling(factor=scale, shift=offset + zero)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class MotorData:
-    """
-    What a torque at the screw follows from; 0 is not stated.
-
-    constant [N m/A] and rated [N m] of the motor, gear_ratio its turns per turn of the screw [-].
-
-    """
-
-    constant: float = 0.0
-    rated: float = 0.0
-    gear_ratio: float = 1.0
-
-
 def torque_scaling(unit: float, *, scale: float, offset: float, handedness: str) -> Scaling:
     """
     Return the line from a torque to that on the screw [N m], machine frame.
@@ -131,13 +117,20 @@ def torque_scaling(unit: float, *, scale: float, offset: float, handedness: str)
     return Scaling(factor=scale * factor, shift=offset * factor)
 
 
-def torque_unit(unit: str, motor: MotorData) -> float:
-    """Return the torque at the screw [N m] that one `unit` of the motor is."""
-    values = {'N m': 1.0, 'A': motor.constant, '%': motor.rated / 100.0}
+def torque_unit(
+    unit: str, *, constant: float = 0.0, rated: float = 0.0, gear_ratio: float = 1.0
+) -> float:
+    """
+    Return the torque at the screw [N m] that one `unit` of the motor is; 0 is not stated.
+
+    constant [N m/A] and rated [N m] of the motor, gear_ratio its turns per turn of the screw [-].
+
+    """
+    values = {'N m': 1.0, 'A': constant, '%': rated / 100.0}
     if _known('torque unit', unit, values) == 0.0:
         needed = 'torque.constant [N m/A]' if unit == 'A' else 'torque.rated [N m]'
         raise InputError(f'torque unit {unit!r} needs {needed}, it is 0.0, not stated')
-    return values[unit] * motor.gear_ratio
+    return values[unit] * gear_ratio
 
 
 def _known(what: str, key: str, table: dict[str, float]) -> float:

@@ -14,7 +14,7 @@ import dataclasses
 import importlib
 import operator
 import re
-from typing import Any, Protocol
+from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
 from surrogate.files import InputError
@@ -70,15 +70,8 @@ class _Absent(Exception):
         self.found = found
 
 
-class RosMessage(Protocol):
-    """What every generated message class tells of itself."""
-
-    @classmethod
-    def get_fields_and_field_types(cls) -> dict[str, str]:
-        """Return the type of every field by name, as ROS writes it."""
-
-
-MessageClass = type[RosMessage]
+MessageClass = Any
+"""A generated class; its `get_fields_and_field_types` tells the types of its fields by name."""
 
 
 def message_class(type_name: str) -> MessageClass:

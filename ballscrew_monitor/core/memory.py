@@ -27,9 +27,6 @@ class Memory:
     shelving: Shelving = NOT_SHELVED
 
 
-NOTHING = Memory()
-
-
 def after_restart(memory: Memory) -> Memory:
     """Return the memory to go on with: an event that was interrupted is over."""
     if not memory.event.active:

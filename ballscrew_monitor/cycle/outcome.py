@@ -23,7 +23,7 @@ from ballscrew_monitor.report.logs import JUDGED, PAGE, PICTURE
 from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import Axis, build_axis
-from ballscrew_monitor.settings.topics import absolute, input_topics, output, with_types
+from ballscrew_monitor.settings.parameters import absolute, input_topics, output, with_types
 from ballscrew_msgs.msg import BallScrewState, InputHealth, OutOfZone
 from rclpy.serialization import deserialize_message
 from surrogate.files import InputError

@@ -69,16 +69,11 @@ class ManyJudge:
     """Judges arrays of events in the place of a monitor."""
 
     def __init__(self, monitor: Monitor) -> None:
-        """Begin with what the monitor remembers."""
+        """Begin with what the monitor remembers, its settings and its surface."""
         self._monitor = monitor
         monitor.nearest = compiled_nearest()
         self._rows = np.empty(AT_ONCE, dtype=ROW)
         self._places = np.empty(AT_ONCE, dtype=np.int64)
-        self.take_over()
-
-    def take_over(self) -> None:
-        """Go on with what the monitor remembers now, its settings and its surface."""
-        monitor = self._monitor
         self._tables = monitor.surface.array_tables
         parts = (monitor.numbers, monitor.memory, monitor.speeds, monitor.positions)
         self._arrays = tuple(as_array(part) for part in parts)
@@ -89,11 +84,6 @@ class ManyJudge:
         self._monitor.memory = from_array(Memory, memory[0])
         self._monitor.speeds = from_array(SlopeRing, speeds[0])
         self._monitor.positions = from_array(SlopeRing, positions[0])
-
-    @property
-    def memory(self) -> Any:
-        """Return the memory, an element of an array."""
-        return self._arrays[1][0]
 
     def judge(self, events: NDArray[Any], *, states: bool = False) -> Iterator[Judged]:
         """

@@ -18,7 +18,6 @@ from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.memory import Memory as Kept
-from ballscrew_monitor.core.memory import NOTHING as NOTHING_KEPT
 from ballscrew_monitor.core.state import Event, MonitorSettings, NOT_SHELVED, Shelving, State
 from ballscrew_monitor.judge import views
 from ballscrew_monitor.judge.point import set_answer, set_point
@@ -111,10 +110,8 @@ class InputWords:
 class Monitor:
     """Judges one axis; feed it events in order."""
 
-    def __init__(
-        self, surface: Surface, settings: MonitorSettings, memory: Kept = NOTHING_KEPT
-    ) -> None:
-        """Begin with nothing received, the level UNKNOWN, and what `memory` holds from before."""
+    def __init__(self, surface: Surface, settings: MonitorSettings) -> None:
+        """Begin with nothing received, and the level UNKNOWN."""
         self.settings = settings
         self.use_surface(surface)
         self.memory = Memory()
@@ -126,7 +123,6 @@ class Monitor:
         self._event = EventRecord()
         self._row = Row()
         self._told = Event()
-        self.take_up(memory)
 
     @property
     def settings(self) -> MonitorSettings:

@@ -39,9 +39,11 @@ from ballscrew_monitor.judge.slopes import (
     slope_shift,
     slope_take,
 )
-from ballscrew_monitor.judge.sums import add_to_totals, add_to_window, clear_window
 from ballscrew_monitor.judge.zone import (
     ACTIVE,
+    add_to_totals,
+    add_to_window,
+    clear_window,
     follow_excursion,
     hold_level,
     is_judged,

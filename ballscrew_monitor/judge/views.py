@@ -23,8 +23,7 @@ from ballscrew_monitor.core.state import Event, Extremes, Totals, WINDOW, Window
 from ballscrew_monitor.judge import derived_load
 from ballscrew_monitor.judge.inputs import is_fresh, is_lagging, least_lag, SLOW_GAPS
 from ballscrew_monitor.judge.records import NOT_KNOWN, RATE_SAMPLES, SHOWN, WHYS
-from ballscrew_monitor.judge.sums import SPEED
-from ballscrew_monitor.judge.zone import ACTIVE
+from ballscrew_monitor.judge.zone import ACTIVE, SPEED
 from surrogate.surface import Regime, REGIMES, Surface
 
 NAN = math.nan

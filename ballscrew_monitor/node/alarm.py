@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The warning of one axis: its topic, its log, and what people do to it."""
+"""The warning of one axis: its topic, its log, what people do to it; topics that stay."""
 
 from collections.abc import Callable, Iterable
 import functools
@@ -13,11 +13,42 @@ from ballscrew_monitor.messages.state_messages import out_of_zone_message
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts, totals_facts
 from ballscrew_monitor.settings.axis import Axis
-from ballscrew_msgs.msg import OutOfZone
+from ballscrew_msgs.msg import OutOfZone, SurfaceInfo
 from rclpy.clock import Clock
 from rclpy.duration import Duration
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
 from rclpy.publisher import Publisher
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
+
+LATCHED_QOS = QoSProfile(
+    depth=1,
+    reliability=QoSReliabilityPolicy.RELIABLE,
+    durability=QoSDurabilityPolicy.TRANSIENT_LOCAL,
+)
+
+
+def quiet_publishers(node: LifecycleNode) -> functools.partial[Any]:
+    """
+    Return what makes publishers without events.
+
+    rclpy looks at every event of every publisher in every round. What these would warn of, a
+    subscriber with QoS that does not fit, its own node warns of too.
+
+    """
+    quiet = PublisherEventCallbacks(use_default_callbacks=False)
+    return functools.partial(node.create_lifecycle_publisher, event_callbacks=quiet)
+
+
+class LatchedTopics:
+    """Publishers that live as long as the node, so that the end of an event outlives its axis."""
+
+    def __init__(self, node: LifecycleNode, axis: str) -> None:
+        """Make them; they stay silent until the node is active."""
+        make = quiet_publishers(node)
+        self.event = make(OutOfZone, f'~/{axis}/out_of_zone', LATCHED_QOS)
+        self.info = make(SurfaceInfo, f'~/{axis}/surface_info', LATCHED_QOS)
+
 
 if TYPE_CHECKING:  # which imports this module
     from ballscrew_monitor.node.axis_publisher import AxisPublisher

@@ -14,11 +14,10 @@ from ballscrew_monitor.core.inputs import InputSample, Refusal, Source
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import MonitorSettings, Shelving, State
 from ballscrew_monitor.messages import diagnostics, state_messages
-from ballscrew_monitor.messages.state_messages import TIERS
-from ballscrew_monitor.node.alarm import Alarm
+from ballscrew_monitor.messages.state_messages import plain_values, TIERS
+from ballscrew_monitor.node.alarm import Alarm, LatchedTopics, quiet_publishers
 from ballscrew_monitor.node.journal import NodeJournal
 from ballscrew_monitor.node.kept_axes import KeptAxes
-from ballscrew_monitor.node.output_topics import LatchedTopics, PlainTopics, quiet_publishers
 from ballscrew_monitor.node.state_records import Corrections, Kind, point_facts
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import state_qos
@@ -27,11 +26,15 @@ from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.lifecycle import LifecycleNode
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from std_msgs.msg import Bool, Float64, String
 from surrogate.surface import Surface, SurfaceError, SurfacePoint
 
 STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 LOG_INTERVAL = nanoseconds(1.0)  # [ns] shortest time between two lines about the inputs
 NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
+PLAIN = dict.fromkeys(('efficiency', 'rcs', 'film_ratio'), Float64)
+PLAIN |= {'regime': String, 'out_of_zone': Bool}
+"""Types of the plain topics by their names."""
 Result = TypeVar('Result')
 
 
@@ -74,8 +77,11 @@ class AxisPublisher:
         self._state = make(BallScrewState, f'~/{axis.name}/state', promise)
         self.alarm = Alarm(node, axis, latched.event, kept, recording.record)
         self._info = latched.info
-        plain = values[f'{axis.name}.plain_topics']
-        self._plain = PlainTopics(node, axis.name, make, STATE_QOS, wanted=plain)
+        kinds = PLAIN if values[f'{axis.name}.plain_topics'] else {}
+        self._plain = {
+            name: make(kind, f'~/{axis.name}/plain/{name}', STATE_QOS)
+            for name, kind in kinds.items()
+        }
 
     def adapt(self) -> None:
         """Take over the parameters as they are now."""
@@ -84,8 +90,8 @@ class AxisPublisher:
 
     def close(self) -> None:
         """Destroy the publishers, but for those that outlive the axis."""
-        self._node.destroy_lifecycle_publisher(self._state)
-        self._plain.close()
+        for publisher in (self._state, *self._plain.values()):
+            self._node.destroy_lifecycle_publisher(publisher)
 
     def publish_state(self, state: State) -> None:
         """Publish a state, and before it the event that it begins or ends."""
@@ -95,7 +101,11 @@ class AxisPublisher:
         message = self._writer.write(state)
         self._state.publish(message)
         self._recording.record(f'~/{self.name}/state', message)
-        self._plain.publish(state)
+        self._publish_plain(state)
+
+    def _publish_plain(self, state: State) -> None:
+        for name, value in plain_values(state).items() if self._plain else ():
+            self._plain[name].publish(PLAIN[name](data=value))
 
     def shelve(self, shelving: Shelving) -> None:
         """Shelve the warning, or no longer, and let the last state say so."""
@@ -112,7 +122,7 @@ class AxisPublisher:
     def _show_shelving(self) -> None:
         if self._last is not None:
             self._last = dataclasses.replace(self._last, shelving=self.axis.monitor.shelving)
-            self._plain.publish(self._last)
+            self._publish_plain(self._last)
 
     def publish_info(self) -> None:
         """Publish what the surface and the limits are."""

@@ -82,7 +82,7 @@ class AxisServices:
         self, response: Any, publishers: Publishers, done: str, name: str, failed: Sequence[str]
     ) -> None:
         """Keep what the service of a name has changed, and say what is done and what is not."""
-        broken = _defects(publishers)
+        broken = [f'axis {name}: {one.defect}' for name, one in publishers.items() if one.failed]
         problem = self._changed(publishers, name)
         done += f', not kept: {problem}' if problem else ''
         response.message = '; '.join([done, *failed, *broken])
@@ -149,7 +149,3 @@ def not_built(axis: str, reason: str) -> str:
 
 def _names(publishers: Publishers) -> str:
     return ', '.join(name for name, one in publishers.items() if not one.failed)
-
-
-def _defects(publishers: Publishers) -> list[str]:
-    return [f'axis {name}: {one.defect}' for name, one in publishers.items() if one.failed]

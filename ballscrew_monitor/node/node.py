@@ -12,17 +12,15 @@ from ballscrew_monitor.core.inputs import InputSample, Refusal
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.core.tick_grid import TickGrid
 from ballscrew_monitor.messages import diagnostics
-from ballscrew_monitor.node.alarm import end_all
+from ballscrew_monitor.node.alarm import end_all, LatchedTopics
 from ballscrew_monitor.node.axis_publisher import AxisPublisher, STATE_QOS
 from ballscrew_monitor.node.axis_services import AxisServices, not_built
 from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.journal import NodeJournal
 from ballscrew_monitor.node.kept_axes import KeptAxes
-from ballscrew_monitor.node.output_topics import LatchedTopics
 from ballscrew_monitor.node.parameter_store import ParameterStore
 from ballscrew_monitor.node.restart_state import RestartState, state_directory
 from ballscrew_monitor.node.solve_server import SolveServer
-from ballscrew_monitor.node.solver_process import SolverProcess
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import Axis, build_axes, named_topics
 from ballscrew_monitor.settings.qos import check_overrides, longest_period
@@ -81,7 +79,7 @@ class BallscrewMonitor(LifecycleNode):
         )
         publishers = self._axis_publishers
         self._kept = KeptAxes(self, state, publishers, self._on_kept, clock=self._steady)
-        self._solves = SolveServer(self, SolverProcess, self._find_publisher)
+        self._solves = SolveServer(self, self._find_publisher)
         AxisServices(self, self._values, publishers, self._failed, self._unknown, self._on_service)
 
     def start(self) -> None:
@@ -280,7 +278,7 @@ class BallscrewMonitor(LifecycleNode):
         if state is None:
             return
         publisher.publish_state(state)
-        if publisher.is_dwelling(state) and not self._solves.busy:
+        if publisher.is_dwelling(state) and not self._solves.solver.busy:
             self.get_logger().info(f'axis {publisher.name}: solving the point where it dwells')
             self._solves.solve(publisher, state.point)
         now = self._steady.now().nanoseconds

@@ -8,26 +8,35 @@ there are any, and the answer of a goal is handed to the executor when it is rea
 
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 import dataclasses
 import functools
 import math
 import time
 from typing import Any
 
-from ballscrew_monitor.core.estimate import MachinePoint
-from ballscrew_monitor.core.full_point import request_of
-from ballscrew_monitor.core.solver import Done, End, Job, MOST_WAITING, Process, Solver
-from ballscrew_monitor.messages import solve_messages
-from ballscrew_monitor.messages.solve_messages import SolvableAxis
+from ballscrew_monitor.core.conversions import machine_nut
+from ballscrew_monitor.core.estimate import (
+    estimate,
+    estimate_from,
+    MachinePoint,
+    PointEstimate,
+    PointValidity,
+)
+from ballscrew_monitor.core.full_point import compare, Comparison, request_of, solved_at
+from ballscrew_monitor.messages.state_messages import fill_result, read_point, TIERS
+from ballscrew_monitor.node.axis_publisher import AxisPublisher
+from ballscrew_monitor.node.solver_process import Done, End, Job, MOST_WAITING, Solver, Step
 from ballscrew_msgs.action import SolveOperatingPoint
+from ballscrew_msgs.msg import PointResult
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from surrogate.surface import solved_point, SurfacePoint
 
-DEFAULT_TIMEOUT = 300.0  # [s]
+DEFAULT_TIMEOUT, LONGEST_TIMEOUT = 300.0, 3600.0  # [s]
 POLL = 0.1  # [s]
 FEEDBACK_PERIOD = 0.5  # [s]
 MOST_SOLVES = 1 + MOST_WAITING
@@ -39,7 +48,7 @@ SERVICE_QOS = QoSProfile(depth=100)
 class _Goal:
     """A goal at work; `handle` is None for a solve that the node has asked for itself."""
 
-    axis: SolvableAxis
+    axis: AxisPublisher
     point: MachinePoint
     job: Job
     handle: ServerGoalHandle | None = None
@@ -60,16 +69,11 @@ class _Server(ActionServer):
 class SolveServer:
     """The goals of a node and the process that solves them."""
 
-    def __init__(
-        self,
-        node: Node,
-        start: Callable[[], Process],
-        find_axis: Callable[[str], SolvableAxis | str],
-    ) -> None:
+    def __init__(self, node: Node, find_axis: Callable[[str], AxisPublisher | str]) -> None:
         """Offer the action; `find_axis` returns an axis, or why it cannot be solved for."""
         self._node = node
         self._find_axis = find_axis
-        self._solver = Solver(start)
+        self.solver = Solver()
         self._goals: dict[Job, _Goal] = {}
         self._timer: Any = None
         self._server = _Server(
@@ -87,22 +91,17 @@ class SolveServer:
 
     def close(self, reason: str) -> None:
         """Stop all solves; their goals end with the reason."""
-        self._solver.close()
+        self.solver.close()
         for goal in list(self._goals.values()):
             self._finish(goal, Done(job=goal.job, end=End.FAILED, sentence=reason))
         self._rest()
 
-    @property
-    def busy(self) -> bool:
-        """Tell whether a solve is at work or waits."""
-        return self._solver.busy
-
-    def solve(self, axis: SolvableAxis, point: MachinePoint) -> None:
+    def solve(self, axis: AxisPublisher, point: MachinePoint) -> None:
         """Solve a point for the node itself, to correct the surface; the outcome is logged."""
         self._begin(axis, point, DEFAULT_TIMEOUT, None)
 
     def _on_goal(self, request: Any) -> GoalResponse:
-        refusal = self._solver.refusal
+        refusal = self.solver.refusal
         if not refusal:
             return GoalResponse.ACCEPT
         self._node.get_logger().warning(
@@ -113,23 +112,23 @@ class SolveServer:
     def _on_accepted(self, handle: ServerGoalHandle) -> None:
         request = handle.request
         axis = self._find_axis(request.axis)
-        point = axis if isinstance(axis, str) else solve_messages.requested_point(request, axis)
+        point = axis if isinstance(axis, str) else requested_point(request, axis)
         handle.execute()
         if isinstance(axis, str) or isinstance(point, str):
-            self._answer(handle, solve_messages.empty_result(str(point)), End.FAILED)
+            self._answer(handle, empty_result(str(point)), End.FAILED)
         else:
             self._begin(axis, point, request.timeout or DEFAULT_TIMEOUT, handle)
 
     def _begin(
         self,
-        axis: SolvableAxis,
+        axis: AxisPublisher,
         point: MachinePoint,
         timeout: float,
         handle: ServerGoalHandle | None,
     ) -> None:
         job = Job(request=request_of(axis.surface, point), timeout=timeout)
         self._goals[job] = _Goal(axis=axis, point=point, job=job, handle=handle)
-        self._solver.submit(job)
+        self.solver.submit(job)
         if self._timer is None:
             # On the steady clock: simulated time may stand, and the solver does not.
             self._timer = self._node.create_timer(
@@ -142,8 +141,8 @@ class SolveServer:
         for goal in self._goals.values():
             taken_back = goal.handle is not None and goal.handle.is_cancel_requested
             if taken_back and math.isnan(goal.job.cancelled):
-                self._solver.cancel(goal.job, now)
-        for done in self._solver.poll(now):
+                self.solver.cancel(goal.job, now)
+        for done in self.solver.poll(now):
             self._finish(self._goals[done.job], done)
         for goal in self._goals.values():
             self._tell(goal, now)
@@ -161,12 +160,12 @@ class SolveServer:
         if goal.handle is None or now - goal.told < FEEDBACK_PERIOD:
             return
         goal.told = now
-        message = solve_messages.feedback_message(goal.job.step, goal.point)
+        message = feedback_message(goal.job.step, goal.point)
         goal.handle.publish_feedback(message)
 
     def _finish(self, goal: _Goal, done: Done) -> None:
         del self._goals[goal.job]
-        result = solve_messages.result_message(goal.axis, goal.point, done)
+        result = result_message(goal.axis, goal.point, done)
         end = End.FAILED if done.end is End.SOLVED and not result.success else done.end
         if goal.handle is not None:
             self._answer(goal.handle, result, end)
@@ -192,3 +191,91 @@ def _end_goal(handle: ServerGoalHandle, *, result: Any, end: End) -> Any:
     else:
         handle.abort()
     return result
+
+
+def requested_point(request: Any, axis: AxisPublisher) -> MachinePoint | str:
+    """Return the point that a goal asks for, or what is wrong with the goal."""
+    if not 0.0 <= request.timeout <= LONGEST_TIMEOUT:
+        return f'timeout is {request.timeout:g} s, allowed is 0 to {LONGEST_TIMEOUT:g} s'
+    if request.use_current:
+        return axis.current_point()
+    point = read_point(request.point, default_temperature=axis.settings.default_temperature)
+    if not math.isfinite(point.speed + point.axial_load + point.temperature):
+        return 'speed, axial load and temperature of the point must be finite'
+    if point.speed == 0.0:
+        return 'the speed of the point is 0 rad/s, a solve needs motion'
+    return point
+
+
+def feedback_message(step: Step, point: MachinePoint) -> Any:
+    """Return how far a solve is, its nut in the machine frame."""
+    return SolveOperatingPoint.Feedback(
+        stage=step.stage,
+        nut=int(machine_nut(step.nut, point.axial_load)),
+        side=step.side,
+        iteration=step.iteration,
+        residual=float(step.residual),
+        fraction=float(step.fraction),
+        seconds_left=float(step.seconds_left),
+    )
+
+
+def empty_result(status: str) -> Any:
+    """Return a result that knows nothing but why."""
+    result = SolveOperatingPoint.Result(status=status, wall_time=math.nan)
+    for part in (result.full, result.surface):
+        fill_result(part, PointEstimate(validity=PointValidity.UNKNOWN, reason=status), 0)
+    result.efficiency_stderr = result.rcs_stderr = math.nan
+    _fill_comparison(result, Comparison())
+    return result
+
+
+def result_message(axis: AxisPublisher, point: MachinePoint, done: Done) -> Any:
+    """Return the result of a solve that has ended; one that is worth it corrects the surface."""
+    result = empty_result(_status(done))
+    result.wall_time = float(done.wall_time)
+    answer = estimate(point, axis.surface, rcs_limit=axis.settings.limits.rcs)
+    fill_result(result.surface, answer, TIERS[axis.surface.tier])
+    if done.end is End.SOLVED and done.result['converged']:
+        load = solved_at(point).opposing_load
+        full = read_solved(done.result, opposing_load=load, lead=axis.surface.lead)
+        _fill_full(result, axis, point, full, answer)
+    return result
+
+
+def read_solved(frame: Mapping[str, Any], *, opposing_load: float, lead: float) -> SurfacePoint:
+    """Return the point [N, m] that a frame of the solver holds; JSON knows no NaN."""
+    groups = [
+        {name: math.nan if value is None else float(value) for name, value in frame[part].items()}
+        for part in ('means', 'deviations', 'standard_errors')
+    ]
+    worst = int(frame['worst_contact'])
+    return solved_point(*groups, worst_contact=worst, opposing_load=opposing_load, lead=lead)
+
+
+def _fill_full(
+    result: Any,
+    axis: AxisPublisher,
+    point: MachinePoint,
+    full: SurfacePoint,
+    answer: PointEstimate,
+) -> None:
+    found = estimate_from(point, full, rcs_limit=axis.settings.limits.rcs)
+    fill_result(result.full, found, PointResult.TIER_FULL)
+    _fill_comparison(result, compare(full, answer.numbers))
+    result.efficiency_stderr = float(full.efficiency_stderr)
+    result.rcs_stderr = float(full.rcs_stderr)
+    result.success = True
+    result.corrected, result.correction = axis.correct(point, full)
+
+
+def _fill_comparison(result: Any, comparison: Comparison) -> None:
+    result.efficiency_difference = float(comparison.efficiency)
+    result.rcs_difference = float(comparison.rcs)
+    result.within_stated_error = comparison.within_stated_error
+
+
+def _status(done: Done) -> str:
+    if done.end is End.CANCELLED:
+        return 'cancelled'
+    return done.sentence or str(done.result.get('status', ''))

@@ -18,20 +18,8 @@ from pathlib import Path
 import sqlite3
 from typing import Any
 
+from ballscrew_monitor.core import sqlite_file
 from ballscrew_monitor.core.memory import AxisRecord, read_record, TYPES
-from ballscrew_monitor.core.sqlite_file import (
-    BAD,
-    connected,
-    has_room,
-    is_empty,
-    is_passing,
-    let_go,
-    opened_to_read,
-    set_file_aside,
-    SHARE,
-    size_of,
-    USED,
-)
 from ballscrew_monitor.node.former_files import read_former, set_aside
 from ballscrew_monitor.node.state_records import by_key, Corrections, Entry, Record, Records
 from surrogate.files import InputError
@@ -82,12 +70,12 @@ class StateDatabase:
         self.disconnect()
         try:
             return self._load()
-        except BAD as error:
-            if is_passing(error):
+        except sqlite_file.BAD as error:
+            if sqlite_file.is_passing(error):
                 raise
             numbers = self._last_numbers()
             self.disconnect()
-            self._damage.append(set_file_aside(self._file, error))
+            self._damage.append(sqlite_file.set_file_aside(self._file, error))
         self._load()
         self.write([], numbers)
         return by_key(numbers)
@@ -99,20 +87,20 @@ class StateDatabase:
         Raises InputError at the limit, sqlite3.Error and OSError.
 
         """
-        if not has_room(self._database, self._file, self.limit):
+        if not sqlite_file.has_room(self._database, self._file, self.limit):
             raise InputError(at_limit(self.folder, self.limit))
         with self._database as database:
             database.execute('BEGIN IMMEDIATE')
-            _write(database, entries, records, SHARE * self.limit)
+            _write(database, entries, records, sqlite_file.SHARE * self.limit)
 
     def disconnect(self) -> None:
         """Let go of the file, but not of the directory."""
-        let_go(self._database)
+        sqlite_file.let_go(self._database)
         self._database = None
 
     def close(self) -> None:
         """Leave one whole file, which anybody can read, and let another node have it."""
-        let_go(self._database, alone=True)
+        sqlite_file.let_go(self._database, alone=True)
         self._database = None
         if self._lock >= 0:
             os.close(self._lock)
@@ -134,12 +122,14 @@ class StateDatabase:
 
     def _load(self) -> Records:
         """Return what the file holds; raises ValueError or KeyError for what no node has left."""
-        database = self._database = connected(self._file, self.limit)
-        if is_empty(database, VERSION):
+        database = self._database = sqlite_file.connected(self._file, self.limit)
+        if sqlite_file.is_empty(database, VERSION):
             self._create()
         self._notices += set_aside(self.folder)
-        if size_of(self._file) > SHARE * self.limit:  # a limit of before was larger
-            _make_room(database, SHARE * self.limit)
+        if (
+            sqlite_file.size_of(self._file) > sqlite_file.SHARE * self.limit
+        ):  # a limit of before was larger
+            _make_room(database, sqlite_file.SHARE * self.limit)
             database.executescript('VACUUM; PRAGMA wal_checkpoint(TRUNCATE)')
         return by_key(
             read(row)
@@ -154,7 +144,7 @@ class StateDatabase:
             database.execute('BEGIN IMMEDIATE')
             for statement in TABLES.split(';'):
                 database.execute(statement)
-            _write(database, entries, records.values(), SHARE * self.limit)
+            _write(database, entries, records.values(), sqlite_file.SHARE * self.limit)
         self._damage += damage
 
     def _last_numbers(self) -> list[Record]:
@@ -174,7 +164,7 @@ def read_entries(folder: Path) -> list[Entry]:
     Raises InputError if there is none, or none that can be read.
 
     """
-    with opened_to_read(folder, FILE, VERSION) as database:
+    with sqlite_file.opened_to_read(folder, FILE, VERSION) as database:
         # At once: somebody who reads on and on keeps the journal from being cleared.
         rows = database.execute('SELECT * FROM events ORDER BY number').fetchall()
         return [Entry(*row[1:]) for row in rows]
@@ -201,7 +191,7 @@ def _write(
 
 def _make_room(database: sqlite3.Connection, limit: float) -> None:
     """Remove the oldest entries until the database is within a `limit` [B]."""
-    while database.execute(USED).fetchone()[0] > limit:
+    while database.execute(sqlite_file.USED).fetchone()[0] > limit:
         ((first, last),) = database.execute('SELECT min(number), max(number) FROM events')
         if first is None:
             return

@@ -83,22 +83,18 @@ class AxisRun:
         self._last_row: Any = None
         self._ended: Event | None = None  # by something else than a sample, and not told yet
 
-    def take(
-        self, entries: Entries, *, columns: bool = True, states: bool = True
-    ) -> Iterator[JudgedColumns | Due]:
+    def take(self, entries: Entries, *, states: bool = True) -> Iterator[JudgedColumns | Due]:
         """Judge entries; yield their rows as columns, and the states that are due."""
         begin = 0
         for end in [*np.flatnonzero(entries.kind == Kind.CHECK).tolist(), len(entries)]:
             part = entries.take(slice(begin, end))
-            for made in self._take(part, columns=columns, states=states):
+            for made in self._take(part, states=states):
                 yield made if isinstance(made, JudgedColumns) else (made[0] + begin, made[1])
             if end < len(entries):
                 entries.note[end]()
             begin = end + 1
 
-    def _take(
-        self, entries: Entries, *, columns: bool, states: bool
-    ) -> Iterator[JudgedColumns | Due]:
+    def _take(self, entries: Entries, *, states: bool) -> Iterator[JudgedColumns | Due]:
         refusals = np.flatnonzero(entries.kind == Kind.REFUSED).tolist()
         for judged in self._judge.judge(events_of(entries), states=states):
             for place, row in self._told(judged):
@@ -107,8 +103,7 @@ class AxisRun:
                 yield from ((place, one) for one in self._state(log_time, row, states=states))
             if len(judged.rows):
                 self._count(judged.rows)
-                if columns:
-                    yield columns_of(self.axis.name, judged.rows)
+                yield columns_of(self.axis.name, judged.rows)
         self._hear(refusals, entries, len(entries))
         self._judge.give_back()
         self._hear_others(entries)
@@ -201,14 +196,12 @@ class AxisRun:
                     words.joints[source][joints] = None
 
 
-def judged_parts(
-    runs: Sequence[AxisRun], entries: Entries, *, columns: bool, states: bool
-) -> Iterator[Part]:
+def judged_parts(runs: Sequence[AxisRun], entries: Entries, *, states: bool) -> Iterator[Part]:
     """Judge the entries of several axes; yield rows, and the states in the order of entries."""
     found: list[tuple[int, int, TimedState]] = []
     for number, run in enumerate(runs):
         places = places_of_axis(entries, number)
-        for part in run.take(entries.take(places), columns=columns, states=states):
+        for part in run.take(entries.take(places), states=states):
             if isinstance(part, JudgedColumns):
                 yield part
                 continue

@@ -22,8 +22,12 @@ import tempfile
 from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.bag_files import OWN
-from ballscrew_monitor.recordings.mcap_file import Integers, McapFile
-from ballscrew_monitor.recordings.message_definitions import message_definition, type_hash
+from ballscrew_monitor.recordings.mcap_file import (
+    Integers,
+    McapFile,
+    message_definition,
+    type_hash,
+)
 import numpy as np
 from surrogate.files import InputError, replace_file
 import yaml
@@ -68,17 +72,6 @@ class Topic:
     offer: Offer
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Announced:
-    """What a bag says of a topic: its type with the text of it, hash and offered QoS."""
-
-    name: str
-    type_name: str
-    definition: bytes
-    type_hash: str
-    profiles: list[dict[str, Any]]
-
-
 class BagWriter(contextlib.AbstractContextManager['BagWriter']):
     """
     One growing bag; use it as a context manager or call `close`.
@@ -92,7 +85,7 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
     ) -> None:
         """Begin `directory/name.mcap.active`, in chunks of a size [bytes]; raises InputError."""
         self.path = directory / f'{name}.mcap'
-        self._topics: dict[str, Announced] = {}
+        self._topics: dict[str, dict[str, Any]] = {}  # as the metadata name them
         self._channels: dict[str, int] = {}
         self._counts: Counter[str] = Counter()
         self._custom: dict[str, str] = {}
@@ -113,28 +106,32 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
 
     def add_topic(self, topic: Topic) -> None:
         """Announce a topic; raises InputError when its type is not installed."""
-        self.announce(
-            Announced(
-                name=topic.name,
-                type_name=topic.type_name,
-                definition=message_definition(topic.type_name).encode(),
-                type_hash=type_hash(topic.type_name),
-                profiles=[topic.offer.profile],
-            )
-        )
+        definition, kind = message_definition(topic.type_name).encode(), topic.type_name
+        profiles = [topic.offer.profile]
+        self.announce(topic.name, kind, definition, type_hash=type_hash(kind), profiles=profiles)
 
-    def announce(self, topic: Announced) -> None:
+    def announce(
+        self,
+        name: str,
+        type_name: str,
+        definition: bytes,
+        *,
+        type_hash: str,
+        profiles: list[dict[str, Any]],
+    ) -> None:
         """Announce a topic by all that is said of it, whether or not its type is installed."""
-        self._channels[topic.name] = self._writer.add_channel(
-            topic=topic.name,
-            kind=topic.type_name,
-            definition=topic.definition,
-            metadata={
-                'offered_qos_profiles': yaml.safe_dump(topic.profiles, sort_keys=False),
-                'topic_type_hash': topic.type_hash,
-            },
+        offered = yaml.safe_dump(profiles, sort_keys=False)
+        metadata = {'offered_qos_profiles': offered, 'topic_type_hash': type_hash}
+        self._channels[name] = self._writer.add_channel(
+            topic=name, kind=type_name, definition=definition, metadata=metadata
         )
-        self._topics[topic.name] = topic
+        self._topics[name] = {
+            'name': name,
+            'type': type_name,
+            'serialization_format': 'cdr',
+            'offered_qos_profiles': profiles,
+            'type_description_hash': type_hash,
+        }
 
     def write(
         self,
@@ -201,17 +198,8 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
     def _metadata(self) -> dict[str, Any]:
         """Return what the bag says of itself in the words of rosbag2, metadata version 9."""
         topics = [
-            {
-                'topic_metadata': {
-                    'name': one.name,
-                    'type': one.type_name,
-                    'serialization_format': 'cdr',
-                    'offered_qos_profiles': one.profiles,
-                    'type_description_hash': one.type_hash,
-                },
-                'message_count': self._counts[one.name],
-            }
-            for one in self._topics.values()
+            {'topic_metadata': one, 'message_count': self._counts[name]}
+            for name, one in self._topics.items()
         ]
         name = self.path.name
         return {

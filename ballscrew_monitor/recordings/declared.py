@@ -35,13 +35,12 @@ def unwritten(**more: Any) -> Any:
 
 def keys(record: Any) -> dict[str, 'dataclasses.Field[Any]']:
     """Return the fields of a record, or of a class of records, that are written, by their keys."""
-    specs = [one for one in dataclasses.fields(record) if 'unwritten' not in one.metadata]
-    return {_key(spec): spec for spec in specs}
-
-
-def _key(spec: 'dataclasses.Field[Any]') -> str:
-    name, unit = spec.metadata.get('key') or spec.name, spec.metadata.get('unit')
-    return f'{name}_{unit}' if unit else name
+    found = {}
+    for spec in dataclasses.fields(record):
+        if 'unwritten' not in spec.metadata:
+            name, unit = spec.metadata.get('key') or spec.name, spec.metadata.get('unit')
+            found[f'{name}_{unit}' if unit else name] = spec
+    return found
 
 
 def plain(record: Any) -> Any:

@@ -69,13 +69,12 @@ class LogFacts:
 
     def _assumed_by_axis(self) -> dict[str, list[str]]:
         """Return by axis what is assumed, that about no axis with each of them."""
-        axes = list(self.mapping.get('axes', {}))
+        axes = self.mapping.get('axes', {}).keys()
         return {
             axis: [
-                f'{place if whose else one.key} = {one.value}'
+                f'{one.key.removeprefix(f"{axis}.")} = {one.value}'
                 for one in self.assumptions
-                for whose, place in [_split(one.key, axes)]
-                if whose in ('', axis)
+                if one.key.partition('.')[0] not in axes - {axis}
             ]
             for axis in axes
         }
@@ -111,12 +110,6 @@ def grouped(said: Mapping[str, Sequence[str]]) -> list[tuple[str, list[str]]]:
         if rest:
             told.append((f'{"axis" if len(axes) == 1 else "axes"} {", ".join(axes)}', list(rest)))
     return told
-
-
-def _split(key: str, axes: Collection[str]) -> tuple[str, str]:
-    """Return axis and place of what is assumed, no axis where it is about all."""
-    axis, _, place = key.partition('.')
-    return (axis, place) if axis in axes else ('', key)
 
 
 def facts_of(bag: Bag) -> LogFacts | None:

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Writes an MCAP file in chunks, message by message or many at once.
+Writes an MCAP file in chunks, message by message or many at once; and text and hash of its types.
 
 Both ways give the bytes that the writer of the package `mcap` gives, which knows only the first.
 The records are those of that package, but for messages and their indexes, of which there are many.
@@ -10,7 +10,12 @@ The records are those of that package, but for messages and their indexes, of wh
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+import functools
+import json
+import os
+from pathlib import Path
 import struct
+import sys
 from typing import BinaryIO
 import zlib
 
@@ -20,7 +25,53 @@ from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.files import InputError
 import zstandard
+
+SEPARATOR = '=' * 80
+
+
+def message_definition(type_name: str) -> str:
+    """
+    Return the `ros2msg` text of a type such as `sensor_msgs/msg/JointState`.
+
+    The definition of each type inside follows after a line of 80 `=` and its name. Raises
+    InputError when the type is not installed.
+
+    """
+    names = [entry['type_name'] for entry in _described(type_name)]
+    texts = [_share_file(type_name, 'msg').read_text()]
+    for name in sorted(set(names) - {type_name}):
+        package, _, leaf = name.split('/')
+        texts.append(f'{SEPARATOR}\nMSG: {package}/{leaf}\n{_share_file(name, "msg").read_text()}')
+    return ''.join(text if text.endswith('\n') else f'{text}\n' for text in texts)
+
+
+def type_hash(type_name: str) -> str:
+    """Return the RIHS01 hash of a message type; raises InputError when it is not installed."""
+    for entry in _described(type_name):
+        if entry['type_name'] == type_name:
+            return str(entry['hash_string'])
+    raise InputError(f'message type {type_name}: its description holds no hash')
+
+
+@functools.lru_cache
+def _described(type_name: str) -> tuple[dict[str, str], ...]:
+    return tuple(json.loads(_share_file(type_name, 'json').read_text())['type_hashes'])
+
+
+def _share_file(type_name: str, suffix: str) -> Path:
+    parts = type_name.split('/')
+    if len(parts) != 3:
+        raise InputError(f'message type {type_name!r} is not of the form package/msg/Name')
+    paths = os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep)
+    prefixes = [*filter(None, paths), sys.prefix]
+    for prefix in prefixes:
+        path = Path(prefix) / 'share' / parts[0] / parts[1] / f'{parts[2]}.{suffix}'
+        if path.is_file():
+            return path
+    raise InputError(f'message type {type_name} is not installed below {" or ".join(prefixes)}')
+
 
 MESSAGE = struct.Struct('<BQHIQQ')  # code, length, channel, number, log time, publish time
 MESSAGE_FIELDS = np.dtype(

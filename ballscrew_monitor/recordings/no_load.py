@@ -18,8 +18,8 @@ import math
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.inputs import Input, InputSample, OpenInput, Source, Why
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.decoding import decode, named_instead
-from ballscrew_monitor.settings.topics import absolute
+from ballscrew_monitor.recordings.bulk.decode import decode, named_instead
+from ballscrew_monitor.settings.parameters import absolute
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError

@@ -9,7 +9,7 @@ import tempfile
 
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_files import ACTIVE, is_bag, is_table
-from ballscrew_monitor.recordings.progress import Shown, shown_progress
+from ballscrew_monitor.recordings.words import Shown, shown_progress
 from surrogate.files import InputError
 
 

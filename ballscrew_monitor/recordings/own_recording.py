@@ -23,7 +23,7 @@ from ballscrew_monitor.recordings.axis_run import AxisRun
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk.batches import batches, END
 from ballscrew_monitor.recordings.bulk.chunks import Integers, Messages
-from ballscrew_monitor.recordings.bulk.decode import Reader, TopicDecoder
+from ballscrew_monitor.recordings.bulk.decode import Reader, TopicDecoder, UNDECODABLE
 from ballscrew_monitor.recordings.bulk.entries import (
     Entries,
     joined,
@@ -33,7 +33,6 @@ from ballscrew_monitor.recordings.bulk.entries import (
     UNKNOWN_LOSS,
 )
 from ballscrew_monitor.recordings.bulk.order import OnDone
-from ballscrew_monitor.recordings.decoding import UNDECODABLE
 from ballscrew_monitor.recordings.frames import STRING, VERSION
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import Axis, build_axis, settings_of

@@ -27,8 +27,8 @@ from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.middleware import notice
+from ballscrew_monitor.settings.parameters import absolute, input_topics
 from ballscrew_monitor.settings.qos import started_node
-from ballscrew_monitor.settings.topics import absolute, input_topics
 from builtin_interfaces.msg import Time
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -47,19 +47,12 @@ CLOCK_QOS = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 DATA_QOS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Played:
-    """Whether the end of a bag was reached; the longest time by which a message was late [s]."""
-
-    complete: bool
-    lateness: float
-
-
 class Player:
     """
     Publishes the messages of a bag on a node, which need not be spun.
 
-    `now` is the time that `/clock` shows [ns], `sent` the number of messages so far by topic.
+    `now` is the time that `/clock` shows [ns]; so far, `sent` counts messages by topic, and
+    `lateness` is the longest time by which one was late [s].
 
     """
 
@@ -71,6 +64,7 @@ class Player:
             raise InputError(f'rate is {rate:g}, it must be above 0')
         self._bag, self._rate = bag, rate
         self.sent: Counter[str] = Counter()
+        self.lateness = 0.0
         self.now = bag.start_time
         self._publishers = {
             topic: node.create_publisher(
@@ -108,19 +102,24 @@ class Player:
         """Publish the time at which the bag begins, so that a listener may answer to it."""
         self._tick(self._bag.start_time)
 
-    def play(self, stop: threading.Event, *, loop: bool = False) -> Played:
-        """Publish the bag, again and again in a `loop`, until `stop`; InputError on damage."""
-        begin, latest = time.monotonic(), 0.0
+    def play(self, stop: threading.Event, *, loop: bool = False) -> bool:
+        """
+        Publish the bag, again and again in a `loop`; tell whether its end came before `stop`.
+
+        Raises InputError on damage.
+
+        """
+        begin = time.monotonic()
         for message in self._messages(loop):
             due = begin + (message.log_time - self._bag.start_time) / SECOND / self._rate
             if not self._wait(due, stop, begin):
-                return Played(complete=False, lateness=latest)
+                return False
             self._tick(message.log_time)
             self._publishers[message.topic].publish(message.data)
             self.sent[message.topic] += 1
-            latest = max(latest, time.monotonic() - due)
+            self.lateness = max(self.lateness, time.monotonic() - due)
         self._deliver()
-        return Played(complete=True, lateness=latest)
+        return True
 
     def _messages(self, loop: bool) -> Iterator[Message]:
         """Yield the messages of the bag, those of a further pass later by whole passes."""
@@ -280,9 +279,9 @@ def _play(
         return FAILED
     if missing:
         print(f'nobody listens to {", ".join(missing)}', flush=True)
-    played = player.play(stop, loop=loop)
+    player.play(stop, loop=loop)
     print(
         f'{player.sent.total()} messages in {player.elapsed:.1f} s of bag time, '
-        f'at most {1e3 * played.lateness:.1f} ms late'
+        f'at most {1e3 * player.lateness:.1f} ms late'
     )
     return DONE

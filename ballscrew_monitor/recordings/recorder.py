@@ -14,7 +14,7 @@ from typing import Any
 
 from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
-from ballscrew_monitor.settings.topics import input_topics, output
+from ballscrew_monitor.settings.parameters import input_topics, output
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile, QoSReliabilityPolicy
 

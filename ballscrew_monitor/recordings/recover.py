@@ -1,20 +1,106 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Mends a recording whose writer was killed: its intact part becomes a complete bag.
+The intact part of a damaged MCAP file: its records, and a complete bag of them.
 
-The file itself is left as it is. Nothing is decoded, so the types need not be installed.
+A recording whose writer was killed is so mended; the file itself is left as it is. Nothing is
+decoded, so the types need not be installed.
 
 """
 
+from collections.abc import Container, Iterable, Iterator
+import contextlib
 from pathlib import Path
+import struct
+from typing import Any, BinaryIO
 
-from ballscrew_monitor.recordings.bag_writer import ACTIVE, Announced, BagWriter, whole_bag
-from ballscrew_monitor.recordings.mcap_damage import whole_records
-from mcap.records import Channel, Metadata, Schema
+from ballscrew_monitor.recordings.bag_writer import ACTIVE, BagWriter, whole_bag
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.reader import make_reader
+from mcap.records import Channel, Chunk, Metadata, Schema
 from mcap.records import Message as McapMessage
+from mcap.stream_reader import breakup_chunk, StreamReader
+from mcap.summary import Summary
 from surrogate.files import InputError
 import yaml
+from zstandard import ZstdError
+
+# What the reader is known to raise for a file that is not as it should be.
+DAMAGE = (
+    McapError,
+    ValueError,
+    KeyError,
+    IndexError,
+    TypeError,
+    AttributeError,
+    EOFError,
+    struct.error,
+    MemoryError,
+    OverflowError,
+    RuntimeError,
+    ZstdError,
+)
+CHUNK_BODY = 9  # [bytes] of a record before its content
+
+
+def whole_records(file: Path) -> Iterator[Any]:
+    """
+    Yield the records of an MCAP file that are whole, those of a chunk in its place.
+
+    A summary tells where chunks are, and what it holds comes first; else nothing follows damage.
+
+    """
+    with file.open('rb') as stream, contextlib.suppress(*DAMAGE):
+        summary = _summary(stream)
+        if summary is not None and summary.chunk_indexes:
+            yield from [*summary.schemas.values(), *summary.channels.values()]
+            with contextlib.suppress(*DAMAGE):
+                yield from make_reader(stream).iter_metadata()
+            for begin in sorted(one.chunk_start_offset for one in summary.chunk_indexes):
+                yield from _chunk_at(stream, begin) or ()
+            return
+        stream.seek(0)
+        for record in StreamReader(stream, emit_chunks=True).records:
+            if not isinstance(record, Chunk):
+                yield record
+                continue
+            with contextlib.suppress(*DAMAGE):
+                yield from breakup_chunk(record, validate_crc=True)
+
+
+def _summary(stream: BinaryIO) -> Summary | None:
+    try:
+        return make_reader(stream, validate_crcs=True).get_summary()
+    except (*DAMAGE, OSError):  # a file may be shorter than what is to be at its end
+        return None
+
+
+def damaged_chunks(file: Path) -> frozenset[int]:
+    """Return where the chunks begin [bytes] that the summary of a file names and that are lost."""
+    with file.open('rb') as stream:
+        if (summary := _summary(stream)) is None:
+            return frozenset()
+        begins = [index.chunk_start_offset for index in summary.chunk_indexes]
+        return frozenset(at for at in begins if not _is_whole(stream, at, summary.channels))
+
+
+def _is_whole(stream: BinaryIO, offset: int, channels: Container[int]) -> bool:
+    """Tell whether a chunk can be read, and its messages are of known channels."""
+    records = _chunk_at(stream, offset)
+    return records is not None and all(
+        one.channel_id in channels for one in records if isinstance(one, McapMessage)
+    )
+
+
+def _chunk_at(stream: BinaryIO, offset: int) -> Iterable[Any] | None:
+    """Return the records of a chunk, None of a damaged one."""
+    try:
+        stream.seek(offset + CHUNK_BODY)
+        return breakup_chunk(Chunk.read(ReadDataStream(stream)), validate_crc=True)
+    except DAMAGE:
+        return None
+
 
 SUFFIX = '.mcap'
 
@@ -56,8 +142,8 @@ def _target(file: Path) -> Path:
     return file.with_name(name) / f'{name}{SUFFIX}'
 
 
-def _topics(file: Path) -> dict[int, Announced]:
-    """Return the topics that hold a message, by the number of their channel."""
+def _topics(file: Path) -> dict[int, tuple[Channel, Schema]]:
+    """Return the channels that hold a message, by their numbers, each with its schema."""
     schemas: dict[int, Schema] = {}
     channels: dict[int, Channel] = {}
     used: set[int] = set()
@@ -69,33 +155,27 @@ def _topics(file: Path) -> dict[int, Announced]:
         elif isinstance(record, McapMessage):
             used.add(record.channel_id)
     return {
-        number: _announced(channels[number], schemas[channels[number].schema_id])
+        number: (channels[number], schemas[channels[number].schema_id])
         for number in sorted(used & channels.keys())
         if channels[number].schema_id in schemas
     }
 
 
-def _announced(channel: Channel, schema: Schema) -> Announced:
-    return Announced(
-        name=channel.topic,
-        type_name=schema.name,
-        definition=schema.data,
-        type_hash=channel.metadata.get('topic_type_hash', ''),
-        profiles=yaml.safe_load(channel.metadata.get('offered_qos_profiles', '')) or [],
-    )
-
-
-def _copy(file: Path, topics: dict[int, Announced], writer: BagWriter) -> None:
+def _copy(file: Path, topics: dict[int, tuple[Channel, Schema]], writer: BagWriter) -> None:
     """Copy messages and what the file says of itself."""
-    for topic in topics.values():
-        writer.announce(topic)
+    for channel, schema in topics.values():
+        said = channel.metadata
+        profiles = yaml.safe_load(said.get('offered_qos_profiles', '')) or []
+        kind = said.get('topic_type_hash', '')
+        names = channel.topic, schema.name
+        writer.announce(*names, schema.data, type_hash=kind, profiles=profiles)
     for message in whole_records(file):
         if isinstance(message, Metadata):
             writer.add_metadata(message.metadata, name=message.name)
         if not isinstance(message, McapMessage) or message.channel_id not in topics:
             continue
         writer.write(
-            topics[message.channel_id].name,
+            topics[message.channel_id][0].topic,
             message.data,
             log_time=message.log_time,
             publish_time=message.publish_time,

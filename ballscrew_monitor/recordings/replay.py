@@ -19,14 +19,12 @@ from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.messages.state_messages import out_of_zone_message, StateWriter, TIERS
 from ballscrew_monitor.recordings.axis_run import AxisRun, judged_parts, Part, TimedState
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bulk.decode import readers_by_topic
+from ballscrew_monitor.recordings.bulk.decode import decode, named_instead, readers_by_topic
 from ballscrew_monitor.recordings.bulk.entries import Entries
 from ballscrew_monitor.recordings.bulk.order import OnDone, ordered_entries
-from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
-from ballscrew_monitor.recordings.decoding import decode, named_instead
 from ballscrew_monitor.recordings.own_recording import is_as_recorded, OwnRecording
 from ballscrew_monitor.settings.axis import Axis, build_axis
-from ballscrew_monitor.settings.topics import absolute, input_topics, with_types
+from ballscrew_monitor.settings.parameters import absolute, input_topics, with_types
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from surrogate.files import InputError
 
@@ -68,44 +66,36 @@ def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
     return counts
 
 
-def replay(bag: Bag, values: Mapping[str, Any], *, on_done: OnDone = ignore) -> Iterator[Judged]:
-    """
-    Yield every state that the node would publish for `bag` with the parameters `values`.
-
-    `on_done` is told which share of the bag is done [-]. Raises InputError for bad parameters, for
-    a bag without the topics that they name and, unless its intact part is to be salvaged, for a
-    damaged one.
-
-    """
-    return _messages(replay_parts(bag, values, columns=False, on_done=on_done))
+def replay(bag: Bag, values: Mapping[str, Any]) -> Iterator[Judged]:
+    """Yield every state that the node would publish for `bag`, as `replay_parts` does."""
+    writers: dict[str, StateWriter] = {}
+    parts = replay_parts(bag, values)
+    return (answer(one, writers) for one in parts if isinstance(one, TimedState))
 
 
-def replay_columns(
-    bag: Bag, values: Mapping[str, Any], *, on_done: OnDone = ignore
-) -> Iterator[JudgedColumns | AxisOutcome]:
-    """
-    Yield every judged row of `bag` with the parameters `values`, and at last what it comes to.
-
-    The rows come in blocks, those of one axis in order; then one outcome for each axis. The rest
-    is as for `replay`.
-
-    """
-    return (
-        part
-        for part in replay_parts(bag, values, states=False, on_done=on_done)
-        if not isinstance(part, TimedState)
-    )
+def answer(one: TimedState, writers: dict[str, StateWriter]) -> Judged:
+    """Return what the node publishes with a state; `writers` are those of the axes by name."""
+    name, tier, event = one.axis.name, TIERS[one.axis.surface.tier], None
+    writer = writers.setdefault(name, StateWriter(name, tier))
+    writer.tier = tier  # the node may have taken another one
+    if one.event is not None:
+        shelved = one.state.shelving.until != 0
+        event = out_of_zone_message(name, one.event, shelved=shelved)
+    return Judged(state=writer.write(one.state), event=event)
 
 
 def replay_parts(
-    bag: Bag,
-    values: Mapping[str, Any],
-    *,
-    columns: bool = True,
-    states: bool = True,
-    on_done: OnDone = ignore,
+    bag: Bag, values: Mapping[str, Any], *, states: bool = True, on_done: OnDone = ignore
 ) -> Iterator[Part]:
-    """Yield what `replay_columns` and `replay` do before messages are made, judged once."""
+    """
+    Yield every judged row of `bag` with the parameters `values`, and at last what it comes to.
+
+    The rows come in blocks, those of one axis in order; then one outcome for each axis. States
+    that the node would publish come between the blocks if they are wanted. `on_done` is told which
+    share of the bag is done [-]. Raises InputError for bad parameters, for a bag without the
+    topics that they name and, unless its intact part is to be salvaged, for a damaged one.
+
+    """
     if is_as_recorded(bag, values):
         own = OwnRecording(bag)
         batches, runs = own.entries(on_done), own.runs
@@ -113,7 +103,7 @@ def replay_parts(
         axes = axes_for(bag, values)
         batches = ordered_entries(bag, axes, nanoseconds(values['tick_period']), on_done=on_done)
         runs = [AxisRun(axis) for axis in axes]
-    return _parts(batches, runs, columns=columns, states=states)
+    return _parts(batches, runs, states=states)
 
 
 def axes_for(bag: Bag, values: Mapping[str, Any]) -> list[Axis]:
@@ -128,24 +118,7 @@ def axes_for(bag: Bag, values: Mapping[str, Any]) -> list[Axis]:
     return [build_axis(name, values) for name in values['axes']]
 
 
-def _parts(
-    batches: Iterator[Entries], runs: list[AxisRun], *, columns: bool, states: bool
-) -> Iterator[Part]:
+def _parts(batches: Iterator[Entries], runs: list[AxisRun], *, states: bool) -> Iterator[Part]:
     for entries in batches:
-        yield from judged_parts(runs, entries, columns=columns, states=states)
+        yield from judged_parts(runs, entries, states=states)
     yield from (run.outcome() for run in runs)
-
-
-def _messages(parts: Iterator[Part]) -> Iterator[Judged]:
-    writers: dict[str, StateWriter] = {}
-    for one in parts:
-        if not isinstance(one, TimedState):
-            continue
-        name, tier = one.axis.name, TIERS[one.axis.surface.tier]
-        writer = writers.setdefault(name, StateWriter(name, tier))
-        writer.tier = tier  # the node may have taken another one
-        message = None
-        if one.event is not None:
-            shelved = one.state.shelving.until != 0
-            message = out_of_zone_message(name, one.event, shelved=shelved)
-        yield Judged(state=writer.write(one.state), event=message)

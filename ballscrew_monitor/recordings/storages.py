@@ -17,7 +17,7 @@ import itertools
 from pathlib import Path
 
 from ballscrew_monitor.recordings.bag_files import MAGIC
-from ballscrew_monitor.recordings.mcap_damage import DAMAGE, damaged_chunks, whole_records
+from ballscrew_monitor.recordings.recover import DAMAGE, damaged_chunks, whole_records
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
 from mcap.records import Channel, Schema

@@ -1,10 +1,14 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Words to people: numbers as they read them, times, shares, lists; and notes on a terminal."""
+"""Words to people: numbers as they read them, shares, lists; notes and progress on a terminal."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+import contextlib
 import math
 import sys
+import time
+
+from surrogate.progress import Progress
 
 NONE = '–'
 
@@ -63,3 +67,31 @@ def say(*notes: str) -> None:
     """Print notes to standard error, each with the name of the command."""
     for note in notes:
         print(f'ballscrew: {note}', file=sys.stderr)
+
+
+PATIENCE = 2.0  # [s] of work before anything is said
+Shown = Callable[[float, str], contextlib.AbstractContextManager[Callable[[float], None]]]
+"""Shows how far a total of some unit is done, as `shown_progress` does."""
+
+
+@contextlib.contextmanager
+def shown_progress(
+    total: float,
+    unit: str = 's of the recording',
+    *,
+    progress: Progress | None = None,
+    clock: Callable[[], float] = time.monotonic,
+) -> Iterator[Callable[[float], None]]:
+    """Give what shows the share [-] done of a total of some unit, if it takes long."""
+    whole, begin = max(round(total), 1), clock()
+    bar = progress or Progress(whole, unit)
+    bar.show(0, whole)
+
+    def show(share: float) -> None:
+        if clock() - begin >= PATIENCE:
+            bar.show(min(max(round(share * whole), 1), whole), whole)
+
+    try:
+        yield show
+    finally:
+        bar.close()

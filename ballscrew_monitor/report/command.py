@@ -13,19 +13,17 @@ from typing import Any, TYPE_CHECKING
 from ballscrew_monitor.core.interrupts import DONE, FAILED
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_files import is_table
-from ballscrew_monitor.recordings.decoding import silence
+from ballscrew_monitor.recordings.bulk.decode import silence
 from ballscrew_monitor.recordings.opener import opened_log
-from ballscrew_monitor.recordings.progress import shown_progress
 from ballscrew_monitor.recordings.replay import axes_for
 from ballscrew_monitor.recordings.tables.mapping import read_map
-from ballscrew_monitor.recordings.words import counted, say
+from ballscrew_monitor.recordings.words import counted, say, shown_progress
 from ballscrew_monitor.report.judging import AxisCase, judge_log, LogCase
-from ballscrew_monitor.report.logs import find_logs, left_out, map_for, PAGE, SUMMARY
+from ballscrew_monitor.report.logs import find_logs, left_out, PAGE, SUMMARY
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_monitor.report.printed import log_lines, printed_records, summary_record, without
 from ballscrew_monitor.report.verdict import never_moved
-from ballscrew_monitor.settings.parameters import read_file
-from ballscrew_monitor.settings.topics import with_types
+from ballscrew_monitor.settings.parameters import read_file, with_types
 from surrogate.files import InputError, json_text
 from surrogate.surface import SurfaceError
 
@@ -83,7 +81,7 @@ def _print_many(
         if not args.json:
             print(log)
         try:
-            mapping = map_for(log, args.map, alone=False)
+            mapping = args.map if is_table(log) else None  # it is for tables alone
             records[str(log)], code = _print_one(args, nominal, log, mapping)
         except (InputError, SurfaceError) as error:
             say(f'{log}: {error}')

@@ -24,7 +24,6 @@ LAG_TOLD = 0.01  # [s] between stamp and arrival from which on it is told
 SAME_RATE = 0.01  # between numbers of messages [-] up to which two inputs came together
 IN_THE_MAP = 'check its unit, its scale and the lead in the map'
 FASTEST_FEED = 2.0  # [m/s] hardly any ball screw feeds faster
-SHOWN = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)
 NAMES = {
     Source.SPEED: 'Speed',
     Source.LOAD: 'Axial load',
@@ -128,7 +127,7 @@ class InputSeen:
 
 def inputs_seen(case: AxisCase) -> list[InputSeen]:
     """Return all inputs of an axis, also those that it does not have."""
-    return [_seen(case, source) for source in SHOWN]
+    return [_seen(case, source) for source in NAMES]
 
 
 def _seen(case: AxisCase, source: Source) -> InputSeen:

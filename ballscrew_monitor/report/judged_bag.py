@@ -17,8 +17,8 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, whole_bag
 from ballscrew_monitor.recordings.bulk.batches import Batch, batches, END
 from ballscrew_monitor.recordings.recorder import DIAGNOSTICS, recorded_topics
-from ballscrew_monitor.settings.parameters import NODE_NAME
-from ballscrew_monitor.settings.topics import input_topics, output, with_types
+from ballscrew_monitor.recordings.replay import answer
+from ballscrew_monitor.settings.parameters import input_topics, NODE_NAME, output, with_types
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import numpy as np
 
@@ -98,20 +98,16 @@ class Answers:
     def messages(self, one: TimedState) -> Iterator[tuple[str, Any]]:
         """Yield topic and message of all that the node would say with a state."""
         name = one.axis.name
-        if name not in self._writers:
-            self._writers[name] = state_messages.StateWriter(
-                name, state_messages.TIERS[one.axis.surface.tier]
-            )
+        if name not in self._events:
             self._events[name] = Event()
             info = state_messages.surface_info_message(
                 name, one.axis.surface, one.axis.monitor.settings, stamp=one.log_time
             )
             yield output(name, 'surface_info'), info
-        yield output(name, 'state'), self._writers[name].write(one.state)
+        state, event = answer(one, self._writers)
+        yield output(name, 'state'), state
         if one.event is not None:
             self._events[name] = one.event
-            shelved = one.state.shelving.until != 0
-            event = state_messages.out_of_zone_message(name, one.event, shelved=shelved)
             yield output(name, 'out_of_zone'), event
         yield from self._diagnostics(one)
 

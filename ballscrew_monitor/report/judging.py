@@ -25,18 +25,13 @@ from ballscrew_monitor.recordings.replay import ignore, replay_parts
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report.parameters import Assumed, AxisFacts, LogParameters
 from ballscrew_monitor.report.survey import Survey, Surveyor
-from ballscrew_monitor.settings.axis import (
-    is_configured,
-    load_surface,
-    scalings_of,
-    settings_of,
-    surface_file,
-)
+from ballscrew_monitor.settings.axis import load_surface, scalings_of, settings_of, surface_file
+from ballscrew_monitor.settings.parameters import is_configured
 from surrogate.surface import Surface
 
 if TYPE_CHECKING:  # they ask for packages that printing does not need
     from ballscrew_monitor.report.health_history import AxisHistory, HistoryMaker
-    from ballscrew_monitor.report.store import RowStore
+    from ballscrew_monitor.report.log_report import RowStore
 
 Blocks = Callable[[], Iterable[JudgedColumns]]
 """Gives the blocks of rows of an axis in order, as often as it is called."""

@@ -2,18 +2,179 @@
 # SPDX-License-Identifier: Apache-2.0
 """The report of one recording: a page that a person reads, forwards and prints."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import clock_text
+from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.recordings.declared import plain
-from ballscrew_monitor.report import page_budget, parts, provenance, time_series
-from ballscrew_monitor.report.judging import AxisCase, LogCase
+from ballscrew_monitor.recordings.summary import EventRecord, Summary
+from ballscrew_monitor.recordings.words import duration, NONE, number, share
+from ballscrew_monitor.report import buckets, provenance, time_series
+from ballscrew_monitor.report.buckets import axis_budgets, AxisBudget
+from ballscrew_monitor.report.judging import AxisCase, badness, LogCase, RCS
 from ballscrew_monitor.report.map_record import map_legend, operating_map, OperatingMap
-from ballscrew_monitor.report.page import CHARTS, element, Markup, page, script_json, swatch
-from ballscrew_monitor.report.page_budget import axis_budgets, AxisBudget
-from ballscrew_monitor.report.verdict import verdicts_of
+from ballscrew_monitor.report.page import (
+    CHARTS,
+    element,
+    joined,
+    Markup,
+    page,
+    script_json,
+    share_bar,
+    swatch,
+    table,
+    TableCell,
+    TableRow,
+)
+from ballscrew_monitor.report.verdict import AxisVerdict, verdicts_of
+
+SIGNS = {'>=': '≥'}
+LASTING = ' A warning goes on over standstill and over what could not be judged.'
+
+
+def verdict_part(verdict: AxisVerdict) -> Markup:
+    """Return the verdict as a box."""
+    lines = [line for line in (verdict.why, verdict.remedy) if line]
+    if verdict.remedy:
+        lines[-1] = f'What to do: {verdict.remedy[0].lower()}{verdict.remedy[1:]}'
+    return element(
+        'div',
+        element(
+            'p',
+            element('strong', f'{verdict.standing.word}:'),
+            f' {verdict.sentence}',
+            class_='sentence',
+        ),
+        *(element('p', line) for line in lines),
+        class_=f'verdict {verdict.standing.value}',
+    )
+
+
+def tiles(case: AxisCase, summary: Summary) -> Markup:
+    """Return the numbers that a reader asks for first."""
+    running = summary.running_time
+    facts = (
+        (duration(case.survey.span), 'recorded'),
+        (duration(running), f'in motion ({share(running, case.survey.span)})'),
+        (
+            NONE if summary.says_nothing else share(summary.outside_time, running),
+            'of the motion outside the optimal zone',
+        ),
+        (str(len(summary.events)), 'warning' if len(summary.events) == 1 else 'warnings'),
+        (f'{number(summary.energy_lost, 4)} J', 'lost to friction in the screw'),
+        (number(summary.revolutions, 4), 'revolutions'),
+    )
+    made = (
+        element('div', element('b', value), element('span', text), class_='tile')
+        for value, text in facts
+    )
+    return element('div', *made, class_='tiles')
+
+
+def shares(case: AxisCase, summary: Summary) -> Markup:
+    """Return time in zone and regime, and the energy lost in each zone, as bars."""
+    running = summary.running_time
+    zone = [
+        (summary.optimal_time, 'optimal', 'optimal'),
+        (summary.outside_time, 'outside', 'outside the optimal zone'),
+        (summary.unjudged_time, 'unjudged', 'not judged'),
+    ]
+    regime = [
+        (summary.boundary_time, 'boundary', 'boundary: metal touches metal'),
+        (summary.mixed_time, 'mixed', 'mixed: oil film and metal share the load'),
+        (summary.hydrodynamic_time, 'hydrodynamic', 'hydrodynamic: the oil film carries'),
+    ]
+    return joined(
+        element('h3', f'Time in the optimal zone, of {duration(running)} in motion'),
+        _bar(zone, running, duration),
+        element('h3', 'Time in each lubrication regime'),
+        _bar(regime, running, duration),
+        *_energy(case, summary),
+    )
+
+
+def _bar(parts: Sequence[tuple[float, str, str]], whole: float, show: Any) -> Markup:
+    texts = [f'{text}: {show(amount)} ({share(amount, whole)})' for amount, _, text in parts]
+    drawn = share_bar([(amount, f'fill-{kind}') for amount, kind, _ in parts], '; '.join(texts))
+    items = (
+        element('li', swatch(kind), text) for (_, kind, _), text in zip(parts, texts, strict=True)
+    )
+    return joined(drawn, element('ul', *items, class_='legend'))
+
+
+def _energy(case: AxisCase, summary: Summary) -> Iterable[Markup]:
+    energy, total = case.survey.energy, summary.energy_lost
+    if not total > 0.0:
+        return
+    power = total / summary.running_time
+    yield element(
+        'h3', f'Energy lost to friction: {number(total, 4)} J, {number(power)} W on average'
+    )
+    parts = [
+        (energy[Zone.OPTIMAL], 'optimal', 'while optimal'),
+        (energy[Zone.OUTSIDE], 'outside', 'while outside the zone'),
+    ]
+    yield _bar(parts, math.fsum(energy.values()), lambda joules: f'{number(joules, 4)} J')
+    yield element(
+        'p',
+        'Losses in the screw as the model works them out, while it knows them; bearings, guides '
+        'and motor are not in them.',
+        class_='muted',
+    )
+
+
+def events_part(case: AxisCase, most: int) -> Markup:
+    """Return the table of the worst warnings, `most` rows, which lead to their moment."""
+    events = case.worst_first[:most]
+    if not events:
+        return joined(element('h3', 'Warnings'), element('p', 'None.'))
+    count = len(case.outcome.events)
+    cut = f' The worst {most} of {count} are shown.' if count > most else ''
+    worst = events[0].event_id
+    in_order = sorted(events, key=lambda event: event.event_id)
+    rows = (_event_row(case, event, event.event_id == worst) for event in in_order)
+    return joined(
+        element('h3', f'Warnings: {count}'),
+        element(
+            'p',
+            'A click on a row shows that moment in the charts. The worst one is marked.'
+            + cut
+            + LASTING,
+            class_='muted',
+        ),
+        table(
+            ('No.', 'Begins at [s]', 'Lasts [s]', 'Cause', 'Worst', 'Limit', 'What to do'),
+            rows,
+            kind='leading sortable',
+        ),
+    )
+
+
+def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
+    begin, shown = case.since_first(event.start), case.shown(event)
+    metal = event.quantity == RCS
+    cause = 'oil film too thin (RCS)' if metal else f'too much friction ({event.quantity})'
+    todo = event.what_to_do
+    lasts = number(event.duration, 4) + (' and still on' if event.active else '')
+    return TableRow(
+        (
+            TableCell(str(event.event_id), kind='number', value=event.event_id),
+            TableCell(f'{begin:.2f}', kind='number', value=begin),
+            TableCell(lasts, kind='number', value=event.duration),
+            cause,
+            TableCell(event.shown(event.worst_value), kind='short', value=badness(event)[0]),
+            TableCell(
+                text=f'{SIGNS.get(event.relation, event.relation)} {event.shown(event.limit)}',
+                kind='short',
+            ),
+            f'at {event.place}: {todo}' if event.place else todo or NONE,
+        ),
+        begin=shown[0],
+        end=shown[1],
+        kind='bad' if worst else '',
+    )
 
 
 def maps_of(log: LogCase) -> list[OperatingMap]:
@@ -31,7 +192,7 @@ def report_page(log: LogCase, maps: Sequence[OperatingMap] | None = None) -> str
     budgets = axis_budgets(log.axes)
     body = _body(log, maps, budgets)
     bare = _page(log, body, [{'map': plain(chart)} for chart in maps])
-    courses = _courses(log, budgets, page_budget.PAGE_BYTES - len(bare.encode()))
+    courses = _courses(log, budgets, buckets.PAGE_BYTES - len(bare.encode()))
     records = [
         {'id': _id(number), 'map': plain(chart), 'course': course}
         for number, (chart, course) in enumerate(zip(maps, courses, strict=True))
@@ -48,14 +209,14 @@ def _courses(log: LogCase, budgets: Sequence[AxisBudget], spare: float) -> list[
     """Return the courses of all axes, which share what is to spare of the page [bytes]."""
     axes = list(zip(log.axes, budgets, strict=True))
     spare -= sum(time_series.coarse_bytes(*axis) for axis in axes)
-    shares = page_budget.shares_of_worst(
+    shares = buckets.shares_of_worst(
         spare, log.axes, [time_series.event_bytes(*axis) for axis in axes]
     )
     made: list[dict[str, Any]] = []
     left = 0.0  # what an axis did not take is for the next one
-    for (case, budget), share in zip(axes, shares, strict=True):
-        made.append(time_series.series_record(case, share + left, budget))
-        left += share - len(script_json(made[-1]['fine']))
+    for (case, budget), own in zip(axes, shares, strict=True):
+        made.append(time_series.series_record(case, own + left, budget))
+        left += own - len(script_json(made[-1]['fine']))
     return made
 
 
@@ -65,7 +226,7 @@ def _body(log: LogCase, maps: Sequence[OperatingMap], budgets: Sequence[AxisBudg
         'main',
         element('h1', f'Ball screw report: {log.name}'),
         element('p', _when(log), class_='muted'),
-        *(parts.verdict_part(verdict) for verdict in verdicts_of(log)),
+        *(verdict_part(verdict) for verdict in verdicts_of(log)),
         *provenance.caution(log.axes),
         *(element('p', f'Note: {note}', class_='hint') for note in log.notes),
         element(
@@ -93,7 +254,7 @@ def _axis_part(
     name: str, case: AxisCase, chart: OperatingMap, budget: AxisBudget, log: LogCase
 ) -> Markup:
     summary = case.outcome.summary()
-    known = [] if summary is None else [parts.tiles(case, summary)]
+    known = [] if summary is None else [tiles(case, summary)]
     return element(
         'section',
         element('h2', f'Axis {case.axis}'),
@@ -101,8 +262,8 @@ def _axis_part(
         element('h3', f'Operating map at {chart.temperature:g} °C oil'),
         element('div', class_='map'),
         _legend(map_legend(case, chart)),
-        *([] if summary is None else [parts.shares(case, summary)]),
-        parts.events_part(case, budget.events),
+        *([] if summary is None else [shares(case, summary)]),
+        events_part(case, budget.events),
         element('h3', 'Course over time'),
         element(
             'p',

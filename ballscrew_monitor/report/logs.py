@@ -59,17 +59,6 @@ def left_out(paths: Sequence[Path], logs: Sequence[Path], out: Path | None = Non
     return [f'left out, as tables are judged by a --map: {names}'] if tables else []
 
 
-def map_for(log: Path, mapping: Path | None, *, alone: bool) -> Path | None:
-    """
-    Return the map that a recording is opened with.
-
-    Of several recordings it is for the tables alone; one that is `alone` has it for certain, so
-    that it is told where that is a bag.
-
-    """
-    return mapping if alone or is_table(log) else None
-
-
 def is_one_bag(folder: Path, *, tables: bool = False, out: Path | None = None) -> bool:
     """
     Tell whether a folder is one bag: with metadata, or no more than the parts of one.

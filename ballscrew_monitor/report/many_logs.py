@@ -9,13 +9,13 @@ from pathlib import Path
 import threading
 from typing import Any
 
+from ballscrew_monitor.recordings.bag_files import is_table
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.tables.convert import PASSES
-from ballscrew_monitor.report.log_report import AxisLine, LogResult, report_log
-from ballscrew_monitor.report.logs import folder_names, map_for
+from ballscrew_monitor.report.log_report import AxisLine, LogResult, remove_left, report_log
+from ballscrew_monitor.report.logs import folder_names
 from ballscrew_monitor.report.overview import LogEntry, overview_page
 from ballscrew_monitor.report.parameters import parameters_for
-from ballscrew_monitor.report.store import remove_left
 from surrogate.files import replace_file, to_json
 from surrogate.progress import Progress
 from surrogate.tasks.pool import run_tasks, TaskOutcome
@@ -105,7 +105,8 @@ def report_logs(
             'log': str(log.resolve()),
             'out': str((out / name).resolve()),
             'params': _text(params),
-            'map': _text(map_for(log, mapping, alone=len(logs) == 1)),
+            # It is for tables; one recording has it for certain, and is refused if it is a bag.
+            'map': _text(mapping if len(logs) == 1 or is_table(log) else None),
             'nominal': str(nominal),
         }
         for log, name in zip(logs, folder_names(logs), strict=True)
@@ -159,10 +160,9 @@ def entry_of(name: str, folder: str, outcome: TaskOutcome) -> LogEntry:
     if outcome.result is None:
         return LogEntry(name=name, folder=folder, failure=outcome.sentence)
     record = dict(outcome.result)
-    lines = [AxisLine(**_without_none(line)) for line in record.pop('lines')]
+    # For what is not known the defaults stand.
+    known = [
+        {key: one for key, one in line.items() if one is not None} for line in record.pop('lines')
+    ]
+    lines = [AxisLine(**line) for line in known]
     return LogEntry(name=name, folder=folder, result=LogResult(lines=lines, **record))
-
-
-def _without_none(line: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields that are known; for the others the defaults stand."""
-    return {key: value for key, value in line.items() if value is not None}

@@ -13,10 +13,10 @@ from ballscrew_monitor.core.judgement import Limits, Zone
 from ballscrew_monitor.recordings.columns import JudgedColumns
 from ballscrew_monitor.recordings.declared import written
 from ballscrew_monitor.report import operating_field
+from ballscrew_monitor.report.buckets import PATH_POINTS
 from ballscrew_monitor.report.judging import AxisCase
 from ballscrew_monitor.report.operating_field import Field
 from ballscrew_monitor.report.page import floats, packed
-from ballscrew_monitor.report.page_budget import PATH_POINTS
 from ballscrew_monitor.report.survey import opposing_loads
 from contourpy import contour_generator
 import numpy as np

@@ -15,10 +15,10 @@ from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.log_facts import grouped
 from ballscrew_monitor.recordings.words import counted, duration, NONE, number, share, shown_unit
+from ballscrew_monitor.report.buckets import MOST_ROWS
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
 from ballscrew_monitor.report.judging import AxisCase
 from ballscrew_monitor.report.page import element, joined, Markup, table, TableCell, TableRow
-from ballscrew_monitor.report.page_budget import MOST_ROWS
 from ballscrew_monitor.report.survey import REST
 from surrogate.units import MILLI
 

@@ -12,11 +12,10 @@ from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Level, Limits, Zone
 from ballscrew_monitor.recordings import columns
-from ballscrew_monitor.report import buckets, page_budget
-from ballscrew_monitor.report.buckets import Rows
+from ballscrew_monitor.report import buckets
+from ballscrew_monitor.report.buckets import AxisBudget, Rows
 from ballscrew_monitor.report.judging import AxisCase
 from ballscrew_monitor.report.page import script_json
-from ballscrew_monitor.report.page_budget import AxisBudget
 import numpy as np
 from surrogate.surface import FILM_RATIO_LIMITS, Regime, REGIMES
 from surrogate.units import RPM
@@ -62,7 +61,7 @@ NUMBERS = (
 
 
 def series_record(
-    case: AxisCase, fine_bytes: float = page_budget.PAGE_BYTES, budget: AxisBudget | None = None
+    case: AxisCase, fine_bytes: float = buckets.PAGE_BYTES, budget: AxisBudget | None = None
 ) -> dict[str, Any]:
     """Return the course of an axis; `fine_bytes` of the page are for every sample of events."""
     budget = budget or AxisBudget()
@@ -76,7 +75,7 @@ def series_record(
         'span': case.survey.span,
         'bucket': bucket,
         'shown': shown,
-        'worst': min(page_budget.WORST, len(case.outcome.events)),
+        'worst': min(buckets.WORST, len(case.outcome.events)),
         'begins': None if math.isnan(case.begins) else case.begins,
         'fine': fine,
         'bars': [
@@ -93,7 +92,7 @@ def series_record(
 
 def drawn_rows(case: AxisCase) -> Rows:
     """Return all rows of a short recording, extremes of buckets of a long one."""
-    return _columns(case, 0.0, page_budget.BUCKETS)[0]
+    return _columns(case, 0.0, buckets.BUCKETS)[0]
 
 
 def coarse_bytes(case: AxisCase, budget: AxisBudget) -> float:
@@ -205,7 +204,7 @@ def _worst_stretches(case: AxisCase, longest: float) -> tuple[int, list[tuple[fl
     """Return of how many of the worst events samples are kept, and where; `longest` in all [s]."""
     chosen: list[tuple[float, float]] = []
     count = 0
-    for event in case.worst_first[: page_budget.WORST]:
+    for event in case.worst_first[: buckets.WORST]:
         ends = ((at - AROUND, at + AROUND) for at in case.span(event))
         more = _merged([*chosen, *ends])
         if _length(more) > longest:

@@ -16,15 +16,13 @@ from ballscrew_monitor.core.inputs import Input, OpenInput, Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
 from ballscrew_monitor.judge.monitor import Monitor
-from ballscrew_monitor.settings.parameter_table import LOAD_SOURCES
+from ballscrew_monitor.settings.parameters import is_configured, MOTOR_TORQUE
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface, SurfaceError
 
 PLAUSIBLE = 3.0  # times the largest of the surface: what lies beyond is a glitch
-MOTOR_TORQUE = LOAD_SOURCES[1]
 _LOADED: weakref.WeakValueDictionary[str, Surface] = weakref.WeakValueDictionary()
 """Surfaces in use by their hash: their tables take megabytes."""
-OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
 UNITS = {
     Source.SPEED: tuple(conversions.SPEED_UNITS),
     Source.LOAD: tuple(conversions.LOAD_UNITS),
@@ -219,9 +217,9 @@ def derivation_of(name: str, values: Mapping[str, Any]) -> LoadDerivation | None
 def _torque_unit(name: str, values: Mapping[str, Any]) -> float:
     """Return the torque at the screw [N m] that one unit of the input is."""
     leaves = ('constant', 'rated', 'gear_ratio')
-    motor = conversions.MotorData(**{leaf: values[f'{name}.torque.{leaf}'] for leaf in leaves})
+    motor = {leaf: values[f'{name}.torque.{leaf}'] for leaf in leaves}
     try:
-        return conversions.torque_unit(values[f'{name}.torque.unit'], motor)
+        return conversions.torque_unit(values[f'{name}.torque.unit'], **motor)
     except InputError as error:
         raise InputError(f'parameters {name}.torque: {error}') from None
 
@@ -260,13 +258,6 @@ def _limits_of(name: str, values: Mapping[str, Any], preload: float) -> Limits:
         clear_delay=nanoseconds(values[prefix + 'clear_delay']),
         hysteresis=values[prefix + 'hysteresis'],
     )
-
-
-def is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool:
-    """Tell whether the axis `name` has an input; some may be left out, or be derived."""
-    if source is Source.LOAD and values[f'{name}.load.source'] == MOTOR_TORQUE:
-        return False
-    return source not in OPTIONAL or bool(values[f'{name}.{source.name.lower()}.topic'])
 
 
 def _input_of(

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Products of the parameter table: checks, files, and the table for the documentation.
+Products of the parameter table: defaults, checks, files of parameters, and names of topics.
 
 The rows of `AXIS_ROWS` hold for every axis, under its name; `{axis}` in a default is that name.
 
@@ -13,11 +13,14 @@ import pathlib
 import re
 from typing import Any
 
+from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.settings.parameter_row import BARE_LETTERS, BARE_WORDS, ParameterRow
-from ballscrew_monitor.settings.parameter_table import AXIS_ROWS, NODE_ROWS
+from ballscrew_monitor.settings.parameter_table import AXIS_ROWS, LOAD_SOURCES, NODE_ROWS
 from surrogate.files import InputError
 
 NODE_NAME = 'ballscrew_monitor'
+MOTOR_TORQUE = LOAD_SOURCES[1]
+OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
 # Parameters, or first parts of their names, that any node may be given; they are not of the table.
 ROS_NAMES = frozenset({'qos_overrides', 'start_type_description_service', 'use_sim_time'})
 _AXIS_NAME = re.compile(r'[a-z][a-z0-9_]*')
@@ -209,53 +212,40 @@ def flatten(section: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
     return flat
 
 
-def example_yaml() -> str:
-    """Return the example parameter file: every parameter of one axis, with its comment."""
-    lines = [
-        '# Every parameter of ballscrew_monitor with its default, made from the table in',
-        '# ballscrew_monitor/settings/parameter_table.py. Numbers need a decimal point.',
-        f'/**/{NODE_NAME}:',
-        '  ros__parameters:',
-    ]
-    for row in NODE_ROWS:
-        lines += _example_lines(row, row.name, row.name, 4)
-    lines += ['    # Axis x; each axis of `axes` has such a group.', '    x:']
-    group = ''
-    for row in AXIS_ROWS:
-        head, _, leaf = row.name.rpartition('.')
-        if head != group and head:
-            lines.append(f'      {head}:')
-        group = head
-        lines += _example_lines(row, f'x.{row.name}', leaf, 8 if head else 6)
-    return '\n'.join(lines) + '\n'
+def is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool:
+    """Tell whether the axis `name` has an input; some may be left out, or be derived."""
+    if source is Source.LOAD and values[f'{name}.load.source'] == MOTOR_TORQUE:
+        return False
+    return source not in OPTIONAL or bool(values[f'{name}.{source.name.lower()}.topic'])
 
 
-def _example_lines(row: ParameterRow, name: str, leaf: str, indent: int) -> list[str]:
-    space = ' ' * indent
-    unit = f'[{row.unit}]' if row.unit else ''
-    allowed = f'Allowed: {row.allowed}.' if row.allowed else ''
-    said = (f'{row.text.rstrip(".")}.', unit, allowed, f'Changes {row.change.value}.')
-    facts = filter(None, said)
-    return [f'{space}# {" ".join(facts)}', f'{space}{leaf}: {_yaml(default_of(name, row))}']
+def absolute(topic: str) -> str:
+    """Return the full name of a topic that a node in the root namespace names."""
+    return topic if topic.startswith('/') else f'/{topic}'
 
 
-def _yaml(value: Any) -> str:
-    if isinstance(value, bool):
-        return 'true' if value else 'false'
-    return repr(value)
+def input_topics(values: Mapping[str, Any]) -> dict[str, str]:
+    """Return topic and type of every input configured in the parameters `values`."""
+    found = {}
+    for axis in values['axes']:
+        for source in reversed(Source):
+            prefix = f'{axis}.{source.name.lower()}'
+            topic = values[f'{prefix}.topic']
+            if topic and is_configured(axis, values, source):
+                found[absolute(topic)] = values[f'{prefix}.type']
+    return found
 
 
-def markdown_table() -> str:
-    """Return the table of all parameters for docs/reference/parameters.md."""
-    lines = [
-        '| parameter | default | allowed | unit | changes | meaning |',
-        '|---|---|---|---|---|---|',
-    ]
-    for prefix, rows in (('', NODE_ROWS), ('<axis>.', AXIS_ROWS)):
-        for row in rows:
-            default = str(row.default).replace('{axis}', '<axis>')
-            lines.append(
-                f'| `{prefix}{row.name}` | `{default}` | {row.allowed} | {row.unit} '
-                f'| {row.change.value} | {row.text} |'
-            )
-    return '\n'.join(lines) + '\n'
+def with_types(values: Mapping[str, Any], types: Mapping[str, str]) -> dict[str, Any]:
+    """Return the parameters with each empty message type filled in from `types` by topic."""
+    filled = dict(values)
+    for name, topic in values.items():
+        prefix, _, leaf = name.rpartition('.')
+        if leaf == 'topic' and topic and not values[f'{prefix}.type']:
+            filled[f'{prefix}.type'] = types.get(absolute(topic), '')
+    return filled
+
+
+def output(axis: str, name: str) -> str:
+    """Return the full name of an output of the node, such as `state`."""
+    return absolute(f'{NODE_NAME}/{axis}/{name}')

@@ -13,16 +13,10 @@ from typing import Any
 
 from ballscrew_monitor.core.links import Publisher
 import rclpy
+from rclpy import qos
 from rclpy.duration import Duration
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.qos import (
-    QoSDurabilityPolicy,
-    QoSHistoryPolicy,
-    QoSPolicyKind,
-    QoSProfile,
-    QoSReliabilityPolicy,
-)
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.signals import SignalHandlerOptions
 from surrogate.files import InputError
@@ -47,7 +41,7 @@ def longest_period(axis: str, values: Mapping[str, Any]) -> float:
     return max(STEADY_PERIOD, float(values[f'{axis}.publish_period']))
 
 
-def state_qos(axis: str, values: Mapping[str, Any], *, simulated: bool) -> QoSProfile:
+def state_qos(axis: str, values: Mapping[str, Any], *, simulated: bool) -> qos.QoSProfile:
     """
     Return the QoS of the state of an axis: while the node is active, one comes by the deadline.
 
@@ -55,27 +49,27 @@ def state_qos(axis: str, values: Mapping[str, Any], *, simulated: bool) -> QoSPr
     Simulated time may stand, so that nothing can be promised in it.
 
     """
-    qos = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
+    promise = qos.QoSProfile(depth=10, reliability=qos.QoSReliabilityPolicy.RELIABLE)
     if not simulated:
         ticks = 3.0 * values['tick_period']
         longest = longest_period(axis, values) + values[f'{axis}.speed.timeout'] + ticks
-        qos.deadline = Duration(seconds=longest)
-    return qos
+        promise.deadline = Duration(seconds=longest)
+    return promise
 
 
-def input_qos() -> QoSProfile:
+def input_qos() -> qos.QoSProfile:
     """Return the QoS of an input, which suits every publisher; rclpy writes overrides into it."""
-    return QoSProfile(
-        history=QoSHistoryPolicy.KEEP_LAST,
+    return qos.QoSProfile(
+        history=qos.QoSHistoryPolicy.KEEP_LAST,
         depth=DEPTH,
-        reliability=QoSReliabilityPolicy.BEST_EFFORT,
-        durability=QoSDurabilityPolicy.VOLATILE,
+        reliability=qos.QoSReliabilityPolicy.BEST_EFFORT,
+        durability=qos.QoSDurabilityPolicy.VOLATILE,
     )
 
 
 def overriding_options() -> QoSOverridingOptions:
     """Return what rclpy declares as parameters of a subscription."""
-    return QoSOverridingOptions([QoSPolicyKind[name.upper()] for name in POLICIES])
+    return QoSOverridingOptions([qos.QoSPolicyKind[name.upper()] for name in POLICIES])
 
 
 def check_overrides(given: Mapping[str, Any], topics: Collection[str]) -> None:

@@ -15,7 +15,7 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.frames import Frame
 from ballscrew_monitor.recordings.retention import KeepSettings, Retention
 from ballscrew_monitor.settings.axis import build_axis
-from ballscrew_monitor.settings.topics import absolute
+from ballscrew_monitor.settings.parameters import absolute
 from rclpy.serialization import serialize_message
 
 ALWAYS = KeepSettings(always=True, before=60.0, after=10.0, longest=1e9, largest=1e9, total=1e12)

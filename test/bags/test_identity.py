@@ -18,8 +18,7 @@ from ballscrew_monitor.recordings.own_recording import recorded_values
 from ballscrew_monitor.recordings.replay import replay_parts
 from ballscrew_monitor.recordings.retention import KeepSettings, Retention
 from ballscrew_monitor.settings.axis import build_axis
-from ballscrew_monitor.settings.parameters import read_file
-from ballscrew_monitor.settings.topics import absolute, input_topics
+from ballscrew_monitor.settings.parameters import absolute, input_topics, read_file
 import pytest
 from rclpy.serialization import deserialize_message
 from scenario import generate, PARAMETERS
@@ -137,7 +136,7 @@ def again(folder):
     """Return what a replay of the recording says, and what it says of the notes of the node."""
     (path,) = folder.iterdir()
     bag = Bag(path)
-    parts = replay_parts(bag, recorded_values(bag), columns=False)
+    parts = replay_parts(bag, recorded_values(bag))
     said = [text_of(part.state) for part in parts if isinstance(part, TimedState)]
     return said, ' '.join(bag.remarks)
 

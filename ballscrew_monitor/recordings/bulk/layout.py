@@ -15,14 +15,8 @@ import struct
 from types import SimpleNamespace
 from typing import Any
 
+from ballscrew_monitor.core import fields
 from ballscrew_monitor.core.cdr import HEADER
-from ballscrew_monitor.core.fields import (
-    FORMATS,
-    message_class,
-    MessageClass,
-    OtherJoints,
-    TooShort,
-)
 from ballscrew_monitor.core.inputs import Input
 from ballscrew_monitor.recordings.bulk.chunks import Integers, unaligned
 import numpy as np
@@ -30,7 +24,9 @@ from numpy.typing import NDArray
 
 HEAD = len(HEADER)
 WORD = 8  # [bytes] compared at once
-KINDS = {name: f'<{letter}' for name, letter in (FORMATS | {'boolean': 'B', 'char': 'B'}).items()}
+KINDS = {
+    name: f'<{letter}' for name, letter in (fields.FORMATS | {'boolean': 'B', 'char': 'B'}).items()
+}
 _SEQUENCE = re.compile(r'sequence<(.+?)(?:, \d+)?>')
 _ARRAY = re.compile(r'(.+)\[(\d+)\]')
 _TEXT = re.compile(r'string(<\d+>)?')
@@ -43,7 +39,7 @@ class NoLayout(Exception):
 class Layout:
     """Places of all numbers of the messages that are like one example."""
 
-    def __init__(self, example: bytes, message_type: MessageClass) -> None:
+    def __init__(self, example: bytes, message_type: fields.MessageClass) -> None:
         """Learn from one message; raises NoLayout when that is not possible."""
         walk = _Walk(example)
         try:
@@ -65,7 +61,7 @@ class Layout:
                 fits &= (words[begin + place] & mask) == expected
         return fits
 
-    def find(self, source: Input) -> int | OtherJoints | TooShort:
+    def find(self, source: Input) -> int | fields.OtherJoints | fields.TooShort:
         """Return where the field of an input stands [bytes], or what there is instead."""
         found = source.read_field(self._places)
         return int(found) if isinstance(found, float) else found
@@ -93,12 +89,12 @@ class _Walk:
         self.fixed = np.zeros(len(data), dtype=bool)
         self.fixed[:HEAD] = True
 
-    def message(self, kind: MessageClass) -> SimpleNamespace:
+    def message(self, kind: fields.MessageClass) -> SimpleNamespace:
         """Pass a message; return its fields by name."""
-        fields = kind.get_fields_and_field_types()
-        if not fields:
+        kinds = kind.get_fields_and_field_types()
+        if not kinds:
             raise NoLayout
-        return SimpleNamespace(**{name: self._value(each) for name, each in fields.items()})
+        return SimpleNamespace(**{name: self._value(each) for name, each in kinds.items()})
 
     def _value(self, kind: str) -> Any:
         if sequence := _SEQUENCE.fullmatch(kind):
@@ -112,7 +108,7 @@ class _Walk:
         if '/' not in kind:
             raise NoLayout
         package, name = kind.split('/')
-        return self.message(message_class(f'{package}/msg/{name}'))
+        return self.message(fields.message_class(f'{package}/msg/{name}'))
 
     def _elements(self, kind: str, count: int) -> Any:
         if kind in KINDS:

@@ -5,6 +5,7 @@ Conversion of a table to a bag that says how it is to be judged, and on which as
 
 Topics are `joint_states` with speed, position and torque of each screw, `<axis>/axial_load` and
 `<axis>/oil_temperature`. Parameters of the node, map, assumptions and notes are in the metadata.
+`ballscrew import` makes such a bag, or prints a first map of a table.
 
 """
 
@@ -20,15 +21,17 @@ from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import type_name_of
 from ballscrew_monitor.messages.reasons import enough_timeout
+from ballscrew_monitor.recordings.bag_files import is_bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic, whole_bag
 from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
-from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables.cells import Array
-from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
-from ballscrew_monitor.recordings.tables.series import Agreement, Block, read_series, Series
+from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.mapping import AxisMap, read_map, TableMap
+from ballscrew_monitor.recordings.tables.series import Block, Fit, fits_of, read_series, Series
+from ballscrew_monitor.recordings.words import say, Shown, shown_progress
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import load_surface, MOTOR_TORQUE
-from ballscrew_monitor.settings.topics import absolute
+from ballscrew_monitor.settings.parameters import absolute
 from geometry_msgs.msg import WrenchStamped
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +47,9 @@ BLOCK = 4096  # rows that are made at a time
 _STAMP = (1_234_567_891, 987_654_321)  # [s], [ns]
 
 
-def convert(path: Path, mapping: TableMap, out: Path, *, shown: Shown = silent) -> LogFacts:
+def convert(
+    path: Path, mapping: TableMap, out: Path, *, shown: Shown = shown_progress
+) -> LogFacts:
     """
     Write the log at `path` as a bag to the directory `out`; return what the bag says of itself.
 
@@ -65,10 +70,10 @@ def convert(path: Path, mapping: TableMap, out: Path, *, shown: Shown = silent) 
     )
     with whole_bag(out, out.resolve().name) as writer:
         writer.add_metadata(facts.texts())
-        agreement = Agreement(mapping, series.usual_period)
+        fits = fits_of(mapping, series.usual_period)
         with shown(series.count, 'rows written') as show:
-            _write(writer, series, agreement, show)
-        if found := agreement.notes():
+            _write(writer, series, fits, show)
+        if found := list(filter(None, (fit.note() for fit in fits))):
             facts = dataclasses.replace(facts, notes=(*facts.notes, *found))
             writer.add_metadata(facts.texts())
     return facts
@@ -145,13 +150,14 @@ def _derived(mapping: TableMap) -> list[Assumption]:
 
 
 def _write(
-    writer: BagWriter, series: Series, agreement: Agreement, show: Callable[[float], None]
+    writer: BagWriter, series: Series, fits: list[Fit], show: Callable[[float], None]
 ) -> None:
     """Write all rows and compare them; the topics are those of the first of them."""
     templates: dict[str, RowTemplate] = {}
     done = 0
     for block in series.blocks():
-        agreement.add(block)
+        for fit in fits:
+            fit.add(block)
         streams = []
         for name, message, numbers in _topics(block):
             if name not in templates:
@@ -244,3 +250,31 @@ class RowTemplate:
             for name, values in zip(self._names, numbers, strict=True):
                 rows[name] = values[part]
             yield from np.frombuffer(content, f'V{len(self._data)}').tolist()
+
+
+def print_guess(log: Path) -> None:
+    """Print a first map of a log, and to standard error what is to be said about it."""
+    _check_log(log)
+    made = guess(log, shown=shown_progress)
+    print(made.text, end='')
+    say(*made.notes)
+
+
+def make_bag(log: Path, config: Path | None, out: Path | None) -> None:
+    """Write a log as a bag to `out` by the map in `config`; raises InputError without them."""
+    _check_log(log)
+    if config is None or out is None:
+        missing = '--config' if config is None else '--out'
+        raise InputError(f'{missing} is missing; --guess prints a first map for --config')
+    facts = convert(log, read_map(config), out, shown=shown_progress)
+    say(*facts.notes)
+    print(f'{out}: judge it by ballscrew replay {out}')
+    for one in facts.assumptions:
+        print(f'  assumed {one.key} = {one.value}: {one.reason}')
+
+
+def _check_log(log: Path) -> None:
+    if log.is_dir() or (log.exists() and is_bag(log)):
+        raise InputError(
+            f'log {log} is no table; a bag needs no import, ballscrew replay takes it'
+        )

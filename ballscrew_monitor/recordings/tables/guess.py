@@ -15,12 +15,12 @@ from typing import Any
 
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
-from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.mapping import INPUTS, UNITS
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
+from ballscrew_monitor.recordings.words import Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface
@@ -60,7 +60,7 @@ class Guess:
         )
 
 
-def guess(path: Path, *, shown: Shown = silent) -> Guess:
+def guess(path: Path, *, shown: Shown = shown_progress) -> Guess:
     """
     Return a first map of the log at `path`, and show how far it is read.
 

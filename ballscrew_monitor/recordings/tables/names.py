@@ -1,14 +1,117 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Names of columns, read: which axis, quantity and unit; and the columns of each axis."""
+"""Names of columns, read: axis, quantity, unit as it is spelt; and the columns of each axis."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 import dataclasses
 import re
 
-from ballscrew_monitor.recordings.tables import spelt_units
-from ballscrew_monitor.recordings.tables.mapping import INPUTS
-from ballscrew_monitor.recordings.tables.spelt_units import words_of
+from ballscrew_monitor.recordings.tables.mapping import INPUTS, UNITS
+
+WORD = re.compile(r'[A-ZÄÖÜ]+(?![a-zäöüßµμ°])|[A-ZÄÖÜ]?[a-zäöüßµμ°]+|\d+')
+"""A word of a name: of one case, or of small letters after a capital; or a number."""
+BRACKETS = re.compile(r'[\[(]([^\])]+)[\])]')
+_PER = re.compile(r'[\s_]*(?:/|_|\s|(?<![a-z])per(?![a-z]))[\s_]*')
+_CAMEL_PER = re.compile(r'(?<=[a-z])Per(?=[A-Z])')
+_LONGEST = 4  # words of a unit, such as m per min in camel case
+_BY_ITSELF = 2  # letters of a unit that says without brackets which quantity it is of
+_OTHER_WORDS = frozenset({'min', 'rev', 'rad', 'deg', 'nm', 'ma', 'amp', 'amps'})
+_ALIASES = {
+    'mm/s': ('mmps', 'mm/sec'),
+    'm/s': ('mps', 'm/sec'),
+    'mm/min': ('mmpm',),
+    'm/min': ('mpm',),
+    'rev/min': ('rpm', '1/min', 'r/min', 'u/min', 'min-1', 'min^-1', 'min⁻¹', 'turns/min'),
+    'rad/s': ('radps', 'rad/sec'),
+    'N m': ('nm', 'n.m', 'n*m', 'n·m'),
+    'degC': ('c', '°c', 'deg/c', '°/c', 'celsius'),
+    'A': ('amp', 'amps'),
+    's': ('sec', 'seconds'),
+    'ms': ('msec', 'millis'),
+    'us': ('usec', 'µs', 'μs'),
+}
+
+
+def unit_of(column: str, kind: str) -> str:
+    """Return the unit of a kind of quantity that a name of a column states, empty if none."""
+    known = _SPELLINGS.get(kind, {})
+    return next((known[text] for text in _stated(column) if text in known), '')
+
+
+def kind_by_unit(column: str) -> tuple[str, str]:
+    """
+    Return the only quantity that is stated in a unit, and the words of the name before the unit.
+
+    Both are empty when the name states no unit, or one that without brackets may be a word.
+
+    """
+    inside = [_plain(text) for text in BRACKETS.findall(column)]
+    texts = [*inside, *(text for text in _ends(column) if _stands_alone(text))]
+    for text in texts:
+        kinds = [kind for kind, known in _SPELLINGS.items() if text in known]
+        if len(kinds) == 1:
+            return kinds[0], _before(column, text)
+    return '', ''
+
+
+def words_of(text: str) -> list[str]:
+    """Return the words of a name in small letters, without what stands in brackets."""
+    return [word.lower() for word in WORD.findall(BRACKETS.sub(' ', text))]
+
+
+def words_without_unit(column: str, kind: str) -> list[str]:
+    """Return the words of a name, without the unit of a kind of quantity at its end."""
+    known = _SPELLINGS.get(kind, {})
+    text = next((text for text in _ends(column) if text in known), '')
+    return words_of(_before(column, text) if text else column)
+
+
+def _stands_alone(text: str) -> bool:
+    return len(text) >= _BY_ITSELF and text not in _OTHER_WORDS
+
+
+def _stated(column: str) -> Iterator[str]:
+    """Yield what may be a unit: in brackets, at the end, `rpm` anywhere, longer inside."""
+    yield from (_plain(text) for text in BRACKETS.findall(column))
+    yield from _ends(column)
+    bare = BRACKETS.sub(' ', column)
+    spans = [match.span() for match in WORD.finditer(bare)]
+    yield from (word for word in words_of(column) if word == 'rpm')
+    for length in range(_LONGEST, 0, -1):
+        for first in range(1, len(spans) - length + 1):
+            begin, end = spans[first][0], spans[first + length - 1][1]
+            text = _plain(bare[begin:end])
+            if _stands_alone(text):
+                yield text
+
+
+def _ends(column: str) -> list[str]:
+    """Return the last words of a name as they are joined, most of them first, but never all."""
+    bare = BRACKETS.sub(' ', column).strip()
+    starts = [match.start() for match in WORD.finditer(bare)][1:]
+    return [_plain(bare[start:]) for start in starts[-_LONGEST:]]
+
+
+def _before(column: str, unit: str) -> str:
+    """Return a name without its brackets and without a unit at its end."""
+    bare = BRACKETS.sub(' ', column).strip()
+    starts = [match.start() for match in WORD.finditer(bare)]
+    cut = next((start for start in starts if _plain(bare[start:]) == unit), len(bare))
+    return bare[:cut]
+
+
+def _plain(text: str) -> str:
+    """Return a spelling with one sign for all that stands between its words: / ."""
+    return _PER.sub('/', _CAMEL_PER.sub('/', text.strip()).lower()).strip('/')
+
+
+def _spellings(units: Mapping[str, float]) -> dict[str, str]:
+    spelt = {_plain(unit): unit for unit in units}
+    return spelt | {_plain(alias): unit for unit in units for alias in _ALIASES.get(unit, ())}
+
+
+_SPELLINGS = {kind: _spellings(units) for kind, units in UNITS.items()}
+
 
 LINEAR = frozenset('xyz')
 SECONDARY = frozenset('uvw')  # with a number: alone they mean other things, too
@@ -72,9 +175,9 @@ def read_name(column: str) -> Named:
     if not kind and not OTHERS & set(words):
         kind = _kind_by_unit(column, place)
         rank += 0 if is_of_the_screw(column) else BY_UNIT
-    unit = spelt_units.unit_of(column, kind)
+    unit = unit_of(column, kind)
     # In another unit than those of the quantity it is another quantity, such as a load in percent.
-    if spelt_units.BRACKETS.search(column) and not unit:
+    if BRACKETS.search(column) and not unit:
         kind = ''
     return Named(column=column, place=place, axis=axis, kind=kind, unit=unit, rank=rank)
 
@@ -118,9 +221,9 @@ def _kind(words: Sequence[str]) -> str:
 
 def _kind_by_unit(column: str, place: str) -> str:
     """Return the quantity that the unit of a column tells, where no other word may deny it."""
-    kind, before = spelt_units.kind_by_unit(column)
+    kind, before = kind_by_unit(column)
     if kind == 'time':
-        told = place == 'machine' and spelt_units.unit_of(column, kind) in TIMES_BY_UNIT
+        told = place == 'machine' and unit_of(column, kind) in TIMES_BY_UNIT
     else:
         told = all(len(word) == 1 or word in TELLS_NOTHING for word in words_of(before))
     return kind if told else ''
@@ -138,7 +241,7 @@ def _rank(words: Sequence[str]) -> int:
 
 def word_of_the_axis(named: Named) -> str:
     """Return the words of a name that say neither quantity nor unit: which axis is left."""
-    words = spelt_units.words_without_unit(named.column, named.kind)
+    words = words_without_unit(named.column, named.kind)
     dull = TELLS_NOTHING | QUALIFIERS | ELSEWHERE | KINDS.get(named.kind, frozenset())
     return '_'.join(word for word in words if word not in dull)
 

@@ -14,8 +14,8 @@ import dataclasses
 from pathlib import Path
 import re
 
-from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables.cells import Array, Cells, first_line, Reading, UNREADABLE
+from ballscrew_monitor.recordings.words import Shown, shown_progress
 import numpy as np
 import polars as pl
 from surrogate.files import InputError
@@ -89,7 +89,7 @@ def column_names(path: Path) -> list[str]:
 
 
 def open_table(
-    path: Path, names: Collection[str], *, strict: bool = True, shown: Shown = silent
+    path: Path, names: Collection[str], *, strict: bool = True, shown: Shown = shown_progress
 ) -> Table:
     """
     Look through the columns `names` of a log, and show how far that is.

@@ -15,12 +15,12 @@ from pathlib import Path
 
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.estimates import FACTOR, NEAR
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.read import open_table
 from ballscrew_monitor.recordings.tables.times import joined, line, Rows, Stamps, Times
+from ballscrew_monitor.recordings.words import Shown, shown_progress
 import numpy as np
 from surrogate.units import TURN
 
@@ -77,7 +77,7 @@ class Series:
             yield Block(stamps=rows.stamps[part], axes=axes)
 
 
-def read_series(path: Path, mapping: TableMap, shown: Shown = silent) -> Series:
+def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) -> Series:
     """
     Return the log at `path` read by the map, and show how far that is.
 
@@ -185,43 +185,30 @@ def _slope(position: Array, seconds: Array) -> Array:
     return np.where(np.isfinite(slope), slope, math.nan)
 
 
-class Agreement:
-    """Sums over the rows of a table that compare speeds with positions, block by block."""
+def fits_of(mapping: TableMap, usual_period: float) -> list['Fit']:
+    """Return what compares speed and position of each axis that has both, without a row yet."""
+    return [
+        Fit(axis, number, LONG * usual_period)
+        for number, axis in enumerate(mapping.axes)
+        if {'speed', 'position'} <= set(axis.columns)
+    ]
 
-    def __init__(self, mapping: TableMap, usual_period: float) -> None:
-        """Begin with no row; the usual time between rows [s] tells what a gap is."""
-        self._fits = [
-            _Fit(axis, number)
-            for number, axis in enumerate(mapping.axes)
-            if {'speed', 'position'} <= set(axis.columns)
-        ]
-        self._longest = LONG * usual_period
+
+class Fit:
+    """How far an axis moves by its position, over how far by its speed, by least squares."""
+
+    def __init__(self, axis: AxisMap, number: int, longest: float) -> None:
+        """Begin with no row of an axis; rows `longest` [s] apart have no gap between them."""
+        self._axis, self._number, self._longest = axis, number, longest
+        self._across = self._by_speed = self._by_position = 0.0
 
     def add(self, block: Block) -> None:
         """Take further rows."""
-        steps = np.diff(block.stamps) / SECOND
-        for fit in self._fits:
-            fit.add(block, np.where(steps <= self._longest, steps, np.nan))
-
-    def notes(self) -> list[str]:
-        """Return a sentence for each axis whose speed and position disagree."""
-        return [note for fit in self._fits if (note := fit.note())]
-
-
-class _Fit:
-    """How far an axis moves by its position, over how far by its speed, by least squares."""
-
-    def __init__(self, axis: AxisMap, number: int) -> None:
-        self._axis, self._number = axis, number
-        self._across = self._by_speed = self._by_position = 0.0
-
-    def add(self, block: Block, steps: Array) -> None:
-        """Take rows that are `steps` apart [s], NaN for a gap."""
-        axis = block.axes[self._number]
+        axis, steps = block.axes[self._number], np.diff(block.stamps) / SECOND
         assert axis.position is not None  # the map has a column of it
         expected = (axis.speed[1:] + axis.speed[:-1]) / 2 * steps
         moved = np.diff(axis.position)
-        good = np.isfinite(expected) & np.isfinite(moved)
+        good = np.isfinite(expected) & np.isfinite(moved) & (steps <= self._longest)
         self._across += float(moved[good] @ expected[good])
         self._by_speed += float(expected[good] @ expected[good])
         self._by_position += float(moved[good] @ moved[good])

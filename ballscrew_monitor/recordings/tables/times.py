@@ -7,10 +7,10 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import SECOND, TIME_UNITS
-from ballscrew_monitor.recordings.progress import Shown, silent
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
 from ballscrew_monitor.recordings.tables.read import BLOCK, Table
+from ballscrew_monitor.recordings.words import Shown, shown_progress
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
@@ -88,7 +88,7 @@ class Times:
 
     """
 
-    def __init__(self, table: Table, mapping: TableMap, shown: Shown = silent) -> None:
+    def __init__(self, table: Table, mapping: TableMap, shown: Shown = shown_progress) -> None:
         """Look through the times; raises InputError when they give no stamps."""
         self._table, self._mapping = table, mapping
         self.count = self._back = 0

@@ -8,8 +8,8 @@ import threading
 import time
 
 from ballscrew_monitor import cli
-from ballscrew_monitor.clients.doctor import doctor
-from ballscrew_monitor.cycle.domain import free_domain
+from ballscrew_monitor.clients.doctor import doctor, domains_of
+from ballscrew_monitor.cycle.domain import free_domain, LOCK_PARTICIPANT, port
 from ballscrew_monitor.settings.qos import started_node
 from geometry_msgs.msg import WrenchStamped
 import pytest
@@ -203,3 +203,19 @@ def test_bad_times_and_domains_are_bad_input(tmp_path, refused, monkeypatch):
     refused('seconds_0_s', doctor, write(tmp_path, {}), seconds=0.0)
     monkeypatch.setenv('ROS_DOMAIN_ID', 'here')
     refused('ros_cannot_start', doctor, write(tmp_path, {}), seconds=1.0)
+
+
+HEAD = '  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt\n'
+
+
+def table(*ports):
+    return HEAD + ''.join(
+        f'  {i}: 00000000:{number:04X} 00000000:0000 07\n' for i, number in enumerate(ports)
+    )
+
+
+def test_ports_tell_domains_and_the_lock_of_a_test_run_is_no_participant():
+    ports = [port(0, 0), port(7, 3), port(7, 4), port(101, 0), 53, 40_000]
+    assert domains_of(table(*ports)) == [0, 7, 101]
+    assert domains_of(table(port(7, LOCK_PARTICIPANT))) == []
+    assert domains_of('') == []

@@ -5,7 +5,7 @@
 import math
 
 from ballscrew_monitor.core import conversions
-from ballscrew_monitor.core.conversions import Direction, MotorData, Nut
+from ballscrew_monitor.core.conversions import Direction, Nut
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
@@ -56,8 +56,8 @@ def test_scale_comes_before_offset_and_both_before_the_unit():
 
 @pytest.mark.parametrize(('unit', 'torque'), [('N m', 4.0), ('A', 0.5 * 4.0), ('%', 0.25 * 4.0)])
 def test_a_torque_in_the_unit_of_the_drive(unit, torque):
-    motor = MotorData(constant=0.5, rated=25.0, gear_ratio=4.0)
-    assert conversions.torque_unit(unit, motor) == torque
+    motor = {'constant': 0.5, 'rated': 25.0, 'gear_ratio': 4.0}
+    assert conversions.torque_unit(unit, **motor) == torque
 
 
 @pytest.mark.parametrize(
@@ -78,9 +78,9 @@ def test_a_position_is_an_angle_of_the_screw(unit, hand, angle):
         (lambda: speed('rad/s', 1.0, handedness='both'), 'handedness_both_unknown'),
         (lambda: conversions.load_scaling('lbf', **PLAIN), 'load_unit_lbf'),
         (lambda: conversions.temperature_scaling('degF', **PLAIN), 'temperature_unit_degf'),
-        (lambda: conversions.torque_unit('N', MotorData()), 'torque_unit_n'),
-        (lambda: conversions.torque_unit('A', MotorData()), 'torque_unit_needs'),
-        (lambda: conversions.torque_unit('%', MotorData()), 'torque_unit'),
+        (lambda: conversions.torque_unit('N'), 'torque_unit_n'),
+        (lambda: conversions.torque_unit('A'), 'torque_unit_needs'),
+        (lambda: conversions.torque_unit('%'), 'torque_unit'),
     ],
 )
 def test_unknown_units_and_constants_that_are_not_stated_are_refused(call, match, refused):

@@ -14,7 +14,7 @@ from ballscrew_monitor.health.points import add
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.columns import joined
-from ballscrew_monitor.recordings.replay import replay_columns
+from ballscrew_monitor.recordings.replay import replay_parts
 from ballscrew_monitor.settings import parameters
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -77,7 +77,7 @@ def test_both_ways_give_the_same_bits(motion, surface, seed, cuts):
 def test_a_torque_beyond_the_model_is_found_in_a_recording(nominal_bag, surface):
     """The nominal cycle, with the torque of the model and 0.03 N m more against every motion."""
     values = parameters.read_file(CONFIG) | {'x.publish_period': 0.1}
-    *blocks, _ = replay_columns(Bag(nominal_bag), values)
+    *blocks, _ = replay_parts(Bag(nominal_bag), values, states=False)
     columns, points = joined(blocks), {}
     torque = columns.machine_torque + 0.03 * np.sign(columns.speed)
     measured = np.full(len(columns), PointSource.MEASURED, dtype=np.uint8)

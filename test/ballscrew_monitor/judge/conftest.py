@@ -60,7 +60,9 @@ class Golden:
 
     def monitor(self, run):
         settings = settings_of(self.arrays['run_settings'][run])
-        return Monitor(self.surface, settings, kept_of(self.arrays['run_memory'][run]))
+        made = Monitor(self.surface, settings)
+        made.take_up(kept_of(self.arrays['run_memory'][run]))
+        return made
 
     def event(self, stored):
         """Return a sample, a refusal, or the stamp of a tick; None for a command."""

@@ -12,7 +12,7 @@ from ballscrew_monitor.core.judgement import Code, Level, violation, Zone
 from ballscrew_monitor.core.memory import Memory
 from ballscrew_monitor.core.state import Event, NOT_SHELVED, Shelving, Totals
 from ballscrew_monitor.judge import records
-from ballscrew_monitor.judge.monitor import EARLIEST, fill, LATEST, Monitor, MOST_OTHERS, within
+from ballscrew_monitor.judge.monitor import EARLIEST, fill, LATEST, MOST_OTHERS, within
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
@@ -37,7 +37,9 @@ def slow_is_bad(core, memory=None, **limits):
     """Return a monitor that warns below 30 rad/s."""
     surface = core.surface(rcs=lambda speed, load: 1.0 if speed < 30.0 else 0.0)
     made = core.monitor(surface, core.limits(**limits))
-    return made if memory is None else Monitor(surface, made.settings, memory)
+    if memory is not None:
+        made.take_up(memory)
+    return made
 
 
 def test_an_event_begins_and_ends_with_its_facts(core):

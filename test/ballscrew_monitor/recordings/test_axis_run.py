@@ -18,7 +18,7 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.bulk.entries import entries_of
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, joined
-from ballscrew_monitor.recordings.replay import replay, replay_columns
+from ballscrew_monitor.recordings.replay import replay, replay_parts
 from ballscrew_monitor.recordings.summary import summary_of
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axis
@@ -41,7 +41,7 @@ def values():
 
 @pytest.fixture(scope='module')
 def judged(nominal_bag, values):
-    *blocks, outcome = replay_columns(Bag(nominal_bag), values)
+    *blocks, outcome = replay_parts(Bag(nominal_bag), values, states=False)
     assert isinstance(outcome, AxisOutcome)
     return joined(blocks), outcome
 
@@ -126,7 +126,7 @@ def derived(tmp_path):
         'x.torque.field': 'effort[x_axis]',
         'x.torque.uncertainty': 0.1,
     }
-    *blocks, outcome = replay_columns(bag, values)
+    *blocks, outcome = replay_parts(bag, values, states=False)
     return joined(blocks), outcome
 
 
@@ -149,7 +149,7 @@ def test_a_screw_that_stands_stands_whether_or_not_its_load_is_known(tmp_path):
         'x.load.type': JOINT,
         'x.load.field': 'effort[x_axis]',
     }
-    *blocks, _ = replay_columns(bag, values)
+    *blocks, _ = replay_parts(bag, values, states=False)
     columns = joined(blocks)
     samples = columns.reason[~columns.tick]
     assert set(samples[:50]) == {Reason.NO_LOAD}

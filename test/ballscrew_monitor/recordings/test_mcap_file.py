@@ -3,12 +3,21 @@
 """The MCAP file that is written: byte by byte that of the writer of the package `mcap`."""
 
 import io
+import re
 
-from ballscrew_monitor.recordings.mcap_file import McapFile, MESSAGE, MESSAGE_FIELDS
+from ballscrew_monitor.recordings.mcap_file import (
+    McapFile,
+    MESSAGE,
+    message_definition,
+    MESSAGE_FIELDS,
+    SEPARATOR,
+    type_hash,
+)
 from mcap.reader import make_reader
 from mcap.writer import CompressionType, Writer
 import numpy as np
 import pytest
+from surrogate.files import InputError
 
 CHUNK_SIZE = 4096
 RNG = np.random.default_rng(1)
@@ -94,3 +103,27 @@ def test_it_reads_back():
     statistics = reader.get_summary().statistics
     wanted = {number: int((NUMBERS == number).sum()) for number in (1, 2, 3)}
     assert statistics.channel_message_counts == wanted
+
+
+def test_dependencies_follow_the_definition_once_with_their_names():
+    parts = message_definition('sensor_msgs/msg/JointState').split(f'{SEPARATOR}\n')
+    assert 'float64[] velocity' in parts[0]
+    expected = ['MSG: builtin_interfaces/Time', 'MSG: std_msgs/Header']
+    assert [part.splitlines()[0] for part in parts[1:]] == expected
+    assert all(part.endswith('\n') for part in parts)
+    text = message_definition('ballscrew_msgs/msg/BallScrewState')
+    names = re.findall('^MSG: (.*)$', text, flags=re.MULTILINE)
+    assert len(names) == len(set(names))
+    assert {'ballscrew_msgs/PointResult', 'builtin_interfaces/Time'} <= set(names)
+
+
+def test_the_hash_is_that_of_the_generated_description():
+    # Published for ROS 2 Jazzy: std_msgs/msg/Header.
+    expected = 'RIHS01_f49fb3ae2cf070f793645ff749683ac6b06203e41c891e17701b1cb597ce6a01'
+    assert type_hash('std_msgs/msg/Header') == expected
+
+
+@pytest.mark.parametrize('name', ['std_msgs/msg/Nothing', 'Header', 'no_msgs/msg/Header'])
+def test_an_unknown_type_is_one_sentence(name):
+    with pytest.raises(InputError, match=f'message type .?{name}'):
+        type_hash(name)

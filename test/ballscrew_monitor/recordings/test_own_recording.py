@@ -25,7 +25,7 @@ from ballscrew_monitor.recordings.own_recording import (
     OTHER_VERSION,
     recorded_values,
 )
-from ballscrew_monitor.recordings.replay import replay, replay_columns, replay_parts
+from ballscrew_monitor.recordings.replay import replay, replay_parts
 from ballscrew_monitor.recordings.retention import KeepSettings, Retention
 from ballscrew_monitor.report.inputs_seen import inputs_seen
 from ballscrew_monitor.report.judging import judge_log
@@ -158,7 +158,7 @@ def live(node, *, seconds, seed=1, begin=BEGIN):
 
 def again(bag):
     """Return the states of a replay as text, and what it says of the notes of the node."""
-    parts = replay_parts(bag, recorded_values(bag), columns=False)
+    parts = replay_parts(bag, recorded_values(bag))
     states = [repr(part.state) for part in parts if isinstance(part, TimedState)]
     return states, ' '.join(bag.remarks)
 
@@ -304,7 +304,7 @@ def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path)
     assert chosen.origin == f'those that the node recorded in {bag.path}'
     states = list(replay(bag, values))
     assert len(states) == len(node.said)
-    *blocks, x, z = replay_columns(bag, values)
+    *blocks, x, z = replay_parts(bag, values, states=False)
     for name, outcome in (('x', x), ('z', z)):
         monitor = node.axes[name].monitor
         assert (outcome.axis, outcome.judged) == (name, monitor.memory.judged)
@@ -332,7 +332,7 @@ def test_a_recording_of_another_version_is_an_ordinary_bag(tmp_path, monkeypatch
     bag = bag_in(tmp_path)
     values = recorded_values(bag)
     assert not is_as_recorded(bag, values)
-    *_, outcome, _ = replay_columns(bag, values)
+    *_, outcome, _ = replay_parts(bag, values, states=False)
     assert outcome.judged > 100
     assert bag.notes == [OTHER_VERSION]
 
@@ -343,6 +343,6 @@ def test_with_other_parameters_it_is_a_bag_like_any_other(tmp_path):
     node.close()
     bag = bag_in(tmp_path)
     values = recorded_values(bag) | {'x.limits.efficiency': 0.5}
-    *_, outcome, _ = replay_columns(bag, values)
+    *_, outcome, _ = replay_parts(bag, values, states=False)
     assert outcome.judged > 100
     assert bag.notes == []

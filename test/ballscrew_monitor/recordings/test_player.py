@@ -13,8 +13,7 @@ from ballscrew_monitor.core.fields import message_class, stamp_of
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.player import Choice, chosen, PAUSE, playable, Player
-from ballscrew_monitor.settings.parameters import read_file
-from ballscrew_monitor.settings.topics import input_topics
+from ballscrew_monitor.settings.parameters import input_topics, read_file
 from mcap.writer import Writer
 import pytest
 import rclpy
@@ -160,7 +159,7 @@ def test_the_clock_is_never_behind_a_message_and_runs_on_after_the_end(short_bag
     bag, node = Bag(short_bag), Publishers()
     player = Player(node, bag, rate=1000.0)
     played = player.play(threading.Event())
-    assert played.complete
+    assert played
     assert sorted(node.awaited) == sorted(bag.topics)  # until all have arrived
     assert player.now == bag.end_time
     assert player.elapsed == pytest.approx(bag.duration)
@@ -184,7 +183,7 @@ def test_in_a_loop_time_goes_on(short_bag):
 
     joints = []
     player._publishers['/joint_states'].publish = stop_in_the_third_pass
-    assert not player.play(stop, loop=True).complete
+    assert not player.play(stop, loop=True)
     stamps = [stamp_of(message) for message in joints]
     one = bag.topics['/joint_states'].count
     length = bag.end_time - bag.start_time + PAUSE
@@ -269,6 +268,6 @@ def test_a_stop_ends_it_at_once(short_bag):
     node = Publishers()
     player = Player(node, Bag(short_bag))
     played = player.play(stop)
-    assert not played.complete
+    assert not played
     assert not node.awaited
     assert not player.sent

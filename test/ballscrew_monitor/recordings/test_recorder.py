@@ -11,8 +11,7 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.player import CLOCK, CLOCK_QOS
 from ballscrew_monitor.recordings.recorder import recorded_topics, Recorder
-from ballscrew_monitor.settings.parameters import defaults
-from ballscrew_monitor.settings.topics import output
+from ballscrew_monitor.settings.parameters import defaults, output
 import pytest
 import rclpy
 from rclpy.executors import SingleThreadedExecutor

@@ -10,7 +10,7 @@ import sys
 
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_files import OWN
-from ballscrew_monitor.recordings.bag_writer import Announced, BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.recover import recover
 from mcap.reader import make_reader
 import pytest
@@ -104,15 +104,9 @@ def test_nothing_is_written_over_and_what_is_not_there_is_said(tmp_path, whole, 
 
 
 def test_types_that_are_not_installed_and_what_a_file_says_of_itself_are_kept(tmp_path):
-    topic = Announced(
-        name='/a',
-        type_name='mill_msgs/msg/Mill',
-        definition=b'float64 data',
-        type_hash='RIHS01_0',
-        profiles=[],
-    )
     with BagWriter(tmp_path, 'b') as writer:
-        writer.announce(topic)
+        kind, definition = 'mill_msgs/msg/Mill', b'float64 data'
+        writer.announce('/a', kind, definition, type_hash='RIHS01_0', profiles=[])
         writer.add_metadata({'source': 'mill.csv'})
         writer.add_metadata({'key': 'value'}, name='of others')
         writer.write('/a', bytes(12), log_time=5, publish_time=7)

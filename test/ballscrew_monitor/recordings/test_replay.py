@@ -9,8 +9,8 @@ from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.inputs import InputState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.bulk.decode import silence
 from ballscrew_monitor.recordings.bulk.order import LONGEST_HOLE
-from ballscrew_monitor.recordings.decoding import silence
 from ballscrew_monitor.recordings.replay import replay, speed_messages
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axis

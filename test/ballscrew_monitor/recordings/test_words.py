@@ -2,8 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Times and shares in the words of a person."""
 
+import io
+
 from ballscrew_monitor.recordings import words
+from ballscrew_monitor.recordings.words import shown_progress
 import pytest
+from surrogate.progress import Progress
 
 
 @pytest.mark.parametrize(
@@ -44,3 +48,19 @@ def test_shares_lists_and_units():
     assert (words.share(1.0, 0.0), words.share(1.0, 4.0)) == ('–', '25 %')
     assert (words.list_of(['a']), words.list_of(['a', 'b', 'c'])) == ('a', 'a; b; and c')
     assert (words.shown_unit('degC'), words.shown_unit('mm/s')) == ('°C', 'mm/s')
+
+
+def said(step):
+    """Return what is said of 1000 s whose tenths take `step` [s] each."""
+    now, stream = [0.0], io.StringIO()
+    bar = Progress(1000, 's of the recording', stream=stream, clock=lambda: now[0])
+    with shown_progress(1000.0, progress=bar, clock=lambda: now[0]) as show:
+        for tenth in range(1, 11):
+            now[0] += step
+            show(tenth / 10)
+    return stream.getvalue()
+
+
+def test_short_work_is_silent_and_long_work_tells_rate_and_time_left(says):
+    assert said(0.1) == ''
+    assert says('500_1000_s') in said(1.0)

@@ -4,8 +4,8 @@
 
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.report.judging import judge_log
+from ballscrew_monitor.report.log_report import RowStore, scratch_folder
 from ballscrew_monitor.report.parameters import parameters_for
-from ballscrew_monitor.report.store import RowStore, scratch_folder
 import pytest
 
 

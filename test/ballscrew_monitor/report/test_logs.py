@@ -11,7 +11,6 @@ from ballscrew_monitor.report.logs import (
     folder_names,
     is_one_bag,
     left_out,
-    map_for,
     replace_report,
 )
 import pytest
@@ -84,14 +83,10 @@ def test_files_of_other_names_or_with_a_gap_are_recordings_of_their_own(tmp_path
     assert folder_names(found) == [name.removesuffix('.mcap') for name in held]
 
 
-def test_tables_count_beside_a_bag_where_they_are_asked_for_and_a_map_is_for_them(tmp_path):
+def test_tables_count_beside_a_bag_where_they_are_asked_for(tmp_path):
     touch(tmp_path / 'a.mcap', tmp_path / 'b.csv')
     assert find_logs([tmp_path]) == [tmp_path]
     assert names(find_logs([tmp_path], tables=True), tmp_path) == ['a.mcap', 'b.csv']
-    mapping = tmp_path / 'map.yaml'
-    assert map_for(tmp_path / 'a.mcap', mapping, alone=False) is None
-    assert map_for(tmp_path / 'a.mcap', mapping, alone=True) == mapping
-    assert map_for(tmp_path / 'b.csv', mapping, alone=False) == mapping
 
 
 @pytest.mark.parametrize('tables', [False, True])

@@ -9,7 +9,7 @@ from ballscrew_monitor.recordings import bag_writer
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.bulk import batches
-from ballscrew_monitor.recordings.replay import replay_columns
+from ballscrew_monitor.recordings.replay import replay_parts
 from ballscrew_monitor.report.log_report import report_log, STORED_SHARE
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.settings.parameters import defaults
@@ -78,12 +78,12 @@ def peaks_of(work):
 def test_judging_holds_no_more_of_a_longer_recording(bags, small_batches):
     def judge(bag):
         def work(on_share):
-            for _ in replay_columns(bag, VALUES, on_done=on_share):
+            for _ in replay_parts(bag, VALUES, on_done=on_share, states=False):
                 pass
 
         return max(peak for _, peak in peaks_of(work))
 
-    list(replay_columns(bags[0], VALUES))  # what is made once
+    list(replay_parts(bags[0], VALUES, states=False))  # what is made once
     short, long = map(judge, bags)
     assert long - short < MORE
 

@@ -6,9 +6,8 @@ import dataclasses
 
 from ballscrew_monitor.core.judgement import Level, Zone
 from ballscrew_monitor.recordings.columns import LIGHT_LOAD, STANDSTILL
-from ballscrew_monitor.report.buckets import codes_of
+from ballscrew_monitor.report.buckets import AxisBudget, BUCKETS, codes_of, MOST_ROWS
 from ballscrew_monitor.report.page import script_json
-from ballscrew_monitor.report.page_budget import AxisBudget, BUCKETS, MOST_ROWS
 from ballscrew_monitor.report.time_series import coarse_bytes, rows_of, series_record
 import numpy as np
 import pytest

@@ -4,6 +4,7 @@
 
 import math
 import pathlib
+import runpy
 
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.parameter_row import Change
@@ -12,7 +13,9 @@ import pytest
 from surrogate.files import InputError
 import yaml
 
-CONFIG = pathlib.Path(__file__).resolve().parents[3] / 'config'
+TREE = pathlib.Path(__file__).resolve().parents[3]
+CONFIG = TREE / 'config'
+PAGES = runpy.run_path(str(TREE / 'scripts' / 'parameter_pages.py'))
 ROWS = parameters.table(['x'])
 
 
@@ -100,13 +103,14 @@ def test_each_axis_has_parameters_of_its_own():
     assert sum(name.startswith('x.') for name in values) == len(AXIS_ROWS)
 
 
-def test_the_files_of_examples_and_the_readme_are_those_of_the_table():
-    assert (CONFIG / 'example.yaml').read_text() == parameters.example_yaml()
+def test_the_example_and_the_page_are_those_of_the_table():
+    for path, text in PAGES['pages']().items():
+        assert path.read_text(encoding='utf-8') == text
     assert parameters.read_file(CONFIG / 'example.yaml') == parameters.defaults(['x'])
-    assert len(parameters.flatten(yaml.safe_load(parameters.example_yaml()))) == len(ROWS)
+    assert len(parameters.flatten(yaml.safe_load(PAGES['example_yaml']()))) == len(ROWS)
     values = parameters.read_file(CONFIG / 'nominal_cycle.yaml')
     assert values['x.temperature.topic'] == 'oil_temperature'
-    lines = parameters.markdown_table().splitlines()
+    lines = PAGES['markdown_table']().splitlines()
     assert len(lines) == 2 + len(ROWS)
     assert {line.count('|') for line in lines} == {7}
     assert any('| `<axis>.limits.rcs` | `0.01` |' in line for line in lines)
@@ -165,3 +169,39 @@ def test_the_error_of_ros_for_mixed_types_is_told_with_its_cure():
     mixed = RuntimeError("Sequence should be of same type.\n Value type 'bool' do not belong at 3")
     assert parameters.explain(mixed).endswith("quote it, such as 'y'")
     assert parameters.explain(RuntimeError('other\n thing')) == 'other thing'
+
+
+def test_the_inputs_are_those_of_the_parameters():
+    """A load of the motor torque has no topic."""
+    speed = {'/joint_states': 'sensor_msgs/msg/JointState'}
+    assert parameters.input_topics(
+        parameters.read_file(CONFIG / 'nominal_cycle.yaml')
+    ) == speed | {
+        '/axial_load': 'geometry_msgs/msg/WrenchStamped',
+        '/oil_temperature': 'sensor_msgs/msg/Temperature',
+    }
+    assert parameters.input_topics(parameters.read_file(CONFIG / 'motor_current.yaml')) == speed
+
+
+def test_empty_types_are_filled_in_by_topic():
+    values = {
+        'axes': ['x'],
+        'x.speed.topic': 'speed',
+        'x.speed.type': '',
+        'x.load.topic': '/load',
+        'x.load.type': 'a/msg/B',
+        'x.torque.topic': '',
+        'x.torque.type': '',
+    }
+    filled = parameters.with_types(values, {'/speed': 'c/msg/D', '/load': 'e/msg/F'})
+    assert filled == values | {'x.speed.type': 'c/msg/D'}
+    assert parameters.with_types(values, {})['x.speed.type'] == ''
+
+
+def test_names_are_full():
+    assert (
+        parameters.absolute('joint_states')
+        == parameters.absolute('/joint_states')
+        == '/joint_states'
+    )
+    assert parameters.output('x', 'state') == '/ballscrew_monitor/x/state'

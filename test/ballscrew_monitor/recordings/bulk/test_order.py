@@ -10,6 +10,7 @@ from ballscrew_monitor.core.inputs import InputSample, Refusal, Why
 from ballscrew_monitor.judge.step import BACKWARD_JUMP
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk import batches as batches_module
+from ballscrew_monitor.recordings.bulk.decode import decode
 from ballscrew_monitor.recordings.bulk.entries import entries_of, joined, Kind, made, TICK_SOURCE
 from ballscrew_monitor.recordings.bulk.order import (
     Arrivals,
@@ -19,11 +20,10 @@ from ballscrew_monitor.recordings.bulk.order import (
     REORDER,
     StampOrder,
 )
-from ballscrew_monitor.recordings.decoding import decode
-from ballscrew_monitor.recordings.message_definitions import message_definition
+from ballscrew_monitor.recordings.mcap_file import message_definition
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axis
-from ballscrew_monitor.settings.topics import absolute
+from ballscrew_monitor.settings.parameters import absolute
 from geometry_msgs.msg import WrenchStamped
 from hypothesis import given
 from hypothesis import strategies as st

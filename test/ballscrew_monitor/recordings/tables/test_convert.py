@@ -3,9 +3,11 @@
 """Conversion of tables to judged bags: a small log always, the real one where it is."""
 
 import contextlib
+import json
 import os
 from pathlib import Path
 
+from ballscrew_monitor import cli
 from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.bag import Bag
@@ -17,7 +19,13 @@ from ballscrew_monitor.recordings.log_facts import (
 )
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.recordings.tables import cells, read
-from ballscrew_monitor.recordings.tables.convert import BLOCK, convert, marks, RowTemplate
+from ballscrew_monitor.recordings.tables.convert import (
+    BLOCK,
+    convert,
+    marks,
+    print_guess,
+    RowTemplate,
+)
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.settings import parameters
@@ -30,6 +38,7 @@ import pytest
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import get_typestore, Stores
 from sensor_msgs.msg import JointState
+import yaml
 
 ROOT = Path(__file__).resolve().parents[4]
 NOMINAL = ROOT / 'config' / 'nominal_cycle.yaml'
@@ -292,3 +301,37 @@ def test_rows_are_those_of_one_by_one_to_the_last_bit():
         message.velocity = [float(numbers[0][row]), float(numbers[1][row])]
         message.effort = [float(numbers[2][row])]
         assert made[row] == serialized(message)
+
+
+def test_a_guess_is_a_map_that_works_unedited(mill_log, tmp_path, capsys, says):
+    assert cli.main(['import', str(mill_log), '--guess']) == 0
+    captured = capsys.readouterr()
+    assert set(yaml.safe_load(captured.out)) == {'log', 'axes', 'assumed'}
+    assert says('z_load_known') in captured.err
+    mapping, bag = tmp_path / 'map.yaml', tmp_path / 'bag'
+    mapping.write_text(captured.out)
+    assert cli.main(['import', str(mill_log), '--config', str(mapping), '--out', str(bag)]) == 0
+    assert '  assumed x.lead_mm = 10.0: ' in capsys.readouterr().out
+    assert cli.main(['replay', str(bag), '--json']) == 0
+    captured = capsys.readouterr()
+    by_bag = json.loads(captured.out)
+    assert set(by_bag) == {'x', 'y', 'z'}
+    assert f'parameters: those of {bag}' in captured.err
+    assert 'assumed of mill.csv, axis z: load = unknown' in captured.err
+    assert says('nothing_was_judged') in captured.err
+    assert cli.main(['replay', str(mill_log), '--map', str(mapping), '--json']) == 0
+    captured = capsys.readouterr()
+    assert json.loads(captured.out) == by_bag
+    assert f'parameters: those of {mill_log}' in captured.err
+
+
+def test_what_is_missing_or_superfluous_is_named(mill_log, tmp_path, capsys, short_bag, refused):
+    assert cli.main(['import', str(mill_log)]) == 2
+    assert '--config is missing; --guess prints' in capsys.readouterr().err
+    assert cli.main(['import', str(mill_log), '--config', str(tmp_path / 'map.yaml')]) == 2
+    assert '--out is missing' in capsys.readouterr().err
+    assert cli.main(['replay', str(mill_log)]) == 2
+    assert 'a table needs a map: ballscrew import' in capsys.readouterr().err
+    for log in (short_bag, short_bag / 'short.mcap'):
+        refused('bag_needs_import', print_guess, log)
+    refused('cannot_read', print_guess, Path(tmp_path / 'nothing.csv'))

@@ -2,7 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names of columns in the ways in which controls write them."""
 
-from ballscrew_monitor.recordings.tables.names import axis_names, read_name, word_of_the_axis
+from ballscrew_monitor.recordings.tables.names import (
+    axis_names,
+    kind_by_unit,
+    read_name,
+    unit_of,
+    word_of_the_axis,
+)
 import pytest
 
 
@@ -53,3 +59,47 @@ def test_the_word_the_number_and_the_rank_of_an_axis():
     ranks = [read_name(name).rank for name in names]
     assert ranks == sorted(ranks, reverse=True)
     assert len(set(ranks)) == len(ranks)
+
+
+@pytest.mark.parametrize(
+    ('column', 'kind', 'unit'),
+    [
+        ('X_speed_m_per_min', 'speed', 'm/min'),
+        ('x_feed_m_min', 'speed', 'm/min'),
+        ('x_vel_mm_per_s', 'speed', 'mm/s'),
+        ('VelocityMmPerS', 'speed', 'mm/s'),
+        ('x speed [m / min]', 'speed', 'm/min'),
+        ('x_speed_m/min', 'speed', 'm/min'),
+        ('speed_mm_s_x', 'speed', 'mm/s'),
+        ('x_speed_rad_s', 'speed', 'rad/s'),
+        ('x_speed_rev_min', 'speed', 'rev/min'),
+        ('x_rev_per_min', 'speed', 'rev/min'),
+        ('Drehzahl [U/min]', 'speed', 'rev/min'),
+        ('x_speed_furlong', 'speed', ''),
+        ('x_vel_ms', 'speed', ''),
+        ('x_torque_N_m', 'torque', 'N m'),
+        ('motor_current_mA', 'current', 'mA'),
+        ('oil °C', 'temperature', 'degC'),
+        ('x_temp_deg_C', 'temperature', 'degC'),
+        ('oil_temp_K', 'temperature', 'K'),
+        ('elapsed_µs', 'time', 'us'),
+        ('x_min_time', 'time', ''),
+    ],
+)
+def test_a_unit_is_found_as_it_is_spelt(column, kind, unit):
+    assert unit_of(column, kind) == unit
+
+
+@pytest.mark.parametrize(
+    ('column', 'kind'),
+    [
+        ('X oil [°C]', 'temperature'),
+        ('x_mm_s', 'speed'),
+        ('tick_ms', 'time'),
+        ('x_min', ''),
+        ('phase_a', ''),
+        ('x', ''),
+    ],
+)
+def test_only_a_unit_that_is_no_word_tells_the_quantity(column, kind):
+    assert kind_by_unit(column)[0] == kind

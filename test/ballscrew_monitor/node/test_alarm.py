@@ -7,7 +7,7 @@ import math
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.messages.state_messages import plain_values
-from ballscrew_monitor.node.output_topics import TYPES
+from ballscrew_monitor.node.axis_publisher import PLAIN
 import numpy as np
 from rclpy.serialization import deserialize_message, serialize_message
 from surrogate.surface import Regime
@@ -24,7 +24,7 @@ def state_of(core, *, speed=10.0, load=1000.0, **numbers):
 def test_values_of_a_state_outside_the_zone_survive_the_wire(core):
     values = plain_values(state_of(core, rcs=np.float64(0.5), film_ratio=np.float64(2.0)))
     told = {
-        name: deserialize_message(serialize_message(TYPES[name](data=value)), TYPES[name]).data
+        name: deserialize_message(serialize_message(PLAIN[name](data=value)), PLAIN[name]).data
         for name, value in values.items()
     }
     assert told == {
@@ -48,7 +48,7 @@ def test_they_come_with_each_state_of_the_axes_that_ask_for_them(node):
         axes="['x','y']", x__plain_topics='true', x__max_future=3600.0, x__limits__raise_delay=0.0
     )
     prefix = f'{node.name}/x/plain/'
-    heard = {name: node.listen(kind, prefix + name) for name, kind in TYPES.items()}
+    heard = {name: node.listen(kind, prefix + name) for name, kind in PLAIN.items()}
     states, publish = node.watched()
     publish(0.8)
     node.until(lambda: heard['out_of_zone'] and heard['out_of_zone'][-1].data, 'the warning')
