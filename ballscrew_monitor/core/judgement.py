@@ -49,47 +49,31 @@ class Code(enum.IntEnum):
 
 
 class Reason(enum.IntEnum):
-    """Why an instant has no zone; JUDGED where it has one."""
+    """Why an instant has no zone, its number and in words; JUDGED where it has one."""
 
-    JUDGED = 0
-    STANDSTILL = 1
-    NO_DIRECTION = 2
-    SPEED_BELOW_RANGE = 3
-    SPEED_ABOVE_RANGE = 4
-    LOAD_OUT_OF_RANGE = 5
-    TEMPERATURE_OUT_OF_RANGE = 6
-    MASKED = 7
-    NO_NUMBER = 8
-    NO_SPEED = 9
-    NO_LOAD = 10
-    NO_TEMPERATURE = 11
-    NO_INPUTS = 12
-    NO_TORQUE = 13
-    NO_DERIVED_LOAD = 14
+    text: str
 
-    @property
-    def text(self) -> str:
-        """Return the reason in words."""
-        return _REASON_TEXTS[self]
+    def __new__(cls, number: int, text: str) -> 'Reason':
+        """Return the reason of a number and a text."""
+        made = int.__new__(cls, number)
+        made._value_, made.text = number, text
+        return made
 
-
-_REASON_TEXTS = {
-    Reason.JUDGED: 'judged',
-    Reason.STANDSTILL: 'the screw stands still',
-    Reason.NO_DIRECTION: 'the screw has not moved yet, its direction is unknown',
-    Reason.SPEED_BELOW_RANGE: 'the speed is below the surface',
-    Reason.SPEED_ABOVE_RANGE: 'the speed is above the surface',
-    Reason.LOAD_OUT_OF_RANGE: 'the load is outside the surface',
-    Reason.TEMPERATURE_OUT_OF_RANGE: 'the oil temperature is outside the surface',
-    Reason.MASKED: 'the model did not converge near this point',
-    Reason.NO_NUMBER: 'the surface holds no number here',
-    Reason.NO_SPEED: 'no valid sample of the speed',
-    Reason.NO_LOAD: 'no valid sample of the load',
-    Reason.NO_TEMPERATURE: 'no valid sample of the temperature',
-    Reason.NO_INPUTS: 'no valid sample of several inputs',
-    Reason.NO_TORQUE: 'no valid sample of the motor torque, which the load is derived from',
-    Reason.NO_DERIVED_LOAD: 'the motor torque does not tell the load',
-}
+    JUDGED = 0, 'judged'
+    STANDSTILL = 1, 'the screw stands still'
+    NO_DIRECTION = 2, 'the screw has not moved yet, its direction is unknown'
+    SPEED_BELOW_RANGE = 3, 'the speed is below the surface'
+    SPEED_ABOVE_RANGE = 4, 'the speed is above the surface'
+    LOAD_OUT_OF_RANGE = 5, 'the load is outside the surface'
+    TEMPERATURE_OUT_OF_RANGE = 6, 'the oil temperature is outside the surface'
+    MASKED = 7, 'the model did not converge near this point'
+    NO_NUMBER = 8, 'the surface holds no number here'
+    NO_SPEED = 9, 'no valid sample of the speed'
+    NO_LOAD = 10, 'no valid sample of the load'
+    NO_TEMPERATURE = 11, 'no valid sample of the temperature'
+    NO_INPUTS = 12, 'no valid sample of several inputs'
+    NO_TORQUE = 13, 'no valid sample of the motor torque, which the load is derived from'
+    NO_DERIVED_LOAD = 14, 'the motor torque does not tell the load'
 
 
 class Severity(enum.IntEnum):

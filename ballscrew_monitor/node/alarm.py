@@ -21,6 +21,9 @@ from rclpy.lifecycle import LifecycleNode
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 
+if TYPE_CHECKING:  # which imports this module
+    from ballscrew_monitor.node.axis_publisher import AxisPublisher
+
 LATCHED_QOS = QoSProfile(
     depth=1,
     reliability=QoSReliabilityPolicy.RELIABLE,
@@ -49,9 +52,6 @@ class LatchedTopics:
         self.event = make(OutOfZone, f'~/{axis}/out_of_zone', LATCHED_QOS)
         self.info = make(SurfaceInfo, f'~/{axis}/surface_info', LATCHED_QOS)
 
-
-if TYPE_CHECKING:  # which imports this module
-    from ballscrew_monitor.node.axis_publisher import AxisPublisher
 
 LAST_WORD = Duration(seconds=0.5)  # for subscribers to take the end of an event
 

@@ -59,6 +59,11 @@ def left_out(paths: Sequence[Path], logs: Sequence[Path], out: Path | None = Non
     return [f'left out, as tables are judged by a --map: {names}'] if tables else []
 
 
+def map_for(log: Path, mapping: Path | None, *, alone: bool) -> Path | None:
+    """Return the map of a recording: one of several has it if it is a table, one alone always."""
+    return mapping if alone or is_table(log) else None
+
+
 def is_one_bag(folder: Path, *, tables: bool = False, out: Path | None = None) -> bool:
     """
     Tell whether a folder is one bag: with metadata, or no more than the parts of one.

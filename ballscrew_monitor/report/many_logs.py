@@ -9,11 +9,10 @@ from pathlib import Path
 import threading
 from typing import Any
 
-from ballscrew_monitor.recordings.bag_files import is_table
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.tables.convert import PASSES
 from ballscrew_monitor.report.log_report import AxisLine, LogResult, remove_left, report_log
-from ballscrew_monitor.report.logs import folder_names
+from ballscrew_monitor.report.logs import folder_names, map_for
 from ballscrew_monitor.report.overview import LogEntry, overview_page
 from ballscrew_monitor.report.parameters import parameters_for
 from surrogate.files import replace_file, to_json
@@ -106,7 +105,7 @@ def report_logs(
             'out': str((out / name).resolve()),
             'params': _text(params),
             # It is for tables; one recording has it for certain, and is refused if it is a bag.
-            'map': _text(mapping if len(logs) == 1 or is_table(log) else None),
+            'map': _text(map_for(log, mapping, alone=len(logs) == 1)),
             'nominal': str(nominal),
         }
         for log, name in zip(logs, folder_names(logs), strict=True)

@@ -30,8 +30,8 @@ from ballscrew_monitor.recordings.tables.mapping import AxisMap, read_map, Table
 from ballscrew_monitor.recordings.tables.series import Block, Fit, fits_of, read_series, Series
 from ballscrew_monitor.recordings.words import say, Shown, shown_progress
 from ballscrew_monitor.settings import parameters
-from ballscrew_monitor.settings.axis import load_surface, MOTOR_TORQUE
-from ballscrew_monitor.settings.parameters import absolute
+from ballscrew_monitor.settings.axis import load_surface
+from ballscrew_monitor.settings.parameters import absolute, MOTOR_TORQUE
 from geometry_msgs.msg import WrenchStamped
 import numpy as np
 from numpy.typing import NDArray

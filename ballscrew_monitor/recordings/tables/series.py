@@ -186,7 +186,12 @@ def _slope(position: Array, seconds: Array) -> Array:
 
 
 def fits_of(mapping: TableMap, usual_period: float) -> list['Fit']:
-    """Return what compares speed and position of each axis that has both, without a row yet."""
+    """
+    Return what compares speed and position of each axis that has both, without a row yet.
+
+    Rows `usual_period` [s] apart are usual in this table.
+
+    """
     return [
         Fit(axis, number, LONG * usual_period)
         for number, axis in enumerate(mapping.axes)
