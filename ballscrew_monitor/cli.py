@@ -113,6 +113,12 @@ def _health(args: argparse.Namespace) -> int:
     return health_command(args, options.PARAMS)
 
 
+def _fingerprint(args: argparse.Namespace) -> int:
+    from ballscrew_monitor.report.fingerprint_command import fingerprint_command
+
+    return fingerprint_command(args)
+
+
 def _import(args: argparse.Namespace) -> int:
     from ballscrew_monitor.recordings.tables.convert import make_bag, print_guess
 
@@ -208,6 +214,7 @@ COMMANDS = {
     'run': (_run, 'play a bag into the real node over DDS and record what it says'),
     'replay': (_replay, 'judge a log without DDS, faster than real time'),
     'health': (_health, 'tell whether axes are normal or worse, by their logs over months'),
+    'fingerprint': (_fingerprint, 'print a reference run for `health` as a part program'),
     'import': (_import, 'make a bag of a machine log, CSV or Parquet'),
     'solve': (_solve, 'ask the running node for a full solve of a point'),
     'doctor': (_doctor, 'compare the running ROS graph with a parameter file, and say the cure'),

@@ -79,6 +79,14 @@ def add_health(parser: Parser) -> None:
     _add_switch(parser, '--json', 'print JSON')
 
 
+def add_fingerprint(parser: Parser) -> None:
+    """Add what `ballscrew fingerprint` may be told."""
+    _add_file(parser, '--surface', 'FILE', 'surface of the screw (default: the nominal one)')
+    _add_number(parser, '--travel-mm', 'X', 'free travel of the axis [mm]', required=True)
+    text = 'letter of the axis in the program (default %(default)s)'
+    parser.add_argument('--axis', default='X', metavar='LETTER', help=text)
+
+
 def add_import(parser: Parser) -> None:
     """Add what `ballscrew import` may be told."""
     _add_file(parser, 'log', 'LOG', 'CSV or Parquet file')

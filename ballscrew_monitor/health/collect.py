@@ -3,8 +3,10 @@
 """The rows of one axis, gathered into stretches and added up: interpreted or compiled."""
 
 import functools
+import math
 from typing import Any, NamedTuple
 
+from ballscrew_monitor.health.fingerprint import Recogniser
 from ballscrew_monitor.health.gather import (
     finish,
     Gathered,
@@ -47,6 +49,8 @@ class Collector:
         self._settings = settings or GatherSettings()
         self._memory, self._sums = GatherMemory(), SpectrumMemory()
         self._found, self._made = Found(), Gathered()
+        free = self._settings.free_load
+        self._run = Recogniser(0.0 if math.isnan(free) else free)
         self.use_surface(surface)
 
     def use_surface(self, surface: Surface) -> None:
@@ -65,12 +69,12 @@ class Collector:
         bins = [] if counted else take_bins(self._sums)
         if not counted:
             count(self._tables, self._spectrum, self._sums, row, self._found)
-        return Collected([made.stretch()] if ended else [], bins)
+        return Collected(self._run.take([made.stretch()] if ended else []), bins)
 
     def take_many(self, judged: Any) -> Collected:
         """Take a block of rows, see `rows_of`, compiled."""
         rows = rows_of(judged)
-        return Collected(self._gather_many(rows), self._count_many(rows))
+        return Collected(self._run.take(self._gather_many(rows)), self._count_many(rows))
 
     def _gather_many(self, rows: Any) -> list[Stretch]:
         settings, memory = as_array(self._settings), as_array(self._memory)
@@ -103,8 +107,11 @@ class Collector:
 
         """
         made = Gathered()
-        ended = rows_end and finish(self._settings, self._memory, made)
-        return Collected([made.stretch()] if ended else [], take_bins(self._sums))
+        found: list[Stretch] = []
+        if rows_end:
+            ended = finish(self._settings, self._memory, made)
+            found = self._run.take([made.stretch()] if ended else []) + self._run.finish()
+        return Collected(found, take_bins(self._sums))
 
 
 @functools.cache

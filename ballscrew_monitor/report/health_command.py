@@ -14,7 +14,13 @@ from ballscrew_monitor.health.records import Health, Quantity
 from ballscrew_monitor.health.words import health_record
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.words import say
-from ballscrew_monitor.report.health_history import AxisHistory, healths, HistoryMaker
+from ballscrew_monitor.report.health_history import (
+    AxisHistory,
+    by_axis,
+    healths,
+    HistoryMaker,
+    peers_among,
+)
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.logs import find_logs, map_for
 from ballscrew_monitor.report.parameters import parameters_for
@@ -31,9 +37,12 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
     """Do what the command line asks for; return the exit code."""
     logs = find_logs(args.logs, tables=args.map is not None, out=args.out)
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
-        found = dict(_healths(list(_histories(logs, args, nominal)), args))
+        histories = list(_histories(logs, args, nominal))
+        found, peers = _healths(histories, args), peers_among(histories)
         for last in (courses[-1] for courses in found.values()):
             print('\n'.join(lines_of(last)))
+        for peer in peers:
+            print(peer.text)
         if args.out is not None:
             _write(args.out, found)
     if args.json:
@@ -65,20 +74,19 @@ def _histories(
 
 def _healths(
     histories: Sequence[AxisHistory], args: argparse.Namespace
-) -> Iterator[tuple[str, list[Health]]]:
-    for axis in dict.fromkeys(one.axis for one in histories):
-        own = [one for one in histories if one.axis == axis]
-        yield (
-            axis,
-            list(
-                healths(
-                    own,
-                    over=args.baseline_hours * HOUR,
-                    co2_per_kwh=args.co2_kg_per_kWh,
-                    speed_allowed=args.speed_advice,
-                )
-            ),
+) -> dict[str, list[Health]]:
+    """Return the course of each axis."""
+    return {
+        axis: list(
+            healths(
+                own,
+                over=args.baseline_hours * HOUR,
+                co2_per_kwh=args.co2_kg_per_kWh,
+                speed_allowed=args.speed_advice,
+            )
         )
+        for axis, own in by_axis(histories).items()
+    }
 
 
 def lines_of(health: Health) -> list[str]:

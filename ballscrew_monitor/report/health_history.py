@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.health.assess import assess, HealthSettings
+from ballscrew_monitor.health.assess import assess, HealthSettings, recent_of
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import learned, LEAST_MOTION
 from ballscrew_monitor.health.collect import Collected, Collector
 from ballscrew_monitor.health.companions import companions_beside
+from ballscrew_monitor.health.peers import FEWEST_PEERS, Peer, ranked
 from ballscrew_monitor.health.points import add, by_place, merged
 from ballscrew_monitor.health.records import (
     ComparablePoint,
@@ -134,3 +135,31 @@ def healths(
         baseline = learned(kept, over=over, screw=surface.screw_name, today=day_of(one.last) + 1)
         now = (day_of(one.last) + 1) * DAY - 1
         yield assess(one.axis, now, baseline, kept, bins, surface, companions, settings)
+
+
+def health_after(history: AxisHistory) -> Health:
+    """Return the health of an axis by one recording alone."""
+    return next(healths([history]))
+
+
+def by_axis(histories: Sequence[AxisHistory]) -> dict[str, list[AxisHistory]]:
+    """Return histories by the name of their axis."""
+    found: dict[str, list[AxisHistory]] = {}
+    for one in histories:
+        found.setdefault(one.axis, []).append(one)
+    return found
+
+
+def peers_among(histories: Sequence[AxisHistory]) -> list[Peer]:
+    """Return how axes with one surface rank over the latest weeks of all of them."""
+    found: list[Peer] = []
+    for file in dict.fromkeys(one.surface for one in histories):
+        own = [one for one in histories if one.surface == file]
+        if len(axes := by_axis(own)) > FEWEST_PEERS:
+            today = day_of(max(one.last for one in own)) + 1
+            points = {
+                axis: recent_of([point for one in kept for point in one.points], today)
+                for axis, kept in axes.items()
+            }
+            found += ranked(points, Surface.load(Path(file)))
+    return found

@@ -13,6 +13,8 @@ from ballscrew_monitor.recordings.summary import EventRecord, Summary
 from ballscrew_monitor.recordings.words import duration, NONE, number, share
 from ballscrew_monitor.report import buckets, provenance, time_series
 from ballscrew_monitor.report.buckets import axis_budgets, AxisBudget
+from ballscrew_monitor.report.health_history import health_after
+from ballscrew_monitor.report.health_part import health_chapter
 from ballscrew_monitor.report.judging import AxisCase, badness, LogCase, RCS
 from ballscrew_monitor.report.map_record import map_legend, operating_map, OperatingMap
 from ballscrew_monitor.report.page import (
@@ -273,6 +275,7 @@ def _axis_part(
         element('div', class_='series'),
         _legend([((kind,), text) for kind, text in time_series.BAR_LEGEND]),
         provenance.torque_part(case),
+        *([] if case.history is None else [health_chapter(health_after(case.history))]),
         provenance.inputs_part(case),
         provenance.gaps_part(case, budget.gaps),
         provenance.assumptions_part(case, log.parameters),

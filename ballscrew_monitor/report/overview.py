@@ -8,16 +8,15 @@ import datetime
 import math
 from urllib.parse import quote
 
-from ballscrew_monitor.health.records import Condition
 from ballscrew_monitor.recordings.words import counted, duration, NONE, percent
-from ballscrew_monitor.report.health_history import healths, read_history
+from ballscrew_monitor.report.health_history import by_axis, healths, peers_among, read_history
+from ballscrew_monitor.report.health_part import health_trends, peers_table, verdict_box
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
 from ballscrew_monitor.report.logs import PAGE
 from ballscrew_monitor.report.page import element, joined, Markup, page, table, TableCell, TableRow
+from ballscrew_monitor.report.trend import Mark, trend
 
 SCRIPTS = ('format.js', 'table.js', 'overview.js')
-WIDTH, HEIGHT, EDGE = 720.0, 110.0, 8.0  # of the picture of a trend [px]
-CONDITIONS = {Condition.NORMAL: 'good', Condition.WORSE: 'bad', Condition.UNKNOWN: 'unknown'}
 MARKS = {'good': 'optimal', 'bad': 'outside', 'unknown': 'unjudged'}
 
 
@@ -44,13 +43,16 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
     listed = [(one, line) for one in entries if one.result for line in one.result.lines]
     listed.sort(key=lambda pair: -math.inf if math.isnan(pair[1].begins) else pair[1].begins)
     bad = [one for one in entries if one.result is None]
+    first, trends = _health(entries)
     body = element(
         'main',
         element('h1', f'Ball screw reports: {counted(len(entries), "recording")}'),
-        *_healths(entries),
+        *first,
         _verdict(entries, listed),
         *(element('p', f'{note[:1].upper()}{note[1:]}.') for note in notes),
         *_failures(bad),
+        *([element('h2', 'Normal or worse, over dates')] if trends else []),
+        *trends,
         *_trends(listed),
         element('h2', 'Recordings'),
         table(
@@ -72,22 +74,17 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
     return page('Ball screw reports', body, scripts=SCRIPTS)
 
 
-def _healths(entries: Sequence[LogEntry]) -> Iterable[Markup]:
-    """Yield a sentence for each axis with several recordings: is it normal or worse, and why."""
+def _health(entries: Sequence[LogEntry]) -> tuple[list[Markup], list[Markup]]:
+    """Return what is said first of axes with several recordings, and their trends and peers."""
     found = [
         read_history(one) for entry in entries if entry.result for one in entry.result.histories
     ]
-    for axis in dict.fromkeys(one.axis for one in found):
-        own = [one for one in found if one.axis == axis]
-        if len(own) > 1:
-            *_, last = healths(own)
-            text = (
-                f'{last.verdict} {last.advice[:1].upper()}{last.advice[1:]}.'
-                if last.advice
-                else last.verdict
-            )
-            kind = CONDITIONS[last.condition]
-            yield element('div', element('p', text, class_='sentence'), class_=f'verdict {kind}')
+    courses = [list(healths(own)) for own in by_axis(found).values() if len(own) > 1]
+    peers = peers_among(found)
+    first = [verdict_box(course[-1]) for course in courses]
+    first += [element('p', one.text, class_='hint') for one in peers if one.is_apart]
+    trends = [drawn for course in courses for drawn in health_trends(course)]
+    return first, [*trends, *peers_table(peers)]
 
 
 def _verdict(entries: Sequence[LogEntry], listed: Sequence[Listed]) -> Markup:
@@ -156,39 +153,26 @@ def _trends(listed: Sequence[Listed]) -> Iterable[Markup]:
 
 
 def _trend(axis: str, listed: Sequence[Listed]) -> Markup:
-    points = [
-        (line.begins, line.outside_time / line.running_time, one, line)
+    marks = [
+        _mark(one, line)
         for one, line in listed
         if math.isfinite(line.begins + line.outside_time) and line.running_time > 0.0
     ]
-    if len(points) < 2 or points[0][0] == points[-1][0]:
+    drawn = trend(marks)
+    if not drawn:
         return Markup()
-    most = max(point[1] for point in points) or 0.01
-    first, last = points[0][0], points[-1][0]
-    marks = []
-    places = []
-    for begins, part, one, line in points:
-        x = EDGE + (WIDTH - 2 * EDGE) * (begins - first) / (last - first)
-        y = HEIGHT - EDGE - (HEIGHT - 2 * EDGE) * part / most
-        places.append(f'{x:.1f},{y:.1f}')
-        marks.append(_mark(x, y, one, line, part))
-    drawn = element(
-        'svg',
-        element('polyline', points=' '.join(places), class_='line-trend'),
-        *marks,
-        class_='trend',
-        viewBox=f'0 0 {WIDTH:g} {HEIGHT:g}',
-        role='img',
-    )
-    span = f'{_date(first)} to {_date(last)}'
-    total = math.fsum(line.running_time for _, _, _, line in points)
-    text = f'{span}, {duration(total)} in motion; the highest point is {percent(most)}.'
+    total = math.fsum(line.running_time for _, line in listed if math.isfinite(line.running_time))
+    most = max(one.value for one in marks)
+    text = f'{duration(total)} in motion; the highest point is {percent(most)}.'
     return joined(element('h3', f'Axis {axis}'), drawn, element('p', text, class_='muted'))
 
 
-def _mark(x: float, y: float, one: LogEntry, line: AxisLine, part: float) -> Markup:
-    title = element('title', f'{one.name}, {_date(line.begins)}: {percent(part)} outside')
-    dot = element(
-        'circle', title, cx=f'{x:.1f}', cy=f'{y:.1f}', r='4', class_=f'fill-{MARKS[line.standing]}'
+def _mark(one: LogEntry, line: AxisLine) -> Mark:
+    part = line.outside_time / line.running_time
+    return Mark(
+        at=line.begins,
+        value=part,
+        kind=MARKS[line.standing],
+        title=f'{one.name}, {_date(line.begins)}: {percent(part)} outside',
+        link=f'{quote(one.folder)}/{PAGE}',
     )
-    return element('a', dot, href=f'{quote(one.folder)}/{PAGE}')

@@ -18,7 +18,13 @@ from ballscrew_monitor.health.records import (
     SpectrumBin,
 )
 from ballscrew_monitor.health.rows import DAY
-from ballscrew_monitor.report.health_history import AxisHistory, healths, read_history
+from ballscrew_monitor.report.health_history import (
+    AxisHistory,
+    health_after,
+    healths,
+    read_history,
+)
+from ballscrew_monitor.report.health_part import health_chapter
 from ballscrew_monitor.report.health_picture import figure_health
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
 from ballscrew_monitor.report.overview import LogEntry, overview_page
@@ -104,21 +110,10 @@ def test_health_follows_the_recordings_whatever_their_order(months):
 
 
 def test_the_overview_begins_with_normal_or_worse(months):
-    line = AxisLine(axis='x', standing='bad', verdict='Outside: always')
-    entries = [
-        LogEntry(
-            name=f'month {number}',
-            folder=f'month_{number}',
-            result=LogResult(
-                name='m', lines=[line], unjudged=[], histories=[to_json(dataclasses.asdict(one))]
-            ),
-        )
-        for number, one in enumerate(months)
-    ]
-    page = overview_page(entries)
+    page = overview_page([entry(one) for one in months])
     assert page.index('Axis x is worse') < page.index('ran outside the optimal zone')
     assert 'Look at wipers, covers and bearings.' in page
-    alone = overview_page(entries[:1])
+    alone = overview_page([entry(months[0])])
     assert 'normal or worse' not in alone
 
 
@@ -146,3 +141,40 @@ def test_the_command_tells_what_one_recording_lacks(capsys, tmp_path):
     assert 'no steady motion with a measured torque' in record['verdict']
     assert (tmp_path / 'health.png').stat().st_size > 0
     assert json.loads((tmp_path / 'health.json').read_text())['x']['course']
+
+
+def test_the_overview_draws_trends_and_ranks_axes_with_one_programme(months):
+    entries = [entry(one) for one in months]
+    entries += [entry(dataclasses.replace(months[0], axis=name)) for name in 'yz']
+    page = overview_page(entries)
+    assert 'Axis x: change of the drag, with 95 % intervals' in page
+    assert page.count('class="line-interval"') >= 11
+    assert 'apart from its peers' not in page  # those of a year ago do not count
+    latest = [dataclasses.replace(aged(months[0], 11), axis=name) for name in 'yz']
+    page = overview_page([entry(one) for one in (*months, *latest)])
+    assert page.count('apart from its peers') == 1
+    assert 'Axis x takes +' in page
+
+
+def entry(one):
+    line = AxisLine(axis=one.axis, standing='bad', verdict='Outside: always')
+    record = to_json(dataclasses.asdict(one))
+    result = LogResult(name='m', lines=[line], unjudged=[], histories=[record])
+    return LogEntry(name='month', folder='month', result=result)
+
+
+def aged(one, months):
+    """Return a history as of some months later."""
+    later = MONTH * months
+    points = [dataclasses.replace(p, first_day=p.first_day + later) for p in one.points]
+    return dataclasses.replace(one, points=points, last=one.last + later * DAY)
+
+
+def test_a_chapter_tells_the_known_and_why_the_rest_is_not(months):
+    chapter = health_chapter(health_after(months[0]))
+    assert chapter.index('Health: normal or worse') < chapter.index('class="verdict')
+    assert 'drag change' in chapter
+    assert 'not known' in chapter
+    worse = health_chapter([*healths(months)][-1])
+    assert 'a constant drag of +0.110 N m' in worse
+    assert '<td>excluded</td>' in worse
