@@ -127,7 +127,7 @@ def _is_even(time: NDArray[np.float64]) -> bool:
 PAGE_BYTES = 4_950_000
 FEW = 4  # axes of which all is shown
 MANY = 16  # axes from which on the tables of all have fewer rows, too
-BUCKETS, PATH_POINTS = 3000, 6000
+BUCKETS = 3000
 WORST = 50  # events of an axis about which every sample is kept
 MOST_ROWS = 1000
 """Rows of a table of which there may be any number; the worst are shown."""
@@ -135,10 +135,9 @@ MOST_ROWS = 1000
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class AxisBudget:
-    """Most buckets in time, points of the path, and rows of events and of gaps."""
+    """Most buckets in time, and rows of events and of gaps."""
 
     buckets: int = BUCKETS
-    path_points: int = PATH_POINTS
     events: int = MOST_ROWS
     gaps: int = MOST_ROWS
 
@@ -150,12 +149,7 @@ def axis_budgets(cases: Sequence[AxisCase]) -> list[AxisBudget]:
     events = fair_shares(rows, [min(MOST_ROWS, len(case.outcome.events)) for case in cases])
     gaps = fair_shares(rows, [min(MOST_ROWS, len(case.survey.speed_gaps)) for case in cases])
     return [
-        AxisBudget(
-            buckets=max(1, int(part * BUCKETS)),
-            path_points=max(1, int(part * PATH_POINTS)),
-            events=int(event_rows),
-            gaps=int(gap_rows),
-        )
+        AxisBudget(buckets=max(1, int(part * BUCKETS)), events=int(event_rows), gaps=int(gap_rows))
         for event_rows, gap_rows in zip(events, gaps, strict=True)
     ]
 

@@ -180,12 +180,8 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
 
 
 def maps_of(log: LogCase) -> list[OperatingMap]:
-    """Return the maps of all axes, as a page has room for them."""
-    budgets = axis_budgets(log.axes)
-    return [
-        operating_map(case, budget.path_points)
-        for case, budget in zip(log.axes, budgets, strict=True)
-    ]
+    """Return the maps of all axes."""
+    return [operating_map(case) for case in log.axes]
 
 
 def report_page(log: LogCase, maps: Sequence[OperatingMap] | None = None) -> str:

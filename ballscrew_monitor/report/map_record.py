@@ -1,19 +1,18 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The operating map of an axis for page and picture: zone, borders, time spent, path, warnings."""
+"""The operating map of an axis for page and picture: zone, borders, time spent, warnings."""
 
 from collections.abc import Iterable, Sequence
 import dataclasses
 import math
 from typing import Any
 
-from ballscrew_monitor.core.conversions import celsius, SECOND
+from ballscrew_monitor.core.conversions import celsius, direction_of, opposing_load, SECOND
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.core.judgement import Limits, Zone
+from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.recordings.columns import JudgedColumns
 from ballscrew_monitor.recordings.declared import written
 from ballscrew_monitor.report import operating_field
-from ballscrew_monitor.report.buckets import PATH_POINTS
 from ballscrew_monitor.report.judging import AxisCase
 from ballscrew_monitor.report.operating_field import Field
 from ballscrew_monitor.report.page import floats, packed
@@ -81,8 +80,8 @@ class OperatingMap:
     The map of an axis at an oil temperature [degC], between speeds [rev/min] and loads [N].
 
     Rows of the cells of zone (a code) and dwell [s] are of a load, columns of a speed. Points of
-    lines and path are speed and load in turn, NaN where a line is interrupted. `others`: borders
-    at other temperatures are among the lines; `banded`: so is the range of that in force.
+    lines are speed and load in turn, NaN where one is interrupted. `others`: borders at other
+    temperatures are among the lines; `banded`: so is the range of that in force.
 
     """
 
@@ -95,11 +94,10 @@ class OperatingMap:
     zone: Array = written(form=_zone_record)
     lines: Sequence[MapLine]
     dwell: Array = written(form=_dwell_record)
-    path: Array = written(form=floats)
     events: Sequence[MapMark]
 
 
-def operating_map(case: AxisCase, path_points: int = PATH_POINTS) -> OperatingMap:
+def operating_map(case: AxisCase) -> OperatingMap:
     """Return the map of an axis at the mean temperature of its oil in motion."""
     limits, surface, oil = case.settings.limits, case.surface, case.survey.oil
     speeds = operating_field.judged_speeds(surface, limits.standstill_speed)
@@ -125,7 +123,8 @@ def operating_map(case: AxisCase, path_points: int = PATH_POINTS) -> OperatingMa
         light_load=limits.light_load,
         zone=_zone(field, limits),
         lines=lines,
-        **_visited(case, speeds, loads, path_points),
+        dwell=_dwell(case, speeds, loads),
+        events=list(_marks(case)),
     )
 
 
@@ -180,59 +179,27 @@ def _line(
     return MapLine(kind=kind, label=label, height=height, points=points)
 
 
-def _visited(
-    case: AxisCase, speeds: tuple[float, float], loads: tuple[float, float], path_points: int
-) -> dict[str, Any]:
-    """Return time spent in each cell, path and places of the warnings."""
+def _dwell(case: AxisCase, speeds: tuple[float, float], loads: tuple[float, float]) -> Array:
+    """Return the time spent in each cell [s]."""
     edges = np.linspace(*loads, ROWS + 1), np.geomspace(*speeds, COLUMNS + 1)
-    dwell = np.zeros((ROWS, COLUMNS))  # [s]
-    stride, seen = max(1, case.survey.rows // path_points), 0
-    marked = case.worst_first[:MARKED]
-    path, places = [], {event.event_id: MeanPlace() for event in marked}
+    dwell = np.zeros((ROWS, COLUMNS))
     for block in case.blocks():
-        speed = np.abs(block.speed)
-        moving = speed >= case.settings.limits.standstill_speed
+        moving = np.abs(block.speed) >= case.settings.limits.standstill_speed
         load = np.where(moving, opposing_loads(block), np.nan)
         dwell += _time_spent(case, block, load, edges)
-        chosen = slice(-seen % stride, None, stride)
-        path.append(np.stack([speed[chosen] / RPM, load[chosen]], axis=-1))
-        seen += len(block)
-        outside = moving & (block.zone == Zone.OUTSIDE)
-        first, last = block.stamp.min(), block.stamp.max()
-        for event in marked:
-            if event.end < first or event.start > last:
-                continue
-            inside = outside & (block.stamp >= event.start) & (block.stamp <= event.end)
-            places[event.event_id].add(speed[inside] / RPM, load[inside])
-    return {'dwell': dwell, 'path': np.concatenate(path), 'events': list(_marks(case, places))}
+    return dwell
 
 
-def _marks(case: AxisCase, places: dict[int, 'MeanPlace']) -> Iterable[MapMark]:
-    """Return where the worst events are on the map, the worst last, to be drawn on top."""
+def _marks(case: AxisCase) -> Iterable[MapMark]:
+    """Return where the worst samples of the worst events were, the worst last, to be on top."""
     for event in reversed(case.worst_first[:MARKED]):
-        spot = places[event.event_id].middle
-        if spot is not None:
-            shown = dict(zip(('begin', 'end'), case.shown(event)))
-            yield MapMark(number=event.event_id, speed=spot[0], load=spot[1], **shown)
-
-
-class MeanPlace:
-    """Where most of the samples of an event are: their mean, the speed by its logarithm."""
-
-    def __init__(self) -> None:
-        """Begin without a sample."""
-        self._sums = np.zeros(3)
-
-    def add(self, speed: Array, load: Array) -> None:
-        """Take samples: speed [rev/min], load [N]."""
-        known = np.isfinite(load) & (speed > 0)
-        self._sums += np.log(speed[known]).sum(), load[known].sum(), known.sum()
-
-    @property
-    def middle(self) -> tuple[float, float] | None:
-        """Return speed [rev/min] and load [N], None without a sample."""
-        speed, load, count = self._sums.tolist()
-        return (math.exp(speed / count), load / count) if count else None
+        if event.place:
+            yield MapMark(
+                number=event.event_id,
+                speed=abs(event.speed) / RPM,
+                load=opposing_load(event.axial_load, direction_of(event.speed)),
+                **dict(zip(('begin', 'end'), case.shown(event))),
+            )
 
 
 def _time_spent(
@@ -253,7 +220,6 @@ def map_legend(case: AxisCase, chart: OperatingMap) -> list[tuple[tuple[str, ...
     entries: list[tuple[tuple[str, ...], str]] = [
         (('zone',), f'optimal zone at {degrees}'),
         (('heat',), 'time spent, darker is longer'),
-        (('path', 'line'), 'path'),
         (('rcs', 'line'), f'RCS {limits.rcs:g}: left of it metal pierces the oil film'),
         (('efficiency', 'line'), f'efficiency {100 * limits.efficiency:g} %'),
         (('hatch', 'dots'), 'light load: efficiency is not judged'),
@@ -261,8 +227,8 @@ def map_legend(case: AxisCase, chart: OperatingMap) -> list[tuple[tuple[str, ...
     ]
     if chart.others:
         text = 'RCS limit with the coldest and the warmest oil'
-        entries.insert(4, (('rcs', 'line', '6 4'), text))
+        entries.insert(3, (('rcs', 'line', '6 4'), text))
     if chart.banded:
         text = 'RCS limit, its range by what is not known'
-        entries.insert(4, (('rcs', 'line', '8 3 2 3'), text))
+        entries.insert(3, (('rcs', 'line', '8 3 2 3'), text))
     return entries

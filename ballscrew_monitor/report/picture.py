@@ -85,7 +85,6 @@ def _draw_axis(part: SubFigure, case: AxisCase, chart: OperatingMap) -> None:
 def _draw_map(axes: Axes, case: AxisCase, chart: OperatingMap) -> None:
     axes.set_xscale('log')
     _draw_cells(axes, chart)
-    axes.plot(*chart.path.T, color=COLOURS['path'], linewidth=0.6, zorder=2)
     for line in chart.lines:
         colour, width, dash = STYLES[line.kind]
         dashes = _dashes(dash)

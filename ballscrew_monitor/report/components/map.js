@@ -1,6 +1,6 @@
 // Copyright 2026 ballscrew_monitor contributors
 // SPDX-License-Identifier: Apache-2.0
-// The operating map on a canvas: optimal zone, time spent, path, borders and warnings.
+// The operating map on a canvas: optimal zone, time spent, borders and warnings.
 
 'use strict';
 
@@ -12,7 +12,6 @@ class OperatingMap extends MapFrame {
     this.lines = record.lines.map((line) => ({ ...line, points: Format.floats(line.points) }));
     this.zone = Format.packed(record.zone.cells).map(Math.round);
     this.dwell = Format.floats(record.dwell.cells);
-    this.path = Format.floats(record.path);
     this.note = Format.element('p', 'readout', OperatingMap.HINT);
     element.replaceChildren(this.canvas, this.note);
     this.canvas.addEventListener('pointermove', (event) => this.read(event));
@@ -28,7 +27,6 @@ class OperatingMap extends MapFrame {
       this.cells(this.record.zone, 'zone', (i) => (this.zone[i] === 1 ? 1 : 0));
       this.cells(this.record.dwell, 'heat', (i) => this.heat(this.dwell[i]));
       this.light();
-      this.trail();
       this.lines.forEach((line) => this.line(line));
       // The limits come last and are on top; their names come first and keep their places.
       [...this.lines].reverse().forEach((line) => this.name(line));
@@ -54,10 +52,6 @@ class OperatingMap extends MapFrame {
         this.pen.fillRect(x, y, 1.3, 1.3);
       }
     }
-  }
-
-  trail() {
-    this.stroke(this.path, Format.colour('path'), 0.7, []);
   }
 
   line(line) {

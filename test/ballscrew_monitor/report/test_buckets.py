@@ -126,9 +126,9 @@ def one_map(monkeypatch):
     """Let all axes of a page have the map of the first one, which takes long to make."""
     made, make = [], log_page.operating_map
 
-    def make_once(case, points):
+    def make_once(case):
         if not made:
-            made.append(make(case, points))
+            made.append(make(case))
         return made[0]
 
     monkeypatch.setattr(log_page, 'operating_map', make_once)
@@ -183,4 +183,4 @@ def test_a_few_axes_have_all_and_many_as_much_as_there_is(judged):
     quiet = judged.case([judged.columns()])
     assert axis_budgets([quiet])[0].buckets == axis_budgets([quiet] * 4)[0].buckets == 3000
     rooms = axis_budgets([quiet] * 16)
-    assert {(room.buckets, room.path_points, room.events) for room in rooms} == {(750, 1500, 0)}
+    assert {(room.buckets, room.events) for room in rooms} == {(750, 0)}

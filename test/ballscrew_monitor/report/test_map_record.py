@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The map for page and picture."""
 
-from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.recordings.declared import plain
 from ballscrew_monitor.report.map_record import COLUMNS, operating_map, OPTIMAL, OUTSIDE, ROWS
 import numpy as np
@@ -34,30 +33,23 @@ def test_the_border_is_where_the_surface_has_the_limit_and_the_zone_on_both_side
     assert (record.zone[-1, -8:] == OPTIMAL).any()
 
 
-def test_a_warning_is_marked_where_its_samples_are(judged):
-    zone = np.where(np.arange(100) < 50, Zone.OUTSIDE, Zone.OPTIMAL)
-    block = judged.columns(speed=50.0, axial_load=-700.0, zone=zone)
-    record = operating_map(judged.case([block], [judged.event(3, 0.0, 0.49)]))
-    mark = record.events[0]
-    assert (mark.number, mark.load) == (3, pytest.approx(700.0))
+def test_a_warning_is_marked_at_its_worst_sample(judged):
+    event = judged.event(3, 0.0, 0.49, speed=-50.0, axial_load=700.0)  # backward, against it
+    (mark,) = operating_map(judged.case([judged.columns()], [event])).events
+    assert (mark.number, mark.load) == (3, 700.0)
     assert mark.speed == pytest.approx(50.0 * 30.0 / np.pi)
+    unknown = judged.event(4, 0.0, 0.49, speed=np.nan)
+    assert operating_map(judged.case([judged.columns()], [unknown])).events == []
 
 
-def test_only_the_worst_warnings_are_marked_each_by_its_blocks(judged):
-    speeds = (50.0, 80.0)
-    blocks = [
-        judged.columns(100 * n, speed=speed, axial_load=-700.0, zone=Zone.OUTSIDE)
-        for n, speed in enumerate(speeds)
-    ]
+def test_only_the_worst_warnings_are_marked(judged):
     events = [
-        judged.event(n + 1, 0.05 * n, 0.04, worst_value=0.011 + 0.001 * n) for n in range(40)
+        judged.event(n + 1, 0.05 * n, 0.04, worst_value=0.011 + 0.001 * n, speed=50.0 + n)
+        for n in range(40)
     ]
-    marks = operating_map(judged.case(blocks, events)).events
+    marks = operating_map(judged.case([judged.columns()], events)).events
     assert [one.number for one in marks] == list(range(21, 41))
-    assert {round(one.speed * np.pi / 30.0) for one in marks} == {80}
-    both = judged.event(1, 0.5, 1.0)
-    (mark,) = operating_map(judged.case(blocks, [both])).events
-    assert 50.0 < mark.speed * np.pi / 30.0 < 80.0
+    assert [round(one.speed * np.pi / 30.0) for one in marks] == list(range(70, 90))
 
 
 def test_other_temperatures_have_a_border_of_their_own(judged):

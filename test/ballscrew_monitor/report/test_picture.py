@@ -23,7 +23,6 @@ def small_map(*marks):
         zone=np.ones((4, 3), dtype=int),
         lines=[],
         dwell=np.zeros((2, 2)),
-        path=np.empty((0, 2)),
         events=list(marks),
     )
 
