@@ -55,6 +55,7 @@ class RestartState:
         self.limit = limit
         self.damage: list[str] = []  # sentences on what was set aside
         self.notices: list[str] = []  # and on what was taken over
+        self.beside = ''  # what is wrong with what else is kept in the folder
         self._database: StateDatabase | None = None
         if folder is not None:
             self._database = StateDatabase(folder, limit, damage=self.damage, notices=self.notices)
@@ -78,7 +79,12 @@ class RestartState:
         refused = [
             f'corrections of {axis} are not kept, {why}' for axis, why in self._refused.items()
         ]
-        return '; '.join(filter(None, [self._problem, *self.damage, *refused]))
+        return '; '.join(filter(None, [self._problem, *self.damage, *refused, self.beside]))
+
+    @property
+    def is_held(self) -> bool:
+        """Tell whether the folder is that of this node alone."""
+        return self._database is not None and self._database.is_open
 
     def forget_problems(self) -> None:
         """Say no more of what was set aside, nor of corrections that are gone."""
