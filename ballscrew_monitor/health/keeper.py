@@ -3,7 +3,6 @@
 """Health of one axis out of a store: what is gathered goes in, and is assessed with all before."""
 
 import dataclasses
-import math
 from typing import Any
 
 from ballscrew_monitor.health.assess import assess, HealthSettings
@@ -102,7 +101,7 @@ class HealthKeeper:
             raise InputError(
                 f'running_in is {running_in:g} s, allowed is 0 to {LONGEST_RUNNING_IN:g} s'
             )
-        made = {'reason': reason, 'named_at': now, 'screw': screw}
+        made: dict[str, Any] = {'reason': reason, 'named_at': now, 'screw': screw}
         with self._store.lock:
             if begin or end:
                 kept = self._store.read(self._axis)

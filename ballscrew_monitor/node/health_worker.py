@@ -154,7 +154,9 @@ class HealthWorker:
             except (InputError, sqlite3.Error, OSError) as error:
                 self.problem = f'{self.store.file} cannot be used, {error}'
             except Exception as error:  # noqa: BLE001 the thread must live
-                self.problem = f'{FAILED} the health of {job.axis}: {type(error).__name__}: {error}'
+                self.problem = (
+                    f'{FAILED} the health of {job.axis}: {type(error).__name__}: {error}'
+                )
         with self.store.lock:
             self.store.close()
 
@@ -165,9 +167,7 @@ class HealthWorker:
         job.keeper.keep(today)
         if job.assesses and not self._ending:
             companions = self._companions_of(job)
-            made = job.keeper.assess(
-                job.now, job.surface, companions, job.settings, over=job.over
-            )
+            made = job.keeper.assess(job.now, job.surface, companions, job.settings, over=job.over)
             self.done.append(Assessed(made, job.surface))
 
     def _companions_of(self, job: Job) -> Companions | str:

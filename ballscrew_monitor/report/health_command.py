@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""`ballscrew health`: whether an axis is normal or worse, by recordings or what a node gathered."""
+"""`ballscrew health`: normal or worse, by recordings over months or what a node gathered."""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
@@ -75,10 +75,7 @@ def _healths(
 ) -> Iterator[tuple[str, list[Health]]]:
     for axis in dict.fromkeys(one.axis for one in histories):
         own = [one for one in histories if one.axis == axis]
-        yield (
-            axis,
-            list(healths(own, **_options(args))),
-        )
+        yield (axis, list(healths(own, **_options(args))))
 
 
 def _options(args: argparse.Namespace) -> dict[str, Any]:

@@ -68,8 +68,9 @@ def _course(
         co2_per_kwh=co2_per_kwh,
         speed_allowed=speed_allowed,
     )
-    last = max(one.first_day + one.days - 1 for one in (*kept.points, *kept.spectrum))
-    first = min(one.first_day for one in (*kept.points, *kept.spectrum))
+    periods = [(one.first_day, one.days) for one in kept.points]
+    periods += [(one.first_day, one.days) for one in kept.spectrum]
+    first, last = min(periods)[0], max(day + days - 1 for day, days in periods)
     baseline = in_force(kept, over=over, today=last + 1, screw=surface.screw_name)
     say(*kept.notes)
     for day in range(last, max(first, last - MOST_MONTHS * MONTH) - 1, -MONTH)[::-1]:

@@ -72,7 +72,9 @@ class Axis:
 
     def start(self, **parameters):
         self.healths.clear()
-        self.node.start(**{'state_dir': self.folder, 'x__max_future': 3600.0} | TORQUE | parameters)
+        self.node.start(
+            **{'state_dir': self.folder, 'x__max_future': 3600.0} | TORQUE | parameters
+        )
         self.publish = self.publish or self.node.machine()
 
     def health(self, condition=lambda one: True, what='the health'):
@@ -163,9 +165,7 @@ def test_a_named_baseline_outlives_the_node(axis, says):
     axis.health(lambda one: one.condition == AxisHealth.CONDITION_WORSE, 'the change')
     refusal = axis.node.call(SetBaseline, 'x/set_baseline', reason=' ')
     assert (refusal.success, refusal.message) == (False, says('no_reason'))
-    done = axis.node.call(
-        SetBaseline, 'x/set_baseline', reason='new screw', running_in=7200.0
-    )
+    done = axis.node.call(SetBaseline, 'x/set_baseline', reason='new screw', running_in=7200.0)
     assert (done.success, done.message) == (True, says('learned_from_now'))
     axis.health(lambda one: one.condition == AxisHealth.CONDITION_UNKNOWN, 'no baseline')
     axis.kill()
