@@ -147,7 +147,10 @@ class HealthWorker:
             self.damage += self.store.load()
 
     def _run(self) -> None:
-        while (job := self._jobs.get()) is not None:
+        while not (self._ending and self._jobs.empty()):
+            job = self._jobs.get()
+            if job is None:
+                break
             try:
                 self._do(job)
                 self.problem = ''
