@@ -63,16 +63,16 @@ def health_status(
     """
     Return the status of health of an axis of the `node`, by full name, with a `screw`.
 
-    `problem` is why it cannot be followed; None: nothing has been assessed yet.
+    None: nothing has been assessed yet; `problem` is why it cannot be followed now.
 
     """
     status = DiagnosticStatus(name=f'{node.lstrip("/")}: {axis}: Health', level=OK)
     status.hardware_id = hardware_id(node, axis, screw)
-    if health is None or problem:
+    if health is None:
         status.message = f'not known: {problem or NOT_ASSESSED}'
         return status
     status.level = WARN if warns(health, policy) else OK
-    status.message = health.verdict
+    status.message = f'{health.verdict} Not followed now: {problem}' if problem else health.verdict
     status.values = key_values(_values(health))
     return status
 

@@ -92,7 +92,6 @@ class AxisHealths:
         self._worker.close()
         self._speak()
         self._worker = None
-        self._kept.state.beside = ''
         for part in (self._gatherers, self._keepers, self._last, self._due):
             part.clear()
 
@@ -101,16 +100,15 @@ class AxisHealths:
         return [self._status(name) for name in axes if name in self._gatherers]
 
     def _status(self, name: str) -> DiagnosticStatus:
-        last, problem = self._last.get(name), self._gatherers[name].defect
-        if last is None and self._worker is not None:
-            problem = problem or self._worker.problem
+        last = self._last.get(name)
+        assert self._worker is not None
         return health_status(
             self._node.get_fully_qualified_name(),
             name,
             self._publishers[name].surface.screw_name,
             last.health if last else None,
             self._policy(name),
-            problem=problem,
+            problem=self._gatherers[name].defect or self._worker.problem,
         )
 
     def _look(self) -> None:
@@ -119,7 +117,9 @@ class AxisHealths:
             return
         self._looks += 1
         for name in self._gatherers:
-            self._due[name] -= LOOK
+            # What could not be had is tried again with the next write.
+            longest = PERIOD * LOOK if self._worker.problem else math.inf
+            self._due[name] = min(self._due[name], longest) - LOOK
             assesses = self._due[name] <= 0.0
             if assesses or self._looks % PERIOD == 0:
                 if self._hand_over(name, assesses=assesses) and assesses:
@@ -155,7 +155,6 @@ class AxisHealths:
         """Publish what has been assessed, and say what was set aside."""
         worker = self._worker
         assert worker is not None
-        self._kept.state.beside = worker.problem
         while worker.damage:
             self._kept.state.damage.append(worker.damage.popleft())
         while worker.done:
@@ -186,7 +185,7 @@ class AxisHealths:
                 f'the health of axis {axis} is not followed: the node must be active, '
                 f'{axis}.health.enabled true, and state_dir not empty'
             )
-        self._worker.open()
+        self._worker.take_store()
         said = self._keepers[axis].name_baseline(
             self._now,
             begin=stamp_of(request.begin),

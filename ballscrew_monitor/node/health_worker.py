@@ -137,7 +137,7 @@ class HealthWorker:
             self._jobs.put(None, timeout=PATIENCE)
         self._thread.join(PATIENCE)
 
-    def open(self) -> None:
+    def take_store(self) -> None:
         """Open the store, if it is not; raises InputError, sqlite3.Error and OSError."""
         with self.store.lock:
             if self.store.is_open:
@@ -166,7 +166,7 @@ class HealthWorker:
     def _do(self, job: Job) -> None:
         today = day_of(job.now)
         job.keeper.gather(job.found, job.surface, today)
-        self.open()
+        self.take_store()
         job.keeper.keep(today)
         if job.assesses and not self._ending:
             companions = self._companions_of(job)

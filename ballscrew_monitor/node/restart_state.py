@@ -55,7 +55,6 @@ class RestartState:
         self.limit = limit
         self.damage: list[str] = []  # sentences on what was set aside
         self.notices: list[str] = []  # and on what was taken over
-        self.beside = ''  # what is wrong with what else is kept in the folder
         self._database: StateDatabase | None = None
         if folder is not None:
             self._database = StateDatabase(folder, limit, damage=self.damage, notices=self.notices)
@@ -79,7 +78,7 @@ class RestartState:
         refused = [
             f'corrections of {axis} are not kept, {why}' for axis, why in self._refused.items()
         ]
-        return '; '.join(filter(None, [self._problem, *self.damage, *refused, self.beside]))
+        return '; '.join(filter(None, [self._problem, *self.damage, *refused]))
 
     @property
     def is_held(self) -> bool:

@@ -54,10 +54,7 @@ def test_the_row_of_the_last_event_is_there_whether_or_not_a_state_is_due(core):
     assert found == [
         one
         for number, stamp in enumerate(stamps)
-        for one in (
-            (Source.LOAD, None, False),
-            (Source.SPEED, (stamp, 40.0), number == 0),
-        )
+        for one in ((Source.LOAD, None, False), (Source.SPEED, (stamp, 40.0), number == 0))
     ]
     assert monitor.tick(START + 3 * STEP) is None
     assert monitor.row is None

@@ -127,5 +127,8 @@ def test_the_status_warns_where_the_message_does(policy, condition):
 def test_what_is_not_known_is_a_sentence_and_no_warning(says):
     none = health_status('/node', 'x', 'screw', None, WarningPolicy.BOTH)
     assert (none.level, none.message) == (OK, says('not_assessed'))
-    failed = health_status('/node', 'x', 's', health(), WarningPolicy.BOTH, problem='it failed')
+    failed = health_status('/node', 'x', 's', None, WarningPolicy.BOTH, problem='it failed')
     assert (failed.level, failed.message) == (OK, 'not known: it failed')
+    later = health_status('/node', 'x', 's', health(), WarningPolicy.BOTH, problem='it failed')
+    assert later.level == WARN
+    assert later.message == 'Axis x is worse. Not followed now: it failed'
