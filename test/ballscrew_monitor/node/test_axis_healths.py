@@ -12,11 +12,13 @@ from ballscrew_monitor.health.points import add, model_torque
 from ballscrew_monitor.health.records import SpectrumBin, Stretch
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import FILE, HealthStore, read_health
+from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_msgs.msg import AxisHealth, BallScrewState
 from ballscrew_msgs.srv import SetBaseline
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
+from rclpy.serialization import deserialize_message
 from surrogate.surface import shipped_surface, Surface
 
 KILLS = 3
@@ -122,7 +124,7 @@ def stamp_of(message):
 
 def test_the_node_gathers_and_says_what_is_normal(axis):
     axis.live()
-    axis.start()
+    axis.start(record='always')
     health = axis.health()
     assert (health.axis, health.condition) == ('x', AxisHealth.CONDITION_NORMAL)
     assert health.baseline_reason == LEARNED
@@ -143,6 +145,10 @@ def test_the_node_gathers_and_says_what_is_normal(axis):
     moved = sum(one.time for one in kept.spectrum if one.first_day >= today[0].first_day)
     assert moved == pytest.approx(before, abs=0.5)
     assert len(kept.baselines) == 1
+    made = axis.folder / 'recordings'
+    (path,) = axis.node.until(lambda: [*made.glob('*/metadata.yaml')], 'the recording')
+    *_, last = Bag(path.parent).messages([f'{axis.node.name}/x/health'])
+    assert str(deserialize_message(last.data, AxisHealth)) == str(health)
 
 
 def test_a_change_warns_by_the_policy_alone(axis):
