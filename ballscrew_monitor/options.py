@@ -65,7 +65,9 @@ def add_replay(parser: Parser) -> None:
 
 def add_health(parser: Parser) -> None:
     """Add what `ballscrew health` may be told."""
-    text = 'bag directory or file, a folder of them; CSV or Parquet with --map'
+    text = (
+        'bag directory or file, a folder of them; CSV or Parquet with --map; state_dir of a node'
+    )
     _add_file(parser, 'logs', 'LOG', text, nargs='+')
     _add_file(parser, '--map', 'FILE', 'map of the columns of a CSV or Parquet file')
     text = f'parameters of the node (default those that a log carries, else {PARAMS_TEXT})'

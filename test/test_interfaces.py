@@ -18,7 +18,7 @@ CONSTANT = re.compile(r'(?P<type>\w+) (?P<name>[A-Z][A-Z0-9_]*) *= *(?P<value>\S
 # Kinds of things, told apart by a number; the first word names the kind.
 ENUMERATIONS = {
     *'CODE CONTACT DIRECTION GATE LEVEL NUT REGIME SEVERITY SIDE SOURCE STAMP STATE'.split(),
-    *'TIER VALIDITY ZONE'.split(),
+    *'TIER VALIDITY ZONE CAUSE CONDITION'.split(),
 }
 
 

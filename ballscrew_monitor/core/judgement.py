@@ -48,6 +48,24 @@ class Code(enum.IntEnum):
     MODEL_RANGE = 5  # reserved by the message; no surface says so yet
 
 
+class WarningPolicy(enum.StrEnum):
+    """What diagnostics and messages warn of; no judgement knows it."""
+
+    ZONE = 'zone'
+    CHANGE = 'change'
+    BOTH = 'both'
+
+    @property
+    def of_zone(self) -> bool:
+        """Tell whether they warn of a point outside the optimal zone."""
+        return self is not WarningPolicy.CHANGE
+
+    @property
+    def of_change(self) -> bool:
+        """Tell whether they warn of an axis that is worse than its baseline."""
+        return self is not WarningPolicy.ZONE
+
+
 class Reason(enum.IntEnum):
     """Why an instant has no zone, its number and in words; JUDGED where it has one."""
 

@@ -16,6 +16,7 @@ from ballscrew_monitor.core.conversions import clock_text, TIME_UNITS
 from ballscrew_monitor.health.bands import FIRST_DAY
 from ballscrew_monitor.health.records import Baseline, ComparablePoint, LoadSource, SpectrumBin
 from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.health.store_rows import KeptHealth
 from surrogate.files import InputError
 from surrogate.units import MINUTE
 
@@ -127,6 +128,29 @@ def named(
         raise InputError(f'{why}, from {clock_text(begin)} to {clock_text(end)}')
     return Baseline(
         begin=begin, end=end, reason=reason, named_at=named_at, screw=screw, points=picked
+    )
+
+
+def in_force(kept: KeptHealth, *, over: float, today: int, screw: str) -> Baseline | str:
+    """
+    Return the baseline that counts `today`, or in a sentence why it is not known yet.
+
+    It is the last one that is kept; where this is open, or there is none, it is learned.
+
+    """
+    last = kept.baseline or Baseline(begin=0, end=0, reason=LEARNED)
+    if last.end:
+        return last
+    return learned(
+        kept.points,
+        motion=motion_by_day(kept.spectrum),
+        since=last.begin,
+        today=today,
+        over=over,
+        left_out=last.left_out,
+        reason=last.reason,
+        named_at=last.named_at,
+        screw=screw,
     )
 
 

@@ -126,11 +126,16 @@ def add(points: Points, stretch: Stretch, surface: Surface, today: int | None = 
 def _why_not(stretch: Stretch, day: int, today: int | None) -> str:
     if stretch.load_source is LoadSource.DERIVED:
         return 'a stretch does not count: its load follows from its torque'
+    return clock_objection(day, today)
+
+
+def clock_objection(day: int, today: int | None) -> str:
+    """Return in a sentence why motion of a `day` cannot be of `today`, both since 1970, or ''."""
     if day < FIRST_DAY:
-        return f'a stretch of {date_text(day)} does not count: the clock was not set'
+        return f'motion of {date_text(day)} does not count: the clock was not set'
     if today is not None and abs(day - today) > 1:
         return (
-            f'a stretch of {date_text(day)} does not count: the clock says {date_text(today)}, '
+            f'motion of {date_text(day)} does not count: the clock says {date_text(today)}, '
             'one day off is allowed'
         )
     return ''

@@ -92,7 +92,8 @@ class Baseline:
 
     `named_at` [ns] is when it was named, 0 for one that was learned over the first hours in
     motion. `points` are kept with it, so that merging of older days leaves it as it is. `screw`
-    is the datasheet of the surface in use.
+    is the datasheet of the surface in use. With an `end` of 0 it is still to be learned from
+    `begin` on, after a motion of `left_out` [s].
 
     """
 
@@ -101,6 +102,7 @@ class Baseline:
     reason: str
     named_at: int = 0
     screw: str = ''
+    left_out: float = 0.0
     points: tuple[ComparablePoint, ...] = ()
 
 

@@ -14,6 +14,7 @@ import contextlib
 import dataclasses
 from pathlib import Path
 import sqlite3
+import threading
 from typing import Any
 
 from ballscrew_monitor.core.sqlite_file import (
@@ -29,7 +30,7 @@ from ballscrew_monitor.core.sqlite_file import (
     USED,
 )
 from ballscrew_monitor.health.bands import period_of
-from ballscrew_monitor.health.points import aged
+from ballscrew_monitor.health.points import aged, by_place
 from ballscrew_monitor.health.records import Baseline, ComparablePoint, SpectrumBin
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.store_rows import (
@@ -83,6 +84,7 @@ class HealthStore:
     def __init__(self, folder: Path, *, limit: int = LIMIT) -> None:
         """Open nothing yet; an axis may have a `limit` [B]."""
         self.file, self.limit = folder / FILE, limit
+        self.lock = threading.RLock()  # for threads that share the store
         self._database: Any = None
 
     @property
@@ -114,24 +116,24 @@ class HealthStore:
         """Return what is kept of an axis; sqlite3.Error if it cannot be had."""
         return _read(self._database, axis, str(self.file))
 
-    def replace(
+    def add(
         self,
         axis: str,
         points: Iterable[ComparablePoint] = (),
         spectrum: Iterable[SpectrumBin] = (),
     ) -> None:
         """
-        Put points and bins in the place of those of their periods, all or nothing.
+        Add points and bins to those of their periods, all or nothing.
 
-        A period is replaced as one: points and bins must be all that it has. Raises InputError
-        while somebody who reads keeps the journal from being cleared, and sqlite3.Error.
+        Raises InputError while somebody who reads keeps the journal from being cleared, and
+        sqlite3.Error.
 
         """
         if not has_room(self._database, self.file, self.limit):
             raise InputError(f'{self.file} takes no more: somebody has been reading it for long')
         with self._database as database:
             database.execute('BEGIN IMMEDIATE')
-            _replace(database, axis, list(points), list(spectrum))
+            _add(database, axis, list(points), list(spectrum))
             self._make_room(database)
 
     def keep_baseline(self, axis: str, baseline: Baseline) -> None:
@@ -244,29 +246,36 @@ def _taken(database: sqlite3.Connection, table: str, axis: str, today: int) -> l
     changed = {period for period in periods if aim[period] != period}
     changed |= {aim[period] for period in changed}
     changed |= {period for period in periods if period[0] > today}
+    return _take_periods(database, table, axis, changed)
+
+
+def _take_periods(
+    database: sqlite3.Connection, table: str, axis: str, periods: Iterable[tuple[int, int]]
+) -> list[Any]:
+    """Take the records of periods, first days and lengths, out of a table."""
+    kept = f'FROM {table} WHERE {WHICH[table]} axis = ? AND first_day = ? AND days = ?'
     rows: list[Any] = []
-    for period in sorted(changed):
-        found = (axis, *period)
-        rows += database.execute(f'SELECT * {kept} AND first_day = ? AND days = ?', found)
-        database.execute(f'DELETE {kept} AND first_day = ? AND days = ?', found)
+    for period in sorted(set(periods)):
+        rows += database.execute(f'SELECT * {kept}', (axis, *period))
+        database.execute(f'DELETE {kept}', (axis, *period))
     return [record for _, record in _readable(READ[table], rows)]
 
 
-def _replace(
+def _add(
     database: sqlite3.Connection,
     axis: str,
     points: list[ComparablePoint],
     spectrum: list[SpectrumBin],
 ) -> None:
-    """Replace the periods of points and of bins, in a transaction that has begun."""
-    for table, records in (('points', points), ('spectrum', spectrum)):
-        periods = {(one.first_day, one.days) for one in records}
-        database.executemany(
-            f'DELETE FROM {table} WHERE {WHICH[table]} axis = ? AND first_day = ? AND days = ?',
-            [(axis, *period) for period in periods],
-        )
-    _insert(database, 'points', _point_rows(axis, HISTORY, points))
-    _insert(database, 'spectrum', [{'axis': axis, **bin_row(one)} for one in spectrum])
+    """Add to the periods of points and of bins, in a transaction that has begun."""
+    held, bins = (
+        _take_periods(database, table, axis, [(one.first_day, one.days) for one in records])
+        for table, records in (('points', points), ('spectrum', spectrum))
+    )
+    pooled = by_place([*held, *points]).values()
+    _insert(database, 'points', _point_rows(axis, HISTORY, pooled))
+    merged = merged_bins([*bins, *spectrum])
+    _insert(database, 'spectrum', [{'axis': axis, **bin_row(one)} for one in merged])
 
 
 def _point_rows(axis: str, number: int, points: Iterable[ComparablePoint]) -> list[dict[str, Any]]:

@@ -24,7 +24,7 @@ from ballscrew_monitor.judge.point import set_answer, set_point
 from ballscrew_monitor.judge.records import Event as EventRecord
 from ballscrew_monitor.judge.records import Memory, NOT_KNOWN, REFUSAL, Row, SAMPLE, Settings, TICK
 from ballscrew_monitor.judge.slopes import SlopeRing
-from ballscrew_monitor.judge.step import STATE, step
+from ballscrew_monitor.judge.step import NOTHING, STATE, step
 from ballscrew_monitor.judge.zone import end_excursion
 from surrogate.surface import Surface
 
@@ -122,6 +122,7 @@ class Monitor:
         self.nearest: Nearest = interpreted
         self._event = EventRecord()
         self._row = Row()
+        self.row: Row | None = None  # of the last event, until the next; None if it gave none
         self._told = Event()
 
     @property
@@ -158,6 +159,7 @@ class Monitor:
         found = step(self._tables, self.numbers, self.memory, *slopes, self._event, self._row)
         if self.memory.event_number != number:
             self.ending = ''
+        self.row = None if found == NOTHING else self._row
         if found != STATE:
             return None
         row, self._row = self._row, Row()

@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from ballscrew_monitor.core.conversions import celsius, clock_text, seconds
 from ballscrew_monitor.core.estimate import PointValidity
 from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source
-from ballscrew_monitor.core.judgement import Code, Gate, Level
+from ballscrew_monitor.core.judgement import Code, Gate, Level, WarningPolicy
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import Event, State
 from ballscrew_monitor.messages import reasons
@@ -32,6 +32,7 @@ CLOCK_STANDS = (
 NOT_DERIVED = 'not judged: the motor torque does not tell the load here'
 INACTIVE = 'the node is inactive, nothing is judged'
 KEPT = 'sums, events and corrections are kept'
+NO_WARNING = '; no warning, by warning.policy'
 RECORDED = 'what the node hears and says is recorded'
 PARTS = ('Lubrication', 'Inputs', 'Surface')
 StatusSummary = tuple[bytes, str]  # level and message of a status
@@ -110,13 +111,14 @@ def statuses(
     clock_stands: bool = False,
     refused: str = '',
     defect: str = '',
+    policy: WarningPolicy = WarningPolicy.ZONE,
 ) -> list[DiagnosticStatus]:
     """
     Return the three statuses of a configured axis of the `node`, by full name.
 
     `state` is its last one, if there is one; `links` says how each input is connected, None: the
     node is inactive; `refused` why the surface was not reloaded; `defect` is a sentence about one
-    of the program.
+    of the program; `policy` what is warned of.
     While the clock stands no state tells that an input is dead, so nothing but a warning is held.
 
     """
@@ -128,9 +130,9 @@ def statuses(
     if refused:
         made[2].level = WARN
         made[2].message = f'kept the old surface, the reload is refused: {refused}'
-    made[2].values = _values(_surface_values(surface))
+    made[2].values = key_values(_surface_values(surface))
     matched = {source.name.capitalize(): link.matched for source, link in (links or {}).items()}
-    made[1].values = _values(
+    made[1].values = key_values(
         [(f'{name} publishers [-]', count) for name, count in matched.items()]
     )
     if state is None or links is None:
@@ -138,31 +140,36 @@ def statuses(
         for status in made[:2]:
             status.level, status.message = STALE, INACTIVE if links is None else why
     else:
-        for status, (level, message) in zip(made, summaries(state, event, links)):
+        for status, (level, message) in zip(made, summaries(state, event, links, policy)):
             status.level, status.message = level, message
         if clock_stands:
-            for status in made[1:2] if state.level is Level.WARN else made[:2]:
+            warns = state.level is Level.WARN and policy.of_zone
+            for status in made[1:2] if warns else made[:2]:
                 status.level, status.message = STALE, CLOCK_STANDS
-        made[0].values = _values(_lubrication_values(state))
-        made[1].values = [*made[1].values, *_values(_input_values(state.inputs))]
+        made[0].values = key_values(_lubrication_values(state))
+        made[1].values = [*made[1].values, *key_values(_input_values(state.inputs))]
     if defect:
         made[0].level, made[0].message = ERROR, defect
     return made
 
 
 def summaries(
-    state: State, event: Event, links: Mapping[Source, Link]
+    state: State,
+    event: Event,
+    links: Mapping[Source, Link],
+    policy: WarningPolicy = WarningPolicy.ZONE,
 ) -> tuple[StatusSummary, StatusSummary]:
     """Return level and message of Lubrication and Inputs; only a change of them is news."""
     standing, text = reasons.summary(state.axis, state.inputs, links)
-    return _lubrication(state, event), (_LEVELS[standing], text)
+    return _lubrication(state, event, policy), (_LEVELS[standing], text)
 
 
-def _lubrication(state: State, event: Event) -> StatusSummary:
+def _lubrication(state: State, event: Event, policy: WarningPolicy) -> StatusSummary:
     shelved = state.shelving.until != 0
     if state.level is Level.WARN and not shelved:
         cause = _CAUSES.get(event.cause.code, 'cause unknown')
-        return WARN, f'outside the optimal zone: {cause}'
+        text = f'outside the optimal zone: {cause}'
+        return (WARN, text) if policy.of_zone else (OK, f'{text}{NO_WARNING}')
     validity = state.estimate.validity
     if validity is PointValidity.NO_INPUT:
         return STALE, _NOT_JUDGED[validity]
@@ -245,7 +252,8 @@ def _surface_values(surface: Surface) -> list[tuple[str, object]]:
     ]
 
 
-def _values(pairs: list[tuple[str, object]]) -> list[KeyValue]:
+def key_values(pairs: list[tuple[str, object]]) -> list[KeyValue]:
+    """Return values by their names as texts."""
     return [
         KeyValue(key=key, value=f'{value:.6g}' if isinstance(value, float) else str(value))
         for key, value in pairs

@@ -13,7 +13,7 @@ from ballscrew_monitor.messages.state_messages import out_of_zone_message
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts, totals_facts
 from ballscrew_monitor.settings.axis import Axis
-from ballscrew_msgs.msg import OutOfZone, SurfaceInfo
+from ballscrew_msgs.msg import AxisHealth, OutOfZone, SurfaceInfo
 from rclpy.clock import Clock
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
@@ -51,6 +51,7 @@ class LatchedTopics:
         make = quiet_publishers(node)
         self.event = make(OutOfZone, f'~/{axis}/out_of_zone', LATCHED_QOS)
         self.info = make(SurfaceInfo, f'~/{axis}/surface_info', LATCHED_QOS)
+        self.health = make(AxisHealth, f'~/{axis}/health', LATCHED_QOS)
 
 
 LAST_WORD = Duration(seconds=0.5)  # for subscribers to take the end of an event

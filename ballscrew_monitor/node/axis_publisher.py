@@ -11,6 +11,7 @@ from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.estimate import estimate, MachinePoint
 from ballscrew_monitor.core.full_point import corrected, Dwell, objection, solved_at
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source
+from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import MonitorSettings, Shelving, State
 from ballscrew_monitor.messages import diagnostics, state_messages
@@ -323,7 +324,13 @@ class AxisPublisher:
             clock_stands=stood > self.settings.timeouts[Source.SPEED],
             refused=self.refused,
             defect=self.defect,
+            policy=self._policy,
         )
 
     def _summaries(self, state: State) -> tuple[diagnostics.StatusSummary, ...]:
-        return diagnostics.summaries(state, self.axis.monitor.event, self._links)
+        event = self.axis.monitor.event
+        return diagnostics.summaries(state, event, self._links, self._policy)
+
+    @property
+    def _policy(self) -> WarningPolicy:
+        return WarningPolicy(self._values[f'{self.name}.warning.policy'])

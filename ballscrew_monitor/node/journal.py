@@ -25,12 +25,12 @@ from ballscrew_monitor.node.recording_process import recording, RecordingProcess
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.recordings.frames import Frame, FrameKind, MOST_SEQUENCE, STRING, VERSION
 from ballscrew_monitor.settings.axis import Axis
-from ballscrew_msgs.msg import OutOfZone, SurfaceInfo
+from ballscrew_msgs.msg import AxisHealth, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from std_msgs.msg import String
 
-LATCHED = (OutOfZone, SurfaceInfo)
+LATCHED = (AxisHealth, OutOfZone, SurfaceInfo)
 CORRECTION = ('speed', 'opposing_load', 'temperature', 'solved')  # of a full solve
 AXIS_PERIOD = nanoseconds(10.0)  # [ns] after which all is said of an axis again
 RESTART = nanoseconds(2.0)  # [ns] after which a lost process is started again, then twice as long

@@ -13,6 +13,7 @@ from ballscrew_monitor.core.state import State
 from ballscrew_monitor.core.tick_grid import TickGrid
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.alarm import end_all, LatchedTopics
+from ballscrew_monitor.node.axis_healths import AxisHealths
 from ballscrew_monitor.node.axis_publisher import AxisPublisher, STATE_QOS
 from ballscrew_monitor.node.axis_services import AxisServices, not_built
 from ballscrew_monitor.node.intake import Intake
@@ -81,6 +82,15 @@ class BallscrewMonitor(LifecycleNode):
         self._kept = KeptAxes(self, state, publishers, self._on_kept, clock=self._steady)
         self._solves = SolveServer(self, self._find_publisher)
         AxisServices(self, self._values, publishers, self._failed, self._unknown, self._on_service)
+        self._healths = AxisHealths(
+            self,
+            self._values,
+            publishers,
+            self._latched,
+            self._kept,
+            self._recording.record,
+            clock=self._steady,
+        )
 
     def start(self) -> None:
         """Configure and activate, if the node is to do so itself."""
@@ -159,6 +169,7 @@ class BallscrewMonitor(LifecycleNode):
             publisher.guarded('its activation', publisher.alarm.publish)
         axes = [publisher.axis for publisher in self._axis_publishers.values()]
         self._recording.describe(self._axis_publishers, 'begin')
+        self._healths.begin()
         self._intake = Intake(self, axes, self._on_event, self._recording.journal, self._guard)
         self._tick_timer = self.create_timer(
             self._values['tick_period'], self._on_tick, clock=self._tick_clock()
@@ -219,6 +230,7 @@ class BallscrewMonitor(LifecycleNode):
         """Judge no longer; for a `reason` events end, while they are still recorded."""
         self._active = False
         self._solves.close('stopped, the node is no longer active')
+        self._healths.end()
         if self._intake is not None:
             self._intake.close()
             self._intake = None
@@ -255,6 +267,7 @@ class BallscrewMonitor(LifecycleNode):
         """Judge a sample, a refusal or a tick; a defect is an error of its axis alone."""
         known = publisher.defect
         publisher.guarded(event, lambda: self._publish(publisher, judge(event)))
+        self._healths.take(publisher.name, publisher.axis.monitor.row)
         if publisher.defect != known:
             self._publish_diagnostics([publisher.name])
 
@@ -309,7 +322,7 @@ class BallscrewMonitor(LifecycleNode):
                 made += publisher.statuses(links=links, stood=stood)
             else:
                 made += diagnostics.failed(node, name, self._failed.get(name, self._reason))
-        return made + self._recording.statuses()
+        return made + self._healths.statuses(axes) + self._recording.statuses()
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:
         """Answer what the surface says of the points; nothing is judged meanwhile."""

@@ -80,6 +80,11 @@ class RestartState:
         ]
         return '; '.join(filter(None, [self._problem, *self.damage, *refused]))
 
+    @property
+    def is_held(self) -> bool:
+        """Tell whether the folder is that of this node alone."""
+        return self._database is not None and self._database.is_open
+
     def forget_problems(self) -> None:
         """Say no more of what was set aside, nor of corrections that are gone."""
         self.damage.clear()

@@ -39,6 +39,7 @@ class Kind(enum.StrEnum):
     SHELVE = 'shelve'
     UNSHELVE = 'unshelve'
     CORRECTION = 'correction'
+    SET_BASELINE = 'set_baseline'
 
 
 class Entry(NamedTuple):

@@ -22,7 +22,7 @@ DEPTH = 2000  # messages that may wait for the recorder
 DIAGNOSTICS = Topic(
     name='/diagnostics', type_name='diagnostic_msgs/msg/DiagnosticArray', offer=Offer.RELIABLE
 )
-LATCHED = {'out_of_zone': 'OutOfZone', 'surface_info': 'SurfaceInfo'}
+LATCHED = {'health': 'AxisHealth', 'out_of_zone': 'OutOfZone', 'surface_info': 'SurfaceInfo'}
 
 
 def recorded_topics(values: Mapping[str, Any]) -> list[Topic]:

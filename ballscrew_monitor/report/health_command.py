@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""`ballscrew health`: whether an axis is normal or worse, by its recordings over months."""
+"""`ballscrew health`: normal or worse, by recordings over months or what a node gathered."""
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
@@ -10,7 +10,9 @@ import sys
 from typing import Any
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED
+from ballscrew_monitor.health.baseline import HOUR
 from ballscrew_monitor.health.records import Health, Quantity
+from ballscrew_monitor.health.store import FILE
 from ballscrew_monitor.health.words import health_record
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.words import say
@@ -21,24 +23,28 @@ from ballscrew_monitor.report.health_history import (
     HistoryMaker,
     peers_among,
 )
+from ballscrew_monitor.report.health_kept import kept_healths
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.logs import find_logs, map_for
 from ballscrew_monitor.report.parameters import parameters_for
+from ballscrew_monitor.settings.parameters import read_file
 from surrogate.files import InputError, json_text, replace_file
 from surrogate.progress import Progress
 from surrogate.surface import SurfaceError
-from surrogate.units import MINUTE
 
-HOUR = 60 * MINUTE
 RECORD, PICTURE = 'health.json', 'health.png'
 
 
 def health_command(args: argparse.Namespace, nominal: Path) -> int:
     """Do what the command line asks for; return the exit code."""
-    logs = find_logs(args.logs, tables=args.map is not None, out=args.out)
+    folders = [path for path in args.logs if (path / FILE).is_file()]
+    named = [path for path in args.logs if path not in folders]
+    logs = find_logs(named, tables=args.map is not None, out=args.out)
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
-        histories = list(_histories(logs, args, nominal))
+        histories = list(_histories(logs, args, nominal)) if logs else []
         found, peers = _healths(histories, args), peers_among(histories)
+        for folder in folders:
+            found |= kept_healths(folder, read_file(args.params or nominal), _options(args))
         for last in (courses[-1] for courses in found.values()):
             print('\n'.join(lines_of(last)))
         for peer in peers:
@@ -76,16 +82,14 @@ def _healths(
     histories: Sequence[AxisHistory], args: argparse.Namespace
 ) -> dict[str, list[Health]]:
     """Return the course of each axis."""
+    return {axis: list(healths(own, **_options(args))) for axis, own in by_axis(histories).items()}
+
+
+def _options(args: argparse.Namespace) -> dict[str, Any]:
     return {
-        axis: list(
-            healths(
-                own,
-                over=args.baseline_hours * HOUR,
-                co2_per_kwh=args.co2_kg_per_kWh,
-                speed_allowed=args.speed_advice,
-            )
-        )
-        for axis, own in by_axis(histories).items()
+        'over': args.baseline_hours * HOUR,
+        'co2_per_kwh': args.co2_kg_per_kWh,
+        'speed_allowed': args.speed_advice,
     }
 
 

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.fields import check_path
+from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.settings.parameter_row import LIVE, NEVER, ParameterRow
 from surrogate.surface import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 
@@ -225,6 +226,25 @@ AXIS_ROWS = (
     ParameterRow('publish_period', 0.1, 's', 0.0, 3600.0, LIVE).says(
         'Period of the state topic, besides each change of the level; 0: a state for every '
         'judged speed sample. Above 1 s it rises only while unconfigured.'
+    ),
+    ParameterRow('warning.policy', 'zone', choices=tuple(WarningPolicy), change=LIVE).says(
+        'What the diagnostics warn of: a point outside the zone, an axis that is worse than its '
+        'baseline, or both.'
+    ),
+    ParameterRow('advice.speed', False, change=LIVE).says(
+        'Let the advice of health name another speed: the process leaves it free.'
+    ),
+    ParameterRow('health.enabled', True).says(
+        'Gather in state_dir what tells whether the axis is normal or worse, and publish it.'
+    ),
+    ParameterRow('health.period', 3600.0, 's', 1.0, 1e6, LIVE).says(
+        'Time between two assessments of health.'
+    ),
+    ParameterRow('health.baseline_hours', 8.0, 'h', 0.1, 1e4, LIVE).says(
+        'Motion over which a baseline is learned, on complete days.'
+    ),
+    ParameterRow('health.co2_per_kwh', 0.0, 'kg/kWh', 0.0, 100.0, LIVE).says(
+        'Emission of the electricity; 0: not stated, no CO2 is told.'
     ),
     ParameterRow('plain_topics', False).says(
         'Publish efficiency, RCS, film ratio, regime and warning as topics of std_msgs too.'

@@ -31,7 +31,7 @@ from ballscrew_monitor.judge import derived_load, point, step
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.node.solver_process import MODULE, path_to_this_code
 from ballscrew_monitor.settings.qos import started_node
-from ballscrew_msgs.msg import BallScrewState, OutOfZone, SurfaceInfo
+from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from lifecycle_msgs.srv import ChangeState, GetState
@@ -404,6 +404,10 @@ class NodeProcess:
         """Return the list to which what is said of a surface is appended, from the last on."""
         return self.listen(SurfaceInfo, f'{self.name}/{axis}/surface_info', LATCHED)
 
+    def healths(self, axis='x'):
+        """Return the list to which the health of an axis is appended, from the last one on."""
+        return self.listen(AxisHealth, f'{self.name}/{axis}/health', LATCHED)
+
     def levels(self, part='x: Inputs'):
         """Return the levels and messages that a diagnostic status went through."""
         found = [
@@ -460,7 +464,7 @@ class NodeProcess:
 
     def machine(self, speed_topic='joint_states', load_topic='axial_load'):
         """
-        Return a function that publishes a speed [rad/s] and a force [N], 10 ms later each.
+        Return a function that publishes speed [rad/s], force [N] and torque, 10 ms later each.
 
         The stamps run ahead of the clock, so that a slow machine makes no sample stale. What is
         listened to before this call is heard from the first sample on.
@@ -472,10 +476,10 @@ class NodeProcess:
         self.until_matched(*self.publishers)
         self.stamp = self.now() + 100 * SECOND
 
-        def publish(speed, force=-1000.0, *, step=SECOND // 100, joint='x_axis'):
+        def publish(speed, force=-1000.0, *, torque=0.0, step=SECOND // 100, joint='x_axis'):
             self.stamp += step
             load, joints = WrenchStamped(), JointState(name=[joint], velocity=[speed])
-            load.wrench.force.x = force
+            load.wrench.force.x, load.wrench.torque.x = force, torque
             loads.publish(self.stamped(load, self.stamp))
             speeds.publish(self.stamped(joints, self.stamp))
 

@@ -42,6 +42,24 @@ def slow_is_bad(core, memory=None, **limits):
     return made
 
 
+def test_the_row_of_the_last_event_is_there_whether_or_not_a_state_is_due(core):
+    monitor = core.monitor(publish_period=10 * SECOND)
+    assert monitor.row is None
+    found = []
+    for event in core.motion(40.0, count=3):
+        state = monitor.update(event)
+        row = monitor.row
+        found.append((event.source, row and (row.stamp, row.speed), state is not None))
+    stamps = [START + number * STEP for number in range(3)]
+    assert found == [
+        one
+        for number, stamp in enumerate(stamps)
+        for one in ((Source.LOAD, None, False), (Source.SPEED, (stamp, 40.0), number == 0))
+    ]
+    assert monitor.tick(START + 3 * STEP) is None
+    assert monitor.row is None
+
+
 def test_an_event_begins_and_ends_with_its_facts(core):
     monitor = slow_is_bad(core)
     states = core.feed(monitor, core.motion(40.0, count=120))

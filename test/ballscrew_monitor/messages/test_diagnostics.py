@@ -10,7 +10,7 @@ import re
 from ballscrew_monitor.core import sqlite_file
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
-from ballscrew_monitor.core.judgement import Level
+from ballscrew_monitor.core.judgement import Level, WarningPolicy
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import Event, LoadDerivation, shelve
 from ballscrew_monitor.messages import diagnostics, reasons
@@ -31,7 +31,16 @@ def sample(source, value, stamp=START):
     return InputSample(source=source, value=value, stamp=stamp)
 
 
-def after(core, *events, surface=None, clock_stands=False, settings=None, links=None, **limits):
+def after(
+    core,
+    *events,
+    surface=None,
+    clock_stands=False,
+    settings=None,
+    links=None,
+    policy=WarningPolicy.ZONE,
+    **limits,
+):
     delays = {'raise_delay': 0, 'clear_delay': 0}
     limits, state = core.limits(**(delays | limits)), None
     monitor = core.monitor(surface, limits, **(settings or {}))
@@ -45,6 +54,7 @@ def after(core, *events, surface=None, clock_stands=False, settings=None, links=
         monitor.surface,
         links=links or LINKS,
         clock_stands=clock_stands,
+        policy=policy,
     )
     return {status.name.rpartition(' ')[2]: status for status in made}
 
@@ -104,6 +114,18 @@ def test_all_is_well_once_the_delay_is_over(core):
 def test_a_warning_names_its_cause_and_stands_while_inputs_are_lost(core, late):
     found = after(core, LOAD, SPEED, *late, surface=core.surface(rcs=0.5))
     assert said(found['Lubrication']) == (WARN, OUTSIDE)
+
+
+@pytest.mark.parametrize('policy', WarningPolicy)
+def test_the_zone_warns_where_the_policy_asks_for_it(core, policy, says):
+    outside = core.surface(rcs=0.5)
+    found = after(core, LOAD, SPEED, surface=outside, policy=policy)['Lubrication']
+    quiet = (OK, says('no_warning'))
+    assert said(found) == ((WARN, OUTSIDE) if policy.of_zone else quiet)
+    stands = after(core, LOAD, SPEED, surface=outside, policy=policy, clock_stands=True)
+    assert stands['Lubrication'].level == (WARN if policy.of_zone else STALE)
+    lost = after(core, SPEED, policy=policy)['Lubrication']
+    assert said(lost) == (STALE, says('judged_input_missing'))
 
 
 @pytest.mark.parametrize(

@@ -78,4 +78,4 @@ def test_the_latched_topics_come_last():
     assert names[-1] == output('y', 'surface_info') == '/ballscrew_monitor/y/surface_info'
     latched = [topic.offer is Offer.LATCHED for topic in topics]
     assert latched == sorted(latched)
-    assert len(names) == len(set(names)) == 2 + 2 + 1 + 4
+    assert len(names) == len(set(names)) == 2 + 2 + 1 + 6

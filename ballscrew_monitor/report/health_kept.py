@@ -1,0 +1,78 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The health of the axes of a node, by what its `state_dir` keeps of them."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from ballscrew_monitor.health.assess import HealthSettings
+from ballscrew_monitor.health.bands import MONTH
+from ballscrew_monitor.health.baseline import in_force
+from ballscrew_monitor.health.companions import companions_beside
+from ballscrew_monitor.health.keeper import assess_kept
+from ballscrew_monitor.health.points import surface_id
+from ballscrew_monitor.health.records import Health
+from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.health.store import read_health
+from ballscrew_monitor.health.store_rows import KeptHealth
+from ballscrew_monitor.recordings.words import say
+from ballscrew_monitor.settings.axis import load_surface, settings_of, surface_file
+from surrogate.files import InputError
+
+MOST_MONTHS = 24
+"""Assessments of a course, one each four weeks, the last ones."""
+
+
+def kept_healths(
+    folder: Path, values: Mapping[str, Any], options: Mapping[str, Any]
+) -> dict[str, list[Health]]:
+    """
+    Return the health of each axis that a folder keeps, every four weeks until its last day.
+
+    `values` are the parameters of the node, `options` those of `health_history.healths`. Raises
+    InputError for an axis without parameters.
+
+    """
+    found = {}
+    for axis, kept in read_health(folder).items():
+        if axis not in values['axes']:
+            raise InputError(
+                f'{folder} keeps axis {axis}, the parameters are of {", ".join(values["axes"])}: '
+                'name those of the node with --params'
+            )
+        found[axis] = list(_course(folder, axis, kept, values, **options))
+    return found
+
+
+def _course(
+    folder: Path,
+    axis: str,
+    kept: KeptHealth,
+    values: Mapping[str, Any],
+    *,
+    over: float,
+    co2_per_kwh: float,
+    speed_allowed: bool,
+) -> Iterator[Health]:
+    """Yield the health of an axis after each four weeks, the last one with what cannot be read."""
+    surface = load_surface(axis, values)
+    companions = companions_beside(surface_file(axis, values), surface)
+    if kept.points and surface_id(surface) not in {one.surface for one in kept.points}:
+        say(
+            f'{folder}: axis {axis} was gathered with another surface than {surface.screw_name}, '
+            f'{surface.oil_name}: name the parameters of the node with --params'
+        )
+    settings = HealthSettings(
+        limits=settings_of(axis, values, surface).limits,
+        co2_per_kwh=co2_per_kwh,
+        speed_allowed=speed_allowed,
+    )
+    periods = [(one.first_day, one.days) for one in kept.points]
+    periods += [(one.first_day, one.days) for one in kept.spectrum]
+    first, last = min(periods)[0], max(day + days - 1 for day, days in periods)
+    baseline = in_force(kept, over=over, today=last + 1, screw=surface.screw_name)
+    say(*kept.notes)
+    for day in range(last, max(first, last - MOST_MONTHS * MONTH) - 1, -MONTH)[::-1]:
+        now = (day + 1) * DAY - 1
+        yield assess_kept(axis, now, kept, baseline, surface, companions, settings)

@@ -1,0 +1,144 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The keeper: what waits is written once, a baseline is learned once, and named by a request."""
+
+import contextlib
+import sqlite3
+
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.health.assess import HealthSettings
+from ballscrew_monitor.health.baseline import LEARNED
+from ballscrew_monitor.health.collect import Collected
+from ballscrew_monitor.health.keeper import HealthKeeper
+from ballscrew_monitor.health.records import Condition, SpectrumBin
+from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.health.store import HealthStore
+import pytest
+
+LIMITS = Limits(
+    rcs=0.01,
+    efficiency=0.85,
+    light_load=661.0,
+    standstill_speed=0.5,
+    raise_delay=0,
+    clear_delay=0,
+    hysteresis=0.1,
+)
+HOUR = 3600.0
+
+
+@pytest.fixture(name='kept')
+def make_kept(tmp_path, motion, surface):
+    with contextlib.closing(HealthStore(tmp_path)) as store:
+        store.load()
+        yield Kept(store, motion, surface)
+
+
+class Kept:
+    """A keeper of axis x with days of motion."""
+
+    def __init__(self, store, motion, surface):
+        self.store, self.motion, self.surface = store, motion, surface
+        self.keeper, self.today = HealthKeeper('x', store), motion.today
+
+    def day(self, day, *, hours=1.0, today=None):
+        """Gather thirty stretches of a day, and the motion that it had."""
+        start = day * DAY + DAY // 2
+        stretches = [
+            self.motion.stretch(start=start + number, motor_torque=0.3 + 0.001 * (number % 3))
+            for number in range(30)
+        ]
+        one = SpectrumBin(
+            first_day=day, load_band=1, axial_load=500.0, angle=9.0, speed=50.0, time=hours * HOUR
+        )
+        self.keeper.gather(Collected(stretches, [one]), self.surface, today or day)
+
+    def health(self, today=None, **changes):
+        settings = HealthSettings(limits=LIMITS)
+        options = {'over': 2 * HOUR} | changes
+        now = (today or self.today) * DAY + 5
+        return self.keeper.assess(now, self.surface, 'none built', settings, **options)
+
+    def name(self, **changes):
+        asked = {'begin': 0, 'end': 0, 'running_in': 0.0, 'reason': 'oil', 'screw': 's'}
+        return self.keeper.name_baseline(self.today * DAY + 7, **asked | changes)
+
+
+def test_what_is_gathered_is_written_once(kept):
+    kept.day(kept.today)
+    assert kept.store.read('x').points == ()
+    kept.keeper.keep(kept.today)
+    kept.keeper.keep(kept.today)
+    found = kept.store.read('x')
+    assert [one.stretches for one in found.points] == [30]
+    assert [one.time for one in found.spectrum] == [HOUR]
+    kept.day(kept.today)
+    kept.keeper.keep(kept.today)
+    found = kept.store.read('x')
+    assert [one.stretches for one in found.points] == [60]
+    assert [one.time for one in found.spectrum] == [2 * HOUR]
+
+
+def test_what_cannot_be_written_waits(kept):
+    kept.day(kept.today)
+    with contextlib.closing(sqlite3.connect(kept.store.file, isolation_level=None)) as holder:
+        holder.execute('BEGIN EXCLUSIVE')
+        with pytest.raises(sqlite3.OperationalError, match='locked'):
+            kept.keeper.keep(kept.today)
+    kept.keeper.keep(kept.today)
+    assert [one.stretches for one in kept.store.read('x').points] == [30]
+
+
+def test_a_clock_that_leaps_is_a_note_and_nothing_counts(kept, says):
+    kept.day(kept.today - 365, today=kept.today)
+    kept.keeper.keep(kept.today)
+    assert kept.store.read('x') == ((), (), (), ())
+    assert kept.health().notes[-1] == says('leap')
+    assert says('leap') not in kept.health().notes
+
+
+def test_a_baseline_is_learned_over_complete_days_and_kept_once(kept):
+    for day in range(kept.today - 3, kept.today):
+        kept.day(day)
+        kept.keeper.keep(day)
+        assert kept.health(day).baseline is None or day == kept.today - 1
+    health = kept.health()
+    assert (health.baseline.reason, health.baseline.named_at) == (LEARNED, 0)
+    assert health.baseline.begin == (kept.today - 3) * DAY
+    assert health.baseline.end == (kept.today - 1) * DAY
+    assert kept.health().baseline == health.baseline
+    assert kept.store.read('x').baselines == (health.baseline,)
+
+
+def test_a_baseline_that_is_named_is_learned_from_then_on(kept, says):
+    for day in range(kept.today - 3, kept.today):
+        kept.day(day)
+        kept.keeper.keep(day)
+    assert kept.health().baseline is not None
+    assert kept.name(reason='new screw', running_in=HOUR) == 'the baseline is learned from now on'
+    health = kept.health()
+    assert (health.condition, health.baseline) == (Condition.UNKNOWN, None)
+    for day in range(kept.today + 1, kept.today + 5):
+        kept.day(day)
+        kept.keeper.keep(day)
+    found = kept.health(kept.today + 5).baseline
+    assert (found.reason, found.named_at) == ('new screw', kept.today * DAY + 7)
+    assert (found.begin, found.end) == ((kept.today + 2) * DAY, (kept.today + 4) * DAY)
+    assert len(kept.store.read('x').baselines) == 3
+
+
+def test_a_baseline_is_that_of_the_days_between_two_times(kept, refused):
+    for day in range(kept.today - 3, kept.today):
+        kept.day(day)
+        kept.keeper.keep(day)
+    begin, end = (kept.today - 2) * DAY, kept.today * DAY
+    assert kept.name(begin=begin, end=end) == 'named the baseline'
+    baseline = kept.health().baseline
+    assert (baseline.begin, baseline.end, baseline.reason) == (begin, end, 'oil')
+    assert [one.first_day for one in baseline.points] == [kept.today - 2, kept.today - 1]
+    refused('no_reason', kept.name, reason=' ')
+    refused('running_in', kept.name, running_in=-1.0)
+    refused('no_number', kept.name, running_in=float('nan'))
+    refused('ends_first', kept.name, begin=end, end=begin)
+    refused('too_little', kept.name, begin=1, end=DAY)
+    assert kept.health().baseline == baseline

@@ -1,0 +1,203 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The worker beside the judgement: rows become points on the disk, failures become sentences."""
+
+import contextlib
+import dataclasses
+import functools
+import math
+import sqlite3
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.health.assess import HealthSettings
+from ballscrew_monitor.health.collect import Collected
+from ballscrew_monitor.health.keeper import HealthKeeper
+from ballscrew_monitor.health.records import Condition
+from ballscrew_monitor.health.rows import DAY, JudgedRow
+from ballscrew_monitor.health.store import FILE, HealthStore, read_health
+from ballscrew_monitor.node import health_worker
+from ballscrew_monitor.node.health_worker import Gatherer, HealthWorker, Job
+import pytest
+from surrogate.surface import shipped_surface, Surface
+
+NOON = 20_000 * DAY + DAY // 2
+NOTHING = Collected([], [])
+LIMITS = Limits(
+    rcs=0.01,
+    efficiency=0.85,
+    light_load=661.0,
+    standstill_speed=0.5,
+    raise_delay=0,
+    clear_delay=0,
+    hysteresis=0.1,
+)
+
+
+@pytest.fixture(name='surface', scope='module')
+def loaded_surface():
+    return Surface.load(shipped_surface())
+
+
+@pytest.fixture(name='make')
+def make_worker(tmp_path):
+    """Return a function that makes a worker of a folder, which is closed at the end."""
+    with contextlib.ExitStack() as stack:
+
+        def make(is_held=lambda: True):
+            worker = HealthWorker(HealthStore(tmp_path), is_held)
+            stack.callback(worker.close)
+            return worker
+
+        yield make
+
+
+def rows(seconds, *, start=NOON, **changes):
+    """Return rows of a steady motion at 100 Hz."""
+    row = JudgedRow(
+        speed=50.0,
+        axial_load=500.0,
+        temperature=313.0,
+        motor_torque=0.5,
+        axial_load_source=1,
+        temperature_source=1,
+        motor_torque_source=1,
+        direction=1,
+        validity=1,
+        friction_torque=0.2,
+    )
+    return [
+        dataclasses.replace(row, stamp=start + at * SECOND // 100, **changes)
+        for at in range(round(100 * seconds))
+    ]
+
+
+def gathered(surface, some, **options):
+    gatherer = Gatherer(surface)
+    for one in some:
+        gatherer.take(one)
+    return gatherer.hand_over(surface, **options)
+
+
+def job(worker, surface, found=NOTHING, **changes):
+    values = {
+        'keeper': HealthKeeper('x', worker.store),
+        'axis': 'x',
+        'now': NOON,
+        'found': found,
+        'surface': surface,
+        'file': shipped_surface,
+        'settings': HealthSettings(limits=LIMITS),
+        'over': 3600.0,
+        'assesses': False,
+    }
+    return Job(**values | changes)
+
+
+def test_rows_end_as_points_and_motion_on_the_disk(make, surface, tmp_path):
+    worker = make()
+    found = gathered(surface, [None, *rows(3.0)], rows_end=True)
+    assert worker.put(job(worker, surface, found))
+    worker.close()
+    kept = read_health(tmp_path)['x']
+    (point,) = kept.points
+    assert (point.stretches, point.motor_torque) == (1, pytest.approx(0.5))
+    (one,) = kept.spectrum
+    assert one.time == pytest.approx(2.99)
+    assert worker.problem == ''
+    assert {path.name for path in tmp_path.iterdir()} == {FILE}
+
+
+def test_motion_that_goes_on_is_handed_over_and_its_stretch_later(surface):
+    gatherer = Gatherer(surface)
+    some = rows(4.0)
+    for one in some[:200]:
+        gatherer.take(one)
+    first = gatherer.hand_over(surface)
+    for one in some[200:]:
+        gatherer.take(one)
+    gatherer.give_back(first)
+    found = gatherer.hand_over(surface, rows_end=True)
+    assert first.stretches == []
+    assert [one.duration > 3.0 for one in found.stretches] == [True]
+    assert sum(one.time for one in found.bins) == pytest.approx(3.99)
+    assert gatherer.hand_over(surface) == NOTHING
+
+
+def test_a_defect_of_gathering_is_a_sentence_and_no_more_is_taken(surface, says):
+    gatherer = Gatherer(surface)
+    gatherer.take('no row')
+    assert gatherer.defect == says('no_row')
+    for one in rows(2.0):
+        gatherer.take(one)
+    assert gatherer.hand_over(surface, rows_end=True) == NOTHING
+
+
+def test_an_assessment_is_done_beside_and_not_known_without_motion(make, surface, wait_for):
+    worker = make()
+    worker.put(job(worker, surface, assesses=True))
+    wait_for(lambda: worker.done, 'the assessment')
+    health, used = worker.done[0]
+    assert (health.condition, used) == (Condition.UNKNOWN, surface)
+    assert 'not known' in health.verdict
+    assert math.isnan(health.quantities[0].value)
+
+
+def test_a_folder_of_another_node_is_left_alone_until_it_is_ours(
+    make, surface, wait_for, tmp_path, says
+):
+    held = []
+    worker = make(lambda: bool(held))
+    keeper = HealthKeeper('x', worker.store)
+    ask = functools.partial(job, worker, surface, keeper=keeper)
+    worker.put(ask(gathered(surface, rows(3.0), rows_end=True)))
+    wait_for(lambda: worker.problem, 'the sentence')
+    assert worker.problem == says('not_held', file=tmp_path / FILE, folder=tmp_path)
+    assert not (tmp_path / FILE).exists()
+    held.append(True)
+    worker.put(ask())
+    worker.close()
+    assert worker.problem == ''
+    assert [one.stretches for one in read_health(tmp_path)['x'].points] == [1]
+
+
+@pytest.mark.parametrize('content', [b'no database' * 1000, None], ids=['damaged', 'version'])
+def test_a_store_that_no_node_has_left_is_set_aside(make, surface, wait_for, tmp_path, content):
+    if content is None:
+        with contextlib.closing(sqlite3.connect(tmp_path / FILE)) as database:
+            database.execute('PRAGMA user_version = 7')
+    else:
+        (tmp_path / FILE).write_bytes(content)
+    worker = make()
+    worker.put(job(worker, surface, gathered(surface, rows(3.0), rows_end=True), assesses=True))
+    wait_for(lambda: worker.done, 'the assessment')
+    (said,) = worker.damage
+    assert said.endswith(f'moved to {FILE}.aside')
+    assert worker.done[0].health.condition is Condition.UNKNOWN
+    assert (tmp_path / f'{FILE}.aside').exists()
+
+
+def test_whatever_fails_in_the_thread_is_a_sentence_and_it_goes_on(
+    make, surface, wait_for, monkeypatch, says
+):
+    def fail(self, *args, **named):
+        raise ZeroDivisionError('by zero')
+
+    worker = make()
+    with monkeypatch.context() as patch:
+        patch.setattr(HealthKeeper, 'assess', fail)
+        worker.put(job(worker, surface, assesses=True))
+        wait_for(lambda: worker.problem, 'the sentence')
+    assert worker.problem == says('defect')
+    worker.put(job(worker, surface, assesses=True))
+    wait_for(lambda: worker.done, 'the assessment')
+    wait_for(lambda: worker.problem == '', 'the end of it')
+
+
+def test_more_jobs_than_may_wait_are_refused(tmp_path, surface, monkeypatch):
+    monkeypatch.setattr(health_worker, 'MOST_JOBS', 2)
+    worker = HealthWorker(HealthStore(tmp_path), lambda: True)
+    with worker.store.lock:  # the thread waits for the store
+        taken = [worker.put(job(worker, surface)) for _ in range(5)]
+    worker.close()
+    assert (taken[0], taken[-1]) == (True, False)

@@ -1,0 +1,70 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""`ballscrew health STATE_DIR`: what a node gathered, read whether or not it runs."""
+
+import contextlib
+import json
+
+from ballscrew_monitor.cli import main
+from ballscrew_monitor.health.points import add, model_torque
+from ballscrew_monitor.health.records import Baseline, SpectrumBin, Stretch
+from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.health.store import HealthStore
+import pytest
+from surrogate.surface import shipped_surface, Surface
+
+FIRST, MONTHS = 20_000, 3
+SPEEDS = 3.0, 12.0, 40.0, 100.0
+
+
+@pytest.fixture(name='folder')
+def kept_folder(tmp_path):
+    """Return the folder of a node whose friction is 40 % higher after the first month."""
+    surface = Surface.load(shipped_surface())
+    points = {}
+    for day in range(FIRST, FIRST + 28 * MONTHS):
+        factor = 1.0 if day < FIRST + 28 else 1.4
+        for speed in (*SPEEDS, *(-one for one in SPEEDS)):
+            for second in range(6):
+                torque = factor * model_torque(surface, speed, 0.0, 313.0)
+                stretch = Stretch(
+                    start=day * DAY + second,
+                    duration=60.0,
+                    samples=100,
+                    speed=speed,
+                    axial_load=0.0,
+                    temperature=313.0,
+                    motor_torque=torque * (1.0 + 0.002 * (second % 3 - 1)),
+                )
+                add(points, stretch, surface)
+    early = tuple(one for one in points.values() if one.first_day < FIRST + 5)
+    one = SpectrumBin(
+        first_day=FIRST, load_band=0, axial_load=0.0, angle=9.0, speed=9.0, time=9000.0
+    )
+    folder = tmp_path / 'state'
+    with contextlib.closing(HealthStore(folder)) as store:
+        store.load()
+        store.add('x', points.values(), [one])
+        begin, end = FIRST * DAY, (FIRST + 5) * DAY
+        store.keep_baseline('x', Baseline(begin=begin, end=end, reason='oil', points=early))
+    return folder
+
+
+def test_the_command_follows_what_a_node_gathered(folder, capsys, tmp_path):
+    out = tmp_path / 'out'
+    assert main(['health', str(folder), '--out', str(out), '--json']) == 0
+    record = json.loads(capsys.readouterr().out)['x']
+    assert record['condition'] == 'worse'
+    assert record['baseline']['reason'] == 'oil'
+    assert [one['condition'] for one in record['course']] == ['normal', 'worse', 'worse']
+    days = [one['stamp_ns'] // DAY - FIRST for one in record['course']]
+    assert days == [27, 55, 83]
+    assert (out / 'health.png').stat().st_size > 0
+
+
+def test_an_axis_without_parameters_is_refused(folder, capsys, says):
+    with contextlib.closing(HealthStore(folder)) as store:
+        store.load()
+        store.add('z', store.read('x').points)
+    assert main(['health', str(folder)]) == 2
+    assert says('no_parameters', folder=folder) in capsys.readouterr().err
