@@ -11,7 +11,7 @@ one, and each of those that come with time alone proves the replay up to there.
 
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 import json
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from ballscrew_monitor.core.fields import type_name_of
 from ballscrew_monitor.judge.dump import dump
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
-from ballscrew_monitor.node.topic import Arrival
+from ballscrew_monitor.node.topic import Arrival, InputName
 from ballscrew_monitor.recordings.frames import Frame, FrameKind, MOST_SEQUENCE, STRING, VERSION
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_msgs.msg import OutOfZone, SurfaceInfo
@@ -52,6 +52,7 @@ class Journal:
         self._lost_at: int | None = None  # the process, on the steady clock
         self._topics: dict[str, int] = {}
         self._unknown_loss: set[str] = set()  # topics whose loss was last said to be unknown
+        self._reading: dict[str, Any] = {'ahead': 0, 'several': []}
         self._burst = 0
         self._pause = RESTART
         self._begun = False  # an axis has been described
@@ -78,6 +79,18 @@ class Journal:
             times = (now, arrival.received, self._burst)
             self._put(name, kind, 'SENSOR', arrival.data, times)
         self.flush()  # whatever becomes of the node with these messages
+
+    def read(self, ahead: int, several: Collection[InputName], now: int) -> None:
+        """
+        Say how the messages from `now` [ns] on are read, when that has changed.
+
+        Stamps may be `ahead` [ns] beside `max_future`; `several` publishers send these inputs.
+
+        """
+        named = sorted([axis, source.name.lower()] for axis, source in several)
+        if self._reading != {'ahead': ahead, 'several': named}:
+            self._reading = {'ahead': ahead, 'several': named}
+            self._note(now, {'kind': 'reading', **self._reading})
 
     def flush(self) -> None:
         """Hand over what was taken so far."""
@@ -133,6 +146,7 @@ class Journal:
             'values': mine | {'axes': [axis.name], 'tick_period': values['tick_period']},
             'topics': dict(topics),
             'loss_unknown': sorted(self._unknown_loss),
+            'reading': self._reading,
             'surface': {
                 'base_sha256': axis.surface.base_sha256,
                 'corrections': [
