@@ -27,10 +27,12 @@ from ballscrew_monitor.core.inputs import (
     ordered,
     Refusal,
     Source,
+    Why,
 )
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.node.journal import Heard, Journal, SILENT
-from ballscrew_monitor.node.topic import Apart, Arrival, InputName, link_of, open_topic, Topic
+from ballscrew_monitor.node.sources import READING, Reading
+from ballscrew_monitor.node.topic import Apart, Arrival, link_of, open_topic, Topic
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import publishers_on
 from rclpy.event_handler import EventHandler
@@ -78,8 +80,7 @@ class Intake(Waitable):
         self._apart = Apart()
         self._simulated = 0  # the last `/clock` [ns]
         self._steps: deque[int] = deque(maxlen=STEPS)  # of `/clock` [ns]
-        self._ahead = 0  # [ns] that stamps may be ahead beside max_future, on simulated time
-        self._several: frozenset[InputName] = frozenset()  # inputs that several publishers send
+        self._reading = READING
         self._places: list[int] = []  # of the subscriptions in the wait set
         self._open: list[tuple[Axis, OpenInput]] = []
         self._problems: dict[tuple[str, Source], str] = {}  # of open inputs
@@ -94,7 +95,8 @@ class Intake(Waitable):
         self._clock: Topic | None = None
         if node.get_parameter('use_sim_time').value:
             self._clock = open_topic(node, CLOCK, Clock, self._apart, overridable=False, raw=False)
-            self._simulated, self._ahead = node.get_clock().now().nanoseconds, MOST_AHEAD
+            self._simulated = node.get_clock().now().nanoseconds
+            self._reading = Reading(MOST_AHEAD)  # until the steps are known
         node.add_waitable(self)
         self.discover()
 
@@ -263,7 +265,7 @@ class Intake(Waitable):
             at = max(now - waited, 0) if self._clock is None else self._simulated
             heard.append((arrival, at, lost))
         self._journal.hear(heard)
-        events = [event for one in heard for event in self._events(*one)]
+        events = [event for one in heard for event in self._judged(one)]
         for axis, event in ordered(events):
             self._take(axis, event)
         self._journal.flush()
@@ -282,30 +284,45 @@ class Intake(Waitable):
         Between two steps of `/clock` stamps run ahead of it by up to one step.
 
         """
+        ahead = self._reading.ahead
         if self._steps:
-            ahead = min(2 * sorted(self._steps)[len(self._steps) // 2], MOST_AHEAD)
-            if 4 * abs(ahead - self._ahead) > self._ahead:
-                self._ahead = ahead
-        self._several = frozenset(
+            wanted = min(2 * sorted(self._steps)[len(self._steps) // 2], MOST_AHEAD)
+            ahead = wanted if 4 * abs(wanted - ahead) > ahead else ahead
+        several = frozenset(
             one
             for topic in self.topics.values()
             for one, counter in topic.sources.items()
             if counter.several
         )
-        self._journal.read(self._ahead, self._several, now)
+        self._reading = Reading(ahead, several)
+        self._journal.read(self._reading, now)
 
-    def _events(self, arrival: Arrival, now: int, lost: int | None) -> list[AxisEvent]:
-        """Return what a message that arrived at `now` [ns] says of each axis."""
-        found: list[AxisEvent] = []
-        for axis, source in arrival.topic.readers:
-            place = f'the {source.source.name.lower()} that arrived at {now} ns'
-            told = {'now': now, 'max_future': axis.max_future + self._ahead, 'lost': lost}
-            event = self._guard(axis, place, source.read, arrival.message, **told)
-            if isinstance(event, InputSample):
-                one = axis.name, source.source
-                arrival.topic.count(one, arrival.number, now)
-                if one in self._several and axis.one_source:
-                    event = of_several(source.source, event.arrival, lost)
-            if event is not None:
-                found.append((axis, event))
+    def _judged(self, heard: Heard) -> list[AxisEvent]:
+        """Return what a message says of each axis, and count of which inputs it gives samples."""
+        arrival, now, _ = heard
+        found = _events(*heard, self._reading, self._guard)
+        for axis, event in found:
+            if isinstance(event, InputSample) or event.why is Why.SEVERAL:
+                arrival.topic.count((axis.name, event.source), arrival.number, now)
         return found
+
+
+def _events(
+    arrival: Arrival,
+    now: int,
+    lost: int | None,
+    reading: Reading = READING,
+    guard: Callable[..., Any] = _call,
+) -> list[AxisEvent]:
+    """Return what a message that arrived at `now` [ns] of the node's clock says of each axis."""
+    found: list[AxisEvent] = []
+    for axis, source in arrival.topic.readers:
+        place = f'the {source.source.name.lower()} that arrived at {now} ns'
+        told = {'now': now, 'max_future': axis.max_future + reading.ahead, 'lost': lost}
+        event = guard(axis, place, source.read, arrival.message, **told)
+        several = axis.one_source and (axis.name, source.source) in reading.several
+        if isinstance(event, InputSample) and several:
+            event = of_several(source.source, event.arrival, lost)
+        if event is not None:
+            found.append((axis, event))
+    return found

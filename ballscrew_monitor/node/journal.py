@@ -11,7 +11,7 @@ one, and each of those that come with time alone proves the replay up to there.
 
 """
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 import json
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,8 @@ from ballscrew_monitor.core.fields import type_name_of
 from ballscrew_monitor.judge.dump import dump
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
-from ballscrew_monitor.node.topic import Arrival, InputName
+from ballscrew_monitor.node.sources import Reading
+from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.recordings.frames import Frame, FrameKind, MOST_SEQUENCE, STRING, VERSION
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_msgs.msg import OutOfZone, SurfaceInfo
@@ -52,7 +53,7 @@ class Journal:
         self._lost_at: int | None = None  # the process, on the steady clock
         self._topics: dict[str, int] = {}
         self._unknown_loss: set[str] = set()  # topics whose loss was last said to be unknown
-        self._reading: dict[str, Any] = {'ahead': 0, 'several': []}
+        self._reading = Reading()
         self._burst = 0
         self._pause = RESTART
         self._begun = False  # an axis has been described
@@ -80,17 +81,12 @@ class Journal:
             self._put(name, kind, 'SENSOR', arrival.data, times)
         self.flush()  # whatever becomes of the node with these messages
 
-    def read(self, ahead: int, several: Collection[InputName], now: int) -> None:
-        """
-        Say how the messages from `now` [ns] on are read, when that has changed.
-
-        Stamps may be `ahead` [ns] beside `max_future`; `several` publishers send these inputs.
-
-        """
-        named = sorted([axis, source.name.lower()] for axis, source in several)
-        if self._reading != {'ahead': ahead, 'several': named}:
-            self._reading = {'ahead': ahead, 'several': named}
-            self._note(now, {'kind': 'reading', **self._reading})
+    def read(self, reading: Reading, now: int) -> None:
+        """Say how the messages from `now` [ns] on are read, when that has changed."""
+        if not self.on or reading == self._reading:
+            return
+        self._reading = reading
+        self._note(now, {'kind': 'reading', **_stated(reading)})
 
     def flush(self) -> None:
         """Hand over what was taken so far."""
@@ -146,7 +142,7 @@ class Journal:
             'values': mine | {'axes': [axis.name], 'tick_period': values['tick_period']},
             'topics': dict(topics),
             'loss_unknown': sorted(self._unknown_loss),
-            'reading': self._reading,
+            'reading': _stated(self._reading),
             'surface': {
                 'base_sha256': axis.surface.base_sha256,
                 'corrections': [
@@ -215,6 +211,11 @@ class Journal:
                 self._hole = True
                 return
         self._hole = not self._process.put(Frame(FrameKind.MESSAGE, number, *times, data))
+
+
+def _stated(reading: Reading) -> dict[str, Any]:
+    several = sorted([axis, source.name.lower()] for axis, source in reading.several)
+    return {'ahead': reading.ahead, 'several': several}
 
 
 SILENT = Journal('', None)

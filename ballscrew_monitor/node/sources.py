@@ -9,12 +9,27 @@ message it is. Every publisher numbers its messages upward.
 """
 
 from collections import deque
+from typing import NamedTuple
 
+from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.judge.records import SHOWN
 
 NO_NUMBER = 0
 """What a middleware without publication numbers says; the first real one is 1."""
+InputName = tuple[str, Source]
+"""An input, by its axis and what it measures."""
 ENOUGH = 2  # numbers that fall back within SHOWN; a publisher that starts again gives one
+
+
+class Reading(NamedTuple):
+    """How messages are read: time [ns] by which stamps may lead, inputs of several publishers."""
+
+    ahead: int = 0
+    several: frozenset[InputName] = frozenset()
+
+
+READING = Reading()
+"""Nothing but what the parameters allow."""
 
 
 class LossCounter:

@@ -7,9 +7,9 @@ import dataclasses
 import functools
 from typing import Any
 
-from ballscrew_monitor.core.inputs import Input, Source
+from ballscrew_monitor.core.inputs import Input
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.node.sources import LossCounter, NO_NUMBER, SourceCounter
+from ballscrew_monitor.node.sources import InputName, LossCounter, NO_NUMBER, SourceCounter
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import DEPTH, input_qos, overriding_options, publishers_on
 from rclpy.callback_groups import CallbackGroup
@@ -21,8 +21,6 @@ from rclpy.subscription import Subscription
 MOST = 2 * DEPTH  # messages of one topic that are taken before anything else has a turn
 
 Reader = tuple[Axis, Input]
-InputName = tuple[str, Source]
-"""An input, by its axis and what it measures."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
