@@ -34,8 +34,8 @@ from std_msgs.msg import String
 LATCHED = (OutOfZone, SurfaceInfo)
 CORRECTION = ('speed', 'opposing_load', 'temperature', 'solved')  # of a full solve
 AXIS_PERIOD = nanoseconds(10.0)  # [ns] after which all is said of an axis again
-RESTART = nanoseconds(2.0)  # [ns] after which a lost process is started again, then twice as long
-LONGEST_RESTART = nanoseconds(60.0)  # [ns]
+# [ns] after which a lost process is started again; twice as long if it is lost soon after.
+RESTART, LONGEST_RESTART = nanoseconds(2.0), nanoseconds(60.0)
 HOLE_SHOWN = nanoseconds(10.0)  # [ns] for which a hole is warned of
 Heard = tuple[Arrival, int, int | None]
 """A message, its arrival [ns] on the clock of the node, and how many were lost before it."""
@@ -56,6 +56,7 @@ class Journal:
         self._reading = Reading()
         self._burst = 0
         self._pause = RESTART
+        self._started_at = 0  # the process, on the steady clock, again
         self._begun = False  # an axis has been described
         self._hole = False  # frames were dropped: all must be said again
         self._hole_shown = False
@@ -158,11 +159,13 @@ class Journal:
         """Return which axes are to be described again at `steady` [ns]: one; all after a hole."""
         if self._process is None or not now:
             return []
+        if not self._process.lost and steady - self._started_at >= LONGEST_RESTART:
+            self._pause = RESTART
         if self._process.lost:
             self._lost_at = steady if self._lost_at is None else self._lost_at
             if steady - self._lost_at < self._pause:
                 return []
-            self._restart()
+            self._restart(steady)
         if self._hole and not self._process.lost and self._process.flush():
             self._hole, self._hole_over = False, steady
             self._said.clear()
@@ -181,8 +184,9 @@ class Journal:
             self._process.close()
             self._process = None
 
-    def _restart(self) -> None:
+    def _restart(self, steady: int) -> None:
         assert self._start is not None
+        self._started_at = steady
         self.close()
         self._process, self._lost_at = self._start(), None
         self._pause = min(2 * self._pause, LONGEST_RESTART)
