@@ -47,8 +47,15 @@ class Following:
         """Let the clock run on until all monitors have taken what waits: then speeds go stale."""
         while self._take():
             pass
+        before = self._heard
+
+        def rests() -> bool:
+            self._take()
+            heard = self._heard > before and all(self._last.values())
+            return heard and not self._fresh
+
         if self._first:
-            run_on(lambda: not self._take() and not self._fresh, LAST_WORD)
+            run_on(rests, LAST_WORD)
 
     def complaint(self, rate: float, sent: Mapping[str, int]) -> str:
         """
@@ -63,6 +70,8 @@ class Following:
             where = name.removesuffix(PART)
             for source in (one.removesuffix(TAKEN) for one in counts if one.endswith(TAKEN)):
                 taken = self._gained(name, source + TAKEN)
+                if not taken:  # it listens to something else
+                    continue
                 key = where.rpartition(': ')[2], source.lower()
                 count = sent.get(self._topics.get(key, ''), 0) or taken + self._gained(
                     name, source + LOST
