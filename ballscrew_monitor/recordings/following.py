@@ -12,6 +12,7 @@ import time
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.node import Node
+from rclpy.time import Time
 
 DIAGNOSTICS, PART = '/diagnostics', ': Inputs'
 TAKEN, LOST = ' received [-]', ' lost [-]'
@@ -19,6 +20,7 @@ FRESH = ('Speed state', 'OK')
 FIRST_WORD, LAST_WORD = 2.0, 5.0  # [s] that a monitor may take to tell what it has taken
 POLL = 0.05  # [s]
 DEPTH = 1000
+LATEST = 2**63
 Counts = Mapping[str, int]
 """Messages by the input of an axis and whether they are taken or lost."""
 
@@ -31,8 +33,8 @@ class Following:
         self._node, self._topics = node, topics
         self._first: dict[str, Counts] = {}
         self._last: dict[str, Counts] = {}
-        self._fresh: set[str] = set()  # monitors whose speed still comes
-        self._heard = 0
+        self._resting: set[str] = set()  # monitors whose counts do after the end
+        self._end = LATEST
         node.create_subscription(DiagnosticArray, DIAGNOSTICS, self._hear, DEPTH)
 
     def begin(self) -> None:
@@ -43,19 +45,21 @@ class Following:
                 break
             self._take(POLL)
 
-    def settle(self, run_on: Callable[[Callable[[], bool], float], object]) -> None:
-        """Let the clock run on until all monitors have taken what waits: then speeds go stale."""
-        while self._take():
-            pass
-        before = self._heard
+    def settle(self, end: int, run_on: Callable[[Callable[[], bool], float], object]) -> None:
+        """
+        Let the clock run on until the counts of all monitors rest after the `end` [ns].
 
-        def rests() -> bool:
+        Their speeds are stale then: a tick comes after all that waits.
+
+        """
+        self._end = end
+
+        def rest() -> bool:
             self._take()
-            heard = self._heard > before and all(self._last.values())
-            return heard and not self._fresh
+            return self._resting == self._last.keys()
 
         if self._first:
-            run_on(rests, LAST_WORD)
+            run_on(rest, LAST_WORD)
 
     def complaint(self, rate: float, sent: Mapping[str, int]) -> str:
         """
@@ -89,21 +93,21 @@ class Following:
         return self._last[name].get(one, 0) - self._first[name].get(one, 0)
 
     def _hear(self, message: DiagnosticArray) -> None:
+        late = Time.from_msg(message.header.stamp).nanoseconds > self._end
         for status in message.status:
-            if status.name.endswith(PART):
-                self._heard += 1
-                counts = _counts(status)
-                self._first.setdefault(status.name, counts)
-                self._last[status.name] = counts
-                fresh = any((pair.key, pair.value) == FRESH for pair in status.values)
-                (self._fresh.add if fresh else self._fresh.discard)(status.name)
+            if not status.name.endswith(PART):
+                continue
+            counts = _counts(status)
+            fresh = any((pair.key, pair.value) == FRESH for pair in status.values)
+            if late and not fresh and counts == self._last.get(status.name):
+                self._resting.add(status.name)
+            self._first.setdefault(status.name, counts)
+            self._last[status.name] = counts
 
-    def _take(self, patience: float = 0.0) -> bool:
-        """Take what has come within a time [s]; tell whether that was a word of a monitor."""
+    def _take(self, patience: float = 0.0) -> None:
+        """Take a word of a monitor if one has come within a time [s]."""
         assert self._node.executor is not None
-        before = self._heard
         self._node.executor.spin_once(timeout_sec=patience)
-        return self._heard > before
 
 
 def _counts(status: DiagnosticStatus) -> Counts:

@@ -320,7 +320,7 @@ def _play(
     )
     complaint = ''
     if ended and following is not None:
-        following.settle(lambda finished, seconds: player.run_on(finished, seconds, stop))
+        following.settle(player.now, lambda rest, most: player.run_on(rest, most, stop))
         complaint = following.complaint(player.rate, player.sent)
     say(*filter(None, [complaint]))
     return FAILED if complaint else DONE

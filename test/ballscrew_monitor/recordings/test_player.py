@@ -291,7 +291,7 @@ def test_a_rate_that_the_node_cannot_follow_is_a_failure_with_the_count(node, no
         assert ' messages in ' in player.stdout.readline()  # all are sent
         node.process.send_signal(signal.SIGCONT)
         _, err = player.communicate(timeout=DEADLINE)
-    assert player.returncode == 1
+    assert player.returncode == 1, err
     taken, count = map(int, re.findall(r'took (\d+) of (\d+)', err)[0])
     assert err == says('did_not_follow', taken=taken, count=count)
     assert 0 < taken < count
