@@ -6,7 +6,8 @@ Start the monitor as a lifecycle node.
 With `autostart:=true` the node configures and activates itself; with `false` a lifecycle manager
 does so. `params_file` may be left out: every parameter has a default. An argument that is given
 goes before the parameter file, one that is not leaves it alone. A `params_file` that is not there
-is an error: the defaults must not pass for it.
+is an error: the defaults must not pass for it. The launch ends when the node ends, with an error
+if the node does; with `respawn:=true` the node is started again instead.
 
 """
 
@@ -15,7 +16,7 @@ is an error: the defaults must not pass for it.
 from pathlib import Path
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import LifecycleNode
 from launch_ros.parameter_descriptions import ParameterValue
@@ -27,6 +28,8 @@ ARGUMENTS = (
     ('use_sim_time', '', 'true: take the time from /clock; empty: as the parameter file says.'),
     ('log_level', 'info', 'debug, info, warn, error or fatal.'),
     ('autostart', '', 'true: configure and activate at start; empty: as the parameter file says.'),
+    ('respawn', 'false', 'true: start the node again when it has ended.'),
+    ('respawn_delay', '2.0', 'Time after which it is started again [s].'),
 )
 
 
@@ -41,6 +44,13 @@ def find_file(context):
     return file
 
 
+def end(event, context):
+    """Return what ends the launch after its node; raises RuntimeError where that has failed."""
+    if event.returncode:
+        raise RuntimeError(f'{event.process_name} has ended with exit code {event.returncode}')
+    return Shutdown(reason=f'{event.process_name} has ended')
+
+
 def make_node(context):
     """Return the node; a parameter file counts only if one is named."""
     file = find_file(context)
@@ -49,12 +59,16 @@ def make_node(context):
         for name in ('use_sim_time', 'autostart')
         if LaunchConfiguration(name).perform(context)
     }
+    again = LaunchConfiguration('respawn').perform(context).lower() == 'true'
     node = LifecycleNode(
         package='ballscrew_monitor',
         executable='ballscrew_monitor',
         name='ballscrew_monitor',
         namespace=LaunchConfiguration('namespace'),
         output='screen',
+        respawn=again,
+        respawn_delay=float(LaunchConfiguration('respawn_delay').perform(context)),
+        on_exit=None if again else end,
         parameters=[*filter(None, [file, switches])],
         arguments=['--ros-args', '--log-level', LaunchConfiguration('log_level')],
     )

@@ -11,6 +11,7 @@ The node wants the machine frame, in which the force on the nut counts.
 from collections.abc import Callable, Sequence
 import dataclasses
 import math
+import re
 import signal
 import sys
 import threading
@@ -24,15 +25,21 @@ from ballscrew_monitor.settings.middleware import notice
 from ballscrew_monitor.settings.qos import started_node
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import OperatingPoint, PointResult
+from rcl_interfaces.msg import Log
 from rclpy.action import ActionClient
 from rclpy.action.graph import get_action_names_and_types
 from rclpy.node import Node
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile
+from rclpy.time import Time
 from surrogate.files import InputError, json_text
+from surrogate.units import RPM
 
 ACTION_TYPE = 'ballscrew_msgs/action/SolveOperatingPoint'
 SOLVED, NOT_SOLVED, INTERRUPTED = 0, 1, SIGNALLED + signal.SIGINT
 LAST_WORD = 1.0  # [s] for the node to know that a goal is cancelled
-REJECTED = 'the node takes no more solves now, its queue is full'
+REJECTED = 'the node refuses this solve, its log says why'
+LOG_QOS = QoSProfile(depth=1000, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
+RATE = re.compile(r'(\S+) rad/s')
 WHERE = 'start one, and mind ROS_DOMAIN_ID and ROS_AUTOMATIC_DISCOVERY_RANGE'
 SIDES = {PointResult.SIDE_SCREW: 'screw', PointResult.SIDE_NUT: 'nut'}
 NUTS = {PointResult.NUT_POSITIVE: 'positive nut', PointResult.NUT_NEGATIVE: 'negative nut'}
@@ -121,13 +128,15 @@ class _Conversation:
         silence = f'{action} does not answer within {wait:g} s'
         if not self._until(client.server_is_ready, wait):
             return self._give_up(silence)
+        refusals = self._hear_refusals()
         sent = client.send_goal_async(goal_of(self._question), feedback_callback=_show)
         handle = self._until(lambda: sent.done() and sent.result(), wait)
         if handle is None:
             self._take_back_late(sent)
             return self._give_up(silence)
         if not handle.accepted:
-            return _complain(REJECTED)
+            self._until(lambda: refusals, LAST_WORD)
+            return _complain(refusals[-1] if refusals else REJECTED)
         answer = handle.get_result_async()
         over = self._until(lambda: answer.done() or not client.server_is_ready())
         if sys.stderr.isatty():
@@ -138,6 +147,18 @@ class _Conversation:
         if not answer.done():
             return _complain(f'{action} is gone, its node has ended')
         return _print(self._question.axis, answer.result().result, as_json=as_json)
+
+    def _hear_refusals(self) -> list[str]:
+        """Return the list to which the node's log adds why it refuses a solve from now on."""
+        begin, found = f'solve of axis {self._question.axis} rejected: ', list[str]()
+        now = self._node.get_clock().now().nanoseconds
+
+        def hear(line: Log) -> None:
+            if line.msg.startswith(begin) and Time.from_msg(line.stamp).nanoseconds >= now:
+                found.append(line.msg.removeprefix(begin))
+
+        self._node.create_subscription(Log, '/rosout', hear, LOG_QOS)
+        return found
 
     def _give_up(self, sentence: str) -> int:
         """Complain of a node that was waited for in vain; an interrupt needs no words."""
@@ -171,8 +192,16 @@ class _Conversation:
 
 
 def _complain(sentence: str) -> int:
-    say(sentence)
+    """Say a sentence of the node in the unit in which the command is asked."""
+    say(RATE.sub(_in_rpm, sentence))
     return NOT_SOLVED
+
+
+def _in_rpm(found: re.Match[str]) -> str:
+    try:
+        return f'{float(found[1]) / RPM:.4g} rev/min'
+    except ValueError:  # a word
+        return found[0]
 
 
 def _show(message: Any) -> None:

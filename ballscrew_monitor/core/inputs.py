@@ -23,6 +23,10 @@ UNDECODED = 'the message does not decode: it is truncated, or of another definit
 YEAR = 31_536_000 * SECOND
 """Stamps that far from the clock are those of another kind of clock [ns]."""
 NEGATIVE = 'the stamp is negative: mend the clock of the source'
+SEVERAL = (
+    'several publishers send this input, and one is allowed: stop all but one, or set one_source '
+    'to false'
+)
 
 
 class Source(enum.IntEnum):
@@ -57,6 +61,7 @@ class Why(enum.IntEnum):
     NOT_DECODED = 6  # truncated, or of another definition of its type
     HOLE = 7  # no speed follows from a position and one long before it
     NEGATIVE = 8  # a stamp below zero, which no clock shows
+    SEVERAL = 9  # several publishers send the input, and one is allowed
 
 
 class InputState(enum.IntEnum):
@@ -121,9 +126,10 @@ class InputStatus:
     at least, are NaN while unknown; an input is `lagging` from a stated lag on; a `slow` one is
     stale between its samples, and a timeout of `longest_gap` [s] would do, NaN for any other.
     `lost` messages never arrived, None: not known; `losing` since not long ago.
-    `implausible` samples were refused, `glitching` not long ago. `refusal` is why
-    the last message was refused, while it is the last; `joints` are what messages about other
-    joints have named since the last sample.
+    `implausible` samples were refused. `refusing` is why messages were refused not long ago, and
+    `refused_share` [-] how many of the latest were. `refusal` is why the last message was refused,
+    while it is the last; `joints` are what messages about other joints have named since the last
+    sample.
 
     """
 
@@ -140,11 +146,17 @@ class InputStatus:
     lost: int | None = 0
     losing: bool = False
     implausible: int = 0
-    glitching: bool = False
+    refusing: tuple[Why, ...] = ()
+    refused_share: float = 0.0
     longest_gap: float = math.nan
     why: Why | None = None
     refusal: str = ''
     joints: OtherJoints | None = None
+
+    @property
+    def glitching(self) -> bool:
+        """Tell whether implausible samples were refused not long ago."""
+        return Why.IMPLAUSIBLE in self.refusing
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -226,6 +238,11 @@ class OpenInput:
             scaling=self.scaling,
             stamped=known.get('header') == 'std_msgs/Header',
         )
+
+
+def of_several(source: Source, arrival: int, lost: int | None = 0) -> Refusal:
+    """Return the refusal of a sample that one of several publishers has sent; see `Refusal`."""
+    return Refusal(source=source, why=Why.SEVERAL, text=SEVERAL, arrival=arrival, lost=lost)
 
 
 def implausible_text(source: Source, value: float, most: float) -> str:

@@ -10,11 +10,12 @@ VOLATILE, TRANSIENT_LOCAL = 'volatile', 'transient_local'
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Publisher:
-    """A publisher on a topic, with its QoS in the words of a `qos_overrides` parameter."""
+    """A publisher on a topic: its QoS in the words of a `qos_overrides` parameter, its node."""
 
     type_name: str
     reliability: str = BEST_EFFORT
     durability: str = VOLATILE
+    node: str = ''
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -23,7 +24,8 @@ class Link:
     How an input is connected: what it asks for, and which publishers there are.
 
     An empty `type_name` asks for that of the publisher; `problem` is why that does not serve.
-    While publishers are `matched` the others need not be known.
+    While publishers are `matched` the others need not be known. `several` tells whether more than
+    one of them sends the input, None: not known.
 
     """
 
@@ -34,6 +36,7 @@ class Link:
     reliability: str = BEST_EFFORT
     durability: str = VOLATILE
     problem: str = ''
+    several: bool | None = False
 
 
 def link_reason(link: Link, parameter: str, *, seen: bool = False) -> str:
@@ -53,6 +56,18 @@ def link_reason(link: Link, parameter: str, *, seen: bool = False) -> str:
             return f'the publisher on {link.topic} is gone'
         return f'no publisher yet on {link.topic}: start it, or set {parameter}.topic'
     return _type_reason(link, parameter) or _qos_reason(link)
+
+
+def several_reason(link: Link, parameter: str) -> str:
+    """Return which publishers send the input `parameter`, where one is expected, and the cure."""
+    axis = parameter.partition('.')[0]
+    return f'{senders(link)} send it: stop all but one, or set {axis}.one_source to false'
+
+
+def senders(link: Link) -> str:
+    """Return by whom a topic is published, in words."""
+    nodes = ', '.join(sorted({publisher.node for publisher in link.publishers} - {''}))
+    return ' '.join(filter(None, ('several publishers on', link.topic, nodes and f'({nodes})')))
 
 
 def types_of(link: Link) -> list[str]:

@@ -64,9 +64,9 @@ class MonitorSettings:
     `default_temperature` [K] is used without a temperature topic, `publish_period` [ns] thins out
     the states, 0 keeps all; a stamp may be `max_future` [ns] ahead of the clock, and that is less
     than `tick_period` [ns] ahead of the tick. Stamps more than `max_lag` [ns] behind their arrival
-    are warned of. Samples whose amount is above that in `plausible` [SI] are refused.
-    With a `derivation` the load is derived from the motor torque, with `positions` the samples of
-    the speed are positions.
+    are warned of. Samples whose amount is above that in `plausible` [SI] are refused, and with
+    `one_source` those of an input that several publishers send. With a `derivation` the load is
+    derived from the motor torque, with `positions` the samples of the speed are positions.
 
     """
 
@@ -77,6 +77,7 @@ class MonitorSettings:
     publish_period: int = 0
     max_future: int = 0
     max_lag: int = YEAR
+    one_source: bool = True
     tick_period: int = 0
     plausible: Mapping[Source, float] = dataclasses.field(default_factory=dict)
     derivation: LoadDerivation | None = None

@@ -13,11 +13,11 @@ from typing import Any
 
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source, StampSource, Why
-from ballscrew_monitor.judge.records import INPUTS, NOT_KNOWN, RATE_SAMPLES, WHYS
+from ballscrew_monitor.judge.records import INPUTS, NOT_KNOWN, RATE_SAMPLES, SHOWN, WHYS
 
 TEMPERATURE, LOAD, TORQUE, SPEED = map(int, Source)
 UNKNOWN, MEASURED, DEFAULT, HELD, DERIVED = map(int, PointSource)
-OTHER_JOINTS, IMPLAUSIBLE = int(Why.OTHER_JOINTS), int(Why.IMPLAUSIBLE)
+OTHER_JOINTS = int(Why.OTHER_JOINTS)
 HEADER = int(StampSource.HEADER)
 SLOW_GAPS = 2
 """Gaps above the timeout in a row from which on an input is slow, not interrupted."""
@@ -41,12 +41,24 @@ def refuse(memory: Any, source: int, why: int, first: float, second: float, arri
     """Count a bad message; the input stays bad until the next good one."""
     drop(memory, source)
     memory.refused[source * WHYS + why] += 1
+    memory.refused_last[source * WHYS + why] = arrival
+    _count(memory, source, arrival)
+    memory.span_refused[source] += 1
     memory.refusal[source] = why
     memory.refusal_first[source] = first
     memory.refusal_second[source] = second
-    if why == IMPLAUSIBLE:
-        memory.implausible[source] += 1
-        memory.implausible_last[source] = arrival
+
+
+def _count(memory: Any, source: int, arrival: int) -> None:
+    """Count a sample or a refusal that arrived at a time [ns] into the span that it lies in."""
+    passed = arrival - memory.span_begin[source]
+    if passed < 0 or passed >= SHOWN:
+        follows = 0 <= passed < 2 * SHOWN
+        memory.before_taken[source] = memory.span_taken[source] if follows else 0
+        memory.before_refused[source] = memory.span_refused[source] if follows else 0
+        memory.span_taken[source] = memory.span_refused[source] = 0
+        memory.span_begin[source] = arrival
+    memory.span_taken[source] += 1
 
 
 def take_refusal(memory: Any, event: Any) -> None:
@@ -63,6 +75,7 @@ def accept(memory: Any, settings: Any, event: Any, value: float) -> None:
     """Take a good sample, whose value may be a speed that follows from positions."""
     source = event.source
     memory.received[source] += 1
+    _count(memory, source, event.arrival)
     memory.refusal[source] = NOT_KNOWN
     gap = event.stamp - memory.sample_stamp[source] if memory.known[source] else 0
     memory.last_gap[source] = gap

@@ -22,12 +22,12 @@ WHYS = len(Why)
 RATE_SAMPLES = 20
 """Samples over which rate and lag of an input are taken."""
 SHOWN = 10_000_000_000
-"""Time for which a loss or an implausible sample is warned of [ns]."""
+"""Time for which a loss or a refusal is shown, and over which the share of these is taken [ns]."""
 COLUMNS = 5
 """Quantities of a window: speed, axial load, efficiency, RCS, film ratio."""
-MEMORY_VERSION = 1
+MEMORY_VERSION = 2
 """Version of `Memory` and `SlopeRing` in files."""
-MEMORY_LAYOUT = '075dc2df7b95d90d'
+MEMORY_LAYOUT = 'df634f0de83e3629'
 """SHA-256 of names and types of their fields; another one is another version."""
 
 SAMPLE, REFUSAL, TICK = 0, 1, 2
@@ -105,11 +105,16 @@ class Memory:
     received: list[int] = many(INPUTS, 0)
     dropped: list[int] = many(INPUTS, 0)
     refused: list[int] = many(INPUTS * WHYS, 0)  # by input, then by why
+    refused_last: list[int] = many(INPUTS * WHYS, -SHOWN)
     lost: list[int] = many(INPUTS, 0)
     lost_known: list[int] = many(INPUTS, 1)
     lost_last: list[int] = many(INPUTS, -SHOWN)
-    implausible: list[int] = many(INPUTS, 0)
-    implausible_last: list[int] = many(INPUTS, -SHOWN)
+    # inputs: samples and refusals of the span of SHOWN that has begun, and of the one before
+    span_begin: list[int] = many(INPUTS, 0)
+    span_taken: list[int] = many(INPUTS, 0)
+    span_refused: list[int] = many(INPUTS, 0)
+    before_taken: list[int] = many(INPUTS, 0)
+    before_refused: list[int] = many(INPUTS, 0)
     # inputs: the refusal of the last message, if it was refused
     refusal: list[int] = many(INPUTS, NOT_KNOWN)
     refusal_first: list[float] = many(INPUTS, NAN)

@@ -247,8 +247,11 @@ def input_status_of(
         lagging=bool(is_lagging(memory, settings, source)),
         lost=int(memory.lost[source]) if memory.lost_known[source] else None,
         losing=bool(0 <= now - memory.lost_last[source] < SHOWN),
-        implausible=int(memory.implausible[source]),
-        glitching=bool(0 <= now - memory.implausible_last[source] < SHOWN),
+        implausible=int(memory.refused[source * WHYS + Why.IMPLAUSIBLE]),
+        refusing=tuple(
+            cause for cause in Why if 0 <= now - memory.refused_last[source * WHYS + cause] < SHOWN
+        ),
+        refused_share=_refused_share(memory, source),
         why=None if why == NOT_KNOWN else Why(why),
         refusal='' if why == NOT_KNOWN else refusal_text(memory, settings, source, texts),
         joints=joints if memory.others[source] else None,
@@ -268,6 +271,12 @@ def refusal_text(memory: Any, settings: Any, source: Source, texts: Texts) -> st
             return inputs.implausible_text(source, first, most)
         return inputs.jump_text(first, second, most)
     return ''
+
+
+def _refused_share(memory: Any, source: Source) -> float:
+    taken = int(memory.span_taken[source] + memory.before_taken[source])
+    refused = int(memory.span_refused[source] + memory.before_refused[source])
+    return refused / taken if taken else 0.0
 
 
 def _rate(memory: Any, source: Source) -> float:

@@ -226,6 +226,7 @@ def _input_values(inputs: tuple[InputStatus, ...]) -> list[tuple[str, object]]:
             (f'{name} dropped [-]', status.dropped),
             (f'{name} lost [-]', 'unknown' if status.lost is None else status.lost),
             (f'{name} implausible [-]', status.implausible),
+            (f'{name} refused share [-]', status.refused_share),
             (f'{name} stamps', status.stamp_source.name),
             (f'{name} lag [s]', status.lag),
             (f'{name} refused', status.refusal),

@@ -8,19 +8,21 @@ only those to be written.
 
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 import difflib
 import enum
 import math
+from typing import Any
 
 from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, Why, YEAR
-from ballscrew_monitor.core.links import Link, link_reason
+from ballscrew_monitor.core.links import Link, link_reason, senders, several_reason
 
 SHOWN_JOINTS = 8  # names that a sentence lists
 ROUND = (1.0, 2.0, 5.0, 10.0)  # leading digits of a timeout that is proposed
 MOST_TIMEOUT = 3600.0  # [s] as the parameter allows it
+SHARE = 0.01  # [-] of refused messages from which on they are warned of
 _FAULTS = (InputState.STALE, InputState.MISSING, InputState.BAD, InputState.UNKNOWN)
 _PLAUSIBLE = (
     'mend the source, its unit or scale, or raise limits.plausible_speed or limits.plausible_load'
@@ -33,29 +35,62 @@ _REFUSED = {
     Why.NOT_DECODED: 'its messages do not decode, record them with the type of their publisher',
     Why.IMPLAUSIBLE: f'it is beyond the plausible range, {_PLAUSIBLE}',
     Why.NEGATIVE: 'its stamps are negative, mend the clock of its source',
+    Why.SEVERAL: 'several publishers send it, stop all but one or set one_source to false',
+    Why.TOO_SHORT: 'its array ends before the element, let the source fill it',
     Why.HOLE: 'its positions come less often than its timeout allows, raise speed.timeout',
 }
-_TROUBLES: tuple[tuple[Callable[[InputStatus], bool], str], ...] = (
+Cure = Callable[[InputStatus, Link | None, str], str]
+
+
+def _refused(status: InputStatus, link: Link | None, parameter: str) -> str:
+    """Return why messages of an input were refused not long ago."""
+    texts = [_refusal_reason(why, link, parameter) for why in status.refusing]
+    return f'messages are refused: {"; ".join(texts)}'
+
+
+def _refusal_reason(why: Why, link: Link | None, parameter: str) -> str:
+    if why is Why.SEVERAL and link is not None:
+        return several_reason(link, parameter)
+    return _REFUSED[why]
+
+
+def _slow(status: InputStatus, link: Link | None, parameter: str) -> str:
+    return slow_reason(status.longest_gap, parameter)
+
+
+def _is_refused(status: InputStatus) -> bool:
+    """Tell whether many messages are refused; implausible ones have words of their own."""
+    others = set(status.refusing) - {Why.IMPLAUSIBLE}
+    return bool(others) and status.refused_share >= SHARE
+
+
+_TROUBLES: tuple[tuple[Callable[[InputStatus, Link | None], Any], str | Cure], ...] = (
+    (lambda status, link: _is_refused(status), _refused),
     (
-        lambda status: status.glitching,
+        lambda status, link: status.glitching,
         f'samples beyond the plausible range were refused: {_PLAUSIBLE}',
     ),
     (
-        lambda status: status.losing,
+        lambda status, link: status.losing,
         'messages are lost on the way: lower their rate, raise publish_period, or give the node '
         'fewer axes or more of the processor',
     ),
     (
-        lambda status: status.lag > seconds(YEAR),
+        lambda status, link: status.lag > seconds(YEAR),
         'stamps are of simulated time and the node runs on the wall clock: set use_sim_time',
     ),
     (
-        lambda status: status.lagging,
+        lambda status, link: status.lagging,
         'stamps lag behind their arrival: set the clocks alike, or raise max_lag',
     ),
-    (lambda status: status.slow, ''),
+    (lambda status, link: status.slow, _slow),
     (
-        lambda status: status.lost is None,
+        lambda status, link: link is not None and link.several is None,
+        'loss is unknown, and so is whether one source alone sends it: let the topic have one '
+        'publisher, or a middleware that numbers messages',
+    ),
+    (
+        lambda status, link: status.lost is None,
         'loss is unknown: let the topic have one publisher that numbers its messages',
     ),
 )
@@ -81,22 +116,37 @@ def summary(
     if faults:
         return Standing.LOST, '; '.join(faults)
     for happens, text in _TROUBLES:
-        found = [status for status in inputs if happens(status)]
+        found = [status for status in inputs if happens(status, links.get(status.source))]
         if found:
-            return Standing.DEGRADED, _trouble(axis, found, text)
-    return Standing.GOOD, Standing.GOOD.value
+            return Standing.DEGRADED, _trouble(axis, found, links, text)
+    return Standing.GOOD, '; '.join([Standing.GOOD.value, *_remarks(axis, inputs, links)])
+
+
+def _remarks(
+    axis: str, inputs: tuple[InputStatus, ...], links: Mapping[Source, Link]
+) -> Iterator[str]:
+    """Yield what is worth a word of inputs that are well."""
+    few = [status for status in inputs if status.refusing]
+    if few:
+        yield f'a few {_trouble(axis, few, links, _refused)}'
+    for status in inputs:
+        link = links.get(status.source)
+        if link is not None and link.several:
+            yield f'{status.source.name.lower()} comes from {senders(link)}'
 
 
 def _parameter(axis: str, source: Source) -> str:
     return f'{axis}.{source.name.lower()}'
 
 
-def _trouble(axis: str, found: list[InputStatus], text: str) -> str:
+def _trouble(
+    axis: str, found: list[InputStatus], links: Mapping[Source, Link], cure: str | Cure
+) -> str:
     names = [status.source.name.lower() for status in found]
-    if text:
-        return f'{" and ".join(names)} {text}'
+    if isinstance(cure, str):
+        return f'{" and ".join(names)} {cure}'
     return '; '.join(
-        f'{name} {slow_reason(status.longest_gap, _parameter(axis, status.source))}'
+        f'{name} {cure(status, links.get(status.source), _parameter(axis, status.source))}'
         for name, status in zip(names, found, strict=True)
     )
 
@@ -105,7 +155,9 @@ def fault(status: InputStatus, link: Link | None, parameter: str) -> str:
     """Return what is wrong with an input that is not well, `parameter` being `axis.input`."""
     name = status.source.name.lower()
     if status.state is InputState.BAD:
-        why = _REFUSED.get(status.why, status.refusal) if status.why else ''
+        why = status.refusal
+        if status.why and status.why is not Why.TOO_SHORT:
+            why = _refusal_reason(status.why, link, parameter)
         return _with(f'{name} is not usable', why)
     seen = status.state is InputState.STALE
     if status.joints is not None:

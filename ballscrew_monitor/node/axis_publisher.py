@@ -32,6 +32,7 @@ from surrogate.surface import Surface, SurfaceError, SurfacePoint
 
 STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 LOG_INTERVAL = nanoseconds(1.0)  # [ns] shortest time between two lines about the inputs
+AT_ONCE = 50  # points that are evaluated before samples have a turn
 NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
 PLAIN = dict.fromkeys(('efficiency', 'rcs', 'film_ratio'), Float64)
 PLAIN |= {'regime': String, 'out_of_zone': Bool}
@@ -229,17 +230,32 @@ class AxisPublisher:
         self.publish_info()
         self._recording.describe([self.name], 'surface')
 
-    def evaluate(self, points: Sequence[OperatingPoint], response: Any) -> None:
-        """Fill the response with what the surface says of the points, if they are not too many."""
+    def evaluate(
+        self, points: Sequence[OperatingPoint], response: Any, meanwhile: Callable[[], None]
+    ) -> None:
+        """
+        Fill the response with what the surface says of the points, if they are not too many.
+
+        `meanwhile` is called between some points and the next ones.
+
+        """
         most = EvaluateOperatingPoint.Request.MAX_POINTS
         if len(points) > most:
             response.message = f'{len(points)} points are too many, allowed are {most}'
             return
-        results = self.guarded('an evaluation', lambda: [self._evaluate(one) for one in points])
+        results: list[PointResult] | None = []
+        for begin in range(0, len(points), AT_ONCE):
+            end = begin + AT_ONCE
+            some = self.guarded('an evaluation', self._evaluated, points[begin:end])
+            results = None if results is None or some is None else results + some
+            meanwhile()
         if results is None:
             response.message = self.defect
         else:
             response.success, response.results = True, results
+
+    def _evaluated(self, points: Sequence[OperatingPoint]) -> list[PointResult]:
+        return [self._evaluate(one) for one in points]
 
     def _evaluate(self, point: OperatingPoint) -> PointResult:
         result = PointResult()

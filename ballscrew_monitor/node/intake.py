@@ -11,6 +11,7 @@ once for all of them. Simulated time is read in the same order: a message arrive
 
 """
 
+from collections import deque
 from collections.abc import Callable, Iterable
 import contextlib
 import operator
@@ -18,9 +19,19 @@ import time
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.inputs import Input, InputSample, OpenInput, ordered, Refusal, Source
+from ballscrew_monitor.core.inputs import (
+    Input,
+    InputSample,
+    of_several,
+    OpenInput,
+    ordered,
+    Refusal,
+    Source,
+    Why,
+)
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.node.journal import Heard, Journal, SILENT
+from ballscrew_monitor.node.sources import READING, Reading
 from ballscrew_monitor.node.topic import Apart, Arrival, link_of, open_topic, Topic
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import publishers_on
@@ -35,6 +46,8 @@ PAUSE = 2.5e-4  # [s] between two looks at the inputs while messages come, at le
 PAUSE_PER_TOPIC = 2.5e-5  # [s] the same for each topic, five times what a look at it takes
 QUIET = 1.5e-3  # [s] without a message after which the executor waits for the next one
 STAY = 0.02  # [s] longest turn; what becomes ready in one may wait for the next one too
+STEPS = 9  # of `/clock`, of which the middle one counts
+MOST_AHEAD = SECOND  # [ns] by which the steps of `/clock` let stamps be ahead
 MOST_LOOKS = 10  # at all topics, while messages come faster than they are looked at
 
 AxisEvent = tuple[Axis, InputSample | Refusal]
@@ -66,6 +79,8 @@ class Intake(Waitable):
         self._node, self._take, self._journal, self._guard = node, take, journal, guard
         self._apart = Apart()
         self._simulated = 0  # the last `/clock` [ns]
+        self._steps: deque[int] = deque(maxlen=STEPS)  # of `/clock` [ns]
+        self._reading = READING
         self._places: list[int] = []  # of the subscriptions in the wait set
         self._open: list[tuple[Axis, OpenInput]] = []
         self._problems: dict[tuple[str, Source], str] = {}  # of open inputs
@@ -80,8 +95,17 @@ class Intake(Waitable):
         self._clock: Topic | None = None
         if node.get_parameter('use_sim_time').value:
             self._clock = open_topic(node, CLOCK, Clock, self._apart, overridable=False, raw=False)
+            self._simulated = node.get_clock().now().nanoseconds
+            self._reading = Reading(MOST_AHEAD)  # until the steps are known
         node.add_waitable(self)
         self.discover()
+
+    @property
+    def now(self) -> int:
+        """Return the time [ns] by which arrivals are timed, and ticks are to be."""
+        if self._clock is not None:
+            return self._simulated
+        return self._node.get_clock().now().nanoseconds
 
     @property
     def _all(self) -> list[Topic]:
@@ -201,7 +225,9 @@ class Intake(Waitable):
             name = self._node.resolve_topic_name(topic)
             read = None if source in opened else self.topics.get(name)
             problem = self._problems.get((axis.name, source), '') if source in opened else ''
-            found[source] = link_of(self._node, name, read, problem=problem)
+            counter = read.sources.get((axis.name, source)) if read else None
+            several = counter.several if counter else False
+            found[source] = link_of(self._node, name, read, several=several, problem=problem)
         return found
 
     def _waiting(self) -> list[Arrival]:
@@ -227,33 +253,76 @@ class Intake(Waitable):
         arrivals = self._waiting()
         if not arrivals:
             return False
-        now, wall = self._node.get_clock().now().nanoseconds, time.time_ns()
+        now, wall = self.now, time.time_ns()
+        self._learn(now)
         heard: list[Heard] = []
         for arrival in arrivals:
             if arrival.topic is self._clock:
-                shown = arrival.message.clock
-                self._simulated = shown.sec * SECOND + shown.nanosec
+                self._show(arrival.message.clock)
                 continue
             waited = max(wall - arrival.received, 0) if arrival.received else 0
             lost = arrival.topic.loss.take(arrival.number)
-            heard.append((arrival, self._simulated or max(now - waited, 0), lost))
+            at = max(now - waited, 0) if self._clock is None else self._simulated
+            heard.append((arrival, at, lost))
         self._journal.hear(heard)
-        events = [event for one in heard for event in _events(*one, self._guard)]
+        events = [event for one in heard for event in self._judged(one)]
         for axis, event in ordered(events):
             self._take(axis, event)
         self._journal.flush()
         return True
 
+    def _show(self, shown: Any) -> None:
+        """Take a time of `/clock`, and how far it is from the one before."""
+        before, self._simulated = self._simulated, shown.sec * SECOND + shown.nanosec
+        if 0 < before < self._simulated:
+            self._steps.append(self._simulated - before)
+
+    def _learn(self, now: int) -> None:
+        """
+        Read from now on as the messages so far suggest, one burst like the other.
+
+        Between two steps of `/clock` stamps run ahead of it by up to one step.
+
+        """
+        ahead = self._reading.ahead
+        if self._steps:
+            wanted = min(2 * sorted(self._steps)[len(self._steps) // 2], MOST_AHEAD)
+            ahead = wanted if 4 * abs(wanted - ahead) > ahead else ahead
+        several = frozenset(
+            one
+            for topic in self.topics.values()
+            for one, counter in topic.sources.items()
+            if counter.several
+        )
+        self._reading = Reading(ahead, several)
+        self._journal.read(self._reading, now)
+
+    def _judged(self, heard: Heard) -> list[AxisEvent]:
+        """Return what a message says of each axis, and count of which inputs it gives samples."""
+        arrival, now, _ = heard
+        found = _events(*heard, self._reading, self._guard)
+        for axis, event in found:
+            if isinstance(event, InputSample) or event.why is Why.SEVERAL:
+                arrival.topic.count((axis.name, event.source), arrival.number, now)
+        return found
+
 
 def _events(
-    arrival: Arrival, now: int, lost: int | None, guard: Callable[..., Any] = _call
+    arrival: Arrival,
+    now: int,
+    lost: int | None,
+    reading: Reading = READING,
+    guard: Callable[..., Any] = _call,
 ) -> list[AxisEvent]:
     """Return what a message that arrived at `now` [ns] of the node's clock says of each axis."""
     found: list[AxisEvent] = []
     for axis, source in arrival.topic.readers:
         place = f'the {source.source.name.lower()} that arrived at {now} ns'
-        told = {'now': now, 'max_future': axis.max_future, 'lost': lost}
+        told = {'now': now, 'max_future': axis.max_future + reading.ahead, 'lost': lost}
         event = guard(axis, place, source.read, arrival.message, **told)
+        several = axis.one_source and (axis.name, source.source) in reading.several
+        if isinstance(event, InputSample) and several:
+            event = of_several(source.source, event.arrival, lost)
         if event is not None:
             found.append((axis, event))
     return found

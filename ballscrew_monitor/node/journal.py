@@ -22,6 +22,7 @@ from ballscrew_monitor.core.fields import type_name_of
 from ballscrew_monitor.judge.dump import dump
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
+from ballscrew_monitor.node.sources import Reading
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.recordings.frames import Frame, FrameKind, MOST_SEQUENCE, STRING, VERSION
 from ballscrew_monitor.settings.axis import Axis
@@ -33,8 +34,8 @@ from std_msgs.msg import String
 LATCHED = (AxisHealth, OutOfZone, SurfaceInfo)
 CORRECTION = ('speed', 'opposing_load', 'temperature', 'solved')  # of a full solve
 AXIS_PERIOD = nanoseconds(10.0)  # [ns] after which all is said of an axis again
-RESTART = nanoseconds(2.0)  # [ns] after which a lost process is started again, then twice as long
-LONGEST_RESTART = nanoseconds(60.0)  # [ns]
+# [ns] after which a lost process is started again; twice as long if it is lost soon after.
+RESTART, LONGEST_RESTART = nanoseconds(2.0), nanoseconds(60.0)
 HOLE_SHOWN = nanoseconds(10.0)  # [ns] for which a hole is warned of
 Heard = tuple[Arrival, int, int | None]
 """A message, its arrival [ns] on the clock of the node, and how many were lost before it."""
@@ -52,8 +53,10 @@ class Journal:
         self._lost_at: int | None = None  # the process, on the steady clock
         self._topics: dict[str, int] = {}
         self._unknown_loss: set[str] = set()  # topics whose loss was last said to be unknown
+        self._reading = Reading()
         self._burst = 0
         self._pause = RESTART
+        self._started_at = 0  # the process, on the steady clock, again
         self._begun = False  # an axis has been described
         self._hole = False  # frames were dropped: all must be said again
         self._hole_shown = False
@@ -78,6 +81,13 @@ class Journal:
             times = (now, arrival.received, self._burst)
             self._put(name, kind, 'SENSOR', arrival.data, times)
         self.flush()  # whatever becomes of the node with these messages
+
+    def read(self, reading: Reading, now: int) -> None:
+        """Say how the messages from `now` [ns] on are read, when that has changed."""
+        if not self.on or reading == self._reading:
+            return
+        self._reading = reading
+        self._note(now, {'kind': 'reading', **_stated(reading)})
 
     def flush(self) -> None:
         """Hand over what was taken so far."""
@@ -133,6 +143,7 @@ class Journal:
             'values': mine | {'axes': [axis.name], 'tick_period': values['tick_period']},
             'topics': dict(topics),
             'loss_unknown': sorted(self._unknown_loss),
+            'reading': _stated(self._reading),
             'surface': {
                 'base_sha256': axis.surface.base_sha256,
                 'corrections': [
@@ -148,11 +159,13 @@ class Journal:
         """Return which axes are to be described again at `steady` [ns]: one; all after a hole."""
         if self._process is None or not now:
             return []
+        if not self._process.lost and steady - self._started_at >= LONGEST_RESTART:
+            self._pause = RESTART
         if self._process.lost:
             self._lost_at = steady if self._lost_at is None else self._lost_at
             if steady - self._lost_at < self._pause:
                 return []
-            self._restart()
+            self._restart(steady)
         if self._hole and not self._process.lost and self._process.flush():
             self._hole, self._hole_over = False, steady
             self._said.clear()
@@ -171,8 +184,9 @@ class Journal:
             self._process.close()
             self._process = None
 
-    def _restart(self) -> None:
+    def _restart(self, steady: int) -> None:
         assert self._start is not None
+        self._started_at = steady
         self.close()
         self._process, self._lost_at = self._start(), None
         self._pause = min(2 * self._pause, LONGEST_RESTART)
@@ -201,6 +215,11 @@ class Journal:
                 self._hole = True
                 return
         self._hole = not self._process.put(Frame(FrameKind.MESSAGE, number, *times, data))
+
+
+def _stated(reading: Reading) -> dict[str, Any]:
+    several = sorted([axis, source.name.lower()] for axis, source in reading.several)
+    return {'ahead': reading.ahead, 'several': several}
 
 
 SILENT = Journal('', None)

@@ -19,7 +19,7 @@ from ballscrew_monitor.node.axis_services import AxisServices, not_built
 from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.journal import NodeJournal
 from ballscrew_monitor.node.kept_axes import KeptAxes
-from ballscrew_monitor.node.parameter_store import ParameterStore
+from ballscrew_monitor.node.parameter_store import is_kept, ParameterStore
 from ballscrew_monitor.node.restart_state import RestartState, state_directory
 from ballscrew_monitor.node.solve_server import SolveServer
 from ballscrew_monitor.settings import parameters
@@ -27,8 +27,10 @@ from ballscrew_monitor.settings.axis import Axis, build_axes, named_topics
 from ballscrew_monitor.settings.qos import check_overrides, longest_period
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.parameter import Parameter
 from surrogate.files import InputError
 
 SUCCESS, FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
@@ -91,6 +93,13 @@ class BallscrewMonitor(LifecycleNode):
             self._recording.record,
             clock=self._steady,
         )
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set parameters; one that keeps its value is no change: a node takes its own dump."""
+        changed = [one for one in parameter_list if not is_kept(self, one)]
+        if not changed:
+            return SetParametersResult(successful=True)
+        return super().set_parameters_atomically(changed)
 
     def start(self) -> None:
         """Configure and activate, if the node is to do so itself."""
@@ -273,16 +282,19 @@ class BallscrewMonitor(LifecycleNode):
 
     def _on_tick(self) -> None:
         """Tick on the grid of stamps, when that is due; what has arrived by then comes first."""
-        grid = self._grid.tick(self.get_clock().now().nanoseconds)
-        if grid is None or self._intake is None:
+        if self._intake is None:
             return
         self._intake.discover()
         self._intake.drain()
+        now = self._intake.now
+        grid = self._grid.tick(now)
+        if grid is None:
+            return
         journal = self._recording.journal
-        journal.tick(grid, self.get_clock().now().nanoseconds)
+        journal.tick(grid, now)
         for publisher in self._axis_publishers.values():
             self._judge(publisher, publisher.axis.monitor.tick, grid)
-        steady, now = self._steady.now().nanoseconds, self.get_clock().now().nanoseconds
+        steady = self._steady.now().nanoseconds
         due = journal.due(self._axis_publishers, steady, now)
         self._recording.describe(due, 'time')
 
@@ -325,10 +337,10 @@ class BallscrewMonitor(LifecycleNode):
         return made + self._healths.statuses(axes) + self._recording.statuses()
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:
-        """Answer what the surface says of the points; nothing is judged meanwhile."""
+        """Answer what the surface says of the points; what arrives meanwhile is judged."""
         publisher = self._axis_publishers.get(request.axis)
         if publisher is None:
             response.message = self._unknown(request.axis)
         else:
-            publisher.evaluate(request.points, response)
+            publisher.evaluate(request.points, response, self._on_tick)
         return response

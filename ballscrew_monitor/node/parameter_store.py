@@ -13,6 +13,9 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from surrogate.files import InputError
 
+SIMULATED = 'use_sim_time'
+"""A parameter of rclpy: another clock is another line of time."""
+
 
 class ParameterStore:
     """
@@ -60,25 +63,34 @@ class ParameterStore:
         return SetParametersResult(successful=True)
 
     def _check_one(self, parameter: Parameter) -> None:
-        row = self._rows.get(parameter.name)
-        if row is None:
+        name, row = parameter.name, self._rows.get(parameter.name)
+        if row is None and name != SIMULATED:
             return
-        name, value, unit = parameter.name, _plain(parameter.value), row.unit
-        row.check(name, value)
-        if row.change is Change.UNCONFIGURED and self.locked:
+        value = _plain(parameter.value)
+        if row is not None:
+            row.check(name, value)
+        if self.locked and (row is None or row.change is Change.UNCONFIGURED):
             raise InputError(
                 f'parameter {name} changes only while the node is unconfigured, clean it up first'
             )
         if self.locked and name in self.ceilings and value > self.ceilings[name]:
             raise InputError(
-                f'parameter {name} is {value:g} {unit}, while the node is configured at most '
-                f'{self.ceilings[name]:g} {unit}, which its publisher promises: clean it up first'
+                f'parameter {name} is {value:g} s, while the node is configured at most '
+                f'{self.ceilings[name]:g} s, which its publisher promises: clean it up first'
             )
 
     def _take(self, changed: list[Parameter]) -> None:
         known = [parameter for parameter in changed if parameter.name in self._rows]
         self.values |= {parameter.name: _plain(parameter.value) for parameter in known}
         self._on_change({parameter.name.partition('.')[0] for parameter in known})
+
+
+def is_kept(node: Node, parameter: Parameter) -> bool:
+    """Tell whether a node has the value that a parameter is to be set to."""
+    if not node.has_parameter(parameter.name):
+        return False
+    now = node.get_parameter(parameter.name)
+    return now.type_ == parameter.type_ and _plain(now.value) == _plain(parameter.value)
 
 
 def _plain(value: Any) -> Any:

@@ -101,7 +101,8 @@ class SolveServer:
         self._begin(axis, point, DEFAULT_TIMEOUT, None)
 
     def _on_goal(self, request: Any) -> GoalResponse:
-        refusal = self.solver.refusal
+        point = self._wanted(request)[1]
+        refusal = point if isinstance(point, str) else self.solver.refusal
         if not refusal:
             return GoalResponse.ACCEPT
         self._node.get_logger().warning(
@@ -109,10 +110,14 @@ class SolveServer:
         )
         return GoalResponse.REJECT
 
+    def _wanted(self, request: Any) -> tuple[AxisPublisher | str, MachinePoint | str]:
+        """Return the axis and the point that a goal asks for, or why there is none."""
+        axis = self._find_axis(request.axis)
+        return axis, axis if isinstance(axis, str) else requested_point(request, axis)
+
     def _on_accepted(self, handle: ServerGoalHandle) -> None:
         request = handle.request
-        axis = self._find_axis(request.axis)
-        point = axis if isinstance(axis, str) else requested_point(request, axis)
+        axis, point = self._wanted(request)
         handle.execute()
         if isinstance(axis, str) or isinstance(point, str):
             self._answer(handle, empty_result(str(point)), End.FAILED)

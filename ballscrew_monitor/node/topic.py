@@ -9,6 +9,7 @@ from typing import Any
 
 from ballscrew_monitor.core.inputs import Input
 from ballscrew_monitor.core.links import Link
+from ballscrew_monitor.node.sources import InputName, LossCounter, NO_NUMBER, SourceCounter
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import DEPTH, input_qos, overriding_options, publishers_on
 from rclpy.callback_groups import CallbackGroup
@@ -17,39 +18,9 @@ from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 
-NO_NUMBER = 0
-"""What a middleware without publication numbers says; the first real one is 1."""
 MOST = 2 * DEPTH  # messages of one topic that are taken before anything else has a turn
 
 Reader = tuple[Axis, Input]
-
-
-class LossCounter:
-    """Counts the gaps in the publication numbers of one topic with one publisher."""
-
-    def __init__(self) -> None:
-        """Begin before the first message."""
-        self._last: int | None = None
-        self.publishers = 1
-
-    def match(self, publishers: int) -> None:
-        """Note how many publishers there are now; each of them is counted from the beginning."""
-        self.publishers = publishers
-        self._last = None
-
-    def take(self, number: int) -> int | None:
-        """
-        Return how many messages were lost just before the one of this publication number.
-
-        None when that cannot be known: the numbers of several publishers are mixed, or there are
-        none. A number that falls back belongs to a publisher that has started again.
-
-        """
-        if self.publishers > 1 or number == NO_NUMBER:
-            self._last = None
-            return None
-        last, self._last = self._last, number
-        return 0 if last is None or number <= last else number - last - 1
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -77,11 +48,16 @@ class Topic:
     readers: list[Reader]
     loss: LossCounter
     subscription: Subscription
+    sources: dict[InputName, SourceCounter] = dataclasses.field(default_factory=dict)
 
     @property
     def type_name(self) -> str:
         """Return the type of its messages."""
         return self.readers[0][1].type_name
+
+    def count(self, one: InputName, number: int, now: int) -> None:
+        """Take the publication number of a sample of an input that arrived at `now` [ns]."""
+        self.sources.setdefault(one, SourceCounter()).take(number, self.loss.publishers, now)
 
     def arrival(self, taken: Any, info: Mapping[str, Any]) -> Arrival:
         """Return what was taken with what the middleware says of it."""
@@ -155,8 +131,15 @@ def open_topic(
     return Topic(name=name, readers=[], loss=loss, subscription=subscription)
 
 
-def link_of(node: Node, name: str, topic: Topic | None, *, problem: str = '') -> Link:
-    """Return how the topic of a full name is connected; None: its type is not known yet."""
+def link_of(
+    node: Node, name: str, topic: Topic | None, *, several: bool | None = False, problem: str = ''
+) -> Link:
+    """
+    Return how the topic of a full name is connected; None: its type is not known yet.
+
+    `several` tells whether several publishers send the input.
+
+    """
     if topic is None:
         found = publishers_on(node, name)
         return Link(topic=name, type_name='', publishers=found, problem=problem)
@@ -166,9 +149,10 @@ def link_of(node: Node, name: str, topic: Topic | None, *, problem: str = '') ->
         topic=name,
         type_name=topic.type_name,
         matched=matched,
-        publishers=() if matched else publishers_on(node, name),
+        publishers=() if matched and not several else publishers_on(node, name),
         reliability=qos.reliability.name.lower(),
         durability=qos.durability.name.lower(),
+        several=several,
     )
 
 

@@ -17,6 +17,7 @@ from typing import Any
 
 from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.core.full_point import corrected, KeptSolve
+from ballscrew_monitor.core.inputs import of_several, Source
 from ballscrew_monitor.judge.dump import dump, restored
 from ballscrew_monitor.judge.records import MEMORY_VERSION
 from ballscrew_monitor.recordings.axis_run import AxisRun
@@ -144,6 +145,8 @@ class OwnRecording:
         self._described: dict[str, Mapping[str, Any]] = {}
         self._decoders: dict[str, TopicDecoder] = {}
         self._lost: dict[str, int] = {}  # before the next message of a topic
+        self._ahead = 0  # [ns] that stamps may be ahead beside max_future
+        self._several: set[tuple[str, str]] = set()  # inputs that several publishers send
 
     def entries(self, on_done: OnDone) -> Iterator[Entries]:
         """
@@ -175,7 +178,7 @@ class OwnRecording:
     def _changes(self, entry: Mapping[str, Any]) -> bool:
         """Tell whether an entry changes what is read, so that all before is judged first."""
         if entry['kind'] != 'axis':
-            return bool(entry['kind'] == 'hole')
+            return entry['kind'] in ('hole', 'reading')
         return entry['because'] != 'time' or entry['axis'] not in self._numbers
 
     def _change(self, entry: Mapping[str, Any]) -> None:
@@ -183,15 +186,24 @@ class OwnRecording:
         if entry['kind'] == 'hole':  # until each axis is described again
             self._numbers, self._described, self._decoders = {}, {}, {}
             return
-        self._describe(entry)
+        if entry['kind'] == 'reading':
+            self._read(entry)
+        else:
+            self._describe(entry)
         readers: dict[str, list[Reader]] = {}
         for number in self._numbers.values():
             axis = self.runs[number].axis
             for one in axis.inputs:  # by the full names that the node stated
                 readers.setdefault(one.topic, []).append((number, axis, one))
         self._decoders = {
-            topic: TopicDecoder(self._bag, wanted) for topic, wanted in readers.items()
+            topic: TopicDecoder(self._bag, wanted, ahead=self._ahead)
+            for topic, wanted in readers.items()
         }
+
+    def _read(self, stated: Mapping[str, Any]) -> None:
+        """Read messages from now on as the node said that it does."""
+        self._ahead = int(stated['ahead'])
+        self._several = {(axis, one) for axis, one in stated['several']}
 
     def _ordered(
         self, topics: dict[str, Messages], begin: int, end: int, noted: list[Noted]
@@ -209,8 +221,20 @@ class OwnRecording:
             at = np.searchsorted(messages.place, found.place)
             found.lost[:] = self._losses(topic, messages.place, noted)[at]
             found.burst[:] = messages.sequence[at]
+            self._refuse_several(found)
             parts.append(found)
         return as_taken(joined(parts))
+
+    def _refuse_several(self, found: Entries) -> None:
+        """Refuse the samples of inputs that several publishers send, where one is allowed."""
+        numbers = {run.axis.name: number for number, run in enumerate(self.runs)}
+        for name, one in self._several:
+            run, source = self.runs[numbers[name]], Source[one.upper()]
+            mine = (found.axis == numbers[name]) & (found.source == source)
+            at = np.flatnonzero(mine & (found.kind == Kind.SAMPLE)) if run.axis.one_source else ()
+            for place in at:
+                found.note[place] = of_several(source, int(found.arrival[place]))
+                found.kind[place], found.stamp[place] = Kind.REFUSED, found.log_time[place]
 
     def _losses(self, topic: str, places: Integers, noted: list[Noted]) -> Integers:
         """Return how many messages were lost before each; that it is not known holds on."""
@@ -255,6 +279,7 @@ class OwnRecording:
         try:
             name = entry['axis']
             self._lost = dict.fromkeys(entry['loss_unknown'], UNKNOWN_LOSS)
+            self._read(entry['reading'])
             axis = self._rebuilt(entry)
         except (KeyError, TypeError, AttributeError) as error:
             raise InputError(f'{self._journal}: an axis is described badly: {error}') from None

@@ -6,8 +6,8 @@ Plays a bag over DDS: the serialised messages as they are, and `/clock` from the
 `/clock` ticks at 100 Hz and before each message, so that a subscriber on simulated time never
 sees a message from its future. In a loop each pass goes on from the end of the one before:
 `/clock` and every stamp in the messages are shifted by whole passes. The messages are offered
-reliably: a subscriber that asks for best effort gets them as such, one that asks for more is not
-refused. `playback` does that alone, in the domain of the environment, for whoever listens.
+reliably and to latecomers: a subscriber that asks for less gets them as such, and none is refused.
+`playback` does that alone, in the domain of the environment, for whoever listens.
 
 """
 
@@ -22,8 +22,10 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import message_class
+from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from ballscrew_monitor.recordings.bag import Bag, Message
+from ballscrew_monitor.recordings.following import DIAGNOSTICS, Following
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.middleware import notice
@@ -31,9 +33,11 @@ from ballscrew_monitor.settings.parameters import absolute, input_topics
 from ballscrew_monitor.settings.qos import started_node
 from builtin_interfaces.msg import Time
 from rclpy.duration import Duration
+from rclpy.exceptions import InvalidTopicNameException
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from rclpy.serialization import deserialize_message, serialize_message
+from rclpy.validate_full_topic_name import validate_full_topic_name
 from rosgraph_msgs.msg import Clock
 from surrogate.files import InputError
 
@@ -44,7 +48,11 @@ MATCH_POLL = 0.02  # [s] between two looks at who has matched
 PAUSE = SECOND // 10  # [ns] of bag time from the last message of a pass to the first of the next
 DELIVERY = 5.0  # [s] that the last messages may take
 CLOCK_QOS = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.BEST_EFFORT)
-DATA_QOS = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
+DATA_QOS = QoSProfile(
+    depth=1000,
+    reliability=QoSReliabilityPolicy.RELIABLE,
+    durability=QoSDurabilityPolicy.TRANSIENT_LOCAL,
+)
 
 
 class Player:
@@ -62,7 +70,7 @@ class Player:
         """Make the publishers; `rate` is bag time over wall time, above 0; topics None: all."""
         if not 0.0 < rate < float('inf'):
             raise InputError(f'rate is {rate:g}, it must be above 0')
-        self._bag, self._rate = bag, rate
+        self._bag, self.rate = bag, rate
         self.sent: Counter[str] = Counter()
         self.lateness = 0.0
         self.now = bag.start_time
@@ -111,7 +119,7 @@ class Player:
         """
         begin = time.monotonic()
         for message in self._messages(loop):
-            due = begin + (message.log_time - self._bag.start_time) / SECOND / self._rate
+            due = begin + (message.log_time - self._bag.start_time) / SECOND / self.rate
             if not self._wait(due, stop, begin):
                 return False
             self._tick(message.log_time)
@@ -152,7 +160,7 @@ class Player:
         while not finished() and time.monotonic() < begin + timeout:
             if stop.wait(CLOCK_PERIOD):
                 break
-            self._tick(base + round((time.monotonic() - begin) * self._rate * SECOND))
+            self._tick(base + round((time.monotonic() - begin) * self.rate * SECOND))
         return finished()
 
     def _wait(self, due: float, stop: threading.Event, begin: float) -> bool:
@@ -160,7 +168,7 @@ class Player:
         while (left := due - time.monotonic()) > 0.0:
             if stop.wait(min(left, CLOCK_PERIOD)):
                 return False
-            at = self._bag.start_time + round((time.monotonic() - begin) * self._rate * SECOND)
+            at = self._bag.start_time + round((time.monotonic() - begin) * self.rate * SECOND)
             if time.monotonic() < due:
                 self._tick(at)
         return not stop.is_set()
@@ -219,7 +227,10 @@ def playback(path: Path, choice: Choice, *, rate: float, patience: float, loop: 
             told = list(bag.notes)
             say(*filter(None, (notice(), *told)))
             player = Player(node, bag, rate=rate, topics=topics)
-            code = _play(player, topics, patience, stop, loop)
+            # What a monitor said when the bag was recorded tells nothing of those of now.
+            known = _topics_by_input(choice)
+            following = None if DIAGNOSTICS in topics else Following(node, known)
+            code = _play(player, topics, patience, stop, loop, following)
             say(*(note for note in bag.notes if note not in told))
         return SIGNALLED + interrupted[0] if interrupted else code
 
@@ -244,6 +255,18 @@ def chosen(bag: Bag, choice: Choice) -> list[str]:
     return [topic for topic in dict.fromkeys(wanted) if topic in bag.topics]
 
 
+def _topics_by_input(choice: Choice) -> dict[tuple[str, str], str]:
+    """Return the topic of each axis and input, where the inputs of the parameters are played."""
+    if choice.every or choice.topics is not None:
+        return {}
+    values = parameters.read_file(choice.params)
+    return {
+        (axis, source): absolute(values[f'{axis}.{source}.topic'])
+        for axis in values['axes']
+        for source in (one.name.lower() for one in Source)
+    }
+
+
 def playable(bag: Bag, topics: Sequence[str]) -> list[str]:
     """Return the topics that can be sent, and say which cannot; raises InputError for none."""
     reasons = {topic: _problem(bag, topic) for topic in topics}
@@ -263,13 +286,21 @@ def _problem(bag: Bag, topic: str) -> str:
         return f'encoded as {info.encoding}'
     try:
         message_class(info.type_name)
+        validate_full_topic_name(absolute(topic))
     except InputError as error:
         return str(error)
+    except InvalidTopicNameException:
+        return 'which is no topic name of ROS 2'
     return ''
 
 
 def _play(
-    player: Player, topics: Sequence[str], patience: float, stop: threading.Event, loop: bool
+    player: Player,
+    topics: Sequence[str],
+    patience: float,
+    stop: threading.Event,
+    loop: bool,
+    following: Following | None,
 ) -> int:
     missing = player.wait_for_subscribers(patience, stop)
     if stop.is_set():
@@ -279,9 +310,17 @@ def _play(
         return FAILED
     if missing:
         print(f'nobody listens to {", ".join(missing)}', flush=True)
-    player.play(stop, loop=loop)
+    if following is not None:
+        following.begin()
+    ended = player.play(stop, loop=loop)
     print(
         f'{player.sent.total()} messages in {player.elapsed:.1f} s of bag time, '
-        f'at most {1e3 * player.lateness:.1f} ms late'
+        f'at most {1e3 * player.lateness:.1f} ms late',
+        flush=True,
     )
-    return DONE
+    complaint = ''
+    if ended and following is not None:
+        following.settle(player.now, lambda rest, most: player.run_on(rest, most, stop))
+        complaint = following.complaint(player.rate, player.sent)
+    say(*filter(None, [complaint]))
+    return FAILED if complaint else DONE

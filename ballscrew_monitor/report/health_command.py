@@ -11,6 +11,7 @@ from typing import Any
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED
 from ballscrew_monitor.health.baseline import HOUR
+from ballscrew_monitor.health.baseline import HOUR
 from ballscrew_monitor.health.records import Health, Quantity
 from ballscrew_monitor.health.store import FILE
 from ballscrew_monitor.health.words import health_record

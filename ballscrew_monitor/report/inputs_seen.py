@@ -36,6 +36,7 @@ REFUSALS = {
     Why.FUTURE: 'stamped in the future',
     Why.OTHER_CLOCK: 'stamped by another clock',
     Why.NEGATIVE: 'stamped before zero',
+    Why.SEVERAL: 'sent by several publishers',
     Why.TOO_SHORT: 'too short an array',
     Why.IMPLAUSIBLE: 'beyond what is plausible',
     Why.NOT_DECODED: 'that do not decode',

@@ -51,6 +51,11 @@ class Axis:
         """Return how far a stamp may be ahead of the clock [ns]."""
         return self.monitor.settings.max_future
 
+    @property
+    def one_source(self) -> bool:
+        """Tell whether an input that several publishers send is refused."""
+        return self.monitor.settings.one_source
+
     def adapt(self, values: Mapping[str, Any]) -> None:
         """Take over the parameters that may change at any time."""
         self.monitor.settings = settings_of(self.name, values, self.surface)
@@ -182,6 +187,7 @@ def settings_of(name: str, values: Mapping[str, Any], surface: Surface) -> Monit
         publish_period=nanoseconds(values[f'{name}.publish_period']),
         max_future=nanoseconds(values[f'{name}.max_future']),
         max_lag=nanoseconds(values[f'{name}.max_lag']),
+        one_source=values[f'{name}.one_source'],
         tick_period=nanoseconds(values['tick_period']),
         plausible=_plausible_of(name, values, surface),
         derivation=derivation_of(name, values),

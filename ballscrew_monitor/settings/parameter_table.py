@@ -223,6 +223,9 @@ AXIS_ROWS = (
     ParameterRow('max_lag', 0.2, 's', 1e-3, 3600.0).says(
         'Stamps further behind their arrival are warned of; they are judged all the same.'
     ),
+    ParameterRow('one_source', True, change=LIVE).says(
+        'Judge nothing while several publishers send the same input; false: judge all the same.'
+    ),
     ParameterRow('publish_period', 0.1, 's', 0.0, 3600.0, LIVE).says(
         'Period of the state topic, besides each change of the level; 0: a state for every '
         'judged speed sample. Above 1 s it rises only while unconfigured.'

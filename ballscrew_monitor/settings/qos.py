@@ -111,6 +111,7 @@ def publishers_on(node: Node, topic: str) -> tuple[Publisher, ...]:
             type_name=info.topic_type,
             reliability=info.qos_profile.reliability.name.lower(),
             durability=info.qos_profile.durability.name.lower(),
+            node=f'{info.node_namespace.rstrip("/")}/{info.node_name}',
         )
         for info in node.get_publishers_info_by_topic(topic)
     )

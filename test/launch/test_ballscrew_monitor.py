@@ -28,6 +28,7 @@ NAMES = (
 def launched(monkeypatch):
     """Return a function that runs the file with some arguments; it gives arguments and node."""
     given = dict.fromkeys(('params_file', 'use_sim_time', 'autostart'), '')
+    given |= {'respawn': 'false', 'respawn_delay': '2.0'}
     recorder = mock.MagicMock()
     recorder.DeclareLaunchArgument.side_effect = lambda name, **facts: (name, facts)
     recorder.OpaqueFunction.side_effect = lambda *, function: function(None)
@@ -35,6 +36,7 @@ def launched(monkeypatch):
         name=name, perform=lambda context: given[name]
     )
     recorder.LaunchDescription.side_effect = list
+    recorder.Shutdown.side_effect = lambda *, reason: reason
     for name in NAMES:
         monkeypatch.setitem(sys.modules, name, recorder)
 
@@ -49,7 +51,8 @@ def launched(monkeypatch):
 
 def test_arguments_have_defaults_and_descriptions(launched):
     declared, _ = launched(params_file='')
-    assert list(declared) == ['params_file', 'namespace', 'use_sim_time', 'log_level', 'autostart']
+    names = 'params_file namespace use_sim_time log_level autostart respawn respawn_delay'
+    assert list(declared) == names.split()
     for facts in declared.values():
         assert facts['description'].endswith('.')
         assert isinstance(facts['default_value'], str)
@@ -83,3 +86,18 @@ def test_an_argument_overrides_the_file_only_if_it_is_given(launched, mine, name
 def test_a_parameter_file_that_is_not_there_is_an_error(launched, mine, name):
     with pytest.raises(InputError, match=f'^params_file is {name}, there is no such file'):
         launched(params_file=name)
+
+
+def test_the_launch_ends_as_its_node_ends(launched):
+    _, node = launched()
+    assert node['respawn'] is False
+    ended = types.SimpleNamespace(process_name='ballscrew_monitor-1', returncode=0)
+    assert node['on_exit'](ended, None) == 'ballscrew_monitor-1 has ended'
+    ended.returncode = 2
+    with pytest.raises(RuntimeError, match='^ballscrew_monitor-1 has ended with exit code 2$'):
+        node['on_exit'](ended, None)
+
+
+def test_a_node_that_is_to_be_started_again_does_not_end_the_launch(launched):
+    _, node = launched(respawn='true', respawn_delay='0.5')
+    assert (node['respawn'], node['respawn_delay'], node['on_exit']) == (True, 0.5, None)

@@ -126,11 +126,16 @@ def readers_by_topic(axes: Iterable[Axis]) -> dict[str, list[Reader]]:
 class TopicDecoder:
     """Decodes the messages of one topic for all inputs that read it."""
 
-    def __init__(self, bag: Bag, readers: list[Reader]) -> None:
-        """Begin without a layout; `bag` counts what does not decode."""
+    def __init__(self, bag: Bag, readers: list[Reader], *, ahead: int = 0) -> None:
+        """
+        Begin without a layout; `bag` counts what does not decode.
+
+        Stamps may be `ahead` [ns] of the clock beside what an axis allows.
+
+        """
         self._bag, self._readers = bag, readers
         self._topic = absolute(readers[0][2].topic)
-        self._type = readers[0][2].message_type
+        self._type, self._ahead = readers[0][2].message_type, ahead
         self._layouts: list[Layout] = []
 
     def entries(self, messages: Messages) -> Entries:
@@ -191,7 +196,8 @@ class TopicDecoder:
         stamp = np.zeros_like(now)
         if source.stamped:
             stamp = layout.stamps(messages.data, messages.begin)
-        bad = ~np.isfinite(value) | (stamp < 0) | ((now != 0) & (stamp - now > axis.max_future))
+        limit = axis.max_future + self._ahead
+        bad = ~np.isfinite(value) | (stamp < 0) | ((now != 0) & (stamp - now > limit))
         samples = made(
             len(messages),
             log_time=now,
@@ -223,6 +229,7 @@ class TopicDecoder:
                         source=source.source, why=Why.NOT_DECODED, text=why, arrival=now
                     )
                 else:
-                    event = source.read(decoded, now=now, max_future=axis.max_future)
+                    limit = axis.max_future + self._ahead
+                    event = source.read(decoded, now=now, max_future=limit)
                 told.append((event, now, place, number))
         return entries_of(told)

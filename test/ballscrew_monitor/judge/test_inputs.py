@@ -30,8 +30,9 @@ class Input:
         event = Event(source=LOAD, stamp=stamp, arrival=arrival, stamp_source=stamp_source)
         inputs.accept(self.memory, self.settings, event, 1.0)
 
-    def refuse(self, why, first=math.nan):
-        inputs.take_refusal(self.memory, Event(source=LOAD, why=why, first=first, arrival=SECOND))
+    def refuse(self, why, first=math.nan, arrival=SECOND):
+        event = Event(source=LOAD, why=why, first=first, arrival=arrival)
+        inputs.take_refusal(self.memory, event)
 
     def lose(self, count, arrival):
         inputs.lose(self.memory, LOAD, count, arrival)
@@ -181,3 +182,17 @@ def test_a_slow_input_tells_its_longest_gap():
     # One gap is an interruption, two make a slow input.
     slow = [(True, 3.0, 3 * SECOND), (True, 3.0, 2 * SECOND)]
     assert gaps == [*[(False, nan, 0)] * 3, *slow, (False, nan, 0)]
+
+
+def test_the_share_of_refused_messages_is_that_of_ten_to_twenty_seconds():
+    load, shares = Input(), []
+    for second in range(1, 61):
+        load.accept(second * SECOND)
+        if second <= 30:
+            load.refuse(Why.FUTURE, arrival=second * SECOND)
+        status = load.status(second * SECOND)
+        shares.append((Why.FUTURE in status.refusing, status.refused_share))
+    assert shares[:30] == [(True, pytest.approx(0.5, abs=0.05))] * 30
+    assert shares[38][0]
+    assert not shares[39][0]
+    assert shares[-1] == (False, 0.0)

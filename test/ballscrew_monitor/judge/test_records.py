@@ -22,7 +22,7 @@ OTHERS = {
     Memory: {
         'lost_known': 1,
         'lost_last': LONG_AGO,
-        'implausible_last': LONG_AGO,
+        'refused_last': LONG_AGO,
         'refusal': -1,
         'window_low': math.inf,
         'window_high': -math.inf,

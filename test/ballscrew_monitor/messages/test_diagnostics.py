@@ -11,7 +11,7 @@ from ballscrew_monitor.core import sqlite_file
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Level, WarningPolicy
-from ballscrew_monitor.core.links import Link
+from ballscrew_monitor.core.links import Link, Publisher
 from ballscrew_monitor.core.state import Event, LoadDerivation, shelve
 from ballscrew_monitor.messages import diagnostics, reasons
 from ballscrew_monitor.messages.diagnostics import ERROR, OK, STALE, WARN
@@ -185,6 +185,63 @@ def test_a_glitch_is_told_for_ten_seconds_and_counted(core):
     assert told(10 * SECOND)['Inputs'].level == OK
 
 
+def refused_at_100_hz(core, every, *, silence=0):
+    """Return the diagnostics after 20 s with a refused load before one in `every` good ones."""
+    events = []
+    for number in range(2000):
+        stamp = START + number * SECOND // 100
+        if number % every == 0:
+            refusal = Refusal(source=Source.LOAD, why=Why.NOT_A_NUMBER, arrival=stamp)
+            events.append(refusal)
+        events += [sample(Source.LOAD, -1000.0, stamp), sample(Source.SPEED, 10.0, stamp)]
+    end = stamp + silence
+    events += [sample(Source.LOAD, -1000.0, end), sample(Source.SPEED, 10.0, end)]
+    return after(core, *events)['Inputs']
+
+
+@pytest.mark.parametrize(('every', 'level'), [(1, WARN), (50, WARN), (200, OK)])
+def test_refused_messages_are_told_with_their_share_though_the_last_one_was_good(
+    core, every, level, says
+):
+    status = refused_at_100_hz(core, every)
+    assert said(status) == (level, says('refused' if level is WARN else 'few_refused'))
+    share = float(values_of(status)['Load refused share [-]'])
+    assert share == pytest.approx(1.0 / (every + 1), rel=0.1)
+
+
+def test_a_refusal_is_told_for_ten_seconds_after_the_last_one(core, says):
+    def message(silence):
+        return refused_at_100_hz(core, 2, silence=silence).message
+
+    last = SECOND // 100  # [ns] from the last refusal to the last sample
+    assert message(10 * SECOND - last - 1) == says('refused')
+    assert message(10 * SECOND - last) == 'all inputs arrive'
+
+
+SEVERAL = Link(
+    topic='/loads',
+    type_name='a/msg/B',
+    matched=2,
+    several=True,
+    publishers=(
+        Publisher(type_name='a/msg/B', node='/sim'),
+        Publisher(type_name='', node='/drive'),
+    ),
+)
+
+
+def test_several_publishers_of_one_input_are_named(core, says):
+    links = LINKS | {Source.LOAD: SEVERAL}
+    refusal = Refusal(source=Source.LOAD, why=Why.SEVERAL, arrival=START)
+    found = after(core, LOAD, SPEED, refusal, SPEED, links=links)
+    assert said(found['Inputs']) == (STALE, says('several_refused'))
+    assert found['Lubrication'].level == STALE
+    found = after(core, LOAD, SPEED, links=links)
+    assert said(found['Inputs']) == (OK, says('several_allowed'))
+    unknown = {Source.LOAD: dataclasses.replace(SEVERAL, several=None)}
+    assert said(after(core, LOAD, SPEED, links=unknown)['Inputs']) == (WARN, says('not_known'))
+
+
 @pytest.mark.parametrize(
     ('changes', 'message'),
     [
@@ -296,8 +353,11 @@ SENTENCES = [
 BEGINNINGS = [
     diagnostics.CLOCK_STANDS,
     *reasons._REFUSED.values(),
-    *(text for _, text in reasons._TROUBLES if text),
+    *(cure for _, cure in reasons._TROUBLES if isinstance(cure, str)),
     reasons.slow_reason(1.0, 'x.speed'),
+    'messages are refused',
+    'all inputs arrive; a few',
+    'comes from several publishers',
 ]
 
 

@@ -136,6 +136,35 @@ def test_a_lead_beyond_what_is_allowed_is_refused_and_clears_nothing(node, says)
         assert health.refusal.endswith(says('set_clocks_both'))
 
 
+def test_two_of_three_samples_stamped_ahead_are_never_hidden(node, says):
+    """At times a good sample is the last one: the diagnostics tell of the others all the same."""
+    node.start(**TIMEOUTS, **QUICK, x__max_lag=3600.0)
+    heard, source = Listener(node), Source(node, node.now)
+    source.until(lambda: heard.level == OK, 'the level')
+
+    def clock():
+        return node.now() + (LAG if source.sent % 3 else -SECOND // 1000)
+
+    def go_on():
+        node.stamp = 0  # each stamp is what the clock says
+        source.go_on()
+        return True
+
+    source.clock = clock
+    node.until(lambda: go_on() and source.sent > 300, 'samples')
+    before = len(node.told)
+    node.until(lambda: go_on() and len(node.told) > before + 20, 'diagnostics')
+    levels = {
+        (status.level, status.message)
+        for message in node.told[before + 5 :]
+        for status in message.status
+        if status.name == 'ballscrew_monitor: x: Inputs'
+    }
+    assert levels
+    assert all(level != diagnostics.OK for level, _ in levels)
+    assert (diagnostics.WARN, says('refused')) in levels
+
+
 def test_a_drift_is_told_when_it_has_grown(node, says):
     """The clock of the source runs at a tenth of its rate."""
     node.start(**TIMEOUTS, **(QUICK | {'x__limits__clear_delay': 0.02}))

@@ -62,7 +62,7 @@ class Bench:
         inputs = (float_input(Source.LOAD, 'load'), float_input(Source.SPEED, 'speed'))
         topics = {one.source: one.topic for one in inputs}
         self.axis = types.SimpleNamespace(
-            name='x', inputs=inputs, open_inputs=(), topics=topics, max_future=0
+            name='x', inputs=inputs, open_inputs=(), topics=topics, max_future=0, one_source=True
         )
         self.taken = []
         self.intake = Intake(self.node, [self.axis], self.take)

@@ -17,7 +17,8 @@ STEP = 2.0**-10  # [rad/s] from one speed to the next, which tells them apart
 TIMEOUTS = {'x__speed__timeout': 60.0, 'x__load__timeout': 60.0}
 BURST = 5000
 LOSES = 'speed messages are lost on the way: lower their rate, raise publish_period, or give'
-UNKNOWN = 'speed loss is unknown: let the topic have one publisher that numbers its messages'
+STALE = DiagnosticStatus.STALE
+GOOD = DiagnosticStatus.OK, 'all inputs arrive'
 BEST_EFFORT = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 
 
@@ -93,26 +94,56 @@ def test_each_message_of_a_burst_is_received_or_counted_as_lost(node):
     assert len({one for one in node.levels() if one[1].startswith(LOSES)}) == 1
 
 
-def test_the_loss_of_two_publishers_is_unknown_and_said(node):
+def test_honest_second_publishers_of_other_joints_leave_the_loss_known(node):
     node.start(**TIMEOUTS)
     machine = Machine(node)
     machine.judge()
-    assert (machine.speed.lost_known, machine.speed.lost) == (True, 0)
     second = node.node.create_publisher(JointState, 'joint_states', BEST_EFFORT)
-
-    def is_unknown(publisher):
-        machine.publish(publisher)
-        return machine.has(lambda speed: not speed.lost_known)
-
-    node.until(lambda: is_unknown(second) and is_unknown(machine.speeds), 'the doubt')
-    node.until(lambda: machine.is_said(UNKNOWN), 'the warning')
-    node.node.destroy_publisher(second)
+    node.until(second.get_subscription_count, 'the match')
 
     def is_known():
+        second.publish(JointState(name=['gripper'], velocity=[1.0]))
         machine.publish()
-        return machine.has(lambda speed: speed.lost_known and speed.lost == 0)
+        return machine.has(lambda speed: speed.dropped > 20 and speed.lost_known)
 
-    node.until(is_known, 'the end of the doubt')
+    node.until(is_known, 'the loss')
+    node.until(lambda: is_known() and node.levels()[-1] == GOOD, 'the end of the doubt')
+    node.until(lambda: is_known() and machine.speed.dropped > 100, 'more of both')
+    assert node.levels()[-1] == GOOD
+    assert machine.speed.lost == 0
+
+
+@pytest.mark.parametrize('one_source', [True, False])
+def test_two_publishers_of_one_joint_are_named_and_judged_only_where_that_is_allowed(
+    node, one_source, says
+):
+    soon = {'x__speed__timeout': 0.5, 'x__load__timeout': 60.0}
+    node.start(**soon, x__one_source=str(one_source).lower())
+    machine = Machine(node)
+    machine.judge()
+    second = node.node.create_publisher(JointState, 'joint_states', BEST_EFFORT)
+    node.until(second.get_subscription_count, 'the match')
+    told = STALE, says('several_refused')
+    if not one_source:
+        told = DiagnosticStatus.OK, says('several_allowed')
+
+    def go_on():
+        second.publish(JointState(name=['x_axis'], velocity=[5.0]))
+        machine.publish()
+        return True
+
+    node.until(lambda: go_on() and node.levels()[-1:] == [told], 'the sentence')
+    judged, before = machine.states[-1].judged, machine.sent
+    node.until(lambda: go_on() and machine.sent > before + 100 and node.levels()[-1] == told)
+    node.until(lambda: machine.speed.received > before, 'the last samples')
+    assert (machine.states[-1].judged == judged) is one_source
+    node.node.destroy_publisher(second)
+
+    def is_judged():
+        machine.publish()
+        return machine.states[-1].judged > judged and machine.speed.state == machine.speed.STATE_OK
+
+    node.until(is_judged, 'the judgement of the one that is left')
 
 
 @pytest.mark.parametrize('count', [1, 50])

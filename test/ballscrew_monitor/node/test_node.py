@@ -24,11 +24,13 @@ from ballscrew_monitor.node.kept_axes import LOOK, PERIOD
 from ballscrew_monitor.node.node import BallscrewMonitor
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.settings.axis import Axis
+from ballscrew_monitor.settings.qos import DEPTH
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, PointResult
 from ballscrew_msgs.srv import EvaluateOperatingPoint, ShelveAlarm
 from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
-from rcl_interfaces.srv import DescribeParameters, ListParameters
+from rcl_interfaces.msg import Parameter as ParameterMessage
+from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
 import rclpy
 from rclpy.clock import ClockType
 from rclpy.parameter import Parameter
@@ -253,6 +255,65 @@ def test_evaluate_answers_for_many_points_at_once(node):
         assert not answer.success
         assert message in answer.message
         assert answer.results == []
+
+
+def test_what_arrives_while_many_points_are_evaluated_is_taken(monkeypatch, wait_for):
+    """With each point a sample comes; the queue of an input holds far fewer than there are."""
+    with started(state_dir='') as node:
+        machine = rclpy.create_node('machine', context=node.context)
+        speeds = machine.create_publisher(JointState, 'joint_states', 1000)
+        monitor = node._axis_publishers['x'].axis.monitor
+        wait_for(speeds.get_subscription_count, 'the match')
+        reader = node._intake.topics['/joint_states'].subscription
+        wait_for(reader.get_publisher_count, 'the match')
+
+        def evaluated(self, point):
+            speeds.publish(JointState(name=['x_axis'], velocity=[FAST]))
+            return PointResult()
+
+        monkeypatch.setattr(AxisPublisher, '_evaluate', evaluated)
+        request = EvaluateOperatingPoint.Request(axis='x', points=[OperatingPoint()] * 10 * DEPTH)
+        response = node._on_evaluate(request, EvaluateOperatingPoint.Response())
+        assert len(response.results) == 10 * DEPTH
+
+        def last():
+            status = monitor.input_status(node.get_clock().now().nanoseconds)[0]
+            assert status.lost in (0, None)
+            return status.received == 10 * DEPTH
+
+        wait_for(last, 'the last sample', meanwhile=node._intake.drain)
+        machine.destroy_node()
+
+
+def test_the_clock_is_not_changed_while_the_node_is_configured(node, says):
+    node.start()
+    node.until(lambda: node.lifecycle() == 'active')
+    answer = node.set_parameters(use_sim_time=True)
+    assert (answer.successful, answer.reason) == (False, says('use_sim_time'))
+    node.until(lambda: node.levels(), 'diagnostics that still come')
+    assert node.transition('deactivate')
+    assert node.transition('cleanup')
+    assert node.set_parameters(use_sim_time=True).successful
+
+
+def test_a_node_takes_its_own_dump(node):
+    """As `ros2 param load` does: each parameter alone, those that never change among them."""
+    node.start(axes="['x','y']")
+    node.until(lambda: node.lifecycle() == 'active')
+    names = node.call(ListParameters, 'list_parameters').result.names
+    values = node.call(GetParameters, 'get_parameters', names=names).values
+    assert {'use_sim_time', 'axes', 'x.surface', 'y.limits.rcs'} <= set(names)
+    dump = [
+        ParameterMessage(name=name, value=value) for name, value in zip(names, values, strict=True)
+    ]
+    results = node.call(SetParameters, 'set_parameters', parameters=dump).results
+    assert [one.reason for one in results] == [''] * len(names)
+    assert all(one.successful for one in results)
+    dump[names.index('axes')].value.string_array_value = ['x']
+    (result,) = node.call(
+        SetParameters, 'set_parameters', parameters=[dump[names.index('axes')]]
+    ).results
+    assert not result.successful
 
 
 def test_several_axes_share_one_topic(node):

@@ -1,43 +1,15 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A topic: its losses by publication numbers, its queue while publishers come and go."""
+"""A topic: its queue while publishers come and go."""
 
 import contextlib
 import types
 
-from ballscrew_monitor.node.topic import _count, LossCounter, Topic
-from hypothesis import given
-from hypothesis import strategies as st
+from ballscrew_monitor.node.sources import LossCounter
+from ballscrew_monitor.node.topic import _count, Topic
 import pytest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
-
-
-@pytest.mark.parametrize(
-    ('numbers', 'losses'),
-    [((5, 6, 9, 10, 20), [0, 0, 2, 0, 9]), ((7, 8, 1, 2, 4), [0, 0, 0, 0, 1])],
-)
-def test_gaps_are_counted_but_none_before_the_first_message_of_a_publisher(numbers, losses):
-    assert list(map(LossCounter().take, numbers)) == losses
-
-
-def test_with_two_publishers_or_without_numbers_nothing_is_known():
-    counter = LossCounter()
-    assert counter.take(3) == 0
-    counter.match(2)
-    assert [counter.take(number) for number in (1, 4, 2)] == [None] * 3
-    counter.match(1)
-    assert [counter.take(number) for number in (9, 11)] == [0, 1]
-    assert counter.take(0) is None
-    assert counter.take(50) == 0
-
-
-@given(st.lists(st.booleans(), min_size=1))
-def test_every_message_left_out_between_two_that_arrive_is_counted(arrives):
-    counter = LossCounter()
-    numbers = [number for number, good in enumerate(arrives, start=1) if good]
-    lost = sum(counter.take(number) for number in numbers)
-    assert lost == (numbers[-1] - numbers[0] + 1 - len(numbers) if numbers else 0)
 
 
 @pytest.mark.parametrize(('before', 'after'), [(2, 1), (1, 0), (0, 1), (1, 2)])

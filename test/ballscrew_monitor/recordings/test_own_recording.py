@@ -10,11 +10,13 @@ import types
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.full_point import SolvedAt
+from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.judge import dump
 from ballscrew_monitor.judge.records import MEMORY_VERSION
 from ballscrew_monitor.node import journal
 from ballscrew_monitor.node.intake import _events, ordered
 from ballscrew_monitor.node.journal import Journal
+from ballscrew_monitor.node.sources import Reading
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.recordings.axis_run import TimedState
 from ballscrew_monitor.recordings.bag import Bag
@@ -81,7 +83,7 @@ class SmallNode:
         self.process = KeptFrames(folder, settings)
         self.journal = Journal('/mill/ballscrew_monitor/journal', lambda: self.process)
         self.said = []
-        self.now = now
+        self.now, self.reading = now, Reading()
         self.describe('begin')
 
     def describe(self, because, names=('x', 'z')):
@@ -104,8 +106,10 @@ class SmallNode:
             )
             message = deserialize_message(data, type(message))
             batch.append((Arrival(self.now + 5, message, 0, topic, data), self.now, lost))
+        self.journal.read(self.reading, self.now)
         self.journal.hear(batch)
-        for axis, event in ordered([event for one in batch for event in _events(*one)]):
+        events = [event for one in batch for event in _events(*one, self.reading)]
+        for axis, event in ordered(events):
             self.publish(axis, axis.monitor.update(event))
 
     def tick(self):
@@ -192,6 +196,22 @@ def test_every_state_comes_again_bit_for_bit_and_is_proven(tmp_path):
     assert len(states) > 1000
     assert sum('event=Event' in state for state in states) == 10
     assert said.endswith('agrees with all 8 notes of the node')
+
+
+@pytest.mark.parametrize('one_source', [True, False])
+def test_what_is_refused_of_several_publishers_and_how_far_stamps_may_lead_is_followed(
+    tmp_path, one_source
+):
+    node = SmallNode(tmp_path, **{'x.one_source': one_source})
+    several = frozenset({('x', Source.SPEED), ('z', Source.LOAD)})
+    for seed, reading in enumerate(
+        (Reading(), Reading(ahead=SECOND // 2), Reading(SECOND, several), Reading())
+    ):
+        node.reading = reading
+        live(node, seconds=3, seed=seed, begin=node.now)
+        stamp = node.now + SECOND // 4  # allowed with a lead alone
+        node.hear(joints(stamp, 50.0, 60.0), force(stamp, 800.0))
+    assert_given_again(node, tmp_path)
 
 
 def test_a_recording_begins_when_simulated_time_does(tmp_path):

@@ -3,6 +3,7 @@
 """The player in its own process, over the real middleware."""
 
 from pathlib import Path
+import re
 import signal
 import subprocess
 import sys
@@ -18,12 +19,14 @@ from mcap.writer import Writer
 import pytest
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64, String
 
 ROOT = Path(__file__).resolve().parents[3]
+PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'
 DEADLINE = 600.0  # [s] which only ends a hang
 QOS = QoSProfile(depth=2000, reliability=QoSReliabilityPolicy.RELIABLE)
 CLOCK_QOS = QoSProfile(depth=2000, reliability=QoSReliabilityPolicy.BEST_EFFORT)
@@ -203,6 +206,7 @@ def foreign_bag(short_bag, tmp_path):
     """Return an MCAP file with what any machine records: other topics, and types of its own."""
     path, bag = tmp_path / 'foreign.mcap', Bag(short_bag)
     kinds = {**bag.types, '/drive': 'acme_msgs/msg/Drive', '/note': 'std_msgs/msg/String'}
+    kinds |= dict.fromkeys(('/achse-1', 'relative'), 'std_msgs/msg/Float64')
     with path.open('wb') as stream:
         writer = Writer(stream)
         writer.start()
@@ -215,7 +219,7 @@ def foreign_bag(short_bag, tmp_path):
         for message in bag.messages():
             times = {'log_time': message.log_time, 'publish_time': message.publish_time}
             writer.add_message(channels[message.topic], data=message.data, **times)
-        for topic in ('/drive', '/note'):
+        for topic in ('/drive', '/note', '/achse-1', 'relative'):
             writer.add_message(channels[topic], data=b'\0\1\0\0' + bytes(8), **times)
         writer.finish()
     return path
@@ -229,7 +233,7 @@ def test_inputs_are_played_unless_told_otherwise(foreign_bag, capsys, refused, s
     assert chosen(bag, Choice(params=params, topics=['note', '/note'])) == ['/note']
     every = chosen(bag, Choice(params=params, every=True))
     assert set(every) == set(bag.topics)
-    assert set(playable(bag, every)) == set(bag.topics) - {'/drive'}
+    assert set(playable(bag, every)) == set(bag.topics) - {'/drive', '/achse-1'}
     assert capsys.readouterr().out == says('played_drive_message')
     refused('topic_can_played', playable, bag, ['/drive'])
 
@@ -251,6 +255,53 @@ def test_a_bag_of_any_machine_is_played(domain, listener, foreign_bag):
         out, err = player.communicate(timeout=DEADLINE)
     assert (player.returncode, err) == (0, '')
     assert out.startswith('not played: /drive, ')
+
+
+@pytest.mark.parametrize(
+    'durability', [QoSDurabilityPolicy.VOLATILE, QoSDurabilityPolicy.TRANSIENT_LOCAL]
+)
+def test_all_that_can_be_sent_of_it_reaches_whoever_listens(
+    domain, listener, foreign_bag, durability
+):
+    heard, asked = {'note': [], 'relative': []}, QoSProfile(depth=10, durability=durability)
+    for topic, found in heard.items():
+        kind = String if topic == 'note' else Float64
+        listener.node.create_subscription(kind, topic, found.append, asked, raw=True)
+    bag, sent = Bag(foreign_bag), set(listener.received)
+    with play(domain, foreign_bag, '--rate', 20, '--all') as player:
+        listener.until(
+            lambda: (
+                all(heard.values())
+                and all(len(listener.received[one]) == bag.topics[one].count for one in sent)
+            ),
+            'every message',
+        )
+        out, err = player.communicate(timeout=DEADLINE)
+    assert (player.returncode, err) == (0, '')
+    assert out.count('not played: ') == 2
+
+
+def test_a_rate_that_the_node_cannot_follow_is_a_failure_with_the_count(node, nominal_bag, says):
+    """A node that gets no processor time loses what does not fit into its queues."""
+    states = node.states()
+    node.start('--params-file', PARAMS, use_sim_time='true')
+    with play(node.domain, nominal_bag, '--rate', 10, '--params', PARAMS) as player:
+        node.until(lambda: states and states[-1].inputs[0].received, 'a sample')
+        node.process.send_signal(signal.SIGSTOP)
+        assert ' messages in ' in player.stdout.readline()  # all are sent
+        node.process.send_signal(signal.SIGCONT)
+        _, err = player.communicate(timeout=DEADLINE)
+    assert player.returncode == 1, err
+    taken, count = map(int, re.findall(r'took (\d+) of (\d+)', err)[0])
+    assert err == says('did_not_follow', taken=taken, count=count)
+    assert 0 < taken < count
+
+
+def test_a_rate_that_the_node_follows_is_none(node, short_bag, wait_for):
+    node.start('--params-file', PARAMS, use_sim_time='true')
+    with play(node.domain, short_bag, '--rate', 0.5, '--params', PARAMS) as player:
+        _, err = player.communicate(timeout=DEADLINE)
+    assert (player.returncode, err) == (0, '')
 
 
 def test_a_loop_goes_on_until_it_is_interrupted(domain, listener, short_bag):

@@ -1,0 +1,125 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Simulated time in one process: ticks and messages go by the same clock, however fast it is."""
+
+import contextlib
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.cycle.domain import free_domain
+from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.node.node import BallscrewMonitor
+from ballscrew_monitor.settings.qos import started_node
+from geometry_msgs.msg import WrenchStamped
+import pytest
+import rclpy
+from rclpy.parameter import Parameter
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
+
+BEGIN = 1000 * SECOND
+DISPLAY = 40.0  # [Hz] of /clock on the wall, as `ros2 bag play --clock` does
+RATE = 100.0  # [Hz] of the samples in time of the bag
+
+
+class Bench:
+    """A node on simulated time that is not spun, and a machine that plays to it."""
+
+    def __init__(self, node, machine, wait_for):
+        self.node, self.wait_for = node, wait_for
+        self._clock = machine.create_publisher(Clock, '/clock', 100)
+        self._speeds = machine.create_publisher(JointState, 'joint_states', 1000)
+        self._loads = machine.create_publisher(WrenchStamped, 'axial_load', 1000)
+        self.sent = 0
+        publishers = (self._clock, self._speeds, self._loads)
+        wait_for(
+            lambda: all(one.get_subscription_count() for one in publishers) and self._matched(),
+            'the match',
+            meanwhile=node._intake.discover,
+        )
+
+    def _matched(self):
+        topics = self.node._intake._all
+        return all(topic.subscription.get_publisher_count() == 1 for topic in topics)
+
+    @property
+    def monitor(self):
+        return self.node._axis_publishers['x'].axis.monitor
+
+    def status(self):
+        return self.monitor.input_status(self.node._intake.now)[0]
+
+    def show(self, now):
+        shown = Clock()
+        shown.clock.sec, shown.clock.nanosec = divmod(now, SECOND)
+        self._clock.publish(shown)
+        self._until(lambda: self.node._intake.now == now)
+
+    def send(self, stamp, speed=100.0):
+        load, joints = WrenchStamped(), JointState(name=['x_axis'], velocity=[speed])
+        load.wrench.force.x = -1000.0
+        for message, publisher in ((load, self._loads), (joints, self._speeds)):
+            message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
+            publisher.publish(message)
+        self.sent += 1
+        self._until(lambda: self.status().received == self.sent)
+
+    def _until(self, condition):
+        self.wait_for(condition, 'what was sent', meanwhile=self.node._intake.drain)
+
+
+@pytest.fixture(name='bench')
+def make_bench(wait_for):
+    with free_domain() as domain, contextlib.ExitStack() as stack:
+        context = rclpy.Context()
+        rclpy.init(context=context, domain_id=domain)
+        stack.callback(rclpy.shutdown, context=context)
+        values = {'use_sim_time': True, 'state_dir': ''}
+        overrides = [Parameter(name, value=value) for name, value in values.items()]
+        node = BallscrewMonitor(context=context, parameter_overrides=overrides)
+        stack.callback(node.destroy_node)
+        node.start()
+        stack.callback(node.finish)
+        machine = stack.enter_context(started_node('machine', domain))
+        yield Bench(node, machine, wait_for)
+
+
+def play(bench, rate, begin, seconds):
+    """Play at a rate: stamps go on between two times of the clock."""
+    step = round(rate / DISPLAY * SECOND)
+    for number in range(round(seconds * SECOND / step)):
+        now = begin + number * step
+        bench.show(now)
+        for stamp in range(now, now + step, round(SECOND / RATE)):
+            bench.send(stamp)
+    return now + step
+
+
+@pytest.mark.parametrize('rate', [1.0, 5.0, 10.0])
+def test_stamps_between_two_times_of_a_fast_clock_are_taken(bench, rate):
+    play(bench, rate, BEGIN, 5.0)
+    status = bench.status()
+    assert (status.dropped, status.refusing) == (0, ())
+    assert status.received == bench.sent
+
+
+def test_on_a_slow_clock_again_a_lead_is_refused_again(bench):
+    now = play(bench, 10.0, BEGIN, 5.0)
+    now = play(bench, 0.4, now, 1.0)
+    assert bench.status().dropped == 0
+    bench.send(now + SECOND // 4)
+    assert bench.status().dropped == 1
+
+
+def test_a_tick_is_by_the_clock_by_which_messages_arrive(bench, monkeypatch):
+    """The executor has not yet shown the time to rclpy, whose clock stands at zero."""
+    ticks = []
+    monkeypatch.setattr(Monitor, 'tick', lambda self, now: ticks.append(now))
+    bench.show(BEGIN)
+    bench.send(BEGIN)
+    bench.node._on_tick()
+    bench.show(BEGIN + SECOND)
+    bench.node._on_tick()
+    bench.node._on_tick()
+    assert ticks == [BEGIN, BEGIN + SECOND]
+    assert bench.monitor.memory.arrival[Source.SPEED] == BEGIN
