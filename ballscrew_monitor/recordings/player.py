@@ -35,7 +35,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from rclpy.serialization import deserialize_message, serialize_message
 from rosgraph_msgs.msg import Clock
-from surrogate.files import InputError
+from surrogate.files import InputError, printable
 
 CLOCK = '/clock'
 LAST = 2**31 * SECOND  # [ns] first stamp that a message cannot hold
@@ -240,7 +240,7 @@ def chosen(bag: Bag, choice: Choice) -> list[str]:
             f'{", ".join(sorted(bag.topics))}: give --topics, --all or another --params'
         )
     if missing:
-        print(f'the bag holds no {", ".join(missing)}', flush=True)
+        print(printable(f'the bag holds no {", ".join(missing)}'), flush=True)
     return [topic for topic in dict.fromkeys(wanted) if topic in bag.topics]
 
 
@@ -249,7 +249,7 @@ def playable(bag: Bag, topics: Sequence[str]) -> list[str]:
     reasons = {topic: _problem(bag, topic) for topic in topics}
     for topic, reason in reasons.items():
         if reason:
-            print(f'not played: {topic}, {reason}', flush=True)
+            print(printable(f'not played: {topic}, {reason}'), flush=True)
     found = [topic for topic, reason in reasons.items() if not reason]
     if not found:
         raise InputError(f'bag {bag.path}: no topic can be played')

@@ -18,7 +18,7 @@ from ballscrew_monitor.report.health_history import AxisHistory, healths, Histor
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.logs import find_logs, map_for
 from ballscrew_monitor.report.parameters import parameters_for
-from surrogate.files import InputError, json_text, replace_file
+from surrogate.files import InputError, json_text, printable, replace_file
 from surrogate.progress import Progress
 from surrogate.surface import SurfaceError
 from surrogate.units import MINUTE
@@ -33,7 +33,7 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
         found = dict(_healths(list(_histories(logs, args, nominal)), args))
         for last in (courses[-1] for courses in found.values()):
-            print('\n'.join(lines_of(last)))
+            print(printable('\n'.join(lines_of(last))))
         if args.out is not None:
             _write(args.out, found)
     if args.json:

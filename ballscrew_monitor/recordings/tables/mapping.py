@@ -186,7 +186,7 @@ class _Part:
         name, units = part.text('column'), UNITS[kind]
         unit = part.take('unit')
         numbers = [part.take(key, default) for key, default in (('scale', 1.0), ('offset', 0.0))]
-        if name and unit not in units:
+        if name and not (isinstance(unit, str) and unit in units):
             found = 'missing' if unit is None else repr(unit)
             raise InputError(f'{part._prefix}.unit is {found}, allowed are {", ".join(units)}')
         if not all(map(_is_number, numbers)) or not numbers[0]:
