@@ -188,13 +188,18 @@ def _check_columns(path: Path, count: int) -> None:
 
 def _check_lines(path: Path) -> None:
     """Raise InputError if a line is longer than allowed, and so a cell or the header."""
+    length = 0  # of the line so far [bytes]
     with path.open('rb') as stream:
-        while block := stream.read(limits.LINE):
-            if len(block) == limits.LINE and b'\n' not in block:
+        while block := stream.read(limits.MEGA):
+            first, last = block.find(b'\n'), block.rfind(b'\n')
+            length += len(block) if first < 0 else first
+            if length > limits.LINE:
                 raise InputError(
                     f'log {path} has a line of more than {limits.LINE // limits.MEGA} MB, a table '
                     'has shorter ones'
                 )
+            if first >= 0:
+                length = len(block) - last - 1
 
 
 def _header(path: Path) -> str:
