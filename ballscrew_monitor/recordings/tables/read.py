@@ -187,11 +187,11 @@ def _check_columns(path: Path, count: int) -> None:
 
 
 def _check_lines(path: Path) -> None:
-    """Raise InputError if a line is longer than allowed, and so a cell or the header."""
-    length = 0  # of the line so far [bytes]
+    """Raise InputError if a line is longer than allowed, those within quotes counted as one."""
+    length, quoted = 0, False  # of the line so far [bytes]
     with path.open('rb') as stream:
         while block := stream.read(limits.MEGA):
-            first, last = block.find(b'\n'), block.rfind(b'\n')
+            first, last = _line_ends(block, quoted)
             length += len(block) if first < 0 else first
             if length > limits.LINE:
                 raise InputError(
@@ -200,6 +200,17 @@ def _check_lines(path: Path) -> None:
                 )
             if first >= 0:
                 length = len(block) - last - 1
+            quoted ^= block.count(b'"') % 2 == 1
+
+
+def _line_ends(block: bytes, quoted: bool) -> tuple[int, int]:
+    """Return where the first and the last line end that do so outside of quotes, -1 if none."""
+    if b'"' not in block:
+        return (-1, -1) if quoted else (block.find(b'\n'), block.rfind(b'\n'))
+    letters = np.frombuffer(block, np.uint8)
+    inside = (np.cumsum(letters == ord('"')) + quoted) % 2
+    ends = np.flatnonzero((letters == ord('\n')) & (inside == 0))
+    return (int(ends[0]), int(ends[-1])) if len(ends) else (-1, -1)
 
 
 def _header(path: Path) -> str:

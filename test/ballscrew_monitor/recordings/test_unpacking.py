@@ -41,6 +41,6 @@ def test_a_file_comes_to_so_many_times_its_size_and_leaves_half_of_the_disk(
     usage = shutil.disk_usage(folder)._replace(free=1_999_998)
     monkeypatch.setattr(shutil, 'disk_usage', lambda _: usage)
     refused('disk', unpack_file, file, folder, salvage=True)
-    file.write_bytes(two[:4] + bytes(20))
+    file.write_bytes(two[:4] + b'\xff' * 20)
     monkeypatch.undo()
     refused('cut', unpack_file, file, folder, salvage=False)
