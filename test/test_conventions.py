@@ -70,6 +70,7 @@ THEMES = {
     'ballscrew_monitor/recordings/test_compatibility.py',
     'ballscrew_monitor/report/test_memory.py',
     'ballscrew_monitor/test_hostile.py',
+    'ballscrew_monitor/test_mutations.py',
     'ballscrew_monitor/test_signals.py',
     'config/test_deployment.py',
     'config/test_parameter_files.py',
