@@ -12,8 +12,11 @@ import json
 import math
 import os
 from pathlib import Path
+import shlex
 import signal
 import sys
+import tempfile
+import traceback
 from typing import Any
 
 from ballscrew_monitor import options
@@ -21,11 +24,11 @@ from ballscrew_monitor.core.interrupts import FAILED, leave_to_python, raise_sig
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.settings.middleware import check_middleware
 from surrogate.cli import add_commands, Parser
-from surrogate.files import InputError
+from surrogate.files import InputError, printable
 from surrogate.surface import SurfaceError
 from surrogate.units import RPM
 
-BAD_INPUT, INTERRUPTED = 2, SIGNALLED + signal.SIGINT
+BAD_INPUT, BUG, INTERRUPTED = 2, 70, SIGNALLED + signal.SIGINT
 NODE = 'ballscrew_monitor'  # the default name of the node
 # Facts of the event log that are sentences or words: the first that is not empty is printed.
 TOLD = ('text', 'ending', 'advice', 'reason', 'until', 'result', 'sha256')
@@ -46,6 +49,25 @@ NEEDED = {
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line; return the exit code."""
     args = _parser().parse_args(arguments)
+    try:
+        return _ended(args)
+    except Exception:  # noqa: BLE001 whatever it is, a person reads one sentence
+        return _failed()
+
+
+def _failed() -> int:
+    """Write what went wrong to a file, and say where it is."""
+    text = f'{shlex.join(sys.argv)}\nPython {sys.version}\n{traceback.format_exc()}'
+    number, path = tempfile.mkstemp(prefix='ballscrew_failure_', suffix='.txt')
+    with os.fdopen(number, 'w', encoding='utf-8', errors='backslashreplace') as file:
+        file.write(text)
+    what = text.strip().splitlines()[-1][:300]
+    say(f'this is a fault of the program ({what}): please report it with the file {path}')
+    return BUG
+
+
+def _ended(args: argparse.Namespace) -> int:
+    """Run a command; return the exit code that belongs to how it ended."""
     try:
         if args.handler in WITH_ROS:
             # It is loaded with rclpy, and what does not suit it ends the process without a word.
@@ -186,7 +208,8 @@ def _events(args: argparse.Namespace) -> int:
         event = f'event {record["event"]}' if 'event' in record else ''
         told = next((str(record[name]) for name in TOLD if record.get(name)), '')
         words = ': '.join(filter(None, (event, told)))
-        print(f'{entry.time}  {entry.axis or "-":<8}  {entry.kind:<14}  {words}'.rstrip())
+        line = f'{entry.time}  {entry.axis or "-":<8}  {entry.kind:<14}  {words}'
+        print(printable(line.rstrip()))
     return 0
 
 

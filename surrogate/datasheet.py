@@ -15,7 +15,8 @@ import re
 from typing import Any, ClassVar, TypeVar
 
 from surrogate.files import InputError
-import yaml
+from surrogate.limits import read_text
+from surrogate.plain_yaml import plain_values
 
 DATA = Path(__file__).parent / 'data'
 
@@ -117,25 +118,11 @@ class Checked:
                     )
 
 
-class _StrictLoader(yaml.SafeLoader):
-    """YAML in which a key that stands twice is a mistake and not an overwriting."""
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        """Return the mapping; raises YAMLError for a key that stands twice."""
-        mapping = super().construct_mapping(node, deep)
-        if len(mapping) < len(node.value):
-            keys = [key.value for key, _ in node.value]
-            twice = next(key for key in keys if keys.count(key) > 1)
-            raise yaml.YAMLError(f'key {twice} stands twice')
-        return mapping
-
-
 def read_yaml(path: Path) -> Any:
     """Return the plain values of a YAML file; raises InputError, also for a key twice."""
     try:
-        # A safe loader: it makes plain values only.
-        return yaml.load(path.read_text(encoding='utf-8'), _StrictLoader)
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        return plain_values(read_text(path), strict=True)
+    except (OSError, UnicodeDecodeError, InputError) as error:
         reason = ' '.join(str(error).split())
         raise InputError(f'{path}: cannot be read as YAML, {reason}') from None
 

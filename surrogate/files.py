@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Files for every folder: bad input in a sentence, complete files, strict JSON."""
+"""Files for every folder: bad input in a sentence, complete files, strict JSON, shown texts."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -10,6 +10,10 @@ import os
 from pathlib import Path
 import tempfile
 from typing import Any
+
+CONTROLS = {
+    code: f'\\x{code:02x}' for code in (*range(32), *range(127, 160)) if chr(code) not in '\n\t'
+}
 
 
 class InputError(ValueError):
@@ -47,6 +51,11 @@ def replace_file(path: str | Path, content: bytes) -> None:
     """Write `content` to `path` as `new_file` does."""
     with new_file(path) as temporary:
         temporary.write_bytes(content)
+
+
+def printable(text: str) -> str:
+    """Return a text whose control characters do nothing to a terminal; lines and tabs stay."""
+    return text.translate(CONTROLS)
 
 
 def to_json(record: Any) -> Any:

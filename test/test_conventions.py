@@ -69,6 +69,8 @@ THEMES = {
     'ballscrew_monitor/recordings/test_black_box.py',
     'ballscrew_monitor/recordings/test_compatibility.py',
     'ballscrew_monitor/report/test_memory.py',
+    'ballscrew_monitor/test_hostile.py',
+    'ballscrew_monitor/test_mutations.py',
     'ballscrew_monitor/test_signals.py',
     'config/test_deployment.py',
     'config/test_parameter_files.py',

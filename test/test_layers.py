@@ -22,6 +22,8 @@ TASKS = {'surrogate.tasks.pool', 'surrogate.tasks.worker', 'surrogate.tasks.work
 LOOKUP = {
     'surrogate',
     'surrogate.files',
+    'surrogate.limits',
+    'surrogate.plain_yaml',
     'surrogate.surface',
     'surrogate.surface.compiled',
     'surrogate.surface.records',
@@ -40,6 +42,8 @@ FLOORS = (
 """Folders of the online half, the lowest first; those beside each other do not meet."""
 OFFLINE_FLOORS = (
     ('units', 'files', 'progress'),
+    ('limits',),
+    ('plain_yaml',),
     ('datasheet', 'plotting'),
     ('raceway',),
     ('parameters', 'surface'),
@@ -54,7 +58,12 @@ OFFLINE_FLOORS = (
 )
 """Folders and single modules of the offline half, the lowest first."""
 STANDS_ON = {
-    'surface': {'surrogate.files', 'surrogate.formulas.torque', 'surrogate.units'},
+    'surface': {
+        'surrogate.files',
+        'surrogate.formulas.torque',
+        'surrogate.limits',
+        'surrogate.units',
+    },
     'tasks': {'surrogate.files', 'surrogate.progress', 'surrogate.surface.file'},
 }
 """Folders that import these modules alone: what the node loads, and what knows no physics."""
@@ -186,7 +195,7 @@ def test_what_must_start_quickly_loads_nothing_heavy(module, heavy):
 def test_node_loads_of_surrogate_what_the_lookup_needs():
     """The process that watches the machine holds nothing of the solver, plots or recordings."""
     laws = 'surrogate.formulas.grades, surrogate.formulas.life'
-    needed = loaded_by(f'import surrogate.surface, {laws}')
+    needed = loaded_by(f'import surrogate.plain_yaml, surrogate.surface, {laws}')
     loaded = loaded_by('import ballscrew_monitor.node.run')
     assert not {name for name in loaded - needed if name.split('.')[0] == 'surrogate'}
     assert not loaded & {'matplotlib', 'mcap', 'scipy'}

@@ -19,7 +19,7 @@ from ballscrew_monitor.recordings.log_facts import LogFacts, parameters_text, PR
 from ballscrew_monitor.recordings.replay import speed_messages
 from ballscrew_monitor.recordings.summary import summary_of
 from ballscrew_monitor.recordings.words import counted, say
-from ballscrew_monitor.report.logs import JUDGED, PAGE, PICTURE
+from ballscrew_monitor.report.logs import check_output, JUDGED, PAGE, PICTURE
 from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import Axis, build_axis
@@ -63,6 +63,7 @@ def plan(bag: Path, params: Path, out: Path, rate: float) -> Plan:
             raise ModuleNotFoundError(f'no report without {name}', name=name)
     if not 0.0 < rate <= 1000.0:
         raise InputError(f'rate is {rate:g}, allowed is above 0 to 1000')
+    check_output(out)
     opened = Bag(bag, salvage=True)
     values = with_types(parameters.read_file(params), opened.types)
     axes = [build_axis(name, values) for name in values['axes']]

@@ -11,6 +11,7 @@ from typing import Any
 
 from ballscrew_monitor.core.memory import AxisRecord, LARGEST, read_record
 from ballscrew_monitor.node.state_records import Corrections, Entry, EVENT, Kind, Record, Records
+from surrogate.limits import read_json, read_text
 
 NAMES = re.compile(r'([^.].*)\.(memory|corrections)\.json|events(\.[0-9]+)?\.jsonl')
 PLACE = 'before_sqlite3'
@@ -61,7 +62,7 @@ def _files(folder: Path) -> list[tuple[Path, str, str]]:
 
 
 def _content(path: Path) -> Any:
-    content = json.loads(path.read_text(encoding='utf-8'))
+    content = read_json(read_text(path))
     if content['version'] != VERSION:
         raise ValueError(f'version {content["version"]}, known is {VERSION}')
     return content
@@ -85,7 +86,7 @@ def _entries(folder: Path, records: Records) -> Iterator[Entry]:
     for path, _, kind in _files(folder):
         for line in path.read_bytes().splitlines() if kind == 'events' else ():
             with contextlib.suppress(*BAD):
-                facts = json.loads(line)
+                facts = read_json(line)
                 time, stamp, axis, what = (facts.pop(name) for name in Entry._fields[:-1])
                 if type(stamp) is int and 0 <= stamp <= LARGEST:
                     entry = Entry(

@@ -22,7 +22,7 @@ from rclpy.exceptions import ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 from surrogate.files import InputError
-import yaml
+from surrogate.plain_yaml import plain_values
 
 BAD_INPUT = 2
 NAME = 'localhost'
@@ -121,8 +121,8 @@ def _of_rule(rule: str, node: str) -> dict[str, Any]:
     if name != NAME or (target and target != node.rpartition('/')[2]):
         return {}
     try:
-        return {NAME: yaml.safe_load(text) is True}
-    except yaml.YAMLError:
+        return {NAME: plain_values(text) is True}
+    except InputError:
         return {}
 
 

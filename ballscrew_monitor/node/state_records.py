@@ -14,6 +14,7 @@ from ballscrew_monitor.core.full_point import KeptSolve, Solve
 from ballscrew_monitor.core.memory import AxisRecord, Memory, record_of
 from ballscrew_monitor.core.state import Event, TIMES, Totals
 from surrogate.files import to_json
+from surrogate.limits import read_json
 
 EVENT = tuple('event start_ns worst_value cause severity value limit unit text ending'.split())
 """What an entry says of an event, by the names of its record."""
@@ -59,7 +60,7 @@ class Entry(NamedTuple):
     def record(self) -> dict[str, Any]:
         """Return the entry as one record."""
         record = self._asdict()
-        return record | json.loads(record.pop('facts'))
+        return record | read_json(record.pop('facts'))
 
 
 class Corrections(NamedTuple):
@@ -93,7 +94,7 @@ class Corrections(NamedTuple):
                 **{name: float(one[key]) for name, key in SOLVE.items() if name != 'solved'},
                 solved={name: float(value) for name, value in one['solved'].items()},
             )
-            for one in json.loads(self.solves)
+            for one in read_json(self.solves)
         ]
 
 

@@ -18,7 +18,8 @@ import shutil
 import tempfile
 import weakref
 
-from ballscrew_monitor.recordings.bag_files import kind_of, manifest, OWN, unpack, unpacked, ZSTD
+from ballscrew_monitor.recordings.bag_files import kind_of, manifest, OWN, ZSTD
+from ballscrew_monitor.recordings.mcap_records import read_metadata
 from ballscrew_monitor.recordings.sqlite_storage import SqliteStorage
 from ballscrew_monitor.recordings.storages import (
     damage_is_input,
@@ -27,9 +28,8 @@ from ballscrew_monitor.recordings.storages import (
     Storage,
     TopicInfo,
 )
-from mcap.reader import make_reader
+from ballscrew_monitor.recordings.unpacking import unpack_file, Unpackable, unpacked
 from surrogate.files import InputError
-from zstandard import ZstdError
 
 
 @dataclasses.dataclass(kw_only=True, slots=True)
@@ -149,7 +149,7 @@ class Bag:
         with damage_is_input(file):
             kind = kind_of(file)
             if kind == 'zstd':
-                file = unpack(file, self._scratch(), salvage=self._salvage)
+                file = unpack_file(file, self._scratch(), salvage=self._salvage)
                 kind = kind_of(file)
         if kind == 'rosbag1':
             raise InputError(f'bag {file} is of ROS 1, it must be converted to rosbag2')
@@ -180,7 +180,7 @@ class Bag:
         found: dict[str, str] = {}
         try:
             with damage_is_input(first.file), first.file.open('rb') as stream:
-                for record in make_reader(stream).iter_metadata():
+                for record in read_metadata(stream):
                     found |= record.metadata if record.name == OWN else {}
         except InputError as error:
             if not self._salvage:
@@ -190,12 +190,12 @@ class Bag:
 
 
 def _whole(message: Message) -> Message:
-    """Return a message, unpacked if it was packed alone; damage stays, and does not decode."""
-    if message.data[:4] != ZSTD:
+    """Return a message, unpacked if it was packed alone; what cannot be does not decode."""
+    if message.data[:4] != ZSTD:  # no serialised message begins so: its first byte is zero
         return message
     try:
         return dataclasses.replace(message, data=unpacked(message.data))
-    except ZstdError:
+    except Unpackable:
         return message
 
 

@@ -7,8 +7,8 @@ from pathlib import Path, PurePath
 import re
 
 from surrogate.files import InputError
-import yaml
-from zstandard import ZstdDecompressor, ZstdError
+from surrogate.limits import read_text
+from surrogate.plain_yaml import plain_values
 
 MAGIC = {
     b'\x89MCAP': 'mcap',
@@ -23,7 +23,7 @@ ENDINGS = ('.mcap', '.db3', '.mcap.zstd', '.db3.zstd')
 ACTIVE = '.mcap.active'
 TABLES = ('.csv', '.tsv', '.txt', '.parquet')
 STORAGES = ('mcap', 'sqlite3')
-NO_METADATA = (OSError, UnicodeDecodeError, yaml.YAMLError, KeyError, TypeError, AttributeError)
+NO_METADATA = (OSError, ValueError, KeyError, TypeError, AttributeError)
 OWN = 'ballscrew_monitor'
 """Name of the metadata record in which an MCAP file holds what this program says of it."""
 
@@ -76,29 +76,6 @@ def manifest(path: Path, *, salvage: bool) -> Manifest:
     return Manifest(files=files, custom=found.custom if found else {})
 
 
-def unpack(file: Path, folder: Path, *, salvage: bool) -> Path:
-    """
-    Return the unpacked copy in `folder` of a zstd file.
-
-    Raises InputError on damage; with `salvage` what comes before it is kept.
-
-    """
-    target = folder / file.name.removesuffix('.zstd')
-    try:
-        with file.open('rb') as packed, target.open('wb') as unpacked:
-            ZstdDecompressor().copy_stream(packed, unpacked)
-    except ZstdError as error:
-        if not salvage:
-            raise InputError(f'bag {file} is truncated or damaged ({error})') from None
-    return target
-
-
-def unpacked(data: bytes) -> bytes:
-    """Return the content of a message, which may be packed alone; raises ZstdError on damage."""
-    # No serialised message begins so: its first byte is zero.
-    return ZstdDecompressor().decompressobj().decompress(data) if data[:4] == ZSTD else data
-
-
 def _bag_files(path: Path) -> list[Path]:
     return sorted((file for file in path.iterdir() if file.name.endswith(ENDINGS)), key=_by_number)
 
@@ -111,10 +88,10 @@ def _by_number(file: Path) -> list[str | int]:
 
 def _read_metadata(metadata: Path) -> Manifest:
     try:
-        content = yaml.safe_load(metadata.read_text())['rosbag2_bagfile_information']
+        content = plain_values(read_text(metadata))['rosbag2_bagfile_information']
         kind, names = content['storage_identifier'], content['relative_file_paths']
         packing = content.get('compression_format') or 'zstd'
-        custom = content.get('custom_data') or {}
+        custom = dict(content.get('custom_data') or {})
     except NO_METADATA as error:
         reason = ' '.join(str(error).split())
         raise InputError(f'{metadata} is not a rosbag2 metadata file: {reason}') from None
@@ -127,7 +104,7 @@ def _read_metadata(metadata: Path) -> Manifest:
         raise InputError(f'{metadata} is not a rosbag2 metadata file: it names no list of files')
     return Manifest(
         files=tuple(_place(bag, str(name)) for name in names),
-        custom={str(key): str(value) for key, value in custom.items()} if custom else {},
+        custom={str(key): str(value) for key, value in custom.items()},
     )
 
 

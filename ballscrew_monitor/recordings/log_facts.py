@@ -14,6 +14,7 @@ from ballscrew_monitor.recordings.own_recording import journal_of, recorded_valu
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.parameter_row import BARE_LETTERS
 from surrogate.files import InputError
+from surrogate.plain_yaml import plain_values
 import yaml
 
 PREFIX = 'ballscrew_monitor.'
@@ -118,7 +119,7 @@ def facts_of(bag: Bag) -> LogFacts | None:
         return None
     try:
         content = {
-            name: yaml.safe_load(bag.metadata[f'{PREFIX}{name}'])
+            name: plain_values(bag.metadata[f'{PREFIX}{name}'])
             for name in ('source', 'mapping', 'assumptions', 'notes')
         }
         return LogFacts(
@@ -128,7 +129,7 @@ def facts_of(bag: Bag) -> LogFacts | None:
             assumptions=tuple(Assumption(**one) for one in content['assumptions']),
             notes=tuple(content['notes']),
         )
-    except (yaml.YAMLError, KeyError, TypeError, AttributeError) as error:
+    except (InputError, KeyError, TypeError, AttributeError) as error:
         reason = ' '.join(str(error).split())
         raise InputError(f'bag {bag.path}: its metadata are damaged: {reason}') from None
 

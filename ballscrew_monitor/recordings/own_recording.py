@@ -12,7 +12,6 @@ time the node wrote down what it remembered of an axis, the replay must remember
 from collections.abc import Iterable, Iterator, Mapping
 import dataclasses
 import functools
-import json
 from typing import Any
 
 from ballscrew_monitor.core.fields import message_class
@@ -40,6 +39,7 @@ from ballscrew_monitor.settings.axis import Axis, build_axis, settings_of
 import numpy as np
 from rclpy.serialization import deserialize_message
 from surrogate.files import InputError
+from surrogate.limits import read_json
 from surrogate.surface import SurfaceError
 
 JOURNAL = '/journal'
@@ -47,6 +47,17 @@ OTHER_VERSION = (
     'the node that made this recording was of another version: the recording is judged as an '
     'ordinary bag, by log times'
 )
+SHAPES: dict[str, dict[str, Any]] = {
+    'axis': {'axis': str, 'version': int},
+    'tick': {'stamp': int},
+    'lost': {'topic': str, 'count': int | None},
+}
+"""What entries hold, by their kind."""
+DESCRIPTION: dict[str, Any] = {
+    **dict.fromkeys(('values', 'topics', 'surface', 'monitor'), dict),
+    **{'because': str, 'loss_unknown': list},
+}
+"""What else the description of an axis holds."""
 Noted = tuple[int, Mapping[str, Any]]
 """The place of an entry of the journal, and the entry."""
 
@@ -281,7 +292,9 @@ class OwnRecording:
             self._lost = dict.fromkeys(entry['loss_unknown'], UNKNOWN_LOSS)
             self._read(entry['reading'])
             axis = self._rebuilt(entry)
-        except (KeyError, TypeError, AttributeError) as error:
+        except InputError:
+            raise
+        except (KeyError, TypeError, AttributeError, ValueError, IndexError) as error:
             raise InputError(f'{self._journal}: an axis is described badly: {error}') from None
         self._described[name] = entry
         known = [number for number, run in enumerate(self.runs) if run.axis.name == name]
@@ -340,10 +353,15 @@ def as_taken(entries: Entries) -> Entries:
 def _entry_of(data: bytes, topic: str) -> Mapping[str, Any]:
     try:
         text = deserialize_message(data, message_class(STRING)).data
-        entry: Mapping[str, Any] = json.loads(text)
-        if entry['kind'] == 'axis':
-            _ = entry['axis'], entry['version']
-    except (*UNDECODABLE, KeyError, TypeError) as error:
+        entry: Mapping[str, Any] = read_json(text)
+        kind = entry['kind']
+        shape = SHAPES.get(kind, {}) if isinstance(kind, str) else {}
+        if kind == 'axis' and entry['version'] == VERSION:
+            shape = shape | DESCRIPTION
+        wrong = [name for name, kinds in shape.items() if not isinstance(entry[name], kinds)]
+        if wrong or abs(entry.get('stamp') or 0) >= END:
+            raise ValueError(f'{", ".join(wrong) or "stamp"} is none')
+    except (*UNDECODABLE, KeyError, TypeError, AttributeError) as error:
         raise InputError(f'{topic}: no entry of a journal ({error})') from None
     return entry
 

@@ -39,7 +39,7 @@ from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from rclpy.serialization import deserialize_message, serialize_message
 from rclpy.validate_full_topic_name import validate_full_topic_name
 from rosgraph_msgs.msg import Clock
-from surrogate.files import InputError
+from surrogate.files import InputError, printable
 
 CLOCK = '/clock'
 LAST = 2**31 * SECOND  # [ns] first stamp that a message cannot hold
@@ -251,7 +251,7 @@ def chosen(bag: Bag, choice: Choice) -> list[str]:
             f'{", ".join(sorted(bag.topics))}: give --topics, --all or another --params'
         )
     if missing:
-        print(f'the bag holds no {", ".join(missing)}', flush=True)
+        print(printable(f'the bag holds no {", ".join(missing)}'), flush=True)
     return [topic for topic in dict.fromkeys(wanted) if topic in bag.topics]
 
 
@@ -272,7 +272,7 @@ def playable(bag: Bag, topics: Sequence[str]) -> list[str]:
     reasons = {topic: _problem(bag, topic) for topic in topics}
     for topic, reason in reasons.items():
         if reason:
-            print(f'not played: {topic}, {reason}', flush=True)
+            print(printable(f'not played: {topic}, {reason}'), flush=True)
     found = [topic for topic, reason in reasons.items() if not reason]
     if not found:
         raise InputError(f'bag {bag.path}: no topic can be played')

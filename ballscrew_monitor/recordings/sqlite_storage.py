@@ -20,12 +20,32 @@ from ballscrew_monitor.recordings import storages
 from ballscrew_monitor.recordings.storages import Message, Storage, TopicInfo
 import numpy as np
 from numpy.typing import NDArray
+from surrogate import limits
 from surrogate.files import InputError
 
 HEADER = 100  # [bytes] of a file
 LEAF = 0x0D  # a page of rows begins so
 CELLS = 8  # [bytes] before the places of the rows of a page
 INTEGERS = {1: 1, 2: 2, 3: 3, 4: 4, 5: 6, 6: 8, 8: 0, 9: 0}  # [bytes] by the type of a value
+MESSAGES = f"""
+SELECT topic_id, timestamp, data FROM messages
+    WHERE typeof(topic_id) = 'integer' AND typeof(timestamp) = 'integer'
+    AND typeof(data) = 'blob' AND length(data) <= {limits.MESSAGE}
+"""
+"""Rows that are messages, of whatever topic."""
+ORDER = 'ORDER BY timestamp, id'
+COUNTS = (
+    f'SELECT topic_id, count(*), min(timestamp), max(timestamp) FROM ({MESSAGES})'
+    ' GROUP BY topic_id'
+)
+TOPICS = """
+SELECT id, name, type, serialization_format FROM topics
+    WHERE typeof(id) = 'integer' AND typeof(name) = 'text' AND typeof(type) = 'text'
+    AND typeof(serialization_format) = 'text'
+"""
+TABLES = (
+    "SELECT name, sql FROM sqlite_master WHERE type = 'table' AND name IN ('topics', 'messages')"
+)
 NO_ROW = (IndexError, ValueError, struct.error, EOFError)
 
 
@@ -42,28 +62,47 @@ class SqliteStorage(Storage):
     def _read_topics(self) -> None:
         import apsw
 
-        with self._opened() as reader:
+        with self._opened() as database:
             if self.salvage:  # rows and index must agree: damage may look like a message
-                with self._database() as database:
-                    ((fault,),) = database.execute('PRAGMA integrity_check(1)')
+                ((fault,),) = database.execute('PRAGMA integrity_check(1)')
                 if fault != 'ok':
                     raise apsw.CorruptError(fault)
-            self.topics = {
-                connection.topic: TopicInfo(
-                    type_name=connection.msgtype,
-                    encoding=connection.ext.serialization_format,
-                    count=connection.msgcount,
-                )
-                for connection in reader.connections
-            }
-            self.span = (reader.start_time, reader.end_time - 1) if reader.duration else (0, 0)
+            names = dict.fromkeys(('topics', 'messages'), 0)
+            for name, text in database.execute(TABLES):
+                names[name] += text.upper().startswith('CREATE TABLE')
+            if not all(names.values()):
+                raise apsw.CorruptError(f'no table of {", ".join(names)}')
+            found = {number: rest for number, *rest in database.execute(COUNTS)}
+            ((total,),) = database.execute('SELECT count(*) FROM messages')
+        known = {number: row for number, row in self._topic_rows().items() if number in found}
+        self._take(found, known)
+        self._lost(total - sum(found[number][0] for number in known), total)
+
+    def _take(self, found: dict[int, list[int]], known: dict[int, tuple[str, str, str]]) -> None:
+        """Take the topics, and the span of the messages that are of one."""
+        for number, (name, kind, form) in self._topic_rows().items():
+            count = found[number][0] if number in known else 0
+            self.topics[name] = TopicInfo(type_name=kind, encoding=form, count=count)
+        times = [time for number in known for time in found[number][1:]]
+        if times:
+            self.span = (min(times), max(times))
+
+    def _lost(self, count: int, total: int) -> None:
+        if count:
+            self.note = (
+                f'bag {self.file}: {count} of its {total} rows are of an unknown topic or hold no '
+                'message: they are left out'
+            )
 
     def _indexed(self, wanted: Collection[str]) -> Iterator[Message]:
-        with self._opened() as reader:
-            chosen = [one for one in reader.connections if one.topic in wanted]
-            # An empty choice means all to this reader.
-            for connection, time, data in reader.messages(chosen) if chosen else ():
-                yield Message(topic=connection.topic, data=data, log_time=time, publish_time=time)
+        topics = {
+            number: name for number, (name, *_) in self._topic_rows().items() if name in wanted
+        }
+        marks = ', '.join('?' for _ in topics)
+        with self._opened() as database:
+            rows = database.execute(f'{MESSAGES} AND topic_id IN ({marks}) {ORDER}', [*topics])
+            for number, time, data in rows:
+                yield Message(topic=topics[number], data=data, log_time=time, publish_time=time)
 
     def _read_whole(self) -> None:
         rows = [row[:2] for row in whole_messages(self.file)]
@@ -90,9 +129,11 @@ class SqliteStorage(Storage):
             with self._database() as database:
                 # Or a file that is shorter than it says is not opened at all.
                 database.execute('PRAGMA writable_schema=ON')
-                rows = database.execute('SELECT id, name, type, serialization_format FROM topics')
-                return {number: (name, kind, form) for number, name, kind, form in rows}
-        except apsw.Error:
+                return {
+                    number: (name, kind, form)
+                    for number, name, kind, form in database.execute(TOPICS)
+                }
+        except (apsw.Error, UnicodeDecodeError):
             return {}
 
     def _database(self) -> contextlib.closing[Any]:
@@ -105,15 +146,14 @@ class SqliteStorage(Storage):
     @contextlib.contextmanager
     def _opened(self) -> Iterator[Any]:
         import apsw
-        from rosbags.rosbag2 import Reader, ReaderError
 
         try:
             # A page that the file ends in would be read as zeros.
             if not ends_with_a_page(self.file):
-                raise ReaderError('it ends within a page')
-            with Reader(self.file) as reader:
-                yield reader
-        except (ReaderError, apsw.Error, OSError) as error:
+                raise apsw.CorruptError('it ends within a page')
+            with self._database() as database:
+                yield database
+        except (apsw.Error, OSError, UnicodeDecodeError) as error:
             reason = ' '.join(str(error).split())
             raise InputError(
                 f'bag {self.file} is truncated or damaged, it must be a complete sqlite3 file of '
@@ -194,7 +234,8 @@ def _payload(pages: _Pages, page: bytes, place: int) -> bytes:
     """Return the bytes of the row at a place of a page, those of further pages included."""
     length, place = _varint(page, place)
     _, place = _varint(page, place)  # the number of the row
-    if length > pages.count * pages.size:  # damaged: pages might lead in a circle
+    # Damaged: pages might lead in a circle.
+    if length > min(pages.count * pages.size, limits.MESSAGE):
         raise EOFError
     local = _local(length, pages.usable)
     end = place + local

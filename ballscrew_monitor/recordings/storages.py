@@ -9,23 +9,26 @@ says how much it was.
 """
 
 from collections import Counter
-from collections.abc import Collection, Generator, Iterable, Iterator
+from collections.abc import Collection, Generator, Iterable, Iterator, Mapping
 import contextlib
 import dataclasses
 import heapq
-import itertools
+import math
+import operator
 from pathlib import Path
+from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.bag_files import MAGIC
-from ballscrew_monitor.recordings.recover import DAMAGE, damaged_chunks, whole_records
-from mcap.exceptions import McapError
-from mcap.reader import make_reader
-from mcap.records import Channel, Schema
+from ballscrew_monitor.recordings.bulk.chunks import chunk_indexes, ChunkDamage, read_chunk
+from ballscrew_monitor.recordings.mcap_records import DAMAGE, read_summary, whole_records
+from mcap.records import Channel, ChunkIndex, Schema
 from mcap.records import Message as McapMessage
+from surrogate import limits
 from surrogate.files import InputError
 
 MCAP = next(magic for magic, kind in MAGIC.items() if kind == 'mcap')
 REORDER = 1_000_000_000  # [ns] log time over which messages of different chunks may be mixed
+OBJECT = 250  # [bytes] about, of a message besides its data
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -61,6 +64,7 @@ class Storage:
         self.span = (0, 0)
         self.note = ''
         self.is_indexed = True
+        self._missed: dict[int, str] = {}  # what is said of damaged chunks, by where they begin
         try:
             self._read_topics()
         except InputError:
@@ -88,6 +92,19 @@ class Storage:
         """Read all that is whole once, for topics, span and the note."""
         raise NotImplementedError
 
+    def compare(self, wanted: Collection[str], counts: Mapping[str, int]) -> None:
+        """Note of which topics another number of messages was read than the file counts."""
+        for topic in sorted(self.topics.keys() & set(wanted)):
+            count, stated = counts.get(topic, 0), self.topics[topic].count
+            if count != stated and self.is_indexed and not self._missed:
+                self._remark(
+                    f'bag {self.file}: it counts {stated} messages of {topic}, {count} were read'
+                )
+
+    def _remark(self, text: str) -> None:
+        if text not in self.note:  # whoever reads the file again finds the same
+            self.note = f'{self.note}; {text}' if self.note else text
+
     def _counted(self, messages: Iterable[Message]) -> Counter[str]:
         """Count the messages that are whole by topic, and take down their span in the note."""
         counts: Counter[str] = Counter()
@@ -112,7 +129,6 @@ class McapStorage(Storage):
         """Read the topics; raises InputError when nothing can be had of the file."""
         self._schemas: dict[int, Schema] = {}
         self._channels: dict[int, Channel] = {}  # a damaged chunk may have named them
-        self._lost: frozenset[int] = frozenset()  # where damaged chunks begin [bytes]
         with damage_is_input(file), file.open('rb') as stream:
             if not MCAP.startswith(stream.read(len(MCAP))):  # an empty file is cut short
                 raise InputError(
@@ -122,50 +138,75 @@ class McapStorage(Storage):
 
     def messages(self, wanted: Collection[str], *, as_written: bool = False) -> Stream:
         """Yield the messages, see `Storage`; what has been salvaged meanwhile is noted."""
-        reorder = not as_written
-        if not self.is_indexed:
-            yield from self._whole(wanted, reorder=reorder)
-            return
-        count = 0
-        try:
-            for message in self._indexed(wanted, reorder=reorder):
-                yield message
-                count += 1
-        except InputError as error:
-            if not self.salvage:
-                raise
-            self.note = f'{error}; its intact part is used'
-            self._lost = damaged_chunks(self.file)
-            # A file without chunks has no index to go on by.
-            rest = self._indexed if self._lost else self._whole
-            # What came before the damage comes first here too.
-            yield from itertools.islice(rest(wanted, reorder=reorder), count, None)
+        read = self._indexed if self.is_indexed else self._whole
+        counts: Counter[str] = Counter()
+        for message in read(wanted, reorder=not as_written):
+            counts[message.topic] += 1
+            yield message
+        self.compare(wanted, counts)
+
+    def miss(self, place: ChunkIndex, damage: ChunkDamage) -> None:
+        """Note a damaged chunk; raise InputError unless the rest is to be salvaged."""
+        span = (place.message_end_time - place.message_start_time) * 1e-9
+        text = (
+            f'bag {self.file} is truncated or damaged: {span:.3g} s of data in the chunk at byte '
+            f'{place.chunk_start_offset} cannot be read ({damage})'
+        )
+        if not self.salvage:
+            raise InputError(text)
+        self._missed.setdefault(place.chunk_start_offset, text)
+        more = len(self._missed) - 1
+        self.note = next(iter(self._missed.values())) + (f'; so are {more} more' if more else '')
 
     def _indexed(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
         with damage_is_input(self.file), self.file.open('rb') as stream:
-            reader = make_reader(stream, validate_crcs=True)
-            if self._lost:
-                summary = reader.get_summary()
-                assert summary is not None  # there is one where chunks are known
-                whole = [
-                    one
-                    for one in summary.chunk_indexes
-                    if one.chunk_start_offset not in self._lost
-                ]
-                if not whole:
-                    return
-                summary.chunk_indexes = whole
-            for _, channel, message in reader.iter_messages(
-                topics=list(wanted), log_time_order=reorder
-            ):
-                yield _message(channel, message)
+            places, channels = chunk_indexes(stream, wanted)
+            if not places:
+                found = (
+                    one for one in self._written(strict=not self.salvage) if one.topic in wanted
+                )
+                yield from by_log_time(found) if reorder else found
+                return
+            if not reorder:
+                places.sort(key=operator.attrgetter('chunk_start_offset'))
+                for place in places:
+                    yield from (one for _, one in self._of_chunk(stream, place, channels))
+                return
+            waiting = _Waiting()
+            for place in sorted(places, key=operator.attrgetter('message_start_time')):
+                yield from waiting.before(place.message_start_time)
+                for order, message in self._of_chunk(stream, place, channels):
+                    waiting.add(message, (place.chunk_start_offset, order))
+            yield from waiting.before(math.inf)
+
+    def _of_chunk(
+        self, stream: BinaryIO, place: ChunkIndex, channels: Mapping[int, str]
+    ) -> Iterator[tuple[int, Message]]:
+        """Yield the messages of a chunk that are of some channels, each with its place there."""
+        try:
+            found = read_chunk(stream, place)
+        except ChunkDamage as damage:
+            self.miss(place, damage)
+            return
+        for at in range(len(found)):
+            topic = channels.get(int(found.channel[at]))
+            if topic is not None:
+                yield (
+                    at,
+                    Message(
+                        topic=topic,
+                        data=found.content(at),
+                        log_time=int(found.log_time[at]),
+                        publish_time=found.publish_time(at),
+                        sequence=int(found.sequence[at]),
+                    ),
+                )
 
     def _read_topics(self) -> None:
         with damage_is_input(self.file), self.file.open('rb') as stream:
-            summary = make_reader(stream, validate_crcs=True).get_summary()
-            if summary is None or summary.statistics is None:
-                raise McapError('it has no summary')
+            summary = read_summary(stream)
         statistics = summary.statistics
+        assert statistics is not None
         self._schemas, self._channels = summary.schemas, summary.channels
         counts: Counter[str] = Counter()
         for number, channel in summary.channels.items():
@@ -191,9 +232,9 @@ class McapStorage(Storage):
         found = (one for one in self._written() if one.topic in wanted)
         return by_log_time(found) if reorder else found
 
-    def _written(self) -> Iterator[Message]:
+    def _written(self, *, strict: bool = False) -> Iterator[Message]:
         """Yield all messages of whole chunks in the order of the file."""
-        for record in whole_records(self.file):
+        for record in whole_records(self.file, strict=strict):
             if isinstance(record, Schema):
                 self._schemas[record.id] = record
             elif isinstance(record, Channel):
@@ -202,15 +243,33 @@ class McapStorage(Storage):
                 yield _message(self._channels[record.channel_id], record)
 
 
+class _Waiting:
+    """Messages that wait for earlier ones, as far as they fit into memory."""
+
+    def __init__(self) -> None:
+        self._held: list[tuple[int, Any, Message]] = []
+        self._size = 0
+
+    def add(self, message: Message, order: Any) -> None:
+        """Hold a message; those of equal log time come by their order, no two have the same."""
+        heapq.heappush(self._held, (message.log_time, order, message))
+        self._size += len(message.data) + OBJECT
+
+    def before(self, time: float) -> Iterator[Message]:
+        """Yield the messages before a time [ns], and what is too much to be held."""
+        while self._held and (self._held[0][0] < time or self._size > limits.WAITING):
+            *_, message = heapq.heappop(self._held)
+            self._size -= len(message.data) + OBJECT
+            yield message
+
+
 def by_log_time(messages: Iterable[Message]) -> Iterator[Message]:
     """Yield messages by log time, as far as they are not mixed over more than `REORDER`."""
-    waiting: list[tuple[int, int, Message]] = []
+    waiting = _Waiting()
     for number, message in enumerate(messages):
-        heapq.heappush(waiting, (message.log_time, number, message))
-        while message.log_time - waiting[0][0] > REORDER:
-            yield heapq.heappop(waiting)[2]
-    while waiting:
-        yield heapq.heappop(waiting)[2]
+        waiting.add(message, number)
+        yield from waiting.before(message.log_time - REORDER)
+    yield from waiting.before(math.inf)
 
 
 def _message(channel: Channel, message: McapMessage) -> Message:

@@ -8,6 +8,7 @@ import math
 import sys
 import time
 
+from surrogate.files import printable
 from surrogate.progress import Progress
 
 NONE = '–'
@@ -66,7 +67,7 @@ def list_of(parts: Sequence[str]) -> str:
 def say(*notes: str) -> None:
     """Print notes to standard error, each with the name of the command."""
     for note in notes:
-        print(f'ballscrew: {note}', file=sys.stderr)
+        print(printable(f'ballscrew: {note}'), file=sys.stderr)
 
 
 PATIENCE = 2.0  # [s] of work before anything is said

@@ -24,7 +24,7 @@ from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_monitor.report.printed import log_lines, printed_records, summary_record, without
 from ballscrew_monitor.report.verdict import never_moved
 from ballscrew_monitor.settings.parameters import read_file, with_types
-from surrogate.files import InputError, json_text
+from surrogate.files import InputError, json_text, printable
 from surrogate.surface import SurfaceError
 
 if TYPE_CHECKING:  # the rest asks for packages that printing does not need
@@ -79,7 +79,7 @@ def _print_many(
     codes, records = [], {}
     for log in logs:
         if not args.json:
-            print(log)
+            print(printable(str(log)))
         try:
             mapping = args.map if is_table(log) else None  # it is for tables alone
             records[str(log)], code = _print_one(args, nominal, log, mapping)
@@ -103,7 +103,7 @@ def _print_one(
         _say_notes(found.notes, parameters)
         say(*_silences(bag, parameters.values, found))
     if not args.json:
-        print('\n'.join(log_lines(found)))
+        print(printable('\n'.join(log_lines(found))))
     return printed_records(summary_record(found)), DONE if found.judged else FAILED
 
 
@@ -120,7 +120,7 @@ def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Rec
     if result.unjudged:
         say(f'nothing was judged on axis {", ".join(result.unjudged)}')
     for line in result.lines:
-        print(line.verdict)
+        print(printable(line.verdict))
     print(f'report in {args.out / PAGE}')
     return _reported(args.out, args), DONE if result.judged else FAILED
 
@@ -186,7 +186,7 @@ def _print_entry(entry: 'LogEntry') -> None:
         say(f'{entry.name}: {entry.failure}')
         return
     for line in entry.result.lines:
-        print(f'{entry.name}: {line.verdict}')
+        print(printable(f'{entry.name}: {line.verdict}'))
     say(*(f'{entry.name}: {note}' for note in entry.result.notes))
     if entry.result.unjudged:
         say(f'{entry.name}: nothing was judged on axis {", ".join(entry.result.unjudged)}')

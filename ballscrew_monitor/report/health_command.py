@@ -11,7 +11,6 @@ from typing import Any
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED
 from ballscrew_monitor.health.baseline import HOUR
-from ballscrew_monitor.health.baseline import HOUR
 from ballscrew_monitor.health.records import Health, Quantity
 from ballscrew_monitor.health.store import FILE
 from ballscrew_monitor.health.words import health_record
@@ -29,7 +28,7 @@ from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.logs import find_logs, map_for
 from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.settings.parameters import read_file
-from surrogate.files import InputError, json_text, replace_file
+from surrogate.files import InputError, json_text, printable, replace_file
 from surrogate.progress import Progress
 from surrogate.surface import SurfaceError
 
@@ -47,9 +46,9 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
         for folder in folders:
             found |= kept_healths(folder, read_file(args.params or nominal), _options(args))
         for last in (courses[-1] for courses in found.values()):
-            print('\n'.join(lines_of(last)))
+            print(printable('\n'.join(lines_of(last))))
         for peer in peers:
-            print(peer.text)
+            print(printable(peer.text))
         if args.out is not None:
             _write(args.out, found)
     if args.json:

@@ -198,6 +198,7 @@ def report_log(
     InputError when it cannot be read with the parameters.
 
     """
+    logs.check_output(out)
     with scratch_folder(out) as folder:
         store, made = RowStore(folder), folder / MADE
         with judged_bag(

@@ -138,6 +138,18 @@ def folder_names(logs: Sequence[Path]) -> list[str]:
     )
 
 
+def check_output(out: Path) -> None:
+    """Raise InputError for a folder with files that a report would replace, and no report."""
+    if (out / PAGE).is_file() or not out.is_dir():
+        return
+    for name in (*PRODUCTS, SUMMARY, PICTURE):
+        if (out / name).exists():
+            raise InputError(
+                f'output {out} holds {name} and no {PAGE}: it is not of a report and would be '
+                'overwritten, another directory must be given'
+            )
+
+
 def replace_report(made: Path, out: Path) -> None:
     """
     Let the page and the products in `made` take the place of those in `out`.

@@ -16,6 +16,7 @@ from typing import Any
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.settings.parameter_row import BARE_LETTERS, BARE_WORDS, ParameterRow
 from ballscrew_monitor.settings.parameter_table import AXIS_ROWS, LOAD_SOURCES, NODE_ROWS
+from surrogate import limits
 from surrogate.files import InputError
 
 NODE_NAME = 'ballscrew_monitor'
@@ -160,23 +161,18 @@ def _given(text: str, *, of_ros: bool = False) -> dict[str, Any]:
 
 def _text_of(path: str | pathlib.Path) -> str:
     try:
-        return pathlib.Path(path).read_text()
-    except (OSError, UnicodeDecodeError) as error:
+        return limits.read_text(path)
+    except (OSError, UnicodeDecodeError, InputError) as error:
         raise InputError(f'{path}: the parameter file cannot be read: {error}') from None
 
 
 def _sections(text: str) -> dict[str, Any]:
-    import yaml  # the node itself is handed its parameters by ROS
+    from surrogate.plain_yaml import plain_values  # the node is handed its parameters by ROS
 
     try:
-        loader = yaml.SafeLoader(text)
-        root = loader.get_single_node()
-        if root is not None:
-            _take_letters_as_ros(root)
-        found = None if root is None else loader.construct_document(root)
-    except yaml.YAMLError as error:
-        reason = ' '.join(str(error).split())
-        raise InputError(f'the parameter file cannot be read: {reason}') from None
+        found = plain_values(text, change=_take_letters_as_ros)
+    except InputError as error:
+        raise InputError(f'the parameter file cannot be read: {error}') from None
     if not isinstance(found, dict) or not all(
         isinstance(key, str) and isinstance(section, dict) for key, section in found.items()
     ):

@@ -87,5 +87,5 @@ def _measured(path: Path) -> Any:
     try:
         with path.open(newline='', encoding='utf-8') as file:
             return read_measured(list(csv.DictReader(file)))
-    except (OSError, UnicodeDecodeError, ValueError) as error:
+    except (OSError, UnicodeDecodeError, ValueError, csv.Error) as error:
         raise InputError(f'--measured: {path} cannot be read, {error}') from None

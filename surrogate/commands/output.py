@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 import sys
 from typing import Any, TypeVar
 
-from surrogate.files import json_text
+from surrogate.files import json_text, printable
 
 Record = TypeVar('Record', bound=Mapping[str, Any])
 
@@ -19,10 +19,10 @@ def add_json(parser: argparse.ArgumentParser) -> None:
 
 def show(record: Record, page: Callable[[Record], str], *, json: bool) -> None:
     """Print a record as JSON in SI units, or the page of it."""
-    print(json_text(record) if json else page(record))
+    print(json_text(record) if json else printable(page(record)))
 
 
 def tell(sentences: Iterable[str]) -> None:
     """Print what a person should look at again, beside the output."""
     for sentence in sentences:
-        print(f'ballscrew: {sentence}', file=sys.stderr)
+        print(printable(f'ballscrew: {sentence}'), file=sys.stderr)

@@ -13,6 +13,7 @@ from surrogate.builder.tiers import find_tier
 from surrogate.commands.output import add_json, show
 from surrogate.commands.point import add_operating_point
 from surrogate.files import InputError, replace_file
+from surrogate.limits import read_text, TABLE
 from surrogate.parameters import OperatingPoint
 from surrogate.progress import Progress
 from surrogate.surface import find_surface, Surface
@@ -177,8 +178,8 @@ def _query_table(args: argparse.Namespace, surface: Surface) -> int:
     if args.json or not (args.speed_rpm is args.load is args.temperature is None):
         raise InputError('--csv takes its points from the table and writes a table')
     try:
-        lines = args.csv.read_text(encoding='utf-8').splitlines()
-    except (OSError, UnicodeDecodeError) as error:
+        lines = read_text(args.csv, most=TABLE).splitlines()
+    except (OSError, UnicodeDecodeError, InputError) as error:
         raise InputError(f'{args.csv}: cannot be read, {error}') from None
     table, points, answers = query_table(surface, lines, str(args.csv))
     if args.out is None:

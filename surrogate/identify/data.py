@@ -18,6 +18,7 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
+from surrogate.limits import read_text, TABLE
 from surrogate.units import RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
@@ -142,9 +143,11 @@ def read_drag_csv(
 def _lines(path: Path) -> list[tuple[int, str]]:
     """Return the lines that say something, with their numbers."""
     try:
-        text = path.read_text(encoding='utf-8-sig')
+        text = read_text(path, encoding='utf-8-sig', most=TABLE)
     except OSError as error:
         raise InputError(f'{path}: cannot be read, {error.strerror}') from None
+    except InputError as error:
+        raise InputError(f'{path}: cannot be read, {error}') from None
     except UnicodeDecodeError:
         raise InputError(f'{path}: cannot be read as text, a CSV is wanted') from None
     lines = [

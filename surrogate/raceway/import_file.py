@@ -19,6 +19,7 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
+from surrogate.limits import read_text, TABLE
 from surrogate.raceway.measured import measured_surface, MeasuredSurface, Outside
 
 Array = NDArray[np.float64]
@@ -49,8 +50,8 @@ def read_surface(
 
 def _read_csv(path: Path) -> tuple[Array, float, float]:
     try:
-        text = path.read_text(encoding='utf-8-sig')
-    except (OSError, UnicodeDecodeError) as error:
+        text = read_text(path, encoding='utf-8-sig', most=TABLE)
+    except (OSError, UnicodeDecodeError, InputError) as error:
         raise InputError(f'{path}: cannot be read as text, {error}') from None
     lines = [
         (number, line.strip())

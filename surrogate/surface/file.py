@@ -13,7 +13,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 import hashlib
 import io
-import json
 import math
 from pathlib import Path
 import tokenize
@@ -23,6 +22,7 @@ import zlib
 
 import numpy as np
 from numpy.typing import NDArray
+from surrogate import limits
 from surrogate.files import canonical_json, replace_file
 from surrogate.surface.fields import FIELDS
 
@@ -35,8 +35,6 @@ FORMAT_VERSION, ENSEMBLE_VERSION = 3, 4
 OLD_VERSIONS = (1, 2)
 """Versions whose inputs state a roughness of another model."""
 TIERS = ('closed_form', 'full')
-LARGEST_FILE = 256 * 2**20
-"""Largest file that is read, and the most that it may come to when unpacked [byte]."""
 DAMAGE = (
     OSError,
     MemoryError,
@@ -125,8 +123,8 @@ def read(path: str | Path) -> SurfaceData:
     path = Path(path)
     if not path.is_file():
         raise SurfaceError(f'{path}: no such surface file')
-    if path.stat().st_size > LARGEST_FILE:
-        raise SurfaceError(f'{path}: {path.stat().st_size} bytes, allowed is {LARGEST_FILE}')
+    if path.stat().st_size > limits.SURFACE:
+        raise SurfaceError(f'{path}: {path.stat().st_size} bytes, allowed is {limits.SURFACE}')
     try:
         content = path.read_bytes()
     except OSError as error:
@@ -161,15 +159,15 @@ def _check_content(path: str | Path, content: bytes) -> None:
             unpacked = sum(entry.file_size for entry in archive.infolist())
     except DAMAGE:
         return  # told when it is read
-    if unpacked > LARGEST_FILE:
-        raise SurfaceError(f'{path}: {unpacked} bytes when unpacked, allowed is {LARGEST_FILE}')
+    if unpacked > limits.SURFACE:
+        raise SurfaceError(f'{path}: {unpacked} bytes when unpacked, allowed is {limits.SURFACE}')
 
 
 def _read_arrays(path: str | Path, content: bytes) -> tuple[dict[str, Any], Arrays]:
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
-        header = json.loads(arrays.pop('header').tobytes())
+        header = limits.read_json(arrays.pop('header').tobytes())
     except DAMAGE:
         raise SurfaceError(
             f'{path}: damaged or not a surface file (an .npz that `surface build` wrote)'

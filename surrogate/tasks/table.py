@@ -31,7 +31,7 @@ def read_table(path: Path, kind: type[Row]) -> list[Row]:
             ]
     except FileNotFoundError:
         return []
-    except (OSError, UnicodeDecodeError, ValueError, TypeError) as error:
+    except (OSError, UnicodeDecodeError, ValueError, TypeError, csv.Error) as error:
         raise InputError(f'{path}: cannot be read as a table of results, {error}') from None
 
 

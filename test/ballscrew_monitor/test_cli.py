@@ -81,6 +81,22 @@ def test_an_end_is_a_sentence_and_an_exit_code(error, code, sentence, monkeypatc
     assert capsys.readouterr() == ('', f'ballscrew: {says(sentence)}\n')
 
 
+def test_a_fault_of_the_program_is_a_sentence_and_a_file_to_send(
+    monkeypatch, capsys, says, tmp_path
+):
+    def fail(args):
+        raise RuntimeError('no\x1b[2J')
+
+    monkeypatch.setattr(cli.tempfile, 'tempdir', str(tmp_path))
+    monkeypatch.setitem(cli.COMMANDS, 'run', (fail, ''))
+    assert cli.main(['run']) == 70
+    (file,) = tmp_path.iterdir()
+    assert capsys.readouterr() == ('', f'ballscrew: {says("bug")}{file}\n')
+    text = file.read_text(encoding='utf-8')
+    assert 'Traceback (most recent call last)' in text
+    assert text.endswith('RuntimeError: no\x1b[2J\n')
+
+
 @pytest.mark.parametrize(
     ('module', 'command'),
     [('mcap', 'replay'), ('zstandard', 'play'), ('matplotlib', 'run'), ('ballscrew_msgs', 'run')],

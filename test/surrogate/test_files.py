@@ -4,7 +4,7 @@
 
 import os
 
-from surrogate.files import replace_file
+from surrogate.files import printable, replace_file
 
 
 def test_a_file_is_made_with_its_directory_and_replaced(tmp_path, refused):
@@ -30,3 +30,7 @@ def test_a_failure_leaves_what_was_there(tmp_path, monkeypatch, refused):
     refused('space_left_device', replace_file, path, b'two')
     assert path.read_bytes() == b'one'
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_text_cannot_steer_a_terminal():
+    assert printable('a\x1b[2J\x07\r\x9bb\n\tä°') == 'a\\x1b[2J\\x07\\x0d\\x9bb\n\tä°'

@@ -7,6 +7,7 @@ A batch holds all messages up to a log time; those of one topic stand together.
 
 """
 
+from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 import contextlib
 import dataclasses
@@ -14,7 +15,6 @@ import itertools
 import operator
 from typing import BinaryIO
 
-from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_monitor.recordings.bag_files import ZSTD
 from ballscrew_monitor.recordings.bulk import chunks as bulk_chunks
@@ -22,7 +22,7 @@ from ballscrew_monitor.recordings.bulk.chunks import ChunkDamage, Messages, read
 from ballscrew_monitor.recordings.storages import damage_is_input, McapStorage
 from mcap.records import ChunkIndex
 import numpy as np
-from surrogate.files import InputError
+from surrogate import limits
 
 BATCH = 4 * 1024 * 1024  # [bytes] of chunks that are looked at together
 MESSAGES = 16384  # of a bag without chunks that are looked at together
@@ -100,32 +100,28 @@ def _is_packed(stream: BinaryIO, place: ChunkIndex) -> bool:
 def _by_chunk(chunks: Sequence[_Chunk], names: Sequence[str]) -> Iterator[Batch]:
     waiting: list[Messages] = []
     size = 0
+    counts: dict[McapStorage, Counter[str]] = {}
     for number, chunk in enumerate(chunks, 1):
         try:
             found = _placed(chunk, names)
         except ChunkDamage as damage:
-            _note(chunk, damage)
+            chunk.storage.miss(chunk.place, damage)
         else:
             waiting.append(found)
             size += len(found.data)
+            counts.setdefault(chunk.storage, Counter()).update(_count(found, names))
         if size >= BATCH or number == len(chunks):
             until = END if number == len(chunks) else chunks[number].place.message_start_time
             yield Batch(topics=_by_topic(waiting, names), until=until, done=number / len(chunks))
             waiting, size = [], 0
+    for storage, count in counts.items():
+        storage.compare(names, count)
 
 
-def _note(chunk: _Chunk, damage: ChunkDamage) -> None:
-    """Note a damaged chunk; raise InputError unless the rest is to be salvaged."""
-    place, storage = chunk.place, chunk.storage
-    span = seconds(place.message_end_time - place.message_start_time)
-    text = (
-        f'bag {storage.file} is truncated or damaged: {span:.3g} s '
-        f'of data in the chunk at byte {place.chunk_start_offset} cannot be read ({damage})'
-    )
-    if not storage.salvage:
-        raise InputError(text)
-    if text not in storage.note:  # whoever reads the file again finds the same
-        storage.note = f'{storage.note}; {text}' if storage.note else text
+def _count(found: Messages, names: Sequence[str]) -> dict[str, int]:
+    """Return the number of messages by topic, whose numbers are their channels."""
+    count = np.bincount(found.channel[found.channel >= 0], minlength=len(names))
+    return dict(zip(names, count.tolist(), strict=True))
 
 
 def _placed(chunk: _Chunk, names: Sequence[str]) -> Messages:
@@ -153,7 +149,7 @@ def _by_message(bag: Bag, messages: Iterator[Message], names: Sequence[str]) -> 
     """Yield the messages of a bag that has no chunks, as its reader gives them."""
     span = max(bag.end_time - bag.start_time, 1)
     first = 0
-    while part := list(itertools.islice(messages, MESSAGES)):
+    while part := _part(messages):
         size = np.array([len(message.data) for message in part])
         found = Messages(
             data=b''.join(message.data for message in part),
@@ -169,3 +165,14 @@ def _by_message(bag: Bag, messages: Iterator[Message], names: Sequence[str]) -> 
         done = (until - bag.start_time) / span
         yield Batch(topics=_by_topic([found], names), until=until, done=done)
     yield Batch(topics={}, until=END, done=1.0)
+
+
+def _part(messages: Iterator[Message]) -> list[Message]:
+    """Return the next messages that are looked at together."""
+    part, size = list[Message](), 0
+    for message in itertools.islice(messages, MESSAGES):
+        part.append(message)
+        size += len(message.data)
+        if size > limits.WAITING:
+            break
+    return part

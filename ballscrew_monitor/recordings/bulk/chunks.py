@@ -10,23 +10,32 @@ what else stands there fill the chunk without a gap. Otherwise the records are w
 
 from collections.abc import Collection, Sequence
 import dataclasses
+import io
 import itertools
 import struct
 from typing import Any, BinaryIO
-import zlib
 
-from mcap.reader import make_reader
-from mcap.records import ChunkIndex
+from ballscrew_monitor.recordings.mcap_records import (
+    CHUNK,
+    chunk_data,
+    DAMAGE,
+    MESSAGE,
+    read_summary,
+    RECORD,
+    walked,
+)
+from mcap.data_stream import ReadDataStream
+from mcap.records import Chunk, ChunkIndex
 import numpy as np
 from numpy.typing import NDArray
-import zstandard
+from surrogate import limits
 
 Integers = NDArray[np.int64]
 
 LATEST = 2**62  # [ns] later log times are taken for this one, which leaves room for differences
-MESSAGE, CHUNK, MESSAGE_INDEX = 5, 6, 7  # operation codes of records
-RECORD = struct.Struct('<BQ')  # operation code and length of what follows
-CHUNK_HEAD = struct.Struct('<QQQII')  # times, size, checksum, length of the compression's name
+MESSAGE_INDEX = 7  # operation code of a record
+LONGEST = limits.CHUNK + limits.SUMMARY  # [bytes] of a chunk as it stands and its indexes
+PUBLISHED = struct.Struct('<Q')  # the last of the head of a message
 MESSAGE_HEAD = 22  # [bytes] channel, number, log time and publish time
 CHANNEL_NUMBER, SEQUENCE, LOG_TIME = RECORD.size, RECORD.size + 2, RECORD.size + 6  # in a record
 
@@ -75,6 +84,10 @@ class Messages:
         end = begin + int(self.size[at])
         return self.data[begin:end]
 
+    def publish_time(self, at: int) -> int:
+        """Return when one message was published [ns]."""
+        return int(PUBLISHED.unpack_from(self.data, int(self.begin[at]) - PUBLISHED.size)[0])
+
 
 def joined(parts: Sequence[Messages]) -> Messages:
     """Return all messages of `parts`, at least one, one part after the other."""
@@ -88,9 +101,7 @@ def chunk_indexes(
     stream: BinaryIO, topics: Collection[str]
 ) -> tuple[list[ChunkIndex], dict[int, str]]:
     """Return the chunks with messages of `topics` and these topics by channel number."""
-    stream.seek(0)
-    summary = make_reader(stream, validate_crcs=True).get_summary()
-    assert summary is not None
+    summary = read_summary(stream)
     channels = {
         number: channel.topic
         for number, channel in summary.channels.items()
@@ -106,45 +117,28 @@ def chunk_indexes(
 
 def read_chunk(stream: BinaryIO, place: ChunkIndex) -> Messages:
     """Return the messages of a chunk as they stand in it; raises ChunkDamage."""
-    stream.seek(place.chunk_start_offset)
-    raw = stream.read(place.chunk_length + place.message_index_length)
     try:
+        stream.seek(place.chunk_start_offset)
+        length = place.chunk_length + place.message_index_length
+        if length > LONGEST:
+            raise ChunkDamage(f'it has {length} bytes, allowed are {LONGEST}')
+        raw = stream.read(length)
         chunk, indexes = raw[: place.chunk_length], raw[slice(place.chunk_length, None)]
         data = _records(chunk)
         starts = _indexed(data, indexes)
-    except (struct.error, zstandard.ZstdError, RuntimeError, MemoryError) as error:
+        return _messages(data, _walked(data) if starts is None else starts)
+    except ChunkDamage:
+        raise
+    except DAMAGE as error:
         raise ChunkDamage(' '.join(str(error).split())) from None
-    return _messages(data, _walked(data) if starts is None else starts)
 
 
 def _records(raw: bytes) -> bytes:
     """Return the records of a chunk, unpacked and with the right checksum."""
     code, length = RECORD.unpack_from(raw)
-    head = RECORD.size + CHUNK_HEAD.size
-    _, _, size, checksum, name = CHUNK_HEAD.unpack_from(raw, RECORD.size)
-    end = head + name
-    compression, packed = raw[head:end].decode(errors='replace'), raw[slice(end + 8, None)]
     if code != CHUNK or length != len(raw) - RECORD.size:
         raise ChunkDamage('no chunk stands where there should be one')
-    data = _unpacked(compression, packed, size)
-    if len(data) != size:
-        raise ChunkDamage(f'it holds {len(data)} bytes, it should hold {size}')
-    if checksum and zlib.crc32(data) != checksum:
-        raise ChunkDamage('its checksum is wrong')
-    return data
-
-
-def _unpacked(compression: str, packed: bytes, size: int) -> bytes:
-    if compression == 'zstd':
-        return zstandard.ZstdDecompressor().decompress(packed, max_output_size=size)
-    if compression == 'lz4':
-        import lz4.frame
-
-        unpacked: bytes = lz4.frame.decompress(packed)
-        return unpacked
-    if compression:
-        raise ChunkDamage(f'its compression {compression!r} is not known, zstd and lz4 are')
-    return packed
+    return chunk_data(Chunk.read(ReadDataStream(io.BytesIO(raw[RECORD.size :]))))
 
 
 def _indexed(data: bytes, indexes: bytes) -> Integers | None:
@@ -160,6 +154,8 @@ def _indexed(data: bytes, indexes: bytes) -> Integers | None:
     if not parts:
         return None
     starts = np.sort(np.concatenate(parts))
+    if len(starts) > limits.RECORDS:
+        raise ChunkDamage(f'it holds more than {limits.RECORDS} records')
     return starts if _fill(data, starts) else None
 
 
@@ -188,15 +184,7 @@ def _is_no_message(data: bytes, begin: int, end: int) -> bool:
 
 def _walked(data: bytes) -> Integers:
     """Return where message records begin, one after another."""
-    starts, at, end, unpack = [], 0, len(data) - RECORD.size, RECORD.unpack_from
-    while at <= end:
-        code, length = unpack(data, at)
-        if code == MESSAGE:
-            starts.append(at)
-        at += 9 + length
-    if at != len(data):
-        raise ChunkDamage('its last record is cut off')
-    return np.array(starts, dtype=np.int64)
+    return np.array([at for code, at in walked(data) if code == MESSAGE], dtype=np.int64)
 
 
 def _messages(data: bytes, starts: Integers) -> Messages:

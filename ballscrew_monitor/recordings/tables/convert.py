@@ -36,7 +36,7 @@ from geometry_msgs.msg import WrenchStamped
 import numpy as np
 from numpy.typing import NDArray
 from sensor_msgs.msg import JointState, Temperature
-from surrogate.files import InputError
+from surrogate.files import InputError, printable
 from surrogate.units import MILLI
 
 JOINTS = 'joint_states'
@@ -270,7 +270,7 @@ def make_bag(log: Path, config: Path | None, out: Path | None) -> None:
     say(*facts.notes)
     print(f'{out}: judge it by ballscrew replay {out}')
     for one in facts.assumptions:
-        print(f'  assumed {one.key} = {one.value}: {one.reason}')
+        print(printable(f'  assumed {one.key} = {one.value}: {one.reason}'))
 
 
 def _check_log(log: Path) -> None:

@@ -21,8 +21,9 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.log_facts import Assumption
 from ballscrew_monitor.settings.parameters import check_axes
 from surrogate.files import InputError
+from surrogate.limits import read_text
+from surrogate.plain_yaml import plain_values
 from surrogate.units import MICRO, MILLI
-import yaml
 
 UNITS: dict[str, Mapping[str, float]] = {
     'speed': conversions.LINEAR_SPEED_UNITS | conversions.ROTARY_SPEED_UNITS,
@@ -114,8 +115,8 @@ class TableMap:
 def read_map(path: Path) -> TableMap:
     """Return the map in a file; raises InputError when it holds no map."""
     try:
-        content = yaml.safe_load(path.read_text())
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        content = plain_values(read_text(path))
+    except (OSError, UnicodeDecodeError, InputError) as error:
         reason = ' '.join(str(error).split())
         raise InputError(f'map {path} cannot be read: {reason}') from None
     try:
@@ -185,7 +186,7 @@ class _Part:
         name, units = part.text('column'), UNITS[kind]
         unit = part.take('unit')
         numbers = [part.take(key, default) for key, default in (('scale', 1.0), ('offset', 0.0))]
-        if name and unit not in units:
+        if name and not (isinstance(unit, str) and unit in units):
             found = 'missing' if unit is None else repr(unit)
             raise InputError(f'{part._prefix}.unit is {found}, allowed are {", ".join(units)}')
         if not all(map(_is_number, numbers)) or not numbers[0]:

@@ -18,6 +18,7 @@ from ballscrew_monitor.recordings.tables.cells import Array, Cells, first_line, 
 from ballscrew_monitor.recordings.words import Shown, shown_progress
 import numpy as np
 import polars as pl
+from surrogate import limits
 from surrogate.files import InputError
 
 SEPARATORS = (',', ';', '\t', '|')
@@ -25,6 +26,7 @@ COMMENT = '#'
 QUOTED = re.compile('"[^"]*"')
 HEAD = 65536  # [bytes] of a file that tell what it is
 BLOCK = 32768  # rows that are read at a time
+NUMBER = 8  # [bytes] of a cell
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -153,10 +155,20 @@ def _source(path: Path) -> _Source:
         frame = pl.scan_parquet(path)
         with _readable(path):
             rows = int(frame.select(pl.len()).collect().item())
+            columns = len(frame.collect_schema())
+        _check_columns(path, columns)
+        if NUMBER * rows * columns > max(limits.PACKING * size, limits.CHUNK):
+            raise InputError(
+                f'log {path} of {size} bytes holds {rows} rows of {columns} columns, allowed are '
+                f'{limits.PACKING} times its size'
+            )
         return _Source(path=path, frame=frame, separator='', rows=max(rows, 1))
     if b'\0' in head:
         raise InputError(f'log {path} is no text, it must be a CSV or Parquet file')
-    separator = max(SEPARATORS, key=_header(head).count)
+    _check_lines(path)
+    header = _header(path)
+    separator = max(SEPARATORS, key=header.count)
+    _check_columns(path, header.count(separator) + 1)
     frame = pl.scan_csv(
         path,
         separator=separator,
@@ -169,11 +181,45 @@ def _source(path: Path) -> _Source:
     return _Source(path=path, frame=frame, separator=separator, rows=lines)
 
 
-def _header(head: bytes) -> str:
+def _check_columns(path: Path, count: int) -> None:
+    if count > limits.COLUMNS:
+        raise InputError(f'log {path} has {count} columns, allowed are {limits.COLUMNS}')
+
+
+def _check_lines(path: Path) -> None:
+    """Raise InputError if a line is longer than allowed, those within quotes counted as one."""
+    length, quoted = 0, False  # of the line so far [bytes]
+    with path.open('rb') as stream:
+        while block := stream.read(limits.MEGA):
+            first, last = _line_ends(block, quoted)
+            length += len(block) if first < 0 else first
+            if length > limits.LINE:
+                raise InputError(
+                    f'log {path} has a line of more than {limits.LINE // limits.MEGA} MB, a table '
+                    'has shorter ones'
+                )
+            if first >= 0:
+                length = len(block) - last - 1
+            quoted ^= block.count(b'"') % 2 == 1
+
+
+def _line_ends(block: bytes, quoted: bool) -> tuple[int, int]:
+    """Return where the first and the last line end that do so outside of quotes, -1 if none."""
+    if b'"' not in block:
+        return (-1, -1) if quoted else (block.find(b'\n'), block.rfind(b'\n'))
+    letters = np.frombuffer(block, np.uint8)
+    inside = (np.cumsum(letters == ord('"')) + quoted) % 2
+    ends = np.flatnonzero((letters == ord('\n')) & (inside == 0))
+    return (int(ends[0]), int(ends[-1])) if len(ends) else (-1, -1)
+
+
+def _header(path: Path) -> str:
     """Return the first line that is no comment, without what is quoted in it; empty if none."""
-    lines = head.decode('utf-8-sig', 'replace').splitlines()
-    header = next((line for line in lines if line.strip() and not line.startswith(COMMENT)), '')
-    return QUOTED.sub('', header)
+    with path.open('rb') as stream:
+        while line := stream.readline(limits.LINE).decode('utf-8-sig', 'replace'):
+            if line.strip() and not line.startswith(COMMENT):
+                return QUOTED.sub('', line.splitlines()[0])
+    return ''
 
 
 @contextlib.contextmanager

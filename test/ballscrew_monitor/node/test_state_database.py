@@ -140,7 +140,11 @@ def spoil(folder, *statements):
         (["UPDATE axes SET cause = 'LUCK'"], "is damaged ('LUCK')", 3),
         (['UPDATE axes SET running_time_ns = -1'], 'is damaged (running_time_ns is -1)', 3),
         (['UPDATE axes SET event = 1 << 32'], 'is damaged (event 4294967296 is above', 0),
-        (["INSERT INTO corrections VALUES ('x', '', '[1')"], 'is damaged (Expecting', 3),
+        (
+            ["INSERT INTO corrections VALUES ('x', '', '[1')"],
+            'is damaged (it is no JSON (Expecting',
+            3,
+        ),
     ],
 )
 def test_what_no_node_has_left_is_kept_aside(make, tmp_path, statements, why, number):

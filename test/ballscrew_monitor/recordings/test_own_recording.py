@@ -2,10 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recording of a node gives the states of the node again, bit for bit, wherever it begins."""
 
+import contextlib
 import dataclasses
+import itertools
+import json
 from pathlib import Path
 import random
 import re
+import shutil
 import types
 
 from ballscrew_monitor.core.conversions import SECOND
@@ -35,9 +39,13 @@ from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axis
 from geometry_msgs.msg import WrenchStamped
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+from surrogate.files import InputError
 from surrogate.surface import FIELDS
 
 BEGIN = 1_700_000_000 * SECOND
@@ -366,3 +374,55 @@ def test_with_other_parameters_it_is_a_bag_like_any_other(tmp_path):
     *_, outcome, _ = replay_parts(bag, values, states=False)
     assert outcome.judged > 100
     assert bag.notes == []
+
+
+GONE = object()
+OTHERS = [GONE, None, 'a text', -1, 2**70, 1e300, True, [], {}, [[]], {'a': 1}]
+
+
+@pytest.fixture(scope='module')
+def rewritten(tmp_path_factory, copy_bag):
+    """Return the function that gives a recording of which one entry has one value changed."""
+    folder = tmp_path_factory.mktemp('node')
+    node = SmallNode(folder)
+    live(node, seconds=1)
+    node.close()
+    bag = bag_in(folder)
+    journal = journal_of(bag)
+    entries = [
+        json.loads(deserialize_message(one.data, String).data) for one in bag.messages([journal])
+    ]
+
+    def rewrite(number, part, other):
+        entry = json.loads(json.dumps(entries[number % len(entries)]))
+        places = places_in(entry)
+        mapping, key = places[part % len(places)]
+        mapping.pop(key)
+        if other is not GONE:
+            mapping[key] = other
+        count = itertools.count()
+
+        def data_of(message):
+            if message.topic == journal and next(count) == number % len(entries):
+                return serialize_message(String(data=json.dumps(entry)))
+            return message.data
+
+        return copy_bag(bag, tmp_path_factory.mktemp('changed'), data_of)
+
+    return rewrite
+
+
+def places_in(entry):
+    """Return every mapping of an entry with a key of it, those within others too."""
+    below = [place for one in entry.values() if isinstance(one, dict) for place in places_in(one)]
+    return [*((entry, key) for key in entry), *below]
+
+
+@given(number=st.integers(0, 50), part=st.integers(0, 999), other=st.sampled_from(OTHERS))
+def test_an_entry_with_another_value_is_replayed_or_refused(number, part, other, rewritten):
+    bag = rewritten(number, part, other)
+    with contextlib.suppress(InputError):
+        values = recorded_values(bag)
+        is_as_recorded(bag, values)
+        list(replay_parts(bag, values))
+    shutil.rmtree(bag.path)

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 
+from ballscrew_monitor.recordings import bag_writer
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_files import OWN
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
@@ -84,6 +85,19 @@ def test_what_follows_damage_over_the_border_of_chunks_is_recovered(whole):
     assert 100 * (1 - 2 / len(begins)) - 5 < count < 100
     assert numbers(path.parent)[-1] == (99, 7, 99)
     assert Bag(path).metadata == Bag(whole, salvage=True).metadata
+
+
+@pytest.mark.parametrize(
+    'text', ['', '2020-13-45', 'a text', '[: {', '[' * 5000, '- a', '!!python/object:os.x {}']
+)
+def test_what_a_topic_offers_may_be_rubbish(text, tmp_path, monkeypatch):
+    monkeypatch.setattr(bag_writer.yaml, 'safe_dump', lambda *_, **__: text)
+    with BagWriter(tmp_path, 'a') as writer:
+        writer.announce('/a', 'T', b'', type_hash='', profiles=[])
+        writer.write('/a', bytes(8), log_time=1, publish_time=1)
+    monkeypatch.undo()
+    path, count, _ = recover(tmp_path / 'a.mcap')
+    assert (numbers(path), count) == ([(0, 1, 0)], 1)
 
 
 @pytest.mark.parametrize('content', [b'', b'\x89MCAP0\r\n', b'not a recording at all'])

@@ -165,3 +165,12 @@ def interrupted(change, left):
         return change(*arguments, **options)
 
     return changed
+
+
+def test_files_of_others_are_not_replaced(tmp_path, refused):
+    logs.check_output(tmp_path / 'none')
+    logs.check_output(tmp_path)
+    touch(tmp_path / logs.EVENTS)
+    refused('foreign', logs.check_output, tmp_path)
+    touch(tmp_path / logs.PAGE)
+    logs.check_output(tmp_path)

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
+from surrogate import limits
 from surrogate.surface import file, shipped_surface
 
 CLOSED_FORM = shipped_surface(tier='closed_form')
@@ -171,9 +172,9 @@ def stored(path, *sizes):
 def test_a_small_file_that_unpacks_to_much_is_refused_unread(tmp_path, monkeypatch):
     """By the sum over its arrays: each of them alone would do."""
     path = tmp_path / 'bomb.npz'
-    half = file.LARGEST_FILE // 2
+    half = limits.SURFACE // 2
     stored(path, half, half + 1)
-    assert path.stat().st_size < file.LARGEST_FILE / 100
+    assert path.stat().st_size < limits.SURFACE / 100
     with monkeypatch.context() as patch:
         patch.setattr(np, 'load', None)
         with pytest.raises(
@@ -185,7 +186,7 @@ def test_a_small_file_that_unpacks_to_much_is_refused_unread(tmp_path, monkeypat
 def test_the_largest_content_is_read_and_one_beyond_all_memory_is_refused(tmp_path, refused):
     """Exactly at the limit it is read, and found to be no surface."""
     path = tmp_path / 'large.npz'
-    stored(path, file.LARGEST_FILE)
+    stored(path, limits.SURFACE)
     refused('surface_file', file.read, path)
     path = tmp_path / 'empty.npz'
     head = io.BytesIO()

@@ -1,0 +1,206 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Records of an MCAP file within limits: its summary, those of a chunk, and all that are whole.
+
+Nothing is decoded, so the types need not be installed.
+
+"""
+
+import bisect
+from collections.abc import Iterator
+import contextlib
+import io
+from pathlib import Path
+import struct
+from typing import Any, BinaryIO
+import zlib
+
+from ballscrew_monitor.recordings.unpacking import unpacked
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.reader import SeekingReader
+from mcap.records import Channel, Chunk, Message, Metadata, Schema
+from mcap.summary import Summary
+from surrogate import limits
+from zstandard import ZstdError
+
+# What the reader is known to raise for a file that is not as it should be.
+DAMAGE = (
+    McapError,
+    ValueError,
+    KeyError,
+    IndexError,
+    TypeError,
+    AttributeError,
+    EOFError,
+    struct.error,
+    MemoryError,
+    OverflowError,
+    RuntimeError,
+    ZstdError,
+)
+MAGIC_SIZE = 8  # [bytes] at the begin and at the end of a file
+RECORD = struct.Struct('<BQ')  # operation code and length of what follows
+FOOTER = struct.Struct('<BQQQI')  # code, length, begin of summary and its offsets, checksum
+KINDS: dict[int, Any] = {3: Schema, 4: Channel, 12: Metadata}
+"""Records that are read besides messages and chunks, by their operation codes."""
+MESSAGE, CHUNK, DATA_END = 5, 6, 15
+
+
+def read_summary(stream: BinaryIO) -> Summary:
+    """Return the summary of a file; raises one of `DAMAGE`, also if it contradicts itself."""
+    if stream.seek(0, io.SEEK_END) < FOOTER.size + 2 * MAGIC_SIZE:
+        raise McapError('it has no summary')
+    stream.seek(-(FOOTER.size + MAGIC_SIZE), io.SEEK_END)
+    _, _, begin, _, checksum = FOOTER.unpack(stream.read(FOOTER.size))
+    size = stream.tell() - begin
+    if not begin or not 0 < size <= limits.SUMMARY:
+        raise McapError('it has no summary')
+    stream.seek(begin)
+    if checksum and zlib.crc32(stream.read(size)[:-4]) != checksum:
+        raise McapError('the checksum of its summary is wrong')
+    stream.seek(0)
+    reader = SeekingReader(stream, record_size_limit=limits.SUMMARY)
+    summary = reader.get_summary()
+    if summary is None or summary.statistics is None:
+        raise McapError('it has no summary')
+    _check(summary)
+    return summary
+
+
+def _check(summary: Summary) -> None:
+    """Raise McapError if the statistics of a summary contradict it, or themselves."""
+    statistics = summary.statistics
+    assert statistics is not None
+    named = {one.chunk_start_offset for one in summary.chunk_indexes}
+    # A file may do without an index.
+    if named and not statistics.chunk_count == len(summary.chunk_indexes) == len(named):
+        raise McapError(
+            f'its statistics count {statistics.chunk_count} chunks, its summary names {len(named)}'
+        )
+    counts, channels = statistics.channel_message_counts, summary.channels
+    counted = sum(count for number, count in counts.items() if number in channels)
+    if counted != statistics.message_count:
+        raise McapError(
+            f'its statistics count {statistics.message_count} messages, of its channels {counted}'
+        )
+
+
+def read_metadata(stream: BinaryIO) -> Iterator[Metadata]:
+    """Yield what a file says of itself; raises one of `DAMAGE`."""
+    for one in read_summary(stream).metadata_indexes:
+        stream.seek(one.offset)
+        code, length = RECORD.unpack(stream.read(RECORD.size))
+        record = _parsed(code, _body(stream, length))
+        if not isinstance(record, Metadata):
+            raise McapError('no metadata stand where they should')
+        yield record
+
+
+def chunk_data(chunk: Chunk) -> bytes:
+    """Return the records of a chunk, unpacked and with the right checksum; raises ValueError."""
+    size = chunk.uncompressed_size
+    if size > limits.CHUNK:
+        raise ValueError(f'it states {size} bytes, allowed are {limits.CHUNK}')
+    data = unpacked(chunk.data, size, compression=chunk.compression)
+    if len(data) != size:
+        raise ValueError(f'it holds {len(data)} bytes, it should hold {size}')
+    if chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc:
+        raise ValueError('its checksum is wrong')
+    return data
+
+
+def walked(data: bytes) -> list[tuple[int, int]]:
+    """Return code and begin [bytes] of the records of a chunk; raises ValueError."""
+    found, at, end, unpack = [], 0, len(data) - RECORD.size, RECORD.unpack_from
+    while at <= end:
+        code, length = unpack(data, at)
+        found.append((code, at))
+        if len(found) > limits.RECORDS:
+            raise ValueError(f'it holds more than {limits.RECORDS} records')
+        at += RECORD.size + length
+    if at != len(data):
+        raise ValueError('its last record is cut off')
+    return found
+
+
+def whole_records(file: Path, *, strict: bool = False) -> Iterator[Any]:
+    """
+    Yield the records of an MCAP file that are whole, those of a chunk in its place.
+
+    What a summary holds comes first; it tells where chunks begin behind damage, which nothing
+    follows else. A `strict` reader raises one of `DAMAGE` instead.
+
+    """
+    with file.open('rb') as stream:
+        summary = None
+        with contextlib.suppress(*DAMAGE, OSError):
+            summary = read_summary(stream)
+            yield from [*summary.schemas.values(), *summary.channels.values()]
+        begins = sorted(one.chunk_start_offset for one in summary.chunk_indexes) if summary else []
+        for code, at, length in _framed(stream, begins, strict=strict):
+            try:
+                stream.seek(at + RECORD.size)
+                yield from _read(stream, code, length)
+            except DAMAGE:
+                if strict:
+                    raise
+
+
+def _framed(
+    stream: BinaryIO, begins: list[int], *, strict: bool
+) -> Iterator[tuple[int, int, int]]:
+    """Yield code, begin and length [bytes] of the records before the end of the data."""
+    end, at = stream.seek(0, io.SEEK_END), MAGIC_SIZE
+    while at + RECORD.size <= end:
+        stream.seek(at)
+        code, length = RECORD.unpack(stream.read(RECORD.size))
+        place = bisect.bisect_right(begins, at)
+        behind = begins[place] if place < len(begins) else end  # where a chunk begins for certain
+        following = at + RECORD.size + length
+        if code == DATA_END and behind == end:
+            return
+        if code == DATA_END or following > behind:
+            if strict:
+                raise McapError(f'the record at byte {at} is damaged')
+            at = behind
+            continue
+        yield code, at, length
+        at = following
+    if strict:
+        raise McapError('its last record is cut off')
+
+
+def _read(stream: BinaryIO, code: int, length: int) -> Iterator[Any]:
+    if code == CHUNK:
+        data = chunk_data(Chunk.read(ReadDataStream(io.BytesIO(_body(stream, length)))))
+        for kind, at in walked(data):
+            begin = at + RECORD.size
+            end = begin + RECORD.unpack_from(data, at)[1]
+            yield from _known(kind, data[begin:end])
+    elif code in KINDS or code == MESSAGE:
+        yield from _known(code, _body(stream, length))
+
+
+def _known(code: int, body: bytes) -> Iterator[Any]:
+    record = _parsed(code, body)
+    if record is not None:
+        yield record
+
+
+def _body(stream: BinaryIO, length: int) -> bytes:
+    if length > limits.CHUNK:
+        raise McapError(f'a record of {length} bytes, allowed are {limits.CHUNK}')
+    body = stream.read(length)
+    if len(body) != length:
+        raise McapError('a record is cut off')
+    return body
+
+
+def _parsed(code: int, body: bytes) -> Any:
+    """Return a record, None of a kind that is not read; raises one of `DAMAGE`."""
+    stream = ReadDataStream(io.BytesIO(body))
+    if code == MESSAGE:
+        return Message.read(stream, len(body))
+    return KINDS[code].read(stream) if code in KINDS else None

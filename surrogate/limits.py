@@ -1,0 +1,71 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Limits of all that is read: bytes, depth, values, columns; texts and JSON within them.
+
+A small file may come to very much. Every reader takes its limit from here, before it reads.
+
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from surrogate.files import InputError
+
+MEGA = 1_000_000
+TEXT = 8 * MEGA
+"""Largest text that is parsed at once, such as YAML and JSON [byte]."""
+TABLE = 64 * MEGA
+"""Largest table that is read as one text [byte]."""
+DEPTH = 64
+"""Most parts within parts of YAML and JSON."""
+VALUES = 100_000
+"""Most values of a YAML text, those of an alias as often as it stands."""
+MESSAGE = 32 * MEGA
+"""Largest message of a bag, unpacked [byte]."""
+CHUNK = 64 * MEGA
+"""Most that the records of a chunk come to, unpacked [byte]."""
+RECORDS = 500_000
+"""Most records of a chunk."""
+SUMMARY = 32 * MEGA
+"""Largest summary of an MCAP file [byte]."""
+WAITING = 64 * MEGA
+"""Most that messages hold which wait for earlier ones [byte]."""
+PACKING = 200
+"""Largest size of an unpacked bag over the size of its file [-]; one chunk is always allowed."""
+COLUMNS = 5000
+"""Most columns of a table."""
+LINE = 4 * MEGA
+"""Longest line of a table [byte]."""
+SURFACE = 256 * 2**20
+"""Largest surface file, and the most that it may come to when unpacked [byte]."""
+
+
+def read_text(path: str | Path, *, encoding: str = 'utf-8', most: int = TEXT) -> str:
+    """Return a text of `most` bytes; raises InputError, OSError and UnicodeDecodeError."""
+    with Path(path).open(encoding=encoding) as stream:
+        text = stream.read(most + 1)
+    if len(text) > most:
+        raise InputError(f'it is larger than {most / MEGA:g} MB')
+    return text
+
+
+def read_json(text: str | bytes) -> Any:
+    """Return the content of a JSON text; raises InputError."""
+    if len(text) > TEXT:
+        raise InputError(f'it is larger than {TEXT / MEGA:g} MB')
+    try:
+        content = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise InputError(f'it is no JSON ({error})') from None
+    if _is_deeper(content, DEPTH):
+        raise InputError(f'it nests deeper than {DEPTH}')
+    return content
+
+
+def _is_deeper(content: Any, depth: int) -> bool:
+    parts = content.values() if isinstance(content, dict) else content
+    if not isinstance(content, dict | list):
+        return False
+    return depth == 0 or any(_is_deeper(part, depth - 1) for part in parts)
