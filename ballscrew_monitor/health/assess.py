@@ -22,6 +22,7 @@ from ballscrew_monitor.health.change import Change, Days, parts_of, select
 from ballscrew_monitor.health.companions import Companions
 from ballscrew_monitor.health.damage import rated_of
 from ballscrew_monitor.health.energy import energy_quantities, student
+from ballscrew_monitor.health.faults import input_fault
 from ballscrew_monitor.health.life import life_quantities, shaft_notes, unknown
 from ballscrew_monitor.health.lubrication import (
     boundary_note,
@@ -281,6 +282,7 @@ def _notes(
     notes = [boundary_note(points, baseline, surface, today)]
     if baseline is not None:
         changes = [] if change is None else change.relative.tolist()
+        notes.append(input_fault(baseline.points, surface))
         notes.append(changed_screw(baseline, surface.screw_name, changes))
     if change is not None and len(change.groups) < FEWEST_GROUPS:
         notes.append(

@@ -25,7 +25,7 @@ INTERVAL = 3.84
 """Chi squared above the least one at the ends of a 95 % interval, one degree of freedom."""
 EXCLUDED = 9.21
 """Chi squared above that of the best cause from which one does not fit: 99 %, two of freedom."""
-CERTAIN = 15.0
+CERTAIN = 12.0
 """Chi squared that the best cause of nine must gain, so that looks of years seldom err."""
 FEWEST_GROUPS = 3
 """Groups of places without which no pattern tells causes apart."""

@@ -38,7 +38,7 @@ What the fitted surface may be wrong by between two temperatures, over the diffe
 Once for all groups alike, and once for each of them.
 
 """
-WARMTH, UNMEASURED = 0.2, 10.0
+WARMTH, UNMEASURED = 0.25, 10.0
 """
 Standard deviation of the temperature of the contacts over the measured one, or without [K].
 
@@ -93,11 +93,8 @@ class Days:
     ) -> None:
         """Take the points of both times; groups without friction in the baseline tell nothing."""
         self._model = model
-        before, later = _telling(before, model), _telling(later, model)
-        by_group: dict[Group, list[ComparablePoint]] = {}
-        for one in before:
-            by_group.setdefault(group_of(one), []).append(one)
-        means = {group: _mean_point(by_group[group]) for group in sorted(by_group)}
+        before, later = telling(before, model), telling(later, model)
+        means = mean_points(before)
         kept = {g: one for g, one in means.items() if model.measured(one) > 0.0}
         self.groups, self.points = tuple(kept), tuple(kept.values())
         friction = np.array([model.measured(one) for one in self.points])
@@ -236,10 +233,18 @@ def _means(days: Sequence[Information], common: NDArray[np.int64]) -> tuple[Arra
     return (inverse @ pull[known])[chosen], inverse[np.ix_(chosen, chosen)]
 
 
-def _telling(points: Sequence[ComparablePoint], model: Model) -> list[ComparablePoint]:
+def telling(points: Sequence[ComparablePoint], model: Model) -> list[ComparablePoint]:
     """Return the points that tell of friction: an independent load, within the surface."""
     free = [one for one in points if one.load_source is not LoadSource.DERIVED]
     return list(itertools.compress(free, np.isfinite(model.friction(free))))
+
+
+def mean_points(points: Sequence[ComparablePoint]) -> dict[Group, ComparablePoint]:
+    """Return the mean point of each group, in order."""
+    found: dict[Group, list[ComparablePoint]] = {}
+    for one in points:
+        found.setdefault(group_of(one), []).append(one)
+    return {group: _mean_point(found[group]) for group in sorted(found)}
 
 
 def _mean_point(points: Sequence[ComparablePoint]) -> ComparablePoint:
