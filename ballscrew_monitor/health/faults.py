@@ -11,7 +11,7 @@ pattern. The doubts are wide: the surface is not fitted to the axis here.
 
 from collections.abc import Sequence
 
-from ballscrew_monitor.health.causes import birge, Candidate, CANDIDATES
+from ballscrew_monitor.health.causes import birge, Candidate, CANDIDATES, EXCLUDED
 from ballscrew_monitor.health.change import mean_points, telling
 from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.records import CauseCode, ComparablePoint
@@ -29,8 +29,6 @@ LOAD_ERROR = 0.03
 """Error of the torque of the load [-]."""
 CERTAIN, LEFT = 30.0, 0.3
 """Fall of chi squared from which a fault is told, and the part of it that may be left [-]."""
-CLEARER = 25.0
-"""Fall of chi squared by which a fault must fit better than the others to be told alone [-]."""
 
 
 def input_fault(points: Sequence[ComparablePoint], surface: Surface) -> str:
@@ -49,7 +47,7 @@ def input_fault(points: Sequence[ComparablePoint], surface: Surface) -> str:
     (chi, size, best), (second, *_), *_ = sorted(fits, key=lambda fit: fit[0])
     if nothing - chi < CERTAIN or chi > LEFT * nothing:
         return ''
-    if second - chi < CLEARER * birge(chi, len(means)):
+    if second - chi < EXCLUDED * birge(chi, len(means)):
         return (
             'the measured torque lies far from that of the surface, and the motion so far does '
             'not tell why: check sign and unit of the load, torque constant, gear ratio and offset'
