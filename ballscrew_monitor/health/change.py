@@ -15,6 +15,7 @@ import itertools
 import math
 
 from ballscrew_monitor.health.bands import WEEK
+from ballscrew_monitor.health.calibration import EXPECTED
 from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.records import ComparablePoint, LoadSource
 from ballscrew_monitor.health.scatter import (
@@ -93,8 +94,7 @@ class Days:
     ) -> None:
         """Take the points of both times; groups without friction in the baseline tell nothing."""
         self._model = model
-        before, later = telling(before, model), telling(later, model)
-        means = mean_points(before)
+        means = mean_points(telling(before, model))
         kept = {g: one for g, one in means.items() if model.measured(one) > 0.0}
         self.groups, self.points = tuple(kept), tuple(kept.values())
         friction = np.array([model.measured(one) for one in self.points])
@@ -176,7 +176,7 @@ class Days:
             for one in (now, self._before)
         )
         apart = slopes - before
-        drag = abs(calibration.values[1])
+        drag = math.hypot(calibration.values[1], EXPECTED[1])
         warmth = WARMTH if self._measured else UNMEASURED
         drifting = slopes * [0.0, WIPER_DRIFT * drag, SEAL_DRIFT * drag, warmth]
         adjusted = SLOPE_DOUBT * (

@@ -12,9 +12,10 @@ itself in doubt: another power of it changes the friction everywhere by one shar
 from collections.abc import Sequence
 import math
 
-from ballscrew_monitor.health.causes import birge, INTERVAL
+from ballscrew_monitor.health.causes import birge
 from ballscrew_monitor.health.change import Change
 from ballscrew_monitor.health.companions import Companions, NONE_BUILT
+from ballscrew_monitor.health.energy import student
 from ballscrew_monitor.health.life import unknown
 from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.records import Cause, CauseCode, Quantity
@@ -54,7 +55,7 @@ def preload_of(
         return unknown(NAME, '-', 'not known: the companions do not reach these places')
     best = int(np.nanargmin(chis))
     spare = max(len(change.groups) - 1, 1)
-    within = SHARES[chis <= chis[best] + INTERVAL * birge(float(chis[best]), spare)]
+    within = SHARES[chis <= chis[best] + student(change.freedom) ** 2 * birge(float(chis[best]), spare)]
     if within[-1] - within[0] > WIDEST or best == 0:
         why = 'wiper, warmth and preload look alike at these speeds and loads'
         more = '' if measured else '; measure the oil temperature'

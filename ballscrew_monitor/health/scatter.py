@@ -11,10 +11,11 @@ that groups of different days are compared as far as the days allow.
 
 from collections.abc import Sequence
 import dataclasses
+import itertools
 from typing import NamedTuple
 
 from ballscrew_monitor.health.model import Model
-from ballscrew_monitor.health.records import ComparablePoint
+from ballscrew_monitor.health.records import ComparablePoint, LoadSource
 import numpy as np
 from numpy.typing import NDArray
 
@@ -97,9 +98,15 @@ def group_of(point: ComparablePoint) -> Group:
 def seen_of(
     points: Sequence[ComparablePoint], groups: Sequence[Group], friction: Array, model: Model
 ) -> Seen:
-    """Return the days of groups with a `friction` [N m] from their points."""
+    """Return the days of groups with a `friction` [N m] from those points that tell of it."""
     number = {group: at for at, group in enumerate(groups)}
-    points = [one for one in points if group_of(one) in number]
+    free = [one for one in points if one.load_source is not LoadSource.DERIVED]
+    points = [one for one in free if group_of(one) in number]
+    slopes = model.slopes(points)
+    known = np.isfinite(slopes).all(axis=1)
+    points, slopes = list(itertools.compress(points, known)), slopes[known]
+    modelled = slopes[:, :3] @ model.calibration.values[:3]
+    residual = np.array([model.measured(one) for one in points]) - modelled
     kinds = np.array([number[group_of(one)] for one in points], dtype=np.int64)
     keys = np.stack([kinds, np.array([one.first_day for one in points], dtype=np.int64)], axis=1)
     unique, entry = np.unique(keys, axis=0, return_inverse=True)
@@ -112,14 +119,13 @@ def seen_of(
 
     squares = np.bincount(kinds, [one.torque_squares for one in points], len(groups))
     spread = squares / np.maximum(np.bincount(kinds, counts - 1.0, len(groups)), 1.0)
-    slopes = np.nan_to_num(model.slopes(points))
     return Seen(
         friction=friction,
         group=group,
         day=unique[:, 1],
         stretches=stretches,
-        residual=mean(model.residuals(points)),
-        modelled=mean(model.friction(points)),
+        residual=mean(residual),
+        modelled=mean(modelled),
         noise=spread[group] / stretches,
         slopes=np.stack([mean(one) for one in slopes.T], axis=1),
     )
