@@ -17,11 +17,12 @@ from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import changed_screw
 from ballscrew_monitor.health.calibration import calibrated
-from ballscrew_monitor.health.causes import causes_of, FEWEST_GROUPS, fits_of, is_certain
+from ballscrew_monitor.health.causes import causes_of, FEWEST_GROUPS, fits_of
 from ballscrew_monitor.health.change import Change, Days, parts_of, select
 from ballscrew_monitor.health.companions import Companions
 from ballscrew_monitor.health.damage import rated_of
 from ballscrew_monitor.health.energy import energy_quantities, student
+from ballscrew_monitor.health.evidence import is_certain
 from ballscrew_monitor.health.faults import input_fault
 from ballscrew_monitor.health.life import life_quantities, shaft_notes, unknown
 from ballscrew_monitor.health.lubrication import (

@@ -13,7 +13,7 @@ import dataclasses
 import math
 from typing import NamedTuple
 
-from ballscrew_monitor.health.change import Change, Days
+from ballscrew_monitor.health.change import Change
 from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.records import Cause, CauseCode, ComparablePoint, Quantity
 import numpy as np
@@ -25,8 +25,6 @@ INTERVAL = 3.84
 """Chi squared above the least one at the ends of a 95 % interval, one degree of freedom."""
 EXCLUDED = 9.21
 """Chi squared above that of the best cause from which one does not fit: 99 %, two of freedom."""
-CERTAIN = 12.0
-"""Chi squared that the best cause of nine must gain, so that looks of years seldom err."""
 FEWEST_GROUPS = 3
 """Groups of places without which no pattern tells causes apart."""
 STEPS = 41
@@ -183,50 +181,6 @@ def fits_of(change: Change, model: Model) -> list[Fit]:
     return sorted((one for one in found if one is not None), key=lambda one: one.chi)
 
 
-def is_certain(days: Days, recent: Change, model: Model, tolerance: float) -> bool:
-    """
-    Tell whether a cause explains a change of any last days since all before, and nothing does not.
-
-    It must lower chi squared by CERTAIN, and the recent days must still differ from the baseline
-    by a mean above a `tolerance` [-] with it.
-
-    """
-    tables = [(one, _table(one, days.points, model)) for one in CANDIDATES]
-    number = {group: at for at, group in enumerate(days.groups)}
-    lately = [number[group] for group in recent.groups]
-    for change in days.splits():
-        if len(change.groups) < FEWEST_GROUPS:
-            continue
-        chosen = [number[group] for group in change.groups]
-        chis = [_least(change, table[:, chosen]) for _, table in tables]
-        best = int(np.nanargmin([chi for _, chi in chis]))
-        nothing = float(change.change @ np.linalg.inv(change.covariance) @ change.change)
-        gained = (nothing - chis[best][1]) / birge(chis[best][1], len(change.groups))
-        if gained > CERTAIN:
-            table = tables[best][1][:, lately]
-            at, _ = _least(recent, table)
-            pattern = np.abs(table[at])
-            if float(pattern.sum()) > tolerance * float(recent.friction.sum()):
-                return True
-    return False
-
-
-def _table(candidate: Candidate, points: Sequence[ComparablePoint], model: Model) -> Array:
-    """Return the patterns of a cause over all sizes that are tried, a row for each."""
-    sizes = np.linspace(candidate.low, candidate.high, STEPS).tolist()
-    return np.array([candidate.pattern(model, points, size) for size in sizes])
-
-
-def _least(change: Change, table: Array) -> tuple[int, float]:
-    """Return the row of the least chi squared, and that at the vertex beside it."""
-    apart = change.change - table
-    chis = np.einsum('ij,jk,ik->i', apart, np.linalg.inv(change.covariance), apart)
-    if not np.isfinite(chis).any():
-        return 0, math.nan
-    at = int(np.nanargmin(chis))
-    return at, _vertex(np.arange(len(chis), dtype=float), chis, at)[1]
-
-
 def causes_of(change: Change, fits: Sequence[Fit]) -> list[Cause]:
     """Return all causes with their weights, the best first; those that do not fit are excluded."""
     if len(change.groups) < FEWEST_GROUPS or not fits:
@@ -253,7 +207,7 @@ def _fit(candidate: Candidate, change: Change, model: Model, inverse: Array) -> 
         if not np.isfinite(chis).any():
             return None
         place = int(np.nanargmin(chis))
-        size, chi = _vertex(sizes, chis, place)
+        size, chi = vertex(sizes, chis, place)
         limit = chi + INTERVAL * birge(chi, len(change.groups))
         ends = [_crossing(sizes, chis, place, limit, step) for step in (-1, 1)]
         step = float(sizes[1] - sizes[0])
@@ -268,7 +222,7 @@ def _chi(candidate: Candidate, change: Change, model: Model, inverse: Array, siz
     return float(apart @ inverse @ apart)
 
 
-def _vertex(sizes: Array, chis: Array, place: int) -> tuple[float, float]:
+def vertex(sizes: Array, chis: Array, place: int) -> tuple[float, float]:
     """Return size and chi squared at the vertex of the parabola about the least one."""
     if not 0 < place < len(sizes) - 1 or not np.isfinite(chis[[place - 1, place + 1]]).all():
         return float(sizes[place]), float(chis[place])

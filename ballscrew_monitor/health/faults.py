@@ -37,7 +37,8 @@ def input_fault(points: Sequence[ComparablePoint], surface: Surface) -> str:
     means = list(mean_points(telling(points, model)).values())
     if len(means) <= len(FAULTS):
         return ''
-    residual, inverse = model.residuals(means), np.linalg.inv(_covariance(model, means))
+    residual = model.residuals(means)
+    inverse: Array = np.linalg.inv(_covariance(model, means)).astype(float)
     nothing = float(residual @ inverse @ residual)
     fits = [
         (*_fit(one.pattern(model, means, 1.0), residual, inverse), one)

@@ -54,8 +54,8 @@ def preload_of(
     if not np.isfinite(chis).any():
         return unknown(NAME, '-', 'not known: the companions do not reach these places')
     best = int(np.nanargmin(chis))
-    spare = max(len(change.groups) - 1, 1)
-    within = SHARES[chis <= chis[best] + student(change.freedom) ** 2 * birge(float(chis[best]), spare)]
+    scale = birge(float(chis[best]), max(len(change.groups) - 1, 1))
+    within = SHARES[chis <= chis[best] + student(change.freedom) ** 2 * scale]
     if within[-1] - within[0] > WIDEST or best == 0:
         why = 'wiper, warmth and preload look alike at these speeds and loads'
         more = '' if measured else '; measure the oil temperature'

@@ -11,7 +11,6 @@ that groups of different days are compared as far as the days allow.
 
 from collections.abc import Sequence
 import dataclasses
-import itertools
 from typing import NamedTuple
 
 from ballscrew_monitor.health.model import Model
@@ -103,8 +102,8 @@ def seen_of(
     free = [one for one in points if one.load_source is not LoadSource.DERIVED]
     points = [one for one in free if group_of(one) in number]
     slopes = model.slopes(points)
-    known = np.isfinite(slopes).all(axis=1)
-    points, slopes = list(itertools.compress(points, known)), slopes[known]
+    known = np.flatnonzero(np.isfinite(slopes).all(axis=1))
+    points, slopes = [points[at] for at in known], slopes[known]
     modelled = slopes[:, :3] @ model.calibration.values[:3]
     residual = np.array([model.measured(one) for one in points]) - modelled
     kinds = np.array([number[group_of(one)] for one in points], dtype=np.int64)
@@ -112,7 +111,7 @@ def seen_of(
     unique, entry = np.unique(keys, axis=0, return_inverse=True)
     entry, group = entry.ravel(), unique[:, 0]
     counts = np.array([float(one.stretches) for one in points])
-    stretches = np.bincount(entry, counts)
+    stretches = np.bincount(entry, counts).astype(float)
 
     def mean(values: Array) -> Array:
         return np.asarray(np.bincount(entry, counts * values) / stretches)

@@ -10,7 +10,6 @@ element of a structured array of the same fields: both read and write `record.fi
 """
 
 import dataclasses
-import functools
 from typing import Any, TypeVar
 
 import numpy as np
@@ -27,7 +26,6 @@ def many(count: int, start: float) -> Any:
     )
 
 
-@functools.cache
 def dtype_of(kind: type[Any]) -> np.dtype[Any]:
     """Return the type of an array of records."""
     parts: list[Any] = []
