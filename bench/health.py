@@ -12,49 +12,28 @@ asked for: they take minutes.
 
 import argparse
 
-from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.health.assess import assess, compare, HealthSettings
+from ballscrew_monitor.health.assess import compare
 from ballscrew_monitor.health.companions import Companions
-from ballscrew_monitor.health.rows import DAY
 from health_parts.machine import Ground, solve_ground
-from health_parts.score import Assess, Score, score
+from health_parts.score import Compare, Score, score
 from health_parts.years import draw_year, Kind, Truth
 import numpy as np
 from surrogate.progress import Progress
 
 AIMED_LOSS = 0.10
-LIMITS = Limits(
-    rcs=0.01,
-    efficiency=0.85,
-    light_load=0.0,
-    standstill_speed=0.3,
-    raise_delay=0,
-    clear_delay=0,
-    hysteresis=0.0,
-)
-PRELOADS = (Truth.PRELOAD_10, Truth.PRELOAD_20, Truth.PRELOAD_38)
 
 
-def assess_with(ground: Ground) -> Assess:
-    """Return the assessment with the surfaces of the screw."""
+def compare_with(ground: Ground) -> Compare:
+    """Return the comparison with the surfaces of the screw."""
     surface, companions = ground.surfaces[1.0], Companions(ground.surfaces)
-    settings = HealthSettings(limits=LIMITS)
-
-    def condition(last, baseline, points):
-        return compare(baseline, points, last, surface, companions).condition
-
-    def health(last, baseline, points):
-        now = (last + 1) * DAY - 1
-        return assess('x', now, baseline, points, (), surface, companions, settings)
-
-    return Assess(condition, health)
+    return lambda last, baseline, points: compare(baseline, points, last, surface, companions)
 
 
 def scores_of(ground: Ground, kind: Kind, seeds: range, progress: Progress) -> list[Score]:
     """Return the scores of years of a kind."""
     found = []
     for seed in seeds:
-        found.append(score(draw_year(ground, kind, seed), assess_with(ground)))
+        found.append(score(draw_year(ground, kind, seed), compare_with(ground)))
         progress.step()
     return found
 

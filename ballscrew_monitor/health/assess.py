@@ -17,11 +17,13 @@ from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import changed_screw
 from ballscrew_monitor.health.calibration import calibrated
-from ballscrew_monitor.health.causes import causes_of, FEWEST_GROUPS, Fit, fits_of, is_certain
-from ballscrew_monitor.health.change import Change, change_between, parts_of, select
+from ballscrew_monitor.health.causes import causes_of, FEWEST_GROUPS, fits_of
+from ballscrew_monitor.health.change import Change, Days, parts_of, select
 from ballscrew_monitor.health.companions import Companions
 from ballscrew_monitor.health.damage import rated_of
 from ballscrew_monitor.health.energy import energy_quantities, student
+from ballscrew_monitor.health.evidence import is_certain
+from ballscrew_monitor.health.faults import input_fault
 from ballscrew_monitor.health.life import life_quantities, shaft_notes, unknown
 from ballscrew_monitor.health.lubrication import (
     boundary_note,
@@ -41,6 +43,7 @@ from ballscrew_monitor.health.records import (
     SpectrumBin,
 )
 from ballscrew_monitor.health.remedies import remedies_of
+from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.words import advice_of, verdict_of
 from surrogate.surface import Surface
 
@@ -147,16 +150,24 @@ def compare(
         companions if isinstance(companions, Companions) else None,
         None if known is None else calibrated(known.points, surface),
     )
-    recent = recent_of(points, today)
-    change = None if known is None else change_between(known.points, recent, model)
-    if change is not None and change.stretches < FEWEST_STRETCHES:
-        change = None
-    reason = _reason(baseline, points, recent, change)
-    fits = [] if change is None else fits_of(change, model)
-    causes = [] if change is None else causes_of(change, fits)
+    days = None if known is None else Days(known.points, _since(known, points), model)
+    week, month = (_change(days, today - length) for length in (SHORT, RECENT))
+    change = week or month
+    reason = _reason(baseline, points, recent_of(points, today), change)
+    causes = [] if month is None else causes_of(month, fits_of(month, model))
     preload = preload_of(change, model, reason, companions, causes)
-    condition = _condition(change, model, fits, preload)
+    condition = _condition(days, change, month, model)
     return Compared(model, change, reason, _drag(change, reason), preload, condition, causes)
+
+
+def _since(baseline: Baseline, points: Sequence[ComparablePoint]) -> list[ComparablePoint]:
+    return [one for one in points if one.first_day * DAY >= baseline.end]
+
+
+def _change(days: Days | None, after: int) -> Change | None:
+    """Return the change of the days after one, None where it has too few stretches."""
+    change = None if days is None else days.change(after + 1)
+    return change if change is not None and change.stretches >= FEWEST_STRETCHES else None
 
 
 def recent_of(points: Sequence[ComparablePoint], today: int) -> list[ComparablePoint]:
@@ -207,22 +218,16 @@ def _interval(name: str, unit: str, value: float, deviation: float, change: Chan
 
 
 def _condition(
-    change: Change | None, model: Model, fits: Sequence[Fit], preload: Quantity
+    days: Days | None, change: Change | None, month: Change | None, model: Model
 ) -> Condition:
-    """Return the condition by the intervals of drag and preload, or the pattern of a cause."""
-    if change is None:
+    """Return the condition by the interval of the drag, or the pattern of a cause."""
+    if days is None or change is None or month is None:
         return Condition.UNKNOWN
     reach = student(change.freedom) * change.deviation
-    lost = preload.is_known and _surely_lost(preload)
-    certain = lost or is_certain(change, model, fits, TOLERANCE)
+    certain = is_certain(days, month, model, TOLERANCE)
     if certain or abs(change.common) - SURE * reach > TOLERANCE:
         return Condition.WORSE
     return Condition.NORMAL if reach <= NARROW else Condition.UNKNOWN
-
-
-def _surely_lost(preload: Quantity) -> bool:
-    """Tell whether the preload is below normal with 99.9 % confidence."""
-    return preload.value + SURE * (preload.high - preload.value) < 1.0 - TOLERANCE
 
 
 def _drags(change: Change | None, drag: Quantity, reason: str) -> list[Quantity]:
@@ -278,6 +283,7 @@ def _notes(
     notes = [boundary_note(points, baseline, surface, today)]
     if baseline is not None:
         changes = [] if change is None else change.relative.tolist()
+        notes.append(input_fault(baseline.points, surface))
         notes.append(changed_screw(baseline, surface.screw_name, changes))
     if change is not None and len(change.groups) < FEWEST_GROUPS:
         notes.append(

@@ -15,18 +15,16 @@ from typing import NamedTuple
 
 from ballscrew_monitor.health.change import Change
 from ballscrew_monitor.health.model import Model
-from ballscrew_monitor.health.records import Cause, CauseCode, Quantity
+from ballscrew_monitor.health.records import Cause, CauseCode, ComparablePoint, Quantity
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Pattern = Callable[[Model, Change, float], Array]
+Pattern = Callable[[Model, Sequence[ComparablePoint], float], Array]
 INTERVAL = 3.84
 """Chi squared above the least one at the ends of a 95 % interval, one degree of freedom."""
 EXCLUDED = 9.21
 """Chi squared above that of the best cause from which one does not fit: 99 %, two of freedom."""
-CERTAIN = 15.0
-"""Chi squared that the best cause of nine must gain, so that looks of years seldom err."""
 FEWEST_GROUPS = 3
 """Groups of places without which no pattern tells causes apart."""
 STEPS = 41
@@ -48,13 +46,13 @@ class Candidate(NamedTuple):
     otherwise: str
 
 
-def _opposing(change: Change, values: Sequence[float]) -> Array:
+def _opposing(points: Sequence[ComparablePoint], values: Sequence[float]) -> Array:
     """Return torques of the machine frame as torques against the motion [N m]."""
-    return np.array([np.sign(one.speed) * value for one, value in zip(change.points, values)])
+    return np.array([np.sign(one.speed) * value for one, value in zip(points, values)])
 
 
-def _ideal(model: Model, change: Change) -> Array:
-    return np.array([model.ideal(one) for one in change.points])
+def _ideal(model: Model, points: Sequence[ComparablePoint]) -> Array:
+    return np.array([model.ideal(one) for one in points])
 
 
 CANDIDATES = (
@@ -64,7 +62,7 @@ CANDIDATES = (
         '-',
         0.3,
         1.2,
-        lambda model, change, size: model.relieved(change.points, size),
+        lambda model, points, size: model.relieved(points, size),
         'the preload is {value:.0%} of what it was ({low:.0%} to {high:.0%})',
         'less preload lowers the friction most at low speed and light load',
     ),
@@ -74,7 +72,7 @@ CANDIDATES = (
         'K',
         0.0,
         40.0,
-        lambda model, change, size: model.warmer(change.points, size),
+        lambda model, points, size: model.warmer(points, size),
         'the oil is thinner, or the contacts are warmer than measured: as if {value:.0f} K warmer '
         '({low:.0f} to {high:.0f})',
         'a thinner oil changes the friction most where the film carries',
@@ -85,7 +83,7 @@ CANDIDATES = (
         'K',
         0.0,
         40.0,
-        lambda model, change, size: model.warmer(change.points, -size),
+        lambda model, points, size: model.warmer(points, -size),
         'the oil is thicker, or the contacts are colder than measured: as if {value:.0f} K colder '
         '({low:.0f} to {high:.0f})',
         'a thicker oil changes the friction most where the film carries',
@@ -96,7 +94,7 @@ CANDIDATES = (
         '-',
         0.1,
         1.0,
-        lambda model, change, size: model.starved(change.points, size),
+        lambda model, points, size: model.starved(points, size),
         'the film is {value:.0%} of a flooded one ({low:.0%} to {high:.0%}): oil or grease is '
         'missing',
         'a thin film raises the friction at low speed alone',
@@ -107,7 +105,7 @@ CANDIDATES = (
         'N m',
         -0.5,
         0.5,
-        lambda model, change, size: np.full(len(change.points), size),
+        lambda model, points, size: np.full(len(points), size),
         'a constant drag of {value:+.3f} N m ({low:+.3f} to {high:+.3f}): wipers, covers or '
         'bearings',
         'a wiper adds one torque at all speeds and loads',
@@ -118,7 +116,7 @@ CANDIDATES = (
         'N m s/rad',
         -0.01,
         0.01,
-        lambda model, change, size: size * np.abs([one.speed for one in change.points]),
+        lambda model, points, size: size * np.abs([one.speed for one in points]),
         'a drag in proportion to the speed, {value:+.2g} N m s/rad ({low:+.2g} to {high:+.2g}): '
         'grease or oil is churned',
         'churning grows with the speed and vanishes at rest',
@@ -129,7 +127,7 @@ CANDIDATES = (
         '-',
         -2.5,
         2.5,
-        lambda model, change, size: size * _ideal(model, change),
+        lambda model, points, size: size * _ideal(model, points),
         'the residual follows the load ({value:+.2f} of it, {low:+.2f} to {high:+.2f}): its sign, '
         'unit or zero is another one',
         'a wrong load gives a residual in proportion to the load',
@@ -140,9 +138,7 @@ CANDIDATES = (
         '-',
         -0.6,
         0.6,
-        lambda model, change, size: (
-            size * _opposing(change, [one.motor_torque for one in change.points])
-        ),
+        lambda model, points, size: size * _opposing(points, [one.motor_torque for one in points]),
         'the residual follows the torque ({value:+.0%}, {low:+.0%} to {high:+.0%}): the torque '
         'constant or the gear ratio is another one',
         'another torque constant changes all torques by one factor, that of the load as well',
@@ -153,7 +149,7 @@ CANDIDATES = (
         'N m',
         -1.0,
         1.0,
-        lambda model, change, size: _opposing(change, [size] * len(change.points)),
+        lambda model, points, size: _opposing(points, [size] * len(points)),
         'the torque has an offset of {value:+.3f} N m ({low:+.3f} to {high:+.3f}) in both '
         'directions',
         'an offset of the sensor helps one direction and hinders the other',
@@ -185,22 +181,6 @@ def fits_of(change: Change, model: Model) -> list[Fit]:
     return sorted((one for one in found if one is not None), key=lambda one: one.chi)
 
 
-def is_certain(change: Change, model: Model, fits: Sequence[Fit], tolerance: float) -> bool:
-    """
-    Tell whether a cause explains the change and no change at all does not.
-
-    It must lower chi squared by CERTAIN, and be a mean change above a `tolerance` [-].
-
-    """
-    if len(change.groups) < FEWEST_GROUPS or not fits:
-        return False
-    best = fits[0]
-    nothing = float(change.change @ np.linalg.inv(change.covariance) @ change.change)
-    gained = (nothing - best.chi) / birge(best.chi, len(change.groups))
-    pattern = np.abs(best.candidate.pattern(model, change, best.size))
-    return gained > CERTAIN and float(pattern.sum()) > tolerance * float(change.friction.sum())
-
-
 def causes_of(change: Change, fits: Sequence[Fit]) -> list[Cause]:
     """Return all causes with their weights, the best first; those that do not fit are excluded."""
     if len(change.groups) < FEWEST_GROUPS or not fits:
@@ -227,7 +207,7 @@ def _fit(candidate: Candidate, change: Change, model: Model, inverse: Array) -> 
         if not np.isfinite(chis).any():
             return None
         place = int(np.nanargmin(chis))
-        size, chi = _vertex(sizes, chis, place)
+        size, chi = vertex(sizes, chis, place)
         limit = chi + INTERVAL * birge(chi, len(change.groups))
         ends = [_crossing(sizes, chis, place, limit, step) for step in (-1, 1)]
         step = float(sizes[1] - sizes[0])
@@ -238,11 +218,11 @@ def _fit(candidate: Candidate, change: Change, model: Model, inverse: Array) -> 
 
 
 def _chi(candidate: Candidate, change: Change, model: Model, inverse: Array, size: float) -> float:
-    apart = change.change - candidate.pattern(model, change, size)
+    apart = change.change - candidate.pattern(model, change.points, size)
     return float(apart @ inverse @ apart)
 
 
-def _vertex(sizes: Array, chis: Array, place: int) -> tuple[float, float]:
+def vertex(sizes: Array, chis: Array, place: int) -> tuple[float, float]:
     """Return size and chi squared at the vertex of the parabola about the least one."""
     if not 0 < place < len(sizes) - 1 or not np.isfinite(chis[[place - 1, place + 1]]).all():
         return float(sizes[place]), float(chis[place])

@@ -8,59 +8,55 @@ day is the unit of the scatter: all of its stretches share the warmth of the mac
 
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 import dataclasses
+import functools
+import itertools
 import math
-from typing import NamedTuple
 
+from ballscrew_monitor.health.bands import WEEK
+from ballscrew_monitor.health.calibration import EXPECTED
 from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.records import ComparablePoint, LoadSource
+from ballscrew_monitor.health.scatter import (
+    Group,
+    group_of,
+    Information,
+    information_of,
+    scatter_of,
+    Seen,
+    seen_of,
+    WORTH,
+)
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-USUAL_SCATTER, USUAL_FREEDOM = 0.02, 4
-"""Scatter between days that is expected before it is seen [-], and the days that it counts as."""
-OWN_SCATTER, OWN_FREEDOM = 0.01, 10
-"""The same of one group apart from the others [-], and what it counts as."""
-SLOPE_DOUBT = 0.05
+SLOPE_DOUBT = 0.03
 """
 What the fitted surface may be wrong by between two temperatures, over the difference [-].
 
 Once for all groups alike, and once for each of them.
 
 """
-WARMTH, UNMEASURED = 1.2, 10.0
-"""Standard deviation of the temperature of the contacts over the measured one, or without [K]."""
-WIPER_DRIFT = 0.1
-"""Standard deviation of the drag of a wiper from weeks to weeks, over that drag [-]."""
+WARMTH, UNMEASURED = 0.25, 10.0
+"""
+Standard deviation of the temperature of the contacts over the measured one, or without [K].
 
+That of the days comes beside it.
 
-class Group(NamedTuple):
-    """Places that are compared: bands of speed and load, and the direction."""
+"""
+WIPER_DRIFT, SEAL_DRIFT = 0.07, 0.2
+"""
+Standard deviation of the drag of a wiper over months, over that drag [-].
 
-    speed: int
-    load: int
-    direction: int
+The constant drag, and what it has more near standstill.
 
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Days:
-    """
-    One group over some days: a mean point, its residual, and what each day had.
-
-    `residual` and `friction` [N m] oppose the motion; `days` and `residuals` belong together;
-    `spread` [N m] is the standard deviation of one stretch.
-
-    """
-
-    point: ComparablePoint
-    residual: float
-    friction: float
-    days: tuple[int, ...]
-    residuals: tuple[float, ...]
-    stretches: int
-    spread: float
+"""
+SCATTER_DAYS = 28
+"""Days before today of which the scatter counts, beside those of the baseline."""
+MOST_DOUBLINGS = 12
+"""Times that a week is doubled for another look at all of the days: 80 years."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -90,76 +86,113 @@ class Change:
         return self.change / self.friction
 
 
-def grouped(points: Iterable[ComparablePoint]) -> dict[Group, list[ComparablePoint]]:
-    """Return the points that tell of friction, by group."""
-    found: dict[Group, list[ComparablePoint]] = {}
-    for point in points:
-        if point.load_source is not LoadSource.DERIVED:
-            place = point.place
-            found.setdefault(Group(place.speed, place.load, place.direction), []).append(point)
-    return found
+class Days:
+    """What a baseline and the days after it tell of the friction of its groups."""
 
+    def __init__(
+        self, before: Sequence[ComparablePoint], later: Sequence[ComparablePoint], model: Model
+    ) -> None:
+        """Take the points of both times; groups without friction in the baseline tell nothing."""
+        self._model = model
+        means = mean_points(telling(before, model))
+        kept = {g: one for g, one in means.items() if model.measured(one) > 0.0}
+        self.groups, self.points = tuple(kept), tuple(kept.values())
+        friction = np.array([model.measured(one) for one in self.points])
+        self._before, self._later = (
+            seen_of(points, self.groups, friction, model) for points in (before, later)
+        )
+        self._measured = all(one.temperature_measured for one in (*before, *later))
 
-def days_of(points: Sequence[ComparablePoint], model: Model) -> Days | None:
-    """Return what a group comes to over the days of its points, None outside the surface."""
-    residuals = model.residuals(points)
-    known = np.isfinite(residuals)
-    if not known.any():
-        return None
-    points = [one for one, fits in zip(points, known) if fits]
-    residuals, counts = residuals[known], np.array([one.stretches for one in points])
-    days = sorted({one.first_day for one in points})
-    daily = [_mean(residuals, counts, [one.first_day == day for one in points]) for day in days]
-    squares = sum(one.torque_squares for one in points)
-    freedom = sum(one.stretches - 1 for one in points)
-    point = _mean_point(points, counts)
-    return Days(
-        point=point,
-        residual=float(np.mean(daily)),
-        friction=float(np.average([model.measured(one) for one in points], weights=counts)),
-        days=tuple(days),
-        residuals=tuple(daily),
-        stretches=int(counts.sum()),
-        spread=math.sqrt(squares / freedom) if freedom else 0.0,
-    )
+    @functools.cached_property
+    def _information(self) -> tuple[dict[int, Information], dict[int, Information]]:
+        """Return what each day tells, of the baseline and later."""
+        late = self._later.where(self._later.day > self._later.day.max() - SCATTER_DAYS)
+        scatter = scatter_of((self._before, late))
+        first, last = (
+            {int(day.day[0]): information_of(day, scatter) for day in seen.days()}
+            for seen in (self._before, self._later)
+        )
+        return first, last
+
+    def splits(self) -> Iterator[Change]:
+        """Yield the changes of the last week, two, four and so on since all days before."""
+        day = self._later.day
+        lengths = [WEEK * 2**power for power in range(MOST_DOUBLINGS)] if day.size else []
+        for length in lengths:
+            since = int(day.max()) - length + 1
+            change = self.change(since, joined=True)
+            if change is not None:
+                yield change
+            if not (day < since).any():
+                return
+
+    def change(self, since: int, *, joined: bool = False) -> Change | None:
+        """
+        Return the change of the days from `since` on, None where they have no group in common.
+
+        Before are the days of the baseline, or, if `joined`, all days before `since`.
+
+        """
+        is_now = self._later.day >= since
+        now = self._later.where(is_now)
+        earlier = self._later.where(~is_now & joined)
+        common = np.unique(now.group)
+        common = common[np.isin(common, self._before.group)]
+        if not common.size:
+            return None
+        first, last = self._information
+        days = [last[day] for day in np.unique(now.day).tolist()]
+        past = [last[day] for day in np.unique(earlier.day).tolist()]
+        old, old_covariance = _means([*first.values(), *past], common)
+        new, new_covariance = _means(days, common)
+        friction = self._before.friction[common]
+        change = new - old
+        covariance = old_covariance + new_covariance + self._doubt(earlier, now, common)
+        weights = friction / friction.sum()
+        relative = covariance / np.outer(friction, friction)
+        return Change(
+            groups=tuple(self.groups[at] for at in common),
+            points=tuple(self.points[at] for at in common),
+            change=change,
+            friction=friction,
+            covariance=covariance,
+            common=float(weights @ (change / friction)),
+            deviation=math.sqrt(float(weights @ relative @ weights)),
+            freedom=len(np.unique(self._before.day)) - 1 + WORTH,
+            stretches=int(now.stretches.sum()),
+        )
+
+    def _doubt(self, earlier: Seen, now: Seen, common: NDArray[np.int64]) -> Array:
+        """
+        Return the covariance of what groups share beside the days [N2 m2].
+
+        What the fit leaves open between both conditions, and what may come and go: warmth of the
+        contacts by another programme, drag of the wiper.
+
+        """
+        calibration = self._model.calibration
+        slopes, before = (
+            np.stack([one.mean(slope)[common] for slope in one.slopes.T], axis=1)
+            for one in (now, self._before)
+        )
+        apart = slopes - before
+        drag = math.hypot(calibration.values[1], EXPECTED[1])
+        warmth = WARMTH if self._measured else UNMEASURED
+        drifting = slopes * [0.0, WIPER_DRIFT * drag, SEAL_DRIFT * drag, warmth]
+        adjusted = SLOPE_DOUBT * (
+            now.mean(now.modelled) - self._before.mean(self._before.modelled)
+        )
+        adjusted = adjusted[common]
+        fitted = apart @ np.array(calibration.covariance) @ apart.T
+        alike = np.outer(adjusted, adjusted) + np.diag(adjusted**2)
+        return np.asarray(fitted + drifting @ drifting.T + alike)
 
 
 def change_between(
     before: Sequence[ComparablePoint], now: Sequence[ComparablePoint], model: Model
 ) -> Change | None:
     """Return the change from `before` to `now`, None where no group has points of both."""
-    pairs: dict[Group, tuple[Days, Days]] = {}
-    old, new = grouped(before), grouped(now)
-    for group in old.keys() & new.keys():
-        first, last = days_of(old[group], model), days_of(new[group], model)
-        if first and last and first.friction > 0.0:
-            pairs[group] = first, last
-    if not pairs:
-        return None
-    groups = tuple(sorted(pairs))
-    firsts, lasts = zip(*(pairs[group] for group in groups))
-    friction = np.array([one.friction for one in firsts])
-    change = np.array([b.residual - a.residual for a, b in zip(firsts, lasts)])
-    scatter, own_scatter, freedom = _scatter(firsts, friction)
-    shares = _days_share(firsts) + _days_share(lasts)
-    own = _own_variance(firsts, own_scatter * friction)
-    own += _own_variance(lasts, own_scatter * friction)
-    covariance = np.diag(own) + _doubt(model, firsts, lasts)
-    covariance += scatter**2 * shares * np.outer(friction, friction)
-    weights = friction / friction.sum()
-    common = float(weights @ (change / friction))
-    relative = covariance / np.outer(friction, friction)
-    return Change(
-        groups=groups,
-        points=tuple(one.point for one in firsts),
-        change=change,
-        friction=friction,
-        covariance=covariance,
-        common=common,
-        deviation=math.sqrt(float(weights @ relative @ weights)),
-        freedom=freedom,
-        stretches=sum(one.stretches for one in lasts),
-    )
+    return Days(before, now, model).change(0)
 
 
 def parts_of(change: Change) -> tuple[Array, Array] | None:
@@ -191,12 +224,32 @@ def select(change: Change, chosen: Sequence[bool]) -> tuple[float, float]:
     return value, math.sqrt(float(weights @ relative @ weights))
 
 
-def _mean(values: Array, counts: Array, chosen: Sequence[bool]) -> float:
-    mask = np.array(chosen)
-    return float(np.average(values[mask], weights=counts[mask]))
+def _means(days: Sequence[Information], common: NDArray[np.int64]) -> tuple[Array, Array]:
+    """Return the mean residual of groups [N m] with their covariance [N2 m2]."""
+    matrix, pull = (sum(parts) for parts in zip(*days))
+    known = np.flatnonzero(np.diag(matrix) > 0.0)
+    inverse = np.linalg.inv(matrix[np.ix_(known, known)])
+    chosen = np.searchsorted(known, common)
+    return (inverse @ pull[known])[chosen], inverse[np.ix_(chosen, chosen)]
 
 
-def _mean_point(points: Sequence[ComparablePoint], counts: Array) -> ComparablePoint:
+def telling(points: Sequence[ComparablePoint], model: Model) -> list[ComparablePoint]:
+    """Return the points that tell of friction: an independent load, within the surface."""
+    free = [one for one in points if one.load_source is not LoadSource.DERIVED]
+    return list(itertools.compress(free, np.isfinite(model.friction(free))))
+
+
+def mean_points(points: Sequence[ComparablePoint]) -> dict[Group, ComparablePoint]:
+    """Return the mean point of each group, in order."""
+    found: dict[Group, list[ComparablePoint]] = {}
+    for one in points:
+        found.setdefault(group_of(one), []).append(one)
+    return {group: _mean_point(found[group]) for group in sorted(found)}
+
+
+def _mean_point(points: Sequence[ComparablePoint]) -> ComparablePoint:
+    counts = [one.stretches for one in points]
+
     def mean(name: str) -> float:
         return float(np.average([getattr(one, name) for one in points], weights=counts))
 
@@ -209,65 +262,3 @@ def _mean_point(points: Sequence[ComparablePoint], counts: Array) -> ComparableP
         residual=math.nan,
         temperature_measured=all(one.temperature_measured for one in points),
     )
-
-
-def _scatter(groups: Sequence[Days], friction: Array) -> tuple[float, float, int]:
-    """
-    Return the scatter between the days of a baseline [-], with the degrees of freedom.
-
-    What all groups of a day share comes first, then what a group has beside it.
-
-    """
-    apart: dict[int, list[tuple[float, float]]] = {}
-    for one, torque in zip(groups, friction):
-        for day, residual in zip(one.days, one.residuals):
-            apart.setdefault(day, []).append(((residual - one.residual) / torque, torque))
-    daily: list[float] = []
-    rest: list[float] = []
-    for pairs in apart.values():
-        values, weights = zip(*pairs)
-        daily.append(float(np.average(values, weights=weights)))
-        rest += [value - daily[-1] for value in values]
-    freedom = len(daily) - 1
-    squares = float(np.sum(np.square(daily))) + USUAL_FREEDOM * USUAL_SCATTER**2
-    own_freedom = max(len(rest) - len(daily) - len(groups), 0)
-    own_squares = float(np.sum(np.square(rest))) + OWN_FREEDOM * OWN_SCATTER**2
-    common = math.sqrt(squares / (freedom + USUAL_FREEDOM))
-    return common, math.sqrt(own_squares / (own_freedom + OWN_FREEDOM)), freedom + USUAL_FREEDOM
-
-
-def _days_share(groups: Sequence[Days]) -> float:
-    """Return one over the number of days that groups have together."""
-    return 1.0 / len({day for one in groups for day in one.days})
-
-
-def _own_variance(groups: Sequence[Days], scatter: Array) -> Array:
-    """Return the variance of each mean that no other group shares [N2 m2], `scatter` [N m]."""
-    return np.array(
-        [
-            one.spread**2 / one.stretches + own**2 / len(one.days)
-            for one, own in zip(groups, scatter)
-        ]
-    )
-
-
-def _doubt(model: Model, firsts: Sequence[Days], lasts: Sequence[Days]) -> Array:
-    """
-    Return the covariance of what groups share beside the days [N2 m2].
-
-    What the fit leaves open between both conditions, and what may come and go: warmth of the
-    contacts by another programme, drag of the wiper.
-
-    """
-    before, now = [one.point for one in firsts], [one.point for one in lasts]
-    slopes = model.slopes(now)
-    apart = np.nan_to_num(slopes - model.slopes(before))
-    measured = all(one.temperature_measured for one in (*before, *now))
-    drags = np.abs(model.calibration.values[1:3])
-    drifts = np.array([0.0, *(WIPER_DRIFT * drags), WARMTH if measured else UNMEASURED])
-    drifting = np.nan_to_num(slopes) * drifts
-    adjusted = SLOPE_DOUBT * (model.friction(now) - model.friction(before))
-    fitted = apart @ np.array(model.calibration.covariance) @ apart.T
-    adjusted = np.nan_to_num(adjusted)
-    alike = np.outer(adjusted, adjusted) + np.diag(adjusted**2)
-    return np.asarray(fitted + drifting @ drifting.T + alike)

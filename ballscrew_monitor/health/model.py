@@ -36,6 +36,7 @@ class Model:
         """Ask `surface`; `companions` know other preloads."""
         self.surface, self.companions = surface, companions
         self.calibration = calibration or Calibration()
+        self._known: dict[bytes, Array] = {}
 
     def friction(self, points: Sequence[ComparablePoint]) -> Array:
         """Return the friction torque of the model at points [N m], with that of the wiper."""
@@ -82,7 +83,7 @@ class Model:
         if self.companions is None:
             return np.full(len(points), np.nan)
         places = places_of(points)
-        here = self.calibration.contacts(self.surface, places)
+        here = self._here(places)
         low, high = self.surface.temperature_range
         heats = np.clip(places[:, 2] + self.calibration.values[3], low, high)
         ratios = [
@@ -93,5 +94,11 @@ class Model:
 
     def _change(self, places: Array, contacts: Array) -> Array:
         """Return what another friction of the contacts changes [N m]."""
-        here = self.calibration.contacts(self.surface, places)
-        return np.asarray(self.calibration.values[0] * (contacts - here))
+        return np.asarray(self.calibration.values[0] * (contacts - self._here(places)))
+
+    def _here(self, places: Array) -> Array:
+        """Return the friction of the contacts, kept: every size of a cause is held against it."""
+        key = places.tobytes()
+        if key not in self._known:
+            self._known[key] = self.calibration.contacts(self.surface, places)
+        return self._known[key]

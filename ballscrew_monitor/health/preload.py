@@ -5,16 +5,17 @@ The preload that is left, beside what a wiper may add.
 
 For each share of the preload the size of a constant drag is that of least chi squared; another
 warmth of the contacts stands in the covariance. The law by which friction follows the preload is
-itself in doubt, in proportion to what is lost.
+itself in doubt: another power of it changes the friction everywhere by one share of what is lost.
 
 """
 
 from collections.abc import Sequence
 import math
 
-from ballscrew_monitor.health.causes import birge, INTERVAL
+from ballscrew_monitor.health.causes import birge
 from ballscrew_monitor.health.change import Change
 from ballscrew_monitor.health.companions import Companions, NONE_BUILT
+from ballscrew_monitor.health.energy import student
 from ballscrew_monitor.health.life import unknown
 from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.records import Cause, CauseCode, Quantity
@@ -23,8 +24,8 @@ import numpy as np
 NAME = 'preload'
 SHARES = np.linspace(0.3, 1.2, 46)
 """Shares of the preload that are tried [-]."""
-LAW_DOUBT = 0.4
-"""Half width of the interval by the law of the preload, over what is lost of it [-]."""
+LAW_DOUBT = 0.15
+"""Standard deviation of the power by which friction follows the preload [-]."""
 WIDEST = 0.4
 """Width of an interval above which a preload is not known [-]."""
 
@@ -53,19 +54,18 @@ def preload_of(
     if not np.isfinite(chis).any():
         return unknown(NAME, '-', 'not known: the companions do not reach these places')
     best = int(np.nanargmin(chis))
-    spare = max(len(change.groups) - 1, 1)
-    within = SHARES[chis <= chis[best] + INTERVAL * birge(float(chis[best]), spare)]
+    scale = birge(float(chis[best]), max(len(change.groups) - 1, 1))
+    within = SHARES[chis <= chis[best] + student(change.freedom) ** 2 * scale]
     if within[-1] - within[0] > WIDEST or best == 0:
         why = 'wiper, warmth and preload look alike at these speeds and loads'
         more = '' if measured else '; measure the oil temperature'
         return unknown(NAME, '-', f'not known: {why}{more}')
     step, value = float(SHARES[1] - SHARES[0]), float(SHARES[best])
-    law = LAW_DOUBT * abs(1.0 - value)
     return Quantity(
         name=NAME,
         value=value,
-        low=value - math.hypot(value - float(within[0]) + 0.5 * step, law),
-        high=value + math.hypot(float(within[-1]) - value + 0.5 * step, law),
+        low=float(within[0]) - 0.5 * step,
+        high=float(within[-1]) + 0.5 * step,
         evidence=f'{len(change.groups)} places, beside a constant drag',
     )
 
@@ -76,7 +76,8 @@ def _chi(change: Change, model: Model, share: float) -> float:
     if not np.isfinite(apart).all():
         return math.nan
     drag = np.full_like(apart, change.friction.mean())
-    inverse = np.linalg.inv(change.covariance)
-    normal = float(drag @ inverse @ drag) + 1.0
-    size = float(drag @ inverse @ apart) / normal
-    return float(apart @ inverse @ apart) - normal * size * size
+    law = LAW_DOUBT * math.log(share) * change.friction
+    inverse, beside = np.linalg.inv(change.covariance), np.stack([drag, law], axis=1)
+    pull = beside.T @ inverse @ apart
+    normal = beside.T @ inverse @ beside + np.eye(2)
+    return float(apart @ inverse @ apart - pull @ np.linalg.solve(normal, pull))

@@ -11,15 +11,14 @@ time before are gone through by halves for the first of them.
 from collections.abc import Callable, Sequence
 import dataclasses
 import math
-from typing import NamedTuple
 
+from ballscrew_monitor.health.assess import Compared
 from ballscrew_monitor.health.baseline import learned
 from ballscrew_monitor.health.records import (
     Baseline,
     CauseCode,
     ComparablePoint,
     Condition,
-    Health,
     Quantity,
 )
 from ballscrew_monitor.health.rows import DAY
@@ -34,16 +33,8 @@ WEEK, PERIOD = 7, 28
 """Days that count as now, and days between two assessments."""
 
 
-class Assess(NamedTuple):
-    """
-    The product with its surfaces.
-
-    Both take the last day, since 1970, a baseline and points; the condition alone is quicker.
-
-    """
-
-    condition: Callable[[int, Baseline, Sequence[ComparablePoint]], Condition]
-    health: Callable[[int, Baseline, Sequence[ComparablePoint]], Health]
+Compare = Callable[[int, Baseline, Sequence[ComparablePoint]], Compared]
+"""The product with its surfaces: takes the last day, since 1970, a baseline and points."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -78,7 +69,7 @@ class Score:
         return any(one in self.truth.value for one in self.causes)
 
 
-def score(year: Year, assess: Assess) -> Score:
+def score(year: Year, compare: Compare) -> Score:
     """Return what the assessments of a year are worth."""
     truth = year.kind.truth
     baseline = learned(year.points)
@@ -92,7 +83,7 @@ def score(year: Year, assess: Assess) -> Score:
         return last, baseline, [one for one in year.points if one.first_day <= last]
 
     def is_worse(day: int) -> bool:
-        return assess.condition(*asked(day)) is Condition.WORSE
+        return compare(*asked(day)).condition is Condition.WORSE
 
     early, before, found = 0, False, None
     for day in range(begin + PERIOD, DAYS, PERIOD):
@@ -104,7 +95,7 @@ def score(year: Year, assess: Assess) -> Score:
             break
     if found is not None:
         found = _first_alarm(is_worse, max(found - PERIOD, changed), found)
-    final = assess.health(*asked(DAYS - 1))
+    final = compare(*asked(DAYS - 1))
     return Score(
         truth=truth,
         size=NAN if found is None else abs(float(year.size[found])),
@@ -134,16 +125,16 @@ def _first_alarm(is_worse: Callable[[int], bool], low: int, high: int) -> int:
     return high
 
 
-def named_causes(health: Health) -> tuple[CauseCode, ...]:
+def named_causes(found: Compared) -> tuple[CauseCode, ...]:
     """Return the causes that the verdict names, as `words` does, the likeliest first."""
-    left = [cause for cause in health.causes if not cause.excluded]
+    left = [cause for cause in found.causes if not cause.excluded]
     return tuple(one.code for one in left if one.weight > NAMED * left[0].weight)
 
 
-def held_by(year: Year, begin: int, health: Health, day: int) -> dict[str, bool]:
+def held_by(year: Year, begin: int, found: Compared, day: int) -> dict[str, bool]:
     """Return by quantity whether its interval holds the truth on a day, where it is given."""
     truths = {'drag change': true_drag(year, begin, day), 'preload': true_preload(year, day)}
-    given = {one.name: one for one in health.quantities}
+    given = {one.name: one for one in (found.drag, found.preload)}
     return {
         name: holds(given[name], value)
         for name, value in truths.items()

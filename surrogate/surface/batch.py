@@ -15,6 +15,7 @@ from surrogate.surface.records import dtype_of
 from surrogate.surface.tables import SurfaceTables
 
 Array = NDArray[np.float64]
+FOUND = dtype_of(Found)
 
 
 def look_up_many(
@@ -28,7 +29,7 @@ def look_up_many(
     """
     points = [np.ascontiguousarray(each, dtype=float) for each in (speed, opposing_load)]
     points.append(np.ascontiguousarray(temperature, dtype=float))
-    rows = np.zeros(len(speed), dtype=dtype_of(Found))
+    rows = np.zeros(len(speed), dtype=FOUND)
     try:
         fill = _compiled()
     except ImportError:

@@ -284,5 +284,5 @@ def test_patterns_vanish_without_their_cause(points, model):
     change = change_between(points(), points(first=40), model)
     nothing = {CauseCode.PRELOAD_LOST: 1.0, CauseCode.FILM_STARVED: 1.0}
     for one in causes.CANDIDATES:
-        found = one.pattern(model, change, nothing.get(one.code, 0.0))
+        found = one.pattern(model, change.points, nothing.get(one.code, 0.0))
         assert np.abs(found) == pytest.approx(0.0, abs=1e-12), one.code
