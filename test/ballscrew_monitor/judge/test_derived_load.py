@@ -297,3 +297,26 @@ def test_a_hole_in_the_loads_is_masked():
     assert known[0] < middle < known[-1]
     found = derived_number(surface, USUAL, (60.0, 0.0, 0.0, float(middle), 313.15))
     assert (found.derived, found.validity) == (derived_load.NO_NUMBER, Validity.MASKED)
+
+
+@pytest.mark.parametrize(
+    ('heres', 'middles'),
+    [
+        ([0.5, 0.0], [0.5, 0.25]),  # half the rest at the new end: half of that at the other
+        ([2.0, 0.0], [0.5, 0.1]),  # more than before: half all the same
+        ([1.0, 0.0], [0.5, 1.0 / 6.0]),
+        ([-0.5, 0.0], [0.5, 2.0 / 3.0]),  # the other side: a secant
+    ],
+)
+def test_the_rest_of_an_end_that_stays_is_made_smaller(monkeypatch, heres, middles):
+    """As Anderson and Bjorck say, from -1 N m at 0 N to 1 N m at 1 N."""
+    torques, places = iter(heres), []
+
+    def look_up(tables, speed, load, temperature, row):
+        places.append(load)
+        row.driving_torque = next(torques)
+
+    monkeypatch.setattr(derived_load, 'look_up', look_up)
+    tables = SimpleNamespace(scan_loads=[0.0, 1.0], scan_torques=[-1.0, 1.0])
+    assert derived_load.root(tables, Row(), 0.0, 0) == places[-1]
+    assert places == pytest.approx(middles)

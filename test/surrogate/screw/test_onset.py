@@ -8,7 +8,8 @@ import math
 import numpy as np
 import pytest
 from surrogate.asperities.law import BANDS, law_of
-from surrogate.formulas.geometry import screw_contact
+from surrogate.asperities.running_in import working_pressure
+from surrogate.formulas.geometry import screw_contact, SIDES
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force
 from surrogate.screw import closed_form
@@ -20,6 +21,7 @@ from surrogate.screw.onset import (
     onset_record,
     onset_speeds,
     run_in_at,
+    run_in_range,
     with_raceway,
 )
 from surrogate.screw.onset_figure import figure_onset
@@ -43,6 +45,17 @@ def test_both_states_and_their_bounds_stand_in_the_record(record, screw, oil):
     low = run_in_at(screw, screw.roughness.run_in_low)
     found = onset_point(low, oil, 0.0, KELVIN)['speed_rad_s']
     assert record['states']['run_in']['speed_range_rad_s'][0] == found
+
+
+def test_running_in_is_at_a_pressure_that_the_contact_bears(screw):
+    """The range of the sheet, from a tenth above the working pressure on, and no empty one."""
+    pressed = max(working_pressure(screw, side) for side in SIDES)
+    sheet = screw.roughness
+    assert run_in_range(screw) == (sheet.run_in_low, sheet.run_in_high)
+    soft = with_raceway(screw, run_in_low=0.5 * pressed, run_in_pressure=1.2 * pressed)
+    assert run_in_range(soft) == (1.1 * pressed, sheet.run_in_high)
+    softer = with_raceway(screw, run_in_low=0.5 * pressed, run_in_pressure=1.05 * pressed)
+    assert run_in_range(softer)[0] == 1.05 * pressed
 
 
 def test_a_point_is_where_the_law_of_the_state_says(screw, oil, record):

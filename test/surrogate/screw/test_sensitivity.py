@@ -84,7 +84,11 @@ def test_values_are_in_the_unit_of_the_key_and_ends_in_that_of_the_sheet(record)
 def test_an_input_without_a_range_changes_nothing(screw, oil):
     """And leaves a band of the other inputs alone."""
     sure = replace(oil, film_floor_low=oil.film_floor, film_floor_high=oil.film_floor)
-    found = sensitivity_record(screw, sure, POINT, inputs=[BY_NAME['film_floor']])
+    told = []
+    found = sensitivity_record(
+        screw, sure, POINT, inputs=[BY_NAME['film_floor']], progress=lambda *at: told.append(at)
+    )
+    assert told == [(0, 1), (1, 1)]
     assert found['inputs'][0]['onset_factors'] == [1.0, 1.0]
     assert found['unknown_band'] == [1.0, 1.0]
 

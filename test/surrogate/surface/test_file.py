@@ -80,6 +80,20 @@ def test_a_flipped_byte_is_refused_or_harmless(tmp_path_factory, place, change):
     assert '\n' not in sentence
 
 
+def test_a_file_as_large_as_is_allowed_is_read(tmp_path, monkeypatch, refused):
+    with zipfile.ZipFile(CLOSED_FORM) as archive:
+        unpacked = sum(one.file_size for one in archive.infolist())
+    packed = tmp_path / 'small.npz'
+    with np.load(CLOSED_FORM, allow_pickle=False) as archive:
+        np.savez_compressed(packed, **archive)
+    assert packed.stat().st_size < unpacked < len(SHIPPED)
+    for path, size, key in ((CLOSED_FORM, len(SHIPPED), 'bytes'), (packed, unpacked, 'unpacked')):
+        monkeypatch.setattr(file, 'LARGEST_FILE', size)
+        assert file.read(path).sha256 == WHOLE
+        monkeypatch.setattr(file, 'LARGEST_FILE', size - 1)
+        refused(f'larger_{key}', file.read, path)
+
+
 @pytest.mark.parametrize('version', [1, 2])
 def test_a_surface_of_another_roughness_model_must_be_built_again(tmp_path, version, refused):
     path = tmp_path / 'old.npz'
