@@ -26,7 +26,7 @@ def test_a_screw_is_solved_with_the_settings_that_are_measured():
 
 @pytest.mark.parametrize(('per_wave', 'nodes'), [(3.0, 257), (6.0, 455), (12.0, 513)])
 def test_a_rough_contact_has_its_nodes_on_the_shortest_wave(per_wave, nodes):
-    """So many a wave over a domain of 2.42 semi-axes, within those of the settings and the most."""
+    """So many a wave over 2.42 semi-axes, not fewer than the settings have and at most 513."""
     settings = replace(ScrewSettings(), nodes_per_wave=per_wave)
     assert _across(settings, 0.5e-3, 16e-6).ny == nodes
     assert _across(settings, 0.5e-3, math.inf).ny == 257
