@@ -133,8 +133,10 @@ def changed(node: ast.AST) -> ast.AST | None:
 
 
 def nodes(node: ast.AST, function: str = '') -> Iterator[tuple[str, ast.AST]]:
-    """Yield what can be changed with its function: no annotation, decorator or raised sentence."""
+    """Yield what can be changed with its function: no annotation, decorator or assertion."""
     if isinstance(node, ast.Raise | ast.Assert | ast.JoinedStr):
+        return
+    if isinstance(node, ast.keyword) and node.arg == 'strict':  # of zip, an assertion too
         return
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
         function = f'{function}.{node.name}'.strip('.')
