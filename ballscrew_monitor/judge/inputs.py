@@ -120,8 +120,7 @@ def is_ahead(memory: Any, source: int, stamp: int) -> bool:
 def rebase(memory: Any, now: int) -> None:
     """Let what arrived later than `now` [ns] have arrived now: the clock was set back."""
     for source in range(INPUTS):
-        if memory.known[source] and memory.arrival[source] > now:
-            memory.arrival[source] = now
+        memory.arrival[source] = min(memory.arrival[source], now)
 
 
 def slow_period(memory: Any, source: int) -> int:

@@ -7,22 +7,13 @@ import functools
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.advice import Criterion, Nearest, nearest
-from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.judge.monitor import Monitor
-from ballscrew_monitor.judge.records import Event, Memory, Row
+from ballscrew_monitor.judge.records import Event, Memory, Row, Settings
 from ballscrew_monitor.judge.slopes import SlopeRing
 from ballscrew_monitor.judge.step import step_many
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.surface import (
-    EFFICIENCY_LIMIT,
-    Found,
-    look_up_many,
-    RCS_LIMIT,
-    shipped_surface,
-    Surface,
-)
+from surrogate.surface import Found, look_up_many, shipped_surface, Surface
 from surrogate.surface.compiled import compiled
 from surrogate.surface.records import as_array, dtype_of, from_array
 
@@ -110,15 +101,7 @@ class ManyJudge:
 def prepare() -> None:
     """Compile the step and the lookup, so that the first recording does not wait for them."""
     surface = Surface.load(shipped_surface())
-    limits = Limits(
-        rcs=RCS_LIMIT,
-        efficiency=EFFICIENCY_LIMIT,
-        light_load=0.0,
-        standstill_speed=1.0,
-        raise_delay=0,
-        clear_delay=0,
-        hysteresis=0.0,
-    )
-    settings = MonitorSettings(axis='', limits=limits, timeouts={}, default_temperature=300.0)
-    list(ManyJudge(Monitor(surface, settings)).judge(np.zeros(1, dtype=EVENT)))
-    look_up_many(surface, *np.ones((3, 1)))
+    parts = (as_array(kind()) for kind in (Settings, Memory, SlopeRing, SlopeRing))
+    events, rows, places, memories = (np.empty(0, kind) for kind in (EVENT, ROW, np.int64, MEMORY))
+    compiled_step()(surface.array_tables, *parts, events, rows, places, memories, False)
+    look_up_many(surface, *np.empty((3, 0)))

@@ -297,3 +297,59 @@ def test_a_hole_in_the_loads_is_masked():
     assert known[0] < middle < known[-1]
     found = derived_number(surface, USUAL, (60.0, 0.0, 0.0, float(middle), 313.15))
     assert (found.derived, found.validity) == (derived_load.NO_NUMBER, Validity.MASKED)
+
+
+@pytest.mark.parametrize(
+    ('heres', 'middles'),
+    [
+        ([0.5, 0.0], [0.5, 0.25]),  # half the rest at the new end: half of that at the other
+        ([2.0, 0.0], [0.5, 0.1]),  # more than before: half all the same
+        ([1.0, 0.0], [0.5, 1.0 / 6.0]),
+        ([-0.5, 0.0], [0.5, 2.0 / 3.0]),  # the other side: a secant
+    ],
+)
+def test_the_rest_of_an_end_that_stays_is_made_smaller(monkeypatch, heres, middles):
+    """As Anderson and Bjorck say, from -1 N m at 0 N to 1 N m at 1 N."""
+    torques, places = iter(heres), []
+
+    def look_up(tables, speed, load, temperature, row):
+        places.append(load)
+        row.driving_torque = next(torques)
+
+    monkeypatch.setattr(derived_load, 'look_up', look_up)
+    tables = SimpleNamespace(scan_loads=[0.0, 1.0], scan_torques=[-1.0, 1.0])
+    assert derived_load.root(tables, Row(), 0.0, 0) == places[-1]
+    assert places == pytest.approx(middles)
+
+
+@pytest.mark.parametrize(
+    ('middle', 'margin', 'error', 'loads'),
+    [
+        (1000.0, 100.0, 0.0, (800.0, 1200.0)),  # the ends of the margin are loads of the scan
+        (1000.0, 60.0, 40.0, (800.0, 1200.0)),
+        (1000.0, 99.0, 0.0, (900.0, 1100.0)),
+        (1050.0, 0.0, 0.0, (1000.0, 1100.0)),
+        (1000.0, 0.0, 0.0, (900.0, 1100.0)),
+        (1250.0, 50.0, 0.0, (1000.0, 1400.0)),  # 1100 and 1200 N are not known
+        (4000.0, 100.0, 0.0, (3800.0, 4000.0)),
+        (-4000.0, 100.0, 0.0, (-4000.0, -3800.0)),
+        (9000.0, 100.0, 0.0, (4000.0, 4000.0)),
+        (-9000.0, 100.0, 0.0, (-4000.0, -4000.0)),
+    ],
+)
+def test_the_part_that_is_scanned_holds_the_margin_and_a_load_on_either_side(
+    core, middle, margin, error, loads
+):
+    """Friction is 0.125 N m at any load, so that bounds of the torque are bounds of the load."""
+    unknown = (1100.0, 1200.0) if middle == 1250.0 else ()
+    surface = core.surface(
+        driving_torque=lambda speed, load: math.nan if load in unknown else load / 1024.0 + 0.125
+    )
+    surface.lead = math.tau / 1024.0
+    surface.torque_low = surface.torque_high = 0.125
+    surface.torque_error = error / 1024.0
+    row = Row(speed=-10.0, temperature=313.15)
+    driving = middle / 1024.0 + 0.125
+    begin, end = derived_load.part_of(surface, row, driving, margin / 1024.0)
+    found = surface.scan_loads[begin:end]
+    assert (found[0], found[-1]) == loads

@@ -16,6 +16,7 @@ from ballscrew_monitor.judge.slopes import SlopeRing
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import pytest
+from surrogate.files import InputError
 from surrogate.surface.records import dtype_of
 
 START = 1000 * SECOND
@@ -125,6 +126,13 @@ def test_a_dump_that_lacks_a_part_or_repeats_a_record_is_refused(core, refused):
         )
 
 
+def test_a_sign_that_no_dump_has_is_damage(core, refused):
+    monitor = core.monitor()
+    whole = dump(monitor)
+    whole['records']['memory'] = '~' + whole['records']['memory']
+    refused('memory_damaged_2', restored, whole, monitor.surface, monitor.settings)
+
+
 @pytest.mark.parametrize(
     ('name', 'number'),
     [('level', 3), ('direction', -1), ('moment_regime', 4), ('moment_zone', 3), ('refusal', 99)],
@@ -139,7 +147,18 @@ def test_a_number_that_no_judgement_has_is_damage(core, name, number, refused):
     refused('memory_damaged', restored, dump(monitor), core.surface(), monitor.settings)
 
 
-def test_a_window_beyond_its_ring_is_damage(core, refused):
+@pytest.mark.parametrize('name', ['speeds', 'positions'])
+@pytest.mark.parametrize(
+    ('count', 'begin', 'damaged'),
+    [(512, 511, False), (513, 0, True), (-1, 0, True), (1, 512, True), (1, -1, True)],
+)
+def test_a_window_beyond_its_ring_is_damage(core, name, count, begin, damaged, says):
     monitor = core.monitor(core.surface())
-    monitor.speeds.count = 513
-    refused('window_513_samples', restored, dump(monitor), core.surface(), monitor.settings)
+    setattr(monitor, name, SlopeRing(count=count, begin=begin))
+    if damaged:
+        with pytest.raises(InputError) as caught:
+            restored(dump(monitor), core.surface(), monitor.settings)
+        assert str(caught.value) == says('window_of_samples', count=count, begin=begin)
+    else:
+        again = restored(dump(monitor), core.surface(), monitor.settings)
+        assert getattr(again, name) == getattr(monitor, name)

@@ -2,13 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Quality of an input: freshness, rate, lag, losses, refusals."""
 
+import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import InputState, Source, StampSource, Why
 from ballscrew_monitor.judge import inputs
-from ballscrew_monitor.judge.records import Event, INPUTS, Memory, RATE_SAMPLES, Settings, SHOWN
+from ballscrew_monitor.judge.records import (
+    Event,
+    INPUTS,
+    Memory,
+    RATE_SAMPLES,
+    Settings,
+    SHOWN,
+    WHYS,
+)
 from ballscrew_monitor.judge.views import input_status_of, refused_of
 from hypothesis import given
 from hypothesis import strategies as st
@@ -100,6 +109,66 @@ def test_what_is_forgotten_is_as_at_the_beginning_and_the_counts_stay():
     for name in ('known', 'refusal', 'stamps_taken', 'lags_taken', 'long_gaps', 'others'):
         assert getattr(load.memory, name)[LOAD] == getattr(fresh, name)[LOAD], name
     assert (load.memory.received[LOAD], load.memory.dropped[LOAD]) == (7, 2)
+
+
+def changed(memory):
+    """Return what a memory has at the load that a fresh one has not."""
+    one, fresh, found = dataclasses.asdict(memory), dataclasses.asdict(Memory()), {}
+    for name, values in one.items():
+        if repr(values) != repr(fresh[name]):
+            begin = LOAD * len(values) // INPUTS
+            end = begin + len(values) // INPUTS
+            found[name] = values[begin:end]
+            assert [*values[:begin], *values[end:]] == [*fresh[name][:begin], *fresh[name][end:]]
+    return found
+
+
+def test_a_message_changes_what_it_says_and_nothing_else():
+    ring = [0] * RATE_SAMPLES
+    load = Input()
+    load.accept(7, 9)
+    first = {'received': [1], 'known': [1], 'value': [1.0], 'stamp_source': [1]}
+    first |= {'sample_stamp': [7], 'arrival': [9], 'stamps_taken': [1], 'lags_taken': [1]}
+    first |= {'stamps': [7, *ring[1:]], 'lags': [2, *ring[1:]]}
+    assert changed(load.memory) == first
+    load.accept(10, 0)  # no arrival, no lag
+    second = {'received': [2], 'sample_stamp': [10], 'last_gap': [3], 'stamps_taken': [2]}
+    second |= {'stamps': [7, 10, *ring[2:]], 'arrival': [0]}
+    second = first | second
+    del second['arrival']
+    assert changed(load.memory) == second
+    load = Input()
+    why = [0] * WHYS
+    why[Why.IMPLAUSIBLE] = 1
+    load.refuse(Why.IMPLAUSIBLE, 5.0)
+    assert changed(load.memory) == {
+        'received': [1],
+        'dropped': [1],
+        'refused': why,
+        'refusal': [Why.IMPLAUSIBLE],
+        'refusal_first': [5.0],
+        'implausible': [1],
+        'implausible_last': [SECOND],
+    }
+    load = Input()
+    load.refuse(Why.OTHER_JOINTS, 5.0)
+    assert changed(load.memory) == {'received': [1], 'dropped': [1], 'others': [1]}
+    load.lose(-1, SECOND)
+    assert changed(load.memory) == {
+        'received': [1],
+        'dropped': [1],
+        'others': [1],
+        'lost_known': [0],
+    }
+
+
+@pytest.mark.parametrize(('stamp', 'ahead'), [(99, True), (100, False), (101, False)])
+def test_a_sample_is_ahead_of_an_earlier_stamp_until_it_is_forgotten(stamp, ahead):
+    load = Input()
+    load.accept(100)
+    assert inputs.is_ahead(load.memory, LOAD, stamp) is ahead
+    inputs.forget(load.memory, LOAD)
+    assert not inputs.is_ahead(load.memory, LOAD, stamp)
 
 
 @pytest.mark.parametrize(

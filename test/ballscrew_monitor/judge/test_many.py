@@ -21,7 +21,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-from surrogate.surface import shipped_surface, Surface
+from surrogate.surface import batch, shipped_surface, Surface
 from surrogate.surface.records import as_array, dtype_of, from_array
 
 SURFACE = Surface.load(shipped_surface())
@@ -217,6 +217,16 @@ def test_whatever_happens_comes_out_the_same(way, happenings, usual, period):
         patch.setattr(many, 'AT_ONCE', 16)
         patch.setattr(many, 'MOST_MEMORIES', 5)
         compare(Monitor(SURFACE, told), Monitor(SURFACE, told), events)
+
+
+def test_what_is_prepared_is_what_a_recording_needs():
+    """One compiled step and one lookup, before and after a judgement."""
+    many.prepare()
+    told = MonitorSettings(axis='', limits=LIMITS, timeouts={}, default_temperature=313.15)
+    at_once(Monitor(SURFACE, told), np.zeros(3, EVENT))
+    batch.look_up_many(SURFACE, *np.ones((3, 2)))
+    for entry in (many.compiled_step(), batch._compiled()):
+        assert len(entry.signatures) == 1
 
 
 def test_a_memory_has_the_fields_of_its_slots():

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The judgement as a function of an ordered list of events; numbers among them are ticks."""
 
+import copy
 import dataclasses
 import math
 
@@ -17,8 +18,9 @@ from ballscrew_monitor.core.inputs import (
 )
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
 from ballscrew_monitor.core.state import PositionSettings
-from ballscrew_monitor.judge.monitor import Monitor
-from ballscrew_monitor.judge.step import BACKWARD_JUMP
+from ballscrew_monitor.judge.monitor import fill, Monitor
+from ballscrew_monitor.judge.records import Event, Row
+from ballscrew_monitor.judge.step import BACKWARD_JUMP, NOTHING, STATE, step, step_many
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
@@ -392,6 +394,59 @@ def test_what_was_lost_is_told_with_the_next_state(core):
 
 
 stamps = st.integers(0, 40).map(lambda i: START + i * SECOND // 10)
+
+
+class Kept(list):
+    """A list that keeps what a memory is, as an array does."""
+
+    def __setitem__(self, at, memory):
+        super().__setitem__(at, copy.deepcopy(memory))
+
+
+@pytest.mark.parametrize('every', [False, True])
+@pytest.mark.parametrize('room', [1, 3, 100])
+def test_many_events_are_taken_as_one_after_the_other(core, every, room):
+    """Rows, their places, and memories of states or edges, while there is room for them."""
+    limits = core.limits(raise_delay=0, clear_delay=0)
+    monitor, other = (slow_is_bad(core, limits=limits, publish_period=3 * STEP) for _ in range(2))
+    records, wanted = [], []
+    for i, value in enumerate([40.0, 10.0, 40.0, 40.0] * 3):
+        for each in core.motion(value, start=START + i * STEP):
+            record = Event()
+            fill(record, each)
+            records.append(record)
+            row = Row()
+            found = step(
+                other.surface,
+                other.numbers,
+                other.memory,
+                other.speeds,
+                other.positions,
+                record,
+                row,
+            )
+            if found != NOTHING:
+                told = found == STATE and (every or row.edge != 0)
+                wanted.append((i, row, copy.deepcopy(other.memory) if told else None))
+    assert 1 < sum(memory is not None for *_, memory in wanted) <= len(wanted) == 12
+    taken = made = 0
+    while taken < len(records):
+        rows, places, memories = [Row() for _ in records], [-1] * len(records), Kept([None] * room)
+        one = [monitor.numbers], [monitor.memory], [monitor.speeds], [monitor.positions]
+        some = records[taken:]
+        count, rows_made, told = step_many(
+            monitor.surface, *one, some, rows, places, memories, every
+        )
+        part = wanted[made : made + rows_made]
+        assert repr(rows[:rows_made]) == repr([row for _, row, _ in part])
+        assert places[:rows_made] == [2 * i + 1 - taken for i, *_ in part]
+        kept = [memory for *_, memory in part if memory is not None]
+        assert repr(memories[:told]) == repr(kept)
+        assert count == len(some) or told == room
+        taken, made = taken + count, made + rows_made
+    assert made == len(wanted)
+
+
 values = st.sampled_from([0.0, 0.2, 5.0, -5.0, 40.0, -40.0, 500.0, math.nan])
 events = st.one_of(
     st.builds(speed, values, stamps),

@@ -167,12 +167,15 @@ def test_anything_else_starts_the_clearing_over(core, spoiler):
         (OUTSIDE, GAP + 1, 0, False),
         (OUTSIDE, 3 * GAP, 3 * GAP, True),  # the period of a slow input
         (OUTSIDE, 3 * GAP + 1, 3 * GAP, False),
+        (INSIDE, GAP, 0, True),
+        (INSIDE, GAP + 1, 0, False),
         (INSIDE, 3 * GAP, 3 * GAP, False),
     ],
 )
 def test_a_hole_starts_over(core, sign, step, period, changes):
     before = Level.OK if sign is OUTSIDE else Level.WARN
-    found = levels(core, [sign] * 2, level=before, step=step, period=period)
+    delays = {'raise_delay': step, 'clear_delay': step}
+    found = levels(core, [sign] * 2, level=before, step=step, period=period, **delays)
     assert (found[-1] is not before) is changes
 
 

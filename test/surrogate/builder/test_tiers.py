@@ -6,10 +6,11 @@ from dataclasses import asdict, replace
 import json
 import sys
 
+import pytest
 from surrogate.builder import tiers
 from surrogate.parameters import BallRoughness
 from surrogate.screw import closed_form
-from surrogate.surface import FIELDS
+from surrogate.surface import FIELDS, shipped_surface, Surface
 from surrogate.surface import file as surface_file
 
 
@@ -47,6 +48,17 @@ def test_a_tier_builds_within_the_ranges_that_are_asked_for(surface_data, screw,
     narrow = tiers.default_settings('closed_form', screw, {'load_range': (-10.0, 10.0)})
     assert narrow.load_range == (-10.0, 10.0)
     assert narrow.speed_range == settings.speed_range
+
+
+def test_the_shipped_closed_form_is_the_one_that_is_built(surface_data):
+    shipped, built = Surface.load(shipped_surface(tier='closed_form')), Surface(surface_data)
+    # What a build states beside it, for life and severity, makes no other surface.
+    assert shipped.header == {name: built.header[name] for name in shipped.header}
+    for name in FIELDS:
+        told, expected = (
+            getattr(one.lookup(62.8, 1000.0, 313.15), name) for one in (shipped, built)
+        )
+        assert told == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_builder_that_spreads_its_solves_gets_pool_and_file(monkeypatch, screw, oil, tmp_path):

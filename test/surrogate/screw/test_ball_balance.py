@@ -15,7 +15,8 @@ from surrogate.formulas.geometry import conformity, helix_angle, hertz, screw_co
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.sliding import ellipse_nodes
 from surrogate.parameters import load_screw
-from surrogate.screw.ball_balance import balance_ball, BalanceSettings
+from surrogate.screw.ball_balance import _floors, balance_ball, BalanceSettings, FIRST_FLOOR
+from surrogate.screw.ball_equations import BallProblem
 from surrogate.screw.ball_motion import axis_vector, contact_frame, slip_field, slip_floor
 from surrogate.screw.ball_result import BalanceStatus, BallContact
 from surrogate.screw.ball_traction import coulomb_traction, SolvedTraction
@@ -343,3 +344,34 @@ def test_inputs_that_make_no_sense_are_refused(screw, given_input, text):
     laws = {f'{side}_traction': coulomb_traction(screw, side, 0.05) for side in SIDES}
     with pytest.raises(InputError, match=text):
         balance_ball(screw, **{'speed': SPEED, **laws, **given_input})
+
+
+@pytest.mark.parametrize('ratio', [10.0, 3.0, 1.5, math.inf])
+def test_floors_fall_by_a_ratio_from_far_above_the_slip_to_that_of_the_problem(screw, ratio):
+    """The last stage has the lower floor of both laws; an infinite ratio leaves no other."""
+    laws = [coulomb_traction(screw, side, 0.05, slip_floor=f) for side, f in zip(SIDES, (1e-4, 1))]
+    problem = BallProblem(
+        screw=screw,
+        speed=-SPEED,
+        flank=1,
+        tractions=(laws[0], laws[1]),
+        rolling_forces=(0.0, 0.0),
+        normal_force=27.6,
+        axial_force=None,
+    )
+    floors = _floors(problem, ratio)
+    assert floors[-1] == problem.slip_floor
+    far = FIRST_FLOOR * no_slip_rates(screw).helical_slip * SPEED
+    assert far > 1e-3
+    assert (len(floors) == 1) is math.isinf(ratio)
+    if len(floors) > 1:
+        assert floors[0] >= far > floors[0] / ratio
+        assert floors[:-1] == pytest.approx(
+            [1e-4 * ratio**n for n in range(len(floors) - 1, 0, -1)]
+        )
+
+
+def test_a_ball_is_solved_to_the_tolerances_that_are_measured():
+    assert BalanceSettings() == BalanceSettings(
+        step_tolerance=1e-8, balance_tolerance=1e-10, newton_limit=40
+    )

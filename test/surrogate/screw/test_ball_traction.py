@@ -15,6 +15,7 @@ from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.parameters import load_screw
 from surrogate.screw.ball_motion import no_slip_motion, relative_motion, slip_field, slip_maps
 from surrogate.screw.ball_traction import (
+    _strongest,
     coulomb_traction,
     CoulombTraction,
     hertz_nodes,
@@ -145,6 +146,16 @@ def test_weak_nodes_that_are_left_out_bear_little(solved, share):
     all_of_it = integrate_traction(SCREW, 'nut', whole, 27.6, motion).values[0]
     most_of_it = integrate_traction(SCREW, 'nut', strong, 27.6, motion).values[0]
     assert (1 - share) * all_of_it >= most_of_it > all_of_it
+
+
+@pytest.mark.parametrize(
+    ('neglected', 'kept'),
+    [(0.0, 4), (0.09, 4), (0.1, 4), (0.11, 3), (0.3, 3), (0.31, 2), (0.6, 2), (0.61, 1)],
+)
+def test_the_weakest_nodes_are_left_out_up_to_the_share(neglected, kept):
+    """Of 0, 4, 1, 3 and 2 N; a node that the share just holds stays, one without friction not."""
+    found = _strongest(np.array([[0.0, 4.0, 1.0], [3.0, 2.0, 0.0]]), neglected)
+    assert found.tolist() == [[False, True, kept > 3], [kept > 1, kept > 2, False]]
 
 
 def test_a_sample_has_about_the_friction(solved):

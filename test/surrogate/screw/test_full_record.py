@@ -7,6 +7,7 @@ import json
 import math
 from pathlib import Path
 import re
+from types import SimpleNamespace
 
 import pytest
 from surrogate.ehl import Settings
@@ -18,7 +19,15 @@ from surrogate.screw import figures as figures_point
 from surrogate.screw.ball_motion import slip_floor
 from surrogate.screw.closed_form_record import closed_form_record, most_wear, page, with_wear
 from surrogate.screw.contacts import make_contacts, ScrewSettings
-from surrogate.screw.full_record import full_record, law_sentence, solution_record
+from surrogate.screw.full_record import (
+    _coarse,
+    _third_contacts,
+    _uncertain_films,
+    _warnings,
+    full_record,
+    law_sentence,
+    solution_record,
+)
 from surrogate.screw.nut import contact_slip
 from surrogate.screw.onset import with_raceway
 from surrogate.screw.solve import solve_screw
@@ -38,6 +47,27 @@ def record(rpm, load, settings=SETTINGS):
     """Solve a point at 40 degC."""
     point = OperatingPoint(speed=rpm * math.pi / 30, load=load, temperature=313.15)
     return point, full_record(SCREW, OIL, point, settings)
+
+
+def test_warnings_begin_beyond_their_limits():
+    """A change of 1 %, a film known to 10 %, 4 nodes a wave, and the clearance are none yet."""
+    rated = ['film: outside its range', 'load: heavy']
+    for change, more in ((0.01, 0), (0.0101, 1), (math.nan, 0)):
+        found = SimpleNamespace(load_change=change)
+        assert _warnings(rated, found)[0] == 'load: heavy'
+        assert len(_warnings(rated, found)) == 1 + more
+    ball = {'nut': 'loaded', 'side': 'screw'}
+    for error, told in ((0.1, 0), (0.101, 1), (math.nan, 0)):
+        assert len(_uncertain_films([ball | {'film_error': error}])) == told
+    tight = replace(SCREW, flank_clearance=1e-6)
+    for approach, told in ((1e-6, 0), (1.1e-6, 1), (math.nan, 0)):
+        contacts = [ball | {'opposite_flank_approach_m': approach}]
+        assert len(_third_contacts(tight, contacts)) == told
+        assert not _third_contacts(replace(SCREW, flank_clearance=None), contacts)
+    grids = [SimpleNamespace(pressed=SimpleNamespace(y=[1.0, 1.25, 9.0]))] * 2
+    found = SimpleNamespace(loaded_contacts=grids)
+    assert _coarse(found, 1.0) == _coarse(SimpleNamespace(loaded_contacts=()), 0.0) == []
+    assert _coarse(found, 0.75)[0].startswith('roughness: 3 nodes per shortest wave')
 
 
 def test_record_has_the_keys_of_the_formulas_and_parts_that_add_up():

@@ -8,9 +8,11 @@ import math
 import numpy as np
 import pytest
 from surrogate.asperities.law import BANDS, law_of
-from surrogate.formulas.geometry import screw_contact
+from surrogate.asperities.running_in import working_pressure
+from surrogate.formulas.geometry import screw_contact, SIDES
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force
+from surrogate.parameters import BallRoughness
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.onset import (
@@ -20,6 +22,7 @@ from surrogate.screw.onset import (
     onset_record,
     onset_speeds,
     run_in_at,
+    run_in_range,
     with_raceway,
 )
 from surrogate.screw.onset_figure import figure_onset
@@ -33,6 +36,38 @@ def record(screw, oil):
     return onset_record(screw, oil, 0.0, KELVIN)
 
 
+PAGE = """\
+s, o: 500 N, 40 degC
+  new, after its first pass  contact begins at 60 rev/min (30 to 120), film 50 nm, cut at 7 GPa
+  run in                     contact begins at 30 rev/min (15 to 60), film 25 nm, cut at 3 GPa; \
+20 to 40 rev/min over the range of that pressure
+  Contact is likely below 10 rev/min and possible below 120 rev/min.
+  summits are cut under 2800 N, 1.5 GPa
+  extrapolated: Rq
+  roughness: rough"""
+
+
+def test_the_page_of_a_record_by_hand():
+    state = {'speed_rad_s': 60 * RPM, 'central_film_m': 50e-9, 'cutting_pressure_Pa': 7e9}
+    run_in = {'speed_rad_s': 30 * RPM, 'central_film_m': 25e-9, 'cutting_pressure_Pa': 3e9}
+    run_in['speed_range_rad_s'] = [20 * RPM, 40 * RPM]
+    record = {
+        'screw': 's',
+        'oil': 'o',
+        'load_N': 500.0,
+        'temperature_K': 313.15,
+        'states': {'new': state, 'run_in': run_in},
+        'working_load_stated': True,
+        'working_load_N': 2800.0,
+        'working_pressure_Pa': 1.5e9,
+        'extrapolated': ['Rq'],
+        'roughness': 'rough',
+    }
+    for one in (state, run_in):
+        one['band'] = [0.5, 2.0]
+    assert onset_page(record) == PAGE
+
+
 def test_both_states_and_their_bounds_stand_in_the_record(record, screw, oil):
     new, run = record['states']['new'], record['states']['run_in']
     assert new['speed_rad_s'] > run['speed_rad_s'] > 0
@@ -43,6 +78,17 @@ def test_both_states_and_their_bounds_stand_in_the_record(record, screw, oil):
     low = run_in_at(screw, screw.roughness.run_in_low)
     found = onset_point(low, oil, 0.0, KELVIN)['speed_rad_s']
     assert record['states']['run_in']['speed_range_rad_s'][0] == found
+
+
+def test_running_in_is_at_a_pressure_that_the_contact_bears(screw):
+    """The range of the sheet, from a tenth above the working pressure on, and no empty one."""
+    pressed = max(working_pressure(screw, side) for side in SIDES)
+    sheet = screw.roughness
+    assert run_in_range(screw) == (sheet.run_in_low, sheet.run_in_high)
+    soft = with_raceway(screw, run_in_low=0.5 * pressed, run_in_pressure=1.2 * pressed)
+    assert run_in_range(soft) == (1.1 * pressed, sheet.run_in_high)
+    softer = with_raceway(screw, run_in_low=0.5 * pressed, run_in_pressure=1.05 * pressed)
+    assert run_in_range(softer)[0] == 1.05 * pressed
 
 
 def test_a_point_is_where_the_law_of_the_state_says(screw, oil, record):
@@ -115,8 +161,20 @@ def test_a_place_that_no_screw_has_is_refused(screw, oil, load, kelvin, sentence
     refused(sentence, onset_record, screw, oil, load, kelvin)
 
 
+@pytest.mark.parametrize(
+    ('name', 'ends'), [('rms', (0.06e-6, 0.24e-6)), ('cutoff_short', (1.25e-6, 10e-6))]
+)
+def test_the_ends_of_what_was_marched_are_not_extrapolated(screw, name, ends):
+    for end, beyond in zip(ends, (0.0, math.inf), strict=True):
+        assert extrapolated(with_raceway(screw, **{name: end})) == []
+        assert len(extrapolated(with_raceway(screw, **{name: math.nextafter(end, beyond)}))) == 1
+
+
 def test_what_was_not_marched_is_called_extrapolated(screw):
     assert extrapolated(screw) == []
+    assert extrapolated(with_raceway(screw, rms=0.0)) == []
+    rough = replace(screw, ball_roughness=BallRoughness(grade='G10'))
+    assert extrapolated(rough) == ['rough balls (marched: smooth ones)']
     fine = with_raceway(screw, cutoff_short=0.5e-6, rms=0.4e-6)
     assert [text.split()[0] for text in extrapolated(fine)] == ['Rq', 'short']
 

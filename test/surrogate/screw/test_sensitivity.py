@@ -5,12 +5,15 @@
 from dataclasses import fields, replace
 import math
 
+import numpy as np
 import pytest
-from surrogate.asperities.law import BANDS
+from surrogate.asperities.law import BANDS, SLOPE
 from surrogate.parameters import OperatingPoint
 from surrogate.screw.closed_form import solve
 from surrogate.screw.onset import onset_point, run_in_at, with_raceway
 from surrogate.screw.sensitivity import (
+    _fastest,
+    _spread,
     INTERPOLATION,
     numerical_band,
     sensitivity_page,
@@ -30,6 +33,51 @@ BY_NAME = {one.name: one for one in INPUTS}
 def record(screw, oil):
     """Return the record of the inputs that leave the topography, with Rq."""
     return sensitivity_record(screw, oil, POINT, inputs=[*QUICK, BY_NAME['rms']])
+
+
+@pytest.mark.parametrize(
+    ('spare', 'speed'),
+    [
+        ([1.0, 1.0, -1.0, -1.0], 2.0 * math.sqrt(2.0)),
+        ([1.0, 1.0, -3.0, -3.0], 2.0 * 2.0**0.25),
+        ([1.0, -1.0, 3.0, -1.0], 4.0 * 2.0**0.75),  # the last of several
+        ([2.0, 1.0, 0.0, -1.0], 4.0),  # on a speed that was tried
+        ([2.0, -1.0, -1.0, -1.0], 2.0 ** (2.0 / 3.0)),
+        ([2.0, 1.0, 1.0, -1.0], 4.0 * math.sqrt(2.0)),
+        ([1.0, -1.0, -1.0, 0.0], math.nan),  # the fastest speed has it again
+        ([1.0, 1.0, 1.0, 1.0], math.nan),
+        ([-1.0, -1.0, -1.0, -1.0], math.nan),
+        ([-1.0, -1.0, -1.0, 1.0], math.nan),
+        ([1.0, 1.0, 1.0, math.nan], math.nan),
+    ],
+)
+def test_what_is_spare_runs_out_at_the_fastest_speed_between_two(spare, speed):
+    """Linear over the logarithm of the speed, 1 to 8 rad/s."""
+    found = _fastest(np.array([1.0, 2.0, 4.0, 8.0]), np.array(spare))
+    assert found == pytest.approx(speed, nan_ok=True)
+
+
+def test_a_spread_reaches_from_the_lowest_to_the_highest_and_over_the_stated_one():
+    assert _spread([0.5, 2.0]) == pytest.approx(math.log(4.0))
+    assert _spread([2.0, 4.0]) == pytest.approx(math.log(4.0))
+    assert _spread([0.25, 0.5]) == pytest.approx(math.log(4.0))
+    assert _spread([0.5, math.nan]) > 1e300
+    assert INTERPOLATION * -SLOPE == pytest.approx(0.1)
+
+
+def test_the_ranges_are_those_of_their_reasons():
+    """Factors and steps below and above the stated value; the others say their ends."""
+    assert {one.name: (one.times, one.plus) for one in INPUTS if one.ends is None} == {
+        'temperature': (1.0, 5.0),
+        'viscosity': (1.1, 0.0),
+        'film_factor': (1 / 0.7, 0.0),
+        'rms': (1.1, 0.0),
+        'fractal_dimension': (1.0, 0.1),
+        'rms_slope': (1.2, 0.0),
+        'preload': (1.2, 0.0),
+        'conformity_screw': (1.0, 0.01),
+        'cutoff_short': (2.0, 0.0),
+    }
 
 
 def row_of(record, key):
@@ -84,7 +132,11 @@ def test_values_are_in_the_unit_of_the_key_and_ends_in_that_of_the_sheet(record)
 def test_an_input_without_a_range_changes_nothing(screw, oil):
     """And leaves a band of the other inputs alone."""
     sure = replace(oil, film_floor_low=oil.film_floor, film_floor_high=oil.film_floor)
-    found = sensitivity_record(screw, sure, POINT, inputs=[BY_NAME['film_floor']])
+    told = []
+    found = sensitivity_record(
+        screw, sure, POINT, inputs=[BY_NAME['film_floor']], progress=lambda *at: told.append(at)
+    )
+    assert told == [(0, 1), (1, 1)]
     assert found['inputs'][0]['onset_factors'] == [1.0, 1.0]
     assert found['unknown_band'] == [1.0, 1.0]
 
@@ -145,7 +197,7 @@ def test_running_in_is_an_input_of_a_raceway_that_has_run_in(screw, oil):
     assert hard.bounds(run_in) is None
     assert running.bounds(new) is running.bounds(traced) is None
     low, high = hard.bounds(new)
-    assert low < 7e9 < high
+    assert (low, high) == pytest.approx((7e9 / 1.15, 7e9 * 1.15))
     assert hard.bounds(traced) == (low, high)
     assert running.at(run_in, 2e9).screw == run_in_at(run_in.screw, 2e9)
     assert hard.at(new, low).roughness.cutting_pressure == low
@@ -202,6 +254,53 @@ def test_the_page_has_a_line_per_input_and_keeps_the_bands_apart(record):
     assert 'numerics   contact begins at 0.77 to 1.3 times' in page
     assert 'measure    torque at slow speeds: ' in page
     assert 'then       oil temperature at the nut: ' in page
+
+
+PAGE = """\
+s, o: 30 rev/min, 500 N, 40 degC, closed form
+low stated high onset torque RCS 0.01 eta 0.85
+rev/min N m rev/min rev/min
+as stated 60 0.5 90 -
+a_unit 0.5 - 2 30 to 120 0.4 to - 45 to 180 - to 300 because
+b 1 1.5 1e+06 30 to 120 0.4 to - 45 to 180 - to 300 not so
+not known contact begins at 0.5 to 2 times the stated speed: 30 to 120 rev/min
+numerics contact begins at 0.8 to 1.2 times the stated speed: 48 to 75 rev/min
+measure m: 0.7 to 1.4 times is left
+then n: 0.9 to 1.1 times is left"""
+
+
+def test_the_page_of_a_record_by_hand():
+    names = ('onset_speed_rad_s', 'friction_torque_Nm')
+    names += ('rcs_limit_speed_rad_s', 'efficiency_limit_speed_rad_s')
+    stated, low, high = (
+        dict(zip(names, numbers, strict=True))
+        for numbers in (
+            (60 * RPM, 0.5, 90 * RPM, math.nan),
+            (30 * RPM, 0.4, 45 * RPM, math.nan),
+            (120 * RPM, math.nan, 180 * RPM, 300 * RPM),
+        )
+    )
+    ends = {'at_low': low, 'at_high': high, 'reason': 'because'}
+    record = {
+        'screw': 's',
+        'oil': 'o',
+        'speed_rad_s': 30 * RPM,
+        'load_N': 500.0,
+        'temperature_K': 313.15,
+        'stated': stated,
+        'inputs': [
+            {'key': 'a_unit', 'low': 0.5, 'stated': None, 'high': 2.0, 'refused': '', **ends},
+            {'key': 'b', 'low': 1.0, 'stated': 1.5, 'high': 1e6, 'refused': 'not so', **ends},
+        ],
+        'unknown_band': [0.5, 2.0],
+        'numerical_band': [0.8, 1.25],
+        'measure': [
+            {'measurement': 'm', 'unknown_band': [0.7, 1.4]},
+            {'measurement': 'n', 'unknown_band': [0.9, 1.1]},
+        ],
+    }
+    lines = sensitivity_page(record).splitlines()
+    assert [' '.join(line.split()) for line in lines] == PAGE.splitlines()
 
 
 def test_a_light_load_has_no_limit_of_efficiency(screw, oil):

@@ -4,14 +4,17 @@
 
 from dataclasses import replace
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from surrogate.asperities import law as asperity_law
 from surrogate.asperities.law import law_of
 from surrogate.ehl import Settings
+from surrogate.files import InputError
 from surrogate.formulas.geometry import SIDES
 from surrogate.formulas.inlet_heating import SPEED_EXPONENT
+from surrogate.formulas.load_sharing import normal_force
 from surrogate.identify.model import thickened
 from surrogate.parameters import BallRoughness, load_lubricant, load_screw, OperatingPoint
 from surrogate.raceway.ball import draw_stated
@@ -25,8 +28,15 @@ from surrogate.screw.contacts import (
     ScrewSettings,
     shortest_on_grid,
 )
-from surrogate.screw.nut import CREEP, rolling_force
-from surrogate.screw.solve import rebalance_screw, solve_screw
+from surrogate.screw.nut import CREEP, load_change, NutLoad, rolling_force, SolvedNut
+from surrogate.screw.solve import (
+    _check_same_load,
+    _nut_loads,
+    _without_floating,
+    rebalance_screw,
+    ScrewSolution,
+    solve_screw,
+)
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 SMALL = Settings(nx=65, ny=65, error_estimate=False)
@@ -48,6 +58,106 @@ def at(rpm, load, settings=SMOOTH, screw=SCREW):
     """Solve a point at 40 degC."""
     point = OperatingPoint(speed=rpm * math.pi / 30, load=load, temperature=WARM)
     return solve_screw(screw, OIL, point, settings=settings)
+
+
+def contact(rcs=0.0, film_ratio=1.0, deviation=0.0):
+    """Return a contact with what tells the worst one, without a load if RCS is None."""
+    asperities = SimpleNamespace(rcs=rcs, rcs_deviation=deviation)
+    solved = None if rcs is None else SimpleNamespace(asperities=asperities)
+    return SimpleNamespace(solved=solved, film_ratio=film_ratio)
+
+
+@pytest.mark.parametrize(
+    ('contacts', 'worst', 'deviation'),
+    [
+        ([contact(0.1), contact(0.3, 1.0, 7.0), contact(0.2), contact(0.0)], 1, 7.0),
+        (
+            [contact(0.1, 2.0), contact(0.1, 3.0), contact(0.1, 1.0, 7.0), contact(0.1, 4.0)],
+            2,
+            7.0,
+        ),
+        ([contact(0.1, 1.0, 7.0), *[contact(0.1)] * 3], 0, 7.0),  # of equal ones the first
+        ([contact(math.nan), contact(0.1), contact(None), contact(0.2, 1.0, 7.0)], 3, 7.0),
+        ([contact(None)] * 4, 0, math.nan),
+        ([], 0, math.nan),
+    ],
+)
+def test_the_worst_contact_has_the_largest_rcs_or_the_thinnest_film(contacts, worst, deviation):
+    found = ScrewSolution(
+        status='',
+        converged=True,
+        contacts=tuple(contacts),
+        entrainment_speed=1.0,
+        normal_forces=(1.0, 1.0),
+    )
+    assert found.worst_contact == worst
+    assert found.rcs_deviation == pytest.approx(deviation, nan_ok=True)
+    assert len(found.loaded_contacts) == sum(one.solved is not None for one in contacts)
+    assert not found.back_driving
+
+
+@pytest.mark.parametrize(
+    ('speed', 'load', 'flanks'),
+    [(60.0, 0.0, (1, -1)), (60.0, 1.0, (1, -1)), (60.0, -0.5, (-1, 1)), (-60.0, 0.5, (-1, 1))],
+)
+def test_the_loaded_nut_presses_the_flank_that_opposes(speed, load, flanks):
+    point = OperatingPoint(speed=speed, load=load, temperature=WARM)
+    loads = _nut_loads(SCREW, point)
+    assert tuple(nut.flank for nut in loads) == flanks
+    assert loads[0].force - loads[1].force == pytest.approx(abs(load), abs=1e-9)
+    assert [nut.nut for nut in loads] == ['loaded', 'relieved']
+
+
+@pytest.mark.parametrize(
+    ('share', 'failure', 'idle'),
+    [(0.019, 'floats', True), (0.02, 'floats', False), (0.019, '', False)],
+)
+def test_a_relieved_nut_that_is_not_solved_floats_under_a_small_share(share, failure, idle):
+    point = OperatingPoint(speed=60.0, load=1000.0, temperature=WARM)
+    loaded = NutLoad(nut='loaded', force=1000.0, flank=1)
+    relieved = NutLoad(nut='relieved', force=share * 1000.0, flank=-1)
+    solved = [
+        SolvedNut(force=nut.force, contacts=(), ball=None, failure=text)
+        for nut, text in ((loaded, ''), (relieved, failure))
+    ]
+    found = _without_floating(SCREW, point, (loaded, relieved), solved)
+    assert found[0] is solved[0]
+    if idle:
+        assert (found[1].force, found[1].failure, len(found[1].contacts)) == (0.0, '', 2)
+    else:
+        assert found[1] is solved[1]
+
+
+@pytest.mark.parametrize('factor', [1.0009, 1.0011, 0.9991, 0.9989])
+def test_a_normal_force_is_the_same_within_a_part_in_a_thousand(factor):
+    point = OperatingPoint(speed=60.0, load=800.0, temperature=WARM)
+    forces = [float(normal_force(SCREW, nut.force)) for nut in _nut_loads(SCREW, point)]
+    found = SimpleNamespace(
+        contacts=(contact(),) * 4, normal_forces=(factor * forces[0], forces[1])
+    )
+    if abs(factor - 1.0) < 1e-3:
+        _check_same_load(SCREW, point, found)
+        gone = SimpleNamespace(contacts=(contact(),) * 3 + (contact(None),), normal_forces=forces)
+        with pytest.raises(InputError):
+            _check_same_load(SCREW, point, gone)
+    else:
+        with pytest.raises(InputError):
+            _check_same_load(SCREW, point, found)
+
+
+@pytest.mark.parametrize(
+    ('ratios', 'change'),
+    [((1.0, 1.02), 0.02), ((0.97, 1.02), 0.03), ((None, 1.01), 0.01), ((), 0)],
+)
+def test_the_change_of_a_load_is_the_largest_over_that_solved(ratios, change):
+    contacts = [
+        SimpleNamespace(
+            ball=SimpleNamespace(normal_force=20.0 * (ratio or 9.0)),
+            pressed=ratio and SimpleNamespace(condition=SimpleNamespace(load=20.0)),
+        )
+        for ratio in ratios
+    ]
+    assert load_change(SimpleNamespace(contacts=contacts)) == pytest.approx(change)
 
 
 @pytest.mark.parametrize('rpm', [600, -600])

@@ -12,8 +12,14 @@ import numpy as np
 import pytest
 from surrogate.parameters import OperatingPoint
 from surrogate.surface import FIELDS, shipped_surface, Surface, Validity
-from surrogate.surface.correction import NEAREST, TRUST_RADIUS
-from surrogate.surface.file import read
+from surrogate.surface.correction import (
+    make_correction,
+    NEAREST,
+    places_of,
+    solved_values,
+    TRUST_RADIUS,
+)
+from surrogate.surface.file import read, SurfaceError
 
 DATA, FULL_DATA = (read(shipped_surface(tier=tier)) for tier in ('closed_form', 'full'))
 SHIPPED, FULL = Surface(DATA), Surface(FULL_DATA)
@@ -62,6 +68,80 @@ def solution(surface, where, drawn):
     found, (factors, shares) = surface.lookup(*where), drawn
     values = {name: factor * getattr(found, name) for name, factor in zip(FIELDS, factors)}
     return SimpleNamespace(**{**values, **shares})
+
+
+CELLS_OF_ONE = (5, 6, 7)
+
+
+@pytest.mark.parametrize(
+    ('heat_cell', 'heat', 'places'),
+    [
+        (3, 0.5, [(3, 0.5)]),
+        (3, 0.01, [(3, 0.01)]),  # as near to a node as is still within
+        (3, 0.99, [(3, 0.99)]),
+        (3, 0.009, [(2, 1.0), (3, 0.0)]),
+        (3, 0.991, [(3, 1.0), (4, 0.0)]),
+        (1, 0.0, [(0, 1.0), (1, 0.0)]),
+        (0, 0.0, [(0, 0.0)]),  # nothing lies below the first node or above the last
+        (6, 1.0, [(6, 1.0)]),
+        (5, 1.0, [(5, 1.0), (6, 0.0)]),
+    ],
+)
+def test_a_point_on_a_node_of_temperature_lies_in_both_cells(heat_cell, heat, places):
+    found = places_of((1, 2, heat_cell), (0.25, 0.75, heat), CELLS_OF_ONE)
+    assert found == [((1, 2, k), (0.25, 0.75, at)) for k, at in places]
+
+
+@pytest.mark.parametrize('fractions', [(0.01, 0.5, 0.0), (0.5, 0.99, 1.0), (0.99, 0.01, 0.5)])
+def test_a_point_as_near_to_a_face_as_is_allowed_corrects(fractions):
+    values = [2.0, 0.25, 0.0, -1.0, 1.0, 0.0, 4.0, 8.0]
+    solved = {'friction_torque': 3.0, 'rcs': 0.5, 'asperity_share': 0.5, 'film_ratio': math.e}
+    solved |= {'friction_coefficient': 1.0, 'max_pressure': 8.0}
+    point = at((62.8, 1000.0, 313.0), -1.0)
+    made = make_correction(point, (1, 2, 3), fractions, values, solved)
+    assert (made.speed, made.opposing_load, made.temperature) == (62.8, 1000.0, 313.0)
+    assert (made.cell, made.fractions, made.solved) == ((1, 2, 3), fractions, solved)
+    # A rising share scales what it lacks of 1; a film is shifted; what was not solved stays.
+    assert made.gains == pytest.approx((0.5, -1 / 3, -0.5, 0.0, 0.0, 0.0, -0.75, 0.0))
+    assert made.shifts == pytest.approx((0.0, 1 / 3, 0.5, 2.0, 0.0, 0.0, 0.0, 0.0))
+    nearer = tuple(math.nextafter(one, round(one)) for one in fractions)
+    with pytest.raises(SurfaceError, match='of the width of its cell'):
+        make_correction(point, (1, 2, 3), nearer, values, solved)
+
+
+@pytest.mark.parametrize('value', [0.0, 0.25, 1.0])
+@pytest.mark.parametrize('target', [0.0, 0.25, 0.5, 1.0])
+def test_a_share_reaches_any_other(value, target):
+    values = [value] * len(FIELDS)
+    made = make_correction(at((1.0, 2.0, 3.0)), (0, 0, 0), (0.5,) * 3, values, {'rcs': target})
+    assert value + made.gains[1] * value + made.shifts[1] == pytest.approx(target)
+    # In between it stays a share, for any share that the surface has beside.
+    for weight in (0.25, 0.75):
+        for beside in (0.0, 0.5, 1.0):
+            there = beside + weight * (made.gains[1] * beside + made.shifts[1])
+            assert value == 0.0 or -1e-12 <= there <= 1.0 + 1e-12
+
+
+@pytest.mark.parametrize(
+    ('name', 'value', 'sound'),
+    [
+        ('rcs', 0.0, True),
+        ('rcs', 1.0, True),
+        ('rcs', math.nextafter(1.0, 2.0), False),
+        ('rcs', -5e-324, False),
+        ('film_ratio', 5e-324, True),
+        ('film_ratio', 0.0, False),
+        ('film_ratio', 1.7e308, True),
+        ('film_ratio', math.inf, False),
+    ],
+)
+def test_limits_of_what_is_solved_are_allowed(name, value, sound):
+    solution = SimpleNamespace(**{name: value}, max_pressure=math.nan)
+    if sound:
+        assert solved_values(solution) == {name: value}
+    else:
+        with pytest.raises(SurfaceError):
+            solved_values(solution)
 
 
 @both

@@ -5,6 +5,7 @@
 from dataclasses import replace
 import io
 import json
+import math
 from pathlib import Path
 import zipfile
 
@@ -79,6 +80,81 @@ def test_a_flipped_byte_is_refused_or_harmless(tmp_path_factory, place, change):
         digest, sentence = WHOLE, str(error)
     assert digest == WHOLE
     assert '\n' not in sentence
+
+
+def test_a_file_as_large_as_is_allowed_is_read(tmp_path, monkeypatch, refused):
+    with zipfile.ZipFile(CLOSED_FORM) as archive:
+        unpacked = sum(one.file_size for one in archive.infolist())
+    packed = tmp_path / 'small.npz'
+    with np.load(CLOSED_FORM, allow_pickle=False) as archive:
+        np.savez_compressed(packed, **archive)
+    assert packed.stat().st_size < unpacked < len(SHIPPED)
+    for path, size, key in ((CLOSED_FORM, len(SHIPPED), 'bytes'), (packed, unpacked, 'unpacked')):
+        monkeypatch.setattr(file, 'LARGEST_FILE', size)
+        assert file.read(path).sha256 == WHOLE
+        monkeypatch.setattr(file, 'LARGEST_FILE', size - 1)
+        refused(f'larger_{key}', file.read, path)
+
+
+def eight_nodes(data):
+    """Return the two outer nodes along each axis of a surface."""
+    ends = np.ix_([0, -1], [0, -1], [0, -1])
+    axes = {name: getattr(data, name)[[0, -1]] for name in ('speed_coordinate', 'load')}
+    return replace(
+        data,
+        **axes,
+        header={**data.header, 'load_breaks': []},
+        temperature=data.temperature[[0, -1]],
+        log_onset=data.log_onset[np.ix_([0, -1], [0, -1])],
+        fields={name: values[ends] for name, values in data.fields.items()},
+        errors={name: np.zeros((1, 1, 1)) for name in data.errors},
+        worst_contact=data.worst_contact[ends],
+        mask=data.mask[ends],
+    )
+
+
+def test_two_nodes_along_an_axis_are_enough_and_one_is_not(surface_data):
+    data = eight_nodes(surface_data)
+    assert file._has_sound_arrays(data)
+    assert file._has_sound_ensemble(data)
+    rcs = {name: values[:, :, :1] for name, values in data.fields.items()}
+    flat = replace(data, temperature=data.temperature[:1], log_onset=data.log_onset[:, :1])
+    flat = replace(flat, fields=rcs, worst_contact=data.worst_contact[:, :, :1])
+    flat = replace(flat, errors=dict.fromkeys(data.errors, np.zeros((1, 1, 0))))
+    assert not file._has_sound_arrays(replace(flat, mask=data.mask[:, :, :1]))
+    for name in ('speed_coordinate', 'load', 'temperature'):
+        same = replace(data, **{name: np.zeros(2)})
+        assert not file._has_sound_arrays(same)
+    tiny = replace(data, temperature=np.array([300.0, math.nextafter(300.0, 301.0)]))
+    assert file._has_sound_arrays(tiny)
+
+
+@pytest.mark.parametrize('end', [0, 1])
+@pytest.mark.parametrize(
+    ('beyond', 'sound'), [(-1e-6, True), (0.0, True), (1e-9, True), (2e-9, False)]
+)
+def test_a_range_of_speeds_may_reach_to_the_nodes(surface_data, end, beyond, sound):
+    """Within 1e-9 of the logarithm of the speed, whatever the load and the temperature."""
+    data = eight_nodes(surface_data)
+    s, onset = data.speed_coordinate, data.log_onset
+    reach = [s[0] + onset.max(), s[1] + onset.min()]
+    reach[end] += (2 * end - 1) * 0.999 * beyond
+    speeds = [math.exp(one) for one in reach]
+    assert (
+        bool(file._has_sound_header(replace(data, **settings_with(data, speed_range=speeds))))
+        is sound
+    )
+    alike = settings_with(data, speed_range=[1.0, 1.0])
+    assert not file._has_sound_header(replace(data, **alike))
+
+
+@pytest.mark.parametrize(('value', 'sound'), [(0.0, True), (0.5, True), (-5e-324, False)])
+def test_a_spread_is_nothing_or_more(surface_data, value, sound):
+    data = eight_nodes(surface_data)
+    header = {**data.header, 'format_version': file.ENSEMBLE_VERSION}
+    spreads = {name: np.full((2, 2, 2), value) for name in data.fields}
+    for group in ('deviations', 'standard_errors'):
+        assert file._has_sound_ensemble(replace(data, header=header, **{group: spreads})) is sound
 
 
 @pytest.mark.parametrize('version', [1, 2])

@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parts of a lookup by hand: cells, trust regions, and what is linear between the nodes."""
 
+import dataclasses
 import itertools
 import math
 
+import numpy as np
 import pytest
 from surrogate.surface import found
-from surrogate.surface.tables import SPREADS
+from surrogate.surface.fields import FIELDS
+from surrogate.surface.tables import ONSETS, SPREADS, WIDTH
 
 NODES = [0.0, 1.0, 3.0, 4.0]
 
@@ -58,3 +61,59 @@ def test_shares_and_exponentials_stay_in_their_range():
     assert found.exponential(709.0) == math.exp(709.0)
     assert found.exponential(709.1) == found.exponential(1e9) == math.inf
     assert (found.part(0.5, 3.0), found.part(0.0, math.nan)) == (1.5, 0.0)
+
+
+AXES = np.array([0.0, 0.5, 1.5]), np.array([-1.0, 1.0, 4.0, 4.5]), np.array([2.0, 3.0, 5.0, 9.0])
+"""Speeds, loads and temperatures of a table."""
+
+
+def cubics(x, y, z):
+    """Return a sum of cubics, another one for each field, and its slopes along the axes."""
+    a = 1.0 + np.arange(len(FIELDS))
+    value = x**3 + a * y**3 - 2.0 * y + 0.5 * z**3 - a * a * z + a
+    return np.stack([value, 3.0 * x**2 + 0.0 * a, 3.0 * a * y**2 - 2.0, 1.5 * z**2 - a * a])
+
+
+def test_a_sum_of_cubics_comes_back_in_every_cell():
+    """Value and slopes of every node and every field count, with weights that add up."""
+    table = np.array([[[cubics(x, y, z) for z in AXES[2]] for y in AXES[1]] for x in AXES[0]])
+    across, along = len(AXES[2]), len(AXES[1])
+    values, onset = table.ravel(), table[0, :, :, :, 2][:, :, [0, 2, 3]].ravel()
+    assert (table[0, 0, 0].size, onset.size) == (WIDTH, ONSETS * across * along)
+    for i, j, k in np.ndindex(*(len(axis) - 1 for axis in AXES)):
+        u, v, w = 0.25, 0.625, 0.375
+        place = [
+            axis[cell] + part * (axis[cell + 1] - axis[cell])
+            for axis, cell, part in zip(AXES, (i, j, k), (u, v, w))
+        ]
+        face = found.face_weights(AXES[1], j, v, AXES[2], k, w)
+        fast = found.hermite_weights(found.width_of(AXES[0], i), u)
+        node = (i * along + j) * across + k
+        back = [
+            found.field(values, name, node, across, along, fast, face)
+            for name in range(len(FIELDS))
+        ]
+        assert back == pytest.approx(cubics(*place)[0], rel=1e-12, abs=1e-10)
+        begins = found.onset_on_face(onset, j * across + k, across, face)
+        assert begins == pytest.approx(cubics(AXES[0][0], *place[1:])[0][2], rel=1e-12, abs=1e-10)
+
+
+def test_a_point_without_an_answer_is_as_if_nothing_had_been_found():
+    """Whatever an earlier point has left; the two halves together leave nothing of it."""
+    used = found.Found(**{one.name: 1 for one in dataclasses.fields(found.Found)})
+    assert found.leave(used, found.MASKED) == found.MASKED
+    judged = {'validity', 'corrected', 'worst_contact', 'rcs', 'efficiency', 'film_ratio'}
+    judged |= {'friction_torque', 'driving_torque', *(n for n in used.__slots__ if '_cell' in n)}
+    judged |= {name for name in used.__slots__ if name.endswith('_fraction')}
+    fresh = found.Found(validity=found.MASKED)
+    for name in used.__slots__:
+        left = getattr(fresh, name) if name in judged else 1
+        np.testing.assert_equal(getattr(used, name), left, name)
+    found.leave_rest(used)
+    assert repr(used) == repr(fresh)
+
+
+@pytest.mark.parametrize(('contact', 'nut', 'side'), [(-1, 0, 0), (0, 1, 1), (1, 1, 2), (2, 2, 1)])
+def test_contacts_count_by_nut_and_side(contact, nut, side):
+    place = found.Found(worst_contact=contact)
+    assert (place.worst_nut, place.worst_side) == (nut, side)

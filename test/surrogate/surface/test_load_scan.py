@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.surface import scan, shipped_surface, Surface, Validity
+from surrogate.surface.file import read
 from surrogate.surface.tables import SPLITS
 
 SHIPPED = [Surface.load(shipped_surface(tier=tier)) for tier in ('closed_form', 'full')]
@@ -40,7 +41,7 @@ def test_the_scan_is_the_lookup(surface, speed, temperature):
     assert (loads[0], loads[-1]) == surface.load_range
 
 
-def test_loads_are_nodes_and_places_between_with_corrections_and_drag(surface_data):
+def test_loads_are_nodes_and_places_between_with_corrections_and_drag():
     surface = SHIPPED[0]
     loads, _ = scanned(surface, 30.0, 313.15)
     assert (np.diff(loads) > 0).all()
@@ -54,10 +55,11 @@ def test_loads_are_nodes_and_places_between_with_corrections_and_drag(surface_da
     _, torques = scanned(pulled, 62.8, 313.15)
     assert (torques != before).any()
     np.testing.assert_allclose(torques, looked_up(pulled, 62.8, 313.15), rtol=1e-12)
-    header = dict(surface_data.header)
+    data = read(shipped_surface())
+    header = dict(data.header)
     screw = header['inputs']['screw'] | {'parasitic_torque': 0.1, 'parasitic_torque_rate': 1e-3}
     header['inputs'] = header['inputs'] | {'screw': screw}
-    surface = Surface(replace(surface_data, header=header))
+    surface = Surface(replace(data, header=header))
     for made, drag in ((surface, (0.1, 1e-3)), (SHIPPED[0], (0.0, 0.0))):
         assert (made.tables.parasitic_torque, made.tables.parasitic_torque_rate) == drag
 
@@ -67,3 +69,18 @@ def test_loads_are_nodes_and_places_between_with_corrections_and_drag(surface_da
 )
 def test_outside_there_is_no_torque(speed, temperature):
     assert np.isnan(scanned(SHIPPED[0], speed, temperature)[1]).all()
+
+
+def test_one_scan_goes_through_all_cells_of_the_speed():
+    """The onset rises and falls by more than all cells are wide, and begins at any of them."""
+    data = read(shipped_surface())
+    rise = np.linspace(0.0, 4.0 * np.pi, len(data.load))
+    span = data.speed_coordinate[-1] - data.speed_coordinate[0]
+    onset = data.log_onset.mean() + 0.6 * span * np.sin(rise)[:, None] * np.ones(
+        data.log_onset.shape[1]
+    )
+    for sign in (1.0, -1.0):
+        surface = Surface(replace(data, log_onset=sign * (onset - onset.mean()) + onset.mean()))
+        for speed in np.geomspace(*surface.speed_range, 12):
+            _, torques = scanned(surface, speed, 300.0)
+            np.testing.assert_allclose(torques, looked_up(surface, speed, 300.0), rtol=1e-12)

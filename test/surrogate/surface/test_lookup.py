@@ -41,15 +41,6 @@ def node_speed(data, i, j, k):
     return math.exp(data.speed_coordinate[i] + data.log_onset[j, k])
 
 
-def test_shipped_closed_form_is_the_one_that_is_built(surface):
-    # What a build states beside it, for life and severity, makes no other surface.
-    assert SHIPPED.header == {name: surface.header[name] for name in SHIPPED.header}
-    point = (62.8, 1000.0, 313.15)
-    for name in FIELDS:
-        shipped, built = (getattr(one.lookup(*point), name) for one in (SHIPPED, surface))
-        assert shipped == pytest.approx(built, rel=1e-9)
-
-
 def test_lookup_is_exact_at_the_nodes(surface, surface_data):
     """Every seventh node inside the speed range gives back its own numbers."""
     data, checked = surface_data, 0

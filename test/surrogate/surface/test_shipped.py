@@ -4,7 +4,13 @@
 
 from pathlib import Path
 
-from surrogate.surface import find_surface, shipped_surface, Surface
+from surrogate.surface import (
+    companion_path,
+    find_surface,
+    PRELOAD_SHARES,
+    shipped_surface,
+    Surface,
+)
 import surrogate.surface.shipped
 
 
@@ -31,3 +37,11 @@ def test_without_a_wish_solved_contacts_come_first(tmp_path, monkeypatch, refuse
     assert find_surface('closed_form', 'a', 'oil').name == 'a_oil.npz'
     refused('shipped_screw_d', find_surface, '', 'd', 'oil')
     refused('surface_tier_closed_form', find_surface, 'closed_form', 'c', 'oil')
+
+
+def test_a_companion_lies_beside_its_surface(tmp_path):
+    """At four parts of the preload, of which the first is the surface itself."""
+    assert PRELOAD_SHARES == (1.0, 0.8, 0.6, 0.4)
+    names = [companion_path(tmp_path / 'a.npz', share).name for share in PRELOAD_SHARES]
+    assert names == [f'a_preload{part}.npz' for part in (100, 80, 60, 40)]
+    assert companion_path(tmp_path / 'a.npz', 0.29).parent == tmp_path
