@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Whether the monitors that listen to a player take all that is played, by their own diagnostics.
+Comparison of what is played with what the monitors that listen take, by their own diagnostics.
 
 Their inputs are best effort: the middleware does not hold the player back for them.
 
@@ -63,7 +63,7 @@ class Following:
 
     def complaint(self, rate: float, sent: Mapping[str, int]) -> str:
         """
-        Return which input has lost most, of how many messages; empty if none has.
+        Return which input has lost most at a `rate` [-], of how many; empty if none has.
 
         Of an input whose topic is known all that was `sent` on it counts, of another one what the
         monitor knows to be lost: it cannot know that of the last messages.
