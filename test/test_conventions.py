@@ -57,6 +57,7 @@ THEMES = {
     'ballscrew_monitor/judge/test_edge_floats.py',
     'ballscrew_monitor/judge/test_golden.py',
     'ballscrew_monitor/node/test_clocks.py',
+    'ballscrew_monitor/node/test_one_clock.py',
     'ballscrew_monitor/node/test_cures.py',
     'ballscrew_monitor/node/test_deadline.py',
     'ballscrew_monitor/node/test_dump.py',

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Whether the monitors that listen to a player take all that is played, by their own diagnostics.
+Comparison of what is played with what the monitors that listen take, by their own diagnostics.
 
 Their inputs are best effort: the middleware does not hold the player back for them.
 
@@ -15,7 +15,7 @@ from rclpy.node import Node
 from rclpy.time import Time
 
 DIAGNOSTICS, PART = '/diagnostics', ': Inputs'
-TAKEN, LOST = ' received [-]', ' lost [-]'
+TAKEN, LOST, MATCHED = ' received [-]', ' lost [-]', ' publishers [-]'
 FRESH = ('Speed state', 'OK')
 FIRST_WORD, LAST_WORD = 2.0, 5.0  # [s] that a monitor may take to tell what it has taken
 POLL = 0.05  # [s]
@@ -34,13 +34,19 @@ class Following:
         self._first: dict[str, Counts] = {}
         self._last: dict[str, Counts] = {}
         self._resting: set[str] = set()  # monitors whose counts do after the end
+        self._unmatched: set[str] = set()  # those that miss the publisher of an input
         self._end = LATEST
         node.create_subscription(DiagnosticArray, DIAGNOSTICS, self._hear, DEPTH)
 
     def begin(self) -> None:
-        """Wait a little for what the monitors have taken before; without one do not wait."""
+        """
+        Wait a little for what the monitors have taken before, and until they know the player.
+
+        Without a monitor it does not wait.
+
+        """
         deadline = time.monotonic() + FIRST_WORD
-        while not self._first and time.monotonic() < deadline:
+        while (not self._first or self._unmatched) and time.monotonic() < deadline:
             if not self._node.count_publishers(DIAGNOSTICS):
                 break
             self._take(POLL)
@@ -63,7 +69,7 @@ class Following:
 
     def complaint(self, rate: float, sent: Mapping[str, int]) -> str:
         """
-        Return which input has lost most, of how many messages; empty if none has.
+        Return which input has lost most at a `rate` [-], of how many; empty if none has.
 
         Of an input whose topic is known all that was `sent` on it counts, of another one what the
         monitor knows to be lost: it cannot know that of the last messages.
@@ -101,6 +107,10 @@ class Following:
             fresh = any((pair.key, pair.value) == FRESH for pair in status.values)
             if late and not fresh and counts == self._last.get(status.name):
                 self._resting.add(status.name)
+            missing = any(
+                pair.key.endswith(MATCHED) and pair.value == '0' for pair in status.values
+            )
+            (self._unmatched.add if missing else self._unmatched.discard)(status.name)
             self._first.setdefault(status.name, counts)
             self._last[status.name] = counts
 
