@@ -367,12 +367,20 @@ def _entry_of(data: bytes, topic: str) -> Mapping[str, Any]:
 
 
 def _values(entry: Mapping[str, Any], types: Mapping[str, str]) -> dict[str, Any]:
-    """Return the parameters of an axis, its topics by full name and with their types."""
-    values = dict(entry['values'])
+    """
+    Return the parameters of an axis, its topics by full name and with their types.
+
+    Raises InputError for one that no node has.
+
+    """
+    values, rows = dict(entry['values']), parameters.table([entry['axis']])
     for source, topic in entry['topics'].items():
         prefix = f'{entry["axis"]}.{source}'
+        if f'{prefix}.type' not in rows or not isinstance(topic, str):
+            raise InputError(f'axis {entry["axis"]}: the topic of {source} is {topic!r}')
         values[f'{prefix}.topic'] = topic
-        values[f'{prefix}.type'] = types.get(topic) or values[f'{prefix}.type']
+        values[f'{prefix}.type'] = types.get(topic) or values.get(f'{prefix}.type', '')
+    parameters.check(rows, {name: value for name, value in values.items() if name in rows})
     return values
 
 
