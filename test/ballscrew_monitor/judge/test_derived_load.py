@@ -417,3 +417,15 @@ def test_codes_are_those_of_their_enumerations_and_stay_those_of_files():
     codes = 'DERIVED_OK NO_ACCELERATION TOO_MUCH_INERTIA SEVERAL_LOADS'
     codes += ' OUTSIDE NO_NUMBER STANDSTILL NOT_FRESH'
     assert [getattr(derived_load, code) for code in codes.split()] == list(range(1, 9))
+
+
+@pytest.mark.parametrize(('margin', 'code'), [(0.499, 'SEVERAL_LOADS'), (0.501, 'DERIVED_OK')])
+def test_loads_that_lie_apart_by_twice_the_margin_are_one(core, margin, code):
+    """486.4 and 1510.4 N, 1 N m apart without friction."""
+    surface = core.surface(driving_torque=folded)
+    surface.lead = math.tau / 1024.0
+    settings = Settings(torque_uncertainty=margin, largest_share=1.0)
+    row = derived_number(surface, settings, at(10.0, 0.6))
+    assert row.derived == getattr(derived_load, code)
+    if code == 'SEVERAL_LOADS':
+        assert (row.derived_first, row.derived_second) == pytest.approx((486.4, 1510.4))
