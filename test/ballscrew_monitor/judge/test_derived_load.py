@@ -6,7 +6,7 @@ import dataclasses
 import math
 from types import SimpleNamespace
 
-from ballscrew_monitor.core.conversions import direction_of, opposing_load, signed
+from ballscrew_monitor.core.conversions import Direction, direction_of, opposing_load, signed
 from ballscrew_monitor.core.state import LoadDerivation
 from ballscrew_monitor.judge import derived_load
 from ballscrew_monitor.judge.records import Row, Settings
@@ -353,3 +353,79 @@ def test_the_part_that_is_scanned_holds_the_margin_and_a_load_on_either_side(
     begin, end = derived_load.part_of(surface, row, driving, margin / 1024.0)
     found = surface.scan_loads[begin:end]
     assert (found[0], found[-1]) == loads
+
+
+@pytest.mark.parametrize(
+    ('torques', 'driving', 'load', 'margin', 'reach'),
+    [
+        ([0.0, 1.0, 2.0, 3.0], 1.5, 1.5, 0.25, 0.25),
+        ([0.0, 1.0, 2.0, 3.0], 1.0, 1.0, 0.0, 0.0),
+        ([0.0, 1.0, 2.0, 3.0], 1.5, 1.5, 1.5, 1.5),  # just from end to end
+        ([0.0, 1.0, 2.0, 3.0], 1.5, 1.5, 2.0, 2.0),  # and as far beyond as without friction
+        ([0.0, 1.0, 4.0, 5.0], 1.0, 1.0, 0.5, 0.5),
+        ([0.0, 1.0, 4.0, 5.0], 1.0, 1.0, 1.5, 1.5),
+        ([0.0, 1.0, 4.0, 5.0], 4.0, 2.0, 1.5, 1.5),
+        ([0.0, 10.0, 20.0, 30.0], 5.0, 0.5, 1.0, 0.1),
+        ([0.0, 10.0, 20.0, 30.0], 25.0, 2.5, 1.0, 0.1),
+        ([0.0, 1.0, 1.0, 9.0], 0.0, 0.0, 1.0, 2.0),  # on the margin is within it
+        ([-9.0, -1.0, -1.0, 0.0], 0.0, 3.0, 1.0, 2.0),
+        ([NAN, 1.0, 2.0, NAN], 1.5, 1.5, 2.0, 2.0),
+        ([0.0, NAN, 4.0, 5.0], 2.0, 1.0, 1.5, 0.75),  # straight over what is not known
+    ],
+)
+def test_a_load_reaches_as_far_as_the_margin_of_its_torque(torques, driving, load, margin, reach):
+    """At loads of 0 to 3 N with 1 N m a newton; linear between them and as steep beyond."""
+    tables = SimpleNamespace(scan_loads=[0.0, 1.0, 2.0, 3.0], scan_torques=torques, lead=math.tau)
+    found = derived_load.reach_of(tables, 0, 4, driving, load, margin)
+    assert found == pytest.approx(reach, abs=1e-12)
+    shifted = SimpleNamespace(
+        scan_loads=[-9.0, *(one - 7.0 for one in tables.scan_loads), 9.0],
+        scan_torques=[5.0, *(one - 3.0 for one in torques), 5.0],
+        lead=math.tau,
+    )
+    again = derived_load.reach_of(shifted, 1, 5, driving - 3.0, load - 7.0, margin)
+    assert again == pytest.approx(reach, abs=1e-12)
+
+
+def test_crossings_count_from_the_driving_torque_and_in_the_part_asked_for():
+    torques = [9.0, 4.0, 6.0, 4.0, 9.0]
+    assert derived_load.crossings(torques, 5.0, 0, 5) == (0, 3, False)
+    assert derived_load.crossings(torques, 5.0, 1, 3) == (1, 1, False)
+    assert derived_load.crossings(torques, 5.0, 2, 4) == (2, 2, False)
+    assert derived_load.crossings(torques, -5.0, 0, 5) == (-1, -1, False)
+
+
+def test_a_root_on_a_load_of_the_scan_needs_no_lookup_and_one_that_is_lost_is_none(monkeypatch):
+    tables = SimpleNamespace(scan_loads=[-1.0, 0.0, 2.0], scan_torques=[3.0, 4.0, 7.0])
+    monkeypatch.setattr(derived_load, 'look_up', None)
+    assert derived_load.root(tables, Row(), 7.0, 1) == 2.0
+
+    def look_up(tables, speed, load, temperature, row):
+        row.driving_torque = math.nan
+
+    monkeypatch.setattr(derived_load, 'look_up', look_up)
+    assert math.isnan(derived_load.root(tables, Row(), 5.0, 1))
+
+
+def test_codes_are_those_of_their_enumerations_and_stay_those_of_files():
+    names = 'UNKNOWN', 'VALID', 'LOAD_OUT_OF_RANGE', 'MASKED'
+    kinds = 'UNKNOWN', 'VALID', 'OUTSIDE_LOADS', 'NO_ANSWER'
+    for name, kind in zip(names, kinds, strict=True):
+        assert getattr(derived_load, kind) == Validity[name]
+    for name in ('POSITIVE', 'NEGATIVE'):
+        assert getattr(derived_load, name) == Direction[name]
+    codes = 'DERIVED_OK NO_ACCELERATION TOO_MUCH_INERTIA SEVERAL_LOADS'
+    codes += ' OUTSIDE NO_NUMBER STANDSTILL NOT_FRESH'
+    assert [getattr(derived_load, code) for code in codes.split()] == list(range(1, 9))
+
+
+@pytest.mark.parametrize(('margin', 'code'), [(0.499, 'SEVERAL_LOADS'), (0.501, 'DERIVED_OK')])
+def test_loads_that_lie_apart_by_twice_the_margin_are_one(core, margin, code):
+    """486.4 and 1510.4 N, 1 N m apart without friction."""
+    surface = core.surface(driving_torque=folded)
+    surface.lead = math.tau / 1024.0
+    settings = Settings(torque_uncertainty=margin, largest_share=1.0)
+    row = derived_number(surface, settings, at(10.0, 0.6))
+    assert row.derived == getattr(derived_load, code)
+    if code == 'SEVERAL_LOADS':
+        assert (row.derived_first, row.derived_second) == pytest.approx((486.4, 1510.4))

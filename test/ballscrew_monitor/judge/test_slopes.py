@@ -103,6 +103,15 @@ def test_a_fast_source_goes_round_the_ring_and_one_sample_has_no_slope():
     assert math.isnan(slope_of(ring))
 
 
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_the_largest_difference_still_has_a_slope(sign):
+    for largest, slope in ((1e300, sign * 1e303), (math.nextafter(1e300, math.inf), math.nan)):
+        ring = SlopeRing()
+        slope_take(ring, WINDOW, GAP, START, 0.0)
+        slope_take(ring, WINDOW, GAP, START + 10**6, sign * largest)
+        assert slope_of(ring) == pytest.approx(slope, nan_ok=True)
+
+
 @settings(max_examples=100)
 @given(SAMPLES)
 def test_compiled_it_has_the_same_bits(steps):

@@ -15,6 +15,7 @@ from surrogate.formulas.geometry import conformity, helix_angle, hertz, screw_co
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.sliding import ellipse_nodes
 from surrogate.parameters import load_screw
+from surrogate.screw import ball_balance
 from surrogate.screw.ball_balance import _floors, balance_ball, BalanceSettings, FIRST_FLOOR
 from surrogate.screw.ball_equations import BallProblem
 from surrogate.screw.ball_motion import axis_vector, contact_frame, slip_field, slip_floor
@@ -372,6 +373,10 @@ def test_floors_fall_by_a_ratio_from_far_above_the_slip_to_that_of_the_problem(s
 
 
 def test_a_ball_is_solved_to_the_tolerances_that_are_measured():
+    """Another tolerance, stage or damping is measured again."""
+    stages = ball_balance.STAGE_RATIOS, ball_balance.STAGE_TOLERANCE, FIRST_FLOOR
+    assert stages == ((10.0, 3.0, 1.5, math.inf), 0.2, 3.0)
+    assert (ball_balance.SMALLEST_DAMPING, ball_balance.LARGEST_CONDITION) == (1 / 64, 1e14)
     assert BalanceSettings() == BalanceSettings(
         step_tolerance=1e-8, balance_tolerance=1e-10, newton_limit=40
     )

@@ -187,6 +187,8 @@ def test_ridges_without_a_fan_have_an_onset(screw, oil, lay):
 
 def test_smooth_raceways_say_so(screw, oil):
     smooth = with_raceway(screw, rms=0.0)
+    speeds = onset_speeds(smooth, oil, np.array([0.0]), np.array([KELVIN]))
+    assert speeds == pytest.approx(1e-3 / no_slip_rates(screw).entrainment)
     assert onset_point(smooth, oil, 0.0, KELVIN)['speed_rad_s'] == 0.0
     page = onset_page(onset_record(smooth, oil, 0.0, KELVIN))
     assert 'no contact: raceway and ball are smooth' in page

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from surrogate.asperities.law import BANDS, SLOPE
 from surrogate.parameters import OperatingPoint
+from surrogate.screw import sensitivity
 from surrogate.screw.closed_form import solve
 from surrogate.screw.onset import onset_point, run_in_at, with_raceway
 from surrogate.screw.sensitivity import (
@@ -63,6 +64,24 @@ def test_a_spread_reaches_from_the_lowest_to_the_highest_and_over_the_stated_one
     assert _spread([0.25, 0.5]) == pytest.approx(math.log(4.0))
     assert _spread([0.5, math.nan]) > 1e300
     assert INTERPOLATION * -SLOPE == pytest.approx(0.1)
+
+
+def test_a_limit_is_looked_for_among_sixty_speeds_about_the_onset(screw, oil, monkeypatch):
+    """From its 2.5th part to 2.5 times the onset, and from there to the fastest speed."""
+    asked = []
+
+    def solve_once(made, lubricant, speed, *place):
+        asked.append(speed)
+        return solve(made, lubricant, speed, *place)
+
+    monkeypatch.setattr(sensitivity.closed_form, 'solve', solve_once)
+    case = ScrewCase(screw=screw, lubricant=oil, point=POINT)
+    sensitivity._outcome(case)
+    ((first, *rest),) = asked
+    near, wide = np.array(rest[:60]), np.array(rest[60:])
+    assert (first, len(wide)) == (POINT.speed, 60)
+    assert near[[0, -1]] == pytest.approx([case.onset / 2.5, 2.5 * case.onset])
+    assert wide[[0, -1]] == pytest.approx([near[0], screw.fastest_speed])
 
 
 def test_the_ranges_are_those_of_their_reasons():
