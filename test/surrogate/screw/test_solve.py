@@ -235,8 +235,9 @@ def test_rolling_roughness_is_the_smooth_contact_with_the_law():
 
 def test_rolling_loss_is_that_of_the_smooth_film_times_its_factor(monkeypatch):
     """The oil alone: hysteresis is not multiplied. Torque grows with it."""
-    # The factor fades beyond the fastest marches.
-    monkeypatch.setattr(asperity_law, 'FASTEST', 20.0)
+    # The factor fades far above the onset, and bends to the least one.
+    monkeypatch.setattr(asperity_law, 'SMOOTH_FROM', 60.0)
+    monkeypatch.setattr(asperity_law, 'SOFT_LOSS', 1e-3)
     monkeypatch.setattr(asperity_law, 'LOSS_SLOPE', (0.0, 0.0, 0.0))
     found = []
     for factor in (1.0, 2.0):
