@@ -187,7 +187,7 @@ def loss_at(log_speed: Array, pressure: Array, lay: float) -> Array:
     return loss_along(at_onset, slope, log_speed)
 
 
-def loss_along(at_onset: ArrayLike, slope: ArrayLike, log_speed: Array) -> Array:
+def loss_along(at_onset: Array | float, slope: Array | float, log_speed: Array) -> Array:
     """
     Return the loss [-] of a value at the onset and a slope over the logarithm of the speed [-].
 
