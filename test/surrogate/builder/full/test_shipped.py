@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.builder.full.chain import point_inputs, solve_chain
+from surrogate.builder.full.chain import chain_inputs, solve_chain
 from surrogate.datasheet import DATA as DATA_FOLDER
 from surrogate.parameters import load_screw
 from surrogate.surface import find_surface, Surface, Validity
@@ -90,13 +90,13 @@ def test_rcs_falls_with_speed_at_every_node():
 
 @pytest.mark.parametrize('s', [-1.0, 1.5])
 def test_a_node_is_what_the_solver_gives(screw, oil, s):
-    """At 40 degC and preload, on either side of the onset."""
+    """At 40 degC and preload, on either side of the onset; on the grids of a chain."""
     k = int(np.argmin(np.abs(DATA.temperature - oil.reference_temperature)))
     j = int(np.argmin(np.abs(DATA.load)))
     i = int(np.searchsorted(DATA.speed_coordinate, s))
     speed = math.exp(DATA.speed_coordinate[i] + DATA.log_onset[j, k])
     load, heat = float(DATA.load[j]), float(DATA.temperature[k])
-    found = solve_chain(point_inputs(screw, oil, load, heat, speed))['opposing'][0]
+    found = solve_chain(chain_inputs(screw, oil, load, heat, [speed]))['opposing'][0]
     for name in ('film_ratio', 'central_film', 'friction_torque', 'rcs'):
         node = DATA.fields[name][i, j, k]
         assert found[name] == pytest.approx(node, rel=1e-3, abs=1e-9)
