@@ -73,9 +73,7 @@ class MachineLaw(laws.AsperityLaw):
         """Return the loss factor [-]: the line of the march, smooth far above the onset."""
         onset = float(self.march['loss_onset'])
         rise = (float(self.march['loss_half'] or onset) - onset) / math.log(0.5)
-        line = onset + rise * np.clip(over, laws.SLOWEST, laws.FASTEST)
-        fade = np.exp(-np.maximum(over - laws.FASTEST, 0.0))
-        return 1 + (np.maximum(line, laws.LEAST_LOSS) - 1) * fade
+        return laws.loss_along(onset, rise, over)
 
 
 def logit(share):

@@ -76,6 +76,12 @@ class Progress:
             self._print(self._text())
             self._said, self._last = self._part(), self._clock()
 
+    def beat(self) -> None:
+        """Tell a log that the work goes on, where nothing was done for a while."""
+        if not self._terminal and self._clock() - self._last >= LOG_PAUSE:
+            self._print(self._text())
+            self._last = self._clock()
+
     def close(self) -> None:
         """End the line of a terminal where the work ended early."""
         if self._open:

@@ -59,7 +59,7 @@ SLOW = (
     'surrogate/commands',
     'surrogate/contact',
     'surrogate/ehl',
-    'surrogate/formulas/test_inlet_heating.py',
+    'surrogate/formulas/test_inlet.py',
     'surrogate/formulas/test_line.py',
     'surrogate/identify/test_fit.py',
     'surrogate/identify/test_table.py',

@@ -26,7 +26,7 @@ from surrogate.parameters import Screw
 Array = NDArray[np.float64]
 ONSET_RCS = 0.01
 """RCS at the onset [-]."""
-VERSION = 'topography 1'
+VERSION = 'topography 2'
 """Of the law, among what results that it decides are kept by."""
 PLACES = 8
 """Places across a contact at which it is looked up [-]."""
@@ -34,8 +34,9 @@ NOTHING = 1e-7
 """RCS that counts as none [-]."""
 SLOPE, BEND = -4.69, -1.09
 """Of the logit of RCS over the logarithm of the speed by that of the onset [-]."""
-SLOWEST, FASTEST = -1.4, 0.7
-"""Ends of the logarithms of the speed by that of the onset that the marches reach [-]."""
+SLOWEST = -(1 + SLOPE) / (2 * BEND)
+"""Logarithm of the speed by that of the onset below which what oil carries goes with the speed
+[-]: there the slope of the logit reaches -1, at 0.18 of the onset."""
 SHARE = 0.84, 0.16
 """Asperity share over RCS where RCS is small, and how it rises with RCS [-]."""
 LOSS, LOSS_SLOPE = (1.28, 0.24, -0.20), (0.03, -0.25, 0.23)
@@ -44,6 +45,13 @@ PRESSURES = 0.4e9, 1.5e9
 """Hertz pressures of the marches [Pa]."""
 LEAST_LOSS = 0.75
 """Least rolling loss over that of a smooth contact [-]; 0.82 in the marches."""
+LOSS_SLOWEST = -1.4
+"""Logarithm of the speed by that of the onset below which the loss keeps its value [-]."""
+SMOOTH_FROM, FADING = 1.4, 0.35
+"""Logarithm of the speed by that of the onset at which half of the change of the loss is left,
+and its width [-]."""
+SOFT_SPEED, SOFT_LOSS = 0.25, 0.03
+"""Widths of the bends to the slowest speed and to the least loss [-]."""
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(2 * PLACES)
 BANDS = {'isotropic': 1.3, 'longitudinal': 2.0, 'transverse': 2.0}
 """Factor within which the topography tells nine of ten marched strips, by the lay [-]; seven of
@@ -139,22 +147,22 @@ class AsperityLaw:
         place = _POINTS[PLACES:]
         share = 1.5 * _WEIGHTS[PLACES:] * (1 - place**2)
         strips = line_at(contact, load, place)
-        with np.errstate(divide='ignore'):
-            onset = np.log(self.onsets[side].speeds(strips, oil, floor))
-        return share, strips, onset
+        # A smooth raceway has its onset at rest: as slow as a number can tell.
+        onsets = np.maximum(self.onsets[side].speeds(strips, oil, floor), np.finfo(float).tiny)
+        return share, strips, np.log(onsets)
 
 
 def rcs_at(log_speed: ArrayLike) -> Array:
     """
     Return RCS at logarithms of the speed by that of the onset [-].
 
-    Slower than marched it goes to 1 with the speed, and none of it counts below `NOTHING`.
+    Slower than marched the load that oil carries, over that of asperities, falls as the speed
+    does. RCS below `NOTHING` is 0.
 
     """
     x = np.asarray(log_speed, dtype=float)
-    known = np.clip(x, SLOWEST, 4.0)
-    found = expit(logit(ONSET_RCS) + SLOPE * known + BEND * known**2)
-    found = 1 - (1 - found) * np.exp(np.minimum(x - SLOWEST, 0.0))
+    known = np.maximum(x, SLOWEST)
+    found = expit(logit(ONSET_RCS) + SLOPE * known + BEND * known**2 - np.minimum(x - SLOWEST, 0))
     return np.asarray(np.where(found < NOTHING, 0.0, found))
 
 
@@ -168,7 +176,7 @@ def loss_at(log_speed: Array, pressure: Array, lay: float) -> Array:
     Return the rolling loss over that of a smooth contact [-].
 
     At logarithms of the speed by that of the onset [-], Hertz pressures [Pa] and a lay as
-    `ActingRoughness` has it; faster than marched it goes to that of a smooth contact.
+    `ActingRoughness` has it.
 
     """
     pressed = np.log(np.clip(pressure, *PRESSURES) / PRESSURE)
@@ -176,8 +184,25 @@ def loss_at(log_speed: Array, pressure: Array, lay: float) -> Array:
         usual + over_pressure * pressed + over_lay * lay
         for usual, over_pressure, over_lay in (LOSS, LOSS_SLOPE)
     )
-    found = np.maximum(at_onset + slope * np.clip(log_speed, SLOWEST, FASTEST), LEAST_LOSS)
-    return np.asarray(1 + (found - 1) * np.exp(-np.maximum(log_speed - FASTEST, 0.0)))
+    return loss_along(at_onset, slope, log_speed)
+
+
+def loss_along(at_onset: Array | float, slope: Array | float, log_speed: Array) -> Array:
+    """
+    Return the loss [-] of a value at the onset and a slope over the logarithm of the speed [-].
+
+    The line bends to the value of `LOSS_SLOWEST` and to `LEAST_LOSS`; the faster, the less of it
+    is left.
+
+    """
+    line = at_onset + slope * _above(log_speed, LOSS_SLOWEST, SOFT_SPEED)
+    change = _above(line, LEAST_LOSS, SOFT_LOSS) - 1
+    return np.asarray(1 + change * expit((SMOOTH_FROM - log_speed) / FADING))
+
+
+def _above(values: Array, least: float, width: float) -> Array:
+    """Return values [-] that bend smoothly to the least one, over a width [-]."""
+    return np.asarray(least + width * np.logaddexp(0.0, (values - least) / width))
 
 
 @lru_cache(maxsize=64)

@@ -54,12 +54,12 @@ def working_pressure(screw: Screw, side: Side) -> float:
     return float(hertz(screw_contact(screw, side), force).max_pressure)
 
 
-def running_tiles(screw: Screw, side: Side) -> list[Tile]:
+def running_tiles(screw: Screw, side: Side, *, shortest: float = 0.0) -> list[Tile]:
     """
     Return tiles of a raceway with its ball in their state; none where both are smooth.
 
-    Raises InputError where the largest working load presses the contact by more than the cutting
-    pressure.
+    Waves not shorter than `shortest` [m]. Raises InputError where the largest working load presses
+    the contact by more than the cutting pressure.
 
     """
     contact = screw_contact(screw, side)
@@ -74,12 +74,12 @@ def running_tiles(screw: Screw, side: Side) -> list[Tile]:
             f'summits are cut, {GIGA * bound:.3g} GPa: see working_load_N, run_in_pressure_GPa '
             'and hardness_GPa'
         )
-    size, shape = tile_size(screw, side)
+    size, shape = tile_size(screw, side, shortest=shortest)
     return [
         _added(
             [
                 _cut(
-                    draw_tile(waves, draw, size=size, shape=shape, field=field),
+                    draw_tile(waves, draw, size=size, shape=shape, shortest=shortest, field=field),
                     0.5 * contact.reduced_modulus,
                     pressure,
                     bound,
@@ -104,11 +104,13 @@ def shortest_wave(screw: Screw) -> float:
     return min(2 * math.pi / float(waves.wave_number[-1]) for waves in waves_of(screw).values())
 
 
-def tile_size(screw: Screw, side: Side) -> tuple[tuple[float, float], tuple[int, int]]:
+def tile_size(
+    screw: Screw, side: Side, *, shortest: float = 0.0
+) -> tuple[tuple[float, float], tuple[int, int]]:
     """Return length and width of the tiles of a raceway [m] and their nodes [-]."""
     force = float(normal_force(screw, working_preload(screw)))
     semi_axis = float(hertz(screw_contact(screw, side), force).semi_axis_x)
-    shortest = shortest_wave(screw)
+    shortest = max(shortest_wave(screw), shortest)
     length = min(LENGTH * semi_axis, MOST_WAVES * shortest)
     # An even number of nodes, so that every other one repeats too.
     rows = 2 * next_fast_len(math.ceil(0.5 * NODES * length / shortest), real=True)

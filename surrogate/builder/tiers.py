@@ -30,9 +30,10 @@ class Tier:
     `settings(screw)` returns default settings, a dataclass with `speed_range` [rad/s],
     `load_range` [N] and `temperature_range` [K]. `build(screw, lubricant, settings, progress=...)`
     returns SurfaceData; with `spreads` the builder spreads its own solves over workers and is
-    called `build(screw, lubricant, settings, pool=..., out=...)`, `out` being the file beside
-    which it keeps its results. `solve(header, speed, load, temperature)` solves a point [rad/s, N,
-    K] as the surface of that header was solved, and returns a `SolvedPoint`.
+    called `build(screw, lubricant, settings, pool=..., out=..., march=...)`, `out` being the file
+    beside which it keeps its results; with `march` it marches strips of the raceway as well.
+    `solve(header, speed, load, temperature)` solves a point [rad/s, N, K] as the surface of that
+    header was solved, and returns a `SolvedPoint`.
 
     """
 
@@ -89,10 +90,13 @@ def build_surface(
     progress: OnProgress = lambda done, total: None,
     pool: Pool | None = None,
     out: str | Path = '',
+    march: bool = False,
 ) -> SurfaceData:
     """Build a surface by the builder of its tier; raises InputError as that does."""
     found = find_tier(tier)
-    options = {'pool': pool, 'out': out} if found.spreads else {'progress': progress}
+    options: dict[str, Any] = {'progress': progress}
+    if found.spreads:
+        options = {'pool': pool, 'out': out, 'march': march}
     data: SurfaceData = load_function(found.build)(screw, lubricant, settings, **options)
     return data
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from surrogate.catalogue.noted import derived, Noted, noted_sheet, stated, typical
 from surrogate.catalogue.words import CatalogueOil
-from surrogate.formulas.inlet_heating import SPEED_EXPONENT
+from surrogate.formulas.inlet import SPEED_EXPONENT
 from surrogate.formulas.lubricant import pressure_viscosity_gold_2001
 from surrogate.formulas.viscosity_index import viscosity_at_100_astm_d2270
 from surrogate.parameters import Lubricant

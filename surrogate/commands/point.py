@@ -15,7 +15,7 @@ from surrogate.progress import Progress
 from surrogate.surface.shipped import SHIPPED_TIERS
 from surrogate.units import RPM, ZERO_CELSIUS
 
-FULL_ONLY = ('kinematics', 'inlet_heating', 'plot')
+FULL_ONLY = ('kinematics', 'plot')
 """Options of the full tier alone."""
 
 
@@ -36,7 +36,7 @@ def add_point_command(subparsers: Any) -> None:
         'stands still, or none',
     )
     parser.add_argument(
-        '--inlet-heating', action='store_true', help='full tier: films thinned by inlet shear'
+        '--isothermal', action='store_true', help='films that shear in the inlet does not thin'
     )
     parser.add_argument(
         '--sensitivity',
@@ -127,7 +127,7 @@ def _point(args: argparse.Namespace) -> int:
     if args.tier == 'full':
         solution, record = _full(args, screw, lubricant, point)
     else:
-        record = closed_form_record(screw, lubricant, point)
+        record = closed_form_record(screw, lubricant, point, inlet_heating=not args.isothermal)
     show(record, page, json=args.json)
     if args.plot:
         picture(args.plot, 'figures', 'draw_point', screw, solution, record)
@@ -137,6 +137,8 @@ def _point(args: argparse.Namespace) -> int:
 def _check(args: argparse.Namespace) -> None:
     if args.sensitivity and args.tier == 'full':
         raise InputError('--sensitivity is given with --tier full, allowed is the closed form')
+    if args.sensitivity and args.isothermal:
+        raise InputError('--sensitivity is given with --isothermal, allowed is a heated inlet')
     args.tier = args.tier or ('closed_form' if args.sensitivity else SHIPPED_TIERS[0])
     for name in FULL_ONLY:
         given = getattr(args, name)
@@ -173,7 +175,7 @@ def _full(
 
     started = time.perf_counter()
     settings = ScrewSettings(
-        kinematics=args.kinematics or 'rolling', inlet_heating=args.inlet_heating
+        kinematics=args.kinematics or 'rolling', inlet_heating=not args.isothermal
     )
     found = solve_screw(screw, lubricant, point, settings=settings)
     record = solution_record(screw, lubricant, point, found, settings)

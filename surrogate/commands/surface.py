@@ -17,11 +17,15 @@ from surrogate.commands.point import add_inputs, load_inputs
 from surrogate.commands.surface_inspect import add_inspect_commands
 from surrogate.commands.sweep import add_sweep_command, add_workers
 from surrogate.files import InputError
+from surrogate.parameters import Lubricant
 from surrogate.progress import Progress
 from surrogate.surface import find_surface
 from surrogate.surface.file import read, write
 from surrogate.surface.shipped import SHIPPED_TIERS
 from surrogate.units import RPM, ZERO_CELSIUS
+
+HALF_KELVIN, HELD_OUT = 0.5, 20
+"""Half of the range of a surface at one temperature [K], its held-out points."""
 
 
 def add_surface_command(subparsers: Any) -> None:
@@ -55,12 +59,26 @@ def _add_build(parser: argparse.ArgumentParser) -> None:
             metavar=('LOW', 'HIGH'),
             help=f'{name} range [{unit}]',
         )
+    parser.add_argument(
+        '--temperature-degC',
+        type=float,
+        metavar='T',
+        dest='temperature',
+        help='one temperature instead of a range: it answers within half a kelvin, a third of the '
+        'work',
+    )
     parser.add_argument('--out', type=Path, help='file to write (default SCREW_OIL.npz)')
     parser.add_argument(
         '--with-preloads',
         action='store_true',
         help='also write companions at 100, 80, 60 and 40 %% of the preload, by formulas alone, '
         'from which health tells the preload',
+    )
+    parser.add_argument(
+        '--march',
+        action='store_true',
+        help='full tier: also march three strips of this raceway, minutes, and report where '
+        'contact begins beside what the law tells',
     )
     add_workers(parser)
     parser.set_defaults(handler=_build)
@@ -81,7 +99,7 @@ def _add_info(parser: argparse.ArgumentParser) -> None:
 
 def _build(args: argparse.Namespace) -> int:
     screw, lubricant = load_inputs(args)
-    ranges: dict[str, Any] = {}
+    ranges = _one_temperature(args, lubricant) if args.temperature is not None else {}
     if args.speed_range:
         low, high = _range('--speed-range', 'rpm', args.speed_range, lowest=0.0)
         ranges['speed_range'] = (low * RPM, high * RPM)
@@ -95,14 +113,43 @@ def _build(args: argparse.Namespace) -> int:
     progress = Progress(0, 'slices').show if sys.stderr.isatty() else lambda done, total: None
     with _workers(args) as pool:
         data = build_surface(
-            args.tier, screw, lubricant, settings, progress=progress, pool=pool, out=out
+            args.tier,
+            screw,
+            lubricant,
+            settings,
+            progress=progress,
+            pool=pool,
+            out=out,
+            march=args.march,
         )
     write(out, data)
     print(f'{out}: tier {args.tier}, {data.mask.size} nodes, sha256 {data.sha256}')
     if args.with_preloads:
         for file in build_companions(screw, lubricant, ranges, out):
             print(f'{file}: companion at another preload')
+    if args.march:
+        from surrogate.surface_tools.describe import march_lines
+
+        print('\n'.join(march_lines(data.header['march'])))
     return 0
+
+
+def _one_temperature(args: argparse.Namespace, lubricant: Lubricant) -> dict[str, Any]:
+    """Return the settings of a surface at one temperature, within what the oil allows."""
+    if args.temperature_range:
+        raise InputError('--temperature-degC and --temperature-range are given, allowed is one')
+    low, high = lubricant.minimum_temperature, lubricant.maximum_temperature
+    kelvin = args.temperature + ZERO_CELSIUS
+    if not low <= kelvin <= high:
+        raise InputError(
+            f'--temperature-degC is {args.temperature:g} degC, allowed is '
+            f'{low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC (the range of the oil sheet)'
+        )
+    found: dict[str, Any] = {
+        'temperature_range': (max(kelvin - HALF_KELVIN, low), min(kelvin + HALF_KELVIN, high)),
+        'temperature_nodes': 2,
+    }
+    return found | ({'held_out': HELD_OUT} if find_tier(args.tier).spreads else {})
 
 
 @contextmanager
@@ -111,6 +158,8 @@ def _workers(args: argparse.Namespace) -> Iterator[Any]:
     if not find_tier(args.tier).spreads:
         if args.workers is not None or args.dask is not None:
             raise InputError(f'--workers and --dask have no meaning for tier {args.tier}')
+        if args.march:
+            raise InputError(f'--march has no meaning for tier {args.tier}')
         yield None
         return
     from surrogate.tasks.workers import open_pool

@@ -27,13 +27,15 @@ FINEST_CUT = 1 / 64
 """Shortest step of a continuation path, as a share of it [-]."""
 WARM_CUT = 1 / 4
 """Shortest step from a neighbouring solution of a rough contact, as a share of the path [-]."""
+RIGID = 10.0
+"""Film over that by which the Hertz zone flattens, a^2/Rx, of bodies that hardly deform [-]."""
 SAME_LOAD = 0.02
 """Largest relative difference of loads at which a rough contact starts from another [-]."""
 SAME_SPEED = 1.0
 """Largest difference of the logarithms of speeds at which a rough contact starts from another [-];
 docs/theory/contact_solver.md."""
-WARM_NEWTON = 25
-"""Most Newton iterations of one step from a neighbouring solution [-]."""
+WARM_NEWTON, SMOOTH_NEWTON = 25, 12
+"""Most Newton iterations of one step from a neighbouring solution, rough and smooth [-]."""
 STALLED = 0.01
 """What linear solves of rough contacts leave of their residual at most where Newton stalls [-]."""
 PARTING = 1.5
@@ -310,15 +312,16 @@ class Search:
 
     def warm(self, start: ContactSolution) -> Found | None:
         """
-        Solve from a neighbouring solution, in steps if need be; None if that fails.
+        Solve from a neighbouring solution; None if that fails.
 
-        The ripples of a rough contact do not stretch with the load: it starts from none of
-        another load, and not in many steps, since from cold it takes few.
+        The ripples of a rough contact do not stretch with the load: it starts from none of another
+        load, and in steps if need be. A smooth one is tried once in few iterations: from cold it
+        takes no more. Bodies that hardly deform are solved from cold alone.
 
         """
         case, settings = self.case, self.case.settings
         rough = case.roughness is not None
-        if rough and not self._is_near(start):
+        if rough and not self._is_near(start) or _is_rigid(start):
             return None
         grid = case.grid(settings.nx, settings.ny, symmetric=not rough)
         heights = case.shape_heights(grid)
@@ -326,12 +329,12 @@ class Search:
             heights = heights - case.rough_heights(grid)
         speed, last = case.condition.entrainment_speed, start.condition.entrainment_speed
         limits = self.limits(rough=case.touches, final=True)
-        limits = replace(limits, newton=min(limits.newton, WARM_NEWTON))
+        most = WARM_NEWTON if rough else SMOOTH_NEWTON
+        limits = replace(limits, newton=min(limits.newton, most))
         state = state_from_solution(case, grid, start)
         if speed and last:
             path = self._slowing(grid, heights, last, speed)
-            finest = WARM_CUT if rough else FINEST_CUT
-            outcome = self.march(grid, state, path, limits, finest=finest)
+            outcome = self.march(grid, state, path, limits, finest=WARM_CUT if rough else 1.0)
         else:
             problem = case.problem(grid, speed, heights, case.order)
             outcome = self.solve(grid, problem, state, limits)
@@ -374,3 +377,9 @@ class Search:
         problem = case.problem(grid, speed, case.shape_heights(grid), 1.0)
         limits = replace(self.limits(rough=False, final=True), newton=0)
         return grid, self.solve(grid, problem, case.hertz_state(grid, speed), limits)
+
+
+def _is_rigid(start: ContactSolution) -> bool:
+    """Tell whether the bodies of a smooth solution hardly deform."""
+    flattened = start.semi_axis_x**2 / start.contact.radius_x
+    return start.central_film > RIGID * flattened

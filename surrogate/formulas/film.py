@@ -10,7 +10,6 @@ formula the symbols are those of its paper.
 """
 
 from dataclasses import dataclass
-import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,7 +17,7 @@ from surrogate.formulas.geometry import Contact
 
 Array = NDArray[np.float64]
 LEAST_FACTOR = 0.3
-"""Film factor of inlet heating below which the fit is not used [-]."""
+"""Least film factor of inlet heating [-]: the fit is not used below."""
 
 RANGES: dict[str, dict[str, tuple[float, float]]] = {
     # The thirty-four computed cases of the paper.
@@ -176,16 +175,16 @@ def rolling_force_biboulet_houpert_2010(contact: Contact, g: Groups) -> Array:
     return np.asarray(elastic + (rigid - elastic) * weight)
 
 
-def film_factor_gupta_1992(*, pressure: float, loading: float, slide_roll: float) -> float:
+def film_factor_gupta_1992(*, pressure: Array, loading: Array, slide_roll: float) -> Array:
     """
     Return the central film with heating by shear in the inlet over that without [-].
 
     (1 - 13.2 (p_H/E') L^0.42) / (1 + 0.213 (1 + 2.23 S^0.83) L^0.64): Gupta, Cheng, Zhu, Forster,
     Schrand, J. Tribol. 114 (1992) 55. Hertz `pressure` p_H/E', thermal `loading` L = eta0 beta
     us^2/k with the relative slope of viscosity beta and the conductivity k, `slide_roll` ratio S.
-    NaN below `LEAST_FACTOR`: the numerator is linear in the pressure and ends below zero.
+    At least `LEAST_FACTOR`: the numerator is linear in the pressure and ends below zero.
 
     """
     drop = 1 - 13.2 * pressure * loading**0.42
     factor = drop / (1 + 0.213 * (1 + 2.23 * slide_roll**0.83) * loading**0.64)
-    return factor if factor >= LEAST_FACTOR else math.nan
+    return np.asarray(np.maximum(factor, LEAST_FACTOR))

@@ -108,10 +108,15 @@ def onset_speeds(
     contacts: ContactModel, run: NoLoadRun, factors: tuple[float, float, float]
 ) -> list[float]:
     """Return the screw speeds of the onset [rad/s] under the load of a run, by factors [-]."""
-    oil, plain = contacts.lubricant, with_raceway(contacts.screw, onset_factor=1.0)
-    load = abs(float(run.load.mean()))
-    speed = onset_point(plain, oil, load, oil.reference_temperature)['speed_rad_s']
-    return [factor * speed for factor in factors]
+    oil, load = contacts.lubricant, abs(float(run.load.mean()))
+
+    def at(factor: float) -> float:
+        if math.isnan(factor):
+            return factor
+        sheet = with_raceway(contacts.screw, onset_factor=factor)
+        return onset_point(sheet, oil, load, oil.reference_temperature)['speed_rad_s']
+
+    return [at(factor) for factor in factors]
 
 
 def calibrated_band(low: float, high: float) -> float:

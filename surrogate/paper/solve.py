@@ -30,7 +30,7 @@ from surrogate.raceway.fractal import FractalSurface
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
 from surrogate.screw import closed_form
 from surrogate.screw.ball_motion import slip_floor
-from surrogate.screw.contacts import ACROSS, ScrewSettings
+from surrogate.screw.contacts import ACROSS, Kinematics, ScrewSettings
 from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.solve import ScrewSolution, solve_screw
 from surrogate.units import RPM
@@ -161,7 +161,9 @@ def _screw(screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow) -
     point = OperatingPoint(
         speed=task.rpm * RPM, load=task.load, temperature=lubricant.reference_temperature
     )
-    settings = ScrewSettings(kinematics='standing' if task.case == STANDING else 'rolling')
+    # The published study is isothermal.
+    kinematics: Kinematics = 'standing' if task.case == STANDING else 'rolling'
+    settings = ScrewSettings(kinematics=kinematics, inlet_heating=False)
     found = solve_screw(screw, lubricant, point, settings=settings)
     row = replace(row, status='CONVERGED' if found.converged else found.status)
     if not found.converged:
@@ -244,6 +246,7 @@ def _formulas(screw: Screw, lubricant: Lubricant, task: StudyTask, row: StudyRow
         task.load,
         lubricant.reference_temperature,
         share_of=asperity_share_aihara_1987,
+        inlet_heating=False,
     )
     loaded = found.contacts[0]
     on_screw = [contact for contact in found.contacts if contact.side == 'screw']

@@ -24,11 +24,11 @@ from surrogate.formulas.film import (
     rolling_force_biboulet_houpert_2010,
 )
 from surrogate.formulas.geometry import Hertz, hertz, screw_contact, Side, SIDES
+from surrogate.formulas.inlet import inlet_speed
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force, nut_forces, NutName
 from surrogate.formulas.lubricant import lubricant_state, LubricantState
 from surrogate.formulas.sliding import sliding_friction
-from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.contacts import oil_at
 
@@ -98,33 +98,38 @@ def solve(
     temperature: ArrayLike,
     *,
     share_of: Callable[[Array], Array] | None = None,
+    inlet_heating: bool = True,
 ) -> ScrewResult:
     """
     Solve the chain at `speed` [rad/s], at least 0, `load` [N] of any sign, `temperature` [K].
 
     The arguments broadcast against each other. Friction does not depend on the sign of the load,
     which only picks the nut that is loaded. What asperities do follows from the topography; with
-    `share_of` RCS and their share follow from the film ratio instead, without more loss.
+    `share_of` RCS and their share follow from the film ratio instead, without more loss. Shear
+    heats the oil in the inlet, unless `inlet_heating` is off.
 
     """
     speed, load, temperature = np.broadcast_arrays(
         *(np.asarray(value, dtype=float) for value in (speed, load, temperature))
     )
     oil = lubricant_state(lubricant, temperature)
-    inlet_speed = starved_speed(lubricant, no_slip_rates(screw).entrainment * speed)
+    entrained = no_slip_rates(screw).entrainment * speed
     forces = nut_forces(load, screw.preload)
     nuts: tuple[tuple[NutName, Array], ...] = (('loaded', forces[0]), ('relieved', forces[1]))
 
-    def touching(side: Side, force: Array, ratio: Array) -> Touching:
+    def inlet(side: Side, force: Array) -> Array:
+        return inlet_speed(
+            screw, lubricant, side, force, entrained, temperature, heated=inlet_heating
+        )
+
+    def touching(side: Side, force: Array, slow: Array, ratio: Array) -> Touching:
         if share_of is None:
-            return asperities_at(screw, lubricant, side, force, temperature, inlet_speed)
+            return asperities_at(screw, lubricant, side, force, temperature, slow)
         share = np.where(force > 0, share_of(ratio), 0.0)
         return share, share, np.ones_like(share)
 
     contacts = tuple(
-        _solve_contact(
-            screw, nut, side, normal_force(screw, force), oil, speed, inlet_speed, touching
-        )
+        _solve_contact(screw, nut, side, normal_force(screw, force), oil, speed, inlet, touching)
         for nut, force in nuts
         for side in SIDES
     )
@@ -138,17 +143,18 @@ def _solve_contact(
     force: Array,
     oil: LubricantState,
     speed: Array,
-    inlet_speed: Array,
-    touching: Callable[[Side, Array, Array], Touching],
+    inlet: Callable[[Side, Array], Array],
+    touching: Callable[[Side, Array, Array, Array], Touching],
 ) -> ContactResult:
     contact, balls = screw_contact(screw, side), screw.loaded_balls_per_nut
     arm = no_slip_rates(screw).entrainment
     ellipse = hertz(contact, force)
     pressed = np.where(force > 0, force, np.nan)
-    g = groups(contact, pressed, inlet_speed, oil.viscosity, oil.pressure_viscosity)
+    slow = inlet(side, force)
+    g = groups(contact, pressed, slow, oil.viscosity, oil.pressure_viscosity)
     film = central_film_hamrock_dowson_1977(contact, g)
     ratio = film_ratio(film, screw.composite_rms)
-    rcs, share, loss = touching(side, force, ratio)
+    rcs, share, loss = touching(side, force, slow, ratio)
     sliding = sliding_friction(screw, side, ellipse, np.nan_to_num(film), share, oil, speed)
     rolling = loss * np.nan_to_num(rolling_force_biboulet_houpert_2010(contact, g))
     return ContactResult(

@@ -16,6 +16,7 @@ from surrogate.formulas.film import (
     rolling_force_biboulet_houpert_2010,
 )
 from surrogate.formulas.geometry import helix_angle, screw_contact
+from surrogate.formulas.inlet import heating_factor, starved_speed
 from surrogate.formulas.load_sharing import nut_forces, UNLOADING_RATIO
 from surrogate.formulas.sliding import mean_sliding_speed
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
@@ -33,18 +34,21 @@ STATUS = 'closed form: published formulas, asperity contact by the topography'
 
 
 def closed_form_record(
-    screw: Screw, lubricant: Lubricant, point: OperatingPoint
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint, *, inlet_heating: bool = True
 ) -> dict[str, Any]:
     """
     Solve one point in the closed-form tier and return it as plain numbers.
 
     SI units, NaN where unknown. Four quadrants: the speed's sign is the direction of motion, the
-    load opposes the motion when both have one sign.
+    load opposes the motion when both have one sign. Shear heats the inlet if `inlet_heating`; the
+    least factor on a film is stated in any case.
 
     """
     started = time.perf_counter()
     load = point.opposing_load
-    result = closed_form.solve(screw, lubricant, abs(point.speed), load, point.temperature)
+    result = closed_form.solve(
+        screw, lubricant, abs(point.speed), load, point.temperature, inlet_heating=inlet_heating
+    )
     friction_torque, film_ratio = float(result.friction_torque), float(result.film_ratio)
     contacts = [
         with_wear(_contact_record(one), _slides(screw, one, point.speed))
@@ -75,6 +79,8 @@ def closed_form_record(
         'regime': regime_of(film_ratio).word,
         'central_film_m': float(result.central_film),
         'minimum_film_m': float(result.minimum_film),
+        'inlet_heating': inlet_heating,
+        'inlet_heating_factor': _heating_factor(screw, lubricant, point, result),
         'friction_coefficient': float(result.friction_coefficient),
         'max_pressure_Pa': float(result.max_pressure),
         'worst_contact': {key: worst[key] for key in ('nut', 'side')},
@@ -87,6 +93,22 @@ def closed_form_record(
         'comparators': _comparators(screw, point, result.contacts[0]),
         'wall_s': time.perf_counter() - started,
     }
+
+
+def _heating_factor(
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint, result: closed_form.ScrewResult
+) -> float:
+    """Return the least film factor of the heated inlets of contacts that carry [-]."""
+    # The speed that a contact is taken at: a starved inlet has less to shear.
+    speed = starved_speed(lubricant, result.entrainment_speed)
+    factors = [
+        float(
+            heating_factor(screw, lubricant, one.side, one.normal_force, speed, point.temperature)
+        )
+        for one in result.contacts
+        if one.normal_force > 0
+    ]
+    return min(factors, default=math.nan)
 
 
 def with_wear(contact: dict[str, Any], sliding: float) -> dict[str, Any]:

@@ -22,10 +22,9 @@ from surrogate.ehl.domain import nodes_on_waves
 from surrogate.ehl.watch import at
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact, screw_contact, Side, SIDES
-from surrogate.formulas.inlet_heating import heated_speed
+from surrogate.formulas.inlet import inlet_speed
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.lubricant import lubricant_state
-from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.ball import draw_stated
 from surrogate.raceway.fractal import FractalSurface
@@ -50,8 +49,8 @@ class ScrewSettings:
     roughness that stands: its draw,
     shortest wavelength on the grid [m], shorter ones raise the floor, None to solve all; nodes per
     such wave across the track, up to `MOST_NODES`, if that is more than the rough settings have
-    [-]. `inlet_heating` thins films by shear heating of the inlet; contacts are solved again where
-    friction changes their normal force by more than `coupling_tolerance` [-].
+    [-]. `inlet_heating` thins films by shear in the inlet, as it does in formulas; contacts are
+    solved again where friction changes their normal force by more than `coupling_tolerance` [-].
 
     """
 
@@ -61,7 +60,7 @@ class ScrewSettings:
     draw: int = 0
     grid_wavelength: float | None = GRID_WAVELENGTH
     nodes_per_wave: float = 6.0
-    inlet_heating: bool = False
+    inlet_heating: bool = True
     coupling_tolerance: float = 0.01
 
 
@@ -153,10 +152,9 @@ def _entrainment(
     screw: Screw, lubricant: Lubricant, point: OperatingPoint, side: Side, *, heated: bool
 ) -> Callable[[float], float]:
     """Return the entrainment speed [m/s] as a function of the normal force [N]."""
-    speed = starved_speed(lubricant, no_slip_rates(screw).entrainment * abs(point.speed))
-    if not heated:
-        return lambda load: speed
-    return lambda load: heated_speed(screw, lubricant, side, load, speed, point.temperature)
+    speed = no_slip_rates(screw).entrainment * abs(point.speed)
+    given = screw, lubricant, side
+    return lambda load: float(inlet_speed(*given, load, speed, point.temperature, heated=heated))
 
 
 def solve_sides(

@@ -8,9 +8,7 @@ from typing import Any
 
 import numpy as np
 from surrogate.asperities.law import band_of
-from surrogate.formulas.geometry import opposite_flank_approach, SIDES
-from surrogate.formulas.inlet_heating import heating_factor
-from surrogate.formulas.starvation import starved_speed
+from surrogate.formulas.geometry import opposite_flank_approach
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.ball import roughness_sentence
 from surrogate.screw.closed_form_record import closed_form_record, most_wear, with_wear
@@ -55,7 +53,7 @@ def solution_record(
     settings: ScrewSettings,
 ) -> dict[str, Any]:
     """Return a solved point as plain numbers, SI units, NaN where unknown."""
-    formulas = closed_form_record(screw, lubricant, point)
+    formulas = closed_form_record(screw, lubricant, point, inlet_heating=settings.inlet_heating)
     contacts = [
         with_wear(_contact_record(screw, found, contact), _slides(screw, contact))
         for contact in found.contacts
@@ -88,8 +86,6 @@ def solution_record(
         'film_ratio': found.film_ratio,
         'regime': regime_of(found.film_ratio).word,
         'central_film_m': found.central_film,
-        'inlet_heating': settings.inlet_heating,
-        'inlet_heating_factor': _heating_factor(screw, lubricant, point, found),
         'minimum_film_m': found.minimum_film,
         'friction_coefficient': found.friction_coefficient,
         'max_pressure_Pa': found.max_pressure,
@@ -228,18 +224,3 @@ def _third_contacts(screw: Screw, contacts: list[dict[str, Any]]) -> list[str]:
         for contact in contacts
         if contact['opposite_flank_approach_m'] > screw.flank_clearance
     ]
-
-
-def _heating_factor(
-    screw: Screw, lubricant: Lubricant, point: OperatingPoint, found: ScrewSolution
-) -> float:
-    """Return the least film factor of the inlet heating of both nuts [-], applied or not."""
-    # The speed that a contact is taken at: a starved inlet has less to shear.
-    speed = starved_speed(lubricant, found.entrainment_speed)
-    loads = [load for load in found.normal_forces if load > 0]
-    factors = [
-        heating_factor(screw, lubricant, side, load, speed, point.temperature)
-        for load in loads
-        for side in SIDES
-    ]
-    return min(factors, default=math.nan)

@@ -12,10 +12,10 @@ from surrogate.asperities.law import band_of, law_of
 from surrogate.asperities.running_in import working_load, working_pressure
 from surrogate.files import InputError
 from surrogate.formulas.geometry import screw_contact, SIDES
+from surrogate.formulas.inlet import speed_before_inlet, starved_speed
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.line import central_film_line, line_at
 from surrogate.formulas.load_sharing import normal_force, nut_forces, working_preload
-from surrogate.formulas.starvation import starved_speed
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.ball import roughness_sentence
 from surrogate.screw.contacts import oil_at
@@ -96,7 +96,8 @@ def onset_point(
     if entrainment:
         line = line_at(screw_contact(screw, side), force, 0.0)
         film = float(central_film_line(line, entrainment, oil.viscosity, oil.pressure_viscosity))
-    speed = entrainment / float(starved_speed(lubricant, no_slip_rates(screw).entrainment))
+    before = speed_before_inlet(screw, lubricant, side, force, entrainment, temperature)
+    speed = before / no_slip_rates(screw).entrainment
     return {'speed_rad_s': speed, 'entrainment_speed_m_s': entrainment, 'central_film_m': film}
 
 

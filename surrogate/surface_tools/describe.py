@@ -58,6 +58,7 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
         'limit_band': data.header.get('limit_band'),
         'numerical_band': data.header.get('numerical_band'),
         'accuracy_reached': data.header.get('reached'),
+        'march': data.header.get('march'),
         'settings': dict(data.header['settings']),
         'provenance': dict(data.provenance),
     }
@@ -139,6 +140,23 @@ def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
         yield (
             '  accuracy     the worst held-out point has '
             f'{record["accuracy_reached"]:.2g} times the error that is aimed at'
+        )
+    if record['march'] is not None:
+        yield from march_lines(record['march'])
+
+
+def march_lines(march: Mapping[str, Any]) -> Iterator[str]:
+    """Yield a line for each strip of the raceway that was marched, beside the law."""
+    if not march:
+        yield '  marched      no strip: all failed'
+    for name, one in march.items():
+        marched, told = one['marched_m_s'], one['told_m_s']
+        found = 'does not begin'
+        if marched is not None:
+            found = f'begins at {marched:.3g} m/s, told over marched {told / marched:.2f}'
+        yield (
+            f'  marched      {name}, waves down to {1e6 * one["shortest_wave_m"]:.2g} um: contact '
+            f'{found}, told {told:.3g} m/s; {one["status"]}'
         )
 
 

@@ -69,16 +69,18 @@ def run_tasks(
     *,
     store: TaskStore | None = None,
     report: Callable[[TaskOutcome], None] = lambda outcome: None,
+    waiting: Callable[[], None] = lambda: None,
 ) -> dict[str, TaskOutcome]:
     """
     Run `task` on every one of the named inputs and return the outcomes in the order of the names.
 
     With a `store`, results that it has are taken from there, and new ones are kept as they come;
     failures are not, they are tried again by the next run. `report` receives each outcome, in
-    any order. Raises SurfaceError when a cluster is lost or the store cannot be written.
+    any order; `waiting` is called time and again meanwhile. Raises SurfaceError when a cluster is
+    lost or the store cannot be written.
 
     """
-    run = _Run(pool, task, inputs, store)
+    run = _Run(pool, task, inputs, store, waiting)
     found = {}
     for outcome in run.outcomes():
         found[outcome.name] = outcome
@@ -95,8 +97,9 @@ class _Run:
         task: Task,
         inputs: Mapping[str, Mapping[str, Any]],
         store: TaskStore | None,
+        waiting: Callable[[], None],
     ) -> None:
-        self._pool, self._task, self._store = pool, task, store
+        self._pool, self._task, self._store, self._waiting = pool, task, store, waiting
         self._left = dict(inputs)
         self._begun: dict[str, list[str]] = {name: [] for name in inputs}
         self._names: dict[Future[dict[str, Any]], str] = {}
@@ -123,6 +126,7 @@ class _Run:
         while True:
             with contextlib.suppress(queue.Empty):
                 return self._done.get(timeout=ATTENTION)
+            self._waiting()
 
     def _kept(self) -> Iterator[TaskOutcome]:
         if self._store is None:

@@ -7,13 +7,14 @@ Points that are no nodes are solved last: they measure the error. Who solves is 
 
 """
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.asperities.law import law_of
 from surrogate.builder.closed_form import check_ranges, check_rough, solve_grid, surface_header
-from surrogate.builder.full.chain import chain_inputs, solved_chain
+from surrogate.builder.full.chain import point_inputs, solved_chain
 from surrogate.builder.full.held_out import cell_errors, held_out_points, HeldOut, judged
 from surrogate.builder.full.nodes import Nodes, surface_nodes
 from surrogate.builder.full.ratios import ratios_at, Run, solve_ratios, solved_grid, with_floor
@@ -39,9 +40,11 @@ def build_full(
     check_rough(screw)
     check_ranges(settings, lubricant)
     nodes = surface_nodes(screw, lubricant, settings)
-    # Before any solve: a raceway may not bear the lowest pressure of its range.
-    bands = surface_bands(screw, lubricant)
-    data = _surface(screw, lubricant, settings, nodes, run)
+    with ThreadPoolExecutor(max_workers=1) as beside:
+        # While workers solve; a raceway may not bear the lowest pressure of its range.
+        found = beside.submit(surface_bands, screw, lubricant)
+        data = _surface(screw, lubricant, settings, nodes, run)
+        bands = found.result()
     held_out = _held_out(data, screw, lubricant, settings, run)
     errors = cell_errors(data, held_out, screw, settings)
     reached = max((one.miss for one in held_out), default=None)
@@ -98,12 +101,12 @@ def _held_out(
     """Return points that are no nodes, solved and compared with the lookup."""
     points = held_out_points(Surface(data), screw, settings)
     chains = {
-        f'held out {place}': chain_inputs(screw, lubricant, abs(load), heat, [speed])
+        f'held out {place}': point_inputs(screw, lubricant, load, heat, speed)
         for place, (speed, load, heat) in enumerate(points)
     }
     results = run(chains)
     pairs = zip(points, results.values(), strict=True)
-    solved = ((point, solved_chain(one).under(point[1])[0]) for point, one in pairs if one)
+    solved = ((point, solved_chain(one).opposing[0]) for point, one in pairs if one)
     surface = Surface(data)
     compared = (judged(data, surface, screw, point, found) for point, found in solved)
     return [one for one in compared if one is not None]

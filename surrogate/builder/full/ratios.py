@@ -38,8 +38,6 @@ SPEEDS = (0.0, 0.25, 0.42, 0.58, 0.71, 0.83, 0.92, 0.96, 1.0)
 """Solved speeds over the range, in logarithms [-]: they crowd where the balls feel inertia."""
 LOADS = (0.0, 0.375, 0.75, 1.0)
 """Solved loads between none and the idle load [-]."""
-TEMPERATURES = 3
-"""Number of solved temperatures."""
 SENSES = ('opposing', 'assisting')
 """Load against the motion, and with it."""
 FILMS = 'central_film', 'minimum_film'
@@ -75,8 +73,14 @@ def solved_grid(screw: Screw, lubricant: Lubricant, settings: FullSettings) -> S
     return SolvedGrid(
         speeds=np.exp(low + (high - low) * np.array(SPEEDS)),
         pieces=tuple(_pieces(screw, settings)),
-        temperature=temperature_nodes(lubricant, settings.temperature_range, TEMPERATURES),
+        temperature=_temperatures(lubricant, settings),
     )
+
+
+def _temperatures(lubricant: Lubricant, settings: FullSettings) -> Array:
+    """Return the temperatures [K] of solves: over the range, or its middle."""
+    number, ends = settings.solved_temperatures, settings.temperature_range
+    return temperature_nodes(lubricant, ends, number) if number > 1 else np.array([np.mean(ends)])
 
 
 def _pieces(screw: Screw, settings: FullSettings) -> Iterator[Array]:
@@ -170,6 +174,8 @@ def _along_temperature(
         -np.log(lubricant_state(lubricant, heat).viscosity)
         for heat in (grid.temperature, nodes.temperature)
     )
+    if len(known) == 1:
+        return np.repeat(values, len(wanted), axis=4)
     return np.asarray(PchipInterpolator(known, values, axis=4)(wanted))
 
 

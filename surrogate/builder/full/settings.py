@@ -8,6 +8,11 @@ from surrogate.builder.closed_form import default_settings, SurfaceSettings
 from surrogate.files import InputError
 from surrogate.parameters import Screw
 
+TEMPERATURES = 3
+"""Number of solved temperatures."""
+ONE_TEMPERATURE = 1.01
+"""Width of a range [K] over which the ratio of solves to formulas does not change."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FullSettings(SurfaceSettings):
@@ -27,6 +32,12 @@ class FullSettings(SurfaceSettings):
     temperature_nodes: int = 5
     held_out: int = 60
     seed: int = 1
+
+    @property
+    def solved_temperatures(self) -> int:
+        """Return at how many temperatures screws are solved: one for a range of one."""
+        low, high = self.temperature_range
+        return TEMPERATURES if high - low > ONE_TEMPERATURE else 1
 
     @property
     def load_sizes(self) -> tuple[float, float]:

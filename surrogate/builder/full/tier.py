@@ -14,7 +14,8 @@ import numba
 import numpy as np
 import scipy
 from surrogate.builder.full.build import build_full
-from surrogate.builder.full.chain import chain_inputs, solve_chain, solved_chain, WORK
+from surrogate.builder.full.chain import point_inputs, solve_chain, solved_chain, WORK
+from surrogate.builder.full.march import march_task, march_tasks
 from surrogate.builder.full.ratios import Results
 from surrogate.builder.full.settings import FullSettings
 from surrogate.builder.tiers import screw_and_oil
@@ -24,6 +25,7 @@ from surrogate.surface import SolvedPoint
 from surrogate.surface.file import SurfaceData
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.tasks.store import TaskStore
+from surrogate.tasks.worker import Task
 from surrogate.units import RPM, ZERO_CELSIUS
 
 
@@ -46,7 +48,11 @@ class TaskRun:
 
     def __call__(self, tasks: Mapping[str, Mapping[str, Any]]) -> Results:
         """Solve named chains; None for one that failed."""
-        progress = Progress(len(tasks), 'chains')
+        return self.solve(solve_chain, tasks, 'chain')
+
+    def solve(self, task: Task, tasks: Mapping[str, Mapping[str, Any]], unit: str) -> Results:
+        """Solve named tasks of one kind, whose `unit` is its name; None for one that failed."""
+        progress = Progress(len(tasks), f'{unit}s')
 
         def count(outcome: TaskOutcome) -> None:
             progress.step(there=outcome.stored)
@@ -54,20 +60,29 @@ class TaskRun:
             self.kept += outcome.stored
             self.seconds += 0.0 if outcome.stored else outcome.seconds
             if outcome.result is None:
-                self.failures.append(f'chain, {outcome.name}: {outcome.sentence}')
+                self.failures.append(f'{unit}, {outcome.name}: {outcome.sentence}')
                 print(self.failures[-1], file=sys.stderr)
 
-        done = run_tasks(self.pool, solve_chain, tasks, store=self.store, report=count)
+        done = run_tasks(
+            self.pool, task, tasks, store=self.store, report=count, waiting=progress.beat
+        )
         return {name: outcome.result for name, outcome in done.items()}
 
 
 def build_full_surface(
-    screw: Screw, lubricant: Lubricant, settings: FullSettings, *, pool: Pool, out: str | Path
+    screw: Screw,
+    lubricant: Lubricant,
+    settings: FullSettings,
+    *,
+    pool: Pool,
+    out: str | Path,
+    march: bool = False,
 ) -> SurfaceData:
     """
     Build a surface on workers; results are kept beside `out`, an interrupted build goes on.
 
-    Says on stderr where the accuracy aimed at was not reached and nodes have no number.
+    With `march`, strips of the raceway are marched and stand in the header beside the law. Says on
+    stderr where the accuracy aimed at was not reached and nodes have no number.
 
     Raises InputError for ranges that make no sense, SurfaceError for a store that cannot be used.
 
@@ -75,7 +90,12 @@ def build_full_surface(
     began = time.perf_counter()
     with TaskStore(out, WORK) as store:
         run = TaskRun(pool=pool, store=store)
+        strips = march_tasks(screw, lubricant) if march else {}
         data = build_full(screw, lubricant, settings, run)
+        marched = run.solve(march_task, strips, 'strip') if march else {}
+    if march:
+        found = {name: result for name, result in marched.items() if result}
+        data = replace(data, header={**data.header, 'march': found})
     for sentence in shortfalls(data, settings):
         print(sentence, file=sys.stderr)
     return replace(data, provenance=_provenance(run, time.perf_counter() - began))
@@ -113,8 +133,8 @@ def solve_full(
 ) -> SolvedPoint:
     """Solve a point [rad/s, N, K] of the screw and oil of a surface."""
     screw, lubricant = screw_and_oil(header['inputs'])
-    given = chain_inputs(screw, lubricant, abs(load), temperature, [speed])
-    return solved_chain(solve_chain(given)).under(load)[0]
+    given = point_inputs(screw, lubricant, load, temperature, speed)
+    return solved_chain(solve_chain(given)).opposing[0]
 
 
 def _provenance(run: TaskRun, seconds: float) -> dict[str, Any]:

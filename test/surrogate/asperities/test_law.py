@@ -19,6 +19,7 @@ from surrogate.asperities.law import (
     ONSET_RCS,
     rcs_at,
     share_at,
+    SLOWEST,
 )
 from surrogate.asperities.onset import TopographyOnset
 from surrogate.asperities.topography import ActingRoughness
@@ -60,12 +61,32 @@ def test_the_curve_passes_the_marches_and_the_loss_stays_in_its_band():
     assert found.tolist() == pytest.approx([1.0, 1.0, 0.0, 0.0], abs=1e-4)
     assert found[2:].tolist() == [0.0, 0.0]
     assert share_at(np.array([0.0, 1.0])).tolist() == [0.0, 1.0]
-    assert loss_at(np.array([-1.4]), np.array([0.4e9]), 1.0) == pytest.approx([LEAST_LOSS])
+    assert loss_at(np.array([-1.4]), np.array([0.4e9]), 1.0) == pytest.approx([LEAST_LOSS], 0.01)
     light, heavy = (
         loss_at(np.array([-1.0, 0.0]), np.full(2, pressure), 0.0) for pressure in (0.5e9, 1.2e9)
     )
     assert light[1] < heavy[1]
     assert light[0] - light[1] < heavy[0] - heavy[1]
+
+
+@pytest.mark.parametrize('curve', [rcs_at, lambda x: loss_at(x, np.array(0.4e9), 1.0)])
+def test_neither_a_step_nor_a_corner_stands_in_the_curves(curve):
+    """Differences on both sides of every place agree, and so do their slopes: C1 in speed."""
+    x = np.linspace(-8.0, 6.0, 14001)
+    slope = np.diff(curve(x)) / (x[1] - x[0])
+    assert np.abs(np.diff(slope)).max() < 3e-3
+    assert np.abs(slope).max() < 0.5
+
+
+def test_the_branch_of_slow_speeds_joins_in_value_and_slope_and_loss_ends_smooth():
+    """Where the logit falls as the speed, oil carries in proportion to it; RCS counts in 1e-7."""
+    apart = 1e-4
+    below, at, above = rcs_at(SLOWEST + apart * np.array([-1.0, 0.0, 1.0]))
+    assert (at - below) / apart == pytest.approx((above - at) / apart, rel=1e-3)
+    assert (at - below) / apart == pytest.approx(-at * (1 - at), rel=1e-3)
+    slow = 1 - rcs_at(np.array([-10.0, -10.0 - math.log(2.0)]))
+    assert slow[0] == pytest.approx(2 * slow[1], rel=1e-3)
+    assert loss_at(np.array([60.0]), np.array([0.9e9]), 0.0).tolist() == [1.0]
 
 
 @given(x=st.floats(-20.0, 20.0), step=st.floats(1e-3, 3.0))
@@ -79,7 +100,7 @@ def test_contact_never_grows_with_the_speed(x, step):
 @pytest.mark.parametrize(('lay', 'expected'), [(-1.0, 1.48), (0.0, 1.28), (1.0, 1.08)])
 def test_the_loss_at_the_onset_falls_with_the_lay_and_far_beyond_it_is_smooth(lay, expected):
     loss = loss_at(np.array([0.0, 60.0]), np.array([0.9e9, 0.9e9]), lay)
-    assert loss == pytest.approx([expected, 1.0])
+    assert loss == pytest.approx([expected, 1.0], abs=0.01)
 
 
 @given(speed=st.floats(1e-5, 10.0), faster=st.floats(1.01, 10.0))

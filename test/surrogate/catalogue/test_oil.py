@@ -5,7 +5,7 @@
 import pytest
 from surrogate.catalogue.oil import oil_of
 from surrogate.catalogue.words import CatalogueOil
-from surrogate.formulas.starvation import starved_speed
+from surrogate.formulas.inlet import starved_speed
 from surrogate.parameters import load_lubricant
 
 

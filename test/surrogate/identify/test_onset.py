@@ -135,7 +135,7 @@ def test_the_sheet_is_calibrated_and_says_so(slow, found):
     assert sheet.roughness.calibration.startswith('onset calibrated on 2026-11-24 within 1.3')
     begins = [onset_point(one, OIL, 0.0, WARM)['speed_rad_s'] for one in (SCREW, sheet)]
     factor = found.value('onset_factor')
-    assert begins[1] == pytest.approx(factor * begins[0])
+    assert begins[1] == pytest.approx(factor * begins[0], rel=0.01)
     assert onset_speeds(contacts, run, (factor, 1.0, 1.0))[:2] == pytest.approx(begins[::-1])
 
 

@@ -13,7 +13,7 @@ import pytest
 from surrogate.ehl import Settings
 from surrogate.ehl.friction import contact_friction
 from surrogate.files import to_json
-from surrogate.formulas.inlet_heating import SPEED_EXPONENT
+from surrogate.formulas.inlet import SPEED_EXPONENT
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import figures as figures_point
 from surrogate.screw.ball_motion import slip_floor
@@ -88,9 +88,9 @@ def test_record_has_the_keys_of_the_formulas_and_parts_that_add_up():
 
 
 def test_the_heating_factor_is_that_by_which_a_starved_contact_is_slowed():
-    """What is reported without inlet heating is what the option would apply."""
+    """What is reported without inlet heating is what it would apply."""
     starved = replace(OIL, film_factor=0.5)
-    settings = replace(SETTINGS, kinematics='smooth')
+    settings = replace(SETTINGS, kinematics='smooth', inlet_heating=False)
     point = OperatingPoint(speed=1000 * math.pi / 30, load=800.0, temperature=313.15)
     told = full_record(SCREW, starved, point, settings)
     assert told['inlet_heating'] is False

@@ -10,6 +10,7 @@ import pytest
 from surrogate.asperities.law import BANDS, law_of
 from surrogate.asperities.running_in import working_pressure
 from surrogate.formulas.geometry import screw_contact, SIDES
+from surrogate.formulas.inlet import inlet_speed
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force
 from surrogate.parameters import BallRoughness
@@ -101,7 +102,10 @@ def test_a_point_is_where_the_law_of_the_state_says(screw, oil, record):
             for side, onset in onsets.items()
         )
         entrainment = found['speed_rad_s'] * no_slip_rates(screw).entrainment
-        assert found['entrainment_speed_m_s'] == pytest.approx(entrainment)
+        slowed = [
+            float(inlet_speed(screw, oil, side, force, entrainment, KELVIN)) for side in onsets
+        ]
+        assert any(found['entrainment_speed_m_s'] == pytest.approx(speed) for speed in slowed)
         assert 0.3 < found['central_film_m'] / screw.roughness.rms < 2
 
 
@@ -138,14 +142,18 @@ def test_a_calibrated_raceway_has_the_state_and_the_band_of_its_calibration(scre
     assert list(found['states']) == ['new']
     state = found['states']['new']
     assert state['band'] == [1 / 1.15, 1.15]
-    assert state['speed_rad_s'] == pytest.approx(0.5 * record['states']['new']['speed_rad_s'])
+    new = record['states']['new']
+    assert state['entrainment_speed_m_s'] == 0.5 * new['entrainment_speed_m_s']
+    assert state['speed_rad_s'] == pytest.approx(0.5 * new['speed_rad_s'], rel=0.01)
     assert 'onset calibrated on 2026-11-24 within 1.15' in onset_page(found)
     place = np.array([0.0, 500.0]), np.array([KELVIN])
     usual, scaled = (onset_speeds(one, oil, *place) for one in (screw, sheet))
-    np.testing.assert_allclose(scaled, 0.5 * usual)
+    np.testing.assert_allclose(scaled, 0.5 * usual, rtol=0.01)
     speeds = np.array([5.0, 20.0, 40.0])
-    rcs = closed_form.solve(screw, oil, speeds, 0.0, KELVIN).rcs
-    slower = closed_form.solve(sheet, oil, 0.5 * speeds, 0.0, KELVIN).rcs
+    rcs, slower = (
+        closed_form.solve(one, oil, part * speeds, 0.0, KELVIN, inlet_heating=False).rcs
+        for one, part in ((screw, 1.0), (sheet, 0.5))
+    )
     np.testing.assert_allclose(slower, rcs, rtol=1e-9)
 
 

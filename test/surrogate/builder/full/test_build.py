@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from surrogate.asperities.law import law_of, NOTHING
 from surrogate.builder.full.build import build_full
-from surrogate.builder.full.chain import chain_inputs, solved_chain
+from surrogate.builder.full.chain import point_inputs, solved_chain
 from surrogate.builder.full.settings import FullSettings
 from surrogate.ehl import Condition
 from surrogate.files import InputError
@@ -48,8 +48,8 @@ def make_solve(screw, oil, stand_in):
     """Return the solve of a point [rad/s, N, K] of the surface."""
 
     def solve(speed, load, heat):
-        given = chain_inputs(screw, oil, abs(load), heat, [speed])
-        return solved_chain(stand_in.chain(given)).under(load)[0]
+        given = point_inputs(screw, oil, load, heat, speed)
+        return solved_chain(stand_in.chain(given)).opposing[0]
 
     return solve
 

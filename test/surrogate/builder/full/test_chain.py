@@ -8,7 +8,13 @@ import math
 
 import pytest
 from surrogate.builder.full import chain as full_chain
-from surrogate.builder.full.chain import chain_inputs, solve_chain, solved_chain, solved_point
+from surrogate.builder.full.chain import (
+    chain_inputs,
+    point_inputs,
+    solve_chain,
+    solved_chain,
+    solved_point,
+)
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.ehl import Settings, Status
 from surrogate.parameters import BallRoughness, load_lubricant, load_screw, OperatingPoint
@@ -36,18 +42,20 @@ def test_sheets_survive_json():
 
 
 def test_a_chain_is_the_points_it_says():
-    """Both senses at two speeds; the same numbers as single solves from cold."""
+    """Both senses at two speeds; nearly the numbers of single solves, which have finer grids."""
     speeds = [30.0, 10.0]
     found = chain(500.0, WARM, speeds)
     assert json.loads(json.dumps(found)) == found
     typed = solved_chain(found)
-    for load in (500.0, -500.0):
-        for solved, speed in zip(typed.under(load), speeds, strict=True):
+    for load, points in ((500.0, typed.opposing), (-500.0, typed.assisting)):
+        for solved, speed in zip(points, speeds, strict=True):
             point = OperatingPoint(speed=speed, load=load, temperature=WARM)
             single = solve_screw(SCREW, OIL, point)
             assert solved.converged
-            assert solved.friction_torque == pytest.approx(single.friction_torque, rel=1e-4)
-            assert solved.film_ratio == pytest.approx(single.film_ratio, rel=1e-4)
+            assert solved.friction_torque == pytest.approx(single.friction_torque, rel=0.01)
+            assert solved.film_ratio == pytest.approx(single.film_ratio, rel=0.005)
+            exact = solve_chain(point_inputs(SCREW, OIL, load, WARM, speed))['opposing'][0]
+            assert exact == asdict(solved_point(single))
             assert solved.rcs == pytest.approx(single.rcs, rel=1e-3)
             assert solved.rcs_deviation == pytest.approx(single.rcs_deviation, rel=1e-3)
     assert typed.opposing[0].friction_torque != typed.assisting[0].friction_torque
@@ -78,7 +86,7 @@ def test_balls_that_move_their_forces_are_solved_again():
         point = OperatingPoint(speed=300.0, load=sign * load, temperature=WARM)
         single = solve_screw(SCREW, OIL, point)
         found = chain(load, WARM, [300.0])[sense][0]
-        assert found['friction_torque'] == pytest.approx(single.friction_torque, rel=1e-3)
+        assert found['friction_torque'] == pytest.approx(single.friction_torque, rel=0.01)
 
 
 def test_a_contact_that_fails_costs_the_others_nothing(monkeypatch):
@@ -123,7 +131,7 @@ def test_record_of_a_point():
     found = solve_screw(SCREW, OIL, replace(point, speed=10.0), settings=rolling)
     record = solved_point(found)
     assert record.rcs_deviation == found.rcs_deviation > 0
-    assert solved_chain({'opposing': [asdict(record)], 'assisting': []}).under(1.0) == (record,)
+    assert solved_chain({'opposing': [asdict(record)], 'assisting': []}).opposing == (record,)
     free = replace(SCREW, preload=0.0)
     unloaded = solve_screw(free, OIL, replace(point, load=0.0), settings=settings)
     assert not solved_point(unloaded).converged

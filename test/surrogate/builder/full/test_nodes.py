@@ -10,7 +10,7 @@ from surrogate.asperities.law import law_of
 from surrogate.builder.full.nodes import BESIDE, signed_loads, surface_nodes
 from surrogate.builder.full.settings import default_full_settings
 from surrogate.formulas.geometry import screw_contact
-from surrogate.formulas.inlet_heating import SPEED_EXPONENT
+from surrogate.formulas.inlet import SPEED_EXPONENT
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import idle_load, normal_force
 from surrogate.screw.contacts import oil_at

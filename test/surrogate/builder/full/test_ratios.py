@@ -13,7 +13,6 @@ from surrogate.builder.full.ratios import (
     ratios_at,
     solve_ratios,
     solved_grid,
-    TEMPERATURES,
     with_floor,
 )
 from surrogate.builder.full.settings import default_full_settings
@@ -129,7 +128,7 @@ def test_ratios_are_solved_over_formulas(screw, oil, settings, stand_in):
 
     logs = solve_ratios(screw, oil, grid, run)
     torque = logs['friction_torque']
-    assert torque.shape == (2, len(grid.speeds), len(grid.loads), TEMPERATURES)
+    assert torque.shape == (2, len(grid.speeds), len(grid.loads), settings.solved_temperatures)
     assert np.isnan(torque[:, :, 0, 0]).all()
     assert np.isnan(torque[1, -1, 0, 1])
     assert np.isnan(torque).sum() == 2 * len(grid.speeds) + 1

@@ -90,7 +90,7 @@ def test_rcs_falls_with_speed_at_every_node():
 
 @pytest.mark.parametrize('s', [-1.0, 1.5])
 def test_a_node_is_what_the_solver_gives(screw, oil, s):
-    """At 40 degC and preload, on either side of the onset."""
+    """At 40 degC and preload, on either side of the onset; on the grids of a chain."""
     k = int(np.argmin(np.abs(DATA.temperature - oil.reference_temperature)))
     j = int(np.argmin(np.abs(DATA.load)))
     i = int(np.searchsorted(DATA.speed_coordinate, s))
