@@ -422,7 +422,8 @@ def hears(node):
     topic = node._intake.topics['/joint_states']
     message = JointState(name=['x_axis'], velocity=[FAST])
     arrivals = [Arrival(1, message, number, topic) for number in (1, 2)]
-    parts = {name: getattr(topic, name) for name in ('loss', 'subscription', 'type_name')}
+    names = ('loss', 'sources', 'subscription', 'type_name')
+    parts = {name: getattr(topic, name) for name in names}
     node._intake.topics['/joint_states'] = SimpleNamespace(waiting=lambda: arrivals, **parts)
     node._intake.drain()
 
