@@ -11,7 +11,7 @@ import yaml
 
 
 class _Loader(yaml.SafeLoader):
-    """YAML of a bounded number of values, in which an alias counts as what it stands for."""
+    """YAML of a bounded number of values, in which an alias counts with its values."""
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
