@@ -67,7 +67,7 @@ def plain_values(
         if root is not None and change is not None:
             change(root)
         return None if root is None else loader.construct_document(root)
-    except Exception as error:  # noqa: BLE001 a date or tag that is none raises anything
+    except Exception as error:  # noqa: BLE001 a bad date or tag raises anything
         reason = ' '.join(str(error).split())
         told = isinstance(error, yaml.YAMLError)
-        raise InputError(reason if told else f'a value is none of its kind ({reason})') from None
+        raise InputError(reason if told else f'a value is not of its kind ({reason})') from None
