@@ -11,7 +11,7 @@ import yaml
 
 
 class _Loader(yaml.SafeLoader):
-    """YAML of a bounded number of values, in which an alias counts as what it stands for."""
+    """YAML of a bounded number of values, in which an alias counts with its values."""
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
@@ -67,7 +67,7 @@ def plain_values(
         if root is not None and change is not None:
             change(root)
         return None if root is None else loader.construct_document(root)
-    except Exception as error:  # noqa: BLE001 a date or tag that is none raises anything
+    except Exception as error:  # noqa: BLE001 a bad date or tag raises anything
         reason = ' '.join(str(error).split())
         told = isinstance(error, yaml.YAMLError)
-        raise InputError(reason if told else f'a value is none of its kind ({reason})') from None
+        raise InputError(reason if told else f'a value is not of its kind ({reason})') from None

@@ -358,12 +358,16 @@ def _entry_of(data: bytes, topic: str) -> Mapping[str, Any]:
         shape = SHAPES.get(kind, {}) if isinstance(kind, str) else {}
         if kind == 'axis' and entry['version'] == VERSION:
             shape = shape | DESCRIPTION
-        wrong = [name for name, kinds in shape.items() if not isinstance(entry[name], kinds)]
-        if wrong or abs(entry.get('stamp') or 0) >= END:
-            raise ValueError(f'{", ".join(wrong) or "stamp"} is none')
+        wrong = [name for name, kinds in shape.items() if not _is_one(entry[name], kinds)]
+        if wrong:
+            raise ValueError(f'{", ".join(wrong)} of another kind')
     except (*UNDECODABLE, KeyError, TypeError, AttributeError) as error:
         raise InputError(f'{topic}: no entry of a journal ({error})') from None
     return entry
+
+
+def _is_one(value: Any, kinds: Any) -> bool:
+    return isinstance(value, kinds) and not (isinstance(value, int) and abs(value) >= END)
 
 
 def _values(entry: Mapping[str, Any], types: Mapping[str, str]) -> dict[str, Any]:

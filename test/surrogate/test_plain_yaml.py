@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""YAML of a bounded depth and number of values, an alias counted as what it stands for."""
+"""YAML of a bounded depth and number of values, an alias counted with its values."""
 
 import pytest
 from surrogate.limits import DEPTH, TEXT, VALUES
