@@ -43,6 +43,7 @@ COVERED = {
     'surrogate/surface/found.py': 'load_scan tables lookup correction',
     'surrogate/surface/hermite.py': 'found lookup',
     'surrogate/surface/load_scan.py': 'correction',
+    'surrogate/surface/lookup.py': 'tables correction',
     'surrogate/surface/point.py': 'solved lookup',
     'surrogate/surface/tables.py': 'load_scan lookup correction',
     'surrogate/screw/ball_equations.py': 'ball_balance',

@@ -437,13 +437,14 @@ def test_many_events_are_taken_as_one_after_the_other(core, every, room):
         count, rows_made, told = step_many(
             monitor.surface, *one, some, rows, places, memories, every
         )
-        part = wanted[made : made + rows_made]
+        end = made + rows_made
+        part = wanted[made:end]
         assert repr(rows[:rows_made]) == repr([row for _, row, _ in part])
         assert places[:rows_made] == [2 * i + 1 - taken for i, *_ in part]
         kept = [memory for *_, memory in part if memory is not None]
         assert repr(memories[:told]) == repr(kept)
         assert count == len(some) or told == room
-        taken, made = taken + count, made + rows_made
+        taken, made = taken + count, end
     assert made == len(wanted)
 
 

@@ -319,12 +319,26 @@ def test_failures_give_no_numbers(screw):
         assert_unknown(found)
 
 
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_the_floor_of_the_slip_follows_a_slow_speed(screw, sign):
+    """1 % of the helical slip, at most 1e-4 m/s."""
+    helical = no_slip_rates(screw).helical_slip
+    knee = 1e-2 / helical
+    assert slip_floor(screw, sign * 0.5 * knee) == pytest.approx(0.5e-4, rel=1e-12)
+    assert slip_floor(screw, sign * 1.01 * knee) == 1e-4
+    assert slip_floor(screw, 0.0) == 0.0
+
+
 def test_an_unloaded_ball_is_legal(screw):
     for given_load in ({'normal_force': 0.0}, {'axial_force': 0.0}):
         found = coulomb(screw, SPEED, 0.05, **given_load)
         assert found.status is BalanceStatus.UNLOADED
         assert found.converged
         assert found.torque == found.energy_torque == found.loss_torque == 0.0
+        assert found.axial_force == found.imbalance == found.power == 0.0
+        for one in (found.screw, found.nut):
+            left = {one.normal_force, one.traction_along, one.traction_across, one.spin_moment}
+            assert left | {one.slip_power, one.rolling_power} == {0.0}
         assert found.motion is None
 
 

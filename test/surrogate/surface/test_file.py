@@ -89,11 +89,14 @@ def test_a_file_as_large_as_is_allowed_is_read(tmp_path, monkeypatch, refused):
     with np.load(CLOSED_FORM, allow_pickle=False) as archive:
         np.savez_compressed(packed, **archive)
     assert packed.stat().st_size < unpacked < len(SHIPPED)
-    for path, size, key in ((CLOSED_FORM, len(SHIPPED), 'bytes'), (packed, unpacked, 'unpacked')):
+    for path, size, key in (
+        (CLOSED_FORM, len(SHIPPED), 'larger_bytes'),
+        (packed, unpacked, 'larger_unpacked'),
+    ):
         monkeypatch.setattr(file, 'LARGEST_FILE', size)
         assert file.read(path).sha256 == WHOLE
         monkeypatch.setattr(file, 'LARGEST_FILE', size - 1)
-        refused(f'larger_{key}', file.read, path)
+        refused(key, file.read, path)
 
 
 def eight_nodes(data):

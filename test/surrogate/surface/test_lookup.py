@@ -156,6 +156,18 @@ def test_limits_of_the_ranges_belong_to_the_surface(shipped):
                 assert shipped.lookup(speed, load, kelvin).validity is Validity.VALID
 
 
+@both
+def test_the_onset_is_known_within_the_ranges(shipped):
+    (light, heavy), (cold, warm) = shipped.load_range, shipped.temperature_range
+    for load in (light, 0.0, heavy):
+        for kelvin in (cold, 313.15, warm):
+            assert shipped.onset_speed(load, kelvin) > 0.0
+    for load in (math.nextafter(light, -math.inf), math.nextafter(heavy, math.inf), math.nan):
+        assert math.isnan(shipped.onset_speed(load, 313.15))
+    for kelvin in (math.nextafter(cold, 0.0), math.nextafter(warm, math.inf), math.nan):
+        assert math.isnan(shipped.onset_speed(0.0, kelvin))
+
+
 def test_kinks_are_kept(surface):
     """At the unloading load the pressure goes on, and the slope of the torque jumps."""
     w, kelvin, load = 60.0, 313.15, UNLOADING_RATIO * surface.preload

@@ -141,6 +141,8 @@ def test_errors_of_a_cell_and_spreads_of_its_corners_are_its_own():
             assert found.speed_cell == -1  # off the range of speeds
             continue
         checked += 1
+        fractions = found.speed_fraction, found.load_fraction, found.heat_fraction
+        assert fractions == pytest.approx(part, abs=1e-9)
         assert (found.friction_torque_error, found.rcs_error) == (number[cell], 0.5 * number[cell])
         corners = list(itertools.product((0, 1), repeat=3))
         between = sum(
