@@ -11,12 +11,12 @@ from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.health.assess import HealthSettings
 from ballscrew_monitor.health.baseline import HOUR
 from ballscrew_monitor.health.keeper import HealthKeeper
-from ballscrew_monitor.health.points import surface_id
+from ballscrew_monitor.health.records import Health
 from ballscrew_monitor.health.store import HealthStore
-from ballscrew_monitor.messages.health_messages import health_message, health_status, stamp_of
+from ballscrew_monitor.messages.health_messages import health_status, stamp_of
 from ballscrew_monitor.node.alarm import LatchedTopics
 from ballscrew_monitor.node.axis_publisher import AxisPublisher
-from ballscrew_monitor.node.health_worker import Assessed, Gatherer, HealthWorker, Job
+from ballscrew_monitor.node.health_worker import Gatherer, HealthWorker, Job
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import Kind
 from ballscrew_monitor.settings.axis import surface_file
@@ -55,7 +55,7 @@ class AxisHealths:
         self._latched, self._kept, self._record = latched, kept, record
         self._gatherers: dict[str, Gatherer] = {}
         self._keepers: dict[str, HealthKeeper] = {}
-        self._last: dict[str, Assessed] = {}
+        self._last: dict[str, Health] = {}
         self._due: dict[str, float] = {}  # looks until the next assessment
         self._worker: HealthWorker | None = None
         self._looks = 0
@@ -100,13 +100,12 @@ class AxisHealths:
         return [self._status(name) for name in axes if name in self._gatherers]
 
     def _status(self, name: str) -> DiagnosticStatus:
-        last = self._last.get(name)
         assert self._worker is not None
         return health_status(
             self._node.get_fully_qualified_name(),
             name,
             self._publishers[name].surface.screw_name,
-            last.health if last else None,
+            self._last.get(name),
             self._policy(name),
             problem=self._gatherers[name].defect or self._worker.problem,
         )
@@ -143,6 +142,7 @@ class AxisHealths:
                 co2_per_kwh=values[f'{name}.health.co2_per_kwh'] or math.nan,
                 speed_allowed=values[f'{name}.advice.speed'],
             ),
+            policy=self._policy(name),
             over=values[f'{name}.health.baseline_hours'] * HOUR,
             assesses=assesses,
         )
@@ -160,13 +160,9 @@ class AxisHealths:
         while worker.done:
             made = worker.done.popleft()
             name = made.health.axis
-            self._last[name] = made
-            policy = self._policy(name)
-            message = health_message(
-                made.health, surface_id=surface_id(made.surface), policy=policy
-            )
-            self._latched[name].health.publish(message)
-            self._record(f'~/{name}/health', message)
+            self._last[name] = made.health
+            self._latched[name].health.publish(made.message)
+            self._record(f'~/{name}/health', made.message)
 
     def _serve(self, axis: str, request: Any, response: Any) -> Any:
         try:

@@ -18,14 +18,18 @@ import sqlite3
 import threading
 from typing import Any, NamedTuple
 
+from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.health.assess import HealthSettings
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.collect import Collected, Collector
 from ballscrew_monitor.health.companions import Companions, companions_beside
 from ballscrew_monitor.health.keeper import HealthKeeper
+from ballscrew_monitor.health.points import surface_id
 from ballscrew_monitor.health.records import Health, SpectrumBin, Stretch
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.store import HealthStore
+from ballscrew_monitor.messages.health_messages import health_message
+from ballscrew_msgs.msg import AxisHealth
 from surrogate.files import InputError
 from surrogate.surface import Surface
 
@@ -96,15 +100,16 @@ class Job:
     surface: Surface
     file: Callable[[], Path]
     settings: HealthSettings
+    policy: WarningPolicy
     over: float
     assesses: bool
 
 
 class Assessed(NamedTuple):
-    """The health of an axis, and the surface it was assessed with."""
+    """The health of an axis, and the message that says it."""
 
     health: Health
-    surface: Surface
+    message: AxisHealth
 
 
 class HealthWorker:
@@ -171,7 +176,8 @@ class HealthWorker:
         if job.assesses and not self._ending:
             companions = self._companions_of(job)
             made = job.keeper.assess(job.now, job.surface, companions, job.settings, over=job.over)
-            self.done.append(Assessed(made, job.surface))
+            said = health_message(made, surface_id=surface_id(job.surface), policy=job.policy)
+            self.done.append(Assessed(made, said))
 
     def _companions_of(self, job: Job) -> Companions | str:
         """Return the surfaces at other preloads; they are looked for once for each surface."""

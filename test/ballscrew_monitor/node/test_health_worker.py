@@ -9,7 +9,7 @@ import math
 import sqlite3
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.core.judgement import Limits, WarningPolicy
 from ballscrew_monitor.health.assess import HealthSettings
 from ballscrew_monitor.health.collect import Collected
 from ballscrew_monitor.health.keeper import HealthKeeper
@@ -88,6 +88,7 @@ def job(worker, surface, found=NOTHING, **changes):
         'surface': surface,
         'file': shipped_surface,
         'settings': HealthSettings(limits=LIMITS),
+        'policy': WarningPolicy.BOTH,
         'over': 3600.0,
         'assesses': False,
     }
@@ -137,8 +138,9 @@ def test_an_assessment_is_done_beside_and_not_known_without_motion(make, surface
     worker = make()
     worker.put(job(worker, surface, assesses=True))
     wait_for(lambda: worker.done, 'the assessment')
-    health, used = worker.done[0]
-    assert (health.condition, used) == (Condition.UNKNOWN, surface)
+    health, message = worker.done[0]
+    assert (health.condition, message.condition) == (Condition.UNKNOWN, 0)
+    assert (message.verdict, message.surface_id) == (health.verdict, surface.base_sha256[:16])
     assert 'not known' in health.verdict
     assert math.isnan(health.quantities[0].value)
 
