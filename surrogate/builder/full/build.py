@@ -87,7 +87,7 @@ def _surface(
 
 
 def _rcs_deviation(screw: Screw, lubricant: Lubricant, nodes: Nodes) -> Array:
-    """Return the change of RCS [-] where the onset is off by half of its deviation either way."""
+    """Return the change of RCS [-] from half of the onset's deviation slower to as much faster."""
     half, axes = 0.5 * law_of(screw).deviation, (nodes.load, nodes.temperature, nodes.log_onset)
     slower, faster = (
         solve_grid(screw, lubricant, nodes.s + apart, *axes)['rcs'] for apart in (-half, half)

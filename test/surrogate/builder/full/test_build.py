@@ -15,6 +15,7 @@ from surrogate.builder.full.settings import FullSettings
 from surrogate.ehl import Condition
 from surrogate.files import InputError
 from surrogate.formulas.geometry import screw_contact, SIDES
+from surrogate.formulas.inlet import inlet_speed
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import idle_load, normal_force, nut_forces
 from surrogate.screw import closed_form
@@ -91,17 +92,23 @@ def test_nodes_are_what_solves_give(data, screw, oil, stand_in):
 
 
 def test_the_deviation_of_a_node_is_that_of_the_law_at_its_worst_contact(data, screw, oil):
-    """Where another contact is nearly as bad, the deviation may be that of the other."""
+    """Half of the deviation slower and faster, each with the heating of its inlet."""
     arm, law = no_slip_rates(screw).entrainment, law_of(screw)
+    half = 0.5 * law.deviation
     for i, j, k in np.argwhere(~data.mask)[::11]:
         nut, side = divmod(int(data.worst_contact[i, j, k]), len(SIDES))
-        force = float(nut_forces(float(data.load[j]), screw.preload)[nut])
-        speed = arm * math.exp(data.speed_coordinate[i] + data.log_onset[j, k])
-        condition = Condition(load=float(normal_force(screw, force)), entrainment_speed=speed)
-        fluid = oil_at(oil, float(data.temperature[k]))
-        place = SIDES[side], screw_contact(screw, SIDES[side]), condition, fluid
-        found = law.contact(*place, oil.film_floor).rcs_deviation
-        assert data.deviations['rcs'][i, j, k] == pytest.approx(found, rel=1e-6, abs=10 * NOTHING)
+        force = float(normal_force(screw, nut_forces(float(data.load[j]), screw.preload)[nut]))
+        heat = float(data.temperature[k])
+        log_speed = data.speed_coordinate[i] + data.log_onset[j, k]
+        speeds = arm * np.exp(log_speed + np.array([-half, half]))
+        inlets = inlet_speed(screw, oil, SIDES[side], force, speeds, heat)
+        place, fluid = (SIDES[side], screw_contact(screw, SIDES[side])), oil_at(oil, heat)
+        conditions = (Condition(load=force, entrainment_speed=float(one)) for one in inlets)
+        slower, faster = (
+            law.contact(*place, one, fluid, oil.film_floor).rcs for one in conditions
+        )
+        expected = pytest.approx(slower - faster, rel=1e-6, abs=10 * NOTHING)
+        assert data.deviations['rcs'][i, j, k] == expected
 
 
 def test_rcs_at_the_origin_of_the_speed_is_one_percent(data):

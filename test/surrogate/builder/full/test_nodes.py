@@ -10,7 +10,7 @@ from surrogate.asperities.law import law_of
 from surrogate.builder.full.nodes import BESIDE, signed_loads, surface_nodes
 from surrogate.builder.full.settings import default_full_settings
 from surrogate.formulas.geometry import screw_contact
-from surrogate.formulas.inlet import SPEED_EXPONENT
+from surrogate.formulas.inlet import inlet_speed, SPEED_EXPONENT
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import idle_load, normal_force
 from surrogate.screw.contacts import oil_at
@@ -81,14 +81,16 @@ def test_loads_of_a_free_screw_crowd_zero(screw, settings):
 
 
 def test_the_onset_is_that_of_the_law_on_the_faster_side(screw, oil):
-    """By the entrainment of the screw, under preload; faster in hot oil."""
+    """By the entrainment of the screw before its inlet is heated, under preload; faster hot."""
     found = onset_speeds(screw, oil, np.array([0.0]), np.array([WARM, 340.0]))
     force, fluid = float(normal_force(screw, screw.preload)), oil_at(oil, WARM)
-    fastest = max(
-        onset.speed(screw_contact(screw, side), force, fluid, oil.film_floor)
+    fastest, side = max(
+        (onset.speed(screw_contact(screw, side), force, fluid, oil.film_floor), side)
         for side, onset in law_of(screw).onsets.items()
     )
-    assert found[0, 0] == pytest.approx(fastest / no_slip_rates(screw).entrainment)
+    entrained = found[0, 0] * no_slip_rates(screw).entrainment
+    assert inlet_speed(screw, oil, side, force, entrained, WARM) == pytest.approx(fastest)
+    assert entrained > fastest
     assert found[0, 1] > found[0, 0]
 
 

@@ -55,6 +55,20 @@ def test_a_plane_is_found_as_it_is(oil, place):
     assert not failed.any()
 
 
+def test_a_range_of_one_kelvin_is_solved_in_its_middle(screw, oil, settings):
+    """Its ratio holds at both ends; a wider range has three temperatures."""
+    warm = replace(settings, temperature_range=(312.65, 313.65), temperature_nodes=2)
+    grid, nodes = solved_grid(screw, oil, warm), surface_nodes(screw, oil, warm)
+    assert grid.temperature == pytest.approx([313.15])
+    assert len(nodes.temperature) == 2
+    level = logs_of(grid, oil)['friction_torque'][:, :1] + np.zeros((len(grid.speeds), 1, 1))
+    found, _ = ratios_at(dict.fromkeys(CORRECTED, level), grid, nodes, oil)
+    for values in found.values():
+        assert values[..., 0] == pytest.approx(values[..., 1], rel=1e-12)
+    wider = replace(settings, temperature_range=(312.0, 314.0))
+    assert len(solved_grid(screw, oil, wider).temperature) == 3
+
+
 def test_nothing_passes_the_idle_load(oil, place):
     """A ratio of the relieved nut alone leaves loads beyond the idle one as they are."""
     grid, nodes = place
