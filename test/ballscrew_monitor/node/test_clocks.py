@@ -152,11 +152,11 @@ def test_two_of_three_samples_stamped_ahead_are_never_hidden(node, says):
 
     source.clock = clock
     node.until(lambda: go_on() and source.sent > 300, 'samples')
-    before = len(node.told)
-    node.until(lambda: go_on() and len(node.told) > before + 20, 'diagnostics')
+    first = len(node.told) + 5
+    node.until(lambda: go_on() and len(node.told) > first + 15, 'diagnostics')
     levels = {
         (status.level, status.message)
-        for message in node.told[before + 5 :]
+        for message in node.told[first:]
         for status in message.status
         if status.name == 'ballscrew_monitor: x: Inputs'
     }
