@@ -99,10 +99,10 @@ def with_chunk(path, compression, packed, size):
     data = bytearray(path.read_bytes())
     at, length = [(at, length) for code, at, length in records(data) if code == CHUNK][1]
     name = compression.encode()
-    body = data[at : at + 16] + struct.pack('<QII', size, 0, len(name)) + name
+    body = data[slice(at, at + 16)] + struct.pack('<QII', size, 0, len(name)) + name
     body += struct.pack('<Q', len(packed)) + packed
     shift = len(body) - length
-    data[at - 8 : at + length] = struct.pack('<Q', len(body)) + body
+    data[slice(at - 8, at + length)] = struct.pack('<Q', len(body)) + body
     for code, place, _ in [*records(data)]:
         if code == CHUNK_INDEX:
             (begin,) = struct.unpack_from('<Q', data, place + 16)

@@ -91,7 +91,7 @@ def changed(data, changes):
         if kind == 'flip' and data:
             data[at] ^= number
         elif kind == 'put':
-            data[at : at + len(content)] = content
+            data[slice(at, at + len(content))] = content
         elif kind == 'insert':
             data[at:at] = content
         elif kind == 'cut':

@@ -138,7 +138,7 @@ def _records(raw: bytes) -> bytes:
     code, length = RECORD.unpack_from(raw)
     if code != CHUNK or length != len(raw) - RECORD.size:
         raise ChunkDamage('no chunk stands where there should be one')
-    return chunk_data(Chunk.read(ReadDataStream(io.BytesIO(raw[RECORD.size :]))))
+    return chunk_data(Chunk.read(ReadDataStream(io.BytesIO(raw[slice(RECORD.size, None)]))))
 
 
 def _indexed(data: bytes, indexes: bytes) -> Integers | None:
