@@ -12,10 +12,9 @@ itself in doubt: another power of it changes the friction everywhere by one shar
 from collections.abc import Sequence
 import math
 
-from ballscrew_monitor.health.causes import birge
+from ballscrew_monitor.health.causes import birge, INTERVAL
 from ballscrew_monitor.health.change import Change
 from ballscrew_monitor.health.companions import Companions, NONE_BUILT
-from ballscrew_monitor.health.energy import student
 from ballscrew_monitor.health.life import unknown
 from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.records import Cause, CauseCode, Quantity
@@ -26,7 +25,9 @@ SHARES = np.linspace(0.3, 1.2, 46)
 """Shares of the preload that are tried [-]."""
 LAW_DOUBT = 0.15
 """Standard deviation of the power by which friction follows the preload [-]."""
-WIDEST = 0.4
+DRAG_DOUBT = 0.3
+"""Standard deviation of the constant drag that may have come beside, over the friction [-]."""
+WIDEST = 0.5
 """Width of an interval above which a preload is not known [-]."""
 
 
@@ -50,12 +51,12 @@ def preload_of(
     if any(one.excluded and one.code is CauseCode.PRELOAD_LOST for one in causes):
         return unknown(NAME, '-', 'not known: something else has changed the friction more')
     measured = all(one.temperature_measured for one in change.points)
-    chis = np.array([_chi(change, model, share) for share in SHARES])
+    chis = np.array([_misfit(change, model, share) for share in SHARES])
     if not np.isfinite(chis).any():
         return unknown(NAME, '-', 'not known: the companions do not reach these places')
     best = int(np.nanargmin(chis))
     scale = birge(float(chis[best]), max(len(change.groups) - 1, 1))
-    within = SHARES[chis <= chis[best] + student(change.freedom) ** 2 * scale]
+    within = SHARES[chis <= chis[best] + INTERVAL * scale]
     if within[-1] - within[0] > WIDEST or best == 0:
         why = 'wiper, warmth and preload look alike at these speeds and loads'
         more = '' if measured else '; measure the oil temperature'
@@ -70,14 +71,21 @@ def preload_of(
     )
 
 
-def _chi(change: Change, model: Model, share: float) -> float:
-    """Return the least chi squared at a share of the preload [-]."""
+def _misfit(change: Change, model: Model, share: float) -> float:
+    """
+    Return minus twice the logarithm of the likelihood at a share of the preload [-].
+
+    Up to a constant: chi squared, and the determinant of the covariance, which the doubt of the
+    law makes grow with the loss, over that without a loss.
+
+    """
     apart = change.change - model.relieved(change.points, share)
     if not np.isfinite(apart).all():
         return math.nan
-    drag = np.full_like(apart, change.friction.mean())
+    drag = np.full_like(apart, DRAG_DOUBT * change.friction.mean())
     law = LAW_DOUBT * math.log(share) * change.friction
     inverse, beside = np.linalg.inv(change.covariance), np.stack([drag, law], axis=1)
     pull = beside.T @ inverse @ apart
     normal = beside.T @ inverse @ beside + np.eye(2)
-    return float(apart @ inverse @ apart - pull @ np.linalg.solve(normal, pull))
+    chi = float(apart @ inverse @ apart - pull @ np.linalg.solve(normal, pull))
+    return chi + math.log(float(np.linalg.det(normal)) / float(normal[0, 0]))
