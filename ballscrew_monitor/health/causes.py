@@ -27,6 +27,13 @@ EXCLUDED = 9.21
 """Chi squared above that of the best cause from which one does not fit: 99 %, two of freedom."""
 FEWEST_GROUPS = 3
 """Groups of places without which no pattern tells causes apart."""
+PATTERN_DOUBT = 0.1
+"""
+What a change may differ from the pattern of its cause by at each place, over the change [-].
+
+Another oil is not quite the same oil at another temperature.
+
+"""
 STEPS = 41
 """Sizes that are tried of each cause."""
 GRIDS, FEWEST_STEPS = 3, 6
@@ -176,7 +183,8 @@ class Fit:
 
 def fits_of(change: Change, model: Model) -> list[Fit]:
     """Return the fit of every cause that has a pattern here, the best first."""
-    inverse: Array = np.linalg.inv(change.covariance).astype(float)
+    doubt = np.diag(np.square(PATTERN_DOUBT * change.change))
+    inverse: Array = np.linalg.inv(change.covariance + doubt).astype(float)
     found = [_fit(one, change, model, inverse) for one in CANDIDATES]
     return sorted((one for one in found if one is not None), key=lambda one: one.chi)
 

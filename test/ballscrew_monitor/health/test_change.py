@@ -194,6 +194,19 @@ def test_a_planted_cause_is_named_first_with_its_size(code, points, model):
     assert any(one.excluded for one in others)
 
 
+@pytest.mark.parametrize('code', ['OIL_THINNER', 'OIL_THICKER', 'PRELOAD_LOST'])
+def test_a_pattern_that_is_not_quite_that_of_the_model_names_its_cause(code, points, model):
+    """Another oil is not quite the same oil warmer: each speed differs by a tenth, up or down."""
+    _, added = PLANTED[CauseCode[code]]
+
+    def nearly(one):
+        return added(model, one) * (1.1 if abs(one.speed) in list(SPEEDS)[::2] else 0.9)
+
+    change = change_between(points(), points(nearly, first=40), model)
+    first, *_ = causes_of(change, fits_of(change, model))
+    assert first.code is CauseCode[code]
+
+
 def test_a_starved_film_raises_the_friction_where_asperities_carry(points, model):
     change = change_between(
         points(), points(lambda one: model.starved([one], 0.5)[0], first=40), model
