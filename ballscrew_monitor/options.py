@@ -74,6 +74,8 @@ def add_health(parser: Parser) -> None:
     _add_file(parser, '--params', 'FILE', text)
     text = 'motion of the first logs that is normal (default 0.16, ten minutes)'
     _add_number(parser, '--baseline-hours', 'H', text, default=0.16)
+    text = 'days that are normal, both included, UTC (default: the first ones in motion)'
+    parser.add_argument('--baseline', nargs=2, metavar=('FROM', 'TO'), help=text)
     text = 'emission of the electricity [kg/kWh] (default none, no CO2 is told)'
     _add_number(parser, '--co2-kg-per-kWh', 'X', text, default=math.nan)
     _add_switch(parser, '--speed-advice', 'let the advice name other speeds: the process is free')

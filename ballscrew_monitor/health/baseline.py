@@ -131,6 +131,21 @@ def named(
     )
 
 
+def named_or_why(
+    points: Sequence[ComparablePoint],
+    days: tuple[int, int],
+    *,
+    motion: Motion | None = None,
+    screw: str = '',
+) -> Baseline | str:
+    """Return the baseline of `days`, begin and end [ns], or in a sentence why there is none."""
+    try:
+        reason = 'named by its days'
+        return named(points, *days, reason=reason, named_at=days[1], motion=motion, screw=screw)
+    except InputError as error:
+        return str(error)
+
+
 def in_force(kept: KeptHealth, *, over: float, today: int, screw: str) -> Baseline | str:
     """
     Return the baseline that counts `today`, or in a sentence why it is not known yet.

@@ -5,6 +5,7 @@
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
 import contextlib
+import datetime
 from pathlib import Path
 import sys
 from typing import Any
@@ -12,6 +13,7 @@ from typing import Any
 from ballscrew_monitor.core.interrupts import DONE, FAILED
 from ballscrew_monitor.health.baseline import HOUR
 from ballscrew_monitor.health.records import Health, Quantity
+from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import FILE
 from ballscrew_monitor.health.words import health_record
 from ballscrew_monitor.recordings.opener import opened_log
@@ -88,9 +90,22 @@ def _healths(
 def _options(args: argparse.Namespace) -> dict[str, Any]:
     return {
         'over': args.baseline_hours * HOUR,
+        'days': None if args.baseline is None else days_of(*args.baseline),
         'co2_per_kwh': args.co2_kg_per_kWh,
         'speed_allowed': args.speed_advice,
     }
+
+
+def days_of(first: str, last: str) -> tuple[int, int]:
+    """Return begin and end [ns] of the days from `first` to `last`, UTC; raises InputError."""
+    try:
+        begin, end = (datetime.date.fromisoformat(text) for text in (first, last))
+    except ValueError:
+        raise InputError(
+            f'--baseline is {first} {last}, it must be two dates such as 2026-01-05 2026-01-16'
+        ) from None
+    start = datetime.date(1970, 1, 1)
+    return (begin - start).days * DAY, ((end - start).days + 1) * DAY
 
 
 def lines_of(health: Health) -> list[str]:

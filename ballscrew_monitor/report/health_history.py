@@ -11,7 +11,7 @@ from typing import Any
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.assess import assess, HealthSettings, recent_of
 from ballscrew_monitor.health.bands import day_of
-from ballscrew_monitor.health.baseline import learned, LEAST_MOTION
+from ballscrew_monitor.health.baseline import learned, LEAST_MOTION, named_or_why
 from ballscrew_monitor.health.collect import Collected, Collector
 from ballscrew_monitor.health.companions import companions_beside
 from ballscrew_monitor.health.peers import FEWEST_PEERS, Peer, ranked
@@ -108,14 +108,15 @@ def healths(
     histories: Sequence[AxisHistory],
     *,
     over: float = LEAST_MOTION,
+    days: tuple[int, int] | None = None,
     co2_per_kwh: float = NAN,
     speed_allowed: bool = False,
 ) -> Iterator[Health]:
     """
     Yield the health of one axis after each of its recordings, in the order of their stamps.
 
-    The baseline is learned over the first `over` [s] in motion. All are held against the surface
-    of the last recording.
+    The baseline is that of `days`, begin and end [ns], or learned over the first `over` [s] in
+    motion. All are held against the surface of the last recording.
 
     """
     ordered = sorted(histories, key=lambda one: one.last)
@@ -132,7 +133,12 @@ def healths(
             points[key] = merged(points[key], point) if key in points else point
         bins = merged_bins([*bins, *one.bins])
         kept = list(points.values())
-        baseline = learned(kept, over=over, screw=surface.screw_name, today=day_of(one.last) + 1)
+        screw, today = surface.screw_name, day_of(one.last) + 1
+        baseline = (
+            learned(kept, over=over, screw=screw, today=today)
+            if days is None
+            else named_or_why(kept, days, screw=screw)
+        )
         now = (day_of(one.last) + 1) * DAY - 1
         yield assess(one.axis, now, baseline, kept, bins, surface, companions, settings)
 

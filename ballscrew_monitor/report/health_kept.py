@@ -8,7 +8,7 @@ from typing import Any
 
 from ballscrew_monitor.health.assess import HealthSettings
 from ballscrew_monitor.health.bands import MONTH
-from ballscrew_monitor.health.baseline import in_force
+from ballscrew_monitor.health.baseline import in_force, motion_by_day, named_or_why
 from ballscrew_monitor.health.companions import companions_beside
 from ballscrew_monitor.health.keeper import assess_kept
 from ballscrew_monitor.health.points import surface_id
@@ -52,6 +52,7 @@ def _course(
     values: Mapping[str, Any],
     *,
     over: float,
+    days: tuple[int, int] | None,
     co2_per_kwh: float,
     speed_allowed: bool,
 ) -> Iterator[Health]:
@@ -71,7 +72,12 @@ def _course(
     periods = [(one.first_day, one.days) for one in kept.points]
     periods += [(one.first_day, one.days) for one in kept.spectrum]
     first, last = min(periods)[0], max(day + days - 1 for day, days in periods)
-    baseline = in_force(kept, over=over, today=last + 1, screw=surface.screw_name)
+    screw, motion = surface.screw_name, motion_by_day(kept.spectrum)
+    baseline = (
+        in_force(kept, over=over, today=last + 1, screw=screw)
+        if days is None
+        else named_or_why(kept.points, days, motion=motion, screw=screw)
+    )
     say(*kept.notes)
     for day in range(last, max(first, last - MOST_MONTHS * MONTH) - 1, -MONTH)[::-1]:
         now = (day + 1) * DAY - 1

@@ -18,6 +18,7 @@ from ballscrew_monitor.health.records import (
     SpectrumBin,
 )
 from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.report.health_command import days_of
 from ballscrew_monitor.report.health_history import (
     AxisHistory,
     health_after,
@@ -178,3 +179,19 @@ def test_a_chapter_tells_the_known_and_why_the_rest_is_not(months):
     worse = health_chapter([*healths(months)][-1])
     assert 'a constant drag of +0.110 N m' in worse
     assert '<td>excluded</td>' in worse
+
+
+def test_the_baseline_may_be_named_by_its_days(months):
+    later = days_of('2024-11-01', '2024-11-30')  # of the second month, after a little wear
+    *_, last = healths(months, days=later)
+    assert last.baseline.begin == later[0]
+    assert last.baseline.reason == 'named by its days'
+    assert 'a constant drag of +0.100 N m' in last.verdict
+    first, *_ = healths(months, days=later)
+    assert 'no baseline' in first.verdict
+
+
+@pytest.mark.parametrize('dates', [('2020-13-45', '2026-01-01'), ('monday', '2026-01-01')])
+def test_dates_that_cannot_be_are_one_sentence(refused, dates):
+    with refused('dates', dates=' '.join(dates)):
+        days_of(*dates)
