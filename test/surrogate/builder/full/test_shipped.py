@@ -30,12 +30,12 @@ def test_file_is_of_the_datasheets_and_small(screw, oil):
 
 @pytest.mark.parametrize('name', GENERIC)
 def test_each_generic_size_has_a_surface_of_its_sheet(name, oil):
-    """Without a node that is missing, within twice the error that is aimed at."""
+    """Without a node that is missing, within one and a half times the error that is aimed at."""
     data = read(find_surface('full', name, oil.name))
     sheet = load_screw(name).stated()
     assert data.header['inputs'] == {'screw': sheet, 'lubricant': oil.stated()}
     assert not data.mask.any()
-    assert 0 < data.header['reached'] < 2
+    assert 0 < data.header['reached'] < 1.5
     assert 0.5 < Surface(data).lookup(100.0, 0.0, 313.15).film_ratio < 20
 
 
