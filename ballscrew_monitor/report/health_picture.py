@@ -71,7 +71,7 @@ def _draw(panel: Axes, axis: str, name: str, courses: Sequence[Health]) -> None:
     if not np.isfinite(values).any():
         reason = told[-1][1].reason
         panel.text(
-            0.5, 0.5, reason, transform=panel.transAxes, ha='center', va='center', wrap=True
+            0.5, 0.3, reason, transform=panel.transAxes, ha='center', va='center', wrap=True
         )
 
 
