@@ -53,10 +53,11 @@ class Peer:
             100.0 * part
             for part in (self.difference.value, self.difference.low, self.difference.high)
         )
-        among = 'which is apart from them' if self.is_apart else 'as they differ from each other'
+        among = 'beyond what these' if self.is_apart else 'no more than these'
         return (
-            f'Axis {self.axis} takes {value:+.0f} % ({low:+.0f} to {high:+.0f} %) of the friction '
-            f'torque of {self.peers} axes with the same programme, {among}.'
+            f'Axis {self.axis}: its friction torque differs by {value:+.0f} % ({low:+.0f} to '
+            f'{high:+.0f} %) from that of {self.peers} axes with the same programme, {among} '
+            'differ by.'
         )
 
 

@@ -45,7 +45,7 @@ def test_the_axis_that_is_apart_is_named_first_with_its_size(axis, surface):
     assert (first.axis, first.is_apart, first.peers) == ('d', True, 3)
     assert first.difference.low < -0.2 < first.difference.high
     assert first.difference.high < -0.1
-    assert 'which is apart from them' in first.text
+    assert 'beyond what these differ by' in first.text
     assert not any(one.is_apart for one in others)
     assert {one.axis for one in others} == set('abc')
 

@@ -154,7 +154,7 @@ def test_the_overview_draws_trends_and_ranks_axes_with_one_programme(months):
     latest = [dataclasses.replace(aged(months[0], 11), axis=name) for name in 'yz']
     page = overview_page([entry(one) for one in (*months, *latest)])
     assert page.count('apart from its peers') == 1
-    assert 'Axis x takes +' in page
+    assert 'Axis x: its friction torque differs by +' in page
 
 
 def entry(one):
