@@ -61,8 +61,8 @@ RIPPLE, NOISE = 0.02, 0.01
 MEAN_OIL, SEASON, WARMING, WARM_TIME = 27.0, 6.0, 9.0, 300.0
 """Oil at the begin [degC], swing over the year and rise in a log [K], time of the rise [s]."""
 SLOWEST = 0.05
-SPEED_NODES = np.linspace(0.0, math.asinh(240.0 / SLOWEST), 91)
-LOAD_NODES, OIL_NODES = np.linspace(0.0, 1800.0, 5), np.linspace(20.0, 44.0, 4)
+SPEED_NODES = np.linspace(0.0, math.asinh(240.0 / SLOWEST), 181)
+LOAD_NODES, OIL_NODES = np.linspace(0.0, 1800.0, 5), np.linspace(20.0, 44.0, 7)
 """Nodes of the friction of a month: arsinh of the speed over the slowest [-], [N], [degC]."""
 SEED = 40
 

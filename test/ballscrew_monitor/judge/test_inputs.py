@@ -129,17 +129,17 @@ def test_a_message_changes_what_it_says_and_nothing_else():
     load.accept(7, 9)
     first = {'received': [1], 'known': [1], 'value': [1.0], 'stamp_source': [1]}
     first |= {'sample_stamp': [7], 'arrival': [9], 'stamps_taken': [1], 'lags_taken': [1]}
-    first |= {'stamps': [7, *ring[1:]], 'lags': [2, *ring[1:]]}
+    first |= {'stamps': [7, *ring[1:]], 'lags': [2, *ring[1:]], 'span_taken': [1]}
     assert changed(load.memory) == first
     load.accept(10, 0)  # no arrival, no lag
     second = {'received': [2], 'sample_stamp': [10], 'last_gap': [3], 'stamps_taken': [2]}
-    second |= {'stamps': [7, 10, *ring[2:]], 'arrival': [0]}
+    second |= {'stamps': [7, 10, *ring[2:]], 'arrival': [0], 'span_taken': [2]}
     second = first | second
     del second['arrival']
     assert changed(load.memory) == second
     load = Input()
-    why = [0] * WHYS
-    why[Why.IMPLAUSIBLE] = 1
+    why, last = [0] * WHYS, [-SHOWN] * WHYS
+    why[Why.IMPLAUSIBLE], last[Why.IMPLAUSIBLE] = 1, SECOND
     load.refuse(Why.IMPLAUSIBLE, 5.0)
     assert changed(load.memory) == {
         'received': [1],
@@ -147,8 +147,9 @@ def test_a_message_changes_what_it_says_and_nothing_else():
         'refused': why,
         'refusal': [Why.IMPLAUSIBLE],
         'refusal_first': [5.0],
-        'implausible': [1],
-        'implausible_last': [SECOND],
+        'refused_last': last,
+        'span_taken': [1],
+        'span_refused': [1],
     }
     load = Input()
     load.refuse(Why.OTHER_JOINTS, 5.0)

@@ -182,7 +182,7 @@ def test_a_named_baseline_outlives_the_node(axis, says):
     last = axis.kept().baseline
     assert (last.reason, last.end, last.left_out) == ('new screw', 0, 7200.0)
     today = axis.node.now() // DAY
-    begin, end = (Time(sec=(today - days) * DAY // SECOND) for days in (DAYS // 2, 0))
+    begin, end = (Time(sec=(today - days) * DAY // SECOND) for days in (DAYS // 2, 3))
     named = axis.node.call(SetBaseline, 'x/set_baseline', reason='oil', begin=begin, end=end)
     assert (named.success, named.message) == (True, says('named'))
     found = axis.health(lambda one: one.baseline_reason == 'oil', 'the baseline')

@@ -46,7 +46,7 @@ def build_all_but_one(screw, lubricant, settings, **options):
         raise InputError('iso_vg_68: not today')
     return build_closed_form(screw, lubricant, settings)
 
-def build_here(screw, lubricant, settings, *, pool, out):
+def build_here(screw, lubricant, settings, *, pool, out, march):
     if lubricant.name == 'iso_vg_68':
         raise ValueError(f'{out.name} with {type(pool).__name__}')
     return build_closed_form(screw, lubricant, settings)

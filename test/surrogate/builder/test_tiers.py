@@ -70,4 +70,4 @@ def test_a_builder_that_spreads_its_solves_gets_pool_and_file(monkeypatch, screw
     tier = replace(tiers.TIERS['closed_form'], build='spreading:build', spreads=True)
     monkeypatch.setitem(tiers.TIERS, 'closed_form', tier)
     tiers.build_surface('closed_form', screw, oil, None, pool='workers', out=tmp_path)
-    assert seen == {'pool': 'workers', 'out': tmp_path}
+    assert seen == {'pool': 'workers', 'out': tmp_path, 'march': False}

@@ -19,7 +19,7 @@ def test_a_screw_is_solved_with_the_settings_that_are_measured():
         draw=0,
         grid_wavelength=16e-6,
         nodes_per_wave=6.0,
-        inlet_heating=False,
+        inlet_heating=True,
         coupling_tolerance=0.01,
     )
 

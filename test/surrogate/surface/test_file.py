@@ -93,9 +93,9 @@ def test_a_file_as_large_as_is_allowed_is_read(tmp_path, monkeypatch, refused):
         (CLOSED_FORM, len(SHIPPED), 'larger_bytes'),
         (packed, unpacked, 'larger_unpacked'),
     ):
-        monkeypatch.setattr(file, 'LARGEST_FILE', size)
+        monkeypatch.setattr(limits, 'SURFACE', size)
         assert file.read(path).sha256 == WHOLE
-        monkeypatch.setattr(file, 'LARGEST_FILE', size - 1)
+        monkeypatch.setattr(limits, 'SURFACE', size - 1)
         refused(key, file.read, path)
 
 
