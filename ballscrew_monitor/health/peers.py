@@ -18,6 +18,7 @@ from ballscrew_monitor.health.change import Change, change_between
 from ballscrew_monitor.health.energy import student
 from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.records import ComparablePoint, Quantity
+from ballscrew_monitor.health.words import percent
 from surrogate.surface import Surface
 
 FEWEST_PEERS = 2
@@ -49,15 +50,10 @@ class Peer:
     @property
     def text(self) -> str:
         """Return the difference in a sentence."""
-        value, low, high = (
-            100.0 * part
-            for part in (self.difference.value, self.difference.low, self.difference.high)
-        )
         among = 'beyond what these' if self.is_apart else 'no more than these'
         return (
-            f'Axis {self.axis}: its friction torque differs by {value:+.0f} % ({low:+.0f} to '
-            f'{high:+.0f} %) from that of {self.peers} axes with the same programme, {among} '
-            'differ by.'
+            f'Axis {self.axis}: its friction torque differs by {percent(self.difference)} from '
+            f'that of {self.peers} axes with the same programme, {among} differ by.'
         )
 
 

@@ -215,3 +215,7 @@ class Health:
     causes: Sequence[Cause] = ()
     baseline: Baseline | None = None
     notes: Sequence[str] = ()
+
+    def quantity(self, name: str) -> Quantity:
+        """Return the quantity of a name."""
+        return next(one for one in self.quantities if one.name == name)

@@ -4,7 +4,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from ballscrew_monitor.core.conversions import clock_text
+from ballscrew_monitor.core.conversions import clock_text, seconds
 from ballscrew_monitor.health.assess import DRAG, TOLERANCE
 from ballscrew_monitor.health.peers import Peer
 from ballscrew_monitor.health.preload import NAME as PRELOAD
@@ -96,7 +96,7 @@ def _peer_row(one: Peer) -> TableRow:
 def health_trends(courses: Sequence[Health]) -> Iterable[Markup]:
     """Yield each quantity that is known at two dates or more, with its intervals over dates."""
     for name, (title, normal, tolerance) in TRENDS.items():
-        marks = [_mark(one, _named(one, name)) for one in courses if _named(one, name).is_known]
+        marks = [_mark(one, one.quantity(name)) for one in courses if one.quantity(name).is_known]
         drawn = trend(marks, normal=normal, tolerance=tolerance)
         if drawn:
             yield element('h3', f'Axis {courses[-1].axis}: {title}, with 95 % intervals')
@@ -107,14 +107,10 @@ def _mark(health: Health, quantity: Quantity) -> Mark:
     percent = f'{100.0 * quantity.value:.0f} %'
     between = f'{100.0 * quantity.low:.0f} to {100.0 * quantity.high:.0f} %'
     return Mark(
-        at=health.stamp * 1e-9,
+        at=seconds(health.stamp),
         value=quantity.value,
         low=quantity.low,
         high=quantity.high,
         kind=MARKS[health.condition],
         title=f'{clock_text(health.stamp)[:10]}: {percent} ({between})',
     )
-
-
-def _named(health: Health, name: str) -> Quantity:
-    return next(one for one in health.quantities if one.name == name)

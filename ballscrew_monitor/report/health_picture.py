@@ -9,7 +9,7 @@ from pathlib import Path
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.health.assess import DRAG, TOLERANCE
 from ballscrew_monitor.health.preload import NAME as PRELOAD
-from ballscrew_monitor.health.records import Condition, Health, Quantity
+from ballscrew_monitor.health.records import Condition, Health
 from matplotlib.axes import Axes
 from matplotlib.dates import AutoDateLocator, ConciseDateFormatter, date2num
 from matplotlib.figure import Figure
@@ -40,7 +40,7 @@ def figure_health(found: Mapping[str, Sequence[Health]]) -> Figure:
 
 def _draw(panel: Axes, axis: str, name: str, courses: Sequence[Health]) -> None:
     label, normal, title = SHOWN[name]
-    told = [(one, _named(one, name)) for one in courses]
+    told = [(one, one.quantity(name)) for one in courses]
     dates = date2num([_date(one.stamp) for one, _ in told])
     values, low, high = (
         100.0 * np.array([getattr(quantity, part) for _, quantity in told])
@@ -73,10 +73,6 @@ def _draw(panel: Axes, axis: str, name: str, courses: Sequence[Health]) -> None:
         panel.text(
             0.5, 0.3, reason, transform=panel.transAxes, ha='center', va='center', wrap=True
         )
-
-
-def _named(health: Health, name: str) -> Quantity:
-    return next(one for one in health.quantities if one.name == name)
 
 
 def _date(stamp: int) -> datetime.datetime:

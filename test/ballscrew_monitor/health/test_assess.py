@@ -98,14 +98,10 @@ class Axis:
         )
 
 
-def named(health, name):
-    return next(one for one in health.quantities if one.name == name)
-
-
 def test_an_axis_that_does_not_change_is_normal(axis, motion):
     health = axis.health(axis.days(motion, 40, lambda point, day: 0.0))
     assert health.condition is Condition.NORMAL
-    drag = named(health, DRAG)
+    drag = health.quantity(DRAG)
     assert drag.low <= 0.0 <= drag.high
     assert health.verdict.startswith('Axis x is normal: its drag has changed by ')
     assert advice_of(health.condition, health.causes) == ''
@@ -120,7 +116,7 @@ def test_a_preload_that_falls_is_named_with_its_size(axis, motion):
 
     health = axis.health(axis.days(motion, 70, added), over=14_000.0)
     assert health.condition is Condition.WORSE
-    preload = named(health, 'preload')
+    preload = health.quantity('preload')
     assert preload.low <= 0.6 <= preload.high
     assert health.causes[0].code is CauseCode.PRELOAD_LOST
     assert 'the preload is' in health.verdict
@@ -146,7 +142,8 @@ def test_what_is_missing_is_said(axis, motion):
         for one in points
     ]
     assert 'that the baseline has, too' in axis.health(others).verdict
-    assert named(axis.health(points, companions=NONE_BUILT), 'preload').reason == NONE_BUILT
+    unbuilt = axis.health(points, companions=NONE_BUILT)
+    assert unbuilt.quantity('preload').reason == NONE_BUILT
 
 
 def test_a_leap_everywhere_asks_for_another_screw(axis, motion):

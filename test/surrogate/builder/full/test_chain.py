@@ -10,6 +10,7 @@ import pytest
 from surrogate.builder.full import chain as full_chain
 from surrogate.builder.full.chain import (
     chain_inputs,
+    COARSE,
     point_inputs,
     solve_chain,
     solved_chain,
@@ -26,6 +27,8 @@ from surrogate.surface import FIELDS
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 WARM = 313.15
+GRIDS = ScrewSettings(smooth=COARSE), ScrewSettings()
+"""Those of a chain, and of a single point."""
 
 
 def chain(load, heat, speeds, screw=SCREW, oil=OIL):
@@ -42,7 +45,7 @@ def test_sheets_survive_json():
 
 
 def test_a_chain_is_the_points_it_says():
-    """Both senses at two speeds; nearly the numbers of single solves, which have finer grids."""
+    """Both senses at two speeds: solves from cold on its grids, nearly those on finer ones."""
     speeds = [30.0, 10.0]
     found = chain(500.0, WARM, speeds)
     assert json.loads(json.dumps(found)) == found
@@ -50,8 +53,10 @@ def test_a_chain_is_the_points_it_says():
     for load, points in ((500.0, typed.opposing), (-500.0, typed.assisting)):
         for solved, speed in zip(points, speeds, strict=True):
             point = OperatingPoint(speed=speed, load=load, temperature=WARM)
-            single = solve_screw(SCREW, OIL, point)
+            same, single = (solve_screw(SCREW, OIL, point, settings=one) for one in GRIDS)
             assert solved.converged
+            assert solved.friction_torque == pytest.approx(same.friction_torque, rel=1e-4)
+            assert solved.film_ratio == pytest.approx(same.film_ratio, rel=1e-4)
             assert solved.friction_torque == pytest.approx(single.friction_torque, rel=0.01)
             assert solved.film_ratio == pytest.approx(single.film_ratio, rel=0.005)
             exact = solve_chain(point_inputs(SCREW, OIL, load, WARM, speed))['opposing'][0]
@@ -84,8 +89,9 @@ def test_balls_that_move_their_forces_are_solved_again():
     load = 2600.0
     for sense, sign in (('opposing', 1), ('assisting', -1)):
         point = OperatingPoint(speed=300.0, load=sign * load, temperature=WARM)
-        single = solve_screw(SCREW, OIL, point)
+        same, single = (solve_screw(SCREW, OIL, point, settings=one) for one in GRIDS)
         found = chain(load, WARM, [300.0])[sense][0]
+        assert found['friction_torque'] == pytest.approx(same.friction_torque, rel=1e-3)
         assert found['friction_torque'] == pytest.approx(single.friction_torque, rel=0.01)
 
 
