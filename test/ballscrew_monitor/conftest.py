@@ -148,6 +148,13 @@ def make_limits(**changes):
     return Limits(**(values | changes))
 
 
+@pytest.fixture(scope='session')
+def usual_limits():
+    """Return the limits of an axis on which nothing is delayed."""
+    usual = {'rcs': 0.01, 'efficiency': 0.85, 'light_load': 661.0, 'hysteresis': 0.1}
+    return make_limits(raise_delay=0, clear_delay=0, **usual)
+
+
 def make_point(speed=10.0, axial_load=-1000.0, temperature=313.15, **changes):
     """Return a measured point, moving in the direction of its speed."""
     values = {

@@ -6,7 +6,6 @@ import dataclasses
 import json
 import math
 
-from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.assess import assess, DRAG, HealthSettings
 from ballscrew_monitor.health.baseline import learned
 from ballscrew_monitor.health.companions import Companions, NONE_BUILT
@@ -18,15 +17,6 @@ import numpy as np
 import pytest
 from surrogate.surface import PRELOAD_SHARES
 
-LIMITS = Limits(
-    rcs=0.01,
-    efficiency=0.85,
-    light_load=661.0,
-    standstill_speed=0.5,
-    raise_delay=0,
-    clear_delay=0,
-    hysteresis=0.1,
-)
 SPEEDS = 3.0, 12.0, 40.0, 120.0
 FIRST = 20_000
 
@@ -46,15 +36,15 @@ class OfShare:
 
 
 @pytest.fixture(scope='module')
-def axis(surface):
-    return Axis(surface)
+def axis(surface, usual_limits):
+    return Axis(surface, usual_limits)
 
 
 class Axis:
     """An axis whose torque is that of the model, with what each day adds, and its scatter."""
 
-    def __init__(self, surface):
-        self.surface = surface
+    def __init__(self, surface, limits):
+        self.surface, self.limits = surface, limits
         self.companions = Companions({share: OfShare(surface, share) for share in PRELOAD_SHARES})
         self.model = Model(surface, self.companions)
 
@@ -84,7 +74,7 @@ class Axis:
     def health(self, points, *, companions=None, over=3600.0, last=None, **changes):
         """Return the health on the last day."""
         today = max((one.first_day for one in points), default=FIRST) if last is None else last
-        settings = HealthSettings(limits=LIMITS, **changes)
+        settings = HealthSettings(limits=self.limits, **changes)
         found = learned(points, over=over, today=today + 1, screw=self.surface.screw_name)
         return assess(
             'x',

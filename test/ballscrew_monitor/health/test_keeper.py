@@ -5,7 +5,6 @@
 import contextlib
 import sqlite3
 
-from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.assess import HealthSettings
 from ballscrew_monitor.health.baseline import LEARNED
 from ballscrew_monitor.health.collect import Collected
@@ -15,30 +14,22 @@ from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import HealthStore
 import pytest
 
-LIMITS = Limits(
-    rcs=0.01,
-    efficiency=0.85,
-    light_load=661.0,
-    standstill_speed=0.5,
-    raise_delay=0,
-    clear_delay=0,
-    hysteresis=0.1,
-)
 HOUR = 3600.0
 
 
 @pytest.fixture(name='kept')
-def make_kept(tmp_path, motion, surface):
+def make_kept(tmp_path, motion, surface, usual_limits):
     with contextlib.closing(HealthStore(tmp_path)) as store:
         store.load()
-        yield Kept(store, motion, surface)
+        yield Kept(store, motion, surface, usual_limits)
 
 
 class Kept:
     """A keeper of axis x with days of motion."""
 
-    def __init__(self, store, motion, surface):
+    def __init__(self, store, motion, surface, limits):
         self.store, self.motion, self.surface = store, motion, surface
+        self.settings = HealthSettings(limits=limits)
         self.keeper, self.today = HealthKeeper('x', store), motion.today
 
     def day(self, day, *, hours=1.0, today=None):
@@ -54,10 +45,9 @@ class Kept:
         self.keeper.gather(Collected(stretches, [one]), self.surface, today or day)
 
     def health(self, today=None, **changes):
-        settings = HealthSettings(limits=LIMITS)
         options = {'over': 2 * HOUR} | changes
         now = (today or self.today) * DAY + 5
-        return self.keeper.assess(now, self.surface, 'none built', settings, **options)
+        return self.keeper.assess(now, self.surface, 'none built', self.settings, **options)
 
     def name(self, **changes):
         asked = {'begin': 0, 'end': 0, 'running_in': 0.0, 'reason': 'oil', 'screw': 's'}

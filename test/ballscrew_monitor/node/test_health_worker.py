@@ -9,7 +9,7 @@ import math
 import sqlite3
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.judgement import Limits, WarningPolicy
+from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.health.assess import HealthSettings
 from ballscrew_monitor.health.collect import Collected
 from ballscrew_monitor.health.keeper import HealthKeeper
@@ -23,15 +23,6 @@ from surrogate.surface import shipped_surface, Surface
 
 NOON = 20_000 * DAY + DAY // 2
 NOTHING = Collected([], [])
-LIMITS = Limits(
-    rcs=0.01,
-    efficiency=0.85,
-    light_load=661.0,
-    standstill_speed=0.5,
-    raise_delay=0,
-    clear_delay=0,
-    hysteresis=0.1,
-)
 
 
 @pytest.fixture(name='surface', scope='module')
@@ -79,23 +70,29 @@ def gathered(surface, some, **options):
     return gatherer.hand_over(surface, **options)
 
 
-def job(worker, surface, found=NOTHING, **changes):
-    values = {
-        'keeper': HealthKeeper('x', worker.store),
-        'axis': 'x',
-        'now': NOON,
-        'found': found,
-        'surface': surface,
-        'file': shipped_surface,
-        'settings': HealthSettings(limits=LIMITS),
-        'policy': WarningPolicy.BOTH,
-        'over': 3600.0,
-        'assesses': False,
-    }
-    return Job(**values | changes)
+@pytest.fixture
+def job(usual_limits):
+    """Return what makes a job of an axis."""
+
+    def make_job(worker, surface, found=NOTHING, **changes):
+        values = {
+            'keeper': HealthKeeper('x', worker.store),
+            'axis': 'x',
+            'now': NOON,
+            'found': found,
+            'surface': surface,
+            'file': shipped_surface,
+            'settings': HealthSettings(limits=usual_limits),
+            'policy': WarningPolicy.BOTH,
+            'over': 3600.0,
+            'assesses': False,
+        }
+        return Job(**values | changes)
+
+    return make_job
 
 
-def test_rows_end_as_points_and_motion_on_the_disk(make, surface, tmp_path):
+def test_rows_end_as_points_and_motion_on_the_disk(job, make, surface, tmp_path):
     worker = make()
     found = gathered(surface, [None, *rows(3.0)], rows_end=True)
     assert worker.put(job(worker, surface, found))
@@ -134,7 +131,7 @@ def test_a_defect_of_gathering_is_a_sentence_and_no_more_is_taken(surface, says)
     assert gatherer.hand_over(surface, rows_end=True) == NOTHING
 
 
-def test_an_assessment_is_done_beside_and_not_known_without_motion(make, surface, wait_for):
+def test_an_assessment_is_done_beside_and_not_known_without_motion(job, make, surface, wait_for):
     worker = make()
     worker.put(job(worker, surface, assesses=True))
     wait_for(lambda: worker.done, 'the assessment')
@@ -146,7 +143,7 @@ def test_an_assessment_is_done_beside_and_not_known_without_motion(make, surface
 
 
 def test_a_folder_of_another_node_is_left_alone_until_it_is_ours(
-    make, surface, wait_for, tmp_path, says
+    job, make, surface, wait_for, tmp_path, says
 ):
     held = []
     worker = make(lambda: bool(held))
@@ -164,7 +161,9 @@ def test_a_folder_of_another_node_is_left_alone_until_it_is_ours(
 
 
 @pytest.mark.parametrize('content', [b'no database' * 1000, None], ids=['damaged', 'version'])
-def test_a_store_that_no_node_has_left_is_set_aside(make, surface, wait_for, tmp_path, content):
+def test_a_store_that_no_node_has_left_is_set_aside(
+    job, make, surface, wait_for, tmp_path, content
+):
     if content is None:
         with contextlib.closing(sqlite3.connect(tmp_path / FILE)) as database:
             database.execute('PRAGMA user_version = 7')
@@ -180,7 +179,7 @@ def test_a_store_that_no_node_has_left_is_set_aside(make, surface, wait_for, tmp
 
 
 def test_whatever_fails_in_the_thread_is_a_sentence_and_it_goes_on(
-    make, surface, wait_for, monkeypatch, says
+    job, make, surface, wait_for, monkeypatch, says
 ):
     def fail(self, *args, **named):
         raise ZeroDivisionError('by zero')
@@ -196,7 +195,7 @@ def test_whatever_fails_in_the_thread_is_a_sentence_and_it_goes_on(
     wait_for(lambda: worker.problem == '', 'the end of it')
 
 
-def test_more_jobs_than_may_wait_are_refused(tmp_path, surface, monkeypatch):
+def test_more_jobs_than_may_wait_are_refused(job, tmp_path, surface, monkeypatch):
     monkeypatch.setattr(health_worker, 'MOST_JOBS', 2)
     worker = HealthWorker(HealthStore(tmp_path), lambda: True)
     with worker.store.lock:  # the thread waits for the store

@@ -7,7 +7,6 @@ import json
 import math
 
 from ballscrew_monitor.cli import main
-from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.records import (
     ComparablePoint,
@@ -33,26 +32,17 @@ import pytest
 from surrogate.files import to_json
 from surrogate.surface import shipped_surface, Surface
 
-LIMITS = Limits(
-    rcs=0.01,
-    efficiency=0.85,
-    light_load=661.0,
-    standstill_speed=0.5,
-    raise_delay=0,
-    clear_delay=0,
-    hysteresis=0.1,
-)
 FIRST, MONTH = 20_000, 30
 
 
 @pytest.fixture(scope='module')
-def months():
+def months(usual_limits):
     """Return histories of twelve months, each of one day, under a wiper that grows."""
     model = Model(Surface.load(shipped_surface()))
-    return [history(model, number, 0.01 * number) for number in range(12)]
+    return [history(model, usual_limits, number, 0.01 * number) for number in range(12)]
 
 
-def history(model, number, wiper):
+def history(model, limits, number, wiper):
     points = []
     for band, speed in enumerate((3.0, 12.0, 40.0, 120.0)):
         for sign in (1, -1):
@@ -81,14 +71,14 @@ def history(model, number, wiper):
     return AxisHistory(
         axis='x',
         surface=str(shipped_surface()),
-        limits=LIMITS,
+        limits=limits,
         last=(FIRST + MONTH * number) * DAY + 1,
         points=tuple(points),
         bins=(one,),
     )
 
 
-def test_a_history_survives_json(months):
+def test_a_history_survives_json(months, usual_limits):
     plain = json.loads(json.dumps(to_json(dataclasses.asdict(months[3]))))
     found = read_history(plain)
     assert list(found.points) == [
@@ -98,7 +88,7 @@ def test_a_history_survives_json(months):
     (one,) = found.bins
     assert (one.wear_time, one.time) == ((1.0, 2.0), 1280.0)
     assert math.isnan(one.axial_load)
-    assert (found.axis, found.last, found.limits) == ('x', months[3].last, LIMITS)
+    assert (found.axis, found.last, found.limits) == ('x', months[3].last, usual_limits)
 
 
 def test_health_follows_the_recordings_whatever_their_order(months):
