@@ -53,7 +53,7 @@ Standard deviation of the drag of a wiper over months, over that drag [-].
 The constant drag, and what it has more near standstill.
 
 """
-SCATTER_DAYS = 28
+SCATTER_DAYS = 14
 """Days before today of which the scatter counts, beside those of the baseline."""
 MOST_DOUBLINGS = 12
 """Times that a week is doubled for another look at all of the days: 80 years."""

@@ -133,8 +133,11 @@ def test_the_sheet_is_calibrated_and_says_so(slow, found):
     run, contacts = slow
     sheet = identified_screw(SCREW, run, contacts, found, '2026-11-24')
     assert sheet.roughness.calibration.startswith('onset calibrated on 2026-11-24 within 1.3')
-    begins = [onset_point(one, OIL, 0.0, WARM)['speed_rad_s'] for one in (SCREW, sheet)]
+    points = [onset_point(one, OIL, 0.0, WARM) for one in (SCREW, sheet)]
+    behind_inlet = [one['entrainment_speed_m_s'] for one in points]
     factor = found.value('onset_factor')
+    assert behind_inlet[1] == pytest.approx(factor * behind_inlet[0])
+    begins = [one['speed_rad_s'] for one in points]
     assert begins[1] == pytest.approx(factor * begins[0], rel=0.01)
     assert onset_speeds(contacts, run, (factor, 1.0, 1.0))[:2] == pytest.approx(begins[::-1])
 

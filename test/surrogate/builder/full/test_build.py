@@ -92,7 +92,12 @@ def test_nodes_are_what_solves_give(data, screw, oil, stand_in):
 
 
 def test_the_deviation_of_a_node_is_that_of_the_law_at_its_worst_contact(data, screw, oil):
-    """Half of the deviation slower and faster, each with the heating of its inlet."""
+    """
+    Half of the deviation slower and faster, each with the heating of its inlet.
+
+    A solve of the point shifts behind the inlet instead: less than a tenth apart.
+
+    """
     arm, law = no_slip_rates(screw).entrainment, law_of(screw)
     half = 0.5 * law.deviation
     for i, j, k in np.argwhere(~data.mask)[::11]:
@@ -100,15 +105,16 @@ def test_the_deviation_of_a_node_is_that_of_the_law_at_its_worst_contact(data, s
         force = float(normal_force(screw, nut_forces(float(data.load[j]), screw.preload)[nut]))
         heat = float(data.temperature[k])
         log_speed = data.speed_coordinate[i] + data.log_onset[j, k]
-        speeds = arm * np.exp(log_speed + np.array([-half, half]))
+        speeds = arm * np.exp(log_speed + np.array([-half, 0.0, half]))
         inlets = inlet_speed(screw, oil, SIDES[side], force, speeds, heat)
         place, fluid = (SIDES[side], screw_contact(screw, SIDES[side])), oil_at(oil, heat)
         conditions = (Condition(load=force, entrainment_speed=float(one)) for one in inlets)
-        slower, faster = (
-            law.contact(*place, one, fluid, oil.film_floor).rcs for one in conditions
+        slower, here, faster = (
+            law.contact(*place, one, fluid, oil.film_floor) for one in conditions
         )
-        expected = pytest.approx(slower - faster, rel=1e-6, abs=10 * NOTHING)
-        assert data.deviations['rcs'][i, j, k] == expected
+        found = data.deviations['rcs'][i, j, k]
+        assert found == pytest.approx(slower.rcs - faster.rcs, rel=1e-6, abs=10 * NOTHING)
+        assert found == pytest.approx(here.rcs_deviation, rel=0.1, abs=10 * NOTHING)
 
 
 def test_rcs_at_the_origin_of_the_speed_is_one_percent(data):
