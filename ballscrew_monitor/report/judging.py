@@ -25,7 +25,13 @@ from ballscrew_monitor.recordings.replay import ignore, replay_parts
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report.parameters import Assumed, AxisFacts, LogParameters
 from ballscrew_monitor.report.survey import Survey, Surveyor
-from ballscrew_monitor.settings.axis import load_surface, scalings_of, settings_of, surface_file
+from ballscrew_monitor.settings.axis import (
+    gathering_of,
+    load_surface,
+    scalings_of,
+    settings_of,
+    surface_file,
+)
 from ballscrew_monitor.settings.parameters import is_configured
 from surrogate.surface import Surface
 
@@ -191,7 +197,7 @@ class CaseMaker:
             standstill=self._settings.limits.standstill_speed,
             max_gap=self._settings.timeouts[Source.SPEED],
         )
-        self._history = None if make is None else make(self._surface)
+        self._history = None if make is None else make(self._surface, gathering_of(axis, values))
 
     def add(self, block: JudgedColumns) -> None:
         """Take the next block of rows."""
