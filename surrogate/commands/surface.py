@@ -19,7 +19,7 @@ from surrogate.commands.sweep import add_sweep_command, add_workers
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant
 from surrogate.progress import Progress
-from surrogate.surface import find_surface
+from surrogate.surface import find_surface, onset_of_surface, Surface
 from surrogate.surface.file import read, write
 from surrogate.surface.shipped import SHIPPED_TIERS
 from surrogate.units import RPM, ZERO_CELSIUS
@@ -124,6 +124,7 @@ def _build(args: argparse.Namespace) -> int:
         )
     write(out, data)
     print(f'{out}: tier {args.tier}, {data.mask.size} nodes, sha256 {data.sha256}')
+    print(f'{onset_of_surface(Surface(data)).sentence()}.')
     if args.with_preloads:
         for file in build_companions(screw, lubricant, ranges, out):
             print(f'{file}: companion at another preload')

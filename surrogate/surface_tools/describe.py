@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.raceway.ball import roughness_sentence
-from surrogate.surface import Surface
+from surrogate.surface import onset_of_surface, Surface
 from surrogate.surface.file import SurfaceData
 from surrogate.surface_tools.fields import FIELD_TEXTS
 from surrogate.units import RPM, ZERO_CELSIUS
@@ -55,6 +55,7 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
             for name in FIELD_TEXTS
             if name in data.deviations or name in data.standard_errors
         },
+        'contact_onset': onset_of_surface(surface).record(),
         'limit_band': data.header.get('limit_band'),
         'numerical_band': data.header.get('numerical_band'),
         'accuracy_reached': data.header.get('reached'),
@@ -78,6 +79,7 @@ def info_page(record: Mapping[str, Any]) -> str:
     return '\n'.join(
         [
             f'{record["file"]}',
+            f'  {record["contact_onset"]["sentence"]}',
             *_head(record),
             *_full_tier(record),
             '  measured interpolation error                    max         p95',

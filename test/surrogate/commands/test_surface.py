@@ -33,6 +33,7 @@ def test_build_info_check(run, tmp_path, capsys):
     assert run('info', path, '--json') == 0
     info = json.loads(capsys.readouterr().out)
     assert info['sha256'] in built
+    assert info['contact_onset']['sentence'] in built
     assert info['load_range_N'] == [-500.0, 500.0]
     assert info['speed_range_rad_s'] == pytest.approx([0.10472, 209.44], rel=1e-4)
     assert run('info', path) == 0
@@ -104,6 +105,7 @@ def test_info_is_a_page_a_person_reads(run, capsys):
     assert run('info', 'closed_form') == 0
     text = capsys.readouterr().out
     for part in (
+        'Contact begins at 313 rev/min at 40 degC; this screw',
         'nominal, iso_vg_68; lead 10 mm, preload 990 N, Rq 0.12 um, film floor 3 nm',
         'raceway (new): Rq 0.12 um between 2.5 um and 0.25 mm',
         'tier         closed_form, format version 3',
