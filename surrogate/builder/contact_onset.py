@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Where contact begins on a screw, and which zone is left, by its sheet and that of the oil."""
+"""Onset of contact on a screw, and the zone that is left, by its sheet and that of the oil."""
 
 import numpy as np
 from surrogate.asperities.law import band_of

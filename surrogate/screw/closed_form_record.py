@@ -205,12 +205,18 @@ def _warnings(
             f'temperature: {point.temperature - ZERO_CELSIUS:.4g} degC, the oil sheet '
             f'covers {low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC'
         )
+    return warnings + (formula_warnings(result) if point.speed else [])
+
+
+def formula_warnings(result: closed_form.ScrewResult) -> list[str]:
+    """Return a sentence for each formula that contacts use beyond what it was fitted over."""
     g = _all_groups(result.contacts)
-    for formula in FORMULAS if point.speed else ():
-        phrases = outside_range(formula, g)
-        if phrases:
-            warnings.append(f'{formula} outside its range: {", ".join(phrases)}')
-    return warnings
+    found = ((formula, outside_range(formula, g)) for formula in FORMULAS)
+    return [
+        f'{formula} outside its range: {", ".join(phrases)}'
+        for formula, phrases in found
+        if phrases
+    ]
 
 
 def _all_groups(contacts: tuple[closed_form.ContactResult, ...]) -> Groups:

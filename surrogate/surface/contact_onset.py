@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Where contact begins on a screw, the fastest speed it allows, and whether a zone is left between.
+Onset of contact on a screw, the fastest speed it allows, and whether a zone is left between.
 
 One sentence says it, of a surface or of the sheets: without a load, at one oil temperature. Where
 there is no optimal zone, it says which oil, temperature or roughness would make contact begin

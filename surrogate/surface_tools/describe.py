@@ -56,6 +56,7 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
             if name in data.deviations or name in data.standard_errors
         },
         'contact_onset': onset_of_surface(surface).record(),
+        'formula_warnings': surface_warnings(data),
         'limit_band': data.header.get('limit_band'),
         'numerical_band': data.header.get('numerical_band'),
         'accuracy_reached': data.header.get('reached'),
@@ -63,6 +64,21 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
         'settings': dict(data.header['settings']),
         'provenance': dict(data.provenance),
     }
+
+
+def surface_warnings(data: SurfaceData) -> list[str]:
+    """Return where the formulas of a surface leave their ranges; solved contacts replace them."""
+    if data.header['tier'] != 'closed_form':
+        return []
+    from surrogate.screw import closed_form  # slow to load
+    from surrogate.screw.closed_form_record import formula_warnings
+
+    places = np.meshgrid(data.header['settings']['speed_range'], data.load, data.temperature)
+    # The groups of films do not depend on what asperities do.
+    found = closed_form.solve(
+        *screw_and_oil(data.header['inputs']), *places, share_of=np.zeros_like
+    )
+    return formula_warnings(found)
 
 
 def _summary(data: SurfaceData, group: str, name: str) -> dict[str, float]:
@@ -81,7 +97,7 @@ def info_page(record: Mapping[str, Any]) -> str:
             f'{record["file"]}',
             f'  {record["contact_onset"]["sentence"]}',
             *_head(record),
-            *_full_tier(record),
+            *_told(record),
             '  measured interpolation error                    max         p95',
             *(
                 f'    {_label(name):44} {error["max"]:<10.3g}  {error["p95"]:.3g}'
@@ -129,8 +145,8 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
     )
 
 
-def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
-    """Yield what a full-tier builder says of its result."""
+def _told(record: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what the builder of a tier says of its result."""
     for name, words in (('limit_band', 'what is not known'), ('numerical_band', 'the numerics')):
         if record[name] is not None:
             low, high = record[name]
@@ -145,6 +161,7 @@ def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
         )
     if record['march'] is not None:
         yield from march_lines(record['march'])
+    yield from (f'  formulas     {text}' for text in record['formula_warnings'])
 
 
 def march_lines(march: Mapping[str, Any]) -> Iterator[str]:

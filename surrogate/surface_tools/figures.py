@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 import math
 from pathlib import Path
+import textwrap
 from typing import Any
 
 from matplotlib.axes import Axes
@@ -102,9 +103,9 @@ def figure_surface(surface: Surface, temperature: float) -> Figure:
     figure.suptitle(
         f'{surface.screw_name}, {surface.oil_name}, {temperature - ZERO_CELSIUS:g} degC, '
         f'tier {surface.tier}, surface {surface.sha256[:8]}\n'
-        f'{onset_of_surface(surface, temperature).sentence()}\n'
+        f'{textwrap.fill(onset_of_surface(surface, temperature).sentence(), 118)}\n'
         'bright is good in every map; grey: not known',
-        fontsize=9,
+        fontsize=8,
     )
     grid = figure.subplots(rows, 2, sharex=True, sharey=True)
     for draw, axes in zip(panels, grid.flat):

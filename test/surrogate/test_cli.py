@@ -91,7 +91,7 @@ def test_point_as_a_page(run, capsys):
 
 
 def test_at_rest_no_film_is_compared(run, capsys):
-    """There is none by any formula, and the page says why."""
+    """No formula gives one, and the page says why."""
     assert run(*POINT, '--speed-rpm', '0', '--load-N', '500') == 0
     text = capsys.readouterr().out
     assert 'N m, no film at rest or without load\n' in text

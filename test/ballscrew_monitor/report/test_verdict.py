@@ -155,7 +155,7 @@ def test_contact_is_that_of_the_surface_with_the_oil_as_warm_as_in_motion(judged
     assert unknown.onset == onset_of_surface(case.surface, None, ZoneLimits(**bounds))
 
 
-def test_an_axis_whose_log_gives_a_feed_is_told_of_feeds(judged, says):
+def test_where_a_log_gives_a_feed_the_verdict_does_too(judged, says):
     """Where its contact begins, and what to do: in m/min first."""
     events = [judged.event(1, 0.1, 0.2)]
     case = judged.case([judged.columns()], events, values=judged.values(**FEED))
