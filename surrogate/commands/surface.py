@@ -49,7 +49,7 @@ def _add_build(parser: argparse.ArgumentParser) -> None:
         '--tier',
         choices=tuple(TIERS),
         default=SHIPPED_TIERS[0],
-        help='solved contacts in minutes (default), or published formulas alone in seconds',
+        help='solved contacts in a minute (default), or published formulas alone in seconds',
     )
     for name, unit in (('speed', 'rpm'), ('load', 'N'), ('temperature', 'degC')):
         parser.add_argument(
