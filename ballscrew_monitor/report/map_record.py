@@ -81,13 +81,15 @@ class OperatingMap:
 
     Rows of the cells of zone (a code) and dwell [s] are of a load, columns of a speed. Points of
     lines are speed and load in turn, NaN where one is interrupted. `others`: borders at other
-    temperatures are among the lines; `banded`: so is the range of that in force.
+    temperatures are among the lines; `banded`: so is the range of that in force. `feed`: how far
+    the axis moves in a revolution [m] if its log speaks of that, else None.
 
     """
 
     temperature: float
     others: bool
     banded: bool
+    feed: float | None = None
     speed: tuple[float, float] = written(form=_ends)
     load: tuple[float, float] = written(form=_ends)
     light_load: float
@@ -118,6 +120,7 @@ def operating_map(case: AxisCase) -> OperatingMap:
         temperature=mean,
         others=bool(others),
         banded=math.isfinite(field.band[0]),
+        feed=surface.lead if case.speaks_feed else None,
         speed=(speeds[0] / RPM, speeds[1] / RPM),
         load=loads,
         light_load=limits.light_load,

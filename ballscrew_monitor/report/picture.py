@@ -35,7 +35,7 @@ STYLES = {
     'film': ('muted', 1.0, '2 3'),
 }
 """Colour, width and dashes of the lines of a map, by their kinds."""
-TICKS = [first * 10.0**power for power in range(-2, 6) for first in (1, 2, 5)]  # [rev/min]
+TICKS = [first * 10.0**power for power in range(-5, 6) for first in (1, 2, 5)]
 DARKEST, DECADES = 0.85, 3  # of the time spent: opacity of the longest, and its range
 CENTRED: dict[str, Any] = {'ha': 'center', 'va': 'center', 'clip_on': True}
 ROOM = (0.022, 0.035)  # half the width and the height of a name, as parts of a map
@@ -93,14 +93,31 @@ def _draw_map(axes: Axes, case: AxisCase, chart: OperatingMap) -> None:
     for mark in chart.events:
         circle = {'boxstyle': 'circle', 'facecolor': 'white', 'edgecolor': COLOURS['outside']}
         axes.text(mark.speed, mark.load, str(mark.number), bbox=circle, zorder=8, **CENTRED)
-    ticks = [tick for tick in TICKS if chart.speed[0] <= tick <= chart.speed[1]]
-    axes.set_xticks(ticks, [f'{tick:g}' for tick in ticks])
-    axes.minorticks_off()
     axes.set(xlim=chart.speed, ylim=chart.load)
-    axes.set_xlabel('screw speed, either direction [rev/min]')
+    _draw_speeds(axes, chart)
     axes.set_ylabel('axial load [N]: assists | opposes')
     entries = [_entry(*sample, label=text) for sample, text in map_record.map_legend(case, chart)]
     _legend(axes, entries, -0.1)
+
+
+def _draw_speeds(axes: Axes, chart: OperatingMap) -> None:
+    """Write speeds below the map, as feeds if the log speaks of these, then turns above it."""
+    axes.minorticks_off()
+    axes.set_xlabel('screw speed, either direction [rev/min]')
+    if chart.feed:
+        above = axes.secondary_xaxis('top')
+        above.minorticks_off()
+        above.set_xticks(*_ticks(chart, 1.0), fontsize=8)
+        above.set_xlabel('screw speed [rev/min]', fontsize=8)
+        axes.set_xlabel('feed, either direction [m/min]')
+    axes.set_xticks(*_ticks(chart, chart.feed or 1.0))
+
+
+def _ticks(chart: OperatingMap, unit: float) -> tuple[list[float], list[str]]:
+    """Return places and texts of round speeds, `unit` of which are 1 rev/min."""
+    low, high = (unit * speed for speed in chart.speed)
+    ticks = [tick for tick in TICKS if low <= tick <= high]
+    return [tick / unit for tick in ticks], [f'{tick:g}' for tick in ticks]
 
 
 def _draw_cells(axes: Axes, chart: OperatingMap) -> None:

@@ -19,7 +19,8 @@ class MapFrame {
     this.canvas.width = Math.round(width * ratio);
     this.canvas.height = Math.round(height * ratio);
     this.canvas.style.height = `${height}px`;
-    this.area = { left: 64, top: 12, width: width - 80, height: height - 62 };
+    const top = this.record.feed ? 46 : 12;
+    this.area = { left: 64, top, width: width - 80, height: height - 50 - top };
     this.pen = this.canvas.getContext('2d');
     this.pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.pen.clearRect(0, 0, width, height);
@@ -112,13 +113,33 @@ class MapFrame {
     pen.font = '12px system-ui, sans-serif';
     pen.textAlign = 'center';
     pen.textBaseline = 'top';
-    for (const speed of MapFrame.ticks(this.record.speed, area.width / 48)) {
-      pen.fillRect(this.x(speed), area.top + area.height, 1, 4);
-      pen.fillText(Format.number(speed), this.x(speed), area.top + area.height + 7);
+    const bottom = area.top + area.height;
+    const { feed } = this.record;
+    this.speeds(feed || 1, bottom, 4);
+    pen.fillText(`${feed ? 'feed' : 'screw speed'}, either direction [${feed ? 'm/min' : 'rev/min'}]`,
+      area.left + area.width / 2, bottom + 30);
+    if (feed) {
+      pen.textBaseline = 'bottom';
+      this.speeds(1, area.top, -4);
+      pen.fillText('screw speed [rev/min]', area.left + area.width / 2, area.top - 24);
     }
-    pen.fillText('screw speed, either direction [rev/min]', area.left + area.width / 2,
-      area.top + area.height + 30);
     this.loads();
+  }
+
+  /** Write round speeds, `unit` of which are 1 rev/min, along a line at `y`, `out` of the map. */
+  speeds(unit, y, out) {
+    const { low, high } = this.record.speed;
+    for (const value of MapFrame.ticks({ low: low * unit, high: high * unit }, this.area.width / 48)) {
+      const x = this.x(value / unit);
+      this.pen.fillRect(x, Math.min(y, y + out), 1, Math.abs(out));
+      this.pen.fillText(Format.number(value), x, y + 1.75 * out);
+    }
+  }
+
+  /** Return a speed in words: as a feed if the log speaks of that, the speed of the screw beside. */
+  words(speed) {
+    const turns = `${Format.number(speed)} rev/min`;
+    return this.record.feed ? `${Format.number(speed * this.record.feed)} m/min (${turns})` : turns;
   }
 
   loads() {
@@ -165,7 +186,7 @@ class MapFrame {
   static ticks({ low, high }, most) {
     for (const firsts of [[1, 2, 5], [1, 3], [1]]) {
       const found = [];
-      for (let power = -3; power < 6; power += 1) {
+      for (let power = -5; power < 6; power += 1) {
         found.push(...firsts.map((first) => first * 10 ** power));
       }
       const inside = found.filter((speed) => speed >= low && speed <= high);

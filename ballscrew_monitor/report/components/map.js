@@ -104,7 +104,7 @@ class OperatingMap extends MapFrame {
     const { columns, rows } = this.record.dwell;
     const seconds = this.dwell[Math.floor(at.up * rows) * columns + Math.floor(at.across * columns)];
     const words = OperatingMap.ZONES[this.cellOf(at)];
-    this.say(`${Format.number(at.speed)} rev/min, ${Format.number(at.load)} N: ${words}; `
+    this.say(`${this.words(at.speed)}, ${Format.number(at.load)} N: ${words}; `
       + `${Format.number(seconds)} s spent in this cell`);
   }
 

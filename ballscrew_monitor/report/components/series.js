@@ -85,10 +85,12 @@ class TimeSeries {
   /** Write the values under the cursor beside the titles. */
   read(plot, panel) {
     const at = plot.cursor.idx;
+    const { beside: other } = panel;
+    const beside = (value) => (other ? ` (${Format.number(other.factor * value, 4)} ${other.unit})` : '');
     const fields = plot.root.parentElement.querySelectorAll('.value');
     fields.forEach((field, i) => {
       const value = at === null || at === undefined ? null : plot.data[i + 1][at];
-      const text = value === null ? '' : `${Format.number(value, 4)} ${panel.unit}`;
+      const text = value === null ? '' : `${Format.number(value, 4)} ${panel.unit}${beside(value)}`;
       const time = text && i === 0 ? ` at ${Format.time(plot.data[0][at], 0.001)}` : '';
       field.textContent = `${field.dataset.label} ${text}${time}`;
     });

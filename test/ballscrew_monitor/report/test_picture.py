@@ -2,14 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The picture of a page appears whole or not at all, and holds what the page does."""
 
+import dataclasses
 import struct
 
 from ballscrew_monitor.report import picture
 from ballscrew_monitor.report.log_page import maps_of
 from ballscrew_monitor.report.map_record import OperatingMap
+from matplotlib.colors import to_rgb
 import numpy as np
 import pytest
-from surrogate.plotting.style import DPI
+from surrogate.plotting.style import DPI, REGIMES_BY_METAL
+from surrogate.surface import REGIMES
 
 
 def small_map(*marks):
@@ -86,3 +89,28 @@ def test_names_of_lines_are_on_the_map_and_apart(judged, temperature):
     assert not any(
         one.overlaps(other) for place, one in enumerate(boxes) for other in boxes[:place]
     )
+
+
+def test_a_map_of_feeds_has_them_below_and_the_speed_of_the_screw_above(judged):
+    """Each tick stands at the speed that it is."""
+    chart = dataclasses.replace(small_map(), feed=0.02)
+    (part,) = picture.figure_log(judged.log(judged.case([judged.columns()])), [chart]).subfigs
+    axes = part.subfigs[0].axes[0]
+    (above,) = axes.child_axes
+    assert axes.get_xlabel() == 'feed, either direction [m/min]'
+    assert above.get_xlabel() == 'screw speed [rev/min]'
+    for drawn, unit in ((axes, 0.02), (above, 1.0)):
+        texts = [float(text.get_text()) for text in drawn.get_xticklabels()]
+        assert texts == pytest.approx(unit * drawn.get_xticks())
+        assert len(texts) > 5
+
+
+def test_a_colour_has_one_meaning():
+    """Zone, regimes, quantities and curves share none; regimes are those of other pictures."""
+    names = 'optimal outside unjudged boundary mixed hydrodynamic heat rcs efficiency measured'
+    colours = [picture.COLOURS[name] for name in [*names.split(), 'zone', 'none', 'modelled']]
+    assert len(set(colours)) == len(colours)
+    regimes = [picture.COLOURS[regime.word] for regime in REGIMES]
+    assert regimes == list(REGIMES_BY_METAL)
+    grey = [0.3 * r + 0.59 * g + 0.11 * b for r, g, b in map(to_rgb, REGIMES_BY_METAL)]
+    assert np.diff(grey).min() > 0.15  # also in print: the more metal, the darker
