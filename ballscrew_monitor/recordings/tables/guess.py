@@ -7,7 +7,7 @@ What nothing in the log tells stands under `assumed` with a value and a reason.
 
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import dataclasses
 import math
 from pathlib import Path
@@ -17,9 +17,10 @@ from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array
-from ballscrew_monitor.recordings.tables.mapping import INPUTS, UNITS
 from ballscrew_monitor.recordings.tables.names import Named, read_name
+from ballscrew_monitor.recordings.tables.quantities import INPUTS, Layout, UNITS
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
+from ballscrew_monitor.recordings.tables.sources import layout_of
 from ballscrew_monitor.recordings.words import Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
@@ -81,7 +82,8 @@ class _Guesser:
 
     def __init__(self, path: Path, shown: Shown) -> None:
         self.path = path
-        self.named = [read_name(name) for name in column_names(path)]
+        self.layout = layout_of(path)
+        self.named = [read_name(name) for name in column_names(path, self.layout)]
         self.assumed: dict[str, dict[str, Any]] = {}
         self.notes: list[str] = []
         self.used: dict[str, dict[str, dict[str, Any]]] = {}
@@ -99,7 +101,7 @@ class _Guesser:
         self.times = [one for one in self.named if one.kind == 'time']
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
         used = [one.column for one in [*columns, *self.times]]
-        table = open_table(path, used, strict=False, shown=shown)
+        table = open_table(path, used, layout=self.layout, strict=False, shown=shown)
         rows = NUMBERS // len(used)
         # The first rows tell how the speeds go with the positions, all of them the ranges.
         self.data = table.head(rows)
@@ -116,7 +118,10 @@ class _Guesser:
         if not time:
             self._assume_rate()
         self._say_what_is_left_out(time)
-        content: dict[str, Any] = {'log': self.path.name} | ({'time': time} if time else {})
+        usual, found = (dataclasses.asdict(one) for one in (Layout(), self.layout))
+        content: dict[str, Any] = {'log': self.path.name}
+        content |= {key: value for key, value in found.items() if value != usual[key]}
+        content |= {'time': time} if time else {}
         content |= {'axes': self.used, 'assumed': self.assumed}
         return Guess(content=content, notes=tuple(self.notes))
 
@@ -136,11 +141,18 @@ class _Guesser:
 
     def _time_column(self) -> dict[str, Any]:
         """Return what the map says of the time; take the step between rows if it is known."""
+        days = next((one for one in self.times if self._is(estimates.is_of_days, one)), None)
         for one in sorted(self.times, key=lambda one: -one.rank):  # by name, then by unit
             values = self.data[one.column]
-            if estimates.is_rising(values):
+            if days and not one.unit and self._is(estimates.is_of_a_day, one):
+                dated = self._time_of(one, self.data[days.column] + values)
+                return dated | {'date': days.column}
+            if one is not days and estimates.is_rising(values):
                 return self._time_of(one, values)
         return {}
+
+    def _is(self, kind: Callable[[Array], bool], one: Named) -> bool:
+        return kind(self.extremes[one.column])
 
     def _time_of(self, one: Named, values: Array) -> dict[str, Any]:
         unit, absolute, why = estimates.time_unit(values[np.isfinite(values)])
@@ -240,6 +252,8 @@ class _Guesser:
         values = self.extremes[place['column']]
         if kind == 'position':
             unit, why = estimates.position_unit(values)
+        elif kind == 'speed' and (turning := names.turning_unit(place['column'])):
+            unit, why = turning, 'its name is that of a turning speed'
         elif kind == 'speed':
             metres, speed = self._metres(name), self.data[place['column']]
             motion = None if metres is None else (metres, speed)
@@ -289,5 +303,5 @@ class _Guesser:
 
     def _say_what_is_left_out(self, time: Mapping[str, Any]) -> None:
         used = {part.get('column') for axis in self.used.values() for part in axis.values()}
-        used |= {entry['value'] for entry in self.assumed.values()} | {time.get('column', '')}
+        used |= {entry['value'] for entry in self.assumed.values()} | set(time.values())
         self.notes += names.left_out([one for one in self.named if one.column not in used])

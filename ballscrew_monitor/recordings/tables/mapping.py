@@ -16,26 +16,15 @@ import math
 from pathlib import Path
 from typing import Any
 
-from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.log_facts import Assumption
+from ballscrew_monitor.recordings.tables.quantities import column_name, INPUTS, Layout, UNITS
 from ballscrew_monitor.settings.parameters import check_axes
 from surrogate.files import InputError
 from surrogate.limits import read_text
 from surrogate.plain_yaml import plain_values
 from surrogate.units import MICRO, MILLI
 
-UNITS: dict[str, Mapping[str, float]] = {
-    'speed': conversions.LINEAR_SPEED_UNITS | conversions.ROTARY_SPEED_UNITS,
-    'position': conversions.LINEAR_POSITION_UNITS | conversions.ROTARY_POSITION_UNITS,
-    'load': conversions.LOAD_UNITS,
-    'torque': {'N m': 1.0},
-    'current': conversions.CURRENT_UNITS,
-    'temperature': conversions.TEMPERATURE_UNITS,
-    'time': conversions.TIME_UNITS,
-}
-"""Units of each kind of column."""
-INPUTS = tuple(kind for kind in UNITS if kind != 'time')
 DERIVED = ('current', 'torque', 'motor_torque')
 """A load may be worked out from a current or torque, or by the node from the motor torque."""
 NUMBERS = {
@@ -48,6 +37,8 @@ NUMBERS = {
     'rate_Hz': (1e-3, 1e6),
 }
 """Numbers of an axis, and of the time, with the least and the most allowed."""
+LINES = {'skip': (0, 1000), 'header_rows': (1, 2)}
+"""Numbers of lines, with the least and the most allowed."""
 TEXTS = ('screw', 'oil', 'surface')
 
 
@@ -91,12 +82,15 @@ class TableMap:
     """
     A checked map.
 
-    Column of the time, or the rate [Hz] of a log without one; epoch [ns] of the first row, None
-    when the log tells it; `content` is the map as it was written.
+    Column of the time, or the rate [Hz] of a log without one; `date` names the column of the days
+    whose times the other says, if there is one; epoch [ns] of the first row, None when the log
+    tells it; `content` is the map as it was written.
 
     """
 
+    layout: Layout
     time: Column | None
+    date: str
     rate: float
     epoch: int | None
     axes: tuple[AxisMap, ...]
@@ -107,9 +101,13 @@ class TableMap:
     @property
     def columns(self) -> list[str]:
         """Return the names of all columns that are read."""
-        chosen = [column for axis in self.axes for column in axis.columns.values()]
-        names = [column.name for column in ([self.time] if self.time else []) + chosen]
-        return list(dict.fromkeys(names))
+        chosen = [column.name for axis in self.axes for column in axis.columns.values()]
+        return list(dict.fromkeys([*self.time_columns, *chosen]))
+
+    @property
+    def time_columns(self) -> list[str]:
+        """Return the names of the columns of the time, those of a date after it."""
+        return [self.time.name, *filter(None, [self.date])] if self.time else []
 
 
 def read_map(path: Path) -> TableMap:
@@ -127,7 +125,7 @@ def read_map(path: Path) -> TableMap:
 
 def make_map(content: Any) -> TableMap:
     """Return a map made of its content; raises InputError when that is not right."""
-    known = ('log', 'time', 'axes', 'assumed', 'parameters')
+    known = ('log', 'time', 'axes', 'assumed', 'parameters', *LINES)
     _check_keys('the map', content, known)
     axes = content.get('axes')
     if not isinstance(axes, dict) or not axes:
@@ -141,7 +139,9 @@ def make_map(content: Any) -> TableMap:
     epoch = values.pop('time.epoch', None)
     time = _Part('time', values)
     made = TableMap(
+        layout=_layout(content),
         time=time.column('time', at='time'),
+        date=column_name(time.text('date')),
         rate=time.number('rate_Hz'),
         epoch=None if epoch is None else _epoch(epoch),
         axes=tuple(_axis(str(name), values) for name in axes),
@@ -154,6 +154,16 @@ def make_map(content: Any) -> TableMap:
     if values:
         raise InputError(f'{next(iter(values))} is unknown')
     return made
+
+
+def _layout(content: Mapping[str, Any]) -> Layout:
+    """Return where a map says that the names of the columns stand."""
+    found = {}
+    for key, (low, high) in LINES.items():
+        value = found[key] = content.get(key, getattr(Layout(), key))
+        if not (isinstance(value, int) and low <= value <= high) or isinstance(value, bool):
+            raise InputError(f'{key} is {value!r}, it must be a whole number, {low} to {high}')
+    return Layout(**found)
 
 
 class _Part:
@@ -196,6 +206,7 @@ class _Part:
             )
         if not name:
             return None
+        name = column_name(name)
         return Column(name=name, unit=unit, scale=float(numbers[0]), offset=float(numbers[1]))
 
 

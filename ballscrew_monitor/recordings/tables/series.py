@@ -84,7 +84,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     Raises InputError when it cannot be read by the map.
 
     """
-    table = open_table(path, mapping.columns, shown=shown)
+    table = open_table(path, mapping.columns, layout=mapping.layout, shown=shown)
     times = Times(table, mapping, shown)
     return Series(
         count=times.count,
