@@ -18,7 +18,7 @@ from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.names import Named, read_name
-from ballscrew_monitor.recordings.tables.quantities import INPUTS, Layout, UNITS
+from ballscrew_monitor.recordings.tables.quantities import INPUTS, Layout, RATED, UNITS
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
 from ballscrew_monitor.recordings.tables.sources import layout_of
 from ballscrew_monitor.recordings.words import Shown, shown_progress
@@ -30,6 +30,7 @@ import yaml
 
 SCREW, OIL = 'nominal', 'iso_vg_68'
 TORQUE_CONSTANT = 0.1  # [N m/A]
+RATED_TORQUE = 5.0  # [N m]
 EFFICIENCY = 0.9
 TEMPERATURE = 40.0  # [degC]
 RATE = 100.0  # [Hz]
@@ -226,6 +227,8 @@ class _Guesser:
         why = f'the log does not say it; that of {SCREW}'
         self._assume(f'{name}.lead_mm', float(f'{lead:.6g}'), why)
         self._set_load(name)
+        if 'torque' in used and self._unit(name, 'torque') == RATED:
+            self._assume_motor(name, 'torque')
         if 'temperature' in used:
             self._set_oil(name, used['temperature'])
         else:
@@ -290,16 +293,21 @@ class _Guesser:
             self._assume(f'{name}.load.from', source, f'no force is in the log; {FORCE}')
             self._assume(f'{name}.efficiency', EFFICIENCY, 'usual for a ball screw')
             if source == 'current':
-                self._assume(
-                    f'{name}.torque_constant_Nm_per_A',
-                    TORQUE_CONSTANT,
-                    'the log does not say it; it is on the plate of the motor',
-                )
+                self._assume_motor(name, source)
             return
         silent = [chosen[kind].column for kind in ('load', 'torque', 'current') if kind in chosen]
         why = f'{", ".join(silent)} is always 0' if silent else 'no force, torque or current'
         used['load'] = {'unknown': why}
         self.notes.append(f'axis {name}: the load is not known ({why}), nothing will be judged')
+
+    def _assume_motor(self, name: str, kind: str) -> None:
+        """Assume what makes a torque of a current, or of either in % of the rated one."""
+        rated = self._unit(name, kind) == RATED
+        key = 'torque_rated_Nm' if rated else 'torque_constant_Nm_per_A'
+        value = RATED_TORQUE if rated else TORQUE_CONSTANT
+        self._assume(
+            f'{name}.{key}', value, 'the log does not say it; it is on the plate of the motor'
+        )
 
     def _say_what_is_left_out(self, time: Mapping[str, Any]) -> None:
         used = {part.get('column') for axis in self.used.values() for part in axis.values()}

@@ -18,7 +18,13 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.log_facts import Assumption
-from ballscrew_monitor.recordings.tables.quantities import column_name, INPUTS, Layout, UNITS
+from ballscrew_monitor.recordings.tables.quantities import (
+    column_name,
+    INPUTS,
+    Layout,
+    RATED,
+    UNITS,
+)
 from ballscrew_monitor.settings.parameters import check_axes
 from surrogate.files import InputError
 from surrogate.limits import read_text
@@ -30,6 +36,7 @@ DERIVED = ('current', 'torque', 'motor_torque')
 NUMBERS = {
     'lead_mm': (0.1, 1000.0),
     'torque_constant_Nm_per_A': (1e-6, 1e3),
+    'torque_rated_Nm': (1e-6, 1e6),
     'efficiency': (0.1, 1.0),
     'torque_uncertainty_Nm': (1e-9, 1e6),
     'inertia_kg_m2': (0.0, 1e3),
@@ -57,10 +64,10 @@ class AxisMap:
     """
     One axis: its columns by input, and what they are worked with.
 
-    Lead [m], torque constant [N m/A] and oil temperature [degC], NaN where not said; efficiency
-    [-]; half width of the range of the torque [N m], NaN where not said, and inertia [kg m2], for
-    a load that the node works out; `load_from` says from what it is; `unknown` says of an input
-    why it is not known.
+    Lead [m], constant [N m/A] and rated torque [N m] of the motor, and oil temperature [degC], NaN
+    where not said; efficiency [-]; half width of the range of the torque [N m], NaN where not
+    said, and inertia [kg m2], for a load that the node works out; `load_from` says from what it
+    is; `unknown` says of an input why it is not known.
 
     """
 
@@ -68,6 +75,7 @@ class AxisMap:
     columns: Mapping[str, Column]
     lead: float
     torque_constant: float
+    torque_rated: float
     efficiency: float
     torque_uncertainty: float
     inertia: float
@@ -75,6 +83,12 @@ class AxisMap:
     load_from: str
     unknown: Mapping[str, str]
     texts: Mapping[str, str]
+
+    def motor_torque(self, kind: str) -> float:
+        """Return the torque [N m] of one unit of its torque or current, NaN where not said."""
+        unit = self.columns[kind].unit
+        scale = self.torque_rated if unit == RATED else self.torque_constant
+        return UNITS[kind][unit] * (1.0 if unit == 'N m' else scale)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -218,6 +232,7 @@ def _axis(name: str, values: dict[str, Any]) -> AxisMap:
         columns={kind: column for kind, column in found.items() if column},
         lead=part.number('lead_mm') / MILLI,
         torque_constant=part.number('torque_constant_Nm_per_A'),
+        torque_rated=part.number('torque_rated_Nm'),
         efficiency=part.number('efficiency', 1.0),
         torque_uncertainty=part.number('torque_uncertainty_Nm'),
         inertia=part.number('inertia_kg_m2', 0.0),
@@ -236,6 +251,8 @@ def _check_axis(axis: AxisMap) -> None:
         raise InputError(f'{axis.name} has no speed, it must name a column of speed or position')
     if math.isnan(axis.lead):
         raise InputError(f'{axis.name}.lead_mm is missing, it must be the lead of the screw')
+    if 'torque' in axis.columns and math.isnan(axis.motor_torque('torque')):
+        raise InputError(f'{axis.name}.torque_rated_Nm is missing, a torque in % is part of it')
     source = axis.load_from
     if not source:
         return
@@ -247,10 +264,10 @@ def _check_axis(axis: AxisMap) -> None:
     used = {'motor_torque': {'current', 'torque'}}.get(source, {source}) & set(axis.columns)
     if not used:
         raise InputError(f'{axis.name}.load.from is {source!r}, of which no column is named')
-    if used == {'current'} and math.isnan(axis.torque_constant):
-        raise InputError(
-            f'{axis.name}.torque_constant_Nm_per_A is missing, a load from the current needs it'
-        )
+    if used == {'current'} and math.isnan(axis.motor_torque('current')):
+        rated = axis.columns['current'].unit == RATED
+        needed = 'torque_rated_Nm' if rated else 'torque_constant_Nm_per_A'
+        raise InputError(f'{axis.name}.{needed} is missing, a load from the current needs it')
     if source == 'motor_torque' and math.isnan(axis.torque_uncertainty):
         raise InputError(
             f'{axis.name}.torque_uncertainty_Nm is missing, a load from motor_torque needs it'

@@ -8,16 +8,17 @@ import dataclasses
 from ballscrew_monitor.core import conversions
 from surrogate.files import printable
 
+RATED = '%'  # of the rated torque, or of the current at which the motor gives it
 UNITS: dict[str, Mapping[str, float]] = {
     'speed': conversions.LINEAR_SPEED_UNITS | conversions.ROTARY_SPEED_UNITS,
     'position': conversions.LINEAR_POSITION_UNITS | conversions.ROTARY_POSITION_UNITS,
     'load': conversions.LOAD_UNITS,
-    'torque': {'N m': 1.0},
-    'current': conversions.CURRENT_UNITS,
+    'torque': {'N m': 1.0, RATED: 0.01},
+    'current': conversions.CURRENT_UNITS | {RATED: 0.01},
     'temperature': conversions.TEMPERATURE_UNITS,
     'time': conversions.TIME_UNITS,
 }
-"""Units of each kind of column."""
+"""Units of each kind of column; some need what a map states, as the lead or the rated torque."""
 INPUTS = tuple(kind for kind in UNITS if kind != 'time')
 
 

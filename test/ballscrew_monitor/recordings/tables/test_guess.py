@@ -71,6 +71,19 @@ def test_units_in_names_are_not_assumed(guessed):
     assert not [key for key in made.content['assumed'] if key.endswith('.unit')]
 
 
+@pytest.mark.parametrize('name', ['Drehmoment [%]', 'Motorstrom [%]'])
+def test_a_part_of_the_rated_torque_needs_that(name, guessed):
+    made = guessed({'t': TIME, 'Vorschub [mm/min]': SPEED, name: SPEED})
+    assert made.content['assumed']['x.torque_rated_Nm']['value'] > 0
+    assert 'x.torque_constant_Nm_per_A' not in made.content['assumed']
+    assert (
+        make_map(made.content)
+        .axes[0]
+        .motor_torque(made.content['assumed']['x.load.from']['value'])
+        > 0
+    )
+
+
 def test_logs_of_one_axis_need_no_letter(guessed):
     made = guessed({'Timestamp': 1.7e9 + TIME, 'Velocity': SPEED, 'Force': SPEED}, form='{:.12g}')
     assert list(made.content['axes']) == ['x']

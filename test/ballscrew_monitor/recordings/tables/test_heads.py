@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the names of the columns stand in the first lines of a table."""
+"""Heads of tables: the names of the columns stand above the first full row of numbers."""
 
 from ballscrew_monitor.recordings.tables.heads import found_in_lines, names_of, read_head
 from ballscrew_monitor.recordings.tables.quantities import Layout

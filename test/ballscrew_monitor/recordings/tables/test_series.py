@@ -82,6 +82,13 @@ def test_quantities_are_those_of_the_screw(read):
     assert found.temperature == pytest.approx([40.0, 20.0])
 
 
+@pytest.mark.parametrize('kind', ['torque', 'current'])
+def test_a_part_of_the_rated_torque_is_a_torque(read, kind):
+    axis = AXIS | {kind: {'column': 'part', 'unit': '%'}, 'torque_rated_Nm': 8.0}
+    made = read({'t': [0, 1], 'v': [0, 30], 'part': [-25, 100]}, axis)
+    assert made.axes[0].torque == pytest.approx([-2.0, 8.0])
+
+
 def test_rotary_units_need_no_lead_and_scale_and_offset_come_first(read):
     speed = {'column': 'v', 'unit': 'rev/min', 'scale': 2.0, 'offset': 60.0}
     made = read({'t': [0, 1], 'v': [0, 30]}, AXIS | {'speed': speed})
