@@ -88,6 +88,7 @@ setup(
         'plot': ['matplotlib>=3.6'],
         'bags': ['lz4>=4.0', 'mcap>=1.1', 'rosbags>=0.10', 'zstandard>=0.20'],
         'report': ['contourpy>=1.0', 'polars>=1.0'],
+        'xlsx': ['fastexcel>=0.12'],
         'areal': ['SurfaceTopography>=1.17'],
         'dask': ['distributed>=2024.1'],
         'docs': ['pdoc>=16.0'],

@@ -80,9 +80,9 @@ THEMES = {
     'surrogate/ehl/test_mixed.py',
     'surrogate/ehl/test_tables.py',
 }
-# By the extras `bags`, `report`, `areal`, `dask` and `netcdf`.
+# By the extras `bags`, `report`, `xlsx`, `areal`, `dask` and `netcdf`.
 OPTIONAL = {
-    *'SurfaceTopography apsw contourpy distributed lz4 mcap'.split(),
+    *'SurfaceTopography apsw contourpy distributed fastexcel lz4 mcap'.split(),
     *'polars rosbags xarray zstandard'.split(),
 }
 
