@@ -23,7 +23,7 @@ from ballscrew_monitor.node.parameter_store import is_kept, ParameterStore
 from ballscrew_monitor.node.restart_state import RestartState, state_directory
 from ballscrew_monitor.node.solve_server import SolveServer
 from ballscrew_monitor.settings import parameters
-from ballscrew_monitor.settings.axis import Axis, build_axes, named_topics
+from ballscrew_monitor.settings.axis import Axis, build_axes, named_topics, start_text
 from ballscrew_monitor.settings.qos import check_overrides, longest_period
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -146,6 +146,9 @@ class BallscrewMonitor(LifecycleNode):
             for axis in axes
         }
         self._kept.restore()
+        name, folder = self.get_fully_qualified_name(), self._kept.state.folder
+        for axis in axes:
+            self.get_logger().info(start_text(axis, name, resolve, folder))
         self._store.ceilings = {
             f'{axis.name}.publish_period': longest_period(axis.name, self._values) for axis in axes
         }
