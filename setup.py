@@ -79,6 +79,7 @@ setup(
         (f'share/{NAME}', ['package.xml']),
         (f'share/{NAME}/config', files('config/*.*')),
         (f'share/{NAME}/config/layouts', files('config/layouts/*.*')),
+        (f'share/{NAME}/config/system', files('config/system/*.*')),
         (f'share/{NAME}/launch', files('launch/*.launch.py')),
     ],
     python_requires='>=3.11',
