@@ -159,3 +159,7 @@ def add_page(parser: Parser) -> None:
     _add_file(parser, '--token-file', 'FILE', 'file whose first line opens the page to a reader')
     _add_file(parser, '--cert', 'FILE', 'certificate of the server in PEM, for https')
     _add_file(parser, '--key', 'FILE', 'its key')
+    text = 'language of the page, such as en (default that of the browser)'
+    parser.add_argument('--language', default='', help=text)
+    text = 'surfaces of the same screw with other oils, for what-if maps'
+    _add_file(parser, '--oils', 'SURFACE', text, nargs='+', default=[])

@@ -12,7 +12,7 @@ from ballscrew_monitor.page import components
 from ballscrew_monitor.page.guard import COOKIE, Guard, MOST_TOKEN, Tokens
 from ballscrew_monitor.page.hub import Browser, Hub, PERIOD
 from starlette.applications import Starlette
-from starlette.requests import Request
+from starlette.requests import HTTPConnection, Request
 from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
@@ -29,9 +29,21 @@ class PageApp:
     """Everything that is served, for one hub."""
 
     def __init__(
-        self, hub: Hub, answer: Answering, tokens: Tokens, metrics: Callable[[], Response]
-    ):
-        """Serve a hub; `answer` is given what browsers say, `metrics` makes those."""
+        self,
+        hub: Hub,
+        answer: Answering,
+        tokens: Tokens,
+        metrics: Callable[[], Response],
+        *,
+        language: str = '',
+    ) -> None:
+        """
+        Serve a hub; `answer` is given what browsers say, `metrics` makes those.
+
+        The `language` is that of the reader if it is empty.
+
+        """
+        self._language = language
         self._hub, self._answer, self._tokens, self._metrics = hub, answer, tokens, metrics
 
     def guarded(self, host: str) -> Guard:
@@ -41,6 +53,7 @@ class PageApp:
             Route('/components/{name:path}', self._component),
             Route('/login', self._login, methods=['GET', 'POST']),
             Route('/healthz', self._healthz),
+            Route('/favicon.ico', self._no_icon),
             Route('/metrics', lambda request: self._metrics()),
             WebSocketRoute('/live', self._live),
         ]
@@ -61,7 +74,7 @@ class PageApp:
             await asyncio.sleep(PERIOD)
 
     async def _index(self, request: Request) -> Response:
-        return HTMLResponse(components.index())
+        return HTMLResponse(components.index(self._language_of(request)))
 
     async def _component(self, request: Request) -> Response:
         found = components.table().get(request.path_params['name'])
@@ -71,6 +84,13 @@ class PageApp:
 
     async def _healthz(self, request: Request) -> Response:
         return PlainTextResponse('ok')
+
+    async def _no_icon(self, request: Request) -> Response:
+        return Response(status_code=204)
+
+    def _language_of(self, asked: HTTPConnection) -> str:
+        accepted = asked.headers.get('accept-language', '')
+        return components.language_of(accepted, self._language)
 
     async def _login(self, request: Request) -> Response:
         if request.method != 'POST':
@@ -93,7 +113,7 @@ class PageApp:
 
     async def _live(self, socket: WebSocket) -> None:
         await socket.accept()
-        browser = Browser()
+        browser = Browser(self._language_of(socket))
         if not self._hub.join(browser, time.monotonic()):
             await socket.close(TRY_LATER, BUSY)
             return

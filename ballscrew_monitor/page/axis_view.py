@@ -36,6 +36,8 @@ class AxisView:
         self.events: dict[int, Mapping[str, Any]] = {}
         self.limit: Mapping[str, Any] | None = None
         self.surface: Surface | None = None
+        self.map_frame: bytes | None = None
+        self.grades: list[str] = []  # oils of which there are surfaces
         self.words: dict[str, str] = {}  # of the diagnostics by their parts
         self.is_changed = False  # what `hello` says
         self._heard = math.nan  # [s]
@@ -64,7 +66,7 @@ class AxisView:
     def know(self, about: Mapping[str, Any], surface: Surface | None, no_map: str) -> None:
         """Take what the axis is, and its surface, or why that is not here."""
         self.about, self.surface, self.no_map = about, surface, no_map
-        self.is_changed = True
+        self.map_frame, self.is_changed = None, True
 
     def hear_words(self, part: str, words: str) -> None:
         """Take what the diagnostics say of a part of the axis."""
@@ -106,6 +108,7 @@ class AxisView:
             'axis': self.axis,
             'lead_mm': MILLI * self.lead,
             'no_map': self.no_map,
+            'grades': self.grades,
             **self.about,
             **self.limits,
         }
@@ -127,13 +130,14 @@ class AxisView:
         rows = columns_of(self.history.since(0))
         return [
             frame('history', {'axis': self.name}, rows),
+            *([] if self.map_frame is None else [self.map_frame]),
             self.events_frame(),
             self._state_frame(now, self.history.count, health=True),
         ]
 
     def events_frame(self) -> bytes:
-        """Return the newest events, in their order."""
-        events = [self._told(self.events[number]) for number in sorted(self.events)]
+        """Return the events, the newest first."""
+        events = [self._told(self.events[number]) for number in sorted(self.events, reverse=True)]
         return frame('events', {'axis': self.name, 'events': events})
 
     def _told(self, event: Mapping[str, Any]) -> dict[str, Any]:
@@ -147,7 +151,7 @@ class AxisView:
             **self.state,
             'age_s': self.age(now),
             'advice': self._told(event)['advice'] if event is not None and active else '',
-            'event': event,
+            'event': event and {**event, 'since_s': event['duration_s']},
             'limit': self.limit,
             'standing': self.standing,
             'inputs_words': self.words.get('Inputs', ''),

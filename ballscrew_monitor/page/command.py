@@ -20,10 +20,12 @@ from ballscrew_monitor.page.metrics import HubCollector, Metrics
 from ballscrew_monitor.page.questions import Questions
 from ballscrew_monitor.page.ros_side import RosSide
 from ballscrew_monitor.page.server import bound_socket, PageOptions, server_of
+from ballscrew_monitor.page.what_if import WhatIf
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.settings.middleware import notice
 from ballscrew_monitor.settings.qos import started_node
 from surrogate.files import InputError
+from surrogate.surface import Surface
 
 POLL = 0.1  # [s] until a signal is noticed
 
@@ -53,7 +55,14 @@ def _checked(args: argparse.Namespace) -> PageOptions:
     if args.cert is not None:
         _check_certificate(args.cert, args.key)
     return PageOptions(
-        host=args.host, port=args.port, node=args.node, token=token, cert=args.cert, key=args.key
+        host=args.host,
+        port=args.port,
+        node=args.node,
+        token=token,
+        cert=args.cert,
+        key=args.key,
+        language=args.language,
+        oils=tuple(map(Surface.load, args.oils)),
     )
 
 
@@ -72,15 +81,20 @@ async def _serve(
     hub, tokens = Hub(), Tokens(options.token)
     ros = RosSide(node, hub, asyncio.get_running_loop().call_soon_threadsafe, only=options.node)
     metrics = Metrics(HubCollector(hub, lambda: tokens.wrong))
-    app = PageApp(hub, Questions({}).answer, tokens, metrics)
+    what_if = WhatIf(hub, options.oils)
+    app = PageApp(
+        hub, Questions(what_if.handlers).answer, tokens, metrics, language=options.language
+    )
     server = server_of(options, app.guarded(options.host))
     ros.start()
     try:
         print(f'page {options.url} (Ctrl-C ends it)', flush=True)
+        following = asyncio.create_task(what_if.follow())
         serving = asyncio.create_task(server.serve(sockets=[bound]))
         while not is_stopped() and not serving.done():
             await asyncio.sleep(POLL)
         server.should_exit = True
         await serving
+        following.cancel()
     finally:
         await asyncio.to_thread(ros.close)

@@ -11,11 +11,13 @@ when it reads again: what waits is bounded, and what it shows is whole.
 
 import asyncio
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any
 
 from ballscrew_monitor.page.axis_view import ACTIVE, AxisView, GONE
+from ballscrew_monitor.page.components import ENGLISH, languages
 from ballscrew_monitor.page.frames import frame
+from surrogate.files import InputError
 
 VERSION = 1  # of the frames
 PERIOD = 0.04  # [s] between two frames of an axis
@@ -28,23 +30,14 @@ NO_NODE = (
     'no node of ballscrew_monitor is in the ROS graph yet: start one, and mind ROS_DOMAIN_ID and '
     'ROS_AUTOMATIC_DISCOVERY_RANGE'
 )
-WORDS = {
-    'ok': 'ok',
-    'warn': 'warning',
-    'unknown': 'not known',
-    'optimal': 'optimal',
-    'outside': 'outside the optimal zone',
-    'boundary': 'boundary',
-    'mixed': 'mixed',
-    'hydrodynamic': 'hydrodynamic',
-}
 
 
 class Browser:
     """What waits for one browser."""
 
-    def __init__(self) -> None:
-        """Begin with nothing."""
+    def __init__(self, language: str = ENGLISH) -> None:
+        """Begin with nothing, in a language."""
+        self.language = language
         self.is_behind = False
         self.dropped = 0
         self._waiting: deque[bytes] = deque()
@@ -100,7 +93,6 @@ class Hub:
         self.axes: dict[str, AxisView] = {}
         self.browsers: set[Browser] = set()
         self.notices: dict[str, str] = {}  # why a node is not shown
-        self.more_frames: list[Callable[[AxisView], Iterable[bytes]]] = []
         self._is_changed = False
         self._dropped = 0  # of browsers that have left
 
@@ -114,6 +106,13 @@ class Hub:
         if view.name in self.axes or len(self.axes) < MOST_AXES:
             self.axes[view.name] = view
             view.standing, view.is_changed = ACTIVE, True
+
+    def view(self, name: str) -> AxisView:
+        """Return an axis by its name; raises InputError for an unknown one."""
+        if name not in self.axes:
+            known = ', '.join(sorted(self.axes)) or 'none yet'
+            raise InputError(f'axis {name!r} is unknown, known are: {known}')
+        return self.axes[name]
 
     def lose(self, node: str, words: str) -> None:
         """Say that a node is gone; what was heard of it stays, with its age."""
@@ -139,7 +138,7 @@ class Hub:
         if len(self.browsers) >= MOST_BROWSERS:
             return False
         self.browsers.add(browser)
-        browser.greet(self._greeting(now))
+        browser.greet(self._greeting(browser.language, now))
         return True
 
     def leave(self, browser: Browser) -> None:
@@ -157,27 +156,22 @@ class Hub:
         for browser in self.browsers:
             is_back = browser.is_behind and browser.is_ready
             if is_back or (self._is_changed and not browser.is_behind):
-                browser.greet(self._greeting(now))
+                browser.greet(self._greeting(browser.language, now))
         self._is_changed = False
 
-    def _greeting(self, now: float) -> Iterable[bytes]:
-        yield frame('hello', self.hello())
+    def _greeting(self, language: str, now: float) -> Iterable[bytes]:
+        yield frame('hello', self.hello(language))
         for view in self.axes.values():
             yield from view.greeting(now)
-            yield from self._more(view)
 
-    def _more(self, view: AxisView) -> Iterable[bytes]:
-        for make in self.more_frames:
-            yield from make(view)
-
-    def hello(self) -> dict[str, Any]:
-        """Return who is there."""
+    def hello(self, language: str = ENGLISH) -> dict[str, Any]:
+        """Return who is there, and the words of a language."""
         nodes = {view.node: view.standing for view in self.axes.values()}
         return {
             'version': VERSION,
             'acting': self.acting,
-            'language': 'en',
-            'words': WORDS,
+            'language': language,
+            'words': languages()[language],
             'waiting': '' if self.axes else self._waiting,
             'notices': [words for _, words in sorted(self.notices.items()) if words],
             'nodes': [{'name': name, 'state': state} for name, state in sorted(nodes.items())],

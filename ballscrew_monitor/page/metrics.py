@@ -44,9 +44,9 @@ def _total(name: str) -> Callable[[AxisView], Values]:
 
 def _outside_share(view: AxisView) -> Values:
     totals = view.state.get('totals', {})
-    judged = totals.get('optimal_s', 0.0) + totals.get('outside_s', 0.0)
+    judged = totals.get('optimal_time', 0.0) + totals.get('outside_time', 0.0)
     if judged > 0.0:
-        yield (), totals['outside_s'] / judged
+        yield (), totals['outside_time'] / judged
 
 
 def _inputs(name: str) -> Callable[[AxisView], Values]:
@@ -84,9 +84,9 @@ GAUGES: dict[str, tuple[str, tuple[str, ...], Callable[[AxisView], Values]]] = {
     'health': ('A quantity of health, such as preload or life used', QUANTITY, _health),
 }
 COUNTERS: dict[str, tuple[str, tuple[str, ...], Callable[[AxisView], Values]]] = {
-    'running_seconds': ('Time in motion', LABELS, _total('running_s')),
-    'outside_seconds': ('Time in motion outside the zone', LABELS, _total('outside_s')),
-    'energy_lost_joules': ('Energy lost to friction', LABELS, _total('energy_lost_J')),
+    'running_seconds': ('Time in motion', LABELS, _total('running_time')),
+    'outside_seconds': ('Time in motion outside the zone', LABELS, _total('outside_time')),
+    'energy_lost_joules': ('Energy lost to friction', LABELS, _total('energy_lost')),
     'input_lost': ('Messages of an input lost on the way', INPUT, _inputs('lost')),
     'input_dropped': ('Messages of an input refused', INPUT, _inputs('dropped')),
 }

@@ -61,9 +61,7 @@ def state_record(state: BallScrewState) -> dict[str, Any]:
         'headline': headline(state),
         'regime': WORDS_OF_REGIME.get(state.result.regime, UNKNOWN),
         'inputs': [_input(one) for one in state.inputs],
-        'shelved': state.shelved,
-        'shelved_until_s': seconds(stamp_of(state.shelved_until)),
-        'shelve_reason': state.shelve_reason,
+        'shelved': shelving_record(state),
         'totals': totals_record(state.totals),
         'judged': state.judged,
     }
@@ -94,11 +92,18 @@ def _input(health: msg.InputHealth) -> dict[str, Any]:
     }
 
 
+def shelving_record(state: BallScrewState) -> dict[str, Any] | None:
+    """Return how long the warning is shelved still, and why; None if it is not."""
+    if not state.shelved:
+        return None
+    left = stamp_of(state.shelved_until) - stamp_of(state.header.stamp)
+    return {'left_s': seconds(left), 'reason': state.shelve_reason}
+
+
 def totals_record(totals: msg.Totals) -> dict[str, float]:
-    """Return sums in SI units, the keys with their units."""
-    names = ('running', 'unjudged', 'boundary', 'mixed', 'hydrodynamic', 'optimal', 'outside')
-    times = {f'{name}_s': getattr(totals, f'{name}_time') for name in names}
-    return times | {'revolutions': totals.revolutions, 'energy_lost_J': totals.energy_lost}
+    """Return sums by the names of their fields, times [s] and energy [J]."""
+    names = totals.get_fields_and_field_types()
+    return {name: getattr(totals, name) for name in names if name != 'since'}
 
 
 def limits_record(state: BallScrewState) -> dict[str, float]:
@@ -145,6 +150,7 @@ def event_record(event: msg.OutOfZone) -> dict[str, Any]:
         'limit': event.cause.limit,
         'active': event.active,
         'shelved': event.shelved,
+        'acknowledged': False,
         'acknowledged_by': '',
         'target_rpm': event.cause.target_speed / RPM,
         'target_load_N': event.cause.target_load,
@@ -175,12 +181,13 @@ def surface_record(info: msg.SurfaceInfo, unit: str) -> dict[str, Any]:
     """Return what an axis is, as its surface says; `unit` is that of its speed input."""
     return {
         'unit': unit if unit == 'mm/min' else 'm/min',
-        'grades': [info.oil],
         'screw': info.screw,
         'oil': info.oil,
         'tier': TIERS.get(info.tier, UNKNOWN),
         'surface_id': info.sha256[:16],
         'corrected': len(info.corrected_speed),
+        'temperature_low_degC': info.temperature_min,
+        'temperature_high_degC': info.temperature_max,
     }
 
 

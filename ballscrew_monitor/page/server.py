@@ -10,6 +10,7 @@ import socket
 from typing import Any
 
 from surrogate.files import InputError
+from surrogate.surface import Surface
 import uvicorn
 
 LARGEST_MESSAGE = 65_536  # [byte] from a browser; beyond, its socket is closed unread
@@ -19,7 +20,12 @@ LAST_WORDS = 2  # [s] for connections to end
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class PageOptions:
-    """Where the page is served, to whom, and what of: a node, all of them for an empty name."""
+    """
+    Where the page is served, to whom, and what of: a node, all of them for an empty name.
+
+    The language is that of the reader if it is empty; `oils` are surfaces of other oils.
+
+    """
 
     host: str
     port: int
@@ -27,6 +33,8 @@ class PageOptions:
     token: str | None = None
     cert: Path | None = None
     key: Path | None = None
+    language: str = ''
+    oils: tuple[Surface, ...] = ()
 
     @property
     def url(self) -> str:

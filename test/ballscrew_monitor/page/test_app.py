@@ -31,11 +31,16 @@ def test_the_page_names_files_that_are_there(served):
         '/components//etc/passwd',
         '/components/uplot',
         '/components/page.js',
+        '/components/uplot/LICENSE',
         '/components/format.js%00',
     ],
 )
 def test_nothing_else_is_served(served, path):
     assert served().ask(path)[0] == 404
+
+
+def test_there_is_no_icon(served):
+    assert served().ask('/favicon.ico')[::2] == (204, '')
 
 
 @pytest.mark.parametrize('method', ['POST', 'PUT', 'DELETE', 'OPTIONS'])

@@ -17,9 +17,18 @@ def test_documents_ask_for_files_of_the_table_alone():
 
 
 def test_all_scripts_are_in_the_page_and_each_once():
-    asked = re.findall(r'src="/components/([^"]*)"', components.index())
-    assert asked == [*components.SHARED, *components.OWN]
-    assert len(asked) == len(set(asked))
+    """Those whose file is there, in the order of the table."""
+    asked = re.findall(r'src="/components/([^"]*)" defer', components.index())
+    assert asked == [name for name in components.SCRIPTS if name in components.table()]
+    assert len(asked) == len(set(asked)) > 4
+
+
+def test_the_language_is_the_first_that_is_accepted(monkeypatch):
+    monkeypatch.setattr(components, 'languages', lambda: {'en': {}, 'de': {}})
+    accepted = {'de-CH,en;q=0.5': 'de', 'DE': 'de', 'fr,de': 'en', '': 'en', 'en;q=1': 'en'}
+    assert {one: components.language_of(one) for one in accepted} == accepted
+    assert components.language_of('en', 'de') == 'de'
+    assert components.language_of('de', 'xx') == 'en'
 
 
 def test_what_is_said_of_a_token_is_escaped():
