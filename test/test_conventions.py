@@ -81,10 +81,10 @@ THEMES = {
     'surrogate/ehl/test_mixed.py',
     'surrogate/ehl/test_tables.py',
 }
-# By the extras `bags`, `report`, `xlsx`, `areal`, `dask` and `netcdf`.
+# By the extras `bags`, `report`, `xlsx`, `page`, `areal`, `dask` and `netcdf`.
 OPTIONAL = {
-    *'SurfaceTopography apsw contourpy distributed fastexcel lz4 mcap'.split(),
-    *'polars rosbags xarray zstandard'.split(),
+    *'SurfaceTopography apsw contourpy distributed fastexcel lz4 mcap polars'.split(),
+    *'prometheus_client rosbags starlette uvicorn websockets xarray zstandard'.split(),
 }
 
 
