@@ -16,12 +16,15 @@ from surrogate.limits import read_json
 ROOM = resources.files('ballscrew_monitor.page')
 SHARED = {
     **{path.rpartition('/')[2]: path for path in (UPLOT_CSS, UPLOT_JS)},
-    **{name: name for name in ('page.css', 'format.js', 'frame.js', 'map.js', 'panel.js')},
+    **{
+        name: name
+        for name in ('page.css', 'format.js', 'ticks.js', 'frame.js', 'map.js', 'panel.js')
+    },
 }
 """Names of the components of `report.html`, and where they lie there."""
 SHEETS = ('uPlot.min.css', 'page.css', 'live.css')
 SCRIPTS = (
-    *('uPlot.iife.min.js', 'format.js', 'frame.js', 'map.js', 'panel.js'),
+    *('uPlot.iife.min.js', 'format.js', 'ticks.js', 'frame.js', 'map.js', 'panel.js'),
     *('words.js', 'controls.js', 'quantities.js', 'axis.js', 'painter.js', 'live.js'),
     *('first_screen.js', 'trail.js', 'live_map.js', 'map_legend.js', 'strip_panels.js'),
     *('strips.js', 'what_if.js', 'events.js', 'health.js', 'player.js', 'live_page.js'),

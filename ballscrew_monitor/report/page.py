@@ -29,6 +29,7 @@ CHARTS = (
     UPLOT_JS,
     'format.js',
     'table.js',
+    'ticks.js',
     'frame.js',
     'map.js',
     'course.js',

@@ -132,7 +132,7 @@ class MapFrame {
   speeds(unit, y, out) {
     const { low, high, scale } = this.record.speed;
     const span = { low: low * unit, high: high * unit, scale };
-    for (const value of MapFrame.ticks(span, this.area.width / 48)) {
+    for (const value of Ticks.round(span, this.area.width / 48)) {
       const x = this.x(value / unit);
       this.pen.fillRect(x, Math.min(y, y + out), 1, Math.abs(out));
       this.pen.fillText(Format.number(value), x, y + 1.75 * out);
@@ -149,7 +149,7 @@ class MapFrame {
     const { pen, area } = this;
     pen.textAlign = 'right';
     pen.textBaseline = 'middle';
-    for (const load of MapFrame.steps(this.record.load, 6)) {
+    for (const load of Ticks.steps(this.record.load, 6)) {
       pen.fillRect(area.left - 4, this.y(load), 4, 1);
       pen.fillText(Format.number(load, 4), area.left - 7, this.y(load));
     }
@@ -185,33 +185,6 @@ class MapFrame {
         : speed.low * (speed.high / speed.low) ** across,
       load: load.low + up * (load.high - load.low),
     };
-  }
-
-  /** Return round numbers at equal steps between low and high, about so many. */
-  static steps({ low, high }, many) {
-    const raw = (high - low) / many;
-    const power = 10 ** Math.floor(Math.log10(raw));
-    const step = power * [1, 2, 5, 10].find((first) => first * power >= raw);
-    const first = Math.ceil(low / step);
-    return Array.from({ length: Math.floor(high / step) - first + 1 }, (none, i) => (first + i) * step);
-  }
-
-  /** Return round numbers between low and high, as many as there is room for. */
-  static ticks({ low, high, scale }, most) {
-    if (scale === 'linear') {
-      return MapFrame.steps({ low, high }, most / 1.5);
-    }
-    for (const firsts of [[1, 2, 5], [1, 3], [1]]) {
-      const found = [];
-      for (let power = -5; power < 6; power += 1) {
-        found.push(...firsts.map((first) => first * 10 ** power));
-      }
-      const inside = found.filter((speed) => speed >= low && speed <= high);
-      if (inside.length <= most || firsts.length === 1) {
-        return inside;
-      }
-    }
-    return [];
   }
 }
 
