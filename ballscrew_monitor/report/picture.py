@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import math
 from pathlib import Path
 import re
+import textwrap
 from typing import Any
 
 from ballscrew_monitor.report import map_record
@@ -24,6 +25,7 @@ import numpy as np
 from surrogate.plotting.style import draw_picture, new_figure
 
 WIDTH, HEIGHT = 11.0, 16.0  # [inch] of an axis
+LINE = 120  # letters
 COLOURS = dict(re.findall(r'--([\w-]+): (#\w+);', component('page.css').partition('@media')[0]))
 """Those of the page on light paper, by their names."""
 STYLES = {
@@ -61,7 +63,8 @@ def _draw_axis(part: SubFigure, case: AxisCase, chart: OperatingMap) -> None:
     upper, lower = part.subfigures(2, 1, height_ratios=(1.0, 1.25), squeeze=False)[:, 0]
     axes, surface, verdict = upper.subplots(), case.surface, verdict_of(case)
     axes.set_title(
-        f'{verdict.whole}\nscrew {surface.screw_name}, oil {surface.oil_name}, '
+        f'{verdict.whole}\n{textwrap.fill(verdict.contact, LINE)}\n'
+        f'screw {surface.screw_name}, oil {surface.oil_name}, '
         f'{surface.tier.replace("_", "-")} model, map at {chart.temperature:g} °C oil',
         fontsize=11,
     )
@@ -183,15 +186,15 @@ def _legend(axes: Axes, entries: list[Any], height: float) -> None:
 
 
 def _draw_bars(axes: Axes, case: AxisCase, rows: Rows) -> None:
-    """Draw regime, zone and warning as bars, the last one with the numbers of the worst events."""
+    """Draw zone, warning and regime as bars, the warnings with the numbers of the worst."""
     edges = np.append(rows['time'], rows['time'][-1])
     for place, (key, _, colours) in enumerate(reversed(BARS)):
         cmap = ListedColormap([COLOURS[colour] for colour in colours])
         limits: dict[str, Any] = {'vmin': -0.5, 'vmax': len(colours) - 0.5}
         axes.pcolormesh(edges, [place, place + 0.9], rows[key][None], cmap=cmap, **limits)
-    for event in case.worst_first[: map_record.MARKED]:
-        middle = 0.5 * sum(case.span(event))
-        axes.text(middle, 0.45, str(event.event_id), fontsize=8, **CENTRED)
+        for event in case.worst_first[: map_record.MARKED] if key == 'level' else ():
+            middle = 0.5 * sum(case.span(event))
+            axes.text(middle, place + 0.45, str(event.event_id), fontsize=8, **CENTRED)
     axes.set_yticks(np.arange(len(BARS)) + 0.45, [title for _, title, _ in reversed(BARS)])
     axes.tick_params(length=0, labelsize=8)
     axes.spines[:].set_visible(False)

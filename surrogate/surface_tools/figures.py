@@ -103,7 +103,7 @@ def figure_surface(surface: Surface, temperature: float) -> Figure:
     figure.suptitle(
         f'{surface.screw_name}, {surface.oil_name}, {temperature - ZERO_CELSIUS:g} degC, '
         f'tier {surface.tier}, surface {surface.sha256[:8]}\n'
-        f'{textwrap.fill(onset_of_surface(surface, temperature).sentence(), 118)}\n'
+        f'{textwrap.fill(onset_of_surface(surface, temperature).sentence(), 90)}\n'
         'bright is good in every map; grey: not known',
         fontsize=8,
     )

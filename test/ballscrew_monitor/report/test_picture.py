@@ -8,6 +8,7 @@ import struct
 from ballscrew_monitor.report import picture
 from ballscrew_monitor.report.log_page import maps_of
 from ballscrew_monitor.report.map_record import OperatingMap
+from ballscrew_monitor.report.page import component
 from matplotlib.colors import to_rgb
 import numpy as np
 import pytest
@@ -59,7 +60,8 @@ def test_panels_and_numbers_are_those_of_the_page(judged):
     case = judged.case([judged.columns(rcs=0.0)], [judged.event(7, 0.2, 0.4)])
     bars, strips = strips_of(judged, case)
     assert [text.get_text() for text in bars.texts] == ['7']
-    assert bars.texts[0].get_position()[0] == pytest.approx(0.4)
+    assert bars.texts[0].get_position() == pytest.approx((0.4, 1.45))
+    assert [tick.get_text() for tick in bars.get_yticklabels()] == ['Regime', 'Warning', 'Zone']
     expected = ['Screw', 'Axial', 'Oil', 'Efficiency,', 'Film', 'RCS:']
     assert [title.split()[0] for title in strips] == expected
     load = strips['Axial load, positive along the axis [N]']
@@ -71,7 +73,7 @@ def test_panels_and_numbers_are_those_of_the_page(judged):
 
 
 def test_colours_are_those_of_the_page(judged):
-    assert picture.COLOURS['outside'] == '#d55e00'
+    assert f'--outside: {picture.COLOURS["outside"]};' in component('page.css')
     assert {colour for colour, _, _ in picture.STYLES.values()} <= picture.COLOURS.keys()
 
 
@@ -112,5 +114,12 @@ def test_a_colour_has_one_meaning():
     assert len(set(colours)) == len(colours)
     regimes = [picture.COLOURS[regime.word] for regime in REGIMES]
     assert regimes == list(REGIMES_BY_METAL)
-    grey = [0.3 * r + 0.59 * g + 0.11 * b for r, g, b in map(to_rgb, REGIMES_BY_METAL)]
-    assert np.diff(grey).min() > 0.15  # also in print: the more metal, the darker
+
+
+@pytest.mark.parametrize(
+    'darkest_first', ['outside optimal unjudged none', 'boundary mixed hydrodynamic']
+)
+def test_what_is_worse_is_darker_in_a_print_without_colours(darkest_first):
+    colours = [to_rgb(picture.COLOURS[name]) for name in darkest_first.split()]
+    grey = [0.3 * r + 0.59 * g + 0.11 * b for r, g, b in colours]
+    assert np.diff(grey).min() > 0.15
