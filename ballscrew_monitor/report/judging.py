@@ -23,6 +23,7 @@ from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.own_recording import is_as_recorded
 from ballscrew_monitor.recordings.replay import ignore, replay_parts
 from ballscrew_monitor.recordings.summary import EventRecord
+from ballscrew_monitor.report.balance import Balance, Balancer
 from ballscrew_monitor.report.parameters import Assumed, AxisFacts, LogParameters
 from ballscrew_monitor.report.survey import Survey, Surveyor
 from ballscrew_monitor.settings.axis import load_surface, scalings_of, settings_of, surface_file
@@ -81,6 +82,7 @@ class AxisCase:
     nominal: bool = False
     numbered: bool = False
     history: 'AxisHistory | None' = None
+    balance: Balance = Balance()
 
     @property
     def load_origin(self) -> str:
@@ -191,11 +193,15 @@ class CaseMaker:
             standstill=self._settings.limits.standstill_speed,
             max_gap=self._settings.timeouts[Source.SPEED],
         )
+        self._balancer = Balancer(
+            lead=self._surface.lead, standstill=self._settings.limits.standstill_speed
+        )
         self._history = None if make is None else make(self._surface)
 
     def add(self, block: JudgedColumns) -> None:
         """Take the next block of rows."""
         self._surveyor.add(block)
+        self._balancer.add(block)
         if self._history is not None:
             self._history.add(block)
 
@@ -213,6 +219,7 @@ class CaseMaker:
             outcome=outcome,
             survey=self._surveyor.result(),
             history=self._told(),
+            balance=self._balancer.result(),
             **known,
         )
 
