@@ -2,10 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Signs and sizes of load, motor torque and motion that contradict each other, and no others."""
 
+import os
+from pathlib import Path
+
 from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.tables.convert import convert
+from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.report.balance import Balance, Balancer
+from ballscrew_monitor.report.judging import judge_log
+from ballscrew_monitor.report.parameters import parameters_for
 from hypothesis import given, strategies
 import numpy as np
 import pytest
@@ -124,3 +133,22 @@ def test_a_wrong_size_is_told_with_the_friction_beside_it(load, torque, friction
     assert found.turned is None
     assert found.factor == pytest.approx(1e3, rel=0.02)
     assert found.friction == pytest.approx(friction, rel=0.05)
+
+
+@pytest.mark.skipif(
+    'BALLSCREW_RECORDINGS' not in os.environ, reason='BALLSCREW_RECORDINGS names no recordings'
+)
+@pytest.mark.parametrize(('scale', 'turned'), [(1.0, None), (-1.0, Source.LOAD)])
+def test_the_currents_of_a_real_machine_tell_their_sign(scale, turned, tmp_path):
+    log = Path(os.environ['BALLSCREW_RECORDINGS']) / 'cnc_mill' / 'experiment_01.csv'
+    content = guess(log).content
+    for axis in 'xy':
+        content['axes'][axis]['current']['scale'] = scale
+    convert(log, make_map(content), tmp_path / 'bag')
+    bag = Bag(tmp_path / 'bag')
+    found = judge_log(bag, parameters_for(bag, None, log)).axes
+    assert {case.axis: case.balance.turned for case in found} == {
+        'x': turned,
+        'y': turned,
+        'z': None,
+    }
