@@ -64,3 +64,11 @@ def said(step):
 def test_short_work_is_silent_and_long_work_tells_rate_and_time_left(says):
     assert said(0.1) == ''
     assert says('500_1000_s') in said(1.0)
+
+
+def test_names_are_listed_up_to_a_number_and_a_length():
+    assert words.listed(['a', 'b']) == 'a, b'
+    assert words.listed([]) == ''
+    many = words.listed([*'a' * words.MOST, 'x', 'y'])
+    assert many.endswith('a, and 2 more')
+    assert words.listed(['n' * 999]) == 'n' * words.LONGEST + '…'
