@@ -26,6 +26,7 @@ from ballscrew_monitor.report.health_history import (
     peers_among,
 )
 from ballscrew_monitor.report.health_kept import kept_healths
+from ballscrew_monitor.report.inputs_seen import hints_on
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.logs import find_logs, map_for
 from ballscrew_monitor.report.parameters import parameters_for
@@ -72,6 +73,7 @@ def _histories(
                     case = judge_log(
                         bag, parameters_for(bag, args.params, nominal), health=HistoryMaker
                     )
+                say(*(f'{log}: check {hint}' for hint in hints_on(case.axes)))
                 yield from (axis.history for axis in case.axes if axis.history is not None)
             except (InputError, SurfaceError) as error:
                 say(f'{log}: {error}')

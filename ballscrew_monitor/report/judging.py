@@ -24,6 +24,7 @@ from ballscrew_monitor.recordings.own_recording import is_as_recorded
 from ballscrew_monitor.recordings.replay import ignore, replay_parts
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.recordings.words import feed_first
+from ballscrew_monitor.report.balance import Balance, Balancer
 from ballscrew_monitor.report.parameters import Assumed, AxisFacts, LogParameters
 from ballscrew_monitor.report.survey import Survey, Surveyor
 from ballscrew_monitor.settings.axis import load_surface, scalings_of, settings_of, surface_file
@@ -86,6 +87,7 @@ class AxisCase:
     numbered: bool = False
     history: 'AxisHistory | None' = None
     onset: ContactOnset | None = None
+    balance: Balance = Balance()
 
     @property
     def contact(self) -> str:
@@ -215,11 +217,15 @@ class CaseMaker:
             standstill=self._settings.limits.standstill_speed,
             max_gap=self._settings.timeouts[Source.SPEED],
         )
+        self._balancer = Balancer(
+            lead=self._surface.lead, standstill=self._settings.limits.standstill_speed
+        )
         self._history = None if make is None else make(self._surface)
 
     def add(self, block: JudgedColumns) -> None:
         """Take the next block of rows."""
         self._surveyor.add(block)
+        self._balancer.add(block)
         if self._history is not None:
             self._history.add(block)
 
@@ -239,6 +245,7 @@ class CaseMaker:
             survey=survey,
             history=self._told(),
             onset=self._onset(survey.oil.mean),
+            balance=self._balancer.result(),
             **known,
         )
 
