@@ -18,6 +18,7 @@ from ballscrew_monitor.core.state import MonitorSettings, Shelving, State
 from ballscrew_monitor.messages import diagnostics, state_messages
 from ballscrew_monitor.messages.state_messages import plain_values, TIERS
 from ballscrew_monitor.node.alarm import Alarm, LatchedTopics, quiet_publishers
+from ballscrew_monitor.node.freeze_frame import FreezeFrame
 from ballscrew_monitor.node.journal import NodeJournal
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import Corrections, Kind, point_facts
@@ -62,7 +63,7 @@ class AxisPublisher:
 
         """
         self.axis = axis
-        self.dwell = Dwell()
+        self.dwell, self.frame = Dwell(), FreezeFrame()
         self.refused = ''  # why the last reload of the surface was
         self.defect = ''  # of the program, where it failed for this axis first
         self.failed = False  # in what was guarded last
@@ -100,7 +101,7 @@ class AxisPublisher:
         """Publish a state, and before it the event that it begins or ends."""
         self._last = state
         if state.event is not None:
-            self.alarm.follow(state)
+            self.alarm.follow(state, self.frame.facts(state.stamp))
         message = self._writer.write(state)
         self._state.publish(message)
         self._recording.record(f'~/{self.name}/state', message)
