@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What a browser may do to a node where acting is allowed: acknowledge, shelve, and ask for a solve.
+Acts of a browser on a node, where they are allowed: acknowledge, shelve, and ask for a solve.
 
 The thread of the server waits without holding others up; everything of ROS is called in the thread
 of the executor.

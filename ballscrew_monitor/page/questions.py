@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a browser may ask over its socket: read within bounds, answered one at a time."""
+"""Requests of a browser over its socket: read within bounds, answered one at a time."""
 
 import asyncio
 from collections import deque
@@ -111,7 +111,7 @@ def _tell(browser: Browser, request: Mapping[str, Any], answer: Answer) -> None:
 
 
 def _read(text: str) -> Mapping[str, Any]:
-    """Return a request; raises InputError for what is none."""
+    """Return a request; raises InputError for anything else."""
     if len(text) > LARGEST:
         raise InputError(f'the request has {len(text)} characters, allowed are {LARGEST}')
     try:

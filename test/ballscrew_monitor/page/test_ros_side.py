@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the page hears of real nodes, as they come, warn and go."""
+"""Real nodes as the page hears them: they come, warn and go."""
 
 import contextlib
 
