@@ -146,3 +146,20 @@ def add_solve(parser: Parser) -> None:
     parser.add_argument('--node', default='', help='full name of the node, if there are several')
     _add_wait(parser, 'the node')
     _add_switch(parser, '--json', 'print JSON')
+
+
+def add_page(parser: Parser) -> None:
+    """Add what `ballscrew page` may be told."""
+    text = 'full name of the node (default all of them, as they come and go)'
+    parser.add_argument('--node', default='', help=text)
+    text = 'address to serve at (default %(default)s); any other needs --token-file'
+    parser.add_argument('--host', default='127.0.0.1', help=text)
+    text = 'port to serve at (default %(default)s)'
+    parser.add_argument('--port', type=int, default=8090, help=text)
+    _add_file(parser, '--token-file', 'FILE', 'file whose first line opens the page to a reader')
+    _add_file(parser, '--cert', 'FILE', 'certificate of the server in PEM, for https')
+    _add_file(parser, '--key', 'FILE', 'its key')
+    text = 'language of the page, such as en (default that of the browser)'
+    parser.add_argument('--language', default='', help=text)
+    text = 'surfaces of the same screw with other oils, for what-if maps'
+    _add_file(parser, '--oils', 'SURFACE', text, nargs='+', default=[])

@@ -80,10 +80,10 @@ THEMES = {
     'surrogate/ehl/test_mixed.py',
     'surrogate/ehl/test_tables.py',
 }
-# By the extras `bags`, `report`, `areal`, `dask` and `netcdf`.
+# By the extras `bags`, `report`, `page`, `areal`, `dask` and `netcdf`.
 OPTIONAL = {
     *'SurfaceTopography apsw contourpy distributed lz4 mcap'.split(),
-    *'polars rosbags xarray zstandard'.split(),
+    *'polars prometheus_client rosbags starlette uvicorn websockets xarray zstandard'.split(),
 }
 
 
