@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The warning of one axis: its topic, its log, what people do to it; topics that stay."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 import functools
 from typing import Any, TYPE_CHECKING
 
@@ -87,12 +87,15 @@ class Alarm:
         publish(message)
         self._record(f'~/{self._axis.name}/out_of_zone', message)
 
-    def follow(self, state: State) -> None:
-        """Keep the event that a state has begun or ended, and then speak of it."""
+    def follow(self, state: State, frame: Mapping[str, list[float]]) -> None:
+        """Keep the event that a state has begun, with its freeze frame, or ended, then speak."""
         event, monitor = self._axis.monitor.event, self._axis.monitor
         # First: who is killed meanwhile must not have said a number that is not kept.
-        kind = Kind.EVENT_BEGIN if event.active else Kind.EVENT_END
-        self._note_event(kind, point=point_facts(state.point))
+        point = point_facts(state.point)
+        if event.active:
+            self._note_event(Kind.EVENT_BEGIN, point=point, freeze_frame=frame)
+        else:
+            self._note_event(Kind.EVENT_END, point=point)
         self.publish()
         if event.active:
             advice = f'; {event.advice.text}' if event.advice.text else ''

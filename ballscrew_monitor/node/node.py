@@ -287,10 +287,17 @@ class BallscrewMonitor(LifecycleNode):
     ) -> None:
         """Judge a sample, a refusal or a tick; a defect is an error of its axis alone."""
         known = publisher.defect
-        publisher.guarded(event, lambda: self._publish(publisher, judge(event)))
+        publisher.guarded(event, self._judge_one, publisher, judge, event)
         self._healths.take(publisher.name, publisher.axis.monitor.row)
         if publisher.defect != known:
             self._publish_diagnostics([publisher.name])
+
+    def _judge_one(
+        self, publisher: AxisPublisher, judge: Callable[[Any], State | None], event: Any
+    ) -> None:
+        state = judge(event)
+        publisher.frame.take(publisher.axis.monitor.row)
+        self._publish(publisher, state)
 
     def _on_tick(self) -> None:
         """Tick on the grid of stamps, when that is due; what has arrived by then comes first."""

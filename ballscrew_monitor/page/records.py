@@ -150,8 +150,6 @@ def event_record(event: msg.OutOfZone) -> dict[str, Any]:
         'limit': event.cause.limit,
         'active': event.active,
         'shelved': event.shelved,
-        'acknowledged': False,
-        'acknowledged_by': '',
         'target_rpm': event.cause.target_speed / RPM,
         'target_load_N': event.cause.target_load,
         'words': event.advice,

@@ -15,6 +15,8 @@ from surrogate.progress import Progress
 NONE = '–'
 TURNS = re.compile(r'(?:\S+ rad/s \()?(-?[\d.]+(?:e[+-]?\d+)?) rev/min\)?')
 """A speed of the screw as words of an event state it."""
+MOST, LONGEST = 60, 80
+"""Names that are listed, and letters of each."""
 
 
 def number(value: float, digits: int = 3) -> str:
@@ -75,6 +77,13 @@ def counted(count: int, name: str) -> str:
 def list_of(parts: Sequence[str]) -> str:
     """Return phrases as one: a, b; and c."""
     return parts[0] if len(parts) == 1 else f'{"; ".join(parts[:-1])}; and {parts[-1]}'
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return names after each other, the first of many, and only the begin of long ones."""
+    shown = [name if len(name) <= LONGEST else f'{name[:LONGEST]}…' for name in names[:MOST]]
+    more = [f'and {len(names) - MOST} more'] if len(names) > MOST else []
+    return ', '.join([*shown, *more])
 
 
 def say(*notes: str) -> None:

@@ -121,6 +121,7 @@ def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Rec
         say(f'nothing was judged on axis {", ".join(result.unjudged)}')
     for line in result.lines:
         print(printable(line.verdict))
+    say(*(f'check {hint}' for hint in result.hints))
     print(f'report in {args.out / PAGE}')
     return _reported(args.out, args), DONE if result.judged else FAILED
 
@@ -187,7 +188,8 @@ def _print_entry(entry: 'LogEntry') -> None:
         return
     for line in entry.result.lines:
         print(printable(f'{entry.name}: {line.verdict}'))
-    say(*(f'{entry.name}: {note}' for note in entry.result.notes))
+    hints = [f'check {hint}' for hint in entry.result.hints]
+    say(*(f'{entry.name}: {note}' for note in (*entry.result.notes, *hints)))
     if entry.result.unjudged:
         say(f'{entry.name}: nothing was judged on axis {", ".join(entry.result.unjudged)}')
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import contextlib
 import datetime
 from pathlib import Path
+import re
 import sys
 from typing import Any
 
@@ -26,6 +27,7 @@ from ballscrew_monitor.report.health_history import (
     peers_among,
 )
 from ballscrew_monitor.report.health_kept import kept_healths
+from ballscrew_monitor.report.inputs_seen import hints_on
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.logs import find_logs, map_for
 from ballscrew_monitor.report.parameters import parameters_for
@@ -35,10 +37,14 @@ from surrogate.progress import Progress
 from surrogate.surface import SurfaceError
 
 RECORD, PICTURE = 'health.json', 'health.png'
+_OURS = re.compile(rb'\{(\}|\s*"[^"]*": \{\s*"axis": )')  # how a record of this command begins
+MOST_BEGIN = 1000  # [bytes] of that
 
 
 def health_command(args: argparse.Namespace, nominal: Path) -> int:
     """Do what the command line asks for; return the exit code."""
+    if args.out is not None:
+        check_output(args.out)
     folders = [path for path in args.logs if (path / FILE).is_file()]
     named = [path for path in args.logs if path not in folders]
     logs = find_logs(named, tables=args.map is not None, out=args.out)
@@ -58,6 +64,21 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
     return DONE if found else FAILED
 
 
+def check_output(out: Path) -> None:
+    """Raise InputError for a folder with files that would be replaced and are of somebody else."""
+    held = [name for name in (RECORD, PICTURE) if (out / name).exists()]
+    if not held:
+        return
+    if (out / RECORD).is_file():
+        with (out / RECORD).open('rb') as stream:
+            if _OURS.match(stream.read(MOST_BEGIN)):
+                return
+    raise InputError(
+        f'output {out} holds {held[0]}, which is not of ballscrew health and would be '
+        'overwritten, another directory must be given'
+    )
+
+
 def _histories(
     logs: Sequence[Path], args: argparse.Namespace, nominal: Path
 ) -> Iterator[AxisHistory]:
@@ -72,6 +93,7 @@ def _histories(
                     case = judge_log(
                         bag, parameters_for(bag, args.params, nominal), health=HistoryMaker
                     )
+                say(*(f'{log}: check {hint}' for hint in hints_on(case.axes)))
                 yield from (axis.history for axis in case.axes if axis.history is not None)
             except (InputError, SurfaceError) as error:
                 say(f'{log}: {error}')

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 import dataclasses
 import functools
 import math
-from typing import Any, TYPE_CHECKING
+from typing import Any, Protocol, TYPE_CHECKING
 
 from ballscrew_monitor.core.conversions import LINEAR_UNITS, POSITION_UNITS, Scaling, SECOND
 from ballscrew_monitor.core.estimate import PointSource
@@ -24,6 +24,7 @@ from ballscrew_monitor.recordings.own_recording import is_as_recorded
 from ballscrew_monitor.recordings.replay import ignore, replay_parts
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.recordings.words import feed_first
+from ballscrew_monitor.report.balance import Balance, Balancer
 from ballscrew_monitor.report.parameters import Assumed, AxisFacts, LogParameters
 from ballscrew_monitor.report.survey import Survey, Surveyor
 from ballscrew_monitor.settings.axis import (
@@ -38,11 +39,22 @@ from surrogate.surface import ContactOnset, onset_of_surface, Surface, ZoneLimit
 
 if TYPE_CHECKING:  # they ask for packages that printing does not need
     from ballscrew_monitor.report.health_history import AxisHistory, HistoryMaker
-    from ballscrew_monitor.report.log_report import RowStore
 
 Blocks = Callable[[], Iterable[JudgedColumns]]
 """Gives the blocks of rows of an axis in order, as often as it is called."""
 RCS = 'RCS'
+
+
+class RowKeeper(Protocol):
+    """Keeps the blocks of rows of all axes."""
+
+    def add(self, block: JudgedColumns) -> None:
+        """Take a block."""
+
+    def blocks(self, axis: str) -> Iterable[JudgedColumns]:
+        """Return the blocks of an axis in order."""
+
+
 FIRST_DATE = 978_307_200.0
 """Stamps before this [s since 1970] are no calendar: logs without one begin in the year 2000."""
 OnShare = Callable[[float], None]
@@ -92,6 +104,7 @@ class AxisCase:
     numbered: bool = False
     history: 'AxisHistory | None' = None
     onset: ContactOnset | None = None
+    balance: Balance = Balance()
 
     @property
     def contact(self) -> str:
@@ -221,11 +234,15 @@ class CaseMaker:
             standstill=self._settings.limits.standstill_speed,
             max_gap=self._settings.timeouts[Source.SPEED],
         )
+        self._balancer = Balancer(
+            lead=self._surface.lead, standstill=self._settings.limits.standstill_speed
+        )
         self._history = None if make is None else make(self._surface, gathering_of(axis, values))
 
     def add(self, block: JudgedColumns) -> None:
         """Take the next block of rows."""
         self._surveyor.add(block)
+        self._balancer.add(block)
         if self._history is not None:
             self._history.add(block)
 
@@ -245,6 +262,7 @@ class CaseMaker:
             survey=survey,
             history=self._told(),
             onset=self._onset(survey.oil.mean),
+            balance=self._balancer.result(),
             **known,
         )
 
@@ -282,7 +300,7 @@ def judge_log(
     parameters: LogParameters,
     *,
     on_share: OnShare = ignore,
-    rows: 'RowStore | None' = None,
+    rows: RowKeeper | None = None,
     on_state: OnState | None = None,
     health: 'type[HistoryMaker] | None' = None,
 ) -> LogCase:

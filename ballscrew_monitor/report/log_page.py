@@ -235,6 +235,7 @@ def _body(log: LogCase, maps: Sequence[OperatingMap], budgets: Sequence[AxisBudg
         element('h1', f'Ball screw report: {log.name}'),
         element('p', _when(log), class_='muted'),
         *(verdict_part(verdict) for verdict in verdicts_of(log)),
+        *provenance.checks(log.axes),
         *provenance.caution(log.axes),
         *(element('p', f'Note: {note}', class_='hint') for note in log.notes),
         element(

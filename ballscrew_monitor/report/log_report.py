@@ -30,6 +30,7 @@ from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report import logs
 from ballscrew_monitor.report.health_history import HistoryMaker
+from ballscrew_monitor.report.inputs_seen import hints_on
 from ballscrew_monitor.report.judged_bag import judged_bag
 from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare
 from ballscrew_monitor.report.log_page import maps_of, report_page
@@ -165,7 +166,8 @@ class LogResult:
     """
     What became of a recording: a line for each axis, and those on which nothing was judged.
 
-    `histories` are what the health of its axes rests on, as plain data.
+    `hints` say what contradicts itself among the inputs; `histories` are what the health of its
+    axes rests on, as plain data.
 
     """
 
@@ -173,6 +175,7 @@ class LogResult:
     lines: Sequence[AxisLine]
     unjudged: Sequence[str]
     notes: Sequence[str] = ()
+    hints: Sequence[str] = ()
     histories: Sequence[dict[str, Any]] = ()
 
     @property
@@ -250,6 +253,7 @@ def _result(log: LogCase) -> LogResult:
         lines=lines,
         unjudged=log.unjudged,
         notes=log.notes,
+        hints=hints_on(log.axes),
         histories=[dataclasses.asdict(one.history) for one in log.axes if one.history],
     )
 

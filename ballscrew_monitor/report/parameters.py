@@ -57,6 +57,14 @@ class AxisFacts:
         named = self.stated | set(self.assumed)
         return 'current.column' in named and 'torque.column' not in named
 
+    def column_of(self, name: str) -> str:
+        """Return what an input is read from by the map: `load` may be the torque or current."""
+        if name == 'load' and self.load_from:
+            name = self.load_from.removeprefix('motor_')
+        if name == 'torque' and self.torque_from_current:
+            return 'current'
+        return 'position' if name == 'speed' and 'speed' in self.assumed else name
+
     @property
     def default_temperature_known(self) -> str:
         """Return how its default oil temperature is known, stated or assumed."""

@@ -43,8 +43,9 @@ def axis_lines(case: AxisCase) -> Iterator[str]:
     if verdict.remedy:
         yield _line('what to do', verdict.remedy)
     yield _line('contact', verdict.contact)
-    yield from [] if summary is None else summary.lines()
     seen = inputs_seen(case)
+    yield from (_line('check', hint) for one in seen for hint in one.hints)
+    yield from [] if summary is None else summary.lines()
     yield from (_line('input', _input_text(one)) for one in seen)
     yield from (
         _line('not judged', f'{number(time, 4)} s: {reason.text}')
@@ -53,7 +54,6 @@ def axis_lines(case: AxisCase) -> Iterator[str]:
     )
     if case.survey.rest:
         yield _line('not judged', f'{number(case.survey.rest, 4)} s: {REST}')
-    yield from (_line('check', hint) for one in seen for hint in one.hints)
 
 
 def _line(head: str, text: str) -> str:

@@ -16,7 +16,7 @@ from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.log_facts import grouped
 from ballscrew_monitor.recordings.words import counted, duration, NONE, number, share, shown_unit
 from ballscrew_monitor.report.buckets import MOST_ROWS
-from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
+from ballscrew_monitor.report.inputs_seen import hints_on, inputs_seen, InputSeen, NAMES, Trouble
 from ballscrew_monitor.report.judging import AxisCase
 from ballscrew_monitor.report.page import element, joined, Markup, table, TableCell, TableRow
 from ballscrew_monitor.report.survey import REST
@@ -60,6 +60,11 @@ def caution(cases: Sequence[AxisCase]) -> Iterable[Markup]:
     yield element(
         'div', element('p', head), element('ul', *items), element('p', tail), class_='hint'
     )
+
+
+def checks(cases: Sequence[AxisCase]) -> Iterable[Markup]:
+    """Yield what contradicts itself among the inputs, with what mends it."""
+    return (element('p', f'Check: {hint}.', class_='hint') for hint in hints_on(cases))
 
 
 def _assumed_names(case: AxisCase) -> Iterable[str]:
@@ -193,12 +198,10 @@ def _torque_reasons(forward: float, backward: float) -> list[str]:
 
 
 def inputs_part(case: AxisCase) -> Markup:
-    """Return what the inputs were like, hints, and what interrupted them."""
+    """Return what the inputs were like, and what interrupted them."""
     seen = inputs_seen(case)
-    hints = [hint for one in seen for hint in one.hints]
     return joined(
         element('h3', 'Inputs'),
-        *(element('p', f'Check: {hint}.', class_='hint') for hint in hints),
         table(
             ('Input', 'Source', 'Lowest', 'Highest', 'Unit', 'Rate [Hz]', 'Read from', 'Refused'),
             (_input_row(one) for one in seen),

@@ -6,6 +6,10 @@ import math
 from pathlib import Path
 
 from ballscrew_monitor.core.conversions import kelvin, SECOND
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.report.balance import Balance
+from ballscrew_monitor.report.judging import judge_log
+from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.settings.axis import load_surface
 from ballscrew_monitor.settings.parameters import read_file
 import pytest
@@ -39,6 +43,7 @@ def judged(judge, tmp_path_factory):
             known[name] = judge(root / name, root / name / PARAMETERS)
         return known[name]
 
+    of.folder = root
     return of
 
 
@@ -136,3 +141,11 @@ def test_the_same_source_gives_the_same_bytes(tmp_path):
 def test_without_a_name_all_are_named(capsys):
     assert main([]) == 0
     assert capsys.readouterr().out.splitlines()[0].startswith('warm_up ')
+
+
+@pytest.mark.parametrize('name', MADE)
+def test_no_input_of_a_scenario_is_accused_of_contradicting_the_others(judged, name):
+    judged(name)
+    bag = Bag(judged.folder / name)
+    log = judge_log(bag, parameters_for(bag, bag.path / PARAMETERS, ROOT / 'config' / 'none.yaml'))
+    assert {case.axis: case.balance for case in log.axes} == {'x': Balance()}

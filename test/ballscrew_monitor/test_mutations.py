@@ -198,7 +198,8 @@ def parquet_log(folder):
 
 def read_log(path):
     guess(path)
-    list(open_table(path, column_names(path), strict=False).blocks())
+    names = column_names(path)
+    list(open_table(path, names, optional=names).blocks())
 
 
 def log_map(folder):

@@ -6,6 +6,7 @@
 
 const ROWS = 36000; // rows that are kept, 10 min at 60 Hz
 const GAP = 2.5; // time without rows [s] that interrupts a line
+const NEAR = 1e-6; // what times since 1970 are rounded to, at most [s]
 const STALE = 5; // age of data [s] from which on nothing is concluded from them
 
 class Rows {
@@ -80,7 +81,8 @@ class Rows {
    * Where there are more than `most` rows, the least and the largest of each bucket of time.
    */
   during(begin, span, names, most) {
-    const [from, to] = [this.first(begin), this.first(begin + span)];
+    // The newest row is at the end itself, to which a sum of times only comes near.
+    const [from, to] = [this.first(begin), this.first(begin + span + NEAR)];
     return to - from > most
       ? this.buckets(from, to, names, 2 * span / most) : this.each(from, to, names);
   }

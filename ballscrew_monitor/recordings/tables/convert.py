@@ -43,6 +43,7 @@ JOINTS = 'joint_states'
 SLOW = 0.5  # of the timeout: rows that far apart leave no room for a late one
 PASSES = 3  # over a table, at most, of which each is shown
 SAME = 1e-6  # part by which two leads may differ
+NAMES_NONE = 'the map names none'
 BLOCK = 4096  # rows that are made at a time
 _STAMP = (1_234_567_891, 987_654_321)  # [s], [ns]
 
@@ -60,7 +61,8 @@ def convert(
     if out.is_file():
         raise InputError(f'output {out} is a file, it must be a directory')
     series = read_series(path, mapping, shown)
-    notes = list(series.notes)
+    notes = [*series.notes, *_unknown(mapping)]
+    mapping = series.mapping
     facts = LogFacts(
         source=path.name,
         parameters=_parameters(mapping, series, notes),
@@ -144,9 +146,19 @@ def _derived(mapping: TableMap) -> list[Assumption]:
             key = f'{axis.name}.speed'
             found.append(Assumption(key=key, value='slope of the position', reason=why))
         if 'load' not in axis.columns and not axis.load_from:
-            why = axis.unknown.get('load', 'the map names none')
+            why = axis.unknown.get('load', NAMES_NONE)
             found.append(Assumption(key=f'{axis.name}.load', value='unknown', reason=why))
     return found
+
+
+def _unknown(mapping: TableMap) -> list[str]:
+    """Return of which axis the map says no load, and what to write there."""
+    return [
+        f'axis {axis.name}: the load is unknown ({axis.unknown.get("load", NAMES_NONE)}), '
+        f'name a column of a force, torque or current for axes.{axis.name} in the map'
+        for axis in mapping.axes
+        if 'load' not in axis.columns and not axis.load_from
+    ]
 
 
 def _write(

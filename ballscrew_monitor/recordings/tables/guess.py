@@ -21,7 +21,7 @@ from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, Layout, RATED, UNITS
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
 from ballscrew_monitor.recordings.tables.sources import layout_of
-from ballscrew_monitor.recordings.words import Shown, shown_progress
+from ballscrew_monitor.recordings.words import listed, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface
@@ -97,16 +97,17 @@ class _Guesser:
         if not self.axes:
             raise InputError(
                 f'log {path}: no column looks like the speed or position of an axis, it holds '
-                f'{", ".join(one.column for one in self.named)}'
+                f'{listed([one.column for one in self.named])}'
             )
         self.times = [one for one in self.named if one.kind == 'time']
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
         used = [one.column for one in [*columns, *self.times]]
-        table = open_table(path, used, layout=self.layout, strict=False, shown=shown)
+        table = open_table(path, used, layout=self.layout, optional=used, shown=shown)
         rows = NUMBERS // len(used)
         # The first rows tell how the speeds go with the positions, all of them the ranges.
         self.data = table.head(rows)
         self.extremes = {name: one.extremes for name, one in table.readings.items()}
+        self.notes += [f'{why}; it is left out' for why in table.left_out.values()]
         self.notes += [*table.notes, *names.told_by_words(self.named)]
         if rows < table.rows:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
@@ -131,6 +132,10 @@ class _Guesser:
 
     def _forget_texts(self) -> None:
         """Leave out columns without a number, and axes that so have no speed."""
+        self.lost = {
+            name: [one.column for one in chosen.values() if one.column not in self.data]
+            for name, chosen in self.axes.items()
+        }
         self.times = [one for one in self.times if one.column in self.data]
         for name, chosen in list(self.axes.items()):
             left = {kind: one for kind, one in chosen.items() if one.column in self.data}
@@ -296,7 +301,9 @@ class _Guesser:
                 self._assume_motor(name, source)
             return
         silent = [chosen[kind].column for kind in ('load', 'torque', 'current') if kind in chosen]
-        why = f'{", ".join(silent)} is always 0' if silent else 'no force, torque or current'
+        lost = [f'{", ".join(self.lost[name])} holds no number'] if self.lost[name] else []
+        still = [f'{", ".join(silent)} is always 0'] if silent else []
+        why = ', '.join([*lost, *still]) or 'no force, torque or current'
         used['load'] = {'unknown': why}
         self.notes.append(f'axis {name}: the load is not known ({why}), nothing will be judged')
 

@@ -9,7 +9,7 @@ judged.
 
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 import dataclasses
 import datetime
 import math
@@ -17,11 +17,13 @@ from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.bag_files import is_table
 from ballscrew_monitor.recordings.log_facts import Assumption
 from ballscrew_monitor.recordings.tables.quantities import (
     column_name,
     INPUTS,
     Layout,
+    MOTION,
     RATED,
     UNITS,
 )
@@ -84,6 +86,17 @@ class AxisMap:
     unknown: Mapping[str, str]
     texts: Mapping[str, str]
 
+    def without(self, lost: Collection[str]) -> 'AxisMap':
+        """Return it without the columns of some names, and without a load that was made of one."""
+        held = {kind: one for kind, one in self.columns.items() if one.name not in lost}
+        of = {'motor_torque': {'current', 'torque'}}.get(self.load_from, {self.load_from})
+        source = self.load_from if of & set(held) else ''
+        gone = [*(self.columns.keys() - held), *(['load'] if source != self.load_from else [])]
+        unknown = dict.fromkeys(gone, 'its column holds no number')
+        return dataclasses.replace(
+            self, columns=held, load_from=source, unknown={**self.unknown, **unknown}
+        )
+
     def motor_torque(self, kind: str) -> float:
         """Return the torque [N m] of one unit of its torque or current, NaN where not said."""
         unit = self.columns[kind].unit
@@ -126,6 +139,17 @@ class TableMap:
 
 def read_map(path: Path) -> TableMap:
     """Return the map in a file; raises InputError when it holds no map."""
+    try:
+        return _read(path)
+    except InputError:
+        if not is_table(path):
+            raise
+        raise InputError(
+            f'map {path} is a table: ballscrew import {path} --guess > map.yaml prints its map'
+        ) from None
+
+
+def _read(path: Path) -> TableMap:
     try:
         content = plain_values(read_text(path))
     except (OSError, UnicodeDecodeError, InputError) as error:
@@ -247,7 +271,7 @@ def _axis(name: str, values: dict[str, Any]) -> AxisMap:
 
 def _check_axis(axis: AxisMap) -> None:
     """Raise InputError unless an axis says enough for what it holds."""
-    if not {'speed', 'position'} & set(axis.columns):
+    if not set(MOTION) & set(axis.columns):
         raise InputError(f'{axis.name} has no speed, it must name a column of speed or position')
     if math.isnan(axis.lead):
         raise InputError(f'{axis.name}.lead_mm is missing, it must be the lead of the screw')

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import dataclasses
 import re
 
-from ballscrew_monitor.recordings.tables.quantities import INPUTS
+from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION
 from ballscrew_monitor.recordings.tables.unit_names import (
     BRACKETS,
     kind_by_unit,
@@ -14,6 +14,7 @@ from ballscrew_monitor.recordings.tables.unit_names import (
     words_of,
     words_without_unit,
 )
+from ballscrew_monitor.recordings.words import listed
 
 LINEAR = frozenset('xyz')
 SECONDARY = frozenset('uvw')  # with a number: alone they mean other things, too
@@ -55,7 +56,6 @@ TELLS_NOTHING = MEASURED | WANTED | PROCESSED | OF_THE_SCREW | AXIS | {'achs', '
 TURNING = {'drehzahl': 'rev/min', 'omega': 'rad/s'}
 """Words of a speed that tell its unit, where nothing else does."""
 BY_UNIT = -4  # rank of a column of which the unit alone tells the quantity
-MOTION = ('speed', 'position')
 _NAME = re.compile(r'[a-z][a-z0-9_]*')
 TIMES_BY_UNIT = frozenset({'ms', 'us', 'ns', 's'})  # of a column that names no quantity
 
@@ -214,7 +214,7 @@ def left_out(left: Sequence[Named]) -> list[str]:
         notes.append(f'{spindle} columns are of the spindle, which is no ball-screw axis')
     others = [one.column for one in left if one.place != 'spindle']
     if others:
-        notes.append(f'not used: {", ".join(others)}')
+        notes.append(f'not used: {listed(others)}')
     return notes
 
 

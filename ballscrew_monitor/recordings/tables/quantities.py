@@ -19,6 +19,7 @@ UNITS: dict[str, Mapping[str, float]] = {
     'time': conversions.TIME_UNITS,
 }
 """Units of each kind of column; some need what a map states, as the lead or the rated torque."""
+MOTION = ('speed', 'position')
 INPUTS = tuple(kind for kind in UNITS if kind != 'time')
 
 

@@ -8,15 +8,16 @@ counted; what cannot be read at all is one sentence in an InputError.
 
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 import contextlib
 import dataclasses
+import difflib
 from pathlib import Path
 
 from ballscrew_monitor.recordings.tables.cells import Array, Cells, Reading
 from ballscrew_monitor.recordings.tables.quantities import Layout
-from ballscrew_monitor.recordings.tables.sources import Source, source_of
-from ballscrew_monitor.recordings.words import Shown, shown_progress
+from ballscrew_monitor.recordings.tables.sources import layout_of, Source, source_of
+from ballscrew_monitor.recordings.words import listed, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
 
@@ -26,7 +27,7 @@ class Table:
     """
     Chosen columns of a log that was looked through: how each is read, by name.
 
-    `notes` says in a sentence each what could not be read.
+    `notes` says in a sentence each what could not be read; `left_out` says why of columns.
 
     """
 
@@ -34,6 +35,7 @@ class Table:
     readings: dict[str, Reading]
     rows: int
     notes: tuple[str, ...]
+    left_out: Mapping[str, str]
     _source: Source
 
     def blocks(self, names: Collection[str] | None = None) -> Iterator[dict[str, Array]]:
@@ -66,52 +68,67 @@ def open_table(
     names: Collection[str],
     *,
     layout: Layout | None = None,
-    strict: bool = True,
+    optional: Collection[str] = (),
     shown: Shown = shown_progress,
 ) -> Table:
     """
     Look through the columns `names` of a log, and show how far that is.
 
-    Raises InputError when one is missing, or holds no number; unless `strict` such a one is left
-    out with a note.
+    Raises InputError when one is missing, or holds no number; an `optional` one without a number
+    is left out.
 
     """
     source = source_of(path, layout)
-    held = source.names()
-    for name in names:
-        if name not in held:
-            raise InputError(
-                f'log {path}: column {name!r} is missing, the log holds {", ".join(held)}'
-            )
-    notes: list[str] = []
+    _check_names(source, names, layout or Layout())
+    left_out: dict[str, str] = {}
     found = {name: Cells(path, name, source.separator) for name in names}
     rows = 0
     with shown(source.rows, 'rows looked through') as show:
         for block in source.blocks(list(found)):
-            for name, cells in list(found.items()):
-                with _left_out(name, found, notes, strict=strict):
+            for name, cells in found.items():
+                with _left_out(name, left_out, optional):
                     cells.add(block[name])
             rows += block.height
             show(rows / source.rows)
     if not rows:
         raise InputError(f'log {path} holds no row, at least two are needed')
     readings: dict[str, Reading] = {}
-    for name, cells in list(found.items()):
-        with _left_out(name, found, notes, strict=strict):
+    for name, cells in found.items():
+        with _left_out(name, left_out, optional):
             readings[name] = cells.reading()
-            notes += [readings[name].note] if readings[name].note else []
-    return Table(path=path, readings=readings, rows=rows, notes=tuple(notes), _source=source)
+    return Table(
+        path=path,
+        readings={name: one for name, one in readings.items() if name not in left_out},
+        rows=rows,
+        notes=tuple(one.note for one in readings.values() if one.note),
+        left_out=left_out,
+        _source=source,
+    )
+
+
+def _check_names(source: Source, names: Collection[str], layout: Layout) -> None:
+    """Raise InputError for a column that a log does not hold, with what may be meant."""
+    held = source.names()
+    for name in names:
+        if name not in held:
+            hints = [f'{near} may be meant' for near in difflib.get_close_matches(name, held, n=1)]
+            if (found := layout_of(source.path)) != layout:
+                hints.append(
+                    'the names look to stand elsewhere: write '
+                    f'`skip: {found.skip}` and `header_rows: {found.header_rows}` in the map'
+                )
+            raise InputError(
+                f'log {source.path}: column {name!r} is missing, the log holds '
+                f'{"; ".join([listed(held), *hints])}'
+            )
 
 
 @contextlib.contextmanager
-def _left_out(
-    name: str, found: dict[str, Cells], notes: list[str], *, strict: bool
-) -> Iterator[None]:
-    """Leave out a column that cannot be read, with a note, unless that is an error."""
+def _left_out(name: str, left_out: dict[str, str], optional: Collection[str]) -> Iterator[None]:
+    """Take down why an optional column cannot be read."""
     try:
         yield
     except InputError as error:
-        if strict:
+        if name not in optional:
             raise
-        found.pop(name)
-        notes.append(f'{error}; it is left out')
+        left_out[name] = str(error)

@@ -7,7 +7,7 @@ Speeds that do not make the positions beside them are told, with the unit in whi
 
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 import dataclasses
 import itertools
 import math
@@ -18,10 +18,12 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.estimates import FACTOR, NEAR
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
+from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import open_table
 from ballscrew_monitor.recordings.tables.times import joined, line, Rows, Stamps, Times
 from ballscrew_monitor.recordings.words import Shown, shown_progress
 import numpy as np
+from surrogate.files import InputError
 from surrogate.units import TURN
 
 LONG = 3.0  # times the usual time between rows: across more the speed is not known
@@ -60,20 +62,21 @@ class Series:
     """
     A log by rows: their number, the usual time between them [s], and what was wrong with it.
 
-    The rows themselves are read when they are asked for.
+    `mapping` is that by which it is read, without the columns that hold nothing. The rows
+    themselves are read when they are asked for.
 
     """
 
     count: int
     usual_period: float
     notes: tuple[str, ...]
+    mapping: TableMap
     _times: Times
-    _mapping: TableMap
 
     def blocks(self) -> Iterator[Block]:
         """Yield the rows in blocks."""
         for rows, part in _with_neighbours(self._times.rows()):
-            axes = tuple(_axis(axis, rows, part, self._times.begin) for axis in self._mapping.axes)
+            axes = tuple(_axis(axis, rows, part, self._times.begin) for axis in self.mapping.axes)
             yield Block(stamps=rows.stamps[part], axes=axes)
 
 
@@ -84,15 +87,42 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     Raises InputError when it cannot be read by the map.
 
     """
-    table = open_table(path, mapping.columns, layout=mapping.layout, shown=shown)
-    times = Times(table, mapping, shown)
+    optional = [name for name in mapping.columns if name not in mapping.time_columns]
+    table = open_table(
+        path, mapping.columns, layout=mapping.layout, optional=optional, shown=shown
+    )
+    axes = tuple(_readable(axis, table.left_out) for axis in mapping.axes)
+    held = dataclasses.replace(mapping, axes=axes)
+    times = Times(table, held, shown)
     return Series(
         count=times.count,
         usual_period=times.usual_period,
-        notes=(*table.notes, *times.notes()),
+        notes=(*_losses(mapping, table.left_out), *table.notes, *times.notes()),
+        mapping=held,
         _times=times,
-        _mapping=mapping,
     )
+
+
+def _readable(axis: AxisMap, left_out: Mapping[str, str]) -> AxisMap:
+    """Return an axis without the columns that cannot be read; raises InputError without motion."""
+    for kind in ('speed', 'position'):
+        if kind in axis.columns and not set(MOTION) & set(axis.without(left_out).columns):
+            raise InputError(
+                f'{left_out[axis.columns[kind].name]}: name another column for '
+                f'axes.{axis.name}.{kind} in the map'
+            )
+    return axis.without(left_out)
+
+
+def _losses(mapping: TableMap, left_out: Mapping[str, str]) -> list[str]:
+    """Return what is judged without which column, and what to write in the map."""
+    return [
+        f'{left_out[column.name]}: axis {axis.name} is judged without its {kind}, name another '
+        f'column for axes.{axis.name}.{kind} in the map'
+        for axis in mapping.axes
+        for kind, column in axis.columns.items()
+        if column.name in left_out
+    ]
 
 
 def _with_neighbours(blocks: Iterable[Rows]) -> Iterator[tuple[Rows, slice]]:

@@ -47,7 +47,7 @@ def test_a_steady_share_is_told_however_often_it_is_looked_at(share, gaps, begin
 
 @given(st.lists(st.floats(0.1, 60.0), min_size=2, max_size=40))
 def test_what_is_longer_ago_than_the_span_and_a_look_is_forgotten(gaps):
-    """A processor that was used up before, and not since, is not told of for ever."""
+    """A processor that was used up before, and not since, is forgotten."""
     vitals, now = Vitals(), 0.0
     vitals.look(-1.0, -1.0)
     vitals.look(now, 0.0)

@@ -63,6 +63,7 @@ def test_the_status_of_the_node_says_what_it_works(node, says):
         return found if found and found[1]['Queue depth [-]'] > 0.0 else None
 
     status, values = node.until(worked, 'the work of the node')
+    assert values.pop('Code') == (701 if status.level == DiagnosticStatus.WARN else 0)
     assert values.keys() == {'Loop time [s]', 'Queue depth [-]', 'Processor share [-]'}
     assert values['Loop time [s]'] > 0.0
     said = {says('keeps_up'): DiagnosticStatus.OK, says('busy'): DiagnosticStatus.WARN}

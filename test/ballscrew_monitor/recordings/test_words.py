@@ -84,3 +84,11 @@ def test_short_work_is_silent_and_long_work_tells_rate_and_time_left(says):
 def test_a_feed_stands_first_beside_the_speed_of_the_screw(text, shown):
     """In the words of an advice and of a place, for a lead of 10 mm."""
     assert words.feed_first(text, 0.01) == shown
+
+
+def test_names_are_listed_up_to_a_number_and_a_length():
+    assert words.listed(['a', 'b']) == 'a, b'
+    assert words.listed([]) == ''
+    many = words.listed([*'a' * words.MOST, 'x', 'y'])
+    assert many.endswith('a, and 2 more')
+    assert words.listed(['n' * 999]) == 'n' * words.LONGEST + '…'

@@ -4,9 +4,17 @@
 
 import dataclasses
 
+from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.recordings.columns import Reason
-from ballscrew_monitor.report.provenance import assumptions_part, caution, gaps_part, torque_part
+from ballscrew_monitor.report.balance import Balance
+from ballscrew_monitor.report.provenance import (
+    assumptions_part,
+    caution,
+    checks,
+    gaps_part,
+    torque_part,
+)
 import numpy as np
 import pytest
 
@@ -115,3 +123,10 @@ def test_seconds_are_told_for_each_reason_and_gaps_lead_to_their_moment(judged, 
     assert says('judged_gaps_speed') in rest
     assert 'data-value="2.0"' in rest
     assert ('judged</td>' in known, '>1</td>' in known) == (True, True)
+
+
+def test_what_contradicts_itself_is_told_with_its_mend(judged, says):
+    case = judged.case([judged.columns()])
+    assert not list(checks([case]))
+    turned = dataclasses.replace(case, balance=Balance(turned=Source.LOAD))
+    assert says('check_turned') == ''.join(checks([case, turned]))

@@ -344,3 +344,34 @@ def test_a_workbook_without_its_reader_is_a_sentence(tmp_path, capsys, monkeypat
     monkeypatch.setitem(sys.modules, 'fastexcel', None)
     assert cli.main(['import', str(log), '--guess']) == 1
     assert capsys.readouterr().err == says('no_fastexcel')
+
+
+def test_what_cannot_be_read_is_judged_without_and_the_map_is_told(tmp_path, write_csv, says):
+    columns = {'t': np.arange(20.0) / 10, 'v': [50.0] * 20, 'F': ['n/a'] * 20, 'i': ['-'] * 20}
+    log = write_csv(tmp_path / 'log.csv', columns)
+    axis = {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'mm/s'}}
+    time = {'column': 't', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'}
+    current = {'current': {'column': 'i', 'unit': 'A'}, 'torque_constant_Nm_per_A': 0.1}
+    axes = {
+        'x': axis | {'load': {'column': 'F', 'unit': 'N'}},
+        'y': axis | current | {'load': {'from': 'current'}},
+        'z': axis | {'load': {'unknown': 'no sensor'}},
+    }
+    facts = convert(log, make_map({'time': time, 'axes': axes}), tmp_path / 'bag')
+    notes = [note.removeprefix(f'log {log}: ') for note in facts.notes]
+    assert [says('without_load'), says('without_current'), says('no_load')] == notes[:3]
+    reasons = {one.key: one.reason for one in facts.assumptions}
+    assert reasons['x.load'] == reasons['y.load'] == 'its column holds no number'
+    assert all(
+        not known for states in states_of(Bag(tmp_path / 'bag')).values() for known, _, _ in states
+    )
+
+
+def test_an_axis_whose_motion_cannot_be_read_is_refused(tmp_path, write_csv, refused):
+    log = write_csv(tmp_path / 'log.csv', {'t': [0.0, 0.1], 'v': ['a', 'b'], 'p': [1.0, 2.0]})
+    axis = {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'mm/s'}}
+    content = {'time': {'rate_Hz': 10.0, 'epoch': '2000-01-01'}, 'axes': {'x': axis}}
+    refused('no_motion', convert, log, make_map(content), tmp_path / 'bag')
+    axis['position'] = {'column': 'p', 'unit': 'mm'}
+    facts = convert(log, make_map(content), tmp_path / 'bag')
+    assert 'x.speed' in {one.key for one in facts.assumptions}

@@ -103,6 +103,12 @@ def test_a_map_is_a_file(tmp_path, refused):
     refused('map_cannot_read', read_map, path)
     path.write_text('axes: {}')
     refused('map_map_axes', read_map, path)
+    for name, content in {'a.csv': b't;v\n0;1', 'a.parquet': b'PAR1\xff', 'a.xlsx': b'PK'}.items():
+        table = tmp_path / name
+        table.write_bytes(content)
+        refused('a_table', read_map, table)
+    path.rename(tmp_path / 'map.txt').write_text(yaml.safe_dump(GOOD))
+    assert read_map(tmp_path / 'map.txt').content == GOOD
 
 
 def test_the_map_of_the_guide_is_one():

@@ -5,6 +5,7 @@
 import datetime as dt
 
 from ballscrew_monitor.recordings.tables import cells, sources
+from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
 import numpy as np
 import polars as pl
@@ -168,3 +169,20 @@ def test_times_and_durations_of_parquet_are_seconds(tmp_path, unit):
     np.testing.assert_array_equal(table.head(99)['span'], [1.5, np.nan, 3600.0])
     np.testing.assert_array_equal(table.head(99)['clock'], [2.0, 3600.0, np.nan])
     assert len(table.notes) == 2
+
+
+def test_a_missing_column_is_refused_with_what_may_be_meant(tmp_path, refused):
+    path = text_log(tmp_path, 'Maschine;3\nZeit;Kraft\ns;N\n0;1\n1;2\n')
+    refused('meant_elsewhere', open_table, path, ['Kraft'])
+    layout = Layout(skip=1, header_rows=2)
+    refused('meant', open_table, path, ['Kraft'], layout=layout)
+    names = ','.join(['n' * 99, *(f'c{number}' for number in range(99))])
+    refused('many_names', open_table, text_log(tmp_path, f'{names}\n1\n'), ['x'])
+
+
+def test_an_optional_column_without_a_number_is_left_out_with_the_reason(tmp_path, says):
+    path = text_log(tmp_path, 'a,b,c\n1,x,2\n2,y,3\n')
+    table = open_table(path, ['a', 'b'], optional=['b'])
+    assert list(table.head(9)) == ['a']
+    assert table.left_out['b'].endswith(says('left_out'))
+    assert not table.notes

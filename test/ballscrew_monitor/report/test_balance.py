@@ -1,0 +1,154 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Signs and sizes of load, motor torque and motion that contradict each other, and no others."""
+
+import os
+from pathlib import Path
+
+from ballscrew_monitor.core.conversions import Direction
+from ballscrew_monitor.core.estimate import PointSource
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.tables.convert import convert
+from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.report.balance import Balance, Balancer
+from ballscrew_monitor.report.judging import judge_log
+from ballscrew_monitor.report.parameters import parameters_for
+from hypothesis import given, strategies
+import numpy as np
+import pytest
+from surrogate.units import TURN
+
+LEAD = 0.01  # [m]
+COUNT = 400
+TIME = np.arange(COUNT) / 50.0  # [s]
+MOTION = np.sign(np.sin(TIME) + 1e-9)
+FORCES = {
+    'against the motion': -800.0 * MOTION - 100.0 * np.sin(3 * TIME),
+    'of a process': -500.0 + 300.0 * np.sin(0.7 * TIME),
+    'of a weight that is cut': 2000.0 + 50.0 * np.cos(5 * TIME),
+}
+NOISE = np.random.default_rng(1).normal(size=COUNT)
+
+
+@pytest.fixture
+def balance(judged):
+    """Return a function that balances rows in motion, in two blocks."""
+
+    def made(force, torque, motion=MOTION, source=PointSource.MEASURED):
+        balancer = Balancer(lead=LEAD, standstill=0.1)
+        direction = np.where(motion > 0, Direction.POSITIVE, Direction.NEGATIVE)
+        for part in (slice(150), slice(150, None)):
+            balancer.add(
+                judged.columns(
+                    count=len(TIME[part]),
+                    speed=60.0 * motion[part],
+                    direction=direction[part],
+                    axial_load=np.broadcast_to(force, COUNT)[part],
+                    axial_load_source=source,
+                    motor_torque=np.broadcast_to(torque, COUNT)[part],
+                    motor_torque_source=PointSource.MEASURED,
+                    friction_torque=0.2,
+                )
+            )
+        return balancer.result()
+
+    return made
+
+
+def torque_of(force, friction=0.2, noise=0.02):
+    """Return the motor torque [N m] that a force on the nut [N] and friction need."""
+    return -LEAD / TURN * force + friction * MOTION + noise * NOISE
+
+
+@pytest.mark.parametrize('force', FORCES.values(), ids=FORCES)
+@pytest.mark.parametrize(
+    ('signs', 'turned'),
+    [
+        ((1, 1, 1), None),
+        ((-1, 1, 1), Source.LOAD),
+        ((1, -1, 1), Source.TORQUE),
+        ((1, 1, -1), Source.SPEED),
+    ],
+)
+def test_the_sign_that_contradicts_the_others_is_known(force, signs, turned, balance):
+    load, torque, motion = signs
+    found = balance(load * force, torque * torque_of(force), motion * MOTION)
+    assert found == Balance(turned=turned)
+
+
+@given(
+    strategies.floats(10.0, 1e4),
+    strategies.floats(0.01, 5.0),
+    strategies.floats(-20.0, 20.0),
+    strategies.floats(0.85, 1.15),
+)
+def test_what_obeys_the_law_contradicts_nothing(size, friction, weight, loss):
+    force = size * np.sin(1.3 * TIME)
+    torque = -loss * LEAD / TURN * force + friction * MOTION + weight
+    assert Balancer(lead=LEAD, standstill=0.1).result() == Balance()
+    rows = np.stack([-LEAD / TURN * force, MOTION, np.ones(COUNT), torque])
+    balancer = Balancer(lead=LEAD, standstill=0.1)
+    balancer._both = balancer._load = balancer._torque = rows @ rows.T
+    assert balancer.result() == Balance()
+
+
+def test_a_load_that_follows_the_motion_is_judged_by_it(balance):
+    """Where load and motion cannot be told apart, friction decides."""
+    force = -800.0 * MOTION
+    torque = torque_of(force, noise=0.0)
+    assert balance(force, torque).turned is None
+    assert balance(-force, torque).turned is Source.LOAD
+    assert balance(force, -torque).turned is Source.TORQUE
+    assert balance(force, torque, -MOTION).turned is Source.SPEED
+    driven = torque_of(-force, noise=0.0)  # the load drives the screw, the motor holds it
+    assert balance(-force, driven).turned is None
+
+
+def test_a_load_or_a_torque_alone_must_not_drive_both_ways(balance):
+    nothing, drag = np.full(COUNT, np.nan), torque_of(0.0)
+    assert balance(nothing, drag) == Balance()
+    assert balance(nothing, -drag).turned is Source.TORQUE
+    opposing = -300.0 * MOTION + 100.0
+    assert balance(opposing, nothing) == Balance()
+    assert balance(-opposing, nothing).turned is Source.LOAD
+    assert balance(300.0 * MOTION + 500.0, nothing) == Balance()  # a weight may do so one way
+    assert balance(-opposing, nothing, source=PointSource.DERIVED) == Balance()
+    assert balance(nothing, -drag, np.ones(COUNT)) == Balance()
+
+
+def test_noise_and_few_rows_tell_nothing(balance, judged):
+    force = FORCES['of a process']
+    assert balance(-force, 0.1 * MOTION + 20.0 * NOISE) == Balance()
+    balancer = Balancer(lead=LEAD, standstill=0.1)
+    balancer.add(judged.columns(count=49, motor_torque=np.linspace(-1, 0, 49)))
+    assert balancer.result() == Balance()
+
+
+@pytest.mark.parametrize(('load', 'torque', 'friction'), [(1e-3, 1.0, 1.0), (1.0, 1e3, 1e3)])
+def test_a_wrong_size_is_told_with_the_friction_beside_it(load, torque, friction, balance):
+    force = FORCES['of a process']
+    found = balance(load * force, torque * torque_of(force, noise=0.001))
+    assert found.turned is None
+    assert found.factor == pytest.approx(1e3, rel=0.02)
+    assert found.friction == pytest.approx(friction, rel=0.05)
+
+
+@pytest.mark.skipif(
+    'BALLSCREW_RECORDINGS' not in os.environ, reason='BALLSCREW_RECORDINGS names no recordings'
+)
+@pytest.mark.parametrize(('scale', 'turned'), [(1.0, None), (-1.0, Source.LOAD)])
+def test_the_currents_of_a_real_machine_tell_their_sign(scale, turned, tmp_path):
+    log = Path(os.environ['BALLSCREW_RECORDINGS']) / 'cnc_mill' / 'experiment_01.csv'
+    content = guess(log).content
+    for axis in 'xy':
+        content['axes'][axis]['current']['scale'] = scale
+    convert(log, make_map(content), tmp_path / 'bag')
+    bag = Bag(tmp_path / 'bag')
+    found = judge_log(bag, parameters_for(bag, None, log)).axes
+    assert {case.axis: case.balance.turned for case in found} == {
+        'x': turned,
+        'y': turned,
+        'z': None,
+    }
