@@ -53,9 +53,9 @@ def add_run(parser: Parser) -> None:
 
 def add_replay(parser: Parser) -> None:
     """Add what `ballscrew replay` may be told."""
-    text = 'bag directory or file, a folder of them; CSV or Parquet with --map'
+    text = 'bag directory or file, a folder of them; a table with --map'
     _add_file(parser, 'logs', 'LOG', text, nargs='+')
-    _add_file(parser, '--map', 'FILE', 'map of the columns of a CSV or Parquet file')
+    _add_file(parser, '--map', 'FILE', 'map of the columns of a table: CSV, Parquet or xlsx')
     text = f'parameters of the node (default those that the log carries, else {PARAMS_TEXT})'
     _add_file(parser, '--params', 'FILE', text)
     _add_file(parser, '--out', 'DIR', 'directory for the report, its tables and data')
@@ -65,11 +65,9 @@ def add_replay(parser: Parser) -> None:
 
 def add_health(parser: Parser) -> None:
     """Add what `ballscrew health` may be told."""
-    text = (
-        'bag directory or file, a folder of them; CSV or Parquet with --map; state_dir of a node'
-    )
+    text = 'bag directory or file, a folder of them; a table with --map; state_dir of a node'
     _add_file(parser, 'logs', 'LOG', text, nargs='+')
-    _add_file(parser, '--map', 'FILE', 'map of the columns of a CSV or Parquet file')
+    _add_file(parser, '--map', 'FILE', 'map of the columns of a table: CSV, Parquet or xlsx')
     text = f'parameters of the node (default those that a log carries, else {PARAMS_TEXT})'
     _add_file(parser, '--params', 'FILE', text)
     text = 'motion of the first logs that is normal (default 0.16, ten minutes)'
@@ -93,7 +91,7 @@ def add_fingerprint(parser: Parser) -> None:
 
 def add_import(parser: Parser) -> None:
     """Add what `ballscrew import` may be told."""
-    _add_file(parser, 'log', 'LOG', 'CSV or Parquet file')
+    _add_file(parser, 'log', 'LOG', 'table: CSV, Parquet or xlsx')
     _add_switch(parser, '--guess', 'print a first map of the columns, and nothing else')
     _add_file(parser, '--config', 'MAP', 'map of the columns')
     _add_file(parser, '--out', 'BAG', 'directory of the bag to be made')
@@ -146,3 +144,20 @@ def add_solve(parser: Parser) -> None:
     parser.add_argument('--node', default='', help='full name of the node, if there are several')
     _add_wait(parser, 'the node')
     _add_switch(parser, '--json', 'print JSON')
+
+
+def add_page(parser: Parser) -> None:
+    """Add what `ballscrew page` may be told."""
+    text = 'full name of the node (default all of them, as they come and go)'
+    parser.add_argument('--node', default='', help=text)
+    text = 'address to serve at (default %(default)s); any other needs --token-file'
+    parser.add_argument('--host', default='127.0.0.1', help=text)
+    text = 'port to serve at (default %(default)s)'
+    parser.add_argument('--port', type=int, default=8090, help=text)
+    _add_file(parser, '--token-file', 'FILE', 'file whose first line opens the page to a reader')
+    _add_file(parser, '--cert', 'FILE', 'certificate of the server in PEM, for https')
+    _add_file(parser, '--key', 'FILE', 'its key')
+    text = 'language of the page, such as en (default that of the browser)'
+    parser.add_argument('--language', default='', help=text)
+    text = 'surfaces of the same screw with other oils, for what-if maps'
+    _add_file(parser, '--oils', 'SURFACE', text, nargs='+', default=[])

@@ -38,6 +38,8 @@ COLUMNS = 5000
 """Most columns of a table."""
 LINE = 4 * MEGA
 """Longest line of a table [byte]."""
+WORKBOOK = 512 * MEGA
+"""Largest workbook, unpacked, and text of UTF-16, which are read at once [byte]."""
 SURFACE = 256 * 2**20
 """Largest surface file, and the most that it may come to when unpacked [byte]."""
 

@@ -20,7 +20,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 DEADLINE = 600.0  # [s] which only ends a hang, in this file as in all others
 # No package of a machine with ROS 2.
-OPTIONAL = 'apsw contourpy mcap mcap_ros2 polars rosbags zstandard'.split()
+OPTIONAL = 'apsw contourpy fastexcel mcap mcap_ros2 polars rosbags zstandard'.split()
+OPTIONAL += 'prometheus_client starlette uvicorn websockets'.split()
 # Tests that solve contacts, talk over DDS, start processes, draw many pictures, repeat thousands
 # of fits or run linters over the whole tree: folders and files, and fixtures that make any test
 # such a one. All others are `fast`.
@@ -36,9 +37,11 @@ SLOW = (
     'ballscrew_monitor/node/test_loss.py',
     'ballscrew_monitor/node/test_motor_torque.py',
     'ballscrew_monitor/node/test_faults.py',
+    'ballscrew_monitor/node/test_heartbeat.py',
     'ballscrew_monitor/settings/test_middleware.py',
     'ballscrew_monitor/node/test_node.py',
     'ballscrew_monitor/node/test_solve.py',
+    'ballscrew_monitor/node/test_system.py',
     'ballscrew_monitor/recordings/test_axis_run.py',
     'ballscrew_monitor/recordings/test_black_box.py',
     'ballscrew_monitor/recordings/test_player.py',

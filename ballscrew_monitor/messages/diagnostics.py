@@ -17,6 +17,7 @@ from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Sou
 from ballscrew_monitor.core.judgement import Code, Gate, Level, WarningPolicy
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import Event, State
+from ballscrew_monitor.core.vitals import VitalSigns
 from ballscrew_monitor.messages import reasons
 from ballscrew_monitor.messages.reasons import Standing
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
@@ -34,6 +35,11 @@ INACTIVE = 'the node is inactive, nothing is judged'
 KEPT = 'sums, events and corrections are kept'
 NO_WARNING = '; no warning, by warning.policy'
 RECORDED = 'what the node hears and says is recorded'
+IN_TIME = 'the node keeps up'
+BUSY = (
+    'the node uses up one processor, messages may be lost: lower their rate, raise '
+    'publish_period, or give some axes a node of their own'
+)
 PARTS = ('Lubrication', 'Inputs', 'Surface')
 StatusSummary = tuple[bytes, str]  # level and message of a status
 
@@ -87,6 +93,19 @@ def defect_text(error: Exception, event: InputSample | Refusal | int | str) -> s
 def recording(node: str, problem: str) -> DiagnosticStatus:
     """Return the status of the recording of the `node`; `problem` is why there is none."""
     return _of_node(node, 'Recording', problem, RECORDED)
+
+
+def of_node(node: str, signs: VitalSigns) -> DiagnosticStatus:
+    """Return the status of the `node` itself, by full name."""
+    status = _of_node(node, 'Node', BUSY if signs.is_busy else '', IN_TIME)
+    status.values = key_values(
+        [
+            ('Loop time [s]', signs.loop_time),
+            ('Queue depth [-]', signs.queue_depth),
+            ('Processor share [-]', signs.processor_share),
+        ]
+    )
+    return status
 
 
 def _of_node(node: str, part: str, problem: str, fine: str) -> DiagnosticStatus:

@@ -13,22 +13,16 @@ from ballscrew_monitor.messages.state_messages import out_of_zone_message
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts, totals_facts
 from ballscrew_monitor.settings.axis import Axis
+from ballscrew_monitor.settings.qos import LATCHED_QOS
 from ballscrew_msgs.msg import AxisHealth, OutOfZone, SurfaceInfo
 from rclpy.clock import Clock
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 
 if TYPE_CHECKING:  # which imports this module
     from ballscrew_monitor.node.axis_publisher import AxisPublisher
-
-LATCHED_QOS = QoSProfile(
-    depth=1,
-    reliability=QoSReliabilityPolicy.RELIABLE,
-    durability=QoSDurabilityPolicy.TRANSIENT_LOCAL,
-)
 
 
 def quiet_publishers(node: LifecycleNode) -> functools.partial[Any]:

@@ -21,7 +21,7 @@ MAGIC = {
 ZSTD = next(magic for magic, kind in MAGIC.items() if kind == 'zstd')
 ENDINGS = ('.mcap', '.db3', '.mcap.zstd', '.db3.zstd')
 ACTIVE = '.mcap.active'
-TABLES = ('.csv', '.tsv', '.txt', '.parquet')
+TABLES = ('.csv', '.tsv', '.txt', '.parquet', '.xlsx')
 STORAGES = ('mcap', 'sqlite3')
 NO_METADATA = (OSError, ValueError, KeyError, TypeError, AttributeError)
 OWN = 'ballscrew_monitor'

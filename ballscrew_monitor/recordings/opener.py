@@ -34,13 +34,14 @@ def opened_log(
 def _bag_of(path: Path, mapping: Path | None, made: contextlib.ExitStack, shown: Shown) -> Path:
     """Return where the log at `path` is as a bag: itself, or made of a table until `made` ends."""
     if not path.exists():
-        raise InputError(f'log {path} does not exist, it must be a bag, a CSV or a Parquet file')
+        raise InputError(f'log {path} does not exist, it must be a bag or a table')
     if path.is_dir() or is_bag(path):
         _check_bag(path, mapping)
         return path
     if not is_table(path):
         raise InputError(
-            f'log {path} is neither a bag nor a table, it must be of MCAP, sqlite3, CSV or Parquet'
+            f'log {path} is neither a bag nor a table, it must be of MCAP, sqlite3, CSV, Parquet '
+            'or xlsx'
         )
     if mapping is None:
         raise InputError(

@@ -30,6 +30,14 @@ NAMES = {
     Source.TEMPERATURE: 'Oil temperature',
     Source.TORQUE: 'Motor torque',
 }
+OF_MOTOR = {
+    'torque': {'torque_rated_Nm': 'rated torque'},
+    'current': {
+        'torque_constant_Nm_per_A': 'torque constant',
+        'torque_rated_Nm': 'rated torque',
+    },
+}
+"""Places of a map that make a torque of what a column holds, with their words."""
 REFUSALS = {
     Why.OTHER_JOINTS: 'of other joints',
     Why.NOT_A_NUMBER: 'not a number',
@@ -194,8 +202,8 @@ def _origin(case: AxisCase, source: Source) -> str:
     elif source is Source.TORQUE and facts.torque_from_current:
         name, origin = 'current', 'worked out from the current'
     doubtful = [part for part in ('column', 'unit') if f'{name}.{part}' in facts.assumed]
-    if name == 'current' and 'torque_constant_Nm_per_A' in facts.assumed:
-        doubtful.append('torque constant')
+    for key, what in OF_MOTOR.get(name, {}).items():
+        doubtful += [what] if key in facts.assumed else []
     return f'{origin}, {" and ".join(doubtful)} assumed' if doubtful else origin
 
 

@@ -33,6 +33,7 @@ KEYS = {
     'lead_mm': 'lead of {} mm',
     'efficiency': 'efficiency of {} used for the load',
     'torque_constant_Nm_per_A': 'torque constant of the motor of {} N m/A',
+    'torque_rated_Nm': 'rated torque of the motor of {} N m',
     'time.rate_Hz': 'rate of the samples of {} Hz',
     'time.epoch': 'date',
 }

@@ -4,7 +4,7 @@
 Cells of a table as numbers: in which form they are, by all cells of a column, block by block.
 
 Numbers, times and durations of Parquet are read by their type. Texts are numbers with a decimal
-point, numbers with a decimal comma, or times of ISO 8601.
+point, numbers with a decimal comma, times of ISO 8601 or of the German form, or parts of these.
 
 """
 
@@ -183,18 +183,33 @@ def _commas(texts: pl.Series) -> pl.Series:
     return _points(plain.str.replace(',', '.', literal=True))
 
 
-def _iso(form: str) -> Form:
-    """Return what makes texts of a form of ISO 8601 times of the universal clock [s]."""
+def _made(parsed: Callable[[pl.Series], pl.Series]) -> Form:
+    """Return what makes texts times [s] by what parses them with a decimal point."""
 
     def made(texts: pl.Series) -> pl.Series:
-        plain = texts.str.strip_chars().str.replace('T', ' ', literal=True).str.strip_suffix('Z')
-        found = plain.str.to_datetime(form, time_unit='ns', strict=False)
-        return found.dt.epoch('ns').cast(pl.Float64) / SECOND
+        plain = texts.str.strip_chars().str.replace(',', '.', literal=True)
+        return _seconds(parsed(plain.str.replace('T', ' ', literal=True).str.strip_suffix('Z')))
 
     return made
 
 
-_TIMES = tuple(map(_iso, ('%Y-%m-%d %H:%M:%S%.f', '%Y-%m-%d %H:%M:%S%.f%z')))
+def _clock(form: str) -> Form:
+    """Return what makes texts of a form of date and time those of the universal clock [s]."""
+    return _made(lambda texts: texts.str.to_datetime(form, time_unit='ns', strict=False))
+
+
+def _day(form: str) -> Form:
+    """Return what makes texts of a form of a date its begin by the universal clock [s]."""
+    return _made(lambda texts: texts.str.to_date(form, strict=False))
+
+
+_OF_DAY = '%H:%M:%S%.f'
+_TIMES = (
+    *(_clock(f'{day} {_OF_DAY}') for day in ('%Y-%m-%d', '%d.%m.%Y', '%Y/%m/%d')),
+    _clock(f'%Y-%m-%d {_OF_DAY}%z'),
+    _made(lambda texts: texts.str.to_time(_OF_DAY, strict=False)),
+    *map(_day, ('%Y-%m-%d', '%d.%m.%Y', '%Y/%m/%d')),
+)
 
 
 def first_line(error: BaseException) -> str:

@@ -16,6 +16,7 @@ NEAR = 0.05  # part by which an estimated rate may miss a usual one
 FAST = 2.0  # [m/s] no feed axis moves faster
 FASTEST = 2000.0  # in mm/s, the same
 EARLIEST = 3e8  # [s] of the universal clock: no log is older, and no run lasts as long
+DAY = 86400.0  # [s]
 RATES = (0.5, 50e3)  # [Hz] of plausible logs
 FACTOR = 1.5  # by which a place and its speed may disagree
 
@@ -90,6 +91,16 @@ def time_unit(values: Array) -> tuple[str, bool, str]:
         if step > 0 and RATES[0] <= 1.0 / (step * TIME_UNITS[unit]) <= RATES[1]:
             return unit, False, f'its rows are {step:.3g} apart'
     return 's', False, f'its rows are {step:.3g} apart'
+
+
+def is_of_days(extremes: Array) -> bool:
+    """Tell whether the least and the most of times [s] are begins of days by the calendar."""
+    return bool((extremes > EARLIEST).all() and not (extremes % DAY).any())
+
+
+def is_of_a_day(extremes: Array) -> bool:
+    """Tell whether the least and the most of times [s] are those of one day."""
+    return bool((extremes >= 0.0).all() and (extremes < DAY).all())
 
 
 def is_rising(values: Array) -> bool:

@@ -7,7 +7,7 @@ What nothing in the log tells stands under `assumed` with a value and a reason.
 
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import dataclasses
 import math
 from pathlib import Path
@@ -17,9 +17,10 @@ from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array
-from ballscrew_monitor.recordings.tables.mapping import INPUTS, UNITS
 from ballscrew_monitor.recordings.tables.names import Named, read_name
+from ballscrew_monitor.recordings.tables.quantities import INPUTS, Layout, RATED, UNITS
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
+from ballscrew_monitor.recordings.tables.sources import layout_of
 from ballscrew_monitor.recordings.words import Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
@@ -29,6 +30,7 @@ import yaml
 
 SCREW, OIL = 'nominal', 'iso_vg_68'
 TORQUE_CONSTANT = 0.1  # [N m/A]
+RATED_TORQUE = 5.0  # [N m]
 EFFICIENCY = 0.9
 TEMPERATURE = 40.0  # [degC]
 RATE = 100.0  # [Hz]
@@ -81,7 +83,8 @@ class _Guesser:
 
     def __init__(self, path: Path, shown: Shown) -> None:
         self.path = path
-        self.named = [read_name(name) for name in column_names(path)]
+        self.layout = layout_of(path)
+        self.named = [read_name(name) for name in column_names(path, self.layout)]
         self.assumed: dict[str, dict[str, Any]] = {}
         self.notes: list[str] = []
         self.used: dict[str, dict[str, dict[str, Any]]] = {}
@@ -99,7 +102,7 @@ class _Guesser:
         self.times = [one for one in self.named if one.kind == 'time']
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
         used = [one.column for one in [*columns, *self.times]]
-        table = open_table(path, used, strict=False, shown=shown)
+        table = open_table(path, used, layout=self.layout, strict=False, shown=shown)
         rows = NUMBERS // len(used)
         # The first rows tell how the speeds go with the positions, all of them the ranges.
         self.data = table.head(rows)
@@ -116,7 +119,10 @@ class _Guesser:
         if not time:
             self._assume_rate()
         self._say_what_is_left_out(time)
-        content: dict[str, Any] = {'log': self.path.name} | ({'time': time} if time else {})
+        usual, found = (dataclasses.asdict(one) for one in (Layout(), self.layout))
+        content: dict[str, Any] = {'log': self.path.name}
+        content |= {key: value for key, value in found.items() if value != usual[key]}
+        content |= {'time': time} if time else {}
         content |= {'axes': self.used, 'assumed': self.assumed}
         return Guess(content=content, notes=tuple(self.notes))
 
@@ -136,11 +142,18 @@ class _Guesser:
 
     def _time_column(self) -> dict[str, Any]:
         """Return what the map says of the time; take the step between rows if it is known."""
+        days = next((one for one in self.times if self._is(estimates.is_of_days, one)), None)
         for one in sorted(self.times, key=lambda one: -one.rank):  # by name, then by unit
             values = self.data[one.column]
-            if estimates.is_rising(values):
+            if days and not one.unit and self._is(estimates.is_of_a_day, one):
+                dated = self._time_of(one, self.data[days.column] + values)
+                return dated | {'date': days.column}
+            if one is not days and estimates.is_rising(values):
                 return self._time_of(one, values)
         return {}
+
+    def _is(self, kind: Callable[[Array], bool], one: Named) -> bool:
+        return kind(self.extremes[one.column])
 
     def _time_of(self, one: Named, values: Array) -> dict[str, Any]:
         unit, absolute, why = estimates.time_unit(values[np.isfinite(values)])
@@ -214,6 +227,8 @@ class _Guesser:
         why = f'the log does not say it; that of {SCREW}'
         self._assume(f'{name}.lead_mm', float(f'{lead:.6g}'), why)
         self._set_load(name)
+        if 'torque' in used and self._unit(name, 'torque') == RATED:
+            self._assume_motor(name, 'torque')
         if 'temperature' in used:
             self._set_oil(name, used['temperature'])
         else:
@@ -240,6 +255,8 @@ class _Guesser:
         values = self.extremes[place['column']]
         if kind == 'position':
             unit, why = estimates.position_unit(values)
+        elif kind == 'speed' and (turning := names.turning_unit(place['column'])):
+            unit, why = turning, 'its name is that of a turning speed'
         elif kind == 'speed':
             metres, speed = self._metres(name), self.data[place['column']]
             motion = None if metres is None else (metres, speed)
@@ -276,18 +293,23 @@ class _Guesser:
             self._assume(f'{name}.load.from', source, f'no force is in the log; {FORCE}')
             self._assume(f'{name}.efficiency', EFFICIENCY, 'usual for a ball screw')
             if source == 'current':
-                self._assume(
-                    f'{name}.torque_constant_Nm_per_A',
-                    TORQUE_CONSTANT,
-                    'the log does not say it; it is on the plate of the motor',
-                )
+                self._assume_motor(name, source)
             return
         silent = [chosen[kind].column for kind in ('load', 'torque', 'current') if kind in chosen]
         why = f'{", ".join(silent)} is always 0' if silent else 'no force, torque or current'
         used['load'] = {'unknown': why}
         self.notes.append(f'axis {name}: the load is not known ({why}), nothing will be judged')
 
+    def _assume_motor(self, name: str, kind: str) -> None:
+        """Assume what makes a torque of a current, or of either in % of the rated one."""
+        rated = self._unit(name, kind) == RATED
+        key = 'torque_rated_Nm' if rated else 'torque_constant_Nm_per_A'
+        value = RATED_TORQUE if rated else TORQUE_CONSTANT
+        self._assume(
+            f'{name}.{key}', value, 'the log does not say it; it is on the plate of the motor'
+        )
+
     def _say_what_is_left_out(self, time: Mapping[str, Any]) -> None:
         used = {part.get('column') for axis in self.used.values() for part in axis.values()}
-        used |= {entry['value'] for entry in self.assumed.values()} | {time.get('column', '')}
+        used |= {entry['value'] for entry in self.assumed.values()} | set(time.values())
         self.notes += names.left_out([one for one in self.named if one.column not in used])

@@ -16,31 +16,27 @@ import math
 from pathlib import Path
 from typing import Any
 
-from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.log_facts import Assumption
+from ballscrew_monitor.recordings.tables.quantities import (
+    column_name,
+    INPUTS,
+    Layout,
+    RATED,
+    UNITS,
+)
 from ballscrew_monitor.settings.parameters import check_axes
 from surrogate.files import InputError
 from surrogate.limits import read_text
 from surrogate.plain_yaml import plain_values
 from surrogate.units import MICRO, MILLI
 
-UNITS: dict[str, Mapping[str, float]] = {
-    'speed': conversions.LINEAR_SPEED_UNITS | conversions.ROTARY_SPEED_UNITS,
-    'position': conversions.LINEAR_POSITION_UNITS | conversions.ROTARY_POSITION_UNITS,
-    'load': conversions.LOAD_UNITS,
-    'torque': {'N m': 1.0},
-    'current': conversions.CURRENT_UNITS,
-    'temperature': conversions.TEMPERATURE_UNITS,
-    'time': conversions.TIME_UNITS,
-}
-"""Units of each kind of column."""
-INPUTS = tuple(kind for kind in UNITS if kind != 'time')
 DERIVED = ('current', 'torque', 'motor_torque')
 """A load may be worked out from a current or torque, or by the node from the motor torque."""
 NUMBERS = {
     'lead_mm': (0.1, 1000.0),
     'torque_constant_Nm_per_A': (1e-6, 1e3),
+    'torque_rated_Nm': (1e-6, 1e6),
     'efficiency': (0.1, 1.0),
     'torque_uncertainty_Nm': (1e-9, 1e6),
     'inertia_kg_m2': (0.0, 1e3),
@@ -48,6 +44,8 @@ NUMBERS = {
     'rate_Hz': (1e-3, 1e6),
 }
 """Numbers of an axis, and of the time, with the least and the most allowed."""
+LINES = {'skip': (0, 1000), 'header_rows': (1, 2)}
+"""Numbers of lines, with the least and the most allowed."""
 TEXTS = ('screw', 'oil', 'surface')
 
 
@@ -66,10 +64,10 @@ class AxisMap:
     """
     One axis: its columns by input, and what they are worked with.
 
-    Lead [m], torque constant [N m/A] and oil temperature [degC], NaN where not said; efficiency
-    [-]; half width of the range of the torque [N m], NaN where not said, and inertia [kg m2], for
-    a load that the node works out; `load_from` says from what it is; `unknown` says of an input
-    why it is not known.
+    Lead [m], constant [N m/A] and rated torque [N m] of the motor, and oil temperature [degC], NaN
+    where not said; efficiency [-]; half width of the range of the torque [N m], NaN where not
+    said, and inertia [kg m2], for a load that the node works out; `load_from` says from what it
+    is; `unknown` says of an input why it is not known.
 
     """
 
@@ -77,6 +75,7 @@ class AxisMap:
     columns: Mapping[str, Column]
     lead: float
     torque_constant: float
+    torque_rated: float
     efficiency: float
     torque_uncertainty: float
     inertia: float
@@ -85,18 +84,27 @@ class AxisMap:
     unknown: Mapping[str, str]
     texts: Mapping[str, str]
 
+    def motor_torque(self, kind: str) -> float:
+        """Return the torque [N m] of one unit of its torque or current, NaN where not said."""
+        unit = self.columns[kind].unit
+        scale = self.torque_rated if unit == RATED else self.torque_constant
+        return UNITS[kind][unit] * (1.0 if unit == 'N m' else scale)
+
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class TableMap:
     """
     A checked map.
 
-    Column of the time, or the rate [Hz] of a log without one; epoch [ns] of the first row, None
-    when the log tells it; `content` is the map as it was written.
+    Column of the time, or the rate [Hz] of a log without one; `date` names the column of the days
+    whose times the other says, if there is one; epoch [ns] of the first row, None when the log
+    tells it; `content` is the map as it was written.
 
     """
 
+    layout: Layout
     time: Column | None
+    date: str
     rate: float
     epoch: int | None
     axes: tuple[AxisMap, ...]
@@ -107,9 +115,13 @@ class TableMap:
     @property
     def columns(self) -> list[str]:
         """Return the names of all columns that are read."""
-        chosen = [column for axis in self.axes for column in axis.columns.values()]
-        names = [column.name for column in ([self.time] if self.time else []) + chosen]
-        return list(dict.fromkeys(names))
+        chosen = [column.name for axis in self.axes for column in axis.columns.values()]
+        return list(dict.fromkeys([*self.time_columns, *chosen]))
+
+    @property
+    def time_columns(self) -> list[str]:
+        """Return the names of the columns of the time, those of a date after it."""
+        return [self.time.name, *filter(None, [self.date])] if self.time else []
 
 
 def read_map(path: Path) -> TableMap:
@@ -127,7 +139,7 @@ def read_map(path: Path) -> TableMap:
 
 def make_map(content: Any) -> TableMap:
     """Return a map made of its content; raises InputError when that is not right."""
-    known = ('log', 'time', 'axes', 'assumed', 'parameters')
+    known = ('log', 'time', 'axes', 'assumed', 'parameters', *LINES)
     _check_keys('the map', content, known)
     axes = content.get('axes')
     if not isinstance(axes, dict) or not axes:
@@ -141,7 +153,9 @@ def make_map(content: Any) -> TableMap:
     epoch = values.pop('time.epoch', None)
     time = _Part('time', values)
     made = TableMap(
+        layout=_layout(content),
         time=time.column('time', at='time'),
+        date=column_name(time.text('date')),
         rate=time.number('rate_Hz'),
         epoch=None if epoch is None else _epoch(epoch),
         axes=tuple(_axis(str(name), values) for name in axes),
@@ -154,6 +168,16 @@ def make_map(content: Any) -> TableMap:
     if values:
         raise InputError(f'{next(iter(values))} is unknown')
     return made
+
+
+def _layout(content: Mapping[str, Any]) -> Layout:
+    """Return where a map says that the names of the columns stand."""
+    found = {}
+    for key, (low, high) in LINES.items():
+        value = found[key] = content.get(key, getattr(Layout(), key))
+        if not (isinstance(value, int) and low <= value <= high) or isinstance(value, bool):
+            raise InputError(f'{key} is {value!r}, it must be a whole number, {low} to {high}')
+    return Layout(**found)
 
 
 class _Part:
@@ -196,6 +220,7 @@ class _Part:
             )
         if not name:
             return None
+        name = column_name(name)
         return Column(name=name, unit=unit, scale=float(numbers[0]), offset=float(numbers[1]))
 
 
@@ -207,6 +232,7 @@ def _axis(name: str, values: dict[str, Any]) -> AxisMap:
         columns={kind: column for kind, column in found.items() if column},
         lead=part.number('lead_mm') / MILLI,
         torque_constant=part.number('torque_constant_Nm_per_A'),
+        torque_rated=part.number('torque_rated_Nm'),
         efficiency=part.number('efficiency', 1.0),
         torque_uncertainty=part.number('torque_uncertainty_Nm'),
         inertia=part.number('inertia_kg_m2', 0.0),
@@ -225,6 +251,8 @@ def _check_axis(axis: AxisMap) -> None:
         raise InputError(f'{axis.name} has no speed, it must name a column of speed or position')
     if math.isnan(axis.lead):
         raise InputError(f'{axis.name}.lead_mm is missing, it must be the lead of the screw')
+    if 'torque' in axis.columns and math.isnan(axis.motor_torque('torque')):
+        raise InputError(f'{axis.name}.torque_rated_Nm is missing, a torque in % is part of it')
     source = axis.load_from
     if not source:
         return
@@ -236,10 +264,10 @@ def _check_axis(axis: AxisMap) -> None:
     used = {'motor_torque': {'current', 'torque'}}.get(source, {source}) & set(axis.columns)
     if not used:
         raise InputError(f'{axis.name}.load.from is {source!r}, of which no column is named')
-    if used == {'current'} and math.isnan(axis.torque_constant):
-        raise InputError(
-            f'{axis.name}.torque_constant_Nm_per_A is missing, a load from the current needs it'
-        )
+    if used == {'current'} and math.isnan(axis.motor_torque('current')):
+        rated = axis.columns['current'].unit == RATED
+        needed = 'torque_rated_Nm' if rated else 'torque_constant_Nm_per_A'
+        raise InputError(f'{axis.name}.{needed} is missing, a load from the current needs it')
     if source == 'motor_torque' and math.isnan(axis.torque_uncertainty):
         raise InputError(
             f'{axis.name}.torque_uncertainty_Nm is missing, a load from motor_torque needs it'

@@ -2,125 +2,30 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names of columns, read: axis, quantity, unit as it is spelt; and the columns of each axis."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 import dataclasses
 import re
 
-from ballscrew_monitor.recordings.tables.mapping import INPUTS, UNITS
-
-WORD = re.compile(r'[A-ZÄÖÜ]+(?![a-zäöüßµμ°])|[A-ZÄÖÜ]?[a-zäöüßµμ°]+|\d+')
-"""A word of a name: of one case, or of small letters after a capital; or a number."""
-BRACKETS = re.compile(r'[\[(]([^\])]+)[\])]')
-_PER = re.compile(r'[\s_]*(?:/|_|\s|(?<![a-z])per(?![a-z]))[\s_]*')
-_CAMEL_PER = re.compile(r'(?<=[a-z])Per(?=[A-Z])')
-_LONGEST = 4  # words of a unit, such as m per min in camel case
-_BY_ITSELF = 2  # letters of a unit that says without brackets which quantity it is of
-_OTHER_WORDS = frozenset({'min', 'rev', 'rad', 'deg', 'nm', 'ma', 'amp', 'amps'})
-_ALIASES = {
-    'mm/s': ('mmps', 'mm/sec'),
-    'm/s': ('mps', 'm/sec'),
-    'mm/min': ('mmpm',),
-    'm/min': ('mpm',),
-    'rev/min': ('rpm', '1/min', 'r/min', 'u/min', 'min-1', 'min^-1', 'min⁻¹', 'turns/min'),
-    'rad/s': ('radps', 'rad/sec'),
-    'N m': ('nm', 'n.m', 'n*m', 'n·m'),
-    'degC': ('c', '°c', 'deg/c', '°/c', 'celsius'),
-    'A': ('amp', 'amps'),
-    's': ('sec', 'seconds'),
-    'ms': ('msec', 'millis'),
-    'us': ('usec', 'µs', 'μs'),
-}
-
-
-def unit_of(column: str, kind: str) -> str:
-    """Return the unit of a kind of quantity that a name of a column states, empty if none."""
-    known = _SPELLINGS.get(kind, {})
-    return next((known[text] for text in _stated(column) if text in known), '')
-
-
-def kind_by_unit(column: str) -> tuple[str, str]:
-    """
-    Return the only quantity that is stated in a unit, and the words of the name before the unit.
-
-    Both are empty when the name states no unit, or one that without brackets may be a word.
-
-    """
-    inside = [_plain(text) for text in BRACKETS.findall(column)]
-    texts = [*inside, *(text for text in _ends(column) if _stands_alone(text))]
-    for text in texts:
-        kinds = [kind for kind, known in _SPELLINGS.items() if text in known]
-        if len(kinds) == 1:
-            return kinds[0], _before(column, text)
-    return '', ''
-
-
-def words_of(text: str) -> list[str]:
-    """Return the words of a name in small letters, without what stands in brackets."""
-    return [word.lower() for word in WORD.findall(BRACKETS.sub(' ', text))]
-
-
-def words_without_unit(column: str, kind: str) -> list[str]:
-    """Return the words of a name, without the unit of a kind of quantity at its end."""
-    known = _SPELLINGS.get(kind, {})
-    text = next((text for text in _ends(column) if text in known), '')
-    return words_of(_before(column, text) if text else column)
-
-
-def _stands_alone(text: str) -> bool:
-    return len(text) >= _BY_ITSELF and text not in _OTHER_WORDS
-
-
-def _stated(column: str) -> Iterator[str]:
-    """Yield what may be a unit: in brackets, at the end, `rpm` anywhere, longer inside."""
-    yield from (_plain(text) for text in BRACKETS.findall(column))
-    yield from _ends(column)
-    bare = BRACKETS.sub(' ', column)
-    spans = [match.span() for match in WORD.finditer(bare)]
-    yield from (word for word in words_of(column) if word == 'rpm')
-    for length in range(_LONGEST, 0, -1):
-        for first in range(1, len(spans) - length + 1):
-            begin, end = spans[first][0], spans[first + length - 1][1]
-            text = _plain(bare[begin:end])
-            if _stands_alone(text):
-                yield text
-
-
-def _ends(column: str) -> list[str]:
-    """Return the last words of a name as they are joined, most of them first, but never all."""
-    bare = BRACKETS.sub(' ', column).strip()
-    starts = [match.start() for match in WORD.finditer(bare)][1:]
-    return [_plain(bare[start:]) for start in starts[-_LONGEST:]]
-
-
-def _before(column: str, unit: str) -> str:
-    """Return a name without its brackets and without a unit at its end."""
-    bare = BRACKETS.sub(' ', column).strip()
-    starts = [match.start() for match in WORD.finditer(bare)]
-    cut = next((start for start in starts if _plain(bare[start:]) == unit), len(bare))
-    return bare[:cut]
-
-
-def _plain(text: str) -> str:
-    """Return a spelling with one sign for all that stands between its words: / ."""
-    return _PER.sub('/', _CAMEL_PER.sub('/', text.strip()).lower()).strip('/')
-
-
-def _spellings(units: Mapping[str, float]) -> dict[str, str]:
-    spelt = {_plain(unit): unit for unit in units}
-    return spelt | {_plain(alias): unit for unit in units for alias in _ALIASES.get(unit, ())}
-
-
-_SPELLINGS = {kind: _spellings(units) for kind, units in UNITS.items()}
-
+from ballscrew_monitor.recordings.tables.quantities import INPUTS
+from ballscrew_monitor.recordings.tables.unit_names import (
+    BRACKETS,
+    kind_by_unit,
+    unit_of,
+    words_of,
+    words_without_unit,
+)
 
 LINEAR = frozenset('xyz')
 SECONDARY = frozenset('uvw')  # with a number: alone they mean other things, too
 ROTARY = frozenset('abc')
+AXIS = frozenset({'axis', 'achse'})
 SPINDLES = frozenset({'s', 'sp', 'spindle'})
 KINDS = {
-    'speed': frozenset('velocity vel speed rpm omega feed geschwindigkeit drehzahl'.split()),
-    'position': frozenset('position pos'.split()),
-    'load': frozenset('force load thrust kraft axialkraft'.split()),
+    'speed': frozenset(
+        'velocity vel speed rpm omega feed geschwindigkeit geschw vorschub drehzahl'.split()
+    ),
+    'position': frozenset('position pos lage weg'.split()),
+    'load': frozenset('force load thrust kraft'.split()),
     'torque': frozenset('torque trq moment drehmoment'.split()),
     'current': frozenset('current amps amp iq strom'.split()),
     'temperature': frozenset('temperature temp temperatur'.split()),
@@ -132,17 +37,23 @@ KINDS = {
 # Words that make a column something else, whatever else its name says.
 OTHERS = frozenset(
     'acceleration accel acc jerk voltage volt volts power error deviation feedrate rate override '
-    'program sequence number line block inertia bus count index status limit percent pct'.split()
+    'program sequence number line block inertia bus count index status limit percent pct '
+    'beschleunigung ruck spannung leistung fehler abweichung programm satz zeile nummer'.split()
 )
-ELSEWHERE = frozenset('motor drive ambient cabinet winding room air coolant'.split())
-MEASURED = frozenset('actual act feedback fb measured meas encoder real ist'.split())
+ELSEWHERE = frozenset(
+    'motor drive ambient cabinet winding room air coolant antrieb umgebung wicklung luft'.split()
+)
+MEASURED = frozenset('actual act feedback fb measured meas encoder real ist istwert'.split())
 WANTED = frozenset(
-    'command commanded cmd set setpoint target reference ref demand desired nominal soll'.split()
+    'command commanded cmd set setpoint target reference ref demand desired nominal soll '
+    'sollwert'.split()
 )
-QUALIFIERS = frozenset('filtered smoothed mean average avg rms value'.split())
+QUALIFIERS = frozenset('filtered smoothed mean average avg rms value wert'.split())
 PROCESSED = frozenset('output raw'.split())
-OF_THE_SCREW = frozenset('oil nut screw lubricant ballscrew öl oel'.split())
-TELLS_NOTHING = MEASURED | WANTED | PROCESSED | OF_THE_SCREW | {'axis'}
+OF_THE_SCREW = frozenset('oil nut screw lubricant ballscrew öl oel mutter'.split())
+TELLS_NOTHING = MEASURED | WANTED | PROCESSED | OF_THE_SCREW | AXIS | {'achs', 'axial'}
+TURNING = {'drehzahl': 'rev/min', 'omega': 'rad/s'}
+"""Words of a speed that tell its unit, where nothing else does."""
 BY_UNIT = -4  # rank of a column of which the unit alone tells the quantity
 MOTION = ('speed', 'position')
 _NAME = re.compile(r'[a-z][a-z0-9_]*')
@@ -187,6 +98,11 @@ def is_of_the_screw(column: str) -> bool:
     return bool(OF_THE_SCREW & set(words_of(column)))
 
 
+def turning_unit(column: str) -> str:
+    """Return the unit in which the word of a turning speed is usual, empty for any other name."""
+    return next((TURNING[word] for word in words_of(column) if word in TURNING), '')
+
+
 def axis_names(named: Sequence[Named]) -> dict[str, str]:
     """Return the name of the axis for each that is found: the number goes if there is one."""
     found = sorted({one.axis for one in named if one.place == 'axis'})
@@ -200,8 +116,12 @@ def axis_names(named: Sequence[Named]) -> dict[str, str]:
 def _place(words: Sequence[str]) -> tuple[str, str]:
     for number, (word, after) in enumerate(zip(words, [*words[1:], ''])):
         digits = after if after.isdigit() else ''
-        if word in LINEAR or (word in SECONDARY and digits) or (word == 'axis' and digits):
-            return 'axis', word + digits
+        if (
+            word in LINEAR
+            or (word in SECONDARY and digits)
+            or (word in ('axis', 'achse') and digits)
+        ):
+            return 'axis', word.replace('achse', 'axis') + digits
         if word == 'spindle' or (number == 0 and word in SPINDLES):
             return 'spindle', ''
         if number == 0 and len(word) == 1 and digits:

@@ -84,7 +84,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     Raises InputError when it cannot be read by the map.
 
     """
-    table = open_table(path, mapping.columns, shown=shown)
+    table = open_table(path, mapping.columns, layout=mapping.layout, shown=shown)
     times = Times(table, mapping, shown)
     return Series(
         count=times.count,
@@ -126,10 +126,10 @@ def _axis(axis: AxisMap, rows: Rows, part: slice, begin: int) -> AxisSeries:
         position = column('position', turned, slice(None))
         assert position is not None  # the map has one of them
         speed = _slope(position, (rows.stamps - begin) / SECOND)[part]
-    torque = column('torque', 1.0)
-    current = column('current', conversions.CURRENT_UNITS.get(unit('current'), 1.0))
-    if torque is None and current is not None and math.isfinite(axis.torque_constant):
-        torque = current * axis.torque_constant
+    motor = {kind: axis.motor_torque(kind) for kind in ('torque', 'current') if unit(kind)}
+    torque = column('torque', motor.get('torque', 1.0))
+    if torque is None and math.isfinite(per_unit := motor.get('current', math.nan)):
+        torque = column('current', per_unit)
     load = column('load', conversions.LOAD_UNITS.get(unit('load'), 1.0))
     if load is None:
         load = _load_without_column(axis, torque, len(speed))

@@ -9,7 +9,8 @@ import math
 from ballscrew_monitor.core.conversions import SECOND, TIME_UNITS
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
-from ballscrew_monitor.recordings.tables.read import BLOCK, Table
+from ballscrew_monitor.recordings.tables.read import Table
+from ballscrew_monitor.recordings.tables.sources import BLOCK
 from ballscrew_monitor.recordings.words import Shown, shown_progress
 import numpy as np
 from numpy.typing import NDArray
@@ -155,11 +156,9 @@ class Times:
 
     def _look(self, shown: Shown) -> None:
         """Look through the times of all rows."""
-        time, row = self._mapping.time, 0
+        row, names = 0, self._mapping.time_columns
         with shown(self._table.rows, 'times looked through') as show:
-            for block in self._table.blocks(
-                [time.name] if time else list(self._table.readings)[:1]
-            ):
+            for block in self._table.blocks(names or list(self._table.readings)[:1]):
                 times = self._times(block, row)
                 row += len(times)
                 self._count(times[np.isfinite(times)])
@@ -186,7 +185,8 @@ class Times:
         if time is None:
             count = len(next(iter(columns.values())))
             return np.arange(row, row + count) / self._mapping.rate
-        return line(columns[time.name], time, TIME_UNITS[time.unit])
+        days = columns[self._mapping.date] if self._mapping.date else 0.0
+        return days + line(columns[time.name], time, TIME_UNITS[time.unit])
 
     def _nanoseconds(self, times: Array) -> Array:
         """Return times [ns] since the first of them, or since 1970 where the log tells it."""

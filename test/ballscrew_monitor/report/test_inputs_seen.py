@@ -90,6 +90,7 @@ TORQUE = {'x.torque.topic': 'torque', 'x.torque.field': 'data'}
             ['current.column'],
             'worked_out_from_current',
         ),
+        (Source.TORQUE, ['torque_rated_Nm'], ['torque.column'], 'measured_rated'),
         (Source.TORQUE, [], ['current.column'], 'out_from_current'),
         (
             Source.TORQUE,

@@ -6,6 +6,7 @@ import contextlib
 import json
 import os
 from pathlib import Path
+import sys
 
 from ballscrew_monitor import cli
 from ballscrew_monitor.core.cdr import serialized
@@ -18,7 +19,7 @@ from ballscrew_monitor.recordings.log_facts import (
     values_for,
 )
 from ballscrew_monitor.recordings.replay import replay
-from ballscrew_monitor.recordings.tables import cells, read
+from ballscrew_monitor.recordings.tables import cells, sources
 from ballscrew_monitor.recordings.tables.convert import (
     BLOCK,
     convert,
@@ -223,7 +224,7 @@ class Shown:
 @pytest.fixture
 def small_blocks(monkeypatch):
     """Let tables be read in blocks of 32 rows; return how many were numbers at a time."""
-    monkeypatch.setattr(read, 'BLOCK', 32)
+    monkeypatch.setattr(sources, 'BLOCK', 32)
     lengths, numbers = [], cells.Reading.numbers
 
     def counted(reading, block):
@@ -260,7 +261,7 @@ def test_the_blocks_leave_no_trace_in_the_bag(monkeypatch, tmp_path, write_csv, 
     log, found = write_csv(tmp_path / 'mill.csv', mill(1000)), []
     mapping = make_map(guess(log).content)
     for block in (7, 1000):
-        monkeypatch.setattr(read, 'BLOCK', block)
+        monkeypatch.setattr(sources, 'BLOCK', block)
         convert(log, mapping, tmp_path / str(block))
         found.append([(one.topic, one.data) for one in Bag(tmp_path / str(block)).messages()])
     assert found[0] == found[1]
@@ -335,3 +336,11 @@ def test_what_is_missing_or_superfluous_is_named(mill_log, tmp_path, capsys, sho
     for log in (short_bag, short_bag / 'short.mcap'):
         refused('bag_needs_import', print_guess, log)
     refused('cannot_read', print_guess, Path(tmp_path / 'nothing.csv'))
+
+
+def test_a_workbook_without_its_reader_is_a_sentence(tmp_path, capsys, monkeypatch, says):
+    log = tmp_path / 'book.xlsx'
+    log.write_bytes(b'PK\3\4')
+    monkeypatch.setitem(sys.modules, 'fastexcel', None)
+    assert cli.main(['import', str(log), '--guess']) == 1
+    assert capsys.readouterr().err == says('no_fastexcel')

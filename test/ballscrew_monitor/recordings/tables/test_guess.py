@@ -2,9 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The first map of a log: by names, ranges and rates, and honest about what is assumed."""
 
+import datetime as dt
+
 from ballscrew_monitor.recordings.tables import guess as guess_module
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.series import read_series
 import numpy as np
 import pytest
 import yaml
@@ -66,6 +69,19 @@ def test_units_in_names_are_not_assumed(guessed):
     assert made.content['assumed']['y.load.from']['value'] == 'torque'
     assert made.content['time'] == {'column': 'time_ms', 'unit': 'ms'}
     assert not [key for key in made.content['assumed'] if key.endswith('.unit')]
+
+
+@pytest.mark.parametrize('name', ['Drehmoment [%]', 'Motorstrom [%]'])
+def test_a_part_of_the_rated_torque_needs_that(name, guessed):
+    made = guessed({'t': TIME, 'Vorschub [mm/min]': SPEED, name: SPEED})
+    assert made.content['assumed']['x.torque_rated_Nm']['value'] > 0
+    assert 'x.torque_constant_Nm_per_A' not in made.content['assumed']
+    assert (
+        make_map(made.content)
+        .axes[0]
+        .motor_torque(made.content['assumed']['x.load.from']['value'])
+        > 0
+    )
 
 
 def test_logs_of_one_axis_need_no_letter(guessed):
@@ -179,3 +195,36 @@ def test_a_speed_without_a_number_is_none_and_the_position_is_used(guessed, says
     assert 'speed' not in made.content['axes']['x']
     assert says('column_x_speed_mm_s_holds') in made.notes[0]
     assert not any('never moves' in note for note in made.notes)
+
+
+def test_a_german_log_is_understood(tmp_path):
+    """Names in two rows below a preamble, date and time of day apart, decimal commas, latin-1."""
+    begin, lines = dt.datetime(2026, 1, 2, 23, 59, 59), []
+    for row, speed in enumerate(SPEED):
+        at = begin + dt.timedelta(milliseconds=20 * row)
+        number = f'{speed * 60:.4f}'.replace('.', ',')
+        clock = f'{at:%d.%m.%Y;%H:%M:%S},{at.microsecond // 1000:03d}'
+        lines.append(f'{clock};{number};{row + 1};41,5')
+    text = [
+        'Maschine;DMU 50;;;',
+        'Datum;Uhrzeit;Geschw.;Axialkraft;Öltemperatur',
+        ';;mm/min;N;°C',
+        *lines,
+    ]
+    path = tmp_path / 'log.csv'
+    path.write_bytes('\r'.join(text).encode('latin-1'))
+    content = guess(path).content
+    assert {key: content[key] for key in ('skip', 'header_rows', 'time')} == {
+        'skip': 1,
+        'header_rows': 2,
+        'time': {'column': 'Uhrzeit', 'unit': 's', 'date': 'Datum'},
+    }
+    assert content['axes']['x'] == {
+        'speed': {'column': 'Geschw. [mm/min]', 'unit': 'mm/min'},
+        'load': {'column': 'Axialkraft [N]', 'unit': 'N'},
+        'temperature': {'column': 'Öltemperatur [°C]', 'unit': 'degC'},
+    }
+    assert not [key for key in content['assumed'] if key.startswith('time')]
+    (block,) = read_series(path, make_map(content)).blocks()
+    first = round(begin.replace(tzinfo=dt.UTC).timestamp()) * 10**9
+    np.testing.assert_array_equal(block.stamps - first, np.arange(len(SPEED)) * 20_000_000)

@@ -4,9 +4,9 @@
 
 from ballscrew_monitor.recordings.tables.names import (
     axis_names,
-    kind_by_unit,
+    is_of_the_screw,
     read_name,
-    unit_of,
+    turning_unit,
     word_of_the_axis,
 )
 import pytest
@@ -42,6 +42,19 @@ import pytest
         ('x [mm]', 'axis', 'x', 'position', 'mm'),
         ('x_preload_kN', 'axis', 'x', '', ''),
         ('x_min', 'axis', 'x', '', ''),
+        ('Geschw. [mm/min]', 'machine', '', 'speed', 'mm/min'),
+        ('X-Achse Vorschub [m/min]', 'axis', 'x', 'speed', 'm/min'),
+        ('Achse 2 Istgeschwindigkeit', 'axis', 'axis2', 'speed', ''),
+        ('Motorstrom [A]', 'machine', '', 'current', 'A'),
+        ('Axialkraft [kN]', 'machine', '', 'load', 'kN'),
+        ('Drehmoment', 'machine', '', 'torque', ''),
+        ('Motormoment [Nm]', 'machine', '', 'torque', 'N m'),
+        ('Öltemperatur [°C]', 'machine', '', 'temperature', 'degC'),
+        ('Motortemperatur [°C]', 'machine', '', '', ''),
+        ('Lageistwert Z [mm]', 'axis', 'z', 'position', 'mm'),
+        ('Zeit [s]', 'machine', '', 'time', 's'),
+        ('Spindeldrehzahl [1/min]', 'machine', '', '', ''),
+        ('Beschleunigung [m/s]', 'machine', '', '', ''),
     ],
 )
 def test_a_name_says_axis_quantity_and_unit(column, place, axis, kind, unit):
@@ -61,45 +74,10 @@ def test_the_word_the_number_and_the_rank_of_an_axis():
     assert len(set(ranks)) == len(ranks)
 
 
-@pytest.mark.parametrize(
-    ('column', 'kind', 'unit'),
-    [
-        ('X_speed_m_per_min', 'speed', 'm/min'),
-        ('x_feed_m_min', 'speed', 'm/min'),
-        ('x_vel_mm_per_s', 'speed', 'mm/s'),
-        ('VelocityMmPerS', 'speed', 'mm/s'),
-        ('x speed [m / min]', 'speed', 'm/min'),
-        ('x_speed_m/min', 'speed', 'm/min'),
-        ('speed_mm_s_x', 'speed', 'mm/s'),
-        ('x_speed_rad_s', 'speed', 'rad/s'),
-        ('x_speed_rev_min', 'speed', 'rev/min'),
-        ('x_rev_per_min', 'speed', 'rev/min'),
-        ('Drehzahl [U/min]', 'speed', 'rev/min'),
-        ('x_speed_furlong', 'speed', ''),
-        ('x_vel_ms', 'speed', ''),
-        ('x_torque_N_m', 'torque', 'N m'),
-        ('motor_current_mA', 'current', 'mA'),
-        ('oil °C', 'temperature', 'degC'),
-        ('x_temp_deg_C', 'temperature', 'degC'),
-        ('oil_temp_K', 'temperature', 'K'),
-        ('elapsed_µs', 'time', 'us'),
-        ('x_min_time', 'time', ''),
-    ],
-)
-def test_a_unit_is_found_as_it_is_spelt(column, kind, unit):
-    assert unit_of(column, kind) == unit
-
-
-@pytest.mark.parametrize(
-    ('column', 'kind'),
-    [
-        ('X oil [°C]', 'temperature'),
-        ('x_mm_s', 'speed'),
-        ('tick_ms', 'time'),
-        ('x_min', ''),
-        ('phase_a', ''),
-        ('x', ''),
-    ],
-)
-def test_only_a_unit_that_is_no_word_tells_the_quantity(column, kind):
-    assert kind_by_unit(column)[0] == kind
+def test_german_words_say_what_is_measured_of_what_and_in_which_unit():
+    measured, wanted = (read_name(name).rank for name in ('Lageistwert X', 'Lagesollwert X'))
+    assert measured > read_name('Lage X').rank > wanted
+    assert is_of_the_screw('Öltemperatur')
+    assert not is_of_the_screw('Temperatur')
+    names = ('Motordrehzahl', 'omega_x', 'Geschw.')
+    assert [turning_unit(name) for name in names] == ['rev/min', 'rad/s', '']

@@ -4,12 +4,11 @@
 
 import datetime as dt
 
-from ballscrew_monitor.recordings.tables import cells, read
+from ballscrew_monitor.recordings.tables import cells, sources
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
 import numpy as np
 import polars as pl
 import pytest
-from surrogate import limits
 from surrogate.files import InputError
 
 
@@ -80,7 +79,7 @@ def test_times_of_day_become_seconds(tmp_path):
 
 @pytest.mark.parametrize('block', [1, 2, 99])
 def test_a_column_is_read_in_the_form_of_most_cells(tmp_path, monkeypatch, block, says):
-    monkeypatch.setattr(read, 'BLOCK', block)
+    monkeypatch.setattr(sources, 'BLOCK', block)
     text = 't\n7\n2026-01-02T03:04:05\n8\n2026-01-02T03:04:06\n2026-01-02T03:04:07\n'
     table = open_table(text_log(tmp_path, text), ['t'])
     values = table.head(99)['t']
@@ -169,31 +168,3 @@ def test_times_and_durations_of_parquet_are_seconds(tmp_path, unit):
     np.testing.assert_array_equal(table.head(99)['span'], [1.5, np.nan, 3600.0])
     np.testing.assert_array_equal(table.head(99)['clock'], [2.0, 3600.0, np.nan])
     assert len(table.notes) == 2
-
-
-@pytest.mark.parametrize(
-    ('text', 'key'),
-    [
-        ('a,b\n' + 2 * ('1,2' + 60 * ' ' + '\n'), None),
-        ('a,b\n1,2' + 120 * ' ' + '\n', 'long'),
-        ('a,b\n1,"' + 'x\n' * 40 + '"\n', None),
-        ('a,b\n1,"' + 'x\n' * 80 + '"\n', 'long'),
-        (','.join(f'c{number}' for number in range(7)) + '\n1\n', 'wide'),
-    ],
-    ids=['short', 'long', 'short quote', 'long quote', 'wide'],
-)
-def test_lines_and_columns_are_bounded(text, key, tmp_path, monkeypatch, refused):
-    for name, most in {'MEGA': 10, 'LINE': 100, 'COLUMNS': 6}.items():
-        monkeypatch.setattr(limits, name, most)
-    path = text_log(tmp_path, text)
-    if key is None:
-        assert column_names(path) == ['a', 'b']
-    else:
-        refused(key, column_names, path)
-
-
-def test_a_small_parquet_file_of_many_cells_is_refused(tmp_path, refused):
-    path = tmp_path / 'log.parquet'
-    pl.DataFrame({'a': np.zeros(9_000_000)}).write_parquet(path)
-    assert path.stat().st_size < 100_000
-    refused('many_cells', column_names, path)

@@ -7,8 +7,7 @@ import types
 
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import PREFIX
-from ballscrew_monitor.recordings.tables import read as read_module
-from ballscrew_monitor.recordings.tables import times
+from ballscrew_monitor.recordings.tables import sources, times
 from ballscrew_monitor.recordings.tables.convert import convert
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.read import open_table
@@ -42,10 +41,10 @@ def joined(series):
     )
 
 
-@pytest.fixture(params=[1, 2, read_module.BLOCK])
+@pytest.fixture(params=[1, 2, sources.BLOCK])
 def read(tmp_path, write_csv, request, monkeypatch):
     """Return a function that reads columns, by the time t unless told otherwise."""
-    monkeypatch.setattr(read_module, 'BLOCK', request.param)
+    monkeypatch.setattr(sources, 'BLOCK', request.param)
     monkeypatch.setattr(times, 'BLOCK', request.param)
 
     def make(columns, axis=None, **time):
@@ -59,7 +58,7 @@ def read(tmp_path, write_csv, request, monkeypatch):
 
 @pytest.fixture
 def small_reads(monkeypatch):
-    monkeypatch.setattr(read_module, 'BLOCK', 100)
+    monkeypatch.setattr(sources, 'BLOCK', 100)
 
 
 def test_quantities_are_those_of_the_screw(read):
@@ -81,6 +80,13 @@ def test_quantities_are_those_of_the_screw(read):
     # A torque that drives forward holds a force that pushes back.
     assert found.load == pytest.approx([-2 * math.pi * 0.8 * 1.0 / 0.01, 0.0])
     assert found.temperature == pytest.approx([40.0, 20.0])
+
+
+@pytest.mark.parametrize('kind', ['torque', 'current'])
+def test_a_part_of_the_rated_torque_is_a_torque(read, kind):
+    axis = AXIS | {kind: {'column': 'part', 'unit': '%'}, 'torque_rated_Nm': 8.0}
+    made = read({'t': [0, 1], 'v': [0, 30], 'part': [-25, 100]}, axis)
+    assert made.axes[0].torque == pytest.approx([-2.0, 8.0])
 
 
 def test_rotary_units_need_no_lead_and_scale_and_offset_come_first(read):

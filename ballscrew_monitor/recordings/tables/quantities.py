@@ -1,0 +1,35 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Columns of a table: quantities that they may be of, their units, and where their names stand."""
+
+from collections.abc import Mapping
+import dataclasses
+
+from ballscrew_monitor.core import conversions
+from surrogate.files import printable
+
+RATED = '%'  # of the rated torque, or of the current at which the motor gives it
+UNITS: dict[str, Mapping[str, float]] = {
+    'speed': conversions.LINEAR_SPEED_UNITS | conversions.ROTARY_SPEED_UNITS,
+    'position': conversions.LINEAR_POSITION_UNITS | conversions.ROTARY_POSITION_UNITS,
+    'load': conversions.LOAD_UNITS,
+    'torque': {'N m': 1.0, RATED: 0.01},
+    'current': conversions.CURRENT_UNITS | {RATED: 0.01},
+    'temperature': conversions.TEMPERATURE_UNITS,
+    'time': conversions.TIME_UNITS,
+}
+"""Units of each kind of column; some need what a map states, as the lead or the rated torque."""
+INPUTS = tuple(kind for kind in UNITS if kind != 'time')
+
+
+def column_name(text: str) -> str:
+    """Return the name of a column as a map writes it: in one line, without control characters."""
+    return printable(' '.join(text.split()))
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Layout:
+    """Lines before the names of the columns, and rows that these take: names, or units below."""
+
+    skip: int = 0
+    header_rows: int = 1

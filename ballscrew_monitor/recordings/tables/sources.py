@@ -1,0 +1,290 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Tables as they stand in files: CSV, Parquet or a sheet of xlsx, one frame of cells for each.
+
+A CSV may be of UTF-8, UTF-16 with a mark, or one byte for a letter, and its lines may end by a
+line feed, a carriage return or both. All is bounded before it is read.
+
+"""
+
+from collections.abc import Collection, Iterator
+import contextlib
+import csv
+import dataclasses
+import importlib
+import io
+from pathlib import Path
+import sys
+from typing import BinaryIO
+import zipfile
+import zlib
+
+from ballscrew_monitor.recordings.tables import heads
+from ballscrew_monitor.recordings.tables.cells import first_line, UNREADABLE
+from ballscrew_monitor.recordings.tables.quantities import Layout
+import numpy as np
+import polars as pl
+from surrogate import limits
+from surrogate.files import InputError
+
+HEAD = 65536  # [bytes] of a file that tell what it is
+LINES = 200  # of a table that tell where its names stand
+BLOCK = 32768  # rows that are read at a time
+NUMBER = 8  # [bytes] of a cell
+ZIP, PARQUET = b'PK\3\4', b'PAR1'
+WIDE_MARKS = (b'\xff\xfe', b'\xfe\xff')
+NARROW_MARK = b'\xef\xbb\xbf'
+CODINGS = ('utf-8', 'cp1252', 'latin-1')
+"""Codings of a line, the first that fits; the last fits always."""
+UNPACKABLE = (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError)
+NO_DAY = '1899-12-31 '
+"""Day that a sheet adds to a time of day."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Source:
+    """A table as it stands in a file, the separator of its cells if it has one, rows about."""
+
+    path: Path
+    frame: pl.LazyFrame
+    separator: str
+    rows: int
+
+    def names(self) -> list[str]:
+        """Return the names of all columns."""
+        with _readable(self.path):
+            return self.frame.collect_schema().names()
+
+    def blocks(self, names: Collection[str]) -> Iterator[pl.DataFrame]:
+        """Yield the columns `names` in blocks of rows; none is empty."""
+        with _readable(self.path):
+            batches = self.frame.select(list(names)).collect_batches(chunk_size=BLOCK, lazy=True)
+            for batch in batches:
+                yield from batch.iter_slices(BLOCK) if batch.height else ()
+
+
+def source_of(path: Path, layout: Layout | None = None) -> Source:
+    """Return the table in a file, its cells as they stand; raises InputError without one."""
+    head = _head_of(path)
+    if head.startswith(PARQUET):
+        return _parquet(path)
+    if head.startswith(ZIP):
+        return _sheet(path, layout)
+    return _text(path, layout, _Text.of(path, head))
+
+
+def layout_of(path: Path) -> Layout:
+    """Return where the names of the columns seem to stand in a file."""
+    head = _head_of(path)
+    if head.startswith(PARQUET):
+        return Layout()
+    if head.startswith(ZIP):
+        return heads.found_layout(_rows_of(_cells_of_sheet(path)))
+    return _Text.of(path, head).layout()
+
+
+def _head_of(path: Path) -> bytes:
+    try:
+        with path.open('rb') as stream:
+            head = stream.read(HEAD)
+    except OSError as error:
+        raise InputError(f'log {path} cannot be read: {error.strerror}') from None
+    if not head.strip():
+        raise InputError(f'log {path} is empty, it must be a CSV, Parquet or xlsx file')
+    return head
+
+
+def _parquet(path: Path) -> Source:
+    frame, size = pl.scan_parquet(path), path.stat().st_size
+    with _readable(path):
+        rows = int(frame.select(pl.len()).collect().item())
+        names = frame.collect_schema().names()
+    _check_columns(path, len(names))
+    if NUMBER * rows * len(names) > max(limits.PACKING * size, limits.CHUNK):
+        raise InputError(
+            f'log {path} of {size} bytes holds {rows} rows of {len(names)} columns, allowed are '
+            f'{limits.PACKING} times its size'
+        )
+    named = frame.rename(dict(zip(names, heads.unlike(names))))
+    return Source(path=path, frame=named, separator='', rows=max(rows, 1))
+
+
+def _sheet(path: Path, layout: Layout | None) -> Source:
+    """Return the first sheet of a workbook; raises ImportError without its reader."""
+    cells = _cells_of_sheet(path)
+    found = layout or Layout()
+    begin, end = found.skip, found.skip + found.header_rows
+    if cells.height < end:
+        raise InputError(f'log {path} has {cells.height} rows, none of them names its columns')
+    names = heads.names_of(_rows_of(cells[begin:end]))
+    frame = cells[end:].rename(dict(zip(cells.columns, names)))
+    return Source(path=path, frame=frame.lazy(), separator='', rows=max(frame.height, 1))
+
+
+def _cells_of_sheet(path: Path) -> pl.DataFrame:
+    """Return the cells of the first sheet of a workbook as texts."""
+    fastexcel = importlib.import_module('fastexcel')  # it is optional
+    _check_packed(path)
+    with _readable(path, fastexcel.FastExcelError):
+        cells = pl.read_excel(
+            path,
+            engine='calamine',
+            has_header=False,
+            infer_schema_length=0,
+            drop_empty_rows=False,
+            drop_empty_cols=False,
+        )
+    _check_columns(path, cells.width)
+    return cells.select(pl.all().cast(pl.String).str.strip_prefix(NO_DAY))
+
+
+def _rows_of(cells: pl.DataFrame) -> list[list[str]]:
+    return [[cell or '' for cell in row] for row in cells.head(LINES).iter_rows()]
+
+
+def _check_packed(path: Path) -> None:
+    """Raise InputError if a workbook comes to more than is allowed, whatever it says of itself."""
+    most = min(max(limits.PACKING * path.stat().st_size, limits.CHUNK), limits.WORKBOOK)
+    unpacked = 0
+    with _readable(path, *UNPACKABLE), zipfile.ZipFile(path) as archive:
+        for part in archive.infolist():
+            part.file_size = sys.maxsize  # it is read to its end, whatever it says
+            with archive.open(part) as stream:
+                while block := stream.read(limits.MEGA):
+                    unpacked += len(block)
+                    if unpacked > most:
+                        raise InputError(
+                            f'log {path} comes to more than {most // limits.MEGA} MB when it is '
+                            'unpacked: save its sheet as CSV'
+                        )
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class _Text:
+    """A CSV file, or its content where that had to be decoded; and what ends its lines."""
+
+    path: Path
+    content: bytes | None
+    line_end: str
+    lines_about: int
+
+    @classmethod
+    def of(cls, path: Path, head: bytes) -> '_Text':
+        content, size = None, path.stat().st_size
+        if head.startswith(WIDE_MARKS):
+            content = _narrow(path, size)
+            head, size = content[:HEAD], len(content)
+        if b'\0' in head:
+            raise InputError(f'log {path} is no text, it must be a CSV, Parquet or xlsx file')
+        line_end = '\n' if b'\n' in head or b'\r' not in head else '\r'
+        lines = max(head.count(line_end.encode()), 1) * size // len(head)
+        return cls(path=path, content=content, line_end=line_end, lines_about=max(lines, 1))
+
+    def stream(self) -> BinaryIO:
+        return self.path.open('rb') if self.content is None else io.BytesIO(self.content)
+
+    def layout(self) -> Layout:
+        """Return where the names of the columns seem to stand."""
+        with self.lines() as lines:
+            return heads.found_in_lines([line for line, _ in zip(lines, range(LINES))])
+
+    @contextlib.contextmanager
+    def lines(self) -> Iterator[Iterator[str]]:
+        """Give its lines."""
+        with self.stream() as stream:
+            if stream.read(len(NARROW_MARK)) != NARROW_MARK:
+                stream.seek(0)
+            # First a letter for each byte, so that no byte is a fault.
+            yield map(_decoded, io.TextIOWrapper(stream, CODINGS[-1], newline=self.line_end))
+
+
+def _narrow(path: Path, size: int) -> bytes:
+    """Return a text of UTF-16 in UTF-8; raises InputError."""
+    if size > limits.WORKBOOK:
+        raise InputError(
+            f'log {path} of UTF-16 has more than {limits.WORKBOOK // limits.MEGA} MB: save it as '
+            'UTF-8'
+        )
+    try:
+        return path.read_bytes().decode('utf-16').encode()
+    except UnicodeError as error:
+        raise InputError(f'log {path} cannot be read as UTF-16: {first_line(error)}') from None
+
+
+def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
+    with text.stream() as stream:
+        _check_lines(path, stream, text.line_end.encode())
+    found = layout or Layout()
+    with text.lines() as lines:
+        head = _named(path, lines, found)
+    _check_columns(path, len(head.names))
+    names = head.names
+    frame = pl.scan_csv(
+        path if text.content is None else io.BytesIO(text.content),
+        separator=head.separator,
+        with_column_names=lambda held: [*names, *held[len(names) :]][: len(held)],
+        skip_lines=head.lines,
+        skip_rows_after_header=found.header_rows - 1,
+        infer_schema=False,
+        encoding='utf8-lossy',
+        comment_prefix=heads.COMMENT,
+        truncate_ragged_lines=True,
+        eol_char=text.line_end,
+    )
+    return Source(path=path, frame=frame, separator=head.separator, rows=text.lines_about)
+
+
+def _named(path: Path, lines: Iterator[str], layout: Layout) -> heads.Head:
+    try:
+        return heads.read_head(lines, layout)
+    except (csv.Error, ValueError) as error:
+        raise InputError(f'log {path} cannot be read: {first_line(error)}') from None
+
+
+def _decoded(line: str) -> str:
+    """Return a line of which each letter is a byte in the first coding that fits."""
+    for coding in CODINGS[:-1]:
+        with contextlib.suppress(UnicodeError):
+            return line.encode(CODINGS[-1]).decode(coding)
+    return line
+
+
+def _check_columns(path: Path, count: int) -> None:
+    if count > limits.COLUMNS:
+        raise InputError(f'log {path} has {count} columns, allowed are {limits.COLUMNS}')
+
+
+def _check_lines(path: Path, stream: BinaryIO, line_end: bytes) -> None:
+    """Raise InputError if a line is longer than allowed, those within quotes counted as one."""
+    length, quoted = 0, False  # of the line so far [bytes]
+    while block := stream.read(limits.MEGA):
+        first, last = _line_ends(block, line_end, quoted)
+        length += len(block) if first < 0 else first
+        if length > limits.LINE:
+            raise InputError(
+                f'log {path} has a line of more than {limits.LINE // limits.MEGA} MB, a table '
+                'has shorter ones'
+            )
+        if first >= 0:
+            length = len(block) - last - 1
+        quoted ^= block.count(b'"') % 2 == 1
+
+
+def _line_ends(block: bytes, line_end: bytes, quoted: bool) -> tuple[int, int]:
+    """Return where the first and the last line end that do so outside of quotes, -1 if none."""
+    if b'"' not in block:
+        return (-1, -1) if quoted else (block.find(line_end), block.rfind(line_end))
+    letters = np.frombuffer(block, np.uint8)
+    inside = (np.cumsum(letters == ord('"')) + quoted) % 2
+    ends = np.flatnonzero((letters == ord(line_end)) & (inside == 0))
+    return (int(ends[0]), int(ends[-1])) if len(ends) else (-1, -1)
+
+
+@contextlib.contextmanager
+def _readable(path: Path, *more: type[Exception]) -> Iterator[None]:
+    """Raise InputError for whatever the readers of tables raise."""
+    try:
+        yield
+    except UNREADABLE + more as error:
+        raise InputError(f'log {path} cannot be read: {first_line(error)}') from None

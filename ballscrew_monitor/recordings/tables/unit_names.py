@@ -1,0 +1,130 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Units in the names of columns, as they are spelt, and the words beside them."""
+
+from collections.abc import Iterator, Mapping
+import re
+
+from ballscrew_monitor.recordings.tables.quantities import UNITS
+
+WORD = re.compile(r'[A-ZÄÖÜ]+(?![a-zäöüßµμ°])|[A-ZÄÖÜ]?[a-zäöüßµμ°]+|\d+')
+"""A word of a name: of one case, or of small letters after a capital; or a number."""
+COMPOUND = re.compile(
+    '(ist|soll|motor|achs|axial|vorschub|öl|oel|mutter)?'
+    '(geschwindigkeit|geschw|drehzahl|position|lage|weg|kraft|moment|drehmoment|strom|temperatur'
+    '|temp|zeit)s?(istwert|sollwert|wert)?'
+)
+"""A German word of several, such as Motorstrom."""
+BRACKETS = re.compile(r'[\[(]([^\])]+)[\])]')
+_PER = re.compile(r'[\s_]*(?:/|_|\s|(?<![a-z])per(?![a-z]))[\s_]*')
+_CAMEL_PER = re.compile(r'(?<=[a-z])Per(?=[A-Z])')
+_LONGEST = 4  # words of a unit, such as m per min in camel case
+_BY_ITSELF = 2  # letters of a unit that says without brackets which quantity it is of
+_OTHER_WORDS = frozenset({'min', 'rev', 'rad', 'deg', 'nm', 'ma', 'amp', 'amps'})
+_ALIASES = {
+    'mm/s': ('mmps', 'mm/sec'),
+    'm/s': ('mps', 'm/sec'),
+    'mm/min': ('mmpm',),
+    'm/min': ('mpm',),
+    'rev/min': (*'rpm 1/min r/min u/min upm umdr/min turns/min min-1 min^-1 min⁻¹'.split(),),
+    'rad/s': ('radps', 'rad/sec'),
+    'N m': ('nm', 'n.m', 'n*m', 'n·m'),
+    'degC': ('c', '°c', 'deg/c', '°/c', 'grad/c', 'celsius'),
+    'A': ('amp', 'amps'),
+    's': ('sec', 'seconds', 'sek', 'sekunden'),
+    'ms': ('msec', 'millis'),
+    'us': ('usec', 'µs', 'μs'),
+}
+
+
+def unit_of(column: str, kind: str) -> str:
+    """Return the unit of a kind of quantity that a name of a column states, empty if none."""
+    known = _SPELLINGS.get(kind, {})
+    return next((known[text] for text in _stated(column) if text in known), '')
+
+
+def is_unit(text: str) -> bool:
+    """Tell whether a text is a unit of any quantity, in brackets or not."""
+    plain = _plain(text.strip().strip('[]()'))
+    return any(plain in known for known in _SPELLINGS.values())
+
+
+def kind_by_unit(column: str) -> tuple[str, str]:
+    """
+    Return the only quantity that is stated in a unit, and the words of the name before the unit.
+
+    Both are empty when the name states no unit, or one that without brackets may be a word.
+
+    """
+    inside = [_plain(text) for text in BRACKETS.findall(column)]
+    texts = [*inside, *(text for text in _ends(column) if _stands_alone(text))]
+    for text in texts:
+        kinds = [kind for kind, known in _SPELLINGS.items() if text in known]
+        if len(kinds) == 1:
+            return kinds[0], _before(column, text)
+    return '', ''
+
+
+def words_of(text: str) -> list[str]:
+    """Return the words of a name in small letters, without what stands in brackets."""
+    words = [word.lower() for word in WORD.findall(BRACKETS.sub(' ', text))]
+    return [part for word in words for part in _parts(word)]
+
+
+def words_without_unit(column: str, kind: str) -> list[str]:
+    """Return the words of a name, without the unit of a kind of quantity at its end."""
+    known = _SPELLINGS.get(kind, {})
+    text = next((text for text in _ends(column) if text in known), '')
+    return words_of(_before(column, text) if text else column)
+
+
+def _parts(word: str) -> list[str]:
+    compound = COMPOUND.fullmatch(word)
+    return [word] if compound is None else [part for part in compound.groups() if part]
+
+
+def _stands_alone(text: str) -> bool:
+    return len(text) >= _BY_ITSELF and text not in _OTHER_WORDS
+
+
+def _stated(column: str) -> Iterator[str]:
+    """Yield what may be a unit: in brackets, at the end, `rpm` anywhere, longer inside."""
+    yield from (_plain(text) for text in BRACKETS.findall(column))
+    yield from _ends(column)
+    bare = BRACKETS.sub(' ', column)
+    spans = [match.span() for match in WORD.finditer(bare)]
+    yield from (word for word in words_of(column) if word == 'rpm')
+    for length in range(_LONGEST, 0, -1):
+        for first in range(1, len(spans) - length + 1):
+            begin, end = spans[first][0], spans[first + length - 1][1]
+            text = _plain(bare[begin:end])
+            if _stands_alone(text):
+                yield text
+
+
+def _ends(column: str) -> list[str]:
+    """Return the last words of a name as they are joined, most of them first, but never all."""
+    bare = BRACKETS.sub(' ', column).strip()
+    starts = [match.start() for match in WORD.finditer(bare)][1:]
+    return [_plain(bare[start:]) for start in starts[-_LONGEST:]]
+
+
+def _before(column: str, unit: str) -> str:
+    """Return a name without its brackets and without a unit at its end."""
+    bare = BRACKETS.sub(' ', column).strip()
+    starts = [match.start() for match in WORD.finditer(bare)]
+    cut = next((start for start in starts if _plain(bare[start:]) == unit), len(bare))
+    return bare[:cut]
+
+
+def _plain(text: str) -> str:
+    """Return a spelling with one sign for all that stands between its words: / ."""
+    return _PER.sub('/', _CAMEL_PER.sub('/', text.strip()).lower()).strip('/')
+
+
+def _spellings(units: Mapping[str, float]) -> dict[str, str]:
+    spelt = {_plain(unit): unit for unit in units}
+    return spelt | {_plain(alias): unit for unit in units for alias in _ALIASES.get(unit, ())}
+
+
+_SPELLINGS = {kind: _spellings(units) for kind, units in UNITS.items()}

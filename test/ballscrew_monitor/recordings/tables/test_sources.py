@@ -1,0 +1,158 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Tables in whatever form a machine writes them: one log, read alike; and bounds of all."""
+
+import io
+import zipfile
+
+from ballscrew_monitor.recordings.tables.quantities import Layout
+from ballscrew_monitor.recordings.tables.read import column_names, open_table
+from ballscrew_monitor.recordings.tables.sources import layout_of
+import numpy as np
+import openpyxl
+import polars as pl
+import pytest
+from surrogate import limits
+
+ROWS = [
+    ['Maschine', 'DMU 50', '', ''],
+    ['Bediener', 'Müller "Max"', '', ''],
+    ['Zeit', 'Geschw.', 'Öltemperatur', 'Programm'],
+    ['s', 'mm/min', '°C', ''],
+    *([f'{row / 10}'.replace('.', ','), f'{row * 7},5', '41', 'Übung'] for row in range(9)),
+]
+NAMES = ['Zeit [s]', 'Geschw. [mm/min]', 'Öltemperatur [°C]', 'Programm']
+LAYOUT = Layout(skip=2, header_rows=2)
+
+
+def csv_text(separator=';', line_end='\n'):
+    cells = (
+        ['"' + cell.replace('"', '""') + '"' if '"' in cell else cell for cell in row]
+        for row in ROWS
+    )
+    return ''.join(separator.join(row) + line_end for row in cells)
+
+
+def workbook(rows):
+    book, content = openpyxl.Workbook(), io.BytesIO()
+    for row in rows:
+        book.active.append([None if cell == '' else cell for cell in row])
+    book.save(content)
+    return content.getvalue()
+
+
+FORMS = {
+    'utf-8': csv_text().encode(),
+    'mark': csv_text().encode('utf-8-sig'),
+    'latin-1': csv_text().encode('latin-1'),
+    'cp1252': csv_text('|').encode('cp1252'),
+    'utf-16': csv_text('\t').encode('utf-16'),
+    'utf-16 of the other order': b'\xfe\xff' + csv_text().encode('utf-16-be'),
+    'carriage return': csv_text(line_end='\r').encode('cp1252'),
+    'both': csv_text(line_end='\r\n').encode(),
+    'comments': b'# a; comment\n\n' + csv_text().encode(),
+    'xlsx': workbook(ROWS),
+}
+
+
+@pytest.fixture
+def log(tmp_path):
+    def written(content):
+        path = tmp_path / 'log.csv'
+        path.write_bytes(content)
+        return path
+
+    return written
+
+
+@pytest.mark.parametrize('form', FORMS)
+def test_a_log_is_the_same_in_each_form(form, log):
+    path = log(FORMS[form])
+    layout = layout_of(path)
+    assert layout.header_rows == 2
+    assert column_names(path, layout) == NAMES
+    table = open_table(path, NAMES[:3], layout=layout)
+    assert not table.notes
+    found = table.head(99)
+    np.testing.assert_array_equal(found['Zeit [s]'], np.arange(9) / 10)
+    np.testing.assert_array_equal(found['Geschw. [mm/min]'], np.arange(9) * 7 + 0.5)
+    np.testing.assert_array_equal(found['Öltemperatur [°C]'], np.full(9, 41.0))
+
+
+def test_names_are_in_one_line_unlike_and_without_control_characters(log, tmp_path):
+    path = log(b'"a ""b""\n[mm]";x\x1b[31m; x ;x;x\n1;2;3;4;5\n1;2;3;4;6\n')
+    names = ['a "b" [mm]', 'x\\x1b[31m', 'x', 'x_duplicated_0', 'x_duplicated_1']
+    assert column_names(path) == names
+    assert list(open_table(path, names).head(1)[names[-1]]) == [5.0]
+    parquet = tmp_path / 'log.parquet'
+    pl.DataFrame({'a\n\x07b': [1.0], 'a \x07b': [2.0]}).write_parquet(parquet)
+    held = ['a \\x07b', 'a \\x07b_duplicated_0']
+    assert column_names(parquet) == held
+    assert list(open_table(parquet, held).head(1)[held[1]]) == [2.0]
+
+
+def test_dates_and_times_of_a_sheet_are_those_of_the_calendar(log):
+    day = np.datetime64('2026-01-02')
+    times = [(day + np.timedelta64(row * 90_500, 'ms')).item() for row in range(3)]
+    path = log(workbook([['Datum', 'Uhrzeit'], *([day.item(), one.time()] for one in times)]))
+    found = open_table(path, ['Datum', 'Uhrzeit']).head(9)
+    np.testing.assert_array_equal(found['Datum'], [day.astype('datetime64[s]').astype(int)] * 3)
+    np.testing.assert_array_equal(found['Uhrzeit'], [0.0, 90.5, 181.0])
+
+
+def test_a_missing_head_and_damage_are_sentences(log, refused):
+    refused('short_sheet', column_names, log(workbook([['a'], [1.0]])), Layout(skip=2))
+    refused('no_head', column_names, log(b'a;b\n1;2\n'), Layout(skip=2))
+    refused('odd', column_names, log(b'\xff\xfea'))
+    refused('no_book', column_names, log(workbook(ROWS)[:-30]))
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, 'w') as archive:
+        archive.writestr('a.txt', 'no sheet')
+    refused('no_sheet', column_names, log(content.getvalue()))
+
+
+def test_what_is_read_at_once_is_bounded(log, refused, monkeypatch):
+    monkeypatch.setattr(limits, 'WORKBOOK', 1000)
+    refused('wide_letters', column_names, log(csv_text().encode('utf-16') * 2))
+    monkeypatch.setattr(limits, 'MEGA', 100)
+    refused('packed', column_names, log(workbook(ROWS)))
+
+
+def test_a_workbook_that_says_less_than_it_holds_is_refused(log, refused, monkeypatch):
+    monkeypatch.setattr(limits, 'CHUNK', 100_000)
+    monkeypatch.setattr(limits, 'PACKING', 2)
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, 'w', zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr('xl/workbook.xml', ' ' * 1_000_000)
+    lying = content.getvalue().replace(
+        (1_000_000).to_bytes(4, 'little'), (9).to_bytes(4, 'little')
+    )
+    refused('packed', column_names, log(lying))
+
+
+@pytest.mark.parametrize(
+    ('text', 'key'),
+    [
+        ('a,b\n' + 2 * ('1,2' + 60 * ' ' + '\n'), None),
+        ('a,b\n1,2' + 120 * ' ' + '\n', 'long'),
+        ('a,b\n1,"' + 'x\n' * 40 + '"\n', None),
+        ('a,b\n1,"' + 'x\n' * 80 + '"\n', 'long'),
+        (','.join(f'c{number}' for number in range(7)) + '\n1\n', 'wide'),
+    ],
+    ids=['short', 'long', 'short quote', 'long quote', 'wide'],
+)
+def test_lines_and_columns_are_bounded(text, key, log, monkeypatch, refused):
+    for name, most in {'MEGA': 10, 'LINE': 100, 'COLUMNS': 6}.items():
+        monkeypatch.setattr(limits, name, most)
+    path = log(text.encode())
+    if key is None:
+        assert column_names(path) == ['a', 'b']
+    else:
+        refused(key, column_names, path)
+
+
+def test_a_small_parquet_file_of_many_cells_is_refused(tmp_path, refused):
+    path = tmp_path / 'log.parquet'
+    pl.DataFrame({'a': np.zeros(9_000_000)}).write_parquet(path)
+    assert path.stat().st_size < 100_000
+    refused('many_cells', column_names, path)

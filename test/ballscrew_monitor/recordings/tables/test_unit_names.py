@@ -1,0 +1,72 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Units in the names of columns in the ways in which controls write them."""
+
+from ballscrew_monitor.recordings.tables.unit_names import is_unit, kind_by_unit, unit_of, words_of
+import pytest
+
+
+@pytest.mark.parametrize(
+    ('column', 'kind', 'unit'),
+    [
+        ('X_speed_m_per_min', 'speed', 'm/min'),
+        ('x_feed_m_min', 'speed', 'm/min'),
+        ('x_vel_mm_per_s', 'speed', 'mm/s'),
+        ('VelocityMmPerS', 'speed', 'mm/s'),
+        ('x speed [m / min]', 'speed', 'm/min'),
+        ('x_speed_m/min', 'speed', 'm/min'),
+        ('speed_mm_s_x', 'speed', 'mm/s'),
+        ('x_speed_rad_s', 'speed', 'rad/s'),
+        ('x_speed_rev_min', 'speed', 'rev/min'),
+        ('x_rev_per_min', 'speed', 'rev/min'),
+        ('Drehzahl [U/min]', 'speed', 'rev/min'),
+        ('x_speed_furlong', 'speed', ''),
+        ('x_vel_ms', 'speed', ''),
+        ('x_torque_N_m', 'torque', 'N m'),
+        ('motor_current_mA', 'current', 'mA'),
+        ('oil °C', 'temperature', 'degC'),
+        ('x_temp_deg_C', 'temperature', 'degC'),
+        ('oil_temp_K', 'temperature', 'K'),
+        ('elapsed_µs', 'time', 'us'),
+        ('x_min_time', 'time', ''),
+        ('Drehzahl [min⁻¹]', 'speed', 'rev/min'),
+        ('Laufzeit [sek]', 'time', 's'),
+    ],
+)
+def test_a_unit_is_found_as_it_is_spelt(column, kind, unit):
+    assert unit_of(column, kind) == unit
+
+
+@pytest.mark.parametrize(
+    ('column', 'kind'),
+    [
+        ('X oil [°C]', 'temperature'),
+        ('x_mm_s', 'speed'),
+        ('tick_ms', 'time'),
+        ('x_min', ''),
+        ('phase_a', ''),
+        ('x', ''),
+    ],
+)
+def test_only_a_unit_that_is_no_word_tells_the_quantity(column, kind):
+    assert kind_by_unit(column)[0] == kind
+
+
+def test_a_cell_below_a_name_may_be_a_unit():
+    assert all(map(is_unit, ('mm/min', '[N]', ' (Nm) ', '°C', 'ms', '1/min')))
+    assert not any(map(is_unit, ('', 'Kraft', 'x', '12', '[furlong]')))
+
+
+@pytest.mark.parametrize(
+    ('name', 'words'),
+    [
+        ('Motorstrom', ['motor', 'strom']),
+        ('Istgeschwindigkeit', ['ist', 'geschwindigkeit']),
+        ('Geschwindigkeitsistwert', ['geschwindigkeit', 'istwert']),
+        ('Öltemperatur_2', ['öl', 'temperatur', '2']),
+        ('Drehmoment [Nm]', ['drehmoment']),
+        ('Mistgabel', ['mistgabel']),
+    ],
+)
+def test_a_german_word_of_several_comes_in_parts(name, words):
+    assert words_of(name) == words
