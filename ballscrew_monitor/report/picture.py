@@ -25,7 +25,7 @@ import numpy as np
 from surrogate.plotting.style import draw_picture, new_figure
 
 WIDTH, HEIGHT = 11.0, 16.0  # [inch] of an axis
-LINE = 120  # letters
+LINE = 90  # letters
 COLOURS = dict(re.findall(r'--([\w-]+): (#\w+);', component('page.css').partition('@media')[0]))
 """Those of the page on light paper, by their names."""
 STYLES = {
