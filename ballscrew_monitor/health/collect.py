@@ -3,7 +3,6 @@
 """The rows of one axis, gathered into stretches and added up: interpreted or compiled."""
 
 import functools
-import math
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.health.fingerprint import Recogniser
@@ -49,8 +48,7 @@ class Collector:
         self._settings = settings or GatherSettings()
         self._memory, self._sums = GatherMemory(), SpectrumMemory()
         self._found, self._made = Found(), Gathered()
-        free = self._settings.free_load
-        self._run = Recogniser(0.0 if math.isnan(free) else free)
+        self._run = Recogniser(self._settings.free_load)
         self.use_surface(surface)
 
     def use_surface(self, surface: Surface) -> None:

@@ -33,7 +33,7 @@ LEAST_TIME = 6.0
 class Recogniser:
     """Holds back stretches that may belong to a run until that is known."""
 
-    def __init__(self, free_load: float = 0.0) -> None:
+    def __init__(self, free_load: float) -> None:
         """Begin with nothing; `free_load` [N, machine frame] acts in a run, as a weight may."""
         self._free_load = free_load
         self._held: list[Stretch] = []

@@ -50,13 +50,14 @@ class GatherSettings:
     What the axis states.
 
     A gap above `max_gap` [ns], or above five sample periods if these are longer, ends a stretch.
-    `free_load` [N, machine frame] is the load of a run that is declared free of process force, NaN
-    where none is.
+    `free_load` [N, machine frame] is the load of motion that is free of process force: of a
+    reference run, and, where the axis is `always_free`, of all motion whose load is derived.
 
     """
 
     max_gap: int = MAX_GAP
-    free_load: float = NAN
+    free_load: float = 0.0
+    always_free: bool = False
 
 
 @dataclasses.dataclass(slots=True)
@@ -266,7 +267,7 @@ def _end_stretch(settings: Any, memory: Any, made: Any) -> bool:
     made.motor_torque = memory.total[TORQUE] / samples
     made.temperature_measured = memory.temperature_measured
     made.load_source = DERIVED_LOAD if memory.derived else MEASURED_LOAD
-    if math.isfinite(settings.free_load):
+    if memory.derived and settings.always_free:
         made.axial_load, made.load_source = settings.free_load, FREE_LOAD
     return True
 

@@ -36,7 +36,8 @@ def verdict_of(
         return f'Axis {axis} is normal: its drag has changed by {change}.'
     if condition is Condition.UNKNOWN:
         return f'Axis {axis}: its drag has changed by {change}, which does not tell yet.'
-    return f'Axis {axis} is worse: its drag has changed by {change}; {_why(preload, causes)}.'
+    why = _why(drag, preload, causes)
+    return f'Axis {axis} is worse: its drag has changed by {change}; {why}.'
 
 
 def percent(quantity: Quantity) -> str:
@@ -45,7 +46,7 @@ def percent(quantity: Quantity) -> str:
     return f'{value:+.0f} % ({low:+.0f} to {high:+.0f} %)'
 
 
-def _why(preload: Quantity, causes: Sequence[Cause]) -> str:
+def _why(drag: Quantity, preload: Quantity, causes: Sequence[Cause]) -> str:
     fitting = [one for one in causes if not one.excluded]
     if not fitting:
         return 'the cause is not known'
@@ -55,6 +56,8 @@ def _why(preload: Quantity, causes: Sequence[Cause]) -> str:
         said = f'the preload is {value:.0f} % of what it was ({low:.0f} to {high:.0f} %)'
     else:
         said = best.text
+    if drag.value < 0.0 and all(one.code is not CauseCode.PRELOAD_LOST for one in causes):
+        return f'perhaps {said}, or the preload is lost, which could not be tried'
     others = [one for one in fitting[1:] if one.weight > 0.25 * best.weight]
     return f'most likely {said}' if others else f'the cause is that {said}'
 

@@ -19,7 +19,7 @@ from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.node.health_worker import Gatherer, HealthWorker, Job
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import Kind
-from ballscrew_monitor.settings.axis import surface_file
+from ballscrew_monitor.settings.axis import gathering_of, surface_file
 from ballscrew_msgs.srv import SetBaseline
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.clock import Clock
@@ -73,7 +73,8 @@ class AxisHealths:
         store = HealthStore(folder)
         self._worker = HealthWorker(store, lambda: self._kept.state.is_held)
         for name in wanted:
-            self._gatherers[name] = Gatherer(self._publishers[name].surface)
+            settings = gathering_of(name, self._values)
+            self._gatherers[name] = Gatherer(self._publishers[name].surface, settings)
             self._keepers[name] = HealthKeeper(name, store)
         self._due |= dict.fromkeys(wanted, 0.0)
         self._look()

@@ -23,6 +23,7 @@ from ballscrew_monitor.health.assess import HealthSettings
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.collect import Collected, Collector
 from ballscrew_monitor.health.companions import Companions, companions_beside
+from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.health.keeper import HealthKeeper
 from ballscrew_monitor.health.points import surface_id
 from ballscrew_monitor.health.records import Health, SpectrumBin, Stretch
@@ -43,10 +44,10 @@ FAILED = 'the program failed at'
 class Gatherer:
     """Rows of one axis, added up until they are handed over; of the thread that judges alone."""
 
-    def __init__(self, surface: Surface) -> None:
+    def __init__(self, surface: Surface, settings: GatherSettings | None = None) -> None:
         """Begin with nothing; `surface` is that of the judgement."""
         self.defect = ''
-        self._collector = Collector(surface)
+        self._collector = Collector(surface, settings)
         self._stretches: deque[Stretch] = deque(maxlen=MOST_STRETCHES)
         self._bins: list[SpectrumBin] = []
 

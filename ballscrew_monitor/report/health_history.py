@@ -14,6 +14,7 @@ from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import learned, LEAST_MOTION, named_or_why
 from ballscrew_monitor.health.collect import Collected, Collector
 from ballscrew_monitor.health.companions import companions_beside
+from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.health.peers import FEWEST_PEERS, Peer, ranked
 from ballscrew_monitor.health.points import add, by_place, merged
 from ballscrew_monitor.health.records import (
@@ -51,9 +52,9 @@ class AxisHistory:
 class HistoryMaker:
     """Gathers the blocks of one axis in order."""
 
-    def __init__(self, surface: Surface) -> None:
+    def __init__(self, surface: Surface, settings: GatherSettings | None = None) -> None:
         """Begin with nothing; `surface` is that of the judgement."""
-        self._surface, self._collector = surface, Collector(surface)
+        self._surface, self._collector = surface, Collector(surface, settings)
         self._points: dict[Any, ComparablePoint] = {}
         self._bins: list[SpectrumBin] = []
         self._last = 0

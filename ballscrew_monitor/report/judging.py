@@ -27,7 +27,13 @@ from ballscrew_monitor.recordings.words import feed_first
 from ballscrew_monitor.report.balance import Balance, Balancer
 from ballscrew_monitor.report.parameters import Assumed, AxisFacts, LogParameters
 from ballscrew_monitor.report.survey import Survey, Surveyor
-from ballscrew_monitor.settings.axis import load_surface, scalings_of, settings_of, surface_file
+from ballscrew_monitor.settings.axis import (
+    gathering_of,
+    load_surface,
+    scalings_of,
+    settings_of,
+    surface_file,
+)
 from ballscrew_monitor.settings.parameters import is_configured
 from surrogate.surface import ContactOnset, onset_of_surface, Surface, ZoneLimits
 
@@ -231,7 +237,7 @@ class CaseMaker:
         self._balancer = Balancer(
             lead=self._surface.lead, standstill=self._settings.limits.standstill_speed
         )
-        self._history = None if make is None else make(self._surface)
+        self._history = None if make is None else make(self._surface, gathering_of(axis, values))
 
     def add(self, block: JudgedColumns) -> None:
         """Take the next block of rows."""

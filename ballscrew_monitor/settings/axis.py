@@ -15,6 +15,7 @@ from ballscrew_monitor.core.fields import check_path
 from ballscrew_monitor.core.inputs import Input, OpenInput, Source
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
+from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.settings.parameters import is_configured, MOTOR_TORQUE
 from surrogate.files import InputError
@@ -209,6 +210,14 @@ def settings_of(name: str, values: Mapping[str, Any], surface: Surface) -> Monit
         plausible=_plausible_of(name, values, surface),
         derivation=derivation_of(name, values),
         positions=_positions_of(name, values, surface.lead),
+    )
+
+
+def gathering_of(name: str, values: Mapping[str, Any]) -> GatherSettings:
+    """Return what the axis states of its motion without process force."""
+    return GatherSettings(
+        free_load=values[f'{name}.health.free_load'],
+        always_free=values[f'{name}.health.always_free'],
     )
 
 

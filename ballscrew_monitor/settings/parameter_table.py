@@ -240,6 +240,14 @@ AXIS_ROWS = (
     ParameterRow('health.enabled', True).says(
         'Gather in state_dir what tells whether the axis is normal or worse, and publish it.'
     ),
+    ParameterRow('health.free_load', 0.0, 'N', -1e6, 1e6).says(
+        'Axial load in a reference run whose load is derived from the torque, positive along the '
+        'axis: the weight of a vertical axis.'
+    ),
+    ParameterRow('health.always_free', False).says(
+        'The axis has no process force: health.free_load holds in all motion whose load is '
+        'derived from the torque, which then tells of the friction.'
+    ),
     ParameterRow('health.period', 3600.0, 's', 1.0, 1e6, LIVE).says(
         'Time between two assessments of health.'
     ),

@@ -202,9 +202,18 @@ def cause(code, weight, excluded=False):
 )
 def test_the_verdict_says_how_sure_its_cause_is(condition, causes, end):
     drag, preload = quantity(-0.1, -0.15, -0.05), Quantity(name='preload')
+    causes = causes and (*causes, cause(CauseCode.PRELOAD_LOST, 0.0, excluded=True))
     found = verdict_of('x', condition, drag, preload, causes)
     assert found.endswith(end)
     assert '-10 % (-15 to -5 %)' in found
+
+
+def test_a_loss_of_drag_may_be_the_preload_where_that_cannot_be_tried():
+    causes, preload = (cause(CauseCode.FILM_STARVED, 1.0),), Quantity(name='preload')
+    less, more = quantity(-0.1, -0.15, -0.05), quantity(0.1, 0.05, 0.15)
+    said = verdict_of('x', Condition.WORSE, less, preload, causes)
+    assert said.endswith('; perhaps T, or the preload is lost, which could not be tried.')
+    assert verdict_of('x', Condition.WORSE, more, preload, causes).endswith('the cause is that T.')
 
 
 def test_advice_is_that_of_every_likely_cause_and_every_cause_has_one():

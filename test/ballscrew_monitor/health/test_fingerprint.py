@@ -36,8 +36,8 @@ def run_of(motion, steps=STAIRCASE, source=DERIVED, pause=2 * SECOND):
     return made
 
 
-def recognised(stretches, **more):
-    run = Recogniser(**more)
+def recognised(stretches, free_load=0.0):
+    run = Recogniser(free_load)
     return run.take(stretches) + run.finish()
 
 
@@ -94,7 +94,7 @@ def test_nothing_is_lost_or_turned_whatever_comes(motion, speeds, draw):
         motion.stretch(speed=draw.choice((1, -1)) * one, start=motion.noon + n * 6 * SECOND)
         for n, one in enumerate(speeds)
     ]
-    run = Recogniser()
+    run = Recogniser(0.0)
     parts = [run.take([one]) for one in made]
     found = [*itertools.chain(*parts), *run.finish()]
     assert [one.start for one in found] == [one.start for one in made]

@@ -172,10 +172,14 @@ def test_a_log_of_one_sample_a_second_gives_stretches_after_its_first_gap(gather
 
 def test_the_load_is_measured_derived_or_declared_free(gather, motion):
     rows = motion.steady(3.0)
+    free = GatherSettings(free_load=-120.0, always_free=True)
+    (found,) = gather(rows, free)
+    assert (found.load_source, found.axial_load) == (LoadSource.MEASURED, 500.0)
     rows['axial_load_source'] = DERIVED
-    (found,) = gather(rows)
-    assert found.load_source is LoadSource.DERIVED
-    (found,) = gather(rows, GatherSettings(free_load=-120.0))
+    for settings in (GatherSettings(), GatherSettings(free_load=-120.0)):
+        (found,) = gather(rows, settings)
+        assert found.load_source is LoadSource.DERIVED
+    (found,) = gather(rows, free)
     assert (found.load_source, found.axial_load) == (LoadSource.FREE, -120.0)
     rows['temperature_source'] = DEFAULT
     assert not gather(rows)[0].temperature_measured

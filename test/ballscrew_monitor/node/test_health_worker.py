@@ -12,10 +12,12 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.health.assess import HealthSettings
 from ballscrew_monitor.health.collect import Collected
+from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.health.keeper import HealthKeeper
-from ballscrew_monitor.health.records import Condition
+from ballscrew_monitor.health.records import Condition, LoadSource
 from ballscrew_monitor.health.rows import DAY, JudgedRow
 from ballscrew_monitor.health.store import FILE, HealthStore, read_health
+from ballscrew_monitor.judge.inputs import DERIVED
 from ballscrew_monitor.node import health_worker
 from ballscrew_monitor.node.health_worker import Gatherer, HealthWorker, Job
 import pytest
@@ -63,8 +65,8 @@ def rows(seconds, *, start=NOON, **changes):
     ]
 
 
-def gathered(surface, some, **options):
-    gatherer = Gatherer(surface)
+def gathered(surface, some, settings=None, **options):
+    gatherer = Gatherer(surface, settings)
     for one in some:
         gatherer.take(one)
     return gatherer.hand_over(surface, **options)
@@ -104,6 +106,13 @@ def test_rows_end_as_points_and_motion_on_the_disk(job, make, surface, tmp_path)
     assert one.time == pytest.approx(2.99)
     assert worker.problem == ''
     assert {path.name for path in tmp_path.iterdir()} == {FILE}
+
+
+def test_an_axis_without_process_force_has_its_free_load(surface):
+    free = GatherSettings(free_load=-200.0, always_free=True)
+    derived = rows(3.0, axial_load_source=DERIVED)
+    (stretch,) = gathered(surface, derived, free, rows_end=True).stretches
+    assert (stretch.load_source, stretch.axial_load) == (LoadSource.FREE, -200.0)
 
 
 def test_motion_that_goes_on_is_handed_over_and_its_stretch_later(surface):

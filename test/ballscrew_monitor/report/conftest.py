@@ -124,7 +124,7 @@ def make_status(source, **changes):
     return InputStatus(**values | changes)
 
 
-def make_case(blocks, events=(), *, totals=None, values=None, known=None, **changes):
+def make_case(blocks, events=(), *, totals=None, values=None, known=None, health=None, **changes):
     """Return the case of an axis with blocks of rows and events."""
     axis, values = blocks[0].axis, values or make_values(blocks[0].axis)
     rows = sum(len(block) for block in blocks)
@@ -153,7 +153,7 @@ def make_case(blocks, events=(), *, totals=None, values=None, known=None, **chan
         'limits': build_axis(axis, values).monitor.settings.limits,
     }
     outcome = AxisOutcome(**facts | changes)
-    maker = CaseMaker(axis, values)
+    maker = CaseMaker(axis, values, health)
     for block in blocks:
         maker.add(block)
     known = known or {}

@@ -2,10 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recording judged in one pass, for a page or for a terminal on a machine without its tools."""
 
+import dataclasses
+
+from ballscrew_monitor.core.estimate import PointSource
+from ballscrew_monitor.health.records import LoadSource
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.report.health_history import HistoryMaker
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.log_report import RowStore, scratch_folder
 from ballscrew_monitor.report.parameters import parameters_for
+import numpy as np
 import pytest
 
 
@@ -27,3 +33,16 @@ def test_rows_are_kept_where_they_are_asked_for(short_bag, parameters, tmp_path)
 
 def test_a_recording_that_no_node_made_numbers_no_messages(short_bag, parameters):
     assert not judge_log(Bag(short_bag), parameters).axes[0].numbered
+
+
+def test_a_log_of_an_axis_without_process_force_tells_of_its_friction(judged):
+    derived = judged.columns(
+        count=300, motor_torque_source=1, axial_load_source=PointSource.DERIVED
+    )
+    block = dataclasses.replace(
+        derived, speed=np.full(300, 100.0), motor_torque=derived.machine_torque
+    )
+    values = judged.values(**{'x.health.free_load': -200.0, 'x.health.always_free': True})
+    (point,) = judged.case([block], values=values, health=HistoryMaker).history.points
+    assert (point.load_source, point.axial_load) == (LoadSource.FREE, -200.0)
+    assert judged.case([block], health=HistoryMaker).history.points == ()

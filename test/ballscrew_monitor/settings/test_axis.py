@@ -8,10 +8,12 @@ from pathlib import Path
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.state import LoadDerivation
+from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import (
     build_axes,
     build_axis,
+    gathering_of,
     named_topics,
     settings_of,
     start_text,
@@ -26,6 +28,14 @@ def build(**changes):
         f'x.{name.replace("__", ".")}': value for name, value in changes.items()
     }
     return build_axis('x', values)
+
+
+def test_motion_counts_as_free_of_process_force_only_where_the_axis_says_so():
+    values = parameters.defaults(['x'])
+    assert gathering_of('x', values) == GatherSettings()
+    free = {'x.health.free_load': -200.0, 'x.health.always_free': True}
+    stated = GatherSettings(free_load=-200.0, always_free=True)
+    assert gathering_of('x', values | free) == stated
 
 
 def test_defaults_make_an_axis_of_the_shipped_surface_and_what_is_plausible():
