@@ -53,7 +53,10 @@ class _Count:
 
     def add(self, cells: pl.Series, row: int) -> bool:
         """Count cells from `row` on; tell if all are numbers."""
-        numbers = _finite(self.form, cells)
+        return self.take(_finite(self.form, cells), cells, row)
+
+    def take(self, numbers: Array, cells: pl.Series, row: int) -> bool:
+        """Count the numbers that the form makes of cells from `row` on, as `add` does."""
         bad = np.isnan(numbers)
         missing = int(bad.sum())
         if missing:
@@ -128,15 +131,32 @@ class Cells:
         )
 
     def _count(self, cells: pl.Series) -> None:
-        """Count what each form that may still be chosen makes of cells."""
-        read = False  # all of these by an earlier form: then they are no texts of a time
-        for number, one in enumerate(self._counts):
-            if number == 1 and self._separator == ',' and self._counts[0].good:
-                continue  # a comma within a cell may part thousands
-            if number > 1 and read:
-                one.pass_over(cells, self._rows)
+        """Count what each form makes of cells; what reads all of them leaves none to others."""
+        if len(self._counts) == 1:
+            self._counts[0].add(cells, self._rows)
+            return
+        points, commas, *times = self._counts
+        # A text is a number or a time of one form: the kind of most cells so far is tried first.
+        kinds = [[points, commas], *([one] for one in times)]
+        read = False
+        for kind in sorted(kinds, key=lambda kind: -max(one.good for one in kind)):
+            if read:
+                for one in kind:
+                    one.pass_over(cells, self._rows)
+            elif len(kind) > 1:
+                read = self._count_numbers(cells, points, commas)
             else:
-                read |= one.add(cells, self._rows)
+                read = kind[0].add(cells, self._rows)
+
+    def _count_numbers(self, cells: pl.Series, points: _Count, commas: _Count) -> bool:
+        """Count cells as numbers with a point and with a comma; tell if one of both reads all."""
+        commaed, pointed = (_holds(cells, mark) for mark in ',.')
+        numbers = _finite(_points, _with_points(cells) if commaed.any() else cells)
+        read = points.take(np.where(commaed, math.nan, numbers), cells, self._rows)
+        thousands = self._separator == ',' and points.good  # which a comma may part there
+        if not thousands:
+            read |= commas.take(np.where(pointed, math.nan, numbers), cells, self._rows)
+        return read
 
     def _chosen(self) -> _Count:
         """
@@ -174,13 +194,24 @@ def _seconds(times: pl.Series) -> pl.Series:
 
 
 def _points(texts: pl.Series) -> pl.Series:
+    plain = texts.cast(pl.Float64, strict=False)
+    if plain.null_count() == texts.null_count():  # blanks around numbers are rare, and cost
+        return plain
     return texts.str.strip_chars().cast(pl.Float64, strict=False)
 
 
 def _commas(texts: pl.Series) -> pl.Series:
     """Return texts as numbers with a decimal comma; one with a point becomes null."""
-    plain = texts.set(texts.str.contains('.', literal=True), None)
-    return _points(plain.str.replace(',', '.', literal=True))
+    return _points(_with_points(texts.set(pl.Series(_holds(texts, '.')), None)))
+
+
+def _with_points(texts: pl.Series) -> pl.Series:
+    return texts.str.replace(',', '.', literal=True)
+
+
+def _holds(texts: pl.Series, mark: str) -> NDArray[np.bool_]:
+    """Return which texts hold a mark."""
+    return texts.str.contains(mark, literal=True).fill_null(False).to_numpy()
 
 
 def _made(parsed: Callable[[pl.Series], pl.Series]) -> Form:

@@ -19,8 +19,8 @@ from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, Layout, RATED, UNITS
-from ballscrew_monitor.recordings.tables.read import column_names, open_table
-from ballscrew_monitor.recordings.tables.sources import layout_of
+from ballscrew_monitor.recordings.tables.read import look_through
+from ballscrew_monitor.recordings.tables.sources import layout_of, source_of
 from ballscrew_monitor.recordings.words import listed, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
@@ -84,7 +84,8 @@ class _Guesser:
     def __init__(self, path: Path, shown: Shown) -> None:
         self.path = path
         self.layout = layout_of(path)
-        self.named = [read_name(name) for name in column_names(path, self.layout)]
+        source = source_of(path, self.layout)
+        self.named = [read_name(name) for name in source.names()]
         self.assumed: dict[str, dict[str, Any]] = {}
         self.notes: list[str] = []
         self.used: dict[str, dict[str, dict[str, Any]]] = {}
@@ -102,7 +103,7 @@ class _Guesser:
         self.times = [one for one in self.named if one.kind == 'time']
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
         used = [one.column for one in [*columns, *self.times]]
-        table = open_table(path, used, layout=self.layout, optional=used, shown=shown)
+        table = look_through(source, used, optional=used, shown=shown)
         rows = NUMBERS // len(used)
         # The first rows tell how the speeds go with the positions, all of them the ranges.
         self.data = table.head(rows)

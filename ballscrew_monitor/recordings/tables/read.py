@@ -80,8 +80,19 @@ def open_table(
     """
     source = source_of(path, layout)
     _check_names(source, names, layout or Layout())
+    return look_through(source, names, optional=optional, shown=shown)
+
+
+def look_through(
+    source: Source,
+    names: Collection[str],
+    *,
+    optional: Collection[str] = (),
+    shown: Shown = shown_progress,
+) -> Table:
+    """Look through columns that a table holds, as `open_table` does."""
     left_out: dict[str, str] = {}
-    found = {name: Cells(path, name, source.separator) for name in names}
+    found = {name: Cells(source.path, name, source.separator) for name in names}
     rows = 0
     with shown(source.rows, 'rows looked through') as show:
         for block in source.blocks(list(found)):
@@ -91,13 +102,13 @@ def open_table(
             rows += block.height
             show(rows / source.rows)
     if not rows:
-        raise InputError(f'log {path} holds no row, at least two are needed')
+        raise InputError(f'log {source.path} holds no row, at least two are needed')
     readings: dict[str, Reading] = {}
     for name, cells in found.items():
         with _left_out(name, left_out, optional):
             readings[name] = cells.reading()
     return Table(
-        path=path,
+        path=source.path,
         readings={name: one for name, one in readings.items() if name not in left_out},
         rows=rows,
         notes=tuple(one.note for one in readings.values() if one.note),
