@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.words import short
 import numpy as np
 from numpy.typing import NDArray
 import polars as pl
@@ -72,7 +73,7 @@ class _Count:
 
     def _miss(self, cells: pl.Series, at: int, missing: int, row: int) -> None:
         if not self.bad:
-            what = 'nothing' if cells[at] is None else repr(cells[at])
+            what = 'nothing' if cells[at] is None else short(repr(cells[at]))
             self.first = f'{what} in row {row + at + 1}'
         self.bad += missing
 
@@ -82,7 +83,8 @@ class Cells:
 
     def __init__(self, path: Path, name: str, separator: str) -> None:
         """Begin with the column `name` of the log at `path`, whose cells have a separator."""
-        self._path, self._name, self._separator = path, name, separator
+        self._separator = separator
+        self._where = f'log {path}: column {short(repr(name))}'
         self._rows = 0
         self._first: Any = None
         self._type: pl.DataType = pl.Null()
@@ -97,20 +99,18 @@ class Cells:
             self._count(cells)
         except UNREADABLE as error:
             raise InputError(
-                f'log {self._path}: column {self._name!r} of {self._type} cannot be read as '
-                f'numbers: {first_line(error)}'
+                f'{self._where} of {self._type} cannot be read as numbers: {first_line(error)}'
             ) from None
         self._rows += len(cells)
 
     def reading(self) -> Reading:
         """Return how the column is read; raises InputError when it holds no number."""
         chosen = self._chosen()
-        where = f'log {self._path}: column {self._name!r}'
         if not chosen.good:
-            raise InputError(f'{where} holds no number, but {self._first!r}')
+            raise InputError(f'{self._where} holds no number, but {short(repr(self._first))}')
         note = (
-            f'{where} holds {chosen.bad} cells without a number, the first is {chosen.first}; '
-            'they count as unknown'
+            f'{self._where} holds {chosen.bad} cells without a number, the first is '
+            f'{chosen.first}; they count as unknown'
         )
         extremes = np.array([chosen.least, chosen.most])
         return Reading(
@@ -126,9 +126,7 @@ class Cells:
             return (_seconds,)
         if self._type.is_numeric():
             return (_plain,)
-        raise InputError(
-            f'log {self._path}: column {self._name!r} holds {self._type}, it must hold numbers'
-        )
+        raise InputError(f'{self._where} holds {self._type}, it must hold numbers')
 
     def _count(self, cells: pl.Series) -> None:
         """Count what each form makes of cells; what reads all of them leaves none to others."""

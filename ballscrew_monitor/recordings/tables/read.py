@@ -17,7 +17,7 @@ from pathlib import Path
 from ballscrew_monitor.recordings.tables.cells import Array, Cells, Reading
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.sources import layout_of, Source, source_of
-from ballscrew_monitor.recordings.words import listed, Shown, shown_progress
+from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
 
@@ -122,14 +122,17 @@ def _check_names(source: Source, names: Collection[str], layout: Layout) -> None
     held = source.names()
     for name in names:
         if name not in held:
-            hints = [f'{near} may be meant' for near in difflib.get_close_matches(name, held, n=1)]
+            hints = [
+                f'{short(near)} may be meant'
+                for near in difflib.get_close_matches(name, held, n=1)
+            ]
             if (found := layout_of(source.path)) != layout:
                 hints.append(
                     'the names look to stand elsewhere: write '
                     f'`skip: {found.skip}` and `header_rows: {found.header_rows}` in the map'
                 )
             raise InputError(
-                f'log {source.path}: column {name!r} is missing, the log holds '
+                f'log {source.path}: column {short(repr(name))} is missing, the log holds '
                 f'{"; ".join([listed(held), *hints])}'
             )
 
