@@ -36,6 +36,11 @@ class Reading:
     extremes: Array
     note: str
 
+    @property
+    def is_time(self) -> bool:
+        """Tell whether the cells are times by their form or type, hence [s]."""
+        return self.form in (_seconds, *_TIMES)
+
     def numbers(self, cells: pl.Series) -> Array:
         """Return cells as numbers, NaN where one is not a number."""
         return _finite(self.form, cells)

@@ -108,6 +108,7 @@ class _Guesser:
         # The first rows tell how the speeds go with the positions, all of them the ranges.
         self.data = table.head(rows)
         self.extremes = {name: one.extremes for name, one in table.readings.items()}
+        self.timed = {name for name, one in table.readings.items() if one.is_time}
         self.notes += [f'{why}; it is left out' for why in table.left_out.values()]
         self.notes += [*table.notes, *names.told_by_words(self.named)]
         if rows < table.rows:
@@ -151,7 +152,8 @@ class _Guesser:
         days = next((one for one in self.times if self._is(estimates.is_of_days, one)), None)
         for one in sorted(self.times, key=lambda one: -one.rank):  # by name, then by unit
             values = self.data[one.column]
-            if days and not one.unit and self._is(estimates.is_of_a_day, one):
+            clock = one.column in self.timed and self._is(estimates.is_of_a_day, one)
+            if days is not None and clock:
                 dated = self._time_of(one, self.data[days.column] + values)
                 return dated | {'date': days.column}
             if one is not days and estimates.is_rising(values):
@@ -163,8 +165,9 @@ class _Guesser:
 
     def _time_of(self, one: Named, values: Array) -> dict[str, Any]:
         unit, absolute, why = estimates.time_unit(values[np.isfinite(values)])
-        if one.unit and not absolute:
-            unit = one.unit
+        stated = 's' if one.column in self.timed else one.unit
+        if stated and not absolute:
+            unit = stated
         elif not absolute:
             self._assume(
                 'time.unit', unit, f'column {one.column} states none that is known; {why}'
