@@ -8,10 +8,11 @@ line feed, a carriage return or both. All is bounded before it is read.
 
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 import contextlib
 import csv
 import dataclasses
+import functools
 import importlib
 import io
 from pathlib import Path
@@ -221,11 +222,10 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     with text.lines() as lines:
         head = _named(path, lines, found)
     _check_columns(path, len(head.names))
-    names = head.names
     frame = pl.scan_csv(
         path if text.content is None else io.BytesIO(text.content),
         separator=head.separator,
-        with_column_names=lambda held: [*names, *held[len(names) :]][: len(held)],
+        with_column_names=functools.partial(_renamed, head.names),
         skip_lines=head.lines,
         skip_rows_after_header=found.header_rows - 1,
         infer_schema=False,
@@ -235,6 +235,12 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
         eol_char=text.line_end,
     )
     return Source(path=path, frame=frame, separator=head.separator, rows=text.lines_about)
+
+
+def _renamed(names: Sequence[str], held: Sequence[str]) -> list[str]:
+    """Return `names` for columns, and for those beyond what they are called there."""
+    count, most = len(names), len(held)
+    return [*names[:most], *held[count:]]
 
 
 def _named(path: Path, lines: Iterator[str], layout: Layout) -> heads.Head:
