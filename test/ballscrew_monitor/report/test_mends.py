@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What to write where sign or size of an input contradicts the others."""
+"""Mends of inputs whose sign or size contradicts the others."""
 
 import dataclasses
 
