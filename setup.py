@@ -60,6 +60,9 @@ setup(
     package_data={
         'ballscrew_monitor': [
             'py.typed',
+            'page/components/*.css',
+            'page/components/*.js',
+            'page/languages/*.json',
             'settings/*.xml',
             'report/components/*.css',
             'report/components/*.js',
@@ -79,6 +82,7 @@ setup(
         (f'share/{NAME}', ['package.xml']),
         (f'share/{NAME}/config', files('config/*.*')),
         (f'share/{NAME}/config/layouts', files('config/layouts/*.*')),
+        (f'share/{NAME}/config/system', files('config/system/*.*')),
         (f'share/{NAME}/launch', files('launch/*.launch.py')),
     ],
     python_requires='>=3.11',
@@ -88,6 +92,13 @@ setup(
         'plot': ['matplotlib>=3.6'],
         'bags': ['lz4>=4.0', 'mcap>=1.1', 'rosbags>=0.10', 'zstandard>=0.20'],
         'report': ['contourpy>=1.0', 'polars>=1.0'],
+        'page': [
+            'contourpy>=1.0',
+            'prometheus-client>=0.20',
+            'starlette>=0.37',
+            'uvicorn>=0.40',
+            'websockets>=14.0',
+        ],
         'xlsx': ['fastexcel>=0.12'],
         'areal': ['SurfaceTopography>=1.17'],
         'dask': ['distributed>=2024.1'],

@@ -4,10 +4,11 @@
 Generate twelve monthly logs of a feed axis that loses its preload, or gets another oil.
 
 The screw is iso3408_40x10 in ISO VG 68. A month has one log of 14 min at 20 Hz: speed, load, oil
-and motor torque of the same programme, with the oil of the season. The preload falls in a straight
-line from that of the datasheet to 40 % of it; or the axis runs in ISO VG 32 from the sixth month
-on. The torque is that of the closed form at this preload and in this oil, never that of a surface,
-with a wiper that the model does not know, ripple and noise. The bytes are the same every time.
+and motor torque of the same programme, with the oil of the season; a short plan has twenty logs of
+4 min at 10 Hz, one in two weeks. The preload falls in a straight line from that of the datasheet
+to 40 % of it; or the axis runs in ISO VG 32 from the sixth log on. The torque is that of the
+closed form at this preload and in this oil, never that of a surface, with a wiper that the model
+does not know, ripple and noise. The bytes are the same every time.
 
 """
 
@@ -44,14 +45,15 @@ from surrogate.units import ZERO_CELSIUS
 import yaml
 
 SCREW, OIL, OTHER_OIL = 'iso3408_40x10', 'iso_vg_68', 'iso_vg_32'
-MONTHS, MONTH = 12, 30 * 86_400 * SECOND
-"""Number of logs, and the time [ns] from one to the next."""
+DAY = 86_400 * SECOND
+YEAR = 360 * DAY
+"""Time of all seasons [ns]."""
 LAST_PRELOAD = 0.4
 """Preload of the last month over that of the first [-]."""
 CHANGED = 5
-"""Number of the first month in the other oil, the first of all is 0."""
-PERIOD, OIL_PERIOD = 0.05, 1.0
-"""Times between samples [s]: speed, load and torque; oil."""
+"""Number of the first log in the other oil, the first of all is 0."""
+OIL_PERIOD = 1.0
+"""Time between samples of the oil [s]."""
 WIPER, SEAL, SEAL_SPEED = 0.04, 0.02, 5.0
 """Torque of the wipers [N m], what they add near standstill, and where it fades [rad/s]."""
 INERTIA = 0.002
@@ -75,6 +77,12 @@ def _to_and_fro(speed: float, duration: float, cut: float = 0.0, back: float = 0
     yield Phase(name='turn', duration=0.4)
 
 
+def _parts(cuts: tuple[float, ...]) -> Iterator[Phase]:
+    """Yield a workpiece for each of some cuts [N]."""
+    for cut in cuts:
+        yield from _part(cut)
+
+
 def _part(cut: float) -> Iterator[Phase]:
     """Yield one workpiece under a cut [N], about two minutes."""
     yield from _to_and_fro(2000.0, 1.9)
@@ -89,49 +97,62 @@ def _part(cut: float) -> Iterator[Phase]:
     yield Phase(name='change of the workpiece', duration=12.0)
 
 
-PROGRAMME = (
-    Phase(name='drives on', duration=2.0),
-    *_to_and_fro(300.0, 2.0),
-    *(
-        phase
-        for cut in (600.0, 1500.0, 900.0, 1200.0, 600.0, 1500.0, 900.0)
-        for phase in _part(cut)
-    ),
-)
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Plan:
+    """
+    Number of `logs`, and the time `apart` [ns] from one to the next.
+
+    Each has a workpiece for each of the `cuts` [N], and a sample of speed, load and torque each
+    `period` [s].
+
+    """
+
+    logs: int = 12
+    apart: int = 30 * DAY
+    cuts: tuple[float, ...] = (600.0, 1500.0, 900.0, 1200.0, 600.0, 1500.0, 900.0)
+    period: float = 0.05
+
+
+MONTHLY = Plan()
+SHORT = Plan(logs=20, apart=14 * DAY, cuts=(600.0, 1500.0), period=0.1)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Month:
-    """A month by its number, the first is 0: preload over that of the datasheet [-], oil."""
+    """A log by its number, the first is 0: preload over that of the datasheet [-], oil."""
 
     number: int
     preload: float = 1.0
     oil: str = OIL
+    plan: Plan = MONTHLY
 
     @property
     def begin(self) -> int:
         """Stamp of the begin of its log [ns]."""
-        return BEGIN + self.number * MONTH
+        return BEGIN + self.number * self.plan.apart
 
 
-def months(cause: str) -> list[Month]:
-    """Return the twelve months of a cause, `preload` or `oil`."""
+def months(cause: str, plan: Plan = MONTHLY) -> list[Month]:
+    """Return the logs of a cause, `preload` or `oil`."""
+    numbers = range(plan.logs)
     if cause == 'oil':
-        return [Month(number=n, oil=OTHER_OIL if n >= CHANGED else OIL) for n in range(MONTHS)]
-    loss = (1.0 - LAST_PRELOAD) / (MONTHS - 1)
-    return [Month(number=n, preload=1.0 - n * loss) for n in range(MONTHS)]
+        oils = [OTHER_OIL if number >= CHANGED else OIL for number in numbers]
+        return [Month(number=number, oil=oils[number], plan=plan) for number in numbers]
+    loss = (1.0 - LAST_PRELOAD) / (plan.logs - 1)
+    return [Month(number=number, preload=1.0 - number * loss, plan=plan) for number in numbers]
 
 
 @functools.cache
-def programme() -> Motion:
-    """Return the motion that is the same in all months."""
-    return simulate(PROGRAMME)
+def programme(plan: Plan) -> Motion:
+    """Return the motion that is the same in all logs."""
+    drives_on = Phase(name='drives on', duration=2.0)
+    return simulate((drives_on, *_to_and_fro(300.0, 2.0), *_parts(plan.cuts)))
 
 
 def motion_of(month: Month) -> Motion:
     """Return the programme with the oil of a month."""
-    motion = programme()
-    season = -SEASON * math.cos(2 * math.pi * month.number / MONTHS)
+    motion = programme(month.plan)
+    season = -SEASON * math.cos(2 * math.pi * (month.begin - BEGIN) / YEAR)
     warmed = 1.0 - np.exp(-motion.time / WARM_TIME)
     return dataclasses.replace(motion, oil=MEAN_OIL + season + WARMING * warmed)
 
@@ -165,9 +186,9 @@ def torque_of(month: Month, motion: Motion) -> Array:
     return driving_torque(along * drag, -motion.load, LEAD) + INERTIA * acceleration
 
 
-def samples_of(motion: Motion) -> Motion:
-    """Return the motion at the times of its samples."""
-    step = round(PERIOD / FINE_STEP)
+def samples_of(motion: Motion, period: float = MONTHLY.period) -> Motion:
+    """Return the motion at the times of its samples, each `period` [s]."""
+    step = round(period / FINE_STEP)
     fields = dataclasses.asdict(motion).items()
     return Motion(**{name: values[step::step] for name, values in fields})
 
@@ -175,7 +196,7 @@ def samples_of(motion: Motion) -> Motion:
 def records_of(month: Month, *, noise: bool = True) -> list[Record]:
     """Return every message of a month in the order of log time."""
     random, fine = np.random.Generator(np.random.PCG64([SEED, month.number])), motion_of(month)
-    motion = samples_of(fine)
+    motion = samples_of(fine, month.plan.period)
     torque = torque_of(month, motion)
     oil = motion.oil
     load = motion.load
@@ -193,7 +214,7 @@ def _messages(
     month: Month, motion: Motion, torque: Array, load: Array, oil: Array
 ) -> Iterator[Record]:
     """Yield the messages of a month; the oil comes more slowly than the rest."""
-    slower = round(OIL_PERIOD / PERIOD)
+    slower = round(OIL_PERIOD / month.plan.period)
     columns = motion.time, motion.angle, motion.speed, torque, load, oil
     for number, (time, angle, speed, effort, force, warm) in enumerate(
         zip(*(column.tolist() for column in columns), strict=True)
@@ -209,10 +230,11 @@ def _record(topic: str, stamp: int, delay: int, data: bytes) -> Record:
     return Record(topic=topic, stamp=stamp, log_time=stamp + delay, data=data)
 
 
-def parameters_text() -> str:
-    """Return the parameters of the node to judge the logs with."""
+def parameters_text(surface: str = '') -> str:
+    """Return the parameters of the node to judge the logs with, by the shipped surface if none."""
     values = {
         'axes': ['x'],
+        'x.surface': surface,
         'x.screw': SCREW,
         'x.oil': OIL,
         'x.publish_period': 0.1,
@@ -223,10 +245,12 @@ def parameters_text() -> str:
     return yaml.safe_dump(content, sort_keys=False)
 
 
-def generate(directory: Path, cause: str = 'preload') -> Iterator[Path]:
-    """Write a bag for each month, with the parameters in its metadata; yield their paths."""
-    texts = {f'{PREFIX}parameters': parameters_text()}
-    for month in months(cause):
+def generate(
+    directory: Path, cause: str = 'preload', plan: Plan = MONTHLY, surface: str = ''
+) -> Iterator[Path]:
+    """Write a bag for each log, with the parameters in its metadata; yield their paths."""
+    texts = {f'{PREFIX}parameters': parameters_text(surface)}
+    for month in months(cause, plan):
         path = directory / f'month_{month.number + 1:02}'
         write_bag(path, records_of(month), texts)
         yield path
@@ -247,8 +271,16 @@ def main(arguments: list[str] | None = None) -> int:
         default='preload',
         help='what changes: preload to 40 %%, or the oil to ISO VG 32 (default: %(default)s)',
     )
+    parser.add_argument(
+        '--short', action='store_true', help='twenty logs of 4 min at 10 Hz, one in two weeks'
+    )
+    parser.add_argument(
+        '--surface', type=Path, help='file to judge with (default: the shipped one of the screw)'
+    )
     args = parser.parse_args(arguments)
-    for path in generate(args.out, args.cause):
+    plan = SHORT if args.short else MONTHLY
+    surface = '' if args.surface is None else str(args.surface.resolve())
+    for path in generate(args.out, args.cause, plan, surface):
         print(path)
     return 0
 

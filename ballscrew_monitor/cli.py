@@ -8,6 +8,7 @@ Subcommands that need ROS import it in their handlers, so that the offline ones 
 """
 
 import argparse
+import importlib.util
 import json
 import math
 import os
@@ -32,6 +33,7 @@ BAD_INPUT, BUG, INTERRUPTED = 2, 70, SIGNALLED + signal.SIGINT
 NODE = 'ballscrew_monitor'  # the default name of the node
 # Facts of the event log that are sentences or words: the first that is not empty is printed.
 TOLD = ('text', 'ending', 'advice', 'reason', 'until', 'result', 'sha256')
+WEB = ('starlette', 'uvicorn', 'websockets', 'prometheus_client')  # what the page needs
 # What some commands need beyond the rest, and how to get it.
 NEEDED = {
     'mcap': 'pip install mcap zstandard',
@@ -234,6 +236,18 @@ def _play(args: argparse.Namespace) -> int:
     )
 
 
+def _page(args: argparse.Namespace) -> int:
+    missing = [name for name in WEB if importlib.util.find_spec(name) is None]
+    if missing:
+        raise InputError(
+            f'{", ".join(missing)} is not installed, the page needs it: '
+            f'pip install {" ".join(WEB).replace("_", "-")}'
+        )
+    from ballscrew_monitor.page.command import page_command
+
+    return page_command(args, options.PARAMS)
+
+
 COMMANDS = {
     'run': (_run, 'play a bag into the real node over DDS and record what it says'),
     'replay': (_replay, 'judge a log without DDS, faster than real time'),
@@ -244,10 +258,11 @@ COMMANDS = {
     'doctor': (_doctor, 'compare the running ROS graph with a parameter file, and say the cure'),
     'events': (_events, 'print the event log of a node out of its state_dir'),
     'play': (_play, 'play the inputs of the node from a bag over DDS, with /clock'),
+    'page': (_page, 'serve a live page of all axes to browsers'),
     'recover': (_recover, 'mend a recording whose writer was killed'),
 }
 """Handler and help of each command; `options` adds what it may be told."""
-DISCOVERING = (_solve, _doctor, _play)
+DISCOVERING = (_solve, _doctor, _play, _page)
 """Commands that need others in the ROS graph."""
 WITH_ROS = (_run, _replay, _health, _import, *DISCOVERING)
 """Commands that need ROS; they put in order themselves what a signal would leave behind."""

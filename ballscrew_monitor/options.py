@@ -144,3 +144,27 @@ def add_solve(parser: Parser) -> None:
     parser.add_argument('--node', default='', help='full name of the node, if there are several')
     _add_wait(parser, 'the node')
     _add_switch(parser, '--json', 'print JSON')
+
+
+def add_page(parser: Parser) -> None:
+    """Add what `ballscrew page` may be told."""
+    text = 'recording to play (default: the running nodes), bag, or CSV or Parquet with --map'
+    _add_file(parser, 'log', 'LOG', text, nargs='?')
+    _add_file(parser, '--map', 'FILE', 'map of the columns of a CSV or Parquet file')
+    text = f'parameters of a recording (default those that it carries, else {PARAMS_TEXT})'
+    _add_file(parser, '--params', 'FILE', text)
+    text = 'full name of the node (default all of them, as they come and go)'
+    parser.add_argument('--node', default='', help=text)
+    text = 'address to serve at (default %(default)s); any other needs --token-file'
+    parser.add_argument('--host', default='127.0.0.1', help=text)
+    text = 'port to serve at (default %(default)s)'
+    parser.add_argument('--port', type=int, default=8090, help=text)
+    _add_file(parser, '--token-file', 'FILE', 'file whose first line opens the page to a reader')
+    _add_file(parser, '--cert', 'FILE', 'certificate of the server in PEM, for https')
+    _add_file(parser, '--key', 'FILE', 'its key')
+    text = 'let readers acknowledge, shelve and ask for full solves'
+    _add_switch(parser, '--allow-acting', text)
+    text = 'language of the page, such as en (default that of the browser)'
+    parser.add_argument('--language', default='', help=text)
+    text = 'surfaces of the same screw with other oils, for what-if maps'
+    _add_file(parser, '--oils', 'SURFACE', text, nargs='+', default=[])

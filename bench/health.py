@@ -6,14 +6,17 @@ Play axis-years of known truth and print how good the health is that is made of 
 Usage: python bench/health.py [--runs N] [--clean N] [--seed S]. A year is a draw of programmes,
 seasons and of what the model does not know, with one change or none. It is given as comparable
 points, day by day, and assessed every four weeks. Two years of each kind are drawn unless more are
-asked for: they take minutes.
+asked for: they take minutes. `--logs` writes twenty short logs of two kinds instead, and checks
+the first sentence of `ballscrew health` on them.
 
 """
 
 import argparse
+import sys
 
 from ballscrew_monitor.health.assess import compare
 from ballscrew_monitor.health.companions import Companions
+from health_parts.logs import verdicts
 from health_parts.machine import Ground, solve_ground
 from health_parts.score import Compare, Score, score
 from health_parts.years import draw_year, Kind, Truth
@@ -84,13 +87,24 @@ HEAD = (
 )
 
 
-def main() -> None:
+def check_logs() -> int:
+    """Print what is said of short logs; return the exit code."""
+    found = list(verdicts())
+    for one in found:
+        print(f'{one.cause}: {"right" if one.is_right else "wrong"}: {one.sentence}')
+    return 0 if all(one.is_right for one in found) else 1
+
+
+def main() -> int:
     """Draw, assess and print."""
     parser = argparse.ArgumentParser(description=__doc__.split('\n\n')[0].strip())
     parser.add_argument('--runs', type=int, default=2, help='years of each change')
     parser.add_argument('--clean', type=int, default=2, help='years without a change')
     parser.add_argument('--seed', type=int, default=1000, help='the first one')
+    parser.add_argument('--logs', action='store_true', help='check the sentences on short logs')
     asked = parser.parse_args()
+    if asked.logs:
+        return check_logs()
     ground = solve_ground()
     kinds = [(Kind(truth=truth), asked.runs) for truth in Truth if truth.value]
     kinds = [(Kind(truth=Truth.NOTHING), asked.clean), *kinds]
@@ -99,6 +113,7 @@ def main() -> None:
     for kind, number in kinds:
         scores = scores_of(ground, kind, _seeds(asked.seed, number), progress)
         print(row_of(kind.truth.name, scores), flush=True)
+    return 0
 
 
 def _seeds(first: int, number: int) -> range:
@@ -106,4 +121,4 @@ def _seeds(first: int, number: int) -> range:
 
 
 if __name__ == '__main__':
-    main()
+    sys.exit(main())

@@ -5,12 +5,14 @@ Kill the running node again and again, and compare what it still knows with what
 
 Usage: python bench/restarts.py [--kills N] [--seconds S] [--turning T] [--seed K]. The axis
 leaves its zone and comes back, each kill comes at a random moment. Printed are the running time
-that was lost, and event numbers that were lost, given twice or left open in the log.
+that was lost, event numbers that were lost, given twice or left open in the log, and whether the
+baseline of the health, which the node writes to and assesses each second, is the same after all.
 
 """
 
 import argparse
 from collections import Counter
+import contextlib
 import json
 import os
 from pathlib import Path
@@ -23,6 +25,11 @@ from typing import Any
 
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
+from ballscrew_monitor.health.points import add, model_torque
+from ballscrew_monitor.health.records import Stretch
+from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.health.store import HealthStore, read_health
+from ballscrew_monitor.health.store_rows import KeptHealth
 from ballscrew_monitor.node.state_database import read_entries
 from ballscrew_msgs.msg import BallScrewState
 from geometry_msgs.msg import WrenchStamped
@@ -30,10 +37,17 @@ from node_parts.peer import FAST, LOAD, SLOW, TURNING
 import rclpy
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
+from surrogate.surface import shipped_surface, Surface
 
 STATE = '/ballscrew_monitor/x/state'
 RATE = 100.0  # [Hz] of speed and of load
 PATIENCE = 60.0  # [s] for a node to judge
+DAYS, LONG, WARM = 10, 1000.0, 313.15  # of health; motion of a stretch [s]; its oil [K]
+TORQUE = {
+    'topic': 'axial_load',
+    'field': 'wrench.torque.x',
+    'type': 'geometry_msgs/msg/WrenchStamped',
+}
 
 
 class Machine:
@@ -72,15 +86,39 @@ class Machine:
     def _publish(self, speed: float) -> None:
         load, joints = WrenchStamped(), JointState(name=['x_axis'], velocity=[speed])
         load.header.stamp = joints.header.stamp = self.node.get_clock().now().to_msg()
-        load.wrench.force.x = LOAD
+        load.wrench.force.x, load.wrench.torque.x = LOAD, 0.3
         self._loads.publish(load)
         self._speeds.publish(joints)
+
+
+def live(folder: Path) -> None:
+    """Keep some days of health in a `folder`, of which the node makes its baseline."""
+    surface, today = Surface.load(shipped_surface()), time.time_ns() // DAY
+    points: dict[Any, Any] = {}
+    for day in range(today - DAYS, today):
+        for speed in (FAST, -FAST, 0.3 * FAST, -0.3 * FAST):
+            torque = model_torque(surface, speed, LOAD, WARM)
+            stretch = Stretch(
+                start=day * DAY,
+                duration=LONG,
+                samples=100,
+                speed=speed,
+                axial_load=LOAD,
+                temperature=WARM,
+                motor_torque=torque,
+            )
+            for _ in range(3):
+                add(points, stretch, surface, day)
+    with contextlib.closing(HealthStore(folder)) as store:
+        store.load()
+        store.add('x', points.values())
 
 
 def start(folder: Path, domain: int) -> subprocess.Popen[bytes]:
     """Start the node, which keeps what it knows in a `folder`."""
     parameters = {'state_dir': str(folder), 'x': {'limits': {'raise_delay': 0.0}}}
     parameters['x']['limits']['clear_delay'] = 0.0  # type: ignore[index]
+    parameters['x'] |= {'torque': TORQUE, 'health': {'period': 1.0}}  # type: ignore[operator]
     file = folder.with_suffix('.yaml')
     file.write_text(json.dumps({'/**': {'ros__parameters': parameters}}))
     command = [sys.executable, '-m', 'ballscrew_monitor.node', '--ros-args']
@@ -124,6 +162,15 @@ def report(runs: list[tuple[Any, Any]], entries: list[dict[str, Any]]) -> None:
     print(f'ended by a restart      {restarted}')
 
 
+def report_health(kept: list[KeptHealth]) -> None:
+    """Print whether the baseline is the same after each kill, and how often stretches are lost."""
+    counts = [sum(one.stretches for one in each.points) for each in kept]
+    print(f'kills without baseline  {sum(each.baseline is None for each in kept)}')
+    print(f'different baselines     {len({each.baselines for each in kept})}')
+    print(f'stretches kept          {counts[0]} to {counts[-1]}')
+    print(f'stretches fallen back   {sum(a > b for a, b in zip(counts, counts[1:]))}')
+
+
 def main() -> None:
     """Kill, and report."""
     parser = argparse.ArgumentParser(description=__doc__.split('\n\n')[0].strip())
@@ -137,8 +184,13 @@ def main() -> None:
         os.environ.update(ros_environment(domain))
         rclpy.init()
         folder, machine = Path(place, 'state'), Machine(asked.turning)
-        runs = [kill_one(machine, folder, domain, asked.seconds) for _ in range(asked.kills)]
+        live(folder)
+        runs, kept = [], []
+        for _ in range(asked.kills):
+            runs.append(kill_one(machine, folder, domain, asked.seconds))
+            kept.append(read_health(folder)['x'])
         report(runs, [entry.record() for entry in read_entries(folder)])
+        report_health(kept)
         rclpy.shutdown()
 
 

@@ -3,15 +3,15 @@
 """
 Fit the onset factor of synthetic machines whose truth lies outside the fit.
 
-Run `python studies/onset_machines.py [--machines N] [--fast N]`: the nominal screw without load
-on a staircase of 14 speeds in both directions. RCS and rolling loss below the onset of each
-machine are those of one marched strip of `asperity_marches.csv` that was held out of the fit of
-the law; the onset is off by a drawn factor. Boundary friction, viscosity and parasitic parts are
-drawn, a seal adds friction that fades with the speed, each point has a ripple, normal noise and an
-oil that warms up unseen. Writes `onset_machines.csv` and prints how often the factor lies within
-1.3 and the intervals hold the truth; the same for staircases that end above the upturn of most
-machines, which must give bounds. Some minutes. Such machines test the estimator alone, not the
-law.
+Run `python studies/onset_machines.py [--machines N] [--fast N] [--write SEED]`: the nominal screw
+without load on a staircase of 14 speeds in both directions. RCS and rolling loss below the onset
+of each machine are those of one marched strip of `asperity_marches.csv` that was held out of the
+fit of the law; the onset is off by a drawn factor. Boundary friction, viscosity and parasitic
+parts are drawn, a seal adds friction that fades with the speed, each point has a ripple, normal
+noise and an oil that warms up unseen. Writes `onset_machines.csv` and prints how often the factor
+lies within 1.3 and the intervals hold the truth; the same for staircases that end above the upturn
+of most machines, which must give bounds. Some minutes. Such machines test the estimator alone, not
+the law. `--write` writes the run of one machine to `staircase.csv` instead.
 
 """
 
@@ -177,13 +177,26 @@ def bound_of(row):
     return float(row['onset_factor_reason'].partition('at most ')[2].split()[0])
 
 
+def write_run(folder, seed):
+    """Write the run of a machine as `ballscrew identify` reads it."""
+    run, _ = machine(seed)
+    with (folder / 'staircase.csv').open('w', encoding='utf-8', newline='') as file:
+        writer = csv.writer(file)
+        writer.writerow(['speed_rpm', 'torque_Nm'])
+        writer.writerows(np.column_stack([run.speed / RPM, run.torque]).tolist())
+
+
 def main():
     """Draw, fit, write and print."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--machines', type=int, default=120)
     parser.add_argument('--fast', type=int, default=40)
     parser.add_argument('--out', type=Path, default=Path('studies/results'))
+    parser.add_argument('--write', type=int, metavar='SEED')
     args = parser.parse_args()
+    if args.write is not None:
+        write_run(args.out, args.write)
+        return
     every = []
     for kind, rpm, number in (('staircase', SPEEDS, args.machines), ('fast', FAST, args.fast)):
         rows = list(rows_of(kind, rpm, range(number)))

@@ -21,6 +21,7 @@ ROOT = Path(__file__).resolve().parents[1]
 DEADLINE = 600.0  # [s] which only ends a hang, in this file as in all others
 # No package of a machine with ROS 2.
 OPTIONAL = 'apsw contourpy fastexcel mcap mcap_ros2 polars rosbags zstandard'.split()
+OPTIONAL += 'prometheus_client starlette uvicorn websockets'.split()
 # Tests that solve contacts, talk over DDS, start processes, draw many pictures, repeat thousands
 # of fits or run linters over the whole tree: folders and files, and fixtures that make any test
 # such a one. All others are `fast`.
@@ -31,14 +32,19 @@ SLOW = (
     'ballscrew_monitor/cycle/test_run.py',
     'ballscrew_monitor/clients/test_solve.py',
     'ballscrew_monitor/judge/test_many.py',
+    'ballscrew_monitor/page/test_acting.py',
+    'ballscrew_monitor/page/test_command.py',
+    'ballscrew_monitor/page/test_ros_side.py',
     'ballscrew_monitor/node/test_clocks.py',
     'ballscrew_monitor/node/test_kept.py',
     'ballscrew_monitor/node/test_loss.py',
     'ballscrew_monitor/node/test_motor_torque.py',
     'ballscrew_monitor/node/test_faults.py',
+    'ballscrew_monitor/node/test_heartbeat.py',
     'ballscrew_monitor/settings/test_middleware.py',
     'ballscrew_monitor/node/test_node.py',
     'ballscrew_monitor/node/test_solve.py',
+    'ballscrew_monitor/node/test_system.py',
     'ballscrew_monitor/recordings/test_axis_run.py',
     'ballscrew_monitor/recordings/test_black_box.py',
     'ballscrew_monitor/recordings/test_player.py',

@@ -67,6 +67,7 @@ THEMES = {
     'ballscrew_monitor/node/test_motor_torque.py',
     'ballscrew_monitor/node/test_policy.py',
     'ballscrew_monitor/node/test_solve.py',
+    'ballscrew_monitor/node/test_system.py',
     'ballscrew_monitor/recordings/test_black_box.py',
     'ballscrew_monitor/recordings/test_compatibility.py',
     'ballscrew_monitor/report/test_memory.py',
@@ -80,10 +81,10 @@ THEMES = {
     'surrogate/ehl/test_mixed.py',
     'surrogate/ehl/test_tables.py',
 }
-# By the extras `bags`, `report`, `xlsx`, `areal`, `dask` and `netcdf`.
+# By the extras `bags`, `report`, `xlsx`, `page`, `areal`, `dask` and `netcdf`.
 OPTIONAL = {
-    *'SurfaceTopography apsw contourpy distributed fastexcel lz4 mcap'.split(),
-    *'polars rosbags xarray zstandard'.split(),
+    *'SurfaceTopography apsw contourpy distributed fastexcel lz4 mcap polars'.split(),
+    *'prometheus_client rosbags starlette uvicorn websockets xarray zstandard'.split(),
 }
 
 

@@ -38,6 +38,7 @@ FLOORS = (
     ('recordings',),
     ('node', 'report'),
     ('clients', 'cycle'),
+    ('page',),
 )
 """Folders of the online half, the lowest first; those beside each other do not meet."""
 OFFLINE_FLOORS = (

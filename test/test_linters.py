@@ -3,6 +3,8 @@
 """The whole tree passes the linters of a machine with ROS 2."""
 
 from pathlib import Path
+import subprocess
+import sys
 
 from ament_flake8.main import main_with_errors
 from ament_pep257.main import main
@@ -30,6 +32,15 @@ def test_pep257(capsys):
     """No finding: the text of a finding is what the assertion shows."""
     code = main(argv=PATHS)
     assert code == 0, capsys.readouterr().err
+
+
+@pytest.mark.linter
+def test_mypy():
+    """No finding; the settings name the files."""
+    checked = subprocess.run(
+        [sys.executable, '-m', 'mypy'], cwd=TREE, capture_output=True, text=True
+    )
+    assert checked.returncode == 0, checked.stdout
 
 
 @pytest.mark.linter

@@ -15,12 +15,13 @@ from typing import NamedTuple
 
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.bands import day_of
-from ballscrew_monitor.health.baseline import changed_screw
+from ballscrew_monitor.health.baseline import changed_screw, motion_by_day
 from ballscrew_monitor.health.calibration import calibrated
 from ballscrew_monitor.health.causes import causes_of, FEWEST_GROUPS, fits_of
 from ballscrew_monitor.health.change import Change, Days, parts_of, select
 from ballscrew_monitor.health.companions import Companions
 from ballscrew_monitor.health.damage import rated_of
+from ballscrew_monitor.health.detector import note_on_runs
 from ballscrew_monitor.health.energy import energy_quantities, student
 from ballscrew_monitor.health.evidence import is_certain
 from ballscrew_monitor.health.faults import input_fault
@@ -112,7 +113,7 @@ def assess(
     today = day_of(now)
     known = baseline if isinstance(baseline, Baseline) else None
     compared = compare(baseline, points, today, surface, companions)
-    _, change, reason, drag, preload, condition, causes = compared
+    model, change, reason, drag, preload, condition, causes = compared
     recent = recent_of(points, today)
     found = [
         *_drags(change, drag, reason),
@@ -120,6 +121,7 @@ def assess(
         *_others(points, spectrum, surface, known, today, settings),
     ]
     notes = _notes(surface, known, points, recent, change, today)
+    on_runs = note_on_runs(points, motion_by_day(spectrum), model)
     remedy = remedies_of(
         recent, surface, settings.limits, speed_allowed=settings.speed_allowed
     ).text
@@ -132,7 +134,7 @@ def assess(
         quantities=found,
         causes=causes,
         baseline=known,
-        notes=notes,
+        notes=[*notes, on_runs] if on_runs else notes,
     )
 
 

@@ -4,15 +4,22 @@
 Detector of a change in a series of readings: a self-starting CUSUM without a look-ahead.
 
 Each reading is held against mean and spread of the readings before it, so that no series of
-known normal readings is needed: Hawkins, The Statistician 36 (1987) 299.
+known normal readings is needed: Hawkins, The Statistician 36 (1987) 299. The readings are those of
+reference runs, which are few: beside a screw that is measured once in a while, an interval that
+holds for all that may drift says nothing for long.
 
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 import dataclasses
 import math
 
-from ballscrew_monitor.health.baseline import RUNNING_IN
+from ballscrew_monitor.core.conversions import clock_text
+from ballscrew_monitor.health.baseline import Motion, RUNNING_IN
+from ballscrew_monitor.health.model import Model
+from ballscrew_monitor.health.records import ComparablePoint, LoadSource
+from ballscrew_monitor.health.rows import DAY
+import numpy as np
 
 SLACK, LIMIT = 0.5, 3.7
 """
@@ -73,6 +80,39 @@ def first_alarm(series: Iterable[tuple[float, float]]) -> float | None:
         if usable and state.take(reading) >= LIMIT:
             return time
     return None
+
+
+def note_on_runs(points: Sequence[ComparablePoint], motion: Motion, model: Model) -> str:
+    """
+    Return in a sentence since when the reference runs differ from those before, or ''.
+
+    The reading of a day is its measured friction over that of the model, at the places of its run;
+    `motion` [s] of each day tells how long the screw has run in.
+
+    """
+    runs = [one for one in points if one.load_source is LoadSource.FREE]
+    days = sorted({one.first_day for one in runs})
+    readings = [_reading([one for one in runs if one.first_day == day], model) for day in days]
+    times = [sum(time for one, time in motion.items() if one <= day) for day in days]
+    alarm = first_alarm(zip(times, readings))
+    if alarm is None:
+        return ''
+    at = times.index(alarm)
+    before = [one for time, one in zip(times[:at], readings) if time >= RUNNING_IN]
+    change = readings[at] / np.nanmean(before) - 1.0
+    return (
+        f'the reference run of {clock_text(days[at] * DAY)[:10]} has a friction that differs by '
+        f'{100.0 * change:+.0f} % from those before, more than those scatter'
+    )
+
+
+def _reading(run: Sequence[ComparablePoint], model: Model) -> float:
+    """Return the measured over the modelled friction of a run [-], NaN outside the surface."""
+    modelled, stretches = model.friction(run), np.array([one.stretches for one in run])
+    measured = np.array([model.measured(one) for one in run])
+    known = np.isfinite(modelled)
+    total = float(stretches[known] @ modelled[known])
+    return float(stretches[known] @ measured[known]) / total if total > 0.0 else math.nan
 
 
 def normal_score_wallace_1959(ratio: float, freedom: int) -> float:

@@ -10,13 +10,16 @@ publishing; numbers are values, with the unit in brackets.
 """
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from ballscrew_monitor.core.conversions import celsius, clock_text, seconds
 from ballscrew_monitor.core.estimate import PointValidity
+from ballscrew_monitor.core.fault_codes import cause_code, Fault
 from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source
-from ballscrew_monitor.core.judgement import Code, Gate, Level, WarningPolicy
+from ballscrew_monitor.core.judgement import Gate, Level, WarningPolicy
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import Event, State
+from ballscrew_monitor.core.vitals import VitalSigns
 from ballscrew_monitor.messages import reasons
 from ballscrew_monitor.messages.reasons import Standing
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
@@ -24,49 +27,62 @@ from surrogate.surface import Surface
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
-NOT_SET = 'no message was set'
-NOTHING_YET = 'nothing has been judged yet'
 CLOCK_STANDS = (
     'the clock stands still, nothing is seen to go stale: play /clock, or unset use_sim_time'
 )
-NOT_DERIVED = 'not judged: the motor torque does not tell the load here'
-INACTIVE = 'the node is inactive, nothing is judged'
 KEPT = 'sums, events and corrections are kept'
 NO_WARNING = '; no warning, by warning.policy'
 RECORDED = 'what the node hears and says is recorded'
+IN_TIME = 'the node keeps up'
+BUSY = (
+    'the node uses up one processor, messages may be lost: lower their rate, raise '
+    'publish_period, or give some axes a node of their own'
+)
 PARTS = ('Lubrication', 'Inputs', 'Surface')
-StatusSummary = tuple[bytes, str]  # level and message of a status
+
+
+class StatusSummary(NamedTuple):
+    """Level, message and code of a status."""
+
+    level: bytes
+    message: str
+    code: Fault = Fault.NONE
+
 
 _NOT_JUDGED = {
-    PointValidity.UNKNOWN: 'not judged: the screw has not moved yet',
-    PointValidity.SPEED_BELOW_RANGE: 'not judged: speed below the surface',
-    PointValidity.SPEED_ABOVE_RANGE: 'not judged: speed above the surface',
-    PointValidity.LOAD_OUT_OF_RANGE: 'not judged: load outside the surface',
-    PointValidity.TEMPERATURE_OUT_OF_RANGE: 'not judged: temperature outside the surface',
-    PointValidity.MASKED: 'not judged: the model did not converge here',
-    PointValidity.NO_INPUT: 'not judged: an input is missing',
-    PointValidity.NO_SURFACE: 'not judged: no surface',
+    PointValidity.UNKNOWN: Fault.NOT_MOVED,
+    PointValidity.SPEED_BELOW_RANGE: Fault.SPEED_BELOW,
+    PointValidity.SPEED_ABOVE_RANGE: Fault.SPEED_ABOVE,
+    PointValidity.LOAD_OUT_OF_RANGE: Fault.LOAD_OUTSIDE,
+    PointValidity.TEMPERATURE_OUT_OF_RANGE: Fault.TEMPERATURE_OUTSIDE,
+    PointValidity.MASKED: Fault.MASKED,
+    PointValidity.NO_INPUT: Fault.NO_INPUT,
+    PointValidity.NO_SURFACE: Fault.NO_SURFACE,
 }
 # Nothing is wrong with these at standstill.
 _OF_STANDSTILL = (PointValidity.UNKNOWN, PointValidity.SPEED_BELOW_RANGE)
-_CAUSES = {
-    Code.RCS_HIGH: 'asperities carry too much',
-    Code.EFFICIENCY_LOW: 'too much power is lost',
-}
 _LEVELS = {Standing.GOOD: OK, Standing.DEGRADED: WARN, Standing.LOST: STALE}
 
 
-def failed(node: str, axis: str, reason: str) -> list[DiagnosticStatus]:
+def failed(
+    node: str, axis: str, reason: str, code: Fault = Fault.NOT_CONFIGURED
+) -> list[DiagnosticStatus]:
     """Return the statuses of an axis that cannot work for `reason`; `node` is its full name."""
-    return [
-        DiagnosticStatus(name=f'{node.lstrip("/")}: {axis}: {part}', level=ERROR, message=reason)
-        for part in PARTS
-    ]
+    made = [DiagnosticStatus(name=f'{node.lstrip("/")}: {axis}: {part}') for part in PARTS]
+    for status in made:
+        _say(status, StatusSummary(ERROR, reason, code))
+    return made
+
+
+def _say(status: DiagnosticStatus, said: StatusSummary) -> None:
+    """Let a status say something; its code is its first value."""
+    status.level, status.message = said.level, said.message
+    status.values = [*key_values([('Code', int(said.code))]), *status.values[1:]]
 
 
 def of_folder(node: str, problem: str) -> DiagnosticStatus:
     """Return the status of what the `node`, by full name, keeps on the disk."""
-    return _of_node(node, 'State directory', problem, KEPT)
+    return _of_node(node, 'State directory', problem, KEPT, Fault.NOT_KEPT)
 
 
 def defect_text(error: Exception, event: InputSample | Refusal | int | str) -> str:
@@ -86,12 +102,26 @@ def defect_text(error: Exception, event: InputSample | Refusal | int | str) -> s
 
 def recording(node: str, problem: str) -> DiagnosticStatus:
     """Return the status of the recording of the `node`; `problem` is why there is none."""
-    return _of_node(node, 'Recording', problem, RECORDED)
+    return _of_node(node, 'Recording', problem, RECORDED, Fault.NOT_RECORDED)
 
 
-def _of_node(node: str, part: str, problem: str, fine: str) -> DiagnosticStatus:
-    name, level = f'{node.lstrip("/")}: {part}', WARN if problem else OK
-    return DiagnosticStatus(name=name, level=level, message=problem or fine)
+def of_node(node: str, signs: VitalSigns) -> DiagnosticStatus:
+    """Return the status of the `node` itself, by full name."""
+    status = _of_node(node, 'Node', BUSY if signs.is_busy else '', IN_TIME, Fault.BUSY)
+    status.values += key_values(
+        [
+            ('Loop time [s]', signs.loop_time),
+            ('Queue depth [-]', signs.queue_depth),
+            ('Processor share [-]', signs.processor_share),
+        ]
+    )
+    return status
+
+
+def _of_node(node: str, part: str, problem: str, fine: str, code: Fault) -> DiagnosticStatus:
+    status = DiagnosticStatus(name=f'{node.lstrip("/")}: {part}')
+    _say(status, StatusSummary(WARN, problem, code) if problem else StatusSummary(OK, fine))
+    return status
 
 
 def hardware_id(node: str, axis: str, screw: str) -> str:
@@ -122,35 +152,40 @@ def statuses(
     While the clock stands no state tells that an input is dead, so nothing but a warning is held.
 
     """
-    made = failed(node, axis, NOT_SET)
+    made = failed(node, axis, Fault.NOT_SET.text, Fault.NOT_SET)
     for status in made:
         status.hardware_id = hardware_id(node, axis, surface.screw_name)
     changed = ' and corrected' if surface.corrections else ''
-    made[2].level, made[2].message = OK, f'{surface.tier} surface loaded{changed}'
+    _say(made[2], StatusSummary(OK, f'{surface.tier} surface loaded{changed}'))
     if refused:
-        made[2].level = WARN
-        made[2].message = f'kept the old surface, the reload is refused: {refused}'
-    made[2].values = key_values(_surface_values(surface))
+        code = Fault.RELOAD_REFUSED
+        _say(made[2], StatusSummary(WARN, f'{code.text}: {refused}', code))
+    made[2].values += key_values(_surface_values(surface))
     matched = {source.name.capitalize(): link.matched for source, link in (links or {}).items()}
-    made[1].values = key_values(
+    made[1].values += key_values(
         [(f'{name} publishers [-]', count) for name, count in matched.items()]
     )
     if state is None or links is None:
-        why = CLOCK_STANDS if clock_stands else NOTHING_YET
+        why = Fault.CLOCK_STANDS if clock_stands else Fault.NOTHING_YET
         for status in made[:2]:
-            status.level, status.message = STALE, INACTIVE if links is None else why
+            _say(status, _stale(Fault.INACTIVE if links is None else why))
     else:
-        for status, (level, message) in zip(made, summaries(state, event, links, policy)):
-            status.level, status.message = level, message
+        for status, said in zip(made, summaries(state, event, links, policy)):
+            _say(status, said)
         if clock_stands:
             warns = state.level is Level.WARN and policy.of_zone
             for status in made[1:2] if warns else made[:2]:
-                status.level, status.message = STALE, CLOCK_STANDS
-        made[0].values = key_values(_lubrication_values(state))
-        made[1].values = [*made[1].values, *key_values(_input_values(state.inputs))]
+                _say(status, _stale(Fault.CLOCK_STANDS))
+        made[0].values += key_values(_lubrication_values(state))
+        made[1].values += key_values(_input_values(state.inputs))
     if defect:
-        made[0].level, made[0].message = ERROR, defect
+        _say(made[0], StatusSummary(ERROR, defect, Fault.PROGRAM_FAILED))
     return made
+
+
+def _stale(code: Fault) -> StatusSummary:
+    """Return that nothing is known because of a fault; the sentence of the clock has its cure."""
+    return StatusSummary(STALE, CLOCK_STANDS if code is Fault.CLOCK_STANDS else code.text, code)
 
 
 def summaries(
@@ -159,32 +194,35 @@ def summaries(
     links: Mapping[Source, Link],
     policy: WarningPolicy = WarningPolicy.ZONE,
 ) -> tuple[StatusSummary, StatusSummary]:
-    """Return level and message of Lubrication and Inputs; only a change of them is news."""
-    standing, text = reasons.summary(state.axis, state.inputs, links)
-    return _lubrication(state, event, policy), (_LEVELS[standing], text)
+    """Return what Lubrication and Inputs say; only a change of it is news."""
+    standing, text, code = reasons.summary(state.axis, state.inputs, links)
+    return _lubrication(state, event, policy), StatusSummary(_LEVELS[standing], text, code)
 
 
 def _lubrication(state: State, event: Event, policy: WarningPolicy) -> StatusSummary:
-    shelved = state.shelving.until != 0
-    if state.level is Level.WARN and not shelved:
-        cause = _CAUSES.get(event.cause.code, 'cause unknown')
-        text = f'outside the optimal zone: {cause}'
-        return (WARN, text) if policy.of_zone else (OK, f'{text}{NO_WARNING}')
+    """Return what is said of the lubrication; a warning that is not to call keeps its code."""
+    cause = cause_code(event.cause.code)
+    if state.level is Level.WARN and state.shelving.until == 0:
+        if policy.of_zone:
+            return StatusSummary(WARN, cause.text, cause)
+        return StatusSummary(OK, f'{cause.text}{NO_WARNING}', cause)
     validity = state.estimate.validity
-    if validity is PointValidity.NO_INPUT:
-        return STALE, _NOT_JUDGED[validity]
     still = Gate.STANDSTILL in state.verdict.gates
-    if validity is PointValidity.UNKNOWN and state.point.derived is not None and not still:
-        return WARN, NOT_DERIVED
-    if validity is not PointValidity.VALID and not (still and validity in _OF_STANDSTILL):
-        return WARN, _NOT_JUDGED[validity]
+    code = _NOT_JUDGED.get(validity, Fault.NONE)
+    if code is Fault.NO_INPUT:
+        return StatusSummary(STALE, code.text, code)
+    if code is Fault.NOT_MOVED and state.point.derived is not None and not still:
+        return StatusSummary(WARN, Fault.NOT_DERIVED.text, Fault.NOT_DERIVED)
+    if code and not (still and validity in _OF_STANDSTILL):
+        return StatusSummary(WARN, code.text, code)
     if state.level is Level.WARN:
-        return OK, f'shelved until {clock_text(state.shelving.until)}: {state.shelving.reason}'
+        until = clock_text(state.shelving.until)
+        return StatusSummary(OK, f'shelved until {until}: {state.shelving.reason}', cause)
     if state.level is Level.OK:
-        return OK, 'standstill' if still else 'optimal'
+        return StatusSummary(OK, 'standstill' if still else 'optimal')
     if still:  # nothing is amiss with an axis that has been parked since it was switched on
-        return OK, 'standstill, not judged for long enough yet'
-    return WARN, 'not judged for long enough yet'
+        return StatusSummary(OK, 'standstill, not judged for long enough yet')
+    return StatusSummary(WARN, Fault.TOO_SHORT.text, Fault.TOO_SHORT)
 
 
 def _lubrication_values(state: State) -> list[tuple[str, object]]:

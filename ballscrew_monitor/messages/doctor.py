@@ -171,7 +171,7 @@ def _of_health(facts: InputFacts, heard: Heard, seconds: float) -> list[str]:
     fine = heard.status.state in (InputState.OK, InputState.STALE)
     if fine and heard.longest_gap > facts.timeout:
         return [f'{facts.parameter}: it {slow_reason(heard.longest_gap, facts.parameter)}']
-    standing, text = summary(facts.axis, (heard.status,), {facts.source: facts.link})
+    standing, text, _ = summary(facts.axis, (heard.status,), {facts.source: facts.link})
     return [] if standing is Standing.GOOD else [f'{facts.parameter}: {text}']
 
 

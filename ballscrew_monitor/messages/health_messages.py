@@ -8,6 +8,7 @@ What is not known is no warning: its status is OK with a sentence.
 """
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.health.records import Cause, Condition, Health, Quantity
 from ballscrew_monitor.messages.diagnostics import hardware_id, key_values, OK, WARN
@@ -70,10 +71,14 @@ def health_status(
     status.hardware_id = hardware_id(node, axis, screw)
     if health is None:
         status.message = f'not known: {problem or NOT_ASSESSED}'
+        code = Fault.NOT_FOLLOWED if problem else Fault.NOTHING_YET
+        status.values = key_values([('Code', int(code))])
         return status
     status.level = WARN if warns(health, policy) else OK
     status.message = f'{health.verdict} Not followed now: {problem}' if problem else health.verdict
-    status.values = key_values(_values(health))
+    code = Fault.WORSE if health.condition is Condition.WORSE else Fault.NONE
+    code = Fault.NOT_FOLLOWED if problem else code
+    status.values = key_values([('Code', int(code)), *_values(health)])
     return status
 
 

@@ -15,6 +15,7 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import seconds
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, Why, YEAR
 from ballscrew_monitor.core.links import Link, link_reason, senders, several_reason
@@ -64,34 +65,40 @@ def _is_refused(status: InputStatus) -> bool:
     return bool(others) and status.refused_share >= SHARE
 
 
-_TROUBLES: tuple[tuple[Callable[[InputStatus, Link | None], Any], str | Cure], ...] = (
-    (lambda status, link: _is_refused(status), _refused),
+_TROUBLES: tuple[tuple[Callable[[InputStatus, Link | None], Any], str | Cure, Fault], ...] = (
+    (lambda status, link: _is_refused(status), _refused, Fault.REFUSED),
     (
         lambda status, link: status.glitching,
         f'samples beyond the plausible range were refused: {_PLAUSIBLE}',
+        Fault.GLITCHES,
     ),
     (
         lambda status, link: status.losing,
         'messages are lost on the way: lower their rate, raise publish_period, or give the node '
         'fewer axes or more of the processor',
+        Fault.LOST,
     ),
     (
         lambda status, link: status.lag > seconds(YEAR),
         'stamps are of simulated time and the node runs on the wall clock: set use_sim_time',
+        Fault.SIMULATED_STAMPS,
     ),
     (
         lambda status, link: status.lagging,
         'stamps lag behind their arrival: set the clocks alike, or raise max_lag',
+        Fault.LAG,
     ),
-    (lambda status, link: status.slow, _slow),
+    (lambda status, link: status.slow, _slow, Fault.SLOW),
     (
         lambda status, link: link is not None and link.several is None,
         'loss is unknown, and so is whether one source alone sends it: let the topic have one '
         'publisher, or a middleware that numbers messages',
+        Fault.SOURCES_UNKNOWN,
     ),
     (
         lambda status, link: status.lost is None,
         'loss is unknown: let the topic have one publisher that numbers its messages',
+        Fault.LOSS_UNKNOWN,
     ),
 )
 
@@ -106,20 +113,26 @@ class Standing(enum.Enum):
 
 def summary(
     axis: str, inputs: tuple[InputStatus, ...], links: Mapping[Source, Link]
-) -> tuple[Standing, str]:
-    """Return a sentence for each fault, with what mends it; the worst kind of fault alone."""
-    faults = [
-        fault(status, links.get(status.source), _parameter(axis, status.source))
-        for status in inputs
-        if status.state in _FAULTS
-    ]
-    if faults:
-        return Standing.LOST, '; '.join(faults)
-    for happens, text in _TROUBLES:
+) -> tuple[Standing, str, Fault]:
+    """
+    Return a sentence for each fault, with what mends it; the worst kind of fault alone.
+
+    The code is that of the first one.
+
+    """
+    faulty = [status for status in inputs if status.state in _FAULTS]
+    if faulty:
+        texts = [
+            fault(status, links.get(status.source), _parameter(axis, status.source))
+            for status in faulty
+        ]
+        return Standing.LOST, '; '.join(texts), fault_code(faulty[0])
+    for happens, text, code in _TROUBLES:
         found = [status for status in inputs if happens(status, links.get(status.source))]
         if found:
-            return Standing.DEGRADED, _trouble(axis, found, links, text)
-    return Standing.GOOD, '; '.join([Standing.GOOD.value, *_remarks(axis, inputs, links)])
+            return Standing.DEGRADED, _trouble(axis, found, links, text), code
+    remarks = _remarks(axis, inputs, links)
+    return Standing.GOOD, '; '.join([Standing.GOOD.value, *remarks]), Fault.NONE
 
 
 def _remarks(
@@ -171,6 +184,15 @@ def fault(status: InputStatus, link: Link | None, parameter: str) -> str:
     if link and not reason:
         reason = f'the publisher on {link.topic} has sent nothing yet'
     return _with(f'{name} was never received', reason)
+
+
+def fault_code(status: InputStatus) -> Fault:
+    """Return the code of what is wrong with an input that is not well."""
+    if status.state is InputState.BAD:
+        return Fault[f'INPUT_{status.why.name}'] if status.why else Fault.INPUT_UNUSABLE
+    if status.joints is not None:
+        return Fault.INPUT_OTHER_JOINTS
+    return Fault[f'INPUT_{status.state.name}']
 
 
 def _with(what: str, why: str) -> str:

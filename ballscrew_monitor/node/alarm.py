@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The warning of one axis: its topic, its log, what people do to it; topics that stay."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 import functools
 from typing import Any, TYPE_CHECKING
 
@@ -13,22 +13,16 @@ from ballscrew_monitor.messages.state_messages import out_of_zone_message
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts, totals_facts
 from ballscrew_monitor.settings.axis import Axis
+from ballscrew_monitor.settings.qos import LATCHED_QOS
 from ballscrew_msgs.msg import AxisHealth, OutOfZone, SurfaceInfo
 from rclpy.clock import Clock
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 
 if TYPE_CHECKING:  # which imports this module
     from ballscrew_monitor.node.axis_publisher import AxisPublisher
-
-LATCHED_QOS = QoSProfile(
-    depth=1,
-    reliability=QoSReliabilityPolicy.RELIABLE,
-    durability=QoSDurabilityPolicy.TRANSIENT_LOCAL,
-)
 
 
 def quiet_publishers(node: LifecycleNode) -> functools.partial[Any]:
@@ -93,12 +87,15 @@ class Alarm:
         publish(message)
         self._record(f'~/{self._axis.name}/out_of_zone', message)
 
-    def follow(self, state: State) -> None:
-        """Keep the event that a state has begun or ended, and then speak of it."""
+    def follow(self, state: State, frame: Mapping[str, list[float]]) -> None:
+        """Keep the event that a state has begun, with its freeze frame, or ended, then speak."""
         event, monitor = self._axis.monitor.event, self._axis.monitor
         # First: who is killed meanwhile must not have said a number that is not kept.
-        kind = Kind.EVENT_BEGIN if event.active else Kind.EVENT_END
-        self._note_event(kind, point=point_facts(state.point))
+        point = point_facts(state.point)
+        if event.active:
+            self._note_event(Kind.EVENT_BEGIN, point=point, freeze_frame=frame)
+        else:
+            self._note_event(Kind.EVENT_END, point=point)
         self.publish()
         if event.active:
             advice = f'; {event.advice.text}' if event.advice.text else ''

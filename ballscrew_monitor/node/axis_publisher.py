@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.estimate import estimate, MachinePoint
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.full_point import corrected, Dwell, objection, solved_at
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source
 from ballscrew_monitor.core.judgement import WarningPolicy
@@ -17,6 +18,7 @@ from ballscrew_monitor.core.state import MonitorSettings, Shelving, State
 from ballscrew_monitor.messages import diagnostics, state_messages
 from ballscrew_monitor.messages.state_messages import plain_values, TIERS
 from ballscrew_monitor.node.alarm import Alarm, LatchedTopics, quiet_publishers
+from ballscrew_monitor.node.freeze_frame import FreezeFrame
 from ballscrew_monitor.node.journal import NodeJournal
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import Corrections, Kind, point_facts
@@ -61,7 +63,7 @@ class AxisPublisher:
 
         """
         self.axis = axis
-        self.dwell = Dwell()
+        self.dwell, self.frame = Dwell(), FreezeFrame()
         self.refused = ''  # why the last reload of the surface was
         self.defect = ''  # of the program, where it failed for this axis first
         self.failed = False  # in what was guarded last
@@ -99,7 +101,7 @@ class AxisPublisher:
         """Publish a state, and before it the event that it begins or ends."""
         self._last = state
         if state.event is not None:
-            self.alarm.follow(state)
+            self.alarm.follow(state, self.frame.facts(state.stamp))
         message = self._writer.write(state)
         self._state.publish(message)
         self._recording.record(f'~/{self.name}/state', message)
@@ -282,12 +284,12 @@ class AxisPublisher:
         if not self._said or self._said[1] == self._logged or now - self._logged_at < LOG_INTERVAL:
             return
         self._logged, self._logged_at = self._said[1], now
-        level, text = self._logged
+        text = f'axis {self.axis.name}: {self._logged.message}'
         # Two calls: rclpy ties one severity to one place in the code.
-        if level == diagnostics.OK:
-            self._node.get_logger().info(f'axis {self.axis.name}: {text}')
+        if self._logged.level == diagnostics.OK:
+            self._node.get_logger().info(text)
         else:
-            self._node.get_logger().warning(f'axis {self.axis.name}: {text}')
+            self._node.get_logger().warning(text)
 
     def guarded(
         self,
@@ -326,7 +328,8 @@ class AxisPublisher:
         """
         made = self.guarded('its diagnostics', self._statuses, links, stood)
         node = self._node.get_fully_qualified_name()
-        return made or diagnostics.failed(node, self.name, self.defect)
+        code = Fault.PROGRAM_FAILED
+        return made or diagnostics.failed(node, self.name, self.defect, code)
 
     def _statuses(self, links: Mapping[Source, Link] | None, stood: int) -> list[DiagnosticStatus]:
         self._links = links or {}

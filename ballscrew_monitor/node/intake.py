@@ -54,6 +54,10 @@ AxisEvent = tuple[Axis, InputSample | Refusal]
 Take = Callable[[Axis, InputSample | Refusal], None]
 
 
+def _forget(duration: float, messages: int) -> None:
+    """Take no note of work."""
+
+
 def _call(axis: Axis, place: str, call: Callable[..., Any], *args: Any, **named: Any) -> Any:
     return call(*args, **named)
 
@@ -68,16 +72,18 @@ class Intake(Waitable):
         take: Take,
         journal: Journal = SILENT,
         guard: Callable[..., Any] = _call,
+        worked: Callable[[float, int], None] = _forget,
     ) -> None:
         """
         Subscribe once to each topic, however many inputs read it; the journal hears all.
 
-        `guard` calls what reads for an axis, and returns None if the program fails in it.
+        `guard` calls what reads for an axis, and returns None if the program fails in it; `worked`
+        takes for how long [s] messages were at work, and how many.
 
         """
         super().__init__(node.default_callback_group)
         self._node, self._take, self._journal, self._guard = node, take, journal, guard
-        self._apart = Apart()
+        self._worked, self._apart = worked, Apart()
         self._simulated = 0  # the last `/clock` [ns]
         self._steps: deque[int] = deque(maxlen=STEPS)  # of `/clock` [ns]
         self._reading = READING
@@ -250,6 +256,7 @@ class Intake(Waitable):
 
     def drain(self) -> bool:
         """Hand over all that waits, oldest first; return whether that was anything."""
+        begin = time.monotonic()
         arrivals = self._waiting()
         if not arrivals:
             return False
@@ -269,6 +276,7 @@ class Intake(Waitable):
         for axis, event in ordered(events):
             self._take(axis, event)
         self._journal.flush()
+        self._worked(time.monotonic() - begin, len(arrivals))
         return True
 
     def _show(self, shown: Any) -> None:

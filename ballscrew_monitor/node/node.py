@@ -16,6 +16,7 @@ from ballscrew_monitor.node.alarm import end_all, LatchedTopics
 from ballscrew_monitor.node.axis_healths import AxisHealths
 from ballscrew_monitor.node.axis_publisher import AxisPublisher, STATE_QOS
 from ballscrew_monitor.node.axis_services import AxisServices, not_built
+from ballscrew_monitor.node.heartbeat import Heartbeat
 from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.journal import NodeJournal
 from ballscrew_monitor.node.kept_axes import KeptAxes
@@ -23,7 +24,7 @@ from ballscrew_monitor.node.parameter_store import is_kept, ParameterStore
 from ballscrew_monitor.node.restart_state import RestartState, state_directory
 from ballscrew_monitor.node.solve_server import SolveServer
 from ballscrew_monitor.settings import parameters
-from ballscrew_monitor.settings.axis import Axis, build_axes, named_topics
+from ballscrew_monitor.settings.axis import Axis, build_axes, named_topics, start_text
 from ballscrew_monitor.settings.qos import check_overrides, longest_period
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -69,6 +70,7 @@ class BallscrewMonitor(LifecycleNode):
         self._values = self._store.values
         self._recording = NodeJournal(self, self._values, self._axis_publishers)
         self._grid = TickGrid(nanoseconds(self._values['tick_period']))
+        self._heartbeat = Heartbeat(self, clock=self._steady)
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', STATE_QOS)
         # On the steady clock: it speaks while a simulated one stands.
         self.create_timer(
@@ -146,6 +148,9 @@ class BallscrewMonitor(LifecycleNode):
             for axis in axes
         }
         self._kept.restore()
+        name, folder = self.get_fully_qualified_name(), self._kept.state.folder
+        for axis in axes:
+            self.get_logger().info(start_text(axis, name, resolve, folder))
         self._store.ceilings = {
             f'{axis.name}.publish_period': longest_period(axis.name, self._values) for axis in axes
         }
@@ -179,7 +184,14 @@ class BallscrewMonitor(LifecycleNode):
         axes = [publisher.axis for publisher in self._axis_publishers.values()]
         self._recording.describe(self._axis_publishers, 'begin')
         self._healths.begin()
-        self._intake = Intake(self, axes, self._on_event, self._recording.journal, self._guard)
+        self._intake = Intake(
+            self,
+            axes,
+            self._on_event,
+            self._recording.journal,
+            self._guard,
+            self._heartbeat.vitals.work,
+        )
         self._tick_timer = self.create_timer(
             self._values['tick_period'], self._on_tick, clock=self._tick_clock()
         )
@@ -275,10 +287,17 @@ class BallscrewMonitor(LifecycleNode):
     ) -> None:
         """Judge a sample, a refusal or a tick; a defect is an error of its axis alone."""
         known = publisher.defect
-        publisher.guarded(event, lambda: self._publish(publisher, judge(event)))
+        publisher.guarded(event, self._judge_one, publisher, judge, event)
         self._healths.take(publisher.name, publisher.axis.monitor.row)
         if publisher.defect != known:
             self._publish_diagnostics([publisher.name])
+
+    def _judge_one(
+        self, publisher: AxisPublisher, judge: Callable[[Any], State | None], event: Any
+    ) -> None:
+        state = judge(event)
+        publisher.frame.take(publisher.axis.monitor.row)
+        self._publish(publisher, state)
 
     def _on_tick(self) -> None:
         """Tick on the grid of stamps, when that is due; what has arrived by then comes first."""
@@ -319,7 +338,7 @@ class BallscrewMonitor(LifecycleNode):
         stood = self._grid.stood(now.nanoseconds, self._steady.now().nanoseconds)
         statuses = self._statuses(self._values['axes'] if axes is None else axes, stood)
         if axes is None:
-            statuses += self._kept.statuses()
+            statuses += self._kept.statuses() + self._heartbeat.statuses()
         message = DiagnosticArray(status=statuses)
         message.header.stamp = now.to_msg()
         self._diagnostics.publish(message)

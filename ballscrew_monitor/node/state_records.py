@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import celsius, seconds
 from ballscrew_monitor.core.estimate import MachinePoint
+from ballscrew_monitor.core.fault_codes import cause_code
 from ballscrew_monitor.core.full_point import KeptSolve, Solve
 from ballscrew_monitor.core.memory import AxisRecord, Memory, record_of
 from ballscrew_monitor.core.state import Event, TIMES, Totals
@@ -118,6 +119,7 @@ def event_facts(event: Event) -> dict[str, Any]:
     """Return what an entry says of an event, besides its stamp."""
     record = record_of('', Memory(event=event))
     return {name: getattr(record, name) for name in EVENT} | {
+        'code': int(cause_code(event.cause.code)),
         'duration_s': seconds(event.stamp - event.start),
         'advice': event.advice.text,
     }

@@ -16,13 +16,14 @@ import struct
 from typing import Any, BinaryIO
 import zlib
 
-from ballscrew_monitor.recordings.unpacking import unpacked
+from ballscrew_monitor.recordings.unpacking import most_unpacked, unpacked
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.reader import SeekingReader
 from mcap.records import Channel, Chunk, Message, Metadata, Schema
 from mcap.summary import Summary
 from surrogate import limits
+from surrogate.files import InputError
 from zstandard import ZstdError
 
 # What the reader is known to raise for a file that is not as it should be.
@@ -42,6 +43,7 @@ DAMAGE = (
 )
 MAGIC_SIZE = 8  # [bytes] at the begin and at the end of a file
 RECORD = struct.Struct('<BQ')  # operation code and length of what follows
+CHUNK_HEAD = struct.Struct('<QQQ')  # first and last log time, size when unpacked
 FOOTER = struct.Struct('<BQQQI')  # code, length, begin of summary and its offsets, checksum
 KINDS: dict[int, Any] = {3: Schema, 4: Channel, 12: Metadata}
 """Records that are read besides messages and chunks, by their operation codes."""
@@ -50,7 +52,8 @@ MESSAGE, CHUNK, DATA_END = 5, 6, 15
 
 def read_summary(stream: BinaryIO) -> Summary:
     """Return the summary of a file; raises one of `DAMAGE`, also if it contradicts itself."""
-    if stream.seek(0, io.SEEK_END) < FOOTER.size + 2 * MAGIC_SIZE:
+    whole = stream.seek(0, io.SEEK_END)
+    if whole < FOOTER.size + 2 * MAGIC_SIZE:
         raise McapError('it has no summary')
     stream.seek(-(FOOTER.size + MAGIC_SIZE), io.SEEK_END)
     _, _, begin, _, checksum = FOOTER.unpack(stream.read(FOOTER.size))
@@ -65,12 +68,20 @@ def read_summary(stream: BinaryIO) -> Summary:
     summary = reader.get_summary()
     if summary is None or summary.statistics is None:
         raise McapError('it has no summary')
-    _check(summary)
+    _check(summary, whole)
     return summary
 
 
-def _check(summary: Summary) -> None:
-    """Raise McapError if the statistics of a summary contradict it, or themselves."""
+def _check(summary: Summary, size: int) -> None:
+    """
+    Raise McapError if the statistics of a summary contradict it, or themselves.
+
+    So it does if the chunks of a file of a `size` [bytes] come to too much.
+
+    """
+    come_to = sum(one.uncompressed_size for one in summary.chunk_indexes)
+    if come_to > most_unpacked(size):
+        raise McapError(_too_much(come_to))
     statistics = summary.statistics
     assert statistics is not None
     named = {one.chunk_start_offset for one in summary.chunk_indexes}
@@ -85,6 +96,14 @@ def _check(summary: Summary) -> None:
         raise McapError(
             f'its statistics count {statistics.message_count} messages, of its channels {counted}'
         )
+
+
+def _too_much(come_to: int) -> str:
+    """Return that the chunks of a file come to so many bytes or more."""
+    return (
+        f'its chunks come to {come_to / limits.MEGA:.0f} MB or more when unpacked, '
+        f'allowed are {limits.PACKING} times its size'
+    )
 
 
 def read_metadata(stream: BinaryIO) -> Iterator[Metadata]:
@@ -130,9 +149,11 @@ def whole_records(file: Path, *, strict: bool = False) -> Iterator[Any]:
     Yield the records of an MCAP file that are whole, those of a chunk in its place.
 
     What a summary holds comes first; it tells where chunks begin behind damage, which nothing
-    follows else. A `strict` reader raises one of `DAMAGE` instead.
+    follows else. A `strict` reader raises one of `DAMAGE` instead. Raises InputError if the chunks
+    come to too much.
 
     """
+    come_to, most = 0, most_unpacked(file.stat().st_size)
     with file.open('rb') as stream:
         summary = None
         with contextlib.suppress(*DAMAGE, OSError):
@@ -140,6 +161,9 @@ def whole_records(file: Path, *, strict: bool = False) -> Iterator[Any]:
             yield from [*summary.schemas.values(), *summary.channels.values()]
         begins = sorted(one.chunk_start_offset for one in summary.chunk_indexes) if summary else []
         for code, at, length in _framed(stream, begins, strict=strict):
+            come_to += _size_of_chunk(stream, at) if code == CHUNK else 0
+            if come_to > most:
+                raise InputError(f'bag {file} cannot be read, {_too_much(come_to)}')
             try:
                 stream.seek(at + RECORD.size)
                 yield from _read(stream, code, length)
@@ -170,6 +194,14 @@ def _framed(
         at = following
     if strict:
         raise McapError('its last record is cut off')
+
+
+def _size_of_chunk(stream: BinaryIO, at: int) -> int:
+    """Return what is to be unpacked of the chunk at a byte, 0 if that is refused [bytes]."""
+    stream.seek(at + RECORD.size)
+    head = stream.read(CHUNK_HEAD.size)
+    size = CHUNK_HEAD.unpack(head)[2] if len(head) == CHUNK_HEAD.size else 0
+    return int(size) if size <= limits.CHUNK else 0
 
 
 def _read(stream: BinaryIO, code: int, length: int) -> Iterator[Any]:

@@ -5,6 +5,7 @@
 from collections.abc import Callable, Iterator, Sequence
 import contextlib
 import math
+import re
 import sys
 import time
 
@@ -12,6 +13,8 @@ from surrogate.files import printable
 from surrogate.progress import Progress
 
 NONE = '–'
+TURNS = re.compile(r'(?:\S+ rad/s \()?(-?[\d.]+(?:e[+-]?\d+)?) rev/min\)?')
+"""A speed of the screw as words of an event state it."""
 MOST, LONGEST = 60, 80
 """Names that are listed, and letters of each."""
 
@@ -44,6 +47,16 @@ def percent(part: float) -> str:
     if 0.99 < part < 1.0:
         return f'{min(100.0 * part, 99.9):.1f} %'
     return f'{100.0 * part:.2g} %' if part < 0.995 else f'{100.0 * part:.0f} %'
+
+
+def feed_first(text: str, lead: float) -> str:
+    """Return words with each speed of the screw as a feed, the speed beside it; lead [m]."""
+
+    def shown(found: re.Match[str]) -> str:
+        turns = float(found[1])
+        return f'{number(turns * lead)} m/min, {found[1]} rev/min'
+
+    return TURNS.sub(shown, text)
 
 
 def shown_unit(unit: str) -> str:

@@ -8,6 +8,7 @@ import contextlib
 import datetime
 import functools
 from pathlib import Path
+import re
 import sys
 from typing import Any
 
@@ -37,10 +38,14 @@ from surrogate.progress import Progress
 from surrogate.surface import SurfaceError
 
 RECORD, PICTURE = 'health.json', 'health.png'
+_OURS = re.compile(rb'\{(\}|\s*"[^"]*": \{\s*"axis": )')  # how a record of this command begins
+MOST_BEGIN = 1000  # [bytes] of that
 
 
 def health_command(args: argparse.Namespace, nominal: Path) -> int:
     """Do what the command line asks for; return the exit code."""
+    if args.out is not None:
+        check_output(args.out)
     folders = [path for path in args.logs if (path / FILE).is_file()]
     named = [path for path in args.logs if path not in folders]
     logs = find_logs(named, tables=args.map is not None, out=args.out)
@@ -58,6 +63,21 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
     if args.json:
         print(json_text(_records(found)))
     return DONE if found else FAILED
+
+
+def check_output(out: Path) -> None:
+    """Raise InputError for a folder with files that would be replaced and are of somebody else."""
+    held = [name for name in (RECORD, PICTURE) if (out / name).exists()]
+    if not held:
+        return
+    if (out / RECORD).is_file():
+        with (out / RECORD).open('rb') as stream:
+            if _OURS.match(stream.read(MOST_BEGIN)):
+                return
+    raise InputError(
+        f'output {out} holds {held[0]}, which is not of ballscrew health and would be '
+        'overwritten, another directory must be given'
+    )
 
 
 def _histories(

@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 import dataclasses
 import functools
 import math
-from typing import Any, TYPE_CHECKING
+from typing import Any, Protocol, TYPE_CHECKING
 
-from ballscrew_monitor.core.conversions import POSITION_UNITS, Scaling, SECOND
+from ballscrew_monitor.core.conversions import LINEAR_UNITS, POSITION_UNITS, Scaling, SECOND
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.state import MonitorSettings
@@ -23,20 +23,32 @@ from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.own_recording import is_as_recorded
 from ballscrew_monitor.recordings.replay import ignore, replay_parts
 from ballscrew_monitor.recordings.summary import EventRecord
+from ballscrew_monitor.recordings.words import feed_first
 from ballscrew_monitor.report.balance import Balance, Balancer
 from ballscrew_monitor.report.parameters import Assumed, AxisFacts, LogParameters
 from ballscrew_monitor.report.survey import Survey, Surveyor
 from ballscrew_monitor.settings.axis import load_surface, scalings_of, settings_of, surface_file
 from ballscrew_monitor.settings.parameters import is_configured
-from surrogate.surface import Surface
+from surrogate.surface import ContactOnset, onset_of_surface, Surface, ZoneLimits
 
 if TYPE_CHECKING:  # they ask for packages that printing does not need
     from ballscrew_monitor.report.health_history import AxisHistory, HistoryMaker
-    from ballscrew_monitor.report.log_report import RowStore
 
 Blocks = Callable[[], Iterable[JudgedColumns]]
 """Gives the blocks of rows of an axis in order, as often as it is called."""
 RCS = 'RCS'
+
+
+class RowKeeper(Protocol):
+    """Keeps the blocks of rows of all axes."""
+
+    def add(self, block: JudgedColumns) -> None:
+        """Take a block."""
+
+    def blocks(self, axis: str) -> Iterable[JudgedColumns]:
+        """Return the blocks of an axis in order."""
+
+
 FIRST_DATE = 978_307_200.0
 """Stamps before this [s since 1970] are no calendar: logs without one begin in the year 2000."""
 OnShare = Callable[[float], None]
@@ -50,7 +62,8 @@ class InputSetting:
     """
     How an input was read: topic, field, unit, and the line to SI of every unit.
 
-    A speed `from_position` is worked out; its unit is that of the speed.
+    A speed `from_position` is worked out; its unit is that of the speed. `as_feed`: it is of the
+    nut, not of the screw.
 
     """
 
@@ -59,6 +72,7 @@ class InputSetting:
     unit: str
     scalings: Mapping[str, Scaling]
     from_position: bool = False
+    as_feed: bool = False
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -67,7 +81,8 @@ class AxisCase:
     An axis that has rows; `inputs` holds those that have a topic; `blocks` gives the rows again.
 
     `nominal`: the parameters are those taken where nobody gave any; `numbered`: the recording
-    tells how many messages were lost on their way to it.
+    tells how many messages were lost on their way to it; `onset`: where contact begins with the
+    oil as warm as it was in motion on average.
 
     """
 
@@ -82,7 +97,27 @@ class AxisCase:
     nominal: bool = False
     numbered: bool = False
     history: 'AxisHistory | None' = None
+    onset: ContactOnset | None = None
     balance: Balance = Balance()
+
+    @property
+    def contact(self) -> str:
+        """Return where contact begins, in the unit in which the log speaks."""
+        if self.onset is None:
+            return ''
+        said = self.onset.sentence(as_feed=self.speaks_feed)
+        return f'{said.replace(" degC", " °C")}.'
+
+    @property
+    def speaks_feed(self) -> bool:
+        """Tell whether the log gives the motion of the nut, not that of the screw."""
+        if self.facts.motion_unit:
+            return self.facts.motion_unit in LINEAR_UNITS
+        return Source.SPEED in self.inputs and self.inputs[Source.SPEED].as_feed
+
+    def in_its_unit(self, text: str) -> str:
+        """Return words in which speeds of the screw stand as feeds, if the log speaks of them."""
+        return feed_first(text, self.surface.lead) if self.speaks_feed else text
 
     @property
     def load_origin(self) -> str:
@@ -207,6 +242,7 @@ class CaseMaker:
 
     def case(self, outcome: AxisOutcome, **known: Any) -> AxisCase:
         """Return the axis as it is after at least one row; `known` are more of its fields."""
+        survey = self._surveyor.result()
         return AxisCase(
             axis=self._axis,
             surface=self._surface,
@@ -217,11 +253,20 @@ class CaseMaker:
                 if is_configured(self._axis, self._values, source)
             },
             outcome=outcome,
-            survey=self._surveyor.result(),
+            survey=survey,
             history=self._told(),
+            onset=self._onset(survey.oil.mean),
             balance=self._balancer.result(),
             **known,
         )
+
+    def _onset(self, oil: float) -> ContactOnset:
+        """Return where contact begins at an oil temperature [K], NaN for that of the sheet."""
+        limits = self._settings.limits
+        zone = ZoneLimits(
+            rcs=limits.rcs, efficiency=limits.efficiency, light_load=limits.light_load
+        )
+        return onset_of_surface(self._surface, None if math.isnan(oil) else oil, zone)
 
     def _told(self) -> 'AxisHistory | None':
         """Return what its health rests on, if that was gathered."""
@@ -240,6 +285,7 @@ class CaseMaker:
             unit=unit if unit in scalings else next(iter(scalings)),
             scalings=scalings,
             from_position=unit in POSITION_UNITS,
+            as_feed=unit in LINEAR_UNITS,
         )
 
 
@@ -248,7 +294,7 @@ def judge_log(
     parameters: LogParameters,
     *,
     on_share: OnShare = ignore,
-    rows: 'RowStore | None' = None,
+    rows: RowKeeper | None = None,
     on_state: OnState | None = None,
     health: 'type[HistoryMaker] | None' = None,
 ) -> LogCase:

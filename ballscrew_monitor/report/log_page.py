@@ -41,6 +41,7 @@ def verdict_part(verdict: AxisVerdict) -> Markup:
     lines = [line for line in (verdict.why, verdict.remedy) if line]
     if verdict.remedy:
         lines[-1] = f'What to do: {verdict.remedy[0].lower()}{verdict.remedy[1:]}'
+    lines += [verdict.contact] if verdict.contact else []
     return element(
         'div',
         element(
@@ -66,13 +67,22 @@ def tiles(case: AxisCase, summary: Summary) -> Markup:
         ),
         (str(len(summary.events)), 'warning' if len(summary.events) == 1 else 'warnings'),
         (f'{number(summary.energy_lost, 4)} J', 'lost to friction in the screw'),
-        (number(summary.revolutions, 4), 'revolutions'),
+        _travel(case, summary),
     )
     made = (
         element('div', element('b', value), element('span', text), class_='tile')
         for value, text in facts
     )
     return element('div', *made, class_='tiles')
+
+
+def _travel(case: AxisCase, summary: Summary) -> tuple[str, str]:
+    """Return how far the axis moved, in the unit in which its log speaks."""
+    turns = number(summary.revolutions, 4)
+    if not case.speaks_feed:
+        return turns, 'revolutions'
+    way = number(summary.revolutions * case.surface.lead, 4)
+    return f'{way} m', f'travelled, {turns} revolutions'
 
 
 def shares(case: AxisCase, summary: Summary) -> Markup:
@@ -171,7 +181,7 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
                 text=f'{SIGNS.get(event.relation, event.relation)} {event.shown(event.limit)}',
                 kind='short',
             ),
-            f'at {event.place}: {todo}' if event.place else todo or NONE,
+            case.in_its_unit(f'at {event.place}: {todo}' if event.place else todo or NONE),
         ),
         begin=shown[0],
         end=shown[1],

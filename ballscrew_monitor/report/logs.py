@@ -3,6 +3,7 @@
 """Recordings that are meant, bags, files, and folders that hold some; and folders of reports."""
 
 from collections.abc import Iterable, Sequence
+import contextlib
 from pathlib import Path
 import re
 
@@ -173,5 +174,9 @@ def replace_report(made: Path, out: Path) -> None:
 def remove_report(out: Path) -> None:
     """Remove a report from `out`, its page last."""
     judged = (f'{JUDGED}/{JUDGED}.mcap', f'{JUDGED}/metadata.yaml')
-    for name in (*judged, STATES, EVENTS, SUMMARY, PICTURE, PAGE):
+    for name in judged:
+        (out / name).unlink(missing_ok=True)
+    with contextlib.suppress(OSError):  # files of others stay in it
+        (out / JUDGED).rmdir()
+    for name in (STATES, EVENTS, SUMMARY, PICTURE, PAGE):
         (out / name).unlink(missing_ok=True)

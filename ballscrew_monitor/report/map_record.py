@@ -81,13 +81,15 @@ class OperatingMap:
 
     Rows of the cells of zone (a code) and dwell [s] are of a load, columns of a speed. Points of
     lines are speed and load in turn, NaN where one is interrupted. `others`: borders at other
-    temperatures are among the lines; `banded`: so is the range of that in force.
+    temperatures are among the lines; `banded`: so is the range of that in force. `feed`: how far
+    the axis moves in a revolution [m] if its log speaks of that, else None.
 
     """
 
     temperature: float
     others: bool
     banded: bool
+    feed: float | None = None
     speed: tuple[float, float] = written(form=_ends)
     load: tuple[float, float] = written(form=_ends)
     light_load: float
@@ -110,18 +112,19 @@ def operating_map(case: AxisCase) -> OperatingMap:
         known = (surface.reference_temperature,) * 3
     mean, others = operating_field.map_temperatures(*map(celsius, known))
     field = operating_field.sample(surface, mean, speeds=speeds, loads=loads)
-    lines = _lines(field, limits, mean)
+    lines = map_lines(field, limits, mean)
     for degrees in others:
         border = operating_field.sample(surface, degrees, speeds=speeds, loads=loads)
-        lines.append(_line(border, border.rcs, limits.rcs, 'rcs_other', _degrees(degrees)))
+        lines.append(map_line(border, border.rcs, limits.rcs, 'rcs_other', _degrees(degrees)))
     return OperatingMap(
         temperature=mean,
         others=bool(others),
         banded=math.isfinite(field.band[0]),
+        feed=surface.lead if case.speaks_feed else None,
         speed=(speeds[0] / RPM, speeds[1] / RPM),
         load=loads,
         light_load=limits.light_load,
-        zone=_zone(field, limits),
+        zone=zone_cells(field, limits),
         lines=lines,
         dwell=_dwell(case, speeds, loads),
         events=list(_marks(case)),
@@ -132,36 +135,37 @@ def _degrees(temperature: float) -> str:
     return f'{temperature:.0f} °C'
 
 
-def _zone(field: Field, limits: Limits) -> Array:
+def zone_cells(field: Field, limits: Limits) -> Array:
     """Return the zone in the cells between the points of the field."""
     middles = field.middles()
     known = np.where(middles.is_optimal(limits), OPTIMAL, OUTSIDE)
     return np.where(np.isnan(middles.rcs), NO_NUMBER, known)
 
 
-def _lines(field: Field, limits: Limits, mean: float) -> list[MapLine]:
+def map_lines(field: Field, limits: Limits, mean: float) -> list[MapLine]:
+    """Return the lines of a field at an oil temperature [degC], the limits last."""
     shown = field.judged_efficiency(limits.light_load)
     percent = f'{100 * limits.efficiency:g} %'
     return [
         *(
-            _line(field, shown, level, 'efficiency_other', f'{100 * level:g} %', MIDDLE)
+            map_line(field, shown, level, 'efficiency_other', f'{100 * level:g} %', MIDDLE)
             for level in NAMED_EFFICIENCIES
         ),
         *(
-            _line(field, field.film_ratio, level, 'film', f'Λ {level:g}', TOP)
+            map_line(field, field.film_ratio, level, 'film', f'Λ {level:g}', TOP)
             for level in FILM_RATIO_LIMITS
         ),
         *(
-            _line(field, field.rcs, limits.rcs, 'rcs_band', '', factor=factor)
+            map_line(field, field.rcs, limits.rcs, 'rcs_band', '', factor=factor)
             for factor in field.band
             if math.isfinite(factor)
         ),
-        _line(field, shown, limits.efficiency, 'efficiency', percent, BELOW_TOP),
-        _line(field, field.rcs, limits.rcs, 'rcs', _degrees(mean)),
+        map_line(field, shown, limits.efficiency, 'efficiency', percent, BELOW_TOP),
+        map_line(field, field.rcs, limits.rcs, 'rcs', _degrees(mean)),
     ]
 
 
-def _line(
+def map_line(
     field: Field,
     values: Array,
     level: float,

@@ -41,9 +41,8 @@ class Field:
     band: tuple[float, float]
 
     def is_optimal(self, limits: Limits) -> NDArray[np.bool_]:
-        """Tell where limits are kept; below the light load only RCS counts."""
-        light = np.abs(self.load)[:, None] < limits.light_load
-        return (self.rcs < limits.rcs) & (light | (self.efficiency >= limits.efficiency))
+        """Tell where limits are kept."""
+        return is_optimal(self.load[:, None], self.rcs, self.efficiency, limits)
 
     def judged_efficiency(self, light_load: float) -> Array:
         """Return the efficiency [-] without its valley about no load; a light load [N]."""
@@ -57,6 +56,17 @@ class Field:
             band=self.band,
             **{name: _amid(getattr(self, name)) for name in NAMES},
         )
+
+
+def is_optimal(load: Array, rcs: Array, efficiency: Array, limits: Limits) -> NDArray[np.bool_]:
+    """
+    Tell where limits are kept; below the light load only RCS counts.
+
+    Opposing load [N]; RCS and efficiency [-].
+
+    """
+    light = np.abs(load) < limits.light_load
+    return (rcs < limits.rcs) & (light | (efficiency >= limits.efficiency))
 
 
 def _amid(values: Array) -> Array:

@@ -57,9 +57,9 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
         element('h2', 'Recordings'),
         table(
             (
+                'Verdict',
                 'Recording',
                 'Axis',
-                'Verdict',
                 'Begins (UTC)',
                 'Recorded',
                 'In motion',
@@ -68,7 +68,7 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
                 'Worst warning',
             ),
             (_row(one, line) for one, line in listed),
-            kind='sortable',
+            kind='sortable verdicts',
         ),
     )
     return page('Ball screw reports', body, scripts=SCRIPTS)
@@ -113,14 +113,14 @@ def _row(one: LogEntry, line: AxisLine) -> TableRow:
     link = element('a', one.name, href=f'{quote(one.folder)}/{PAGE}')
     return TableRow(
         (
-            TableCell(link, kind='place'),
-            line.axis,
             TableCell(
                 text=element(
                     'span', line.verdict.partition(':')[0], class_=f'tag {line.standing}'
                 ),
                 kind='short',
             ),
+            TableCell(link, kind='place'),
+            line.axis,
             TableCell(_date(line.begins), kind='short'),
             _time(line.recorded),
             _time(line.running_time),

@@ -29,6 +29,7 @@ CHARTS = (
     UPLOT_JS,
     'format.js',
     'table.js',
+    'ticks.js',
     'frame.js',
     'map.js',
     'course.js',
@@ -43,7 +44,7 @@ LARGEST = np.finfo(float).max / 2  # number that is packed, of which a span is f
 SELDOM = 4  # numbers to a change from which on runs are the shorter form
 LEADING = 'leading'  # kind of a table whose rows lead to moments, of which there may be many
 DOTS = 'M0 3H26M0 9H26'  # two rows of a sample in a legend
-VOID = frozenset({'meta', 'rect', 'line', 'path', 'br', 'polyline'})
+VOID = frozenset({'meta', 'link', 'input', 'rect', 'line', 'path', 'br', 'polyline'})
 
 
 class Markup(str):

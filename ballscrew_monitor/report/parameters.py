@@ -35,7 +35,7 @@ class AxisFacts:
     `load_from` is the input that its load is worked out from, empty where the load is measured;
     `assumed` says by name what else is not known, each with value and reason; `stated` names what
     somebody states, by its place in a map, `defaulted` what stands at its default there; `lead`
-    [m] is that of the map, NaN without one.
+    [m] is that of the map, NaN without one, `motion_unit` that of its column of speed or position.
 
     """
 
@@ -44,6 +44,7 @@ class AxisFacts:
     stated: frozenset[str] = frozenset()
     defaulted: frozenset[str] = frozenset()
     lead: float = math.nan
+    motion_unit: str = ''
 
     @property
     def is_mapped(self) -> bool:
@@ -150,6 +151,7 @@ def _axis_facts(
         stated=frozenset(stated),
         defaulted=frozenset() if facts is None else frozenset(_defaulted(axis, facts, chosen)),
         lead=lead / MILLI if isinstance(lead, int | float) else math.nan,
+        motion_unit=str(known.get('speed.unit') or known.get('position.unit') or ''),
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import math
 from pathlib import Path
 import re
+import textwrap
 from typing import Any
 
 from ballscrew_monitor.report import map_record
@@ -24,6 +25,7 @@ import numpy as np
 from surrogate.plotting.style import draw_picture, new_figure
 
 WIDTH, HEIGHT = 11.0, 16.0  # [inch] of an axis
+LINE = 90  # letters
 COLOURS = dict(re.findall(r'--([\w-]+): (#\w+);', component('page.css').partition('@media')[0]))
 """Those of the page on light paper, by their names."""
 STYLES = {
@@ -35,7 +37,7 @@ STYLES = {
     'film': ('muted', 1.0, '2 3'),
 }
 """Colour, width and dashes of the lines of a map, by their kinds."""
-TICKS = [first * 10.0**power for power in range(-2, 6) for first in (1, 2, 5)]  # [rev/min]
+TICKS = [first * 10.0**power for power in range(-5, 6) for first in (1, 2, 5)]
 DARKEST, DECADES = 0.85, 3  # of the time spent: opacity of the longest, and its range
 CENTRED: dict[str, Any] = {'ha': 'center', 'va': 'center', 'clip_on': True}
 ROOM = (0.022, 0.035)  # half the width and the height of a name, as parts of a map
@@ -61,7 +63,8 @@ def _draw_axis(part: SubFigure, case: AxisCase, chart: OperatingMap) -> None:
     upper, lower = part.subfigures(2, 1, height_ratios=(1.0, 1.25), squeeze=False)[:, 0]
     axes, surface, verdict = upper.subplots(), case.surface, verdict_of(case)
     axes.set_title(
-        f'{verdict.whole}\nscrew {surface.screw_name}, oil {surface.oil_name}, '
+        f'{verdict.whole}\n{textwrap.fill(verdict.contact, LINE)}\n'
+        f'screw {surface.screw_name}, oil {surface.oil_name}, '
         f'{surface.tier.replace("_", "-")} model, map at {chart.temperature:g} °C oil',
         fontsize=11,
     )
@@ -93,14 +96,31 @@ def _draw_map(axes: Axes, case: AxisCase, chart: OperatingMap) -> None:
     for mark in chart.events:
         circle = {'boxstyle': 'circle', 'facecolor': 'white', 'edgecolor': COLOURS['outside']}
         axes.text(mark.speed, mark.load, str(mark.number), bbox=circle, zorder=8, **CENTRED)
-    ticks = [tick for tick in TICKS if chart.speed[0] <= tick <= chart.speed[1]]
-    axes.set_xticks(ticks, [f'{tick:g}' for tick in ticks])
-    axes.minorticks_off()
     axes.set(xlim=chart.speed, ylim=chart.load)
-    axes.set_xlabel('screw speed, either direction [rev/min]')
+    _draw_speeds(axes, chart)
     axes.set_ylabel('axial load [N]: assists | opposes')
     entries = [_entry(*sample, label=text) for sample, text in map_record.map_legend(case, chart)]
     _legend(axes, entries, -0.1)
+
+
+def _draw_speeds(axes: Axes, chart: OperatingMap) -> None:
+    """Write speeds below the map, as feeds if the log speaks of these, then turns above it."""
+    axes.minorticks_off()
+    axes.set_xlabel('screw speed, either direction [rev/min]')
+    if chart.feed:
+        above = axes.secondary_xaxis('top')
+        above.minorticks_off()
+        above.set_xticks(*_ticks(chart, 1.0), fontsize=8)
+        above.set_xlabel('screw speed [rev/min]', fontsize=8)
+        axes.set_xlabel('feed, either direction [m/min]')
+    axes.set_xticks(*_ticks(chart, chart.feed or 1.0))
+
+
+def _ticks(chart: OperatingMap, unit: float) -> tuple[list[float], list[str]]:
+    """Return places and texts of round speeds, `unit` of which are 1 rev/min."""
+    low, high = (unit * speed for speed in chart.speed)
+    ticks = [tick for tick in TICKS if low <= tick <= high]
+    return [tick / unit for tick in ticks], [f'{tick:g}' for tick in ticks]
 
 
 def _draw_cells(axes: Axes, chart: OperatingMap) -> None:
@@ -166,15 +186,15 @@ def _legend(axes: Axes, entries: list[Any], height: float) -> None:
 
 
 def _draw_bars(axes: Axes, case: AxisCase, rows: Rows) -> None:
-    """Draw regime, zone and warning as bars, the last one with the numbers of the worst events."""
+    """Draw zone, warning and regime as bars, the warnings with the numbers of the worst."""
     edges = np.append(rows['time'], rows['time'][-1])
     for place, (key, _, colours) in enumerate(reversed(BARS)):
         cmap = ListedColormap([COLOURS[colour] for colour in colours])
         limits: dict[str, Any] = {'vmin': -0.5, 'vmax': len(colours) - 0.5}
         axes.pcolormesh(edges, [place, place + 0.9], rows[key][None], cmap=cmap, **limits)
-    for event in case.worst_first[: map_record.MARKED]:
-        middle = 0.5 * sum(case.span(event))
-        axes.text(middle, 0.45, str(event.event_id), fontsize=8, **CENTRED)
+        for event in case.worst_first[: map_record.MARKED] if key == 'level' else ():
+            middle = 0.5 * sum(case.span(event))
+            axes.text(middle, place + 0.45, str(event.event_id), fontsize=8, **CENTRED)
     axes.set_yticks(np.arange(len(BARS)) + 0.45, [title for _, title, _ in reversed(BARS)])
     axes.tick_params(length=0, labelsize=8)
     axes.spines[:].set_visible(False)

@@ -42,6 +42,7 @@ def axis_lines(case: AxisCase) -> Iterator[str]:
         yield _line('why', verdict.why)
     if verdict.remedy:
         yield _line('what to do', verdict.remedy)
+    yield _line('contact', verdict.contact)
     seen = inputs_seen(case)
     yield from (_line('check', hint) for one in seen for hint in one.hints)
     yield from [] if summary is None else summary.lines()
@@ -117,6 +118,7 @@ def axis_record(case: AxisCase, verdict: AxisVerdict) -> dict[str, Any]:
         'standing': verdict.standing.value,
         'why': verdict.why,
         'what_to_do': verdict.remedy,
+        'contact_onset': verdict.contact,
         'model': {'tier': surface.tier, 'screw': surface.screw_name, 'oil': surface.oil_name},
         'recorded_s': survey.span,
         **(

@@ -5,7 +5,7 @@
 from collections.abc import Iterable
 import itertools
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import celsius, SECOND
 from ballscrew_monitor.core.estimate import PointSource
@@ -30,9 +30,9 @@ SMALLEST_RCS, SMALLEST_RATIO, LARGEST_RATIO = 1e-4, 0.05, 10.0
 HEIGHT = 140  # of a panel [px]
 # What is drawn of codes: the largest of a bucket, so the worst comes last.
 BARS = (
-    ('regime', 'Regime', ('none', 'hydrodynamic', 'mixed', 'boundary')),
     ('zone', 'Zone', ('none', 'none', 'optimal', 'unjudged', 'outside')),
     ('level', 'Warning', ('none', 'unjudged', 'optimal', 'outside')),
+    ('regime', 'Regime', ('none', 'hydrodynamic', 'mixed', 'boundary')),
 )
 BAR_LEGEND = (
     ('optimal', 'optimal, no warning'),
@@ -177,7 +177,7 @@ def rows_of(case: AxisCase, block: columns.JudgedColumns, numbers: Iterable[str]
     )
     made = {
         'time': (line - case.survey.first) / SECOND,
-        'speed': _fresh(block.speed / RPM, block.speed_source),
+        'speed': _fresh(block.speed / _motion(case).amount, block.speed_source),
         'load': _fresh(block.axial_load, block.axial_load_source),
         'temperature': _fresh(warmth, block.temperature_source),
         'efficiency': np.where(unjudged, np.nan, 100.0 * block.efficiency),
@@ -237,14 +237,31 @@ def _merged(stretches: Iterable[tuple[float, float]]) -> list[tuple[float, float
 
 def panels(case: AxisCase) -> list[dict[str, Any]]:
     """Return the panels of the numbers of an axis, in their order."""
-    limits, keys = case.settings.limits, _numbers(case)
-    return [panel for panel in _all_panels(limits) if panel['series'][0]['key'] in keys]
+    keys, every = _numbers(case), _all_panels(case.settings.limits, _motion(case))
+    return [panel for panel in every if panel['series'][0]['key'] in keys]
 
 
-def _all_panels(limits: Limits) -> list[dict[str, Any]]:
+class _Motion(NamedTuple):
+    """How a panel shows a speed: title, unit, how much [rad/s] one is, and what is beside it."""
+
+    title: str
+    unit: str
+    amount: float
+    beside: dict[str, Any] | None = None
+
+
+def _motion(case: AxisCase) -> _Motion:
+    """Return the unit in which the log of an axis speaks: of its feed, or of its screw."""
+    if not case.speaks_feed:
+        return _Motion('Screw speed', 'rev/min', RPM)
+    lead = case.surface.lead
+    return _Motion('Feed', 'm/min', RPM / lead, {'unit': 'rev/min', 'factor': 1.0 / lead})
+
+
+def _all_panels(limits: Limits, motion: _Motion) -> list[dict[str, Any]]:
     percent = 100.0 * limits.efficiency
     return [
-        _panel('Screw speed', 'rev/min', [_line('speed', 'speed')]),
+        _panel(motion.title, motion.unit, [_line('speed', 'speed')], beside=motion.beside),
         _panel('Axial load, positive along the axis', 'N', [_line('load', 'load')]),
         _panel('Oil temperature', '°C', [_line('temperature', 'oil')], height=110),
         _panel(
@@ -289,6 +306,7 @@ def _panel(title: str, unit: str, series: list[dict[str, Any]], **more: Any) -> 
         'series': series,
         'floor': None,
         'most': None,
+        'beside': None,
         'limits': [],
         'bands': [],
         'show': [limit['value'] for limit in more.get('limits', [])],

@@ -50,12 +50,13 @@ class VerdictKind(enum.Enum):
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class AxisVerdict:
-    """The standing, in the rest of a sentence; why, and what to do."""
+    """The standing, in the rest of a sentence; why, what to do, and where contact begins."""
 
     standing: VerdictKind = VerdictKind.UNKNOWN
     sentence: str
     why: str = ''
     remedy: str = ''
+    contact: str = ''
 
     @property
     def whole(self) -> str:
@@ -76,7 +77,13 @@ def _no_rows(axis: str) -> AxisVerdict:
 
 
 def verdict_of(case: AxisCase) -> AxisVerdict:
-    """Return the verdict on an axis that has rows."""
+    """Return the verdict on an axis that has rows, in the unit in which its log speaks."""
+    found = _verdict(case)
+    remedy = case.in_its_unit(found.remedy)
+    return dataclasses.replace(found, remedy=remedy, contact=case.contact)
+
+
+def _verdict(case: AxisCase) -> AxisVerdict:
     summary = case.outcome.summary()
     if summary is None or not summary.running_time:
         return _unmoved(case)

@@ -131,6 +131,23 @@ def named_topics(values: Mapping[str, Any], resolve: Callable[[str], str]) -> se
     return found
 
 
+def start_text(axis: Axis, node: str, resolve: Callable[[str], str], folder: Path | None) -> str:
+    """
+    Return what a configured axis reads, what judges it and where it speaks, in one sentence.
+
+    `node` is the full name of its node, `folder` the state directory, None: none is kept;
+    `resolve` returns the full name of a topic.
+
+    """
+    read = [f'{source.name.lower()} from {resolve(one)}' for source, one in axis.topics.items()]
+    surface = axis.surface
+    return (
+        f'axis {axis.name} reads {" and ".join(read)}, is judged by the {surface.tier} surface '
+        f'{surface.sha256[:16]} of {surface.screw_name} with {surface.oil_name}, publishes on '
+        f'{node}/{axis.name}, and is {f"kept in {folder}" if folder else "not kept: no state_dir"}'
+    )
+
+
 def resolved_topic(axis: str, source: Source, topic: str, resolve: Callable[[str], str]) -> str:
     """Return the full name of the topic of an input; raises InputError for what is no name."""
     try:

@@ -31,6 +31,12 @@ POLICIES = {
 """What may be overridden, and the values of it that are words."""
 OF_ROS = frozenset({'/clock', '/parameter_events', '/rosout'})
 PREFIX = 'qos_overrides'
+LATCHED_QOS = qos.QoSProfile(
+    depth=1,
+    reliability=qos.QoSReliabilityPolicy.RELIABLE,
+    durability=qos.QoSDurabilityPolicy.TRANSIENT_LOCAL,
+)
+"""QoS of what a late joiner is to hear too."""
 
 
 STEADY_PERIOD = 1.0  # [s] to which `publish_period` may rise without a change of the promise

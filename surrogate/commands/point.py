@@ -111,6 +111,7 @@ def add_temperature(parser: argparse.ArgumentParser) -> None:
 
 def _point(args: argparse.Namespace) -> int:
     """Solve a point; exit code 1 when it is not converged."""
+    from surrogate.builder.contact_onset import onset_of_sheets
     from surrogate.formulas.shaft import shaft_doubts
     from surrogate.screw.closed_form_record import closed_form_record, page
 
@@ -128,7 +129,8 @@ def _point(args: argparse.Namespace) -> int:
         solution, record = _full(args, screw, lubricant, point)
     else:
         record = closed_form_record(screw, lubricant, point, inlet_heating=not args.isothermal)
-    show(record, page, json=args.json)
+    onset = onset_of_sheets(screw, lubricant, kelvin)
+    show(record | {'contact_onset': onset.record()}, page, json=args.json)
     if args.plot:
         picture(args.plot, 'figures', 'draw_point', screw, solution, record)
     return 0 if record.get('converged', True) else 1

@@ -12,14 +12,14 @@ from typing import Any
 
 from surrogate.builder.companions import build_companions
 from surrogate.builder.tiers import build_surface, default_settings, find_tier, TIERS
-from surrogate.commands.output import add_json, show
+from surrogate.commands.output import add_json, show, tell
 from surrogate.commands.point import add_inputs, load_inputs
 from surrogate.commands.surface_inspect import add_inspect_commands
 from surrogate.commands.sweep import add_sweep_command, add_workers
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant
 from surrogate.progress import Progress
-from surrogate.surface import find_surface
+from surrogate.surface import find_surface, onset_of_surface, Surface
 from surrogate.surface.file import read, write
 from surrogate.surface.shipped import SHIPPED_TIERS
 from surrogate.units import RPM, ZERO_CELSIUS
@@ -49,7 +49,7 @@ def _add_build(parser: argparse.ArgumentParser) -> None:
         '--tier',
         choices=tuple(TIERS),
         default=SHIPPED_TIERS[0],
-        help='solved contacts in minutes (default), or published formulas alone in seconds',
+        help='solved contacts in a minute (default), or published formulas alone in seconds',
     )
     for name, unit in (('speed', 'rpm'), ('load', 'N'), ('temperature', 'degC')):
         parser.add_argument(
@@ -98,6 +98,8 @@ def _add_info(parser: argparse.ArgumentParser) -> None:
 
 
 def _build(args: argparse.Namespace) -> int:
+    from surrogate.surface_tools.describe import march_lines, surface_warnings
+
     screw, lubricant = load_inputs(args)
     ranges = _one_temperature(args, lubricant) if args.temperature is not None else {}
     if args.speed_range:
@@ -124,12 +126,12 @@ def _build(args: argparse.Namespace) -> int:
         )
     write(out, data)
     print(f'{out}: tier {args.tier}, {data.mask.size} nodes, sha256 {data.sha256}')
+    print(f'{onset_of_surface(Surface(data)).sentence()}.')
+    tell(surface_warnings(data))
     if args.with_preloads:
         for file in build_companions(screw, lubricant, ranges, out):
             print(f'{file}: companion at another preload')
     if args.march:
-        from surrogate.surface_tools.describe import march_lines
-
         print('\n'.join(march_lines(data.header['march'])))
     return 0
 

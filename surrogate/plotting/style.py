@@ -15,8 +15,12 @@ DPI = 120
 BLUE, VERMILION, GREEN, PURPLE, GREY = '#0072b2', '#d55e00', '#009e73', '#7b2d8e', '#6f6f6f'
 ORANGE, YELLOW, SKY, BROWN = '#e69f00', '#f0e442', '#56b4e9', '#a8433a'
 """Colours that colour-blind readers keep apart, and a print in grey; mostly Okabe and Ito's."""
+REGIMES_BY_METAL = '#8f4aa3', '#c9a3d6', '#e9d8ef'
+"""Boundary, mixed and hydrodynamic, here and on pages: the more metal touches, the darker."""
 MAP = 'cividis'
 """Colour map of a quantity without a sign."""
+LESS_IS_GOOD = f'{MAP}_r'
+"""Colour map of a quantity that is bad where it is large, beside others: bright is good."""
 
 styled = style.context(str(Path(__file__).with_name('ballscrew.mplstyle')))
 """Decorator of a function that draws: in the style of all pictures."""

@@ -205,12 +205,18 @@ def _warnings(
             f'temperature: {point.temperature - ZERO_CELSIUS:.4g} degC, the oil sheet '
             f'covers {low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC'
         )
+    return warnings + (formula_warnings(result) if point.speed else [])
+
+
+def formula_warnings(result: closed_form.ScrewResult) -> list[str]:
+    """Return a sentence for each formula that contacts use beyond what it was fitted over."""
     g = _all_groups(result.contacts)
-    for formula in FORMULAS if point.speed else ():
-        phrases = outside_range(formula, g)
-        if phrases:
-            warnings.append(f'{formula} outside its range: {", ".join(phrases)}')
-    return warnings
+    found = ((formula, outside_range(formula, g)) for formula in FORMULAS)
+    return [
+        f'{formula} outside its range: {", ".join(phrases)}'
+        for formula, phrases in found
+        if phrases
+    ]
 
 
 def _all_groups(contacts: tuple[closed_form.ContactResult, ...]) -> Groups:
@@ -227,6 +233,12 @@ def _all_groups(contacts: tuple[closed_form.ContactResult, ...]) -> Groups:
 def _deviation(deviation: float) -> str:
     """Return the words about what strips of a raceway differ by [-], none where not known."""
     return '' if math.isnan(deviation) else f', strips differ by {100 * deviation:.2g} %'
+
+
+def _film_by_formula(compared: Mapping[str, Any]) -> str:
+    """Return the words about the film of a comparator, or why there is none."""
+    film = 1e9 * compared['central_film_nijenbanning_m']
+    return compared['reason'] or f'Nijenbanning film {film:.1f} nm'
 
 
 def page(record: Mapping[str, Any]) -> str:
@@ -268,14 +280,15 @@ def page(record: Mapping[str, Any]) -> str:
             f'{record["screw"]}, {record["oil"]}, tier {record["tier"]}: '
             f'{record["speed_rad_s"] / RPM:g} rev/min, {record["load_N"]:g} N, '
             f'{record["temperature_K"] - ZERO_CELSIUS:g} degC',
+            *([f'  {record["contact_onset"]["sentence"]}'] if 'contact_onset' in record else []),
             *(f'  {name:20} {text}' for name, text in rows),
             '',
             '  contact              per ball     pressure     film      Lambda      RCS',
             *contacts,
             '',
             f'  compare: constant friction {compared["constant_friction_efficiency"]:.3f}, '
-            f'catalogue drag {compared["catalogue_drag_torque_Nm"]:.3f} N m, Nijenbanning film '
-            f'{1e9 * compared["central_film_nijenbanning_m"]:.1f} nm',
+            f'catalogue drag {compared["catalogue_drag_torque_Nm"]:.3f} N m, '
+            + _film_by_formula(compared),
             f'  roughness: {record["roughness"]}',
             *(f'  contact: {record[name]}' for name in ('asperity_law',) if name in record),
             f'  status: {record["status"]}',

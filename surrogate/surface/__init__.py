@@ -9,6 +9,7 @@ Needs numpy alone.
 
 from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 from surrogate.surface.batch import look_up_many
+from surrogate.surface.contact_onset import ContactOnset, onset_of_surface, ZoneLimits
 from surrogate.surface.correction import Correction, HasOperatingPoint
 from surrogate.surface.fields import FIELDS
 from surrogate.surface.file import SurfaceError
@@ -22,6 +23,7 @@ from surrogate.surface.solved import SolvedPoint
 from surrogate.surface.tables import SurfaceTables
 
 __all__ = [
+    'ContactOnset',
     'Correction',
     'EFFICIENCY_LIMIT',
     'FIELDS',
@@ -36,6 +38,7 @@ __all__ = [
     'look_up',
     'look_up_many',
     'look_up_rest',
+    'onset_of_surface',
     'scan',
     'scan_part',
     'SurfaceTables',
@@ -51,4 +54,5 @@ __all__ = [
     'SurfaceError',
     'SurfacePoint',
     'Validity',
+    'ZoneLimits',
 ]

@@ -264,13 +264,21 @@ def _has_sound_ensemble(data: SurfaceData) -> bool:
 def _has_sound_header(data: SurfaceData) -> bool:
     """Tell whether the lookup finds what it needs, and no more speeds than there are nodes."""
     screw, oil = (data.header['inputs'][kind] for kind in ('screw', 'lubricant'))
-    numbers = (screw['lead'], screw['preload'], oil['reference_temperature'])
+    numbers = (
+        screw['lead'],
+        screw['preload'],
+        screw['roughness']['rms'],
+        oil['reference_temperature'],
+        oil['kinematic_viscosity_40'],
+    )
+    above_zero = screw['speed_limit'], screw['pitch_radius']
     slowest, fastest = (math.log(speed) for speed in data.header['settings']['speed_range'])
     s, rounding = data.speed_coordinate, 1e-9
     return (
         data.header['tier'] in TIERS
         and all(isinstance(one['name'], str) for one in (screw, oil))
         and all(math.isfinite(number) for number in numbers)
+        and all(0 < number < math.inf for number in above_zero)
         and set(data.header['load_breaks']) <= set(data.load.tolist())
         and slowest < fastest
         and s[0] + data.log_onset.max() <= slowest + rounding

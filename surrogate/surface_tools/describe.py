@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.raceway.ball import roughness_sentence
-from surrogate.surface import Surface
+from surrogate.surface import onset_of_surface, Surface
 from surrogate.surface.file import SurfaceData
 from surrogate.surface_tools.fields import FIELD_TEXTS
 from surrogate.units import RPM, ZERO_CELSIUS
@@ -55,6 +55,8 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
             for name in FIELD_TEXTS
             if name in data.deviations or name in data.standard_errors
         },
+        'contact_onset': onset_of_surface(surface).record(),
+        'formula_warnings': surface_warnings(data),
         'limit_band': data.header.get('limit_band'),
         'numerical_band': data.header.get('numerical_band'),
         'accuracy_reached': data.header.get('reached'),
@@ -62,6 +64,21 @@ def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
         'settings': dict(data.header['settings']),
         'provenance': dict(data.provenance),
     }
+
+
+def surface_warnings(data: SurfaceData) -> list[str]:
+    """Return where the formulas of a surface leave their ranges; solved contacts replace them."""
+    if data.header['tier'] != 'closed_form':
+        return []
+    from surrogate.screw import closed_form  # slow to load
+    from surrogate.screw.closed_form_record import formula_warnings
+
+    places = np.meshgrid(data.header['settings']['speed_range'], data.load, data.temperature)
+    # The groups of films do not depend on what asperities do.
+    found = closed_form.solve(
+        *screw_and_oil(data.header['inputs']), *places, share_of=np.zeros_like
+    )
+    return formula_warnings(found)
 
 
 def _summary(data: SurfaceData, group: str, name: str) -> dict[str, float]:
@@ -78,8 +95,9 @@ def info_page(record: Mapping[str, Any]) -> str:
     return '\n'.join(
         [
             f'{record["file"]}',
+            f'  {record["contact_onset"]["sentence"]}',
             *_head(record),
-            *_full_tier(record),
+            *_told(record),
             '  measured interpolation error                    max         p95',
             *(
                 f'    {_label(name):44} {error["max"]:<10.3g}  {error["p95"]:.3g}'
@@ -127,8 +145,8 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
     )
 
 
-def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
-    """Yield what a full-tier builder says of its result."""
+def _told(record: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what the builder of a tier says of its result."""
     for name, words in (('limit_band', 'what is not known'), ('numerical_band', 'the numerics')):
         if record[name] is not None:
             low, high = record[name]
@@ -143,6 +161,7 @@ def _full_tier(record: Mapping[str, Any]) -> Iterator[str]:
         )
     if record['march'] is not None:
         yield from march_lines(record['march'])
+    yield from (f'  formulas     {text}' for text in record['formula_warnings'])
 
 
 def march_lines(march: Mapping[str, Any]) -> Iterator[str]:

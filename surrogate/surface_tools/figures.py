@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 import math
 from pathlib import Path
+import textwrap
 from typing import Any
 
 from matplotlib.axes import Axes
@@ -16,18 +17,18 @@ from matplotlib.patches import Patch
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.plotting.style import (
-    BLUE,
     BROWN,
     draw_picture,
     GREEN,
+    LESS_IS_GOOD,
     MAP,
     new_figure,
-    ORANGE,
+    PURPLE,
+    REGIMES_BY_METAL,
     SKY,
     VERMILION,
-    YELLOW,
 )
-from surrogate.surface import FILM_RATIO_LIMITS, REGIMES, Surface, Validity
+from surrogate.surface import FILM_RATIO_LIMITS, onset_of_surface, REGIMES, Surface, Validity
 from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -88,20 +89,23 @@ def figure_surface(surface: Surface, temperature: float) -> Figure:
     """Return what the surface says at a temperature [K], and how far strips of it differ."""
     part = cut(surface, temperature)
     panels: list[Callable[[Figure, Axes, Slice], None]] = [
+        _draw_zone,
         _draw_efficiency,
         _draw_rcs,
         _draw_film_ratio,
         _draw_regime,
-        _draw_zone,
         _draw_error,
     ]
     if np.isfinite(part.fields['rcs_std']).any():
-        panels[3:4] = [_draw_rcs_spread]
+        panels[4:5] = [_draw_rcs_spread]
     rows = len(panels) // 2
-    figure = new_figure(7.2, 0.7 + 2.9 * rows)
+    figure = new_figure(7.2, 1.0 + 2.9 * rows)
     figure.suptitle(
         f'{surface.screw_name}, {surface.oil_name}, {temperature - ZERO_CELSIUS:g} degC, '
-        f'tier {surface.tier}, surface {surface.sha256[:8]}; grey: not known'
+        f'tier {surface.tier}, surface {surface.sha256[:8]}\n'
+        f'{textwrap.fill(onset_of_surface(surface, temperature).sentence(), 90)}\n'
+        'bright is good in every map; grey: not known',
+        fontsize=8,
     )
     grid = figure.subplots(rows, 2, sharex=True, sharey=True)
     for draw, axes in zip(panels, grid.flat):
@@ -162,7 +166,7 @@ def _draw_rcs(figure: Figure, axes: Axes, part: Slice) -> None:
     title = f'RCS, line: {RCS_LIMIT}' + ''.join(
         f', {style}: {text}' for (style, band), text in words if math.isfinite(band[0])
     )
-    _map(figure, axes, part, np.maximum(values, 1e-4), title, '[-]', norm=norm)
+    _map(figure, axes, part, np.maximum(values, 1e-4), title, '[-]', norm=norm, cmap=LESS_IS_GOOD)
     _limit(axes, part, values, [RCS_LIMIT])
     _limit_bands(axes, part, values)
 
@@ -206,7 +210,7 @@ def _draw_regime(figure: Figure, axes: Axes, part: Slice) -> None:
     ranges = (f'< {low:g}', f'{low:g} to {high:g}', f'>= {high:g}')
     names = [
         (f'{regime.word}, {span}', colour)
-        for regime, span, colour in zip(REGIMES, ranges, (VERMILION, YELLOW, SKY))
+        for regime, span, colour in zip(REGIMES, ranges, REGIMES_BY_METAL, strict=True)
     ]
     _classes(axes, part, bands, 'Regime by Lambda', names)
 
@@ -215,8 +219,8 @@ def _draw_zone(figure: Figure, axes: Axes, part: Slice) -> None:
     title = f'Zone: RCS < {RCS_LIMIT}, efficiency >= {EFFICIENCY_LIMIT}'
     names = [
         ('optimal', GREEN),
-        ('too much contact', ORANGE),
-        ('too much loss', BLUE),
+        ('too much contact', PURPLE),
+        ('too much loss', SKY),
         ('both', BROWN),
         ('light load, no efficiency', LIGHT),
     ]
@@ -249,11 +253,12 @@ def _draw_error(figure: Figure, axes: Axes, part: Slice) -> None:
 def _log_map(
     figure: Figure, axes: Axes, part: Slice, values: Array, title: str, label: str
 ) -> None:
-    """Draw three decades below the largest value."""
+    """Draw three decades below the largest value, which is bad."""
     known = values[np.isfinite(values)]
     top = float(known.max()) if known.size and known.max() > 0 else 1.0
     norm = LogNorm(1e-3 * top, top)
-    _map(figure, axes, part, np.maximum(values, 1e-3 * top), title, label, norm=norm)
+    least = np.maximum(values, 1e-3 * top)
+    _map(figure, axes, part, least, title, label, norm=norm, cmap=LESS_IS_GOOD)
 
 
 def _draw_rcs_spread(figure: Figure, axes: Axes, part: Slice) -> None:

@@ -81,12 +81,21 @@ def test_point_as_a_page(run, capsys):
     text = capsys.readouterr().out
     for part in (
         'tier closed_form: 600 rev/min, 1000 N, 40 degC',
+        'Contact begins at 313 rev/min (241 to 407 by the law alone) at 40 degC; this screw',
         'efficiency           0.936',
         'relieved nut, screw',
         'outside its range',
         'status: closed form',
     ):
         assert part in text
+
+
+def test_at_rest_no_film_is_compared(run, capsys):
+    """No formula gives one, and the page says why."""
+    assert run(*POINT, '--speed-rpm', '0', '--load-N', '500') == 0
+    text = capsys.readouterr().out
+    assert 'N m, no film at rest or without load\n' in text
+    assert 'nan' not in text
 
 
 def test_ratings_are_warned_about(record):

@@ -124,7 +124,7 @@ def read_chunk(stream: BinaryIO, place: ChunkIndex) -> Messages:
             raise ChunkDamage(f'it has {length} bytes, allowed are {LONGEST}')
         raw = stream.read(length)
         chunk, indexes = raw[: place.chunk_length], raw[slice(place.chunk_length, None)]
-        data = _records(chunk)
+        data = _records(chunk, place.uncompressed_size)
         starts = _indexed(data, indexes)
         return _messages(data, _walked(data) if starts is None else starts)
     except ChunkDamage:
@@ -133,12 +133,15 @@ def read_chunk(stream: BinaryIO, place: ChunkIndex) -> Messages:
         raise ChunkDamage(' '.join(str(error).split())) from None
 
 
-def _records(raw: bytes) -> bytes:
-    """Return the records of a chunk, unpacked and with the right checksum."""
+def _records(raw: bytes, size: int) -> bytes:
+    """Return the records of a chunk that the index says comes to a `size` [bytes]."""
     code, length = RECORD.unpack_from(raw)
     if code != CHUNK or length != len(raw) - RECORD.size:
         raise ChunkDamage('no chunk stands where there should be one')
-    return chunk_data(Chunk.read(ReadDataStream(io.BytesIO(raw[slice(RECORD.size, None)]))))
+    chunk = Chunk.read(ReadDataStream(io.BytesIO(raw[slice(RECORD.size, None)])))
+    if size < chunk.uncompressed_size <= limits.CHUNK:
+        raise ChunkDamage(f'it states {chunk.uncompressed_size} bytes, the index {size}')
+    return chunk_data(chunk)
 
 
 def _indexed(data: bytes, indexes: bytes) -> Integers | None:

@@ -6,6 +6,12 @@
 
 const Format = (() => {
   const NONE = '–';
+  let mark = '.';
+
+  /** Write numbers with this decimal mark from now on. */
+  function decimalMark(sign) {
+    mark = sign;
+  }
 
   /** Return the bytes of a base64 text. */
   function bytes(text) {
@@ -41,7 +47,11 @@ const Format = (() => {
     if (value === null || value === undefined || !Number.isFinite(value)) {
       return NONE;
     }
-    return String(Number(value.toPrecision(digits)));
+    return marked(Number(value.toPrecision(digits)));
+  }
+
+  function marked(number) {
+    return String(number).replace('.', mark);
   }
 
   /** Return a time since the start [s], as 1:02:03.4 or 12.34 s. */
@@ -51,11 +61,11 @@ const Format = (() => {
     }
     const digits = Math.min(3, Math.max(0, Math.ceil(-Math.log10(resolution))));
     if (Math.abs(seconds) < 60) {
-      return `${seconds.toFixed(digits)} s`;
+      return `${marked(seconds.toFixed(digits))} s`;
     }
     const rounded = Number(seconds.toFixed(digits));
     const [hours, minutes] = [Math.floor(rounded / 3600), Math.floor((rounded % 3600) / 60)];
-    const rest = (rounded % 60).toFixed(digits).padStart(digits ? digits + 3 : 2, '0');
+    const rest = marked((rounded % 60).toFixed(digits)).padStart(digits ? digits + 3 : 2, '0');
     return hours ? `${hours}:${String(minutes).padStart(2, '0')}:${rest}` : `${minutes}:${rest}`;
   }
 
@@ -81,5 +91,5 @@ const Format = (() => {
     return made;
   }
 
-  return { bytes, floats, doubles, packed, number, time, date, colour, element };
+  return { bytes, floats, doubles, packed, decimalMark, number, time, date, colour, element };
 })();

@@ -1,13 +1,14 @@
 // Copyright 2026 ballscrew_monitor contributors
 // SPDX-License-Identifier: Apache-2.0
-// A canvas with speed, logarithmic, over load: axes, cells, lines and labels on it.
+// A canvas with speed over load: axes, cells, lines and labels on it.
 
 'use strict';
 
 class MapFrame {
-  /** Prepare a canvas for `record`, which has the ranges of speed and load. */
+  /** Prepare a canvas for `record`: ranges of speed, logarithmic if not linear, and of load. */
   constructor(record) {
     this.record = record;
+    this.titles = MapFrame.TITLES;
     this.canvas = Format.element('canvas');
   }
 
@@ -19,7 +20,8 @@ class MapFrame {
     this.canvas.width = Math.round(width * ratio);
     this.canvas.height = Math.round(height * ratio);
     this.canvas.style.height = `${height}px`;
-    this.area = { left: 64, top: 12, width: width - 80, height: height - 62 };
+    const top = this.record.feed ? 46 : 12;
+    this.area = { left: 64, top, width: width - 80, height: height - 50 - top };
     this.pen = this.canvas.getContext('2d');
     this.pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     this.pen.clearRect(0, 0, width, height);
@@ -27,8 +29,9 @@ class MapFrame {
   }
 
   x(speed) {
-    const { low, high } = this.record.speed;
-    const part = Math.log(speed / low) / Math.log(high / low);
+    const { low, high, scale } = this.record.speed;
+    const part = scale === 'linear'
+      ? (speed - low) / (high - low) : Math.log(speed / low) / Math.log(high / low);
     return this.area.left + this.area.width * part;
   }
 
@@ -112,24 +115,41 @@ class MapFrame {
     pen.font = '12px system-ui, sans-serif';
     pen.textAlign = 'center';
     pen.textBaseline = 'top';
-    for (const speed of MapFrame.ticks(this.record.speed, area.width / 48)) {
-      pen.fillRect(this.x(speed), area.top + area.height, 1, 4);
-      pen.fillText(Format.number(speed), this.x(speed), area.top + area.height + 7);
+    const bottom = area.top + area.height;
+    const { feed } = this.record;
+    this.speeds(feed || 1, bottom, 4);
+    const title = feed ? 'feed, either direction [m/min]' : this.titles.speed;
+    pen.fillText(title, area.left + area.width / 2, bottom + 30);
+    if (feed) {
+      pen.textBaseline = 'bottom';
+      this.speeds(1, area.top, -4);
+      pen.fillText('screw speed [rev/min]', area.left + area.width / 2, area.top - 24);
     }
-    pen.fillText('screw speed, either direction [rev/min]', area.left + area.width / 2,
-      area.top + area.height + 30);
     this.loads();
+  }
+
+  /** Write round speeds, `unit` of which are 1 rev/min, along a line at `y`, `out` of the map. */
+  speeds(unit, y, out) {
+    const { low, high, scale } = this.record.speed;
+    const span = { low: low * unit, high: high * unit, scale };
+    for (const value of Ticks.round(span, this.area.width / 48)) {
+      const x = this.x(value / unit);
+      this.pen.fillRect(x, Math.min(y, y + out), 1, Math.abs(out));
+      this.pen.fillText(Format.number(value), x, y + 1.75 * out);
+    }
+  }
+
+  /** Return a speed in words: as a feed if the log speaks of that, the speed of the screw beside. */
+  words(speed) {
+    const turns = `${Format.number(speed)} rev/min`;
+    return this.record.feed ? `${Format.number(speed * this.record.feed)} m/min (${turns})` : turns;
   }
 
   loads() {
     const { pen, area } = this;
-    const { low, high } = this.record.load;
-    const raw = (high - low) / 6;
-    const power = 10 ** Math.floor(Math.log10(raw));
-    const step = power * [1, 2, 5, 10].find((first) => first * power >= raw);
     pen.textAlign = 'right';
     pen.textBaseline = 'middle';
-    for (let load = Math.ceil(low / step) * step; load <= high; load += step) {
+    for (const load of Ticks.steps(this.record.load, 6)) {
       pen.fillRect(area.left - 4, this.y(load), 4, 1);
       pen.fillText(Format.number(load, 4), area.left - 7, this.y(load));
     }
@@ -137,7 +157,7 @@ class MapFrame {
     pen.translate(12, area.top + area.height / 2);
     pen.rotate(-Math.PI / 2);
     pen.textAlign = 'center';
-    pen.fillText('axial load [N]: assists | opposes', 0, 0);
+    pen.fillText(this.titles.load, 0, 0);
     pen.restore();
     pen.globalAlpha = 0.4;
     pen.fillRect(area.left, this.y(0), area.width, 1);
@@ -153,26 +173,22 @@ class MapFrame {
     if (across < 0 || across >= 1 || up < 0 || up >= 1) {
       return null;
     }
+    return { x, y, across, up, ...this.point(across, up) };
+  }
+
+  /** Return speed and load at parts of width and height. */
+  point(across, up) {
     const { speed, load } = this.record;
     return {
-      x, y, across, up,
-      speed: speed.low * (speed.high / speed.low) ** across,
+      speed: speed.scale === 'linear'
+        ? speed.low + across * (speed.high - speed.low)
+        : speed.low * (speed.high / speed.low) ** across,
       load: load.low + up * (load.high - load.low),
     };
   }
-
-  /** Return round numbers between low and high, as many as there is room for. */
-  static ticks({ low, high }, most) {
-    for (const firsts of [[1, 2, 5], [1, 3], [1]]) {
-      const found = [];
-      for (let power = -3; power < 6; power += 1) {
-        found.push(...firsts.map((first) => first * 10 ** power));
-      }
-      const inside = found.filter((speed) => speed >= low && speed <= high);
-      if (inside.length <= most || firsts.length === 1) {
-        return inside;
-      }
-    }
-    return [];
-  }
 }
+
+MapFrame.TITLES = {
+  speed: 'screw speed, either direction [rev/min]',
+  load: 'axial load [N]: assists | opposes',
+};

@@ -9,16 +9,24 @@ class OperatingMap extends MapFrame {
   constructor(element, record, show) {
     super(record);
     this.show = show;
-    this.lines = record.lines.map((line) => ({ ...line, points: Format.floats(line.points) }));
-    this.zone = Format.packed(record.zone.cells).map(Math.round);
-    this.dwell = Format.floats(record.dwell.cells);
-    this.note = Format.element('p', 'readout', OperatingMap.HINT);
+    this.unpack(record);
+    this.note = Format.element('p', 'readout', this.hint());
     element.replaceChildren(this.canvas, this.note);
     this.canvas.addEventListener('pointermove', (event) => this.read(event));
-    this.canvas.addEventListener('pointerleave', () => this.say(OperatingMap.HINT));
+    this.canvas.addEventListener('pointerleave', () => this.say(this.hint()));
     this.canvas.addEventListener('click', (event) => this.lead(event));
     new ResizeObserver(() => this.draw()).observe(element);
     this.draw();
+  }
+
+  unpack(record) {
+    this.lines = record.lines.map((line) => ({ ...line, points: Format.floats(line.points) }));
+    this.zone = Format.packed(record.zone.cells).map(Math.round);
+    this.dwell = Format.floats(record.dwell.cells);
+  }
+
+  hint() {
+    return OperatingMap.HINT;
   }
 
   draw() {
@@ -98,13 +106,13 @@ class OperatingMap extends MapFrame {
   read(event) {
     const at = this.place(event);
     if (!at) {
-      this.say(OperatingMap.HINT);
+      this.say(this.hint());
       return;
     }
     const { columns, rows } = this.record.dwell;
     const seconds = this.dwell[Math.floor(at.up * rows) * columns + Math.floor(at.across * columns)];
     const words = OperatingMap.ZONES[this.cellOf(at)];
-    this.say(`${Format.number(at.speed)} rev/min, ${Format.number(at.load)} N: ${words}; `
+    this.say(`${this.words(at.speed)}, ${Format.number(at.load)} N: ${words}; `
       + `${Format.number(seconds)} s spent in this cell`);
   }
 

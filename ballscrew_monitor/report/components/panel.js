@@ -34,11 +34,12 @@ const Panel = (() => {
     };
   }
 
-  function timeAxis() {
+  /** Return the axis of time; `say` writes a time [s] to a resolution [s]. */
+  function timeAxis(say = Format.time) {
     return {
       ...inked(),
       size: 30,
-      values: (plot, at) => at.map((value) => Format.time(value, (at[1] ?? 1) - (at[0] ?? 0))),
+      values: (plot, at) => at.map((value) => say(value, (at[1] ?? 1) - (at[0] ?? 0))),
     };
   }
 
@@ -98,11 +99,49 @@ const Panel = (() => {
     }
   }
 
+  /** Return the title of a panel, with a place for the values under the cursor. */
+  function caption(panel) {
+    const made = Format.element('figcaption', '', panel.title);
+    for (const one of panel.series) {
+      const value = Format.element('span', 'value');
+      value.dataset.label = panel.series.length > 1 ? one.label : '';
+      value.style.color = `var(--${one.colour})`;
+      value.textContent = value.dataset.label;
+      made.append(value);
+    }
+    return made;
+  }
+
+  /** Write the values under the cursor beside the titles; `say` writes a time [s]. */
+  function read(plot, panel, say = Format.time) {
+    const at = plot.cursor.idx;
+    const { beside: other } = panel;
+    const beside = (value) => (other ? ` (${Format.number(other.factor * value, 4)} ${other.unit})` : '');
+    const fields = plot.root.parentElement.querySelectorAll('.value');
+    fields.forEach((field, i) => {
+      const value = at === null || at === undefined ? null : plot.data[i + 1][at];
+      const text = value === null || value === undefined ? ''
+        : `${Format.number(value, 4)} ${panel.unit}${beside(value)}`;
+      const time = text && i === 0 ? ` · ${say(plot.data[0][at], 0.001)}` : '';
+      field.textContent = `${field.dataset.label} ${text}${time}`;
+    });
+  }
+
+  /** Call `show` with begin and end [s] of what was selected, and select nothing. */
+  function selected(plot, show) {
+    if (plot.select.width > 3) {
+      const begin = plot.posToVal(plot.select.left, 'x');
+      const end = plot.posToVal(plot.select.left + plot.select.width, 'x');
+      plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+      show(begin, end);
+    }
+  }
+
   /** Return a value that begins a decade or is a limit of the film ratio, null for others. */
   function decades(value) {
     const first = value / 10 ** Math.floor(Math.log10(value) + 1e-9);
     return Math.abs(first - 1) < 1e-6 || Math.abs(value - 3) < 1e-6 ? value : null;
   }
 
-  return { scale, series, timeAxis, valueAxis, shade, limits };
+  return { scale, series, timeAxis, valueAxis, shade, limits, caption, read, selected };
 })();

@@ -57,41 +57,16 @@ class TimeSeries {
       hooks: {
         drawClear: [(plot) => Panel.shade(plot, panel, this.record.events)],
         draw: [(plot) => Panel.limits(plot, panel)],
-        setSelect: [(plot) => this.selected(plot)],
-        setCursor: [(plot) => this.read(plot, panel)],
+        setSelect: [(plot) => Panel.selected(plot, (begin, end) => this.show(begin, end))],
+        setCursor: [(plot) => Panel.read(plot, panel)],
       },
     };
     const holder = Format.element('figure', 'panel');
-    holder.append(this.caption(panel));
+    holder.append(Panel.caption(panel));
     this.element.append(holder);
     const plot = new uPlot(options, [this.course.time, ...this.columns(panel)], holder);
     plot.over.addEventListener('dblclick', () => this.show(0, this.record.span));
     return plot;
-  }
-
-  /** Return the title of a panel, with a place for the values under the cursor. */
-  caption(panel) {
-    const caption = Format.element('figcaption', '', panel.title);
-    for (const one of panel.series) {
-      const value = Format.element('span', 'value');
-      value.dataset.label = panel.series.length > 1 ? one.label : '';
-      value.style.color = `var(--${one.colour})`;
-      value.textContent = value.dataset.label;
-      caption.append(value);
-    }
-    return caption;
-  }
-
-  /** Write the values under the cursor beside the titles. */
-  read(plot, panel) {
-    const at = plot.cursor.idx;
-    const fields = plot.root.parentElement.querySelectorAll('.value');
-    fields.forEach((field, i) => {
-      const value = at === null || at === undefined ? null : plot.data[i + 1][at];
-      const text = value === null ? '' : `${Format.number(value, 4)} ${panel.unit}`;
-      const time = text && i === 0 ? ` at ${Format.time(plot.data[0][at], 0.001)}` : '';
-      field.textContent = `${field.dataset.label} ${text}${time}`;
-    });
   }
 
   columns(panel) {
@@ -100,15 +75,6 @@ class TimeSeries {
       // A logarithmic scale has no zero: what is below its floor is drawn on it.
       return panel.floor ? column.map((value) => Course.atLeast(value, panel.floor)) : column;
     });
-  }
-
-  selected(plot) {
-    if (plot.select.width > 3) {
-      const begin = plot.posToVal(plot.select.left, 'x');
-      const end = plot.posToVal(plot.select.left + plot.select.width, 'x');
-      plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
-      this.show(begin, end);
-    }
   }
 
   zoom(factor) {

@@ -1,6 +1,6 @@
 // Copyright 2026 ballscrew_monitor contributors
 // SPDX-License-Identifier: Apache-2.0
-// Coloured bars over time: regime, zone and warning.
+// Coloured bars over time: zone, warning and regime.
 
 'use strict';
 
@@ -14,7 +14,7 @@ class Strip {
     this.bars = record.bars.map((bar) => ({ ...bar, codes: Format.bytes(bar.codes) }));
     this.canvas = Format.element('canvas', 'strip');
     this.element = Format.element('figure', 'panel');
-    this.element.append(Format.element('figcaption', '', 'Regime, zone and warning'), this.canvas);
+    this.element.append(Format.element('figcaption', '', 'Zone, warning and regime'), this.canvas);
   }
 
   /** Draw a range of time [s] across `area`, left and width [px], that of the panels below. */

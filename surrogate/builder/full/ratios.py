@@ -36,7 +36,7 @@ CORRECTED = tuple(name for name in FIELDS if name not in SHARES)
 """Fields that differ between the tiers."""
 SPEEDS = (0.0, 0.25, 0.42, 0.58, 0.71, 0.83, 0.92, 0.96, 1.0)
 """Solved speeds over the range, in logarithms [-]: they crowd where the balls feel inertia."""
-LOADS = (0.0, 0.45, 0.87, 1.0)
+LOADS = (0.0, 0.375, 0.75, 0.9, 1.0)
 """Solved loads between none and the idle load [-]."""
 SENSES = ('opposing', 'assisting')
 """Load against the motion, and with it."""

@@ -10,7 +10,15 @@ from ballscrew_monitor.health.assess import assess, DRAG, HealthSettings
 from ballscrew_monitor.health.baseline import learned
 from ballscrew_monitor.health.companions import Companions, NONE_BUILT
 from ballscrew_monitor.health.model import Model
-from ballscrew_monitor.health.records import Cause, CauseCode, Condition, Place, Quantity
+from ballscrew_monitor.health.records import (
+    Cause,
+    CauseCode,
+    Condition,
+    LoadSource,
+    Place,
+    Quantity,
+    SpectrumBin,
+)
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.words import ADVICE, advice_of, health_record, verdict_of
 import numpy as np
@@ -71,7 +79,7 @@ class Axis:
                     found.append(dataclasses.replace(point, motor_torque=torque))
         return found
 
-    def health(self, points, *, companions=None, over=3600.0, last=None, **changes):
+    def health(self, points, *, companions=None, over=3600.0, last=None, spectrum=(), **changes):
         """Return the health on the last day."""
         today = max((one.first_day for one in points), default=FIRST) if last is None else last
         settings = HealthSettings(limits=self.limits, **changes)
@@ -81,7 +89,7 @@ class Axis:
             (today + 1) * DAY - 1,
             found,
             points,
-            (),
+            spectrum,
             self.surface,
             companions or self.companions,
             settings,
@@ -139,6 +147,28 @@ def test_what_is_missing_is_said(axis, motion):
 def test_a_leap_everywhere_asks_for_another_screw(axis, motion):
     health = axis.health(axis.days(motion, 40, lambda point, day: 0.2 if day > 20 else 0.0))
     assert any('if the screw was changed, name a new baseline' in one for one in health.notes)
+
+
+def test_reference_runs_that_change_are_a_note(axis, motion):
+    points = axis.days(motion, 40, lambda point, day: 0.05 if day > 20 else 0.0)
+    runs = [dataclasses.replace(one, load_source=LoadSource.FREE) for one in points]
+    bins = [bin_of_day(day) for day in sorted({one.first_day for one in points})]
+    notes = axis.health(runs, spectrum=bins).notes
+    assert [one for one in notes if one.startswith('the reference run of ')]
+    for quiet in (axis.health(runs), axis.health(points, spectrum=bins)):
+        assert not [one for one in quiet.notes if one.startswith('the reference run of ')]
+
+
+def bin_of_day(day):
+    return SpectrumBin(
+        first_day=day,
+        load_band=0,
+        axial_load=0.0,
+        angle=4e5,
+        speed=40.0,
+        time=10_000.0,
+        wear_time=(10_000.0,),
+    )
 
 
 @pytest.mark.parametrize('seed', range(6))

@@ -3,22 +3,28 @@
 """Self-starting CUSUM: scores, sums, no look-ahead, and a screw that wore until it failed."""
 
 import csv
+import dataclasses
 import itertools
 import math
 import os
 from pathlib import Path
+import re
 
-from ballscrew_monitor.core.conversions import TIME_UNITS
+from ballscrew_monitor.core.conversions import clock_text, TIME_UNITS
 from ballscrew_monitor.health.baseline import RUNNING_IN
 from ballscrew_monitor.health.detector import (
     first_alarm,
     FLOOR,
     LIMIT,
     normal_score_wallace_1959,
+    note_on_runs,
     run_length_siegmund_1985,
     SelfStarting,
     SLACK,
 )
+from ballscrew_monitor.health.model import Model
+from ballscrew_monitor.health.records import LoadSource
+from ballscrew_monitor.health.rows import DAY
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
@@ -123,9 +129,65 @@ def test_false_alarms_come_as_often_as_stated():
     assert run_length_siegmund_1985(SLACK, LIMIT) / 2 == pytest.approx(124, abs=1)
 
 
+@pytest.fixture(name='runs', scope='module')
+def runs_of_a_screw(motion, surface):
+    """Return what gives points and motion by day of runs, one each 35 h, and their model."""
+
+    def made(readings, **changes):
+        points = [
+            motion.point(
+                first_day=motion.today + 2 * at,
+                load_source=LoadSource.FREE,
+                axial_load=0.0,
+                motor_torque=reading,
+                **changes,
+            )
+            for at, reading in enumerate(readings)
+        ]
+        spent = {one.first_day: 35.0 * HOUR for one in points} | {motion.today: 0.0}
+        return points, spent, Model(surface)
+
+    return made
+
+
+def test_a_run_that_differs_is_named_with_its_day_and_its_change(runs, says):
+    steady = [0.2, *[0.100, 0.101, 0.099] * 6]  # the first one is of the running-in
+    points, spent, model = runs([*steady, 0.09])
+    assert note_on_runs(*runs(steady)) == ''
+    date = clock_text(points[-1].first_day * DAY)[:10]
+    assert re.fullmatch(says('run', date=date, change='-10'), note_on_runs(points, spent, model))
+    later, _, _ = runs([*steady, 0.09, 0.2])
+    assert note_on_runs(later, spent, model) == note_on_runs(points, spent, model)
+
+
+def test_a_change_of_speed_or_load_source_is_no_change_of_the_runs(runs):
+    """The model takes the place of a run into account; only what is free of load counts."""
+    points, spent, model = runs([0.1] * 12)
+    fast, _, _ = runs([0.1] * 12, speed=120.0)
+    for one, other in zip(points[6:], fast[6:]):
+        part = model.friction([other])[0] / model.friction([one])[0]
+        spot = points.index(one)
+        points[spot] = dataclasses.replace(other, motor_torque=part * one.motor_torque)
+    assert note_on_runs(points, spent, model) == ''
+    loaded = [
+        dataclasses.replace(one, load_source=LoadSource.MEASURED, motor_torque=0.2 + 0.1 * at)
+        for at, one in enumerate(points)
+    ]
+    assert note_on_runs(loaded, spent, model) == ''
+
+
+def test_runs_of_the_running_in_and_outside_the_surface_do_not_count(runs):
+    points, spent, model = runs([*[0.1, 0.101, 0.099] * 4, 0.2])
+    assert note_on_runs(points, spent, model) != ''
+    assert note_on_runs(points, dict.fromkeys(spent, 0.0), model) == ''
+    far, _, _ = runs([0.2] * 13, speed=1e4)
+    assert note_on_runs([*points[:-1], far[-1]], spent, model) == ''
+    assert note_on_runs([], {}, model) == ''
+
+
 @pytest.fixture(name='worn', scope='session')
 def worn_screws():
-    """Return hours and readings of two screws that wore until they failed."""
+    """Return times and readings of two screws that wore until they failed."""
     folder = os.environ.get('BALLSCREW_RECORDINGS', '')
     path = Path(folder) / 'xjtu_torque.csv'
     if not folder or not path.is_file():
@@ -142,16 +204,24 @@ def second_below(series, share):
     return next(time for (_, one), (time, other) in pairs if max(one, other) < limit)
 
 
+def day_of_hour(motion, hour):
+    """Return the day of the run after some hours."""
+    return clock_text((motion.today + 2 * hour // 35) * DAY)[:10]
+
+
 @pytest.mark.parametrize(('name', 'alarm', 'rule'), [('up', 280, 315), ('down', 280, 490)])
-def test_a_screw_that_wears_is_told_before_two_readings_below_ten_percent(worn, name, alarm, rule):
+def test_a_screw_that_wears_is_told_before_two_readings_below_ten_percent(
+    worn, runs, motion, name, alarm, rule
+):
     """By what was seen until then alone."""
-    series = worn[name]
-    told = first_alarm(series)
-    assert told == alarm * HOUR
-    assert first_alarm([one for one in series if one[0] <= told]) == told
-    assert first_alarm([one for one in series if one[0] < told]) is None
-    assert second_below(series, 0.1) == rule * HOUR
-    assert told < second_below(series, 0.1)
+    readings = [reading for _, reading in worn[name]]
+    seen = 1 + alarm // 35
+    said = f'the reference run of {day_of_hour(motion, alarm)} '
+    assert note_on_runs(*runs(readings)).startswith(said)
+    assert note_on_runs(*runs(readings[:seen])) == note_on_runs(*runs(readings))
+    assert note_on_runs(*runs(readings[: seen - 1])) == ''
+    assert second_below(worn[name], 0.1) == rule * HOUR
+    assert alarm < rule
 
 
 def test_the_rule_by_the_second_reading_comes_later(worn):
@@ -159,6 +229,6 @@ def test_the_rule_by_the_second_reading_comes_later(worn):
     assert second_below(worn['down'][1:], 0.1) == 595 * HOUR
 
 
-def test_running_in_of_a_worn_screw_is_no_alarm(worn):
+def test_running_in_of_a_worn_screw_is_no_alarm(worn, runs):
     """The second screw fell by 5 % after its first reading and stayed for 140 h."""
-    assert first_alarm(worn['down'][:6]) is None
+    assert note_on_runs(*runs([reading for _, reading in worn['down'][:6]])) == ''

@@ -9,10 +9,12 @@ import re
 
 from ballscrew_monitor.core import sqlite_file
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Level, WarningPolicy
 from ballscrew_monitor.core.links import Link, Publisher
 from ballscrew_monitor.core.state import Event, LoadDerivation, shelve
+from ballscrew_monitor.core.vitals import VitalSigns
 from ballscrew_monitor.messages import diagnostics, reasons
 from ballscrew_monitor.messages.diagnostics import ERROR, OK, STALE, WARN
 from ballscrew_monitor.messages.state_messages import plain_values
@@ -80,7 +82,7 @@ OUTSIDE = 'outside the optimal zone: asperities carry too much'
 
 def test_names():
     """Each status begins as an error that says that nothing was set."""
-    made = diagnostics.failed('ballscrew_monitor', 'x', diagnostics.NOT_SET)
+    made = diagnostics.failed('ballscrew_monitor', 'x', 'no message was set')
     assert [(status.name, status.level, status.message) for status in made] == [
         (f'ballscrew_monitor: x: {part}', ERROR, 'no message was set')
         for part in ('Lubrication', 'Inputs', 'Surface')
@@ -283,7 +285,7 @@ def test_a_shelved_warning_is_no_warning_and_hides_no_other(core, events, shown)
     for event in events:
         state = monitor.update(event) or state
     assert state.level is Level.WARN
-    assert diagnostics.summaries(state, monitor.event, LINKS)[0] == shown
+    assert diagnostics.summaries(state, monitor.event, LINKS)[0][:2] == shown
     assert not plain_values(state)['out_of_zone']
 
 
@@ -329,6 +331,59 @@ def test_values_carry_their_unit(core):
     assert values['Opposing load max [N]'] == '4000'
 
 
+def codes_of(made):
+    return [int(values_of(status)['Code']) for status in made]
+
+
+@pytest.mark.parametrize(
+    ('events', 'codes'),
+    [
+        ([LOAD, SPEED], [Fault.NONE, Fault.NONE, Fault.NONE]),
+        ([SPEED], [Fault.NO_INPUT, Fault.INPUT_MISSING, Fault.NONE]),
+        ([HEAVY, SPEED], [Fault.LOAD_OUTSIDE, Fault.NONE, Fault.NONE]),
+        ([LOAD, STILL], [Fault.NONE, Fault.NONE, Fault.NONE]),
+        (
+            [LOAD, Refusal(source=Source.LOAD, why=Why.FUTURE), SPEED],
+            [Fault.NO_INPUT, Fault.INPUT_FUTURE, Fault.NONE],
+        ),
+        ([], [Fault.NOTHING_YET, Fault.NOTHING_YET, Fault.NONE]),
+    ],
+)
+def test_the_code_of_a_status_is_its_first_value(core, events, codes):
+    made = after(core, *events)
+    assert codes_of(made.values()) == codes
+    assert all(status.values[0].key == 'Code' for status in made.values())
+
+
+@pytest.mark.parametrize('policy', WarningPolicy)
+def test_a_warning_that_is_not_to_call_keeps_its_code(core, policy):
+    found = after(core, LOAD, SPEED, surface=core.surface(rcs=0.5), policy=policy)
+    assert codes_of(found.values()) == [Fault.RCS_HIGH, Fault.NONE, Fault.NONE]
+
+
+def test_what_holds_for_the_whole_axis_or_node_has_its_code(core):
+    surface = core.surface()
+    inactive = diagnostics.statuses('n', 'x', None, Event(), surface, links=None)
+    assert codes_of(inactive) == [Fault.INACTIVE, Fault.INACTIVE, Fault.NONE]
+    facts = {'refused': 'why', 'defect': 'it failed', 'clock_stands': True}
+    made = diagnostics.statuses('n', 'x', None, Event(), surface, links=LINKS, **facts)
+    assert codes_of(made) == [Fault.PROGRAM_FAILED, Fault.CLOCK_STANDS, Fault.RELOAD_REFUSED]
+    assert codes_of(diagnostics.failed('n', 'x', 'why')) == [Fault.NOT_CONFIGURED] * 3
+    for problem, kept, recorded in (('', 0, 0), ('why', Fault.NOT_KEPT, Fault.NOT_RECORDED)):
+        assert codes_of([diagnostics.of_folder('n', problem)]) == [kept]
+        assert codes_of([diagnostics.recording('n', problem)]) == [recorded]
+
+
+@pytest.mark.parametrize(('share', 'code'), [(0.1, Fault.NONE), (0.9, Fault.BUSY)])
+def test_the_node_itself(share, code, says):
+    signs = VitalSigns(loop_time=0.25, queue_depth=3, processor_share=share)
+    status = diagnostics.of_node('/cell/node', signs)
+    assert (status.name, codes_of([status])) == ('cell/node: Node', [code])
+    assert said(status) == ((WARN, says('busy')) if code else (OK, 'the node keeps up'))
+    assert values_of(status)['Loop time [s]'] == '0.25'
+    assert (values_of(status)['Queue depth [-]'], status.values[0].key) == ('3', 'Code')
+
+
 def test_messages_hold_no_measured_numbers(core):
     for events in ([LOAD, SPEED], [SPEED], [LOAD, sample(Source.SPEED, 1e3)]):
         for status in after(core, *events).values():
@@ -340,11 +395,9 @@ def first_words(text):
 
 
 SENTENCES = [
-    *diagnostics._NOT_JUDGED.values(),
-    *(f'outside the optimal zone: {cause}' for cause in diagnostics._CAUSES.values()),
-    diagnostics.NOTHING_YET,
-    diagnostics.INACTIVE,
-    diagnostics.NOT_DERIVED,
+    *(fault.text for fault in Fault if fault.status == 'Lubrication'),
+    Fault.NOTHING_YET.text,
+    Fault.INACTIVE.text,
     diagnostics.KEPT,
     'the program failed at',
     *(state_database.UNWRITABLE, state_database.IN_USE),
@@ -353,7 +406,7 @@ SENTENCES = [
 BEGINNINGS = [
     diagnostics.CLOCK_STANDS,
     *reasons._REFUSED.values(),
-    *(cure for _, cure in reasons._TROUBLES if isinstance(cure, str)),
+    *(cure for _, cure, _ in reasons._TROUBLES if isinstance(cure, str)),
     reasons.slow_reason(1.0, 'x.speed'),
     'messages are refused',
     'all inputs arrive; a few',

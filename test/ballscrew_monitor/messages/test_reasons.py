@@ -4,6 +4,7 @@
 
 import math
 
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, Why
 from ballscrew_monitor.core.links import Link
@@ -51,6 +52,26 @@ def test_each_fault_has_its_sentence(state, changes, link, text, says):
     assert reasons.fault(status(state, **changes), link, 'x.speed') == says(text)
 
 
+@pytest.mark.parametrize('why', [why for why in Why if why is not Why.OTHER_JOINTS])
+def test_each_reason_of_a_refusal_has_a_code_of_its_own_name(why):
+    found = reasons.fault_code(status(InputState.BAD, why=why))
+    assert (found.name, found.status) == (f'INPUT_{why.name}', 'Inputs')
+
+
+@pytest.mark.parametrize(
+    ('state', 'changes', 'code'),
+    [
+        (InputState.BAD, {}, Fault.INPUT_UNUSABLE),
+        (InputState.STALE, {}, Fault.INPUT_STALE),
+        (InputState.MISSING, {}, Fault.INPUT_MISSING),
+        (InputState.MISSING, {'joints': JOINTS}, Fault.INPUT_OTHER_JOINTS),
+        (InputState.UNKNOWN, {}, Fault.INPUT_UNKNOWN),
+    ],
+)
+def test_other_faults_have_a_code_by_their_state(state, changes, code):
+    assert reasons.fault_code(status(state, **changes)) is code
+
+
 def test_messages_without_joints_are_read_by_index_and_of_many_joints_some_are_listed(says):
     said = reasons.joint_reason(OtherJoints('velocity', 'x', ()), 'x.speed')
     assert said == says('messages_name_joints')
@@ -72,9 +93,11 @@ def test_a_timeout_that_would_do_is_round_and_at_least_twice_the_gap(gap, timeou
 def test_the_worst_kind_of_fault_is_told_alone(says):
     good, slow = status(InputState.OK), status(InputState.OK, slow=True, longest_gap=1.0)
     lost = status(InputState.OK, source=Source.LOAD, losing=True, lag=math.nan)
-    assert summary('x', (good,), {}) == (Standing.GOOD, 'all inputs arrive')
-    assert summary('x', (slow, good), {}) == (Standing.DEGRADED, says('speed_comes_less'))
+    assert summary('x', (good,), {}) == (Standing.GOOD, 'all inputs arrive', Fault.NONE)
+    told = Standing.DEGRADED, says('speed_comes_less'), Fault.SLOW
+    assert summary('x', (slow, good), {}) == told
     assert summary('x', (slow, lost), {})[1].startswith('load messages are lost on the way')
-    standing, text = summary('x', (lost, status(InputState.MISSING)), {Source.SPEED: MATCHED})
-    assert standing is Standing.LOST
+    found = summary('x', (lost, status(InputState.MISSING)), {Source.SPEED: MATCHED})
+    standing, text, code = found
+    assert (standing, code) == (Standing.LOST, Fault.INPUT_MISSING)
     assert text == says('speed_was_never_received')

@@ -11,6 +11,7 @@ is that the lag is longer than the timeout.
 import re
 import time
 
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_msgs.msg import BallScrewState, InputHealth, PointResult
@@ -74,7 +75,7 @@ class Listener:
     def faults(self):
         """Return what was wrong with the inputs that had arrived; for a moment of one alone."""
         never = ('speed was never', 'load was never')
-        begin = (*never, diagnostics.INACTIVE, diagnostics.NOTHING_YET, GOOD)
+        begin = (*never, Fault.INACTIVE.text, Fault.NOTHING_YET.text, GOOD)
         found = [part for one in self.sentences() for part in re.split('; (?=load )', one)]
         return {one for one in found if not one.startswith(begin)}
 

@@ -3,11 +3,14 @@
 """State that outlives the node, over the real middleware: kills, a full disk, shelving."""
 
 import contextlib
+import json
 import resource
 import signal
 import sqlite3
 
+from ballscrew_monitor import cli
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.memory import Memory, record_of, RESTARTED
 from ballscrew_monitor.core.state import Event, Totals
 from ballscrew_monitor.node.restart_state import RestartState
@@ -107,6 +110,22 @@ def test_a_node_that_is_killed_in_an_event_goes_on(axis):
     wanted = [('event_end', number, RESTARTED) for number in range(1, KILLS)]
     assert [line for line in lines if line[0] == 'event_end'] == wanted
     assert [line[0] for line in lines].count('node_start') == KILLS
+
+
+def test_an_event_is_kept_with_what_came_before_it(axis, capsys):
+    axis.start(x__limits__raise_delay=0.2)
+    axis.move(FAST, lambda state: state.judged > 40, 'a stay inside')
+    axis.begin(1)
+    assert cli.main(['events', '--json', str(axis.folder)]) == 0
+    lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    (entry,) = [line for line in lines if line['kind'] == 'event_begin']
+    frame = entry['freeze_frame']
+    assert {len(values) for values in frame.values()} == {len(frame['time_s'])}
+    assert frame['time_s'][-1] == 0.0
+    assert set(frame['speed_rad_s']) == {FAST, SLOW}
+    assert (frame['speed_rad_s'][-1], frame['axial_load_N'][-1]) == (SLOW, -1000.0)
+    assert frame['rcs'][-1] == pytest.approx(entry['value'], rel=1e-5)
+    assert entry['code'] == Fault.RCS_HIGH
 
 
 def test_a_full_disk_is_one_sentence_and_nothing_is_lost(axis):

@@ -89,7 +89,7 @@ class Machine:
             sample = InputSample(source=source, value=value, stamp=self.stamp)
             state = self.monitor.update(sample)
         if state is not None and state.event is not None:
-            self.alarm.follow(state)
+            self.alarm.follow(state, {})
         if self.stamp % SECOND == 0:
             self.look()
         self.state.work(self.stamp / SECOND)

@@ -139,7 +139,7 @@ def test_limits_change_live_and_bad_ones_are_refused(node):
     assert states[-1].rcs_limit == 0.02
 
 
-def test_the_lifecycle_from_outside(node):
+def test_the_lifecycle_from_outside(node, says):
     arguments = ('-p', 'start_type_description_service:=false')  # of any node, and no slip
     node.start(*arguments, autostart='false', **AHEAD)
     names = node.call(ListParameters, 'list_parameters').result.names
@@ -161,6 +161,8 @@ def test_the_lifecycle_from_outside(node):
         )
     )
     assert node.node.count_subscribers('joint_states') == 0
+    surface = Surface.load(shipped_surface()).sha256[:16]
+    assert node.output.read_text().count(says('start', surface=surface)) == 1
     assert node.transition('activate')
     states, publish = node.watched()
     feed(node, publish, states, FAST, 2)
@@ -335,7 +337,7 @@ def test_several_axes_share_one_topic(node):
     node.until(
         lambda: (
             publish(next(speeds))
-            or {('x',), ('x', 'y')} <= {axes_told(message) for message in node.told}
+            or {('x',), ('x', 'y', 'Node')} <= {axes_told(message) for message in node.told}
         ),
         'the news of x alone',
     )

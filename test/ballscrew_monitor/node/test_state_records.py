@@ -6,6 +6,7 @@ import json
 import types
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.node.state_records import Corrections, entry_of, event_facts, Kind
 import pytest
@@ -22,7 +23,8 @@ def test_an_entry_says_what_when_where_and_why():
     assert record['time'].endswith('+00:00')
     assert (record['stamp_ns'], record['axis']) == (3 * SECOND, 'x')
     assert (record['kind'], record['event'], record['duration_s']) == ('event_end', 4, 2.0)
-    assert (record['cause'], record['value'], record['limit']) == ('UNKNOWN', None, None)
+    assert (record['cause'], record['code']) == ('UNKNOWN', Fault.CAUSE_UNKNOWN)
+    assert (record['value'], record['limit']) == (None, None)
 
 
 def test_corrections_come_back_bit_for_bit_and_say_their_units():

@@ -87,6 +87,22 @@ def test_a_strict_reader_says_where_a_record_is_damaged(file, refused):
         numbers(file, strict=True)
 
 
+def test_chunks_that_come_to_too_much_together_are_refused(file, refused, monkeypatch):
+    """Each is within its own limit; neither the index nor the file without one gets past it."""
+    sizes = [one.uncompressed_size for one in summary_of(file).chunk_indexes]
+    monkeypatch.setattr(limits, 'PACKING', 0)
+    monkeypatch.setattr(limits, 'CHUNK', sum(sizes))
+    assert numbers(file, strict=True) == list(range(COUNT))
+    monkeypatch.setattr(limits, 'CHUNK', sum(sizes) - 1)
+    with refused('summary_too_much'):
+        summary_of(file)
+    for strict in (False, True):
+        with refused('too_much', file=file):
+            numbers(file, strict=strict)
+    monkeypatch.setattr(limits, 'PACKING', 1)  # the size of the file counts
+    assert numbers(file) == list(range(COUNT))
+
+
 def test_a_chunk_of_too_many_records_is_not_taken_apart(refused, monkeypatch):
     monkeypatch.setattr(limits, 'RECORDS', 3)
     record = struct.pack('<BQ', 0x80, 0)

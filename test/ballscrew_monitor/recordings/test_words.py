@@ -4,10 +4,12 @@
 
 import io
 
+from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.recordings import words
 from ballscrew_monitor.recordings.words import shown_progress
 import pytest
 from surrogate.progress import Progress
+from surrogate.units import RPM
 
 
 @pytest.mark.parametrize(
@@ -64,6 +66,24 @@ def said(step):
 def test_short_work_is_silent_and_long_work_tells_rate_and_time_left(says):
     assert said(0.1) == ''
     assert says('500_1000_s') in said(1.0)
+
+
+@pytest.mark.parametrize(
+    ('text', 'shown'),
+    [
+        (Advice(target_speed=60 * RPM).text, 'at this load run at 0.6 m/min, 60 rev/min'),
+        (
+            Advice(target_speed=-250 * RPM, target_load=5.0).text,
+            'at this load run at -2.5 m/min, -250 rev/min or at this speed load with 5 N',
+        ),
+        ('at 430 rev/min and -1200 N', 'at 4.3 m/min, 430 rev/min and -1200 N'),
+        ('at -7.32 rev/min: faster', 'at -0.0732 m/min, -7.32 rev/min: faster'),
+        ('at this speed load with 5 N', 'at this speed load with 5 N'),
+    ],
+)
+def test_a_feed_stands_first_beside_the_speed_of_the_screw(text, shown):
+    """In the words of an advice and of a place, for a lead of 10 mm."""
+    assert words.feed_first(text, 0.01) == shown
 
 
 def test_names_are_listed_up_to_a_number_and_a_length():

@@ -62,6 +62,20 @@ def test_the_command_follows_what_a_node_gathered(folder, capsys, tmp_path):
     assert (out / 'health.png').stat().st_size > 0
 
 
+@pytest.mark.parametrize('name', ['health.json', 'health.png'])
+def test_files_of_somebody_else_are_not_replaced(folder, name, capsys, says, tmp_path):
+    theirs = tmp_path / 'out' / name
+    theirs.parent.mkdir()
+    theirs.write_text('{"patient": {"name": "x"}}')
+    command = ['health', str(folder), '--out', str(theirs.parent)]
+    assert main(command) == 2
+    assert says('foreign', name=name) in capsys.readouterr().err
+    assert theirs.read_text() == '{"patient": {"name": "x"}}'
+    assert list(theirs.parent.iterdir()) == [theirs]
+    theirs.unlink()
+    assert [main(command), main(command)] == [0, 0]
+
+
 def test_an_axis_without_parameters_is_refused(folder, capsys, says):
     with contextlib.closing(HealthStore(folder)) as store:
         store.load()

@@ -76,6 +76,22 @@ def test_charts_are_drawn_without_an_error(written, browse):
     assert 'every sample around the worst warning.' in dom
 
 
+def test_a_page_of_a_feed_axis_speaks_of_feeds(judged, tmp_path, browse):
+    """In verdict, tiles, warnings and chart, without an error; where contact begins is said."""
+    values = judged.values(**{'x.speed.unit': 'mm/min'})
+    case = judged.case([judged.columns(count=2000)], [judged.event(1, 1.0, 2.0)], values=values)
+    path = tmp_path / 'feed.html'
+    path.write_text(report_page(judged.log(case)))
+    dom = browse(path, '--dump-dom')
+    assert 'data-errors=""' in re.search(r'<body[^>]*>', dom)[0]
+    verdict = dom.partition('class="verdict')[2].partition('</div>')[0]
+    assert case.contact in html.unescape(verdict)
+    assert ' m/min, ' in case.contact
+    assert 'travelled, 99.95 revolutions' in dom
+    assert 'at 4.3 m/min, 430 rev/min and -1200 N: ' in dom
+    assert 'Feed [m/min]' in dom
+
+
 def test_a_click_on_a_warning_leads_to_it_and_one_on_a_head_sorts(judged, tmp_path, browse):
     events = [judged.event(1, 10.0, 2.0), judged.event(2, 50.0, 5.0)]
     case = judged.case([judged.columns(count=20_000)], events)

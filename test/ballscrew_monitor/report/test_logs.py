@@ -174,3 +174,16 @@ def test_files_of_others_are_not_replaced(tmp_path, refused):
     refused('foreign', logs.check_output, tmp_path)
     touch(tmp_path / logs.PAGE)
     logs.check_output(tmp_path)
+
+
+def test_where_a_report_was_removed_another_is_made(tmp_path, refused):
+    """Unless files of others are beside the removed ones."""
+    judged = tmp_path / logs.JUDGED
+    products = judged / 'judged.mcap', judged / 'metadata.yaml', tmp_path / logs.EVENTS
+    touch(*products, tmp_path / logs.PAGE)
+    logs.remove_report(tmp_path)
+    assert not list(tmp_path.iterdir())
+    logs.check_output(tmp_path)
+    touch(*products, judged / 'notes.txt', tmp_path / logs.PAGE)
+    logs.remove_report(tmp_path)
+    refused('removed', logs.check_output, tmp_path)

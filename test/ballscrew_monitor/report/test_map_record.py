@@ -58,3 +58,9 @@ def test_other_temperatures_have_a_border_of_their_own(judged):
     assert record.temperature == 40.0
     labels = [line.label for line in record.lines if line.kind == 'rcs_other']
     assert labels == ['30 °C', '50 °C']
+
+
+def test_a_map_knows_the_feed_where_the_log_speaks_of_it(judged):
+    case = judged.case([judged.columns()], values=judged.values(**{'x.speed.unit': 'm/min'}))
+    assert operating_map(case).feed == case.surface.lead
+    assert plain(operating_map(judged.case([judged.columns()])))['feed'] is None

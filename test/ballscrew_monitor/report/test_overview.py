@@ -39,6 +39,26 @@ def test_rows_are_in_the_order_of_their_dates():
     assert '2026-01-14' in page
 
 
+def test_the_verdict_comes_first_and_stays_in_sight_on_a_phone(browse, tmp_path):
+    """Where the table goes on beyond the screen, also after it was moved to its end."""
+    page = overview_page([make_entry('a_recording_with_a_long_name', 1, 18.0)])
+    assert re.search(r'<th scope="col">([^<]*)', page)[1] == 'Verdict'
+    script = """<script>
+      const wide = document.querySelector('table.verdicts').parentElement;
+      wide.scrollLeft = 1e4;
+      const cell = wide.querySelector('td').getBoundingClientRect();
+      document.body.dataset.seen = [wide.scrollLeft > 0, Math.round(cell.left)];
+    </script>"""
+    path = tmp_path / 'index.html'
+    path.write_text(
+        re.sub('<meta http-equiv[^>]*>', '', page).replace('</body>', f'{script}</body>')
+    )
+    dom = browse(path, '--dump-dom', '--window-size=500,800')
+    scrolled, left = re.search(r'data-seen="([^"]*)"', dom)[1].split(',')
+    assert scrolled == 'true'
+    assert 0 <= int(left) < 20
+
+
 def test_times_and_shares_read_as_a_person_would_say_them():
     page = overview_page([make_entry('a', 1, 0.0)])
     assert '<td class="short" data-value="3600.0">60 min</td>' in page

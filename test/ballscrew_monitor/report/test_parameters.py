@@ -44,10 +44,20 @@ def test_a_table_says_what_its_load_is_worked_out_from(table):
     assert found.axes['x'].load_from == 'current'
     assert found.axes['x'].stated >= {'speed.column', 'current.unit', 'screw', 'oil'}
     assert not found.axes['x'].stated & set(found.axes['x'].assumed)
+    assert found.axes['x'].motion_unit == 'rev/min'
     assert not found.nominal
     assert found.axes['x'].assumed['lead_mm'] == {'value': 10.0, 'reason': 'usual'}
     assert found.origin == f'those of {table / "log.csv"}'
     assert found.short_origin == 'those of log.csv'
+
+
+def test_the_unit_of_the_motion_is_that_of_the_position_where_no_speed_is_named(table):
+    speed, position = (
+        'speed: {column: speed, unit: rev/min}',
+        'position: {column: speed, unit: mm}',
+    )
+    found = found_with(table, column=(speed, position))
+    assert found.axes['x'].motion_unit == 'mm'
 
 
 def test_only_parameters_that_nobody_gave_are_nominal_or_have_no_temperature(

@@ -2,14 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """The picture of a page appears whole or not at all, and holds what the page does."""
 
+import dataclasses
 import struct
 
 from ballscrew_monitor.report import picture
 from ballscrew_monitor.report.log_page import maps_of
 from ballscrew_monitor.report.map_record import OperatingMap
+from ballscrew_monitor.report.page import component
+from matplotlib.colors import to_rgb
 import numpy as np
 import pytest
-from surrogate.plotting.style import DPI
+from surrogate.plotting.style import DPI, REGIMES_BY_METAL
+from surrogate.surface import REGIMES
 
 
 def small_map(*marks):
@@ -56,7 +60,8 @@ def test_panels_and_numbers_are_those_of_the_page(judged):
     case = judged.case([judged.columns(rcs=0.0)], [judged.event(7, 0.2, 0.4)])
     bars, strips = strips_of(judged, case)
     assert [text.get_text() for text in bars.texts] == ['7']
-    assert bars.texts[0].get_position()[0] == pytest.approx(0.4)
+    assert bars.texts[0].get_position() == pytest.approx((0.4, 1.45))
+    assert [tick.get_text() for tick in bars.get_yticklabels()] == ['Regime', 'Warning', 'Zone']
     expected = ['Screw', 'Axial', 'Oil', 'Efficiency,', 'Film', 'RCS:']
     assert [title.split()[0] for title in strips] == expected
     load = strips['Axial load, positive along the axis [N]']
@@ -68,7 +73,7 @@ def test_panels_and_numbers_are_those_of_the_page(judged):
 
 
 def test_colours_are_those_of_the_page(judged):
-    assert picture.COLOURS['outside'] == '#d55e00'
+    assert f'--outside: {picture.COLOURS["outside"]};' in component('page.css')
     assert {colour for colour, _, _ in picture.STYLES.values()} <= picture.COLOURS.keys()
 
 
@@ -86,3 +91,35 @@ def test_names_of_lines_are_on_the_map_and_apart(judged, temperature):
     assert not any(
         one.overlaps(other) for place, one in enumerate(boxes) for other in boxes[:place]
     )
+
+
+def test_a_map_of_feeds_has_them_below_and_the_speed_of_the_screw_above(judged):
+    """Each tick stands at the speed that it is."""
+    chart = dataclasses.replace(small_map(), feed=0.02)
+    (part,) = picture.figure_log(judged.log(judged.case([judged.columns()])), [chart]).subfigs
+    axes = part.subfigs[0].axes[0]
+    (above,) = axes.child_axes
+    assert axes.get_xlabel() == 'feed, either direction [m/min]'
+    assert above.get_xlabel() == 'screw speed [rev/min]'
+    for drawn, unit in ((axes, 0.02), (above, 1.0)):
+        texts = [float(text.get_text()) for text in drawn.get_xticklabels()]
+        assert texts == pytest.approx(unit * drawn.get_xticks())
+        assert len(texts) > 5
+
+
+def test_a_colour_has_one_meaning():
+    """Zone, regimes, quantities and curves share none; regimes are those of other pictures."""
+    names = 'optimal outside unjudged boundary mixed hydrodynamic heat rcs efficiency measured'
+    colours = [picture.COLOURS[name] for name in [*names.split(), 'zone', 'none', 'modelled']]
+    assert len(set(colours)) == len(colours)
+    regimes = [picture.COLOURS[regime.word] for regime in REGIMES]
+    assert regimes == list(REGIMES_BY_METAL)
+
+
+@pytest.mark.parametrize(
+    'darkest_first', ['outside optimal unjudged none', 'boundary mixed hydrodynamic']
+)
+def test_what_is_worse_is_darker_in_a_print_without_colours(darkest_first):
+    colours = [to_rgb(picture.COLOURS[name]) for name in darkest_first.split()]
+    grey = [0.3 * r + 0.59 * g + 0.11 * b for r, g, b in colours]
+    assert np.diff(grey).min() > 0.15

@@ -11,6 +11,7 @@ from ballscrew_monitor.report.page import script_json
 from ballscrew_monitor.report.time_series import coarse_bytes, rows_of, series_record
 import numpy as np
 import pytest
+from surrogate.units import RPM
 
 SHORT = 2 * BUCKETS
 
@@ -113,3 +114,22 @@ def test_stray_stamps_do_not_stretch_the_page(judged):
     stamps[7] = 1
     case = judged.case([dataclasses.replace(block, stamp=stamps)])
     assert series_record(case)['span'] == pytest.approx(0.99)
+
+
+def test_the_zone_comes_first_among_the_bars(judged):
+    bars = series_record(judged.case([judged.columns()]))['bars']
+    assert [bar['title'] for bar in bars] == ['Zone', 'Warning', 'Regime']
+
+
+def test_a_log_of_feeds_has_a_panel_of_feeds_beside_the_speed_of_the_screw(judged):
+    """A feed is the lead times the speed of the screw, in m/min and rev/min."""
+    block = judged.columns(count=3, speed=[0.0, 60 * RPM, -1500 * RPM])
+    case = judged.case([block], values=judged.values(**{'x.speed.unit': 'mm/s'}))
+    lead = case.surface.lead
+    panel = series_record(case)['panels'][0]
+    assert (panel['title'], panel['unit']) == ('Feed [m/min]', 'm/min')
+    assert panel['beside'] == {'unit': 'rev/min', 'factor': pytest.approx(1 / lead)}
+    rows = rows_of(case, block, ('speed',))
+    assert rows['speed'] == pytest.approx([0.0, 60 * lead, -1500 * lead])
+    turns = series_record(judged.case([block]))['panels'][0]
+    assert (turns['title'], turns['beside']) == ('Screw speed [rev/min]', None)

@@ -11,6 +11,7 @@ from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.report.verdict import REMEDIES, verdict_of, VerdictKind
 import pytest
+from surrogate.surface import onset_of_surface, ZoneLimits
 
 
 def totals(running, optimal, outside=0.0):
@@ -137,3 +138,48 @@ def test_gaps_hide_neither_that_an_axis_never_moved_nor_why_it_was_not_judged(ju
     ]
     verdict = verdict_of(judged.case(blocks, totals=totals(0.1, 0.0)))
     assert verdict.sentence.endswith('of its motion: no valid sample of the load.')
+
+
+FEED = {'x.speed.unit': 'mm/min'}
+
+
+def test_contact_is_that_of_the_surface_with_the_oil_as_warm_as_in_motion(judged):
+    """With the limits of the axis; the sentence has the degrees of the page."""
+    case = judged.case([judged.columns(temperature=308.15)])
+    limits = case.settings.limits
+    bounds = {name: getattr(limits, name) for name in ('rcs', 'efficiency', 'light_load')}
+    found = onset_of_surface(case.surface, case.survey.oil.mean, ZoneLimits(**bounds))
+    assert case.onset == found
+    assert verdict_of(case).contact == f'{found.sentence()}.'.replace(' degC', ' °C')
+    unknown = judged.case([judged.columns(temperature=math.nan)])
+    assert unknown.onset == onset_of_surface(case.surface, None, ZoneLimits(**bounds))
+
+
+def test_where_a_log_gives_a_feed_the_verdict_does_too(judged, says):
+    """Where its contact begins, and what to do: in m/min first."""
+    events = [judged.event(1, 0.1, 0.2)]
+    case = judged.case([judged.columns()], events, values=judged.values(**FEED))
+    verdict = verdict_of(case)
+    assert verdict.remedy == says('feed')
+    assert f'{case.onset.sentence(as_feed=True)}.'.replace(' degC', ' °C') == verdict.contact
+
+
+@pytest.mark.parametrize(
+    ('unit', 'motion_unit', 'feed'),
+    [
+        ('rad/s', '', False),
+        ('m/s', '', True),
+        ('mm', '', True),
+        ('rev', '', False),
+        ('rad/s', 'mm/min', True),
+        ('rad/s', 'mm', True),
+        ('mm/s', 'rev/min', False),
+    ],
+)
+def test_a_log_speaks_the_unit_of_its_column_else_that_of_its_topic(
+    judged, unit, motion_unit, feed
+):
+    values = judged.values(**{'x.speed.unit': unit})
+    case = judged.case([judged.columns()], values=values, known={'motion_unit': motion_unit})
+    assert case.speaks_feed is feed
+    assert ('m/min' in case.contact) is feed

@@ -3,12 +3,19 @@
 """An axis made from parameter values."""
 
 import math
+from pathlib import Path
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.state import LoadDerivation
 from ballscrew_monitor.settings import parameters
-from ballscrew_monitor.settings.axis import build_axes, build_axis, named_topics, settings_of
+from ballscrew_monitor.settings.axis import (
+    build_axes,
+    build_axis,
+    named_topics,
+    settings_of,
+    start_text,
+)
 import pytest
 from std_msgs.msg import Float64
 from surrogate.surface import shipped_surface
@@ -36,6 +43,13 @@ def test_defaults_make_an_axis_of_the_shipped_surface_and_what_is_plausible():
     assert axis.monitor.settings.plausible == expected
     stated = build(limits__plausible_speed=300.0, limits__plausible_load=5e3)
     assert stated.monitor.settings.plausible == {Source.SPEED: 300.0, Source.LOAD: 5e3}
+
+
+@pytest.mark.parametrize(('folder', 'key'), [(Path('kept'), 'start'), (None, 'start_unkept')])
+def test_one_sentence_says_all_of_an_axis_at_start(folder, key, says):
+    axis = build(speed__type='')
+    said = start_text(axis, '/mill/monitor', lambda topic: f'/mill/{topic}', folder)
+    assert said == says(key, surface=axis.surface.sha256[:16])
 
 
 @pytest.mark.parametrize('tier', ['closed_form', 'full'])

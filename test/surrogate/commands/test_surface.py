@@ -7,6 +7,9 @@ import json
 
 import numpy as np
 import pytest
+from surrogate.builder.tiers import screw_and_oil
+from surrogate.screw import closed_form
+from surrogate.screw.closed_form_record import formula_warnings
 from surrogate.surface import shipped_surface
 from surrogate.surface.file import ENSEMBLE_VERSION, read, write
 from surrogate.tasks.store import store_path, TaskStore
@@ -29,10 +32,12 @@ def test_build_info_check(run, tmp_path, capsys):
     path = tmp_path / 'map.npz'
     ranges = ('--load-range', -500, 500, '--temperature-range', 30, 50, '--speed-range', 1, 2000)
     assert run('build', '--tier', 'closed_form', '--out', path, *ranges) == 0
-    built = capsys.readouterr().out
+    built, warned = capsys.readouterr()
     assert run('info', path, '--json') == 0
     info = json.loads(capsys.readouterr().out)
     assert info['sha256'] in built
+    assert info['contact_onset']['sentence'] in built
+    assert [warned.count(text) for text in info['formula_warnings']] == [1, 1]
     assert info['load_range_N'] == [-500.0, 500.0]
     assert info['speed_range_rad_s'] == pytest.approx([0.10472, 209.44], rel=1e-4)
     assert run('info', path) == 0
@@ -104,6 +109,7 @@ def test_info_is_a_page_a_person_reads(run, capsys):
     assert run('info', 'closed_form') == 0
     text = capsys.readouterr().out
     for part in (
+        'Contact begins at 313 rev/min at 40 degC; this screw',
         'nominal, iso_vg_68; lead 10 mm, preload 990 N, Rq 0.12 um, film floor 3 nm',
         'raceway (new): Rq 0.12 um between 2.5 um and 0.25 mm',
         'tier         closed_form, format version 3',
@@ -114,6 +120,22 @@ def test_info_is_a_page_a_person_reads(run, capsys):
         'numpy        ',
     ):
         assert part in text
+
+
+def test_formulas_beyond_what_they_were_fitted_over_are_named_once(run, capsys):
+    """Of the whole surface; where contacts are solved no formula is left to be warned of."""
+    assert run('info', 'closed_form', '--json') == 0
+    told = json.loads(capsys.readouterr().out)['formula_warnings']
+    screw, oil = screw_and_oil(DATA.header['inputs'])
+    corner = closed_form.solve(screw, oil, DATA.header['settings']['speed_range'], 3960.0, 353.15)
+    names = [text.split()[0] for text in told]
+    assert names == [text.split()[0] for text in formula_warnings(corner)]
+    assert len(set(names)) == len(names) > 0
+    assert run('info', 'closed_form') == 0
+    page = capsys.readouterr().out
+    assert [page.count(f'  formulas     {text}') for text in told] == [1] * len(told)
+    assert run('info', 'full', '--json') == 0
+    assert json.loads(capsys.readouterr().out)['formula_warnings'] == []
 
 
 def test_info_tells_what_draws_leave_uncertain(run, tmp_path, capsys, says):

@@ -197,6 +197,13 @@ def unmasked_hole(data):
     return {'fields': {**data.fields, 'rcs': rcs}}
 
 
+def inputs_with(data, kind, **changes):
+    """Return the change of the header that changes a sheet."""
+    inputs = data.header['inputs']
+    sheet = {**inputs[kind], **changes}
+    return {'header': {**data.header, 'inputs': {**inputs, kind: sheet}}}
+
+
 @pytest.mark.parametrize(
     'change',
     [
@@ -208,6 +215,10 @@ def unmasked_hole(data):
         lambda data: {'header': {**data.header, 'tier': 'guess'}},
         lambda data: {'header': {k: v for k, v in data.header.items() if k != 'settings'}},
         lambda data: {'header': {**data.header, 'inputs': {}}},
+        lambda data: inputs_with(data, 'screw', speed_limit=0.0),
+        lambda data: inputs_with(data, 'screw', pitch_radius=None),
+        lambda data: inputs_with(data, 'screw', roughness={}),
+        lambda data: inputs_with(data, 'lubricant', kinematic_viscosity_40='68'),
         lambda data: {'header': {**data.header, 'load_breaks': [1.0]}},
         lambda data: settings_with(data, speed_range=[0.0, 100.0]),
         lambda data: settings_with(data, speed_range=[1.0, 1e9]),

@@ -55,6 +55,9 @@ def test_loads_are_nodes_and_places_between_with_corrections_and_drag():
     _, torques = scanned(pulled, 62.8, 313.15)
     assert (torques != before).any()
     np.testing.assert_allclose(torques, looked_up(pulled, 62.8, 313.15), rtol=1e-12)
+    _, beside = scanned(pulled, 62.8, 314.0)
+    np.testing.assert_allclose(beside, looked_up(pulled, 62.8, 314.0), rtol=1e-12)
+    assert (beside != scanned(surface, 62.8, 314.0)[1]).any()
     data = read(shipped_surface())
     header = dict(data.header)
     screw = header['inputs']['screw'] | {'parasitic_torque': 0.1, 'parasitic_torque_rate': 1e-3}

@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from surrogate.surface import shipped_surface, Surface
+from surrogate.surface import onset_of_surface, shipped_surface, Surface
 from surrogate.surface.file import ENSEMBLE_VERSION, read
 
 COMMAND = ('surface', 'plot')
@@ -51,16 +51,29 @@ def test_a_slice_is_the_lookup_and_its_zone_classes_are_the_limits(part):
 def test_panels_and_axes(coarse):
     figure = figures.figure_surface(SHIPPED, 313.15)
     assert titles(figure) == [
+        'Zone: RCS < 0.01, efficiency >= 0.85',
         'Efficiency, line: 0.85',
         'RCS, line: 0.01',
         'Film ratio Lambda, lines: 1 and 3',
         'Regime by Lambda',
-        'Zone: RCS < 0.01, efficiency >= 0.85',
         'Interpolation error, larger of both',
     ]
     assert figure.axes[4].get_xlabel() == 'speed [rev/min]'
     assert figure.axes[0].get_ylabel() == 'load against motion [N]'
     assert figure.axes[0].get_xscale() == 'log'
+    words = ' '.join(figure.get_suptitle().split())
+    assert onset_of_surface(SHIPPED, 313.15).sentence() in words
+
+
+def test_what_is_good_is_bright_in_every_map(coarse):
+    """The brightest colour is that of the highest efficiency and film, the least RCS and error."""
+    figure = figures.figure_surface(SHIPPED, 313.15)
+    maps = {axes.get_title(): axes.collections[0] for axes in figure.axes if axes.get_title()}
+    assert len(maps) == 6
+    for title, mesh in maps.items():
+        if not title.startswith(('Zone', 'Regime')):
+            low, high = (sum(mesh.cmap(end)[:3]) for end in (0.0, 1.0))
+            assert (low > high) == title.startswith(('RCS', 'Interpolation')), title
 
 
 def test_what_strips_differ_by_is_shown_when_it_is_known(coarse):
@@ -77,7 +90,7 @@ def test_what_strips_differ_by_is_shown_when_it_is_known(coarse):
 def test_a_surface_without_answers_is_drawn(coarse):
     hidden = Surface(replace(DATA, mask=np.ones_like(DATA.mask)))
     figure = figures.figure_surface(hidden, 313.15)
-    assert [text.get_text() for text in figure.axes[0].texts] == ['not known']
+    assert [text.get_text() for text in figure.axes[1].texts] == ['not known']
 
 
 def test_pictures_per_temperature(run, tmp_path, capsys):

@@ -1,0 +1,60 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Freeze frame of an axis: the last seconds before an event, thinned out, for the event log."""
+
+from collections import deque
+import math
+import operator
+from typing import Any
+
+from ballscrew_monitor.core.conversions import celsius, nanoseconds, seconds
+
+SPAN, STEP = nanoseconds(10.0), nanoseconds(0.1)
+"""What is kept before an event, and the time between two of its samples [ns]."""
+QUANTITIES = {
+    'speed_rad_s': 'speed',
+    'axial_load_N': 'axial_load',
+    'temperature_degC': 'temperature',
+    'efficiency': 'efficiency',
+    'rcs': 'rcs',
+    'motor_torque_Nm': 'motor_torque',
+}
+"""Quantities of a row of the judgement by their names with units, as an entry says them."""
+
+
+class FreezeFrame:
+    """Rows of the last SPAN, one a STEP, and each that begins or ends an event."""
+
+    def __init__(self) -> None:
+        """Begin with nothing judged."""
+        self._rows: deque[tuple[Any, ...]] = deque(maxlen=SPAN // STEP + 1)
+        self._read = operator.attrgetter('stamp', *QUANTITIES.values())
+
+    def take(self, row: Any) -> None:
+        """Take a row of the judgement, if there is one; a clock that is set back begins again."""
+        if row is None or row.tick:
+            return
+        past = row.stamp - self._rows[-1][0] if self._rows else STEP
+        if past < 0:
+            self._rows.clear()
+        if not 0 <= past < STEP or row.edge:
+            stamp, speed, load, temperature, *others = self._read(row)
+            self._rows.append((stamp, speed, load, celsius(temperature), *others))
+
+    def facts(self, stamp: int) -> dict[str, list[float]]:
+        """
+        Return the quantities of the SPAN before a stamp [ns] as arrays, NaN where not known.
+
+        `time_s` is that before the stamp; numbers have six digits.
+
+        """
+        rows = [row for row in self._rows if 0 <= stamp - row[0] <= SPAN]
+        made = {'time_s': [round(seconds(row[0] - stamp), 3) for row in rows]}
+        for at, name in enumerate(QUANTITIES, start=1):
+            made[name] = [_short(row[at]) for row in rows]
+        return made
+
+
+def _short(number: float) -> float:
+    """Return a number to six digits."""
+    return float(f'{number:.6g}') if math.isfinite(number) else math.nan

@@ -1,0 +1,154 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The application: files of the table, login, metrics, and the socket of a browser."""
+
+import asyncio
+from collections.abc import AsyncIterator, Awaitable, Callable
+import contextlib
+import time
+from urllib.parse import parse_qs
+
+from ballscrew_monitor.page import components
+from ballscrew_monitor.page.guard import COOKIE, Guard, MOST_TOKEN, Tokens
+from ballscrew_monitor.page.hub import Browser, Hub, PERIOD
+from starlette.applications import Starlette
+from starlette.requests import HTTPConnection, Request
+from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+LARGEST_FORM = 4 * MOST_TOKEN  # [byte]
+TRY_LATER, RUDE = 1013, 1008  # codes with which a socket is closed
+BUSY = 'Too many browsers look at this page.'
+NO_REQUESTS = 'Too much was sent that is no request.'
+Answering = Callable[[Browser, str], Awaitable[bool]]
+"""Answers the text of a browser; tells whether its socket may stay."""
+
+
+class PageApp:
+    """Everything that is served, for one hub."""
+
+    def __init__(
+        self,
+        hub: Hub,
+        answer: Answering,
+        tokens: Tokens,
+        metrics: Callable[[], Response],
+        *,
+        language: str = '',
+    ) -> None:
+        """
+        Serve a hub; `answer` is given what browsers say, `metrics` makes those.
+
+        The `language` is that of the reader if it is empty.
+
+        """
+        self._language = language
+        self._hub, self._answer, self._tokens, self._metrics = hub, answer, tokens, metrics
+
+    def guarded(self, host: str) -> Guard:
+        """Return the application behind its guard, as it is served at `host`."""
+        routes = [
+            Route('/', self._index),
+            Route('/components/{name:path}', self._component),
+            Route('/login', self._login, methods=['GET', 'POST']),
+            Route('/healthz', self._healthz),
+            Route('/favicon.ico', self._no_icon),
+            Route('/metrics', lambda request: self._metrics()),
+            WebSocketRoute('/live', self._live),
+        ]
+        return Guard(
+            Starlette(routes=routes, lifespan=self._ticking), host=host, tokens=self._tokens
+        )
+
+    @contextlib.asynccontextmanager
+    async def _ticking(self, app: Starlette) -> AsyncIterator[None]:
+        """Let the hub send what is new while the server runs."""
+        ticking = asyncio.create_task(self._tick())
+        yield
+        ticking.cancel()
+
+    async def _tick(self) -> None:
+        while True:
+            self._hub.tick(time.monotonic())
+            await asyncio.sleep(PERIOD)
+
+    async def _index(self, request: Request) -> Response:
+        return HTMLResponse(components.index(self._language_of(request)))
+
+    async def _component(self, request: Request) -> Response:
+        found = components.table().get(request.path_params['name'])
+        if found is None:
+            return PlainTextResponse('There is no such file.', status_code=404)
+        return Response(found[0], media_type=found[1])
+
+    async def _healthz(self, request: Request) -> Response:
+        return PlainTextResponse('ok')
+
+    async def _no_icon(self, request: Request) -> Response:
+        return Response(status_code=204)
+
+    def _language_of(self, asked: HTTPConnection) -> str:
+        accepted = asked.headers.get('accept-language', '')
+        return components.language_of(accepted, self._language)
+
+    async def _login(self, request: Request) -> Response:
+        if request.method != 'POST':
+            return HTMLResponse(components.login(), status_code=401)
+        accepted = await self._tokens.accept(await _token_in(request))
+        if accepted is None:
+            said = 'Too many wrong tokens at the same time, try again in some seconds.'
+            return HTMLResponse(components.login(said), status_code=429)
+        if not accepted:
+            return HTMLResponse(components.login('This is not the token.'), status_code=401)
+        answer = RedirectResponse('/', status_code=303)
+        answer.set_cookie(
+            COOKIE,
+            self._tokens.cookie,
+            httponly=True,
+            samesite='strict',
+            secure=request.url.scheme == 'https',
+        )
+        return answer
+
+    async def _live(self, socket: WebSocket) -> None:
+        await socket.accept()
+        browser = Browser(self._language_of(socket))
+        if not self._hub.join(browser, time.monotonic()):
+            await socket.close(TRY_LATER, BUSY)
+            return
+        sending = asyncio.create_task(_send(socket, browser))
+        try:
+            must_leave = await self._hear(socket, browser)
+        finally:
+            self._hub.leave(browser)
+            sending.cancel()
+            await asyncio.wait([sending])
+        if must_leave:
+            await socket.close(RUDE, NO_REQUESTS)
+
+    async def _hear(self, socket: WebSocket, browser: Browser) -> bool:
+        """Answer a browser until it leaves; tell whether it must."""
+        while True:
+            said = await socket.receive()
+            if said['type'] == 'websocket.disconnect':
+                return False
+            if not await self._answer(browser, said.get('text') or ''):
+                return True
+
+
+async def _send(socket: WebSocket, browser: Browser) -> None:
+    with contextlib.suppress(WebSocketDisconnect):
+        while True:
+            await socket.send_bytes(await browser.take())
+
+
+async def _token_in(request: Request) -> str:
+    """Return the token in a form, of which no more is read than that may take."""
+    content = b''
+    async for part in request.stream():
+        content += part
+        if len(content) > LARGEST_FORM:
+            return ''
+    fields = parse_qs(content.decode('utf-8', 'replace'))
+    return fields.get('token', [''])[0]

@@ -1,0 +1,185 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The newest of all that is known of one axis, and its last minutes, as frames."""
+
+from collections.abc import Iterable, Mapping, Sequence
+import math
+from typing import Any
+
+from ballscrew_monitor.messages import diagnostics
+from ballscrew_monitor.page.frames import frame
+from ballscrew_monitor.page.history import columns_of, History
+from ballscrew_monitor.page.records import advice_of, UNKNOWN
+from surrogate.surface import Surface
+from surrogate.units import MILLI
+
+MOST_EVENTS = 100  # the newest are kept
+NOTHING = {'level': UNKNOWN, 'zone': UNKNOWN, 'headline': 'nothing has been heard yet'}
+NO_LIMITS = dict.fromkeys(('efficiency_limit', 'rcs_limit', 'light_load_N', 'standstill_rpm'))
+INACTIVE, GONE, ACTIVE = 'inactive', 'gone', 'active'
+"""States of a node."""
+LUBRICATION, INPUTS, _ = diagnostics.PARTS
+
+
+class AxisView:
+    """One axis of one node."""
+
+    def __init__(self, node: str, axis: str) -> None:
+        """Begin without anything known."""
+        self.node, self.axis = node, axis
+        self.standing = ACTIVE
+        self.history = History()
+        self.state: Mapping[str, Any] = NOTHING
+        self.limits: Mapping[str, Any] = NO_LIMITS
+        self.about: Mapping[str, Any] = {}
+        self.no_map = 'the surface of this axis is not known yet'
+        self.health: Mapping[str, Any] | None = None
+        self.events: dict[int, Mapping[str, Any]] = {}
+        self.acknowledged: dict[int, str] = {}  # by whom, of events by their numbers
+        self.limit: Mapping[str, Any] | None = None
+        self.surface: Surface | None = None
+        self.map_frame: bytes | None = None
+        self.grades: list[str] = []  # oils of which there are surfaces
+        self.words: dict[str, str] = {}  # of the diagnostics by their parts
+        self.is_changed = False  # what `hello` says
+        self._heard = math.nan  # [s]
+        self._sent = 0  # rows
+        self._sent_at = -math.inf  # [s]
+        self._health_is_news = self._events_are_news = False
+
+    @property
+    def name(self) -> str:
+        """Return what tells this axis from all others."""
+        return f'{self.node}/{self.axis}'
+
+    def hear(
+        self,
+        row: Sequence[float],
+        record: Mapping[str, Any],
+        limits: Mapping[str, Any],
+        now: float,
+    ) -> None:
+        """Take a state and its limits, heard at `now` [s] of a steady clock."""
+        self.history.take(row)
+        self.state, self._heard = record, now
+        self.is_changed |= limits != self.limits
+        self.limits = limits
+
+    def know(self, about: Mapping[str, Any], surface: Surface | None, no_map: str) -> None:
+        """Take what the axis is, and its surface, or why that is not here."""
+        self.about, self.surface, self.no_map = about, surface, no_map
+        self.map_frame, self.is_changed = None, True
+
+    def hear_words(self, part: str, words: str) -> None:
+        """Take what the diagnostics say of a part of the axis."""
+        self.words[part] = words
+        if part == LUBRICATION and self.standing != GONE:
+            self.stand(INACTIVE if words == diagnostics.INACTIVE else ACTIVE)
+
+    def stand(self, standing: str) -> None:
+        """Take the state of the node."""
+        self.is_changed |= standing != self.standing
+        self.standing = standing
+
+    def hear_health(self, record: Mapping[str, Any]) -> None:
+        """Take an assessment."""
+        self.health, self._health_is_news = record, True
+
+    def hear_event(self, record: Mapping[str, Any]) -> None:
+        """Take an event as it is now; number 0 says that there has been none."""
+        if record['id']:
+            self.events[record['id']] = record
+            for old in sorted(self.events)[:-MOST_EVENTS]:
+                del self.events[old]
+                self.acknowledged.pop(old, None)
+            self._events_are_news = True
+
+    def show_events(self, records: Iterable[Mapping[str, Any]]) -> None:
+        """Take all events as they are now, in place of those before."""
+        events = {record['id']: record for record in records}
+        self._events_are_news |= events != self.events
+        self.events = events
+
+    def begin_again(self) -> None:
+        """Forget the rows, as time has jumped."""
+        self.history, self._sent, self.is_changed = History(), 0, True
+
+    @property
+    def active_events(self) -> list[int]:
+        """Return the numbers of the events that are active."""
+        return [number for number, event in self.events.items() if event['active']]
+
+    def acknowledge(self, numbers: Iterable[int], name: str) -> None:
+        """Remember who has acknowledged some events."""
+        self.acknowledged |= dict.fromkeys(numbers, name)
+        self._events_are_news = True
+
+    def age(self, now: float) -> float:
+        """Return the time since the last state [s], NaN before the first."""
+        return now - self._heard
+
+    @property
+    def lead(self) -> float:
+        """Return the lead of the screw [m], NaN without its surface."""
+        return math.nan if self.surface is None else self.surface.lead
+
+    def hello(self) -> dict[str, Any]:
+        """Return what the axis is."""
+        return {
+            'id': self.name,
+            'node': self.node,
+            'axis': self.axis,
+            'lead_mm': MILLI * self.lead,
+            'no_map': self.no_map,
+            'grades': self.grades,
+            **self.about,
+            **self.limits,
+        }
+
+    def news(self, now: float, period: float) -> list[bytes]:
+        """Return frames with what was not sent yet; a state comes after `period` [s] anyway."""
+        made = []
+        if self._events_are_news:
+            made.append(self.events_frame())
+            self._events_are_news = False
+        due = self.history.count > self._sent or self._health_is_news or made
+        if due or now - self._sent_at >= period:
+            made.append(self._state_frame(now, self._sent, health=self._health_is_news))
+            self._sent, self._sent_at, self._health_is_news = self.history.count, now, False
+        return made
+
+    def greeting(self, now: float) -> list[bytes]:
+        """Return frames with all that was sent so far."""
+        rows = columns_of(self.history.since(0))
+        return [
+            frame('history', {'axis': self.name}, rows),
+            *([] if self.map_frame is None else [self.map_frame]),
+            self.events_frame(),
+            self._state_frame(now, self.history.count, health=True),
+        ]
+
+    def events_frame(self) -> bytes:
+        """Return the events, the newest first."""
+        events = [self._told(self.events[number]) for number in sorted(self.events, reverse=True)]
+        return frame('events', {'axis': self.name, 'events': events})
+
+    def _told(self, event: Mapping[str, Any]) -> dict[str, Any]:
+        by = self.acknowledged.get(event['id'], '')
+        told = {'advice': advice_of(event, self.lead), 'since_s': event['duration_s']}
+        return {**event, **told, 'acknowledged': bool(by), 'acknowledged_by': by}
+
+    def _state_frame(self, now: float, since: int, *, health: bool) -> bytes:
+        told = self._told(self.events[max(self.events)]) if self.events else None
+        record = {
+            'axis': self.name,
+            **self.state,
+            'age_s': self.age(now),
+            'advice': told['advice'] if told is not None and told['active'] else '',
+            'event': told,
+            'limit': self.limit,
+            'standing': self.standing,
+            'inputs_words': self.words.get(INPUTS, ''),
+        }
+        if health:
+            record['health'] = self.health
+        return frame('state', record, columns_of(self.history.since(since)))

@@ -1,0 +1,107 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The files of the page, by one table: nothing else is served, and no path is made of a request.
+
+Components of `report.html` serve both pages.
+
+"""
+
+import functools
+from importlib import resources
+
+from ballscrew_monitor.report.page import component, element, UPLOT_CSS, UPLOT_JS
+from surrogate.limits import read_json
+
+ROOM = resources.files('ballscrew_monitor.page')
+SHARED = {
+    **{path.rpartition('/')[2]: path for path in (UPLOT_CSS, UPLOT_JS)},
+    **{
+        name: name
+        for name in ('page.css', 'format.js', 'ticks.js', 'frame.js', 'map.js', 'panel.js')
+    },
+}
+"""Names of the components of `report.html`, and where they lie there."""
+SHEETS = ('uPlot.min.css', 'page.css', 'live.css')
+SCRIPTS = (
+    *('uPlot.iife.min.js', 'format.js', 'ticks.js', 'frame.js', 'map.js', 'panel.js'),
+    *('words.js', 'controls.js', 'quantities.js', 'axis.js', 'painter.js', 'live.js'),
+    *('first_screen.js', 'trail.js', 'live_map.js', 'map_legend.js', 'strip_panels.js'),
+    *('strips.js', 'what_if.js', 'events.js', 'health.js', 'player.js', 'live_page.js'),
+)
+"""Scripts in the order in which they build on each other."""
+TYPES = {'js': 'text/javascript; charset=utf-8', 'css': 'text/css; charset=utf-8'}
+ENGLISH, LANGUAGES = 'en', ('en.json', 'de.json')
+
+
+@functools.cache
+def table() -> dict[str, tuple[bytes, str]]:
+    """Return content and type of each file by its name."""
+    found = {}
+    for name in (*SHEETS, *SCRIPTS):
+        file = ROOM.joinpath('components', name)
+        if name in SHARED or file.is_file():
+            text = component(SHARED[name]) if name in SHARED else file.read_text(encoding='utf-8')
+            found[name] = text.encode(), TYPES[name.rpartition('.')[2]]
+    return found
+
+
+@functools.cache
+def languages() -> dict[str, dict[str, str]]:
+    """Return the words of each language by its name, such as `en`."""
+    texts = {
+        name.removesuffix('.json'): ROOM.joinpath('languages', name).read_text(encoding='utf-8')
+        for name in LANGUAGES
+        if ROOM.joinpath('languages', name).is_file()
+    }
+    return {ENGLISH: {}} | {name: read_json(text) for name, text in texts.items()}
+
+
+def language_of(accepted: str, wanted: str = '') -> str:
+    """Return the language that is `wanted`, else the first that a reader accepts, or English."""
+    first = (
+        wanted or accepted.partition(',')[0].partition(';')[0].partition('-')[0].strip().lower()
+    )
+    return first if first in languages() else ENGLISH
+
+
+def _document(language: str, *body: str) -> str:
+    sheets = (
+        element('link', rel='stylesheet', href=f'/components/{name}')
+        for name in SHEETS
+        if name in table()
+    )
+    head = element(
+        'head',
+        element('meta', charset='utf-8'),
+        element('meta', name_='viewport', content='width=device-width, initial-scale=1'),
+        element('title', 'Ball screws'),
+        *sheets,
+    )
+    return f'<!DOCTYPE html>\n{element("html", head, element("body", *body), lang=language)}\n'
+
+
+@functools.cache
+def index(language: str = ENGLISH) -> str:
+    """Return the page; all that changes comes over its socket."""
+    said = languages()[language].get('link_first', 'Waiting for the server.')
+    scripts = (
+        element('script', src=f'/components/{name}', defer='')
+        for name in SCRIPTS
+        if name in table()
+    )
+    main = element('main', element('p', said, class_='link', role='status'), id='page')
+    return _document(language, main, *scripts)
+
+
+def login(said: str = '') -> str:
+    """Return the form that asks for the token, and what became of the last one."""
+    field = element('input', type='password', name_='token', autocomplete='current-password')
+    form = element(
+        'form',
+        element('label', 'Token ', field),
+        element('button', 'Open', type='submit'),
+        method='post',
+        action='/login',
+    )
+    return _document(ENGLISH, element('main', form, element('p', said)))

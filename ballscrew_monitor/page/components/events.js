@@ -1,0 +1,117 @@
+// Copyright 2026 ballscrew_monitor contributors
+// SPDX-License-Identifier: Apache-2.0
+// Warnings of an axis, newest first, to be acknowledged and shelved by a name; sums of the motion.
+
+'use strict';
+
+const SHOWN = 50; // warnings that are listed
+const SHELF = [15, 60, 480]; // times [min] for which a warning can be shelved
+
+class Events {
+  /** Build the list of an axis; `show` is called with begin and end [s] of a warning. */
+  constructor(axis, live, acting, show) {
+    Object.assign(this, { axis, live, acting, show });
+    this.element = Format.element('section', 'events');
+    this.list = Format.element('div', 'wide');
+    this.message = Format.element('p', 'message');
+    this.message.setAttribute('role', 'status');
+    this.totals = Format.element('dl', 'tiles');
+    this.element.append(
+      Words.element('h2', '', 'events_title'), this.form(), this.message, this.list,
+      Words.element('h2', '', 'totals_title'), this.totals,
+    );
+  }
+
+  /** Return the form by which somebody acts under a name. */
+  form() {
+    const bar = Format.element('div', 'controls');
+    this.name = Controls.field(60);
+    this.reason = Controls.field(200);
+    const times = SHELF.map((minutes) => [String(minutes), Words.say('shelve_minutes', { minutes })]);
+    const shelf = Controls.select('shelve_time', times, () => {});
+    this.minutes = shelf.querySelector('select');
+    const acknowledge = Controls.button('acknowledge', () => this.act({ do: 'acknowledge' }));
+    const shelve = Controls.button('shelve', () => this.act({
+      do: 'shelve', minutes: Number(this.minutes.value), reason: this.reason.value,
+    }));
+    bar.append(
+      Controls.labelled('act_name', this.name), acknowledge,
+      Controls.labelled('act_reason', this.reason), shelf, shelve,
+    );
+    for (const control of [this.name, this.reason, this.minutes, acknowledge, shelve]) {
+      control.disabled = !this.acting;
+    }
+    if (!this.acting) {
+      this.message.textContent = Words.say('acting_off');
+    }
+    return bar;
+  }
+
+  /** Ask for an act under a name; without name or reason nothing is asked for. */
+  async act(request) {
+    const missing = !this.name.value.trim() ? 'act_needs_name'
+      : request.reason?.trim() === '' && 'act_needs_reason';
+    if (missing) {
+      this.message.textContent = Words.say(missing);
+      return;
+    }
+    const answer = await this.live.ask({ axis: this.axis.facts.id, name: this.name.value.trim(), ...request });
+    this.message.textContent = answer.message || Words.say(answer.ok ? 'act_done' : 'act_refused');
+  }
+
+  draw() {
+    const { events, totals } = this.axis;
+    if (events !== this.shown) {
+      this.shown = events;
+      this.list.replaceChildren(events.length ? this.table(events) : Words.element('p', 'muted', 'events_none'));
+    }
+    const text = (name, value) => Quantities.text(name, value, this.axis.facts);
+    this.totals.replaceChildren(...(totals ? [
+      Events.tile('hours', text('hours', totals.running_time)),
+      Events.tile('outside', text('share', totals.outside_time / totals.running_time)),
+      Events.tile('mixed', text('share', (totals.mixed_time + totals.boundary_time) / totals.running_time)),
+      Events.tile('energy', text('energy', totals.energy_lost)),
+      Events.tile('revolutions', text('revolutions', totals.revolutions)),
+    ] : []));
+  }
+
+  static tile(key, text) {
+    const tile = Format.element('div', 'tile');
+    tile.append(Format.element('dd', '', text), Words.element('dt', '', `total_${key}`));
+    return tile;
+  }
+
+  table(events) {
+    const table = Format.element('table');
+    const head = table.createTHead().insertRow();
+    for (const key of ['begin', 'duration', 'worst', 'advice', 'who']) {
+      const cell = Words.element('th', '', `event_${key}`);
+      cell.scope = 'col';
+      head.append(cell);
+    }
+    table.createTBody().append(...events.slice(0, SHOWN).map((event) => this.row(event)));
+    return table;
+  }
+
+  row(event) {
+    const row = Format.element('tr', event.active ? 'bad' : '');
+    const when = Format.element('button', 'plain', Strips.clock(event.begin));
+    when.type = 'button';
+    when.title = Words.say('event_show');
+    when.addEventListener('click', () => this.show(event.begin - 5, event.begin + event.duration_s + 5));
+    const first = Format.element('td', 'short');
+    first.append(when);
+    const length = Format.time(event.duration_s) + (event.active ? ` ${Words.say('event_active')}` : '');
+    const who = event.acknowledged_by || (event.shelved ? Words.say('event_shelved') : '');
+    row.append(first, ...[length, this.worst(event), event.advice, who]
+      .map((text) => Format.element('td', '', text)));
+    return row;
+  }
+
+  /** Say the worst value of a warning beside the limit that it broke. */
+  worst({ quantity, worst, limit }) {
+    const name = quantity.toLowerCase() === 'rcs' ? 'rcs' : 'efficiency';
+    const [value, bound] = [worst, limit].map((one) => Quantities.text(name, one, this.axis.facts));
+    return Words.say('event_worst_is', { quantity: Words.say(`short_${name}`), value, bound });
+  }
+}

@@ -1,0 +1,195 @@
+// Copyright 2026 ballscrew_monitor contributors
+// SPDX-License-Identifier: Apache-2.0
+// What is read from two metres away: zone, condition, reason, advice, and how old it all is.
+
+'use strict';
+
+const SIGNS = { ok: '✓', warn: '▲', unknown: '?', normal: '✓', worse: '▲' };
+
+class FirstScreen {
+  /** Build the screen of an axis. */
+  constructor(axis) {
+    this.axis = axis;
+    this.element = Format.element('section', 'first');
+    this.element.setAttribute('aria-label', Words.say('first_title', { axis: axis.facts.axis }));
+    this.parts = {};
+    this.element.append(this.signs(), this.told(), this.numbers(), this.inputs());
+  }
+
+  part(name, tag, kind = name) {
+    this.parts[name] = Format.element(tag, kind);
+    return this.parts[name];
+  }
+
+  /** Return the two signs: the zone, which changes within seconds, and the condition, in weeks. */
+  signs() {
+    const holder = Format.element('div', 'signs');
+    for (const name of ['level', 'condition']) {
+      const sign = this.part(`${name}_sign`, 'div', `sign ${name}`);
+      const glyph = this.part(`${name}_glyph`, 'span', 'glyph');
+      glyph.setAttribute('aria-hidden', 'true');
+      const word = this.part(name, 'span', 'word');
+      word.setAttribute('role', name === 'level' ? 'alert' : 'status');
+      sign.append(glyph, word);
+      holder.append(sign);
+    }
+    return holder;
+  }
+
+  told() {
+    const holder = Format.element('div', 'told');
+    holder.append(...['reason', 'advice', 'change', 'shelved'].map((name) => this.part(name, 'p')));
+    return holder;
+  }
+
+  numbers() {
+    const list = Format.element('dl', 'numbers');
+    for (const name of FirstScreen.NUMBERS) {
+      const pair = Format.element('div');
+      const more = this.part(`${name}_more`, 'dd', 'more');
+      pair.append(Words.element('dt', '', `name_${name}`), this.part(name, 'dd', 'big'), more);
+      list.append(pair);
+    }
+    return list;
+  }
+
+  inputs() {
+    const holder = Format.element('div', 'health-of-inputs');
+    holder.append(this.part('age', 'p'), this.part('inputs', 'ul'));
+    return holder;
+  }
+
+  /** Write a text where it differs: what stays is not read out again. */
+  write(name, text) {
+    if (this.parts[name].textContent !== text) {
+      this.parts[name].textContent = text;
+    }
+  }
+
+  draw() {
+    const { axis } = this;
+    this.sign('level', axis.level, Words.say(`level_${axis.level}`));
+    const condition = axis.health?.condition ?? 'unknown';
+    this.sign('condition', condition, Words.say(`condition_${condition}`));
+    this.write('reason', this.reason());
+    const advice = axis.fresh && axis.state.advice;
+    this.write('advice', advice ? Words.say('what_to_do', { advice }) : '');
+    this.write('change', condition === 'worse' ? axis.health.verdict : '');
+    this.write('shelved', FirstScreen.shelved(axis));
+    this.drawNumbers();
+    this.drawInputs();
+  }
+
+  sign(name, state, word) {
+    this.parts[`${name}_sign`].dataset.state = state;
+    this.write(`${name}_glyph`, SIGNS[state]);
+    this.write(name, word);
+  }
+
+  /** Return the reason of the level: of old data, that they are old. */
+  reason() {
+    const { axis } = this;
+    if (axis.gone) {
+      return axis.gone;
+    }
+    if (!axis.state) {
+      return Words.say('waits_for_data');
+    }
+    return axis.fresh ? axis.state.headline : Words.say('data_old', { age: Format.time(axis.age) });
+  }
+
+  static shelved({ state }) {
+    const minutes = Math.ceil((state?.shelved?.left_s ?? 0) / 60);
+    return state?.shelved ? Words.say('shelved_for', { minutes, reason: state.shelved.reason }) : '';
+  }
+
+  drawNumbers() {
+    const { axis: { rows, facts, state } } = this;
+    for (const name of FirstScreen.NUMBERS.filter((one) => one !== 'limit')) {
+      this.write(name, Quantities.text(name, rows.last(name), facts));
+    }
+    this.write('speed_rpm_more', Quantities.text('turns_rpm', rows.last('speed_rpm'), facts));
+    this.write('load_N_more', FirstScreen.sense(rows.last('speed_rpm'), rows.last('load_N')));
+    this.write('efficiency_more', Words.say('limit_at', {
+      limit: Quantities.text('efficiency', facts.efficiency_limit, facts),
+    }));
+    const { speed_rpm: limit, margin } = state?.limit ?? {};
+    this.write('limit', FirstScreen.distance(margin));
+    this.write('limit_more', Number.isFinite(limit) ? Words.say('limit_speed', {
+      feed: Quantities.text('speed_rpm', limit, facts),
+      turns: Quantities.text('turns_rpm', limit, facts),
+    }) : '');
+  }
+
+  /** Say whether the load opposes the motion. */
+  static sense(speed, load) {
+    const opposing = Quantities.folded(speed, load).load;
+    return opposing ? Words.say(opposing > 0 ? 'load_opposes' : 'load_assists') : '';
+  }
+
+  /** Say how far the speed is from the limit of contact. */
+  static distance(margin) {
+    if (!Number.isFinite(margin)) {
+      return Format.number(null);
+    }
+    if (margin > 1) {
+      return Words.say('limit_times', { times: Format.number(1 + margin, 2) });
+    }
+    const percent = Format.number(100 * Math.abs(margin), 2);
+    return Words.say(margin < 0 ? 'limit_below' : 'limit_above', { percent });
+  }
+
+  drawInputs() {
+    const { axis } = this;
+    const age = Format.time(axis.age, axis.age < 10 ? 0.1 : 1);
+    this.write('age', axis.state ? Words.say('data_age', { age }) : '');
+    const inputs = axis.state?.inputs ?? [];
+    const told = JSON.stringify(inputs.map(({ name, state, words }) => [name, state, words]));
+    if (told !== this.shown) {
+      this.shown = told;
+      this.parts.inputs.replaceChildren(...inputs.map(FirstScreen.input));
+    }
+  }
+
+  static input({ name, state, words }) {
+    const item = Format.element('li', 'input');
+    item.dataset.state = state;
+    item.append(Format.element('b', '', Words.named('input', name)), ' ', Words.named('state', state));
+    if (words) {
+      item.append(Format.element('span', 'words', words));
+    }
+    return item;
+  }
+}
+
+FirstScreen.NUMBERS = ['speed_rpm', 'load_N', 'temperature_degC', 'efficiency', 'limit'];
+
+class Cards {
+  /** Build a card for each axis; `choose` is called with the id of the one that is pressed. */
+  constructor(axes, choose) {
+    this.axes = axes;
+    this.element = Format.element('nav', 'cards');
+    this.element.setAttribute('aria-label', Words.say('axes'));
+    this.element.hidden = axes.length < 2;
+    this.cards = axes.map((axis) => {
+      const card = Format.element('button', 'card');
+      card.type = 'button';
+      card.append(...['glyph', 'name', 'word', 'speed'].map((kind) => Format.element('span', kind)));
+      card.children[0].setAttribute('aria-hidden', 'true');
+      card.addEventListener('click', () => choose(axis.facts.id));
+      return card;
+    });
+    this.element.append(...this.cards);
+  }
+
+  draw(chosen) {
+    this.axes.forEach((axis, i) => {
+      const card = this.cards[i];
+      card.dataset.state = axis.level;
+      card.setAttribute('aria-pressed', String(axis.facts.id === chosen));
+      const speed = Quantities.text('speed_rpm', axis.rows.last('speed_rpm'), axis.facts);
+      const texts = [SIGNS[axis.level], axis.facts.axis, Words.say(`level_${axis.level}`), speed];
+      texts.forEach((text, at) => { card.children[at].textContent = text; });
+    });
+  }
+}

@@ -1,0 +1,224 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The surface of an axis as a map, at a point, and at other feeds of the motion of the last minutes.
+
+The frame is that of the map of `report.html`: the amount of the speed, and the load that opposes
+the motion.
+
+"""
+
+from collections.abc import Mapping, Sequence
+import dataclasses
+import math
+from typing import Any
+
+from ballscrew_monitor.core.conversions import celsius, Direction, kelvin, opposing_load
+from ballscrew_monitor.core.estimate import estimate, MachinePoint
+from ballscrew_monitor.core.judgement import Code, Limits, violation
+from ballscrew_monitor.page.history import COLUMNS
+from ballscrew_monitor.page.records import UNKNOWN, WORDS_OF_REGIME
+from ballscrew_monitor.report.map_record import map_line, map_lines, MapLine, NO_NUMBER, zone_cells
+from ballscrew_monitor.report.operating_field import (
+    Field,
+    is_optimal,
+    judged_speeds,
+    loads_around,
+    NAMES,
+    sample,
+)
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.files import InputError
+from surrogate.surface import look_up_many, Surface
+from surrogate.units import RPM
+
+Array = NDArray[np.float64]
+BANDS = ('band_unknown', 'band_numerical')
+"""Kinds of the lines of the two bands of a surface, each with a low and a high edge."""
+LONGEST_STEP = 1.0  # [s] between two rows; more is a gap
+MOST_POINTS = 2000  # of the path of a ghost
+SPEEDS = 120  # at which the limit of RCS is looked for
+Answer = tuple[dict[str, Any], dict[str, Any]]
+
+
+def limits_of(record: Mapping[str, Any]) -> Limits:
+    """Return the limits in a record of an axis, as far as the zone asks for them."""
+    return Limits(
+        rcs=record['rcs_limit'],
+        efficiency=record['efficiency_limit'],
+        light_load=record['light_load_N'],
+        standstill_speed=record['standstill_rpm'] * RPM,
+        raise_delay=0,
+        clear_delay=0,
+        hysteresis=0.0,
+    )
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Motion:
+    """Rows in motion in the frame of the map: speed [rad/s], load [N], steps to the next [s]."""
+
+    speed: Array
+    load: Array
+    steps: Array
+
+    @classmethod
+    def of(cls, rows: Array, limits: Limits) -> 'Motion':
+        """Return the motion in rows of a history."""
+        stamp, speed, load = (rows[:, COLUMNS.index(name)] for name in COLUMNS[:3])
+        steps = np.diff(stamp, append=stamp[-1:])
+        known = np.isfinite(speed + load) & (np.abs(speed) * RPM >= limits.standstill_speed)
+        opposing = np.where(speed > 0.0, -load, load)
+        steps = np.where(steps <= LONGEST_STEP, steps, 0.0)
+        return cls(
+            speed=np.abs(speed[known]) * RPM, load=opposing[known] + 0.0, steps=steps[known]
+        )
+
+    def load_span(self) -> tuple[float, float]:
+        """Return the least and the largest load [N], NaN without any."""
+        return (
+            (float(self.load.min()), float(self.load.max())) if self.load.size else (math.nan,) * 2
+        )
+
+
+def map_of(
+    surface: Surface, limits: Limits, temperature: float, motion: Motion, quantity: str
+) -> Answer:
+    """Return the map of a quantity at a temperature [degC], and the time of a motion in it."""
+    if quantity not in NAMES:
+        raise InputError(f'quantity is {quantity!r}, allowed is {", ".join(NAMES)}')
+    speeds = judged_speeds(surface, limits.standstill_speed)
+    loads = loads_around(surface, *motion.load_span(), light_load=limits.light_load)
+    field = sample(surface, temperature, speeds=speeds, loads=loads)
+    zone = zone_cells(field, limits)
+    lines = [*map_lines(field, limits, temperature), *_bands(field, surface, limits)]
+    lines = [line for line in lines if line.kind != 'rcs_band']
+    record = {
+        'quantity': quantity,
+        'temperature_degC': temperature,
+        'speed': {'low': speeds[0] / RPM, 'high': speeds[1] / RPM, 'scale': 'log'},
+        'load': {'low': loads[0], 'high': loads[1]},
+        'columns': zone.shape[1],
+        'rows': zone.shape[0],
+        'light_load_N': limits.light_load,
+        'lines': [
+            {'kind': one.kind, 'label': one.label, 'height': one.height, 'array': f'line{at}'}
+            for at, one in enumerate(lines)
+        ],
+    }
+    edges = field.load, field.speed * RPM
+    arrays = {
+        'cells': getattr(field.middles(), quantity),
+        'zone': np.where(zone == NO_NUMBER, math.nan, zone),
+        'dwell': np.histogram2d(motion.load, motion.speed, edges, weights=motion.steps)[0],
+    }
+    return record, arrays | {f'line{at}': one.points for at, one in enumerate(lines)}
+
+
+def _bands(field: Field, surface: Surface, limits: Limits) -> list[MapLine]:
+    """Return low and high edge of the limit of RCS in each band that the surface knows."""
+    return [
+        map_line(field, field.rcs, limits.rcs, kind, '', factor=factor)
+        for kind, band in zip(BANDS, (surface.limit_band, surface.numerical_band), strict=True)
+        for factor in band
+        if math.isfinite(factor)
+    ]
+
+
+def limit_speed(surface: Surface, limits: Limits, load: float, temperature: float) -> float:
+    """
+    Return the fastest speed [rad/s] at which RCS is at its limit; NaN where there is none.
+
+    At an opposing load [N] and a temperature [degC].
+
+    """
+    speeds = np.geomspace(*judged_speeds(surface, limits.standstill_speed), SPEEDS)
+    rcs = look_up_many(surface, speeds, *_everywhere(speeds, load, kelvin(temperature)))['rcs']
+    above = np.flatnonzero(rcs >= limits.rcs)
+    if not above.size or above[-1] == SPEEDS - 1 or math.isnan(rcs[above[-1] + 1]):
+        return math.nan
+    at = above[-1]
+    part = (rcs[at] - limits.rcs) / (rcs[at] - rcs[at + 1])
+    return float(speeds[at] * (speeds[at + 1] / speeds[at]) ** part)
+
+
+def _everywhere(like: Array, *values: float) -> tuple[Array, ...]:
+    return tuple(np.full(like.size, value) for value in values)
+
+
+def point_of(
+    surface: Surface, limits: Limits, speed: float, load: float, temperature: float
+) -> dict[str, Any]:
+    """Return what the surface says at a speed [rad/s], opposing load [N], temperature [degC]."""
+    point = MachinePoint(
+        speed=abs(speed),
+        axial_load=opposing_load(load, Direction.POSITIVE),
+        temperature=kelvin(temperature),
+        direction=Direction.POSITIVE if speed else Direction.UNKNOWN,
+    )
+    found = estimate(point, surface, rcs_limit=limits.rcs)
+    zone, words = judged(found.rcs, found.efficiency, load, limits)
+    return {
+        'speed_rpm': abs(speed) / RPM,
+        'load_N': load,
+        'temperature_degC': temperature,
+        'efficiency': found.efficiency,
+        'rcs': found.rcs,
+        'film_ratio': found.film_ratio,
+        'torque_N_m': found.machine_torque,
+        'regime': WORDS_OF_REGIME.get(found.regime, UNKNOWN),
+        'zone': zone,
+        'words': found.reason or words,
+    }
+
+
+def judged(rcs: float, efficiency: float, load: float, limits: Limits) -> tuple[str, str]:
+    """Return the zone of numbers at an opposing load [N], and what is wrong with them."""
+    if math.isnan(rcs):
+        return UNKNOWN, ''
+    if rcs >= limits.rcs:
+        return 'outside', violation(Code.RCS_HIGH, rcs, limits.rcs).text
+    if abs(load) >= limits.light_load and not efficiency >= limits.efficiency:
+        return 'outside', violation(Code.EFFICIENCY_LOW, efficiency, limits.efficiency).text
+    return 'optimal', 'optimal'
+
+
+def ghosts_of(
+    surface: Surface, limits: Limits, motion: Motion, temperature: float, factors: Sequence[float]
+) -> Answer:
+    """
+    Return what a motion comes to at its feed times factors [-], the loads unchanged.
+
+    Share of the judged time outside the zone [-], energy lost [J], and time [s] of each.
+
+    """
+    ghosts, arrays = [], {}
+    for at, factor in enumerate(factors):
+        speed = factor * motion.speed
+        steps = motion.steps / factor
+        (heat,) = _everywhere(speed, kelvin(temperature))
+        found = look_up_many(surface, speed, motion.load, heat)
+        known = np.isfinite(found['rcs'])
+        outside = known & ~is_optimal(motion.load, found['rcs'], found['efficiency'], limits)
+        in_all = steps[known].sum()
+        ghosts.append(
+            {
+                'factor': factor,
+                'outside_share': float(steps[outside].sum() / in_all) if in_all else math.nan,
+                'lost_J': float(np.nansum(found['friction_torque'] * speed * steps)),
+                'duration_s': float(steps.sum()),
+                'unknown_share': float(1.0 - in_all / steps.sum()) if steps.sum() else math.nan,
+                'array': f'path{at}',
+            }
+        )
+        every = max(1, math.ceil(speed.size / MOST_POINTS))
+        arrays[f'path{at}'] = np.column_stack([speed / RPM, motion.load])[::every]
+    return {'ghosts': ghosts}, arrays
+
+
+def oil_temperature(rows: Array, surface: Surface) -> float:
+    """Return the last known temperature of rows [degC], else that of the datasheet of the oil."""
+    warmth = rows[:, COLUMNS.index('temperature_degC')]
+    known = warmth[np.isfinite(warmth)]
+    return float(known[-1]) if known.size else celsius(surface.reference_temperature)

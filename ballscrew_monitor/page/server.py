@@ -1,0 +1,92 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The server of the page: where it listens, and how much it takes."""
+
+from collections.abc import Iterator
+import contextlib
+import dataclasses
+import os
+from pathlib import Path
+import socket
+from typing import Any
+
+from surrogate.files import InputError
+from surrogate.surface import Surface
+import uvicorn
+
+LARGEST_MESSAGE = 65_536  # [byte] from a browser; beyond, its socket is closed unread
+MOST_CONNECTIONS = 300
+LAST_WORDS = 2  # [s] for connections to end
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class PageOptions:
+    """
+    Where the page is served, to whom, and what of: a node, all of them for an empty name.
+
+    The language is that of the reader if it is empty; `oils` are surfaces of other oils.
+
+    """
+
+    host: str
+    port: int
+    node: str = ''
+    token: str | None = None
+    cert: Path | None = None
+    key: Path | None = None
+    language: str = ''
+    acting: bool = False
+    oils: tuple[Surface, ...] = ()
+
+    @property
+    def url(self) -> str:
+        """Return what to type into a browser."""
+        host = f'[{self.host}]' if ':' in self.host else self.host
+        return f'{"https" if self.cert else "http"}://{host}:{self.port}/'
+
+
+def _why(error: OSError) -> str:
+    """Return the reason without the address that Python adds to it."""
+    return str(error) if error.errno is None else os.strerror(error.errno)
+
+
+@contextlib.contextmanager
+def bound_socket(options: PageOptions) -> Iterator[socket.socket]:
+    """Open the port; raises InputError where it is taken or not of this machine."""
+    try:
+        family = socket.AF_INET6 if ':' in options.host else socket.AF_INET
+        bound = socket.create_server((options.host, options.port), family=family)
+    except OSError as error:
+        raise InputError(
+            f'port {options.port} of {options.host} cannot be opened ({_why(error)}): stop the '
+            'page that has it, or give another --port or --host'
+        ) from None
+    with bound:
+        yield bound
+
+
+class QuietServer(uvicorn.Server):
+    """A server that leaves signals to the command."""
+
+    def capture_signals(self) -> Any:
+        """Take none."""
+        return contextlib.nullcontext()
+
+
+def server_of(options: PageOptions, app: Any) -> QuietServer:
+    """Return what serves an application."""
+    config = uvicorn.Config(
+        app,
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        proxy_headers=False,
+        ws='websockets-sansio',
+        ws_max_size=LARGEST_MESSAGE,
+        ws_per_message_deflate=False,
+        limit_concurrency=MOST_CONNECTIONS,
+        timeout_graceful_shutdown=LAST_WORDS,
+        ssl_certfile=options.cert,
+        ssl_keyfile=options.key,
+    )
+    return QuietServer(config)

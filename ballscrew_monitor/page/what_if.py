@@ -1,0 +1,185 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Maps that follow the axes, and the questions that a surface answers: map, read, ghosts.
+
+All is computed in a thread beside the server's, one thing at a time.
+
+"""
+
+import asyncio
+from collections.abc import Callable, Iterable, Mapping
+import dataclasses
+import logging
+import math
+from typing import Any
+
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.page import maps
+from ballscrew_monitor.page.axis_view import AxisView
+from ballscrew_monitor.page.frames import frame
+from ballscrew_monitor.page.history import COLUMNS
+from ballscrew_monitor.page.hub import Browser, Hub
+from ballscrew_monitor.page.questions import Answer, Handler, number_in, text_in
+from surrogate.files import InputError
+from surrogate.surface import Surface
+from surrogate.units import RPM
+
+LOG = logging.getLogger(__name__)
+WARMER = 0.5  # [K] by which the oil changes until there is a new map
+LOOK = 0.5  # [s] between two looks at the axes
+QUANTITY = 'efficiency'
+MOST_FACTORS, FACTORS = 5, (0.1, 3.0)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Followed:
+    """What a map was made for: hash of the surface, limits, temperature [degC], loads [N]."""
+
+    sha256: str
+    limits: Limits
+    temperature: float
+    loads: tuple[float, float]
+
+    def suits(self, other: 'Followed') -> bool:
+        """Tell whether the map does for another motion."""
+        return (
+            (self.sha256, self.limits) == (other.sha256, other.limits)
+            and abs(self.temperature - other.temperature) < WARMER
+            and not (other.loads[0] < self.loads[0] or other.loads[1] > self.loads[1])
+        )
+
+
+class WhatIf:
+    """Maps of the axes of a hub; surfaces of other oils by their names."""
+
+    def __init__(self, hub: Hub, oils: Iterable[Surface] = ()) -> None:
+        """Begin without a map."""
+        self._hub, self._oils = hub, tuple(oils)
+        self._followed: dict[str, Followed] = {}
+        self._turn = asyncio.Lock()
+
+    @property
+    def handlers(self) -> dict[str, Handler]:
+        """Return what answers the questions."""
+        return {'map': self._map, 'read': self._read, 'ghosts': self._ghosts}
+
+    def grades(self, view: AxisView) -> list[str]:
+        """Return the oils for which there is a surface of the screw of an axis."""
+        if view.surface is None:
+            return []
+        screw, oil = view.surface.screw_name, view.surface.oil_name
+        return [oil, *(one.oil_name for one in self._oils if one.screw_name == screw)]
+
+    async def follow(self) -> None:
+        """Keep the map and the limit of every axis as its motion is now, until cancelled."""
+        while True:
+            for view in tuple(self._hub.axes.values()):
+                if view.surface is not None and view.limits['rcs_limit'] is not None:
+                    await self._try(view, view.surface)
+            await asyncio.sleep(LOOK)
+
+    async def _try(self, view: AxisView, surface: Surface) -> None:
+        """Keep one axis; where the program fails, the others go on."""
+        try:
+            await self.keep(view, surface)
+        except Exception as error:
+            LOG.exception('no map of %s', view.name)
+            view.know(view.about, None, f'no map: a fault of the program: {error!r}')
+
+    async def keep(self, view: AxisView, surface: Surface) -> None:
+        """Make the map of an axis as its motion is now, if the last one does not suit."""
+        grades = self.grades(view)
+        view.is_changed |= grades != view.grades
+        view.grades = grades
+        rows, limits = view.history.since(0), maps.limits_of(view.limits)
+        motion = maps.Motion.of(rows, limits)
+        warmth = maps.oil_temperature(rows, surface)
+        view.limit = await self._in_turn(_limit_record, surface, limits, rows, warmth)
+        wanted = Followed(
+            sha256=surface.sha256, limits=limits, temperature=warmth, loads=motion.load_span()
+        )
+        before = self._followed.get(view.name)
+        if before is not None and view.map_frame is not None and before.suits(wanted):
+            return
+        warmth = round(warmth / WARMER) * WARMER
+        made = await self._in_turn(maps.map_of, surface, limits, warmth, motion, QUANTITY)
+        load = made[0]['load']
+        loads = load['low'], load['high']
+        self._followed[view.name] = dataclasses.replace(wanted, loads=loads)
+        view.map_frame = frame('map', {'axis': view.name, **made[0]}, made[1])
+        self._hub.tell(view.map_frame)
+
+    async def _in_turn(self, compute: Callable[..., Any], *args: Any) -> Any:
+        async with self._turn:
+            return await asyncio.to_thread(compute, *args)
+
+    def _view(self, request: Mapping[str, Any]) -> tuple[AxisView, Surface, Limits]:
+        """Return the axis of a request, its surface and limits; raises InputError without."""
+        view = self._hub.view(text_in(request, 'axis'))
+        if view.surface is None:
+            raise InputError(view.no_map)
+        if view.limits['rcs_limit'] is None:
+            raise InputError('the limits of this axis are not known yet')
+        return view, self._with_oil(view, request.get('oil')), maps.limits_of(view.limits)
+
+    def _with_oil(self, view: AxisView, oil: Any) -> Surface:
+        assert view.surface is not None
+        for one in (view.surface, *self._oils):
+            if oil in (None, one.oil_name) and one.screw_name == view.surface.screw_name:
+                return one
+        raise InputError(
+            f'oil is {oil!r:.40}, allowed is {", ".join(self.grades(view))}: give the page more '
+            'surfaces with --oils'
+        )
+
+    async def _map(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
+        view, surface, limits = self._view(request)
+        rows = view.history.since(0)
+        warmth = number_in(request, 'temperature_degC', maps.oil_temperature(rows, surface))
+        motion, quantity = maps.Motion.of(rows, limits), text_in(request, 'quantity')
+        record, arrays = await self._in_turn(
+            maps.map_of, surface, limits, warmth, motion, quantity
+        )
+        return {'axis': view.name, 'oil': surface.oil_name, **record}, arrays
+
+    async def _read(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
+        view, surface, limits = self._view(request)
+        warmth = maps.oil_temperature(view.history.since(0), surface)
+        return await self._in_turn(
+            maps.point_of,
+            surface,
+            limits,
+            number_in(request, 'speed_rpm') * RPM,
+            number_in(request, 'load_N'),
+            number_in(request, 'temperature_degC', warmth),
+        ), {}
+
+    async def _ghosts(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
+        view, surface, limits = self._view(request)
+        factors = request.get('factors')
+        if not isinstance(factors, list) or not 1 <= len(factors) <= MOST_FACTORS:
+            raise InputError(f'factors must be a list of 1 to {MOST_FACTORS} numbers')
+        known = [number_in({'factor': one}, 'factor') for one in factors]
+        if not all(FACTORS[0] <= one <= FACTORS[1] for one in known):
+            raise InputError(f'a factor must be {FACTORS[0]:g} to {FACTORS[1]:g}')
+        rows = view.history.since(0)
+        motion = maps.Motion.of(rows, limits)
+        if not motion.speed.size:
+            raise InputError('the axis has not moved in the last minutes')
+        warmth = number_in(request, 'temperature_degC', maps.oil_temperature(rows, surface))
+        return await self._in_turn(maps.ghosts_of, surface, limits, motion, warmth, known)
+
+
+def _limit_record(
+    surface: Surface, limits: Limits, rows: Any, temperature: float
+) -> dict[str, float] | None:
+    """Return the speed of the limit of RCS at the last load, and how far above it the axis is."""
+    if not len(rows):
+        return None
+    speed, load = (rows[-1, COLUMNS.index(name)] for name in ('speed_rpm', 'load_N'))
+    opposing = -load if speed > 0.0 else load
+    limit = maps.limit_speed(surface, limits, opposing, temperature) / RPM
+    if math.isnan(limit):
+        return None
+    return {'speed_rpm': limit, 'margin': abs(speed) / limit - 1.0}

@@ -1,0 +1,56 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Onset of contact on a screw, and the zone that is left, by its sheet and that of the oil."""
+
+import numpy as np
+from surrogate.asperities.law import band_of
+from surrogate.builder.closed_form import default_settings
+from surrogate.formulas.torque import efficiency
+from surrogate.parameters import Lubricant, Screw
+from surrogate.screw import closed_form
+from surrogate.screw.onset import onset_point
+from surrogate.surface.contact_onset import (
+    contact_onset,
+    ContactOnset,
+    grid_of,
+    usual_limits,
+    ZoneLimits,
+)
+
+BY_THE_LAW = ' by the law alone'
+"""What the band of a point leaves out: what is not known of screw, oil and temperature."""
+EFFICIENCY = np.vectorize(efficiency, otypes=[float])
+
+
+def onset_of_sheets(screw: Screw, lubricant: Lubricant, temperature: float) -> ContactOnset:
+    """
+    Return what the sheets say of contact at a temperature [K], zones by the closed form.
+
+    Raises InputError as `running_tiles` does.
+
+    """
+    settings = default_settings(screw)
+    (slowest, fastest), band = settings.speed_range, band_of(screw)
+    speeds, loads = grid_of((slowest, fastest), settings.load_range)
+
+    def has(heat: float, limits: ZoneLimits) -> bool:
+        found = closed_form.solve(screw, lubricant, speeds, loads, heat)
+        shares = EFFICIENCY(found.friction_torque, loads, screw.lead)
+        return limits.has_zone(found.rcs, shares, loads)
+
+    limits = usual_limits(screw.preload)
+    return contact_onset(
+        onset=lambda heat: onset_point(screw, lubricant, 0.0, heat)['speed_rad_s'],
+        has_zone=lambda heat: has(heat, limits),
+        has_film=lambda heat: has(heat, limits.of_film),
+        temperature=temperature,
+        coldest=min(lubricant.minimum_temperature, temperature),
+        reach=fastest,
+        band=(1 / band, band),
+        doubt=BY_THE_LAW,
+        fastest=fastest,
+        oil=lubricant.name,
+        viscosity=lubricant.kinematic_viscosity_40,
+        rms=screw.roughness.rms,
+        lead=screw.lead,
+    )

@@ -1,0 +1,237 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Onset of contact on a screw, the fastest speed it allows, and whether a zone is left between.
+
+One sentence says it, of a surface or of the sheets: without a load, at one oil temperature. Where
+there is no optimal zone, it says which oil, temperature or roughness would make contact begin
+slower: the speed of the onset goes with one over the viscosity and with a power of Rq.
+
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT
+from surrogate.surface.batch import look_up_many
+from surrogate.surface.lookup import Surface
+from surrogate.units import MICRO, MINUTE, RPM, TURN, ZERO_CELSIUS
+
+Array = NDArray[np.float64]
+NAN = math.nan
+SPEEDS, LOADS = 60, 41
+"""Places of a grid on which a zone is looked for."""
+TEMPERATURES, HALVINGS = 12, 8
+"""Colder temperatures that are tried, and halvings of the step that finds a zone."""
+WORST = 1.2
+"""Speed at which the worst contact begins over that of the loaded nut, at most [-]."""
+RMS_POWER = 0.6
+"""Exponent of the speed of the onset in the Rq that has it [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ZoneLimits:
+    """RCS and efficiency [-] that bound the zone, and the load [N] below which RCS alone does."""
+
+    rcs: float
+    efficiency: float
+    light_load: float
+
+    @property
+    def of_film(self) -> 'ZoneLimits':
+        """Return the limit of RCS alone."""
+        return replace(self, efficiency=-math.inf)
+
+    def has_zone(self, rcs: Array, efficiency: Array, load: Array) -> bool:
+        """Tell whether one of some points, opposing loads [N], is optimal; NaN is not."""
+        fit = (efficiency >= self.efficiency) | (np.abs(load) < self.light_load)
+        return bool(np.any((rcs < self.rcs) & fit))
+
+
+def usual_limits(preload: float) -> ZoneLimits:
+    """Return the limits of a zone unless others are stated; preload [N]."""
+    return ZoneLimits(rcs=RCS_LIMIT, efficiency=EFFICIENCY_LIMIT, light_load=LIGHT_LOAD * preload)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ContactOnset:
+    """
+    Speed [rad/s] at which contact begins without a load at a temperature [K], 0 if it never does.
+
+    `band`: between which factors of it that lies, NaN where not known, by what `doubt` says;
+    `fastest`, the speed that the screw allows, and up to which a zone is looked for, `reach`
+    [rad/s]. Without a zone contact must begin `slower`, a factor [-], as it does at `colder` [K],
+    NaN if at no temperature in question. Viscosity at 40 degC [m2/s], Rq [m] and lead [m].
+
+    """
+
+    speed: float
+    temperature: float
+    band: tuple[float, float] = (NAN, NAN)
+    doubt: str = ''
+    fastest: float
+    reach: float
+    oil: str
+    zone: bool
+    slower: float = NAN
+    colder: float = NAN
+    viscosity: float
+    rms: float
+    lead: float
+
+    def sentence(self, *, as_feed: bool = False) -> str:
+        """Return all of it; `as_feed` in m/min first, as an axis moves, beside rev/min."""
+        begins = 'Contact never begins, for raceway and balls are smooth'
+        if self.speed:
+            begins = (
+                f'Contact begins at {self._speed(self.speed, as_feed)}{self._range()} '
+                f'at {self.temperature - ZERO_CELSIUS:.3g} degC'
+            )
+        limit = self._speed(self.fastest, as_feed)
+        return f"{begins}; this screw's limit is {limit}; {self._zone()}"
+
+    def record(self) -> dict[str, Any]:
+        """Return the sentence and its speeds [rad/s] as plain data."""
+        return {
+            'sentence': f'{self.sentence()}.',
+            'speed_rad_s': self.speed,
+            'speed_range_rad_s': [factor * self.speed for factor in self.band],
+            'fastest_speed_rad_s': self.fastest,
+            'temperature_K': self.temperature,
+            'optimal_zone': self.zone,
+        }
+
+    def _range(self) -> str:
+        if not math.isfinite(self.band[0]):
+            return ''
+        low, high = (_rounded(factor * self.speed / RPM) for factor in self.band)
+        return f' ({low} to {high}{self.doubt})'
+
+    def _speed(self, speed: float, as_feed: bool) -> str:
+        turns = f'{_rounded(speed / RPM)} rev/min'
+        feed = _rounded(speed * self.lead / TURN * MINUTE)
+        return f'{feed} m/min, {turns}' if as_feed else turns
+
+    def _zone(self) -> str:
+        if self.zone:
+            return f'in {self.oil} there is an optimal zone'
+        text = f'in {self.oil} there is no optimal zone'
+        if self.reach < (1 - 1e-6) * self.fastest:
+            text += f' up to {_rounded(self.reach / RPM)} rev/min, where the surface ends'
+        if math.isfinite(self.slower):
+            return f'{text}: contact begins slow enough {self._remedies()}'
+        return f'{text}: where no contact is, friction takes too much; lower the preload'
+
+    def _remedies(self) -> str:
+        thicker = self.slower * self.viscosity * MICRO
+        smoother = self.rms / self.slower**RMS_POWER * MICRO
+        ways = [
+            f'with oil of {_rounded(thicker)} mm2/s at 40 degC '
+            f'(now {_rounded(self.viscosity * MICRO)})'
+        ]
+        if math.isfinite(self.colder):
+            ways.append(f'below {self.colder - ZERO_CELSIUS:.3g} degC')
+        if self.rms:
+            ways.append(f'with Rq {smoother:.2g} um (now {self.rms * MICRO:.2g})')
+        return f'{", ".join(ways[:-1])} or {ways[-1]}' if ways[1:] else ways[0]
+
+
+def contact_onset(
+    *,
+    onset: Callable[[float], float],
+    has_zone: Callable[[float], bool],
+    has_film: Callable[[float], bool],
+    temperature: float,
+    coldest: float,
+    reach: float,
+    **known: Any,
+) -> ContactOnset:
+    """
+    Return where contact begins at a temperature [K], and what would give a zone if there is none.
+
+    `onset` gives the speed [rad/s] at a temperature; `has_zone` and `has_film` tell whether any
+    point is optimal there, and whether any keeps the limit of RCS. `known` are more fields.
+
+    """
+    speed, zone = onset(temperature), has_zone(temperature)
+    slower = colder = NAN
+    if not zone and not has_film(temperature):
+        colder = _colder(has_zone, temperature, coldest)
+        slower = speed / onset(colder) if math.isfinite(colder) else WORST * speed / reach
+    return ContactOnset(
+        speed=speed,
+        temperature=temperature,
+        zone=zone,
+        slower=slower,
+        colder=colder,
+        reach=reach,
+        **known,
+    )
+
+
+def onset_of_surface(
+    surface: Surface, temperature: float | None = None, limits: ZoneLimits | None = None
+) -> ContactOnset:
+    """
+    Return what a surface says of contact at a temperature [K] of the oil, by what its file holds.
+
+    By default at the temperature of the oil sheet; at the nearest one that the surface covers.
+
+    """
+    (coldest, warmest), inputs = surface.temperature_range, surface.header['inputs']
+    screw, oil = inputs['screw'], inputs['lubricant']
+    wanted = surface.reference_temperature if temperature is None else temperature
+    limits = limits or usual_limits(surface.preload)
+    fastest = screw['speed_limit'] / (2 * screw['pitch_radius'])
+    reach = min(fastest, surface.speed_range[1])
+    grid = surface, surface.speed_range[0], reach
+    return contact_onset(
+        onset=lambda heat: surface.onset_speed(0.0, heat),
+        has_zone=lambda heat: _has(*grid, heat, limits),
+        has_film=lambda heat: _has(*grid, heat, limits.of_film),
+        temperature=min(max(wanted, coldest), warmest),
+        coldest=coldest,
+        reach=reach,
+        band=surface.limit_band,
+        fastest=fastest,
+        oil=surface.oil_name,
+        viscosity=oil['kinematic_viscosity_40'],
+        rms=screw['roughness']['rms'],
+        lead=surface.lead,
+    )
+
+
+def _has(
+    surface: Surface, slowest: float, fastest: float, temperature: float, limits: ZoneLimits
+) -> bool:
+    speeds, loads = grid_of((slowest, fastest), surface.load_range)
+    found = look_up_many(surface, speeds, loads, np.full(speeds.size, temperature))
+    return limits.has_zone(found['rcs'], found['efficiency'], loads)
+
+
+def grid_of(speeds: tuple[float, float], loads: tuple[float, float]) -> tuple[Array, Array]:
+    """Return speeds [rad/s] and loads [N] of the points among which a zone is looked for."""
+    across, up = np.meshgrid(np.geomspace(*speeds, SPEEDS), np.linspace(*loads, LOADS))
+    return across.ravel(), up.ravel()
+
+
+def _colder(has_zone: Callable[[float], bool], temperature: float, coldest: float) -> float:
+    """Return the warmest temperature [K] below a given one that has a zone, NaN if none does."""
+    places: list[float] = np.linspace(temperature, coldest, TEMPERATURES + 1).tolist()
+    found = next((i for i in range(1, len(places)) if has_zone(places[i])), None)
+    if found is None or temperature == coldest:
+        return NAN
+    bad, good = places[found - 1], places[found]
+    for _ in range(HALVINGS):
+        middle = 0.5 * (bad + good)
+        bad, good = (bad, middle) if has_zone(middle) else (middle, good)
+    return good
+
+
+def _rounded(value: float) -> str:
+    """Return a number as it is read: whole from 100 on, else with three digits."""
+    return f'{value:.0f}' if abs(value) >= 100 else f'{value:.3g}'

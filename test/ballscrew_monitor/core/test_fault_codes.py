@@ -1,0 +1,42 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Codes of faults: numbers that never change, one page that lists them all."""
+
+import json
+from pathlib import Path
+
+from ballscrew_monitor.core.fault_codes import cause_code, Fault, STATUSES
+from ballscrew_monitor.core.judgement import Code, Severity, violation
+import pytest
+
+ROOT = Path(__file__).parents[3]
+GOLDEN = json.loads((ROOT / 'test' / 'data' / 'fault_codes.json').read_text(encoding='utf-8'))
+PAGE = ROOT / 'docs' / 'reference' / 'fault_codes.md'
+
+
+def test_no_number_ever_changes():
+    """Append to the file; who changes or takes out a line breaks a controller somewhere."""
+    assert {fault.name: int(fault) for fault in Fault} == GOLDEN
+    assert list(GOLDEN.values()) == sorted(set(GOLDEN.values()))
+
+
+def test_each_fault_has_words_and_a_status_of_its_own():
+    assert len({fault.text for fault in Fault}) == len(Fault)
+    assert {fault.status for fault in Fault} == set(STATUSES)
+
+
+def test_the_page_lists_the_codes_as_they_are():
+    rows = [f'| {int(fault)} | {fault.name} | {fault.status} | {fault.text} |' for fault in Fault]
+    lines = PAGE.read_text(encoding='utf-8').splitlines()
+    assert [line for line in lines if line.startswith('| ')][1:] == rows
+
+
+@pytest.mark.parametrize('cause', Code)
+def test_a_cause_has_the_code_that_its_sentence_says(cause):
+    code = cause_code(cause)
+    known = cause in (Code.RCS_HIGH, Code.EFFICIENCY_LOW)
+    assert code.name == (cause.name if known else 'CAUSE_UNKNOWN')
+    if known:
+        finding = violation(cause, 0.5, 0.25)
+        assert finding.severity is Severity.WARN
+        assert finding.text.startswith(code.text.removeprefix('outside the optimal zone: '))

@@ -1,0 +1,71 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The heartbeat over the middleware, from a node that works and from one that hangs."""
+
+import signal
+
+from ballscrew_monitor.node.heartbeat import BEAT_QOS, PROMISE
+from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.event_handler import SubscriptionEventCallbacks
+from std_msgs.msg import UInt64
+
+
+def listen(node):
+    """Return the beats that are heard, the number of live nodes, and the missed deadlines."""
+    beats, alive, missed = [], [], []
+    node.node.create_subscription(
+        UInt64,
+        f'{node.name}/heartbeat',
+        lambda beat: beats.append(beat.data),
+        BEAT_QOS,
+        event_callbacks=SubscriptionEventCallbacks(
+            liveliness=lambda event: alive.append(event.alive_count),
+            deadline=lambda event: missed.append(event.total_count),
+        ),
+    )
+    return beats, alive, missed
+
+
+def vitals(node):
+    """Return what was last said of the node itself, with its values."""
+    found = [
+        (status, {pair.key: float(pair.value) for pair in status.values})
+        for message in node.told
+        for status in message.status
+        if status.name == 'ballscrew_monitor: Node'
+    ]
+    return found[-1] if found else None
+
+
+def test_beats_are_counted_in_every_state_and_a_hanging_node_is_noticed(node):
+    """A middleware that asserted for the process would not notice."""
+    node.start(autostart='false')
+    beats, alive, missed = listen(node)
+    node.until(lambda: len(beats) > 1 and alive, 'two beats of an unconfigured node')
+    assert beats == list(range(beats[0], beats[-1] + 1))
+    assert alive[-1] == 1
+    node.process.send_signal(signal.SIGSTOP)
+    node.until(lambda: missed and alive[-1] == 0, 'the silence')
+    node.process.send_signal(signal.SIGCONT)
+    node.until(lambda: alive[-1] == 1, 'the next beat')
+    (publisher,) = node.node.get_publishers_info_by_topic(f'{node.name}/heartbeat')
+    assert publisher.qos_profile.deadline == publisher.qos_profile.liveliness_lease_duration
+    assert publisher.qos_profile.deadline == PROMISE
+
+
+def test_the_status_of_the_node_says_what_it_works(node, says):
+    node.start()
+    _, publish = node.watched()
+
+    def worked():
+        publish(100.0)
+        found = vitals(node)
+        return found if found and found[1]['Queue depth [-]'] > 0.0 else None
+
+    status, values = node.until(worked, 'the work of the node')
+    assert values.pop('Code') == (701 if status.level == DiagnosticStatus.WARN else 0)
+    assert values.keys() == {'Loop time [s]', 'Queue depth [-]', 'Processor share [-]'}
+    assert values['Loop time [s]'] > 0.0
+    said = {says('keeps_up'): DiagnosticStatus.OK, says('busy'): DiagnosticStatus.WARN}
+    assert said[status.message] == status.level
+    assert (values['Processor share [-]'] >= 0.9) == (status.level == DiagnosticStatus.WARN)

@@ -1,0 +1,156 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What is on the first screen is what was sent, in the axis' own terms; old data say nothing."""
+
+import itertools
+import math
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+import pytest
+
+LEVELS = {'ok': 'Optimal zone', 'warn': 'Outside the optimal zone', 'unknown': 'Not known'}
+HOSTILE = '<img src=x onerror=alert(1)><script>alert(2)</script>'
+
+
+@pytest.fixture
+def shown(tab, greeted):
+    tab.open(greeted.url)
+    tab.reads('.word', 'Optimal zone')
+    return tab
+
+
+def rounded(value, digits):
+    """Return a number as Format.number writes it, within the range of plain notation."""
+    if not math.isfinite(value):
+        return '–'
+    found = float(f'{value:.{digits - 1}e}')
+    return f'{found:.10f}'.rstrip('0').rstrip('.') if found else '0'
+
+
+def test_values_on_screen_are_those_of_the_states(shown, greeted, frames):
+    number = itertools.count()
+
+    @settings(max_examples=12)
+    @given(
+        st.floats(5, 3000), st.floats(10, 30_000), st.floats(10, 90), st.floats(0.1, 0.99),
+        st.sampled_from(sorted(LEVELS)),
+    )
+    def holds(speed, load, temperature, efficiency, level):
+        values = {'speed_rpm': speed, 'load_N': load, 'temperature_degC': temperature}
+        rows = frames.rows(2, efficiency=efficiency, **values)
+        headline = f'state {next(number)}'
+        greeted.send(*frames.state(level=level, rows=rows, headline=headline))
+        shown.reads('.reason', headline)
+        shown.reads('.sign.level .word', LEVELS[level])
+        shown.until(f"document.querySelector('.sign.level').dataset.state === '{level}'")
+        expected = [
+            f'{rounded(speed * 0.01, 3)} m/min',
+            f'{rounded(load, 3)} N',
+            f'{rounded(temperature, 3)} °C',
+            f'{rounded(100 * efficiency, 3)} %',
+        ]
+        found = shown.ask("[...document.querySelectorAll('.numbers .big')].map((one) => one.textContent)")
+        assert found[:4] == expected
+        assert shown.text('.numbers .more') == f'{rounded(speed, 4)} rev/min'
+
+    holds()
+
+
+def test_numbers_that_are_not_known_are_dashes(shown, greeted, frames):
+    nothing = dict.fromkeys(('speed_rpm', 'load_N', 'temperature_degC', 'efficiency'), math.nan)
+    rows = frames.rows(1, **nothing)
+    greeted.send(*frames.state(rows=rows, limit={'speed_rpm': None, 'margin': None}))
+    shown.until("""[...document.querySelectorAll('.numbers .big')]
+        .every((one) => one.textContent === '–')""")
+
+
+@pytest.mark.parametrize(
+    ('margin', 'text'),
+    [(0.35, '35 % above'), (-0.4, '40 % below'), (1.4, '2.4 × limit'), (0.0, '0 % above')],
+)
+def test_how_far_the_limit_is(shown, margin, text):
+    assert shown.ask(f'FirstScreen.distance({margin})') == text
+
+
+def test_advice_condition_and_inputs_are_said(shown, greeted, frames):
+    inputs = [
+        {'name': 'load', 'state': 'stale', 'age_s': 4.0, 'words': 'The last sample is 4 s old.'}
+    ]
+    health = frames.health('worse', verdict='The friction has risen by 30 %.')
+    greeted.send(
+        *frames.state(
+            level='warn', advice='Run at 6.4 m/min.', inputs=inputs, health=health,
+            shelved={'left_s': 600.0, 'reason': 'run-in'},
+        )
+    )
+    shown.reads('.advice', 'What to do: Run at 6.4 m/min.')
+    shown.reads('.sign.condition .word', 'Axis worse than before')
+    shown.reads('.change', 'The friction has risen by 30 %.')
+    shown.reads('.shelved', 'Shelved for 10 min: run-in')
+    shown.reads('.input', 'Load too oldThe last sample is 4 s old.')
+    assert shown.ask("document.querySelector('.input').dataset.state") == 'stale'
+
+
+def test_a_level_that_stays_is_not_read_out_again(shown, greeted, frames):
+    assert shown.ask("document.querySelector('.sign.level .word').getAttribute('role')") == 'alert'
+    shown.ask("""globalThis.changes = 0;
+        new MutationObserver(() => { changes += 1; }).observe(
+          document.querySelector('.sign.level .word'), { childList: true, characterData: true });
+        0""")
+    for level in ('ok', 'ok', 'warn', 'warn'):
+        greeted.send(*frames.state(level=level, headline=f'now {level}'))
+        shown.reads('.reason', f'now {level}')
+    shown.until('changes === 1')
+
+
+def test_of_old_data_nothing_is_concluded(shown, greeted, frames):
+    greeted.send(*frames.state(age_s=7.0, advice='Run faster.'))
+    shown.reads('.sign.level .word', 'Not known')
+    assert 'nothing is known of now' in shown.text('.reason')
+    assert shown.text('.advice') == ''
+    greeted.send(*frames.state())
+    shown.reads('.sign.level .word', 'Optimal zone')
+
+
+def test_a_node_that_is_gone_leaves_its_words(shown, greeted, frames):
+    words = 'The node has ended; its last data are shown.'
+    greeted.send({'kind': 'gone', 'node': '/ballscrew_monitor', 'words': words})
+    shown.reads('.reason', words)
+    shown.reads('.sign.level .word', 'Not known')
+    greeted.send(*frames.state())
+    shown.reads('.sign.level .word', 'Optimal zone')
+
+
+def test_names_with_markup_are_shown_as_text(tab, server, frames):
+    axes = [frames.axis(HOSTILE, screw=HOSTILE, oil=HOSTILE), frames.axis('y')]
+    state = frames.state(
+        HOSTILE, level='warn', headline=HOSTILE, advice=HOSTILE,
+        inputs=[{'name': HOSTILE, 'state': HOSTILE, 'age_s': 0.0, 'words': HOSTILE}],
+        health=frames.health('worse', verdict=HOSTILE, advice=HOSTILE),
+    )
+    server.greeting = [
+        frames.hello(*axes), state, frames.map(HOSTILE),
+        frames.events(HOSTILE, {'advice': HOSTILE, 'acknowledged_by': HOSTILE}),
+    ]
+    tab.open(server.url)
+    tab.reads('.reason', HOSTILE)
+    tab.reads('.card .name', HOSTILE)
+    tab.until("document.querySelector('.events td')")
+    assert tab.ask("document.querySelectorAll('img, main script').length") == 0
+
+
+def test_axes_are_cards_of_which_one_is_chosen(tab, server, frames):
+    server.greeting = [
+        frames.hello(frames.axis('x'), frames.axis('y', lead_mm=5.0)),
+        frames.state('x'), frames.state('y', level='warn', headline='Too slow.'),
+    ]
+    tab.open(server.url)
+    tab.until("document.querySelectorAll('.card[data-state]').length === 2")
+    levels = "[...document.querySelectorAll('.card')].map((one) => one.dataset.state).join()"
+    tab.until(f"{levels} === 'ok,warn'")
+    pressed = "[...document.querySelectorAll('.card')].map((one) => one.ariaPressed).join()"
+    assert tab.ask(pressed) == 'true,false'
+    tab.click('.card:nth-child(2)')
+    tab.reads('.reason', 'Too slow.')
+    tab.until(f"{pressed} === 'false,true'")

@@ -1,0 +1,41 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Quantities of health are listed with their intervals; what is not known says so."""
+
+
+def test_quantities_have_value_interval_and_picture(tab, greeted, frames):
+    tab.open(greeted.url)
+    tab.until("document.querySelector('.health td')")
+    rows = tab.ask("""[...document.querySelectorAll('.health tbody tr')].map(
+        (row) => [...row.cells].map((cell) => cell.querySelector('svg') ? 'picture' : cell.textContent))""")
+    assert rows == [
+        ['Preload', '98 %', '92 to 104', 'picture'],
+        ['Friction change', '3 %', '-2 to 8', 'picture'],
+        ['Hours left at this programme', '8200 h', '6100 to 11000', ''],
+        ['Share of life used', 'not known', '', ''],
+    ]
+    assert tab.text('.health .sentence').startswith('Axis as usual The friction is as it was')
+
+
+def test_marks_of_an_interval_are_where_they_belong(tab, greeted):
+    tab.open(greeted.url)
+    tab.until("document.querySelector('.health td')")
+    found = tab.ask("""(() => {
+        const bar = Health.bar(0.7, 0.6, 0.8);
+        const at = (one, name) => Number(one.getAttribute(name));
+        const [zero, whole, interval] = bar.querySelectorAll('line');
+        const part = (x) => (x - at(zero, 'x1')) / (at(whole, 'x1') - at(zero, 'x1'));
+        return [part(at(interval, 'x1')), part(at(interval, 'x2')), part(at(bar.querySelector('circle'), 'cx'))]
+          .map((one) => Number(one.toFixed(9)));
+    })()""")
+    assert found == [0.6, 0.8, 0.7]
+
+
+def test_a_new_assessment_replaces_the_old_and_none_is_kept(tab, greeted, frames):
+    tab.open(greeted.url)
+    tab.until("document.querySelector('.health td')")
+    greeted.send(*frames.state(health=frames.health('worse', verdict='Worse.', quantities=[])))
+    tab.reads('.health .sentence', 'Axis worse than before Worse.')
+    greeted.send(*frames.state())
+    tab.until('page.painter.views.every((view) => !view.news)')
+    assert tab.text('.health .sentence') == 'Axis worse than before Worse.'

@@ -1,0 +1,165 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Maps, points and ghosts are those of the surface itself."""
+
+import math
+
+from ballscrew_monitor.core.conversions import kelvin
+from ballscrew_monitor.page import maps
+from ballscrew_monitor.page.maps import Motion
+from hypothesis import given
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from surrogate.surface import shipped_surface, Surface
+from surrogate.units import RPM
+
+WARMTH = 40.0  # [degC]
+SPEEDS, LOADS = st.floats(1.0, 200.0), st.floats(-3000.0, 3000.0)
+
+
+@pytest.fixture(scope='module')
+def surface():
+    return Surface.load(shipped_surface())
+
+
+@pytest.fixture(scope='module')
+def limits(page_parts):
+    return maps.limits_of(page_parts.limits)
+
+
+def rows_of(parts, speeds_rpm, loads, step=0.1):
+    motion = zip(speeds_rpm, loads, strict=True)
+    return np.array(
+        [
+            parts.row(1e9 + step * at, speed_rpm=speed, load_N=load, temperature_degC=WARMTH)
+            for at, (speed, load) in enumerate(motion)
+        ]
+    )
+
+
+@given(speed=SPEEDS, load=LOADS)
+def test_a_point_is_what_the_surface_says(surface, limits, speed, load):
+    found = surface.lookup(speed, load, kelvin(WARMTH))
+    record = maps.point_of(surface, limits, speed, load, WARMTH)
+    assert record['efficiency'] == pytest.approx(found.efficiency, nan_ok=True)
+    assert record['rcs'] == pytest.approx(found.rcs, nan_ok=True)
+    assert record['torque_N_m'] == pytest.approx(found.driving_torque, nan_ok=True)
+    light = abs(load) < limits.light_load
+    good = found.rcs < limits.rcs and (light or found.efficiency >= limits.efficiency)
+    expected = 'unknown' if math.isnan(found.rcs) else 'optimal' if good else 'outside'
+    assert record['zone'] == expected
+    assert record['words']
+
+
+def test_points_beyond_the_surface_say_why(surface, limits, says):
+    for key, point in {
+        'fast': (1e4, 0.0, WARMTH),
+        'still': (0.0, 0.0, WARMTH),
+        'loaded': (10.0, 1e6, WARMTH),
+        'hot': (10.0, 0.0, 300.0),
+    }.items():
+        record = maps.point_of(surface, limits, *point)
+        assert (record['zone'], record['words']) == ('unknown', says(key))
+
+
+def test_a_map_is_the_surface_amid_its_cells(surface, limits, page_parts):
+    motion = Motion.of(rows_of(page_parts, [100.0, 100.0], [-500.0, 500.0]), limits)
+    record, arrays = maps.map_of(surface, limits, WARMTH, motion, 'rcs')
+    rows, columns = record['rows'], record['columns']
+    assert all(arrays[name].shape == (rows, columns) for name in ('cells', 'zone', 'dwell'))
+    low, high = record['speed']['low'], record['speed']['high']
+    at = 0.7 * columns
+    speed = low * (high / low) ** ((int(at) + 0.5) / columns)
+    span = record['load']['high'] - record['load']['low']
+    load = record['load']['low'] + span * 20.5 / rows
+    found = surface.lookup(speed * RPM, load, kelvin(WARMTH))
+    assert arrays['cells'][20, int(at)] == pytest.approx(found.rcs, rel=0.05)
+    assert set(np.unique(arrays['zone'][np.isfinite(arrays['zone'])])) == {0.0, 1.0}
+
+
+def test_lines_are_named_and_bands_come_in_pairs(surface, limits, page_parts):
+    motion = Motion.of(rows_of(page_parts, [100.0], [-500.0]), limits)
+    record, arrays = maps.map_of(surface, limits, WARMTH, motion, 'efficiency')
+    kinds = [line['kind'] for line in record['lines']]
+    assert kinds.count('rcs') == kinds.count('efficiency') == 1
+    assert 'rcs_band' not in kinds
+    assert [kinds.count(kind) for kind in maps.BANDS] == [2, 2]
+    for line in record['lines']:
+        assert arrays[line['array']].shape[1] == 2
+    edges = [arrays[line['array']] for line in record['lines'] if line['kind'] == maps.BANDS[0]]
+    middle = next(arrays[line['array']] for line in record['lines'] if line['kind'] == 'rcs')
+    for edge, factor in zip(edges, surface.limit_band, strict=True):
+        np.testing.assert_allclose(edge[:, 0], factor * middle[:, 0])
+
+
+def test_time_spent_lies_where_the_rows_do(surface, limits, page_parts):
+    """Of both directions, whose load opposes the motion alike; a gap does not count."""
+    rows = rows_of(
+        page_parts, [300.0, 300.0, -300.0, -300.0, 0.0], [-600.0, -600.0, 600.0, 600.0, 0]
+    )
+    rows[3:, 0] += 60.0
+    motion = Motion.of(rows, limits)
+    record, arrays = maps.map_of(surface, limits, WARMTH, motion, 'efficiency')
+    ((row, column),) = np.argwhere(arrays['dwell'])
+    assert arrays['dwell'][row, column] == pytest.approx(0.3)
+    low, high = record['load']['low'], record['load']['high']
+    assert low + (high - low) * row / record['rows'] < 600.0
+    assert low + (high - low) * (row + 1) / record['rows'] > 600.0
+
+
+@given(load=st.floats(-1500.0, 1500.0), degrees=st.floats(15.0, 75.0))
+def test_at_the_limit_speed_rcs_is_at_its_limit(surface, limits, load, degrees):
+    """And above it below; without one, no judged speed is at the limit, or all are."""
+    speed = maps.limit_speed(surface, limits, load, degrees)
+    if math.isnan(speed):
+        slowest, fastest = surface.speed_range
+        slowest = max(slowest, limits.standstill_speed)
+        found = surface.lookup(slowest, load, kelvin(degrees)).rcs
+        last = surface.lookup(fastest, load, kelvin(degrees)).rcs
+        assert not (found >= limits.rcs and last < limits.rcs)
+    else:
+        at, above = (surface.lookup(f * speed, load, kelvin(degrees)).rcs for f in (1.0, 1.1))
+        assert at == pytest.approx(limits.rcs, rel=0.2)
+        assert above < limits.rcs
+
+
+@given(factors=st.lists(st.floats(0.5, 1.5), min_size=1, max_size=3))
+def test_ghosts_move_the_same_way(surface, limits, page_parts, factors):
+    rows = rows_of(page_parts, [200.0, 400.0, -300.0, 100.0], [-600.0, 200.0, 900.0, 0.0])
+    motion = Motion.of(rows, limits)
+    record, arrays = maps.ghosts_of(surface, limits, motion, WARMTH, factors)
+    assert [one['factor'] for one in record['ghosts']] == factors
+    for one in record['ghosts']:
+        factor = one['factor']
+        assert factor * one['duration_s'] == pytest.approx(0.3)
+        path = arrays[one['array']]
+        np.testing.assert_allclose(path[:, 0], factor * np.abs(rows[:, 1]))
+        found = [surface.lookup(speed * RPM, load, kelvin(WARMTH)) for speed, load in path]
+        # What is lost over a way does not ask for the time that it took.
+        way = [200.0 * RPM * 0.1, 400.0 * RPM * 0.1, 300.0 * RPM * 0.1, 0.0]
+        lost = sum(point.friction_torque * angle for point, angle in zip(found, way, strict=True))
+        assert one['lost_J'] == pytest.approx(lost, rel=1e-6)
+        judged = [maps.point_of(surface, limits, *p, WARMTH)['zone'] for p in path * [RPM, 1.0]]
+        assert one['outside_share'] == pytest.approx(judged[:3].count('outside') / 3.0)
+
+
+def test_ghosts_of_no_motion_know_nothing(surface, limits, page_parts):
+    motion = Motion.of(rows_of(page_parts, [0.0, 0.0], [0.0, 0.0]), limits)
+    ((ghost,), _) = maps.ghosts_of(surface, limits, motion, WARMTH, [1.0])[0].values(), 0
+    assert math.isnan(ghost[0]['outside_share'])
+    assert ghost[0]['duration_s'] == 0.0
+
+
+def test_the_oil_is_the_last_that_was_measured_else_that_of_the_datasheet(surface, page_parts):
+    rows = rows_of(page_parts, [1.0, 1.0], [0.0, 0.0])
+    rows[1, 3] = math.nan
+    assert maps.oil_temperature(rows, surface) == WARMTH
+    assert maps.oil_temperature(rows[1:], surface) == pytest.approx(40.0)
+    rows[0, 3] = 55.0
+    assert maps.oil_temperature(rows, surface) == 55.0
+
+
+def test_an_unknown_quantity_is_refused(surface, limits, page_parts, refused):
+    motion = Motion.of(rows_of(page_parts, [1.0], [0.0]), limits)
+    refused('quantity', maps.map_of, surface, limits, WARMTH, motion, 'wear')

@@ -1,0 +1,65 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The onset of the sheets agrees with their surface, and what it advises with the law."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from surrogate.builder.contact_onset import EFFICIENCY, onset_of_sheets
+from surrogate.formulas.torque import efficiency
+from surrogate.screw.onset import onset_point, with_raceway
+from surrogate.surface import onset_of_surface, Surface
+from surrogate.surface.contact_onset import RMS_POWER
+
+WARM = 368.15  # [K], of no zone with the nominal sheets
+
+
+@pytest.fixture(scope='module')
+def found(screw, oil):
+    return onset_of_sheets(screw, oil, WARM)
+
+
+def test_it_is_the_onset_of_the_surface_of_these_sheets(screw, oil, surface_data):
+    """On a node of its temperatures; their bands differ: that of the sheets is of the law."""
+    theirs = onset_of_surface(Surface(surface_data), surface_data.temperature[0])
+    ours = onset_of_sheets(screw, oil, surface_data.temperature[0])
+    assert replace(ours, band=theirs.band, doubt='', speed=0.0) == replace(theirs, speed=0.0)
+    assert ours.speed == pytest.approx(theirs.speed, rel=1e-9)
+
+
+def test_what_it_advises_makes_contact_begin_as_slow_as_it_must(screw, oil, found):
+    """By the law: one over the viscosity, and a power of Rq, within a tenth of the speed."""
+    assert not found.zone
+    assert found.slower > 1.0
+    target = found.speed / found.slower
+    assert onset_point(screw, oil, 0.0, found.colder)['speed_rad_s'] == pytest.approx(target)
+    thicker = replace(
+        oil,
+        viscosity=found.slower * oil.viscosity,
+        kinematic_viscosity_40=found.slower * oil.kinematic_viscosity_40,
+        kinematic_viscosity_100=found.slower * oil.kinematic_viscosity_100,
+    )
+    smoother = with_raceway(screw, rms=screw.roughness.rms / found.slower**RMS_POWER)
+    for sheets in ((screw, thicker), (smoother, oil)):
+        speed = onset_point(*sheets, 0.0, WARM)['speed_rad_s']
+        assert speed == pytest.approx(target, rel=0.1)
+
+
+@pytest.mark.parametrize('factor', [0.5, 2.0])
+def test_the_power_of_rq_is_near_that_of_the_law(screw, oil, factor):
+    rougher = with_raceway(screw, rms=factor * screw.roughness.rms)
+    usual, speed = (onset_point(one, oil, 0.0, WARM)['speed_rad_s'] for one in (screw, rougher))
+    assert speed == pytest.approx(usual * factor ** (1 / RMS_POWER), rel=0.2)
+
+
+def test_a_smooth_screw_has_no_onset_and_a_zone(screw, oil):
+    found = onset_of_sheets(with_raceway(screw, rms=0.0), oil, WARM)
+    assert found.speed == 0.0
+    assert found.zone
+
+
+def test_efficiencies_of_many_loads_are_those_of_one(screw):
+    loads = np.array([-500.0, 0.0, 500.0])
+    single = [efficiency(0.1, load, screw.lead) for load in loads]
+    assert EFFICIENCY(0.1, loads, screw.lead).tolist() == single
