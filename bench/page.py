@@ -112,10 +112,11 @@ async def browse(url: str, seconds: float, latencies: list[float]) -> int:
         while time.monotonic() < end:
             made = await live.recv()
             (size,) = struct.unpack_from('<I', made)
-            record = json.loads(made[4 : 4 + size])
+            at = 4 + size
+            record = json.loads(made[4:at])
             if record['kind'] == 'state' and record['arrays'][0][1]:
                 frames += 1
-                stamps = np.frombuffer(made, '<f8', record['arrays'][0][1], 4 + size)
+                stamps = np.frombuffer(made, '<f8', record['arrays'][0][1], at)
                 latencies.append(time.time() - float(stamps[-1]))
     return frames
 

@@ -58,7 +58,8 @@ def frames(url):
     ) as live:
         for made in live:
             (size,) = struct.unpack_from('<I', made)
-            yield json.loads(made[4 : size + 4])
+            end = 4 + size
+            yield json.loads(made[4:end])
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])

@@ -60,12 +60,14 @@ def test_what_is_shown_is_what_the_state_said(playing, judged):
     begin = judged[0][0][0]
     for at in range(0, len(judged), 7):
         row, record = judged[at]
-        ask(playing, 'seek', s=row[0] - begin)
+        ask(playing, 'seek', s=row[0] - begin + 1e-4)
         playing.advance(0.0, 0.0)
         shown = axis_of(playing)
-        assert row[0] - 2.0 * STEP < shown.history.since(0)[-1, 0] <= row[0]
+        assert -2.0 * STEP < shown.history.since(0)[-1, 0] - row[0] < 1e-4
         for name in ('level', 'zone', 'regime'):
             assert shown.state[name] == record[name], name
+        if record['zone'] == 'outside':
+            assert shown.state['headline'] == record['headline']
 
 
 def test_it_plays_at_its_rate_and_stops_at_its_end(playing):
