@@ -74,7 +74,7 @@ class LiveMap extends OperatingMap {
     pen.fillStyle = Format.colour(LiveMap.RAMPS[this.quantity].colour);
     const part = this.part();
     this.record.arrays.cells.forEach((value, i) => {
-      pen.globalAlpha = Number.isNaN(value) ? 0 : 0.05 + 0.6 * part(value);
+      pen.globalAlpha = Number.isNaN(value) ? 0 : 0.05 + 0.5 * part(value);
       pen.fillRect(i % columns, rows - 1 - Math.floor(i / columns), 1, 1);
     });
     const { left, top, width, height } = this.area;
@@ -192,7 +192,7 @@ class LiveMap extends OperatingMap {
 LiveMap.KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 LiveMap.FOGS = { band_unknown: 0.16, band_numerical: 0.3 };
 LiveMap.RAMPS = {
-  efficiency: { colour: 'efficiency', range: [0, 1] },
+  efficiency: { colour: 'efficiency', range: [0.5, 1] },
   rcs: { colour: 'rcs', range: [1e-4, 1], logarithmic: true },
   film_ratio: { colour: 'hydrodynamic', range: [0.1, 10], logarithmic: true },
   wear: { colour: 'bad', logarithmic: true },

@@ -103,7 +103,7 @@ class LivePage {
       this.painter.add(() => first.draw(), 200),
       this.painter.add(() => this.whatIf.map.over.draw(), 100),
       this.painter.add(() => events.draw(), 1000),
-      this.painter.add(() => axis.health && health.draw(), 1000),
+      this.painter.add(() => health.draw(), 1000),
     ];
     this.news = () => {
       cards();

@@ -24,7 +24,8 @@ const Quantities = (() => {
 
   /** Return feed in the unit of an axis over the speed of its screw [rev/min]. */
   function feed(axis) {
-    return axis.unit === 'm/min' ? axis.lead_mm / 1000 : axis.lead_mm;
+    const lead = axis.lead_mm ?? NaN;
+    return axis.unit === 'm/min' ? lead / 1000 : lead;
   }
 
   const of = (part, axis) => (typeof part === 'function' ? part(axis) : part);

@@ -26,7 +26,7 @@ class Strips {
       this.figures.append(panel.holder);
       panel.news = painter.add(() => this.draw(panel), EVERY);
     }
-    this.observer = new ResizeObserver(() => this.resize());
+    this.observer = new ResizeObserver(() => this.news());
     this.observer.observe(this.figures);
   }
 
@@ -95,6 +95,9 @@ class Strips {
       return;
     }
     panel.plot ??= this.plot(panel);
+    if (panel.plot.width !== this.width()) {
+      panel.plot.setSize({ width: this.width(), height: panel.height });
+    }
     const columns = this.axis.rows.during(begin, this.span, panel.keys, 2 * this.width());
     const [times, ...lines] = columns;
     panel.plot.batch(() => {
@@ -146,16 +149,6 @@ class Strips {
 
   events() {
     return this.axis.events.map(({ begin, duration_s: length }) => ({ begin, end: begin + length }));
-  }
-
-  resize() {
-    const width = this.width();
-    for (const { plot, height } of this.panels) {
-      if (plot && plot.width !== width) {
-        plot.setSize({ width, height });
-      }
-    }
-    this.news();
   }
 
   /** Draw again in the colours that hold now. */

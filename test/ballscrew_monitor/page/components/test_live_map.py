@@ -68,9 +68,9 @@ def test_inside_and_outside_of_the_zone_differ_in_every_view(shown, greeted, fra
             select.dispatchEvent(new Event('change'));
         }})()""")
         shown.until(f"{MAP}.record.quantity === '{quantity}'")
+        shown.until("document.querySelector('.sample-hatched')")
         assert greeted.requests[-1]['quantity'] == quantity
-        assert shown.ask("document.querySelector('.sample-hatched') !== null")
-    shown.until(f"document.querySelector('.sample-ramp-wear') !== null")
+    shown.until("document.querySelector('.sample-ramp-wear') !== null")
 
 
 def test_keys_move_the_pinned_place_and_read_it(shown, greeted, wait_for):
