@@ -14,13 +14,16 @@ SEED ?= 1
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE LD_LIBRARY_PATH PYTHONPATH PYTHONHOME VIRTUAL_ENV
 unexport AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMPLEMENTATION
 
-.PHONY: set-up run test fuzz mutate format bench docs fresh-test clean help
+.PHONY: set-up run page test fuzz mutate format bench docs fresh-test clean help
 
 set-up:
 	@sh scripts/set_up.sh
 
 run: set-up
 	@exec .venv/bin/ballscrew run --rate $(RATE) --out out
+
+page: set-up
+	@exec sh scripts/page.sh $(ARGS)
 
 test: set-up
 	@sh scripts/browser.sh
@@ -55,6 +58,8 @@ help:
 	@echo 'make            set everything up in .venv; a second call finds it done'
 	@echo 'make run        play the nominal machine cycle to the node; results in out/'
 	@echo '                RATE=4 plays four times faster'
+	@echo 'make page       play that cycle in a loop and serve a live page of it, until Ctrl-C'
+	@echo '                ARGS is handed to `ballscrew page`'
 	@echo 'make test       the checks and the tests; ARGS is handed to pytest'
 	@echo '                ARGS="-m fast" leaves out what takes long'
 	@echo 'make fuzz       the properties among the tests with random draws, round after round'

@@ -62,6 +62,7 @@ setup(
             'py.typed',
             'page/components/*.css',
             'page/components/*.js',
+            'page/languages/*.json',
             'settings/*.xml',
             'report/components/*.css',
             'report/components/*.js',
@@ -91,6 +92,7 @@ setup(
         'bags': ['lz4>=4.0', 'mcap>=1.1', 'rosbags>=0.10', 'zstandard>=0.20'],
         'report': ['contourpy>=1.0', 'polars>=1.0'],
         'page': [
+            'contourpy>=1.0',
             'prometheus-client>=0.20',
             'starlette>=0.37',
             'uvicorn>=0.40',

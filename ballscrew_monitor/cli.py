@@ -244,7 +244,7 @@ def _page(args: argparse.Namespace) -> int:
         )
     from ballscrew_monitor.page.command import page_command
 
-    return page_command(args)
+    return page_command(args, options.PARAMS)
 
 
 COMMANDS = {

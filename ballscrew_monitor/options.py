@@ -150,6 +150,11 @@ def add_solve(parser: Parser) -> None:
 
 def add_page(parser: Parser) -> None:
     """Add what `ballscrew page` may be told."""
+    text = 'recording to play (default: the running nodes), bag, or CSV or Parquet with --map'
+    _add_file(parser, 'log', 'LOG', text, nargs='?')
+    _add_file(parser, '--map', 'FILE', 'map of the columns of a CSV or Parquet file')
+    text = f'parameters of a recording (default those that it carries, else {PARAMS_TEXT})'
+    _add_file(parser, '--params', 'FILE', text)
     text = 'full name of the node (default all of them, as they come and go)'
     parser.add_argument('--node', default='', help=text)
     text = 'address to serve at (default %(default)s); any other needs --token-file'
@@ -159,6 +164,8 @@ def add_page(parser: Parser) -> None:
     _add_file(parser, '--token-file', 'FILE', 'file whose first line opens the page to a reader')
     _add_file(parser, '--cert', 'FILE', 'certificate of the server in PEM, for https')
     _add_file(parser, '--key', 'FILE', 'its key')
+    text = 'let readers acknowledge, shelve and ask for full solves'
+    _add_switch(parser, '--allow-acting', text)
     text = 'language of the page, such as en (default that of the browser)'
     parser.add_argument('--language', default='', help=text)
     text = 'surfaces of the same screw with other oils, for what-if maps'

@@ -7,16 +7,18 @@ With `autostart:=true` the node configures and activates itself; with `false` a 
 does so. `params_file` may be left out: every parameter has a default. An argument that is given
 goes before the parameter file, one that is not leaves it alone. A `params_file` that is not there
 is an error: the defaults must not pass for it. The launch ends when the node ends, with an error
-if the node does; with `respawn:=true` the node is started again instead.
+if the node does; with `respawn:=true` the node is started again instead. With `page:=true` a live
+page is served at http://127.0.0.1:8090/.
 
 """
 
 # ruff takes `launch` for the folder of that name, and not for the package.
 # ruff: noqa: I001
 from pathlib import Path
+import sys
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
+from launch.actions import DeclareLaunchArgument, ExecuteProcess, OpaqueFunction, Shutdown
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import LifecycleNode
 from launch_ros.parameter_descriptions import ParameterValue
@@ -29,6 +31,7 @@ ARGUMENTS = (
     ('log_level', 'info', 'debug, info, warn, error or fatal.'),
     ('autostart', '', 'true: configure and activate at start; empty: as the parameter file says.'),
     ('respawn', 'false', 'true: start the node again when it has ended.'),
+    ('page', 'false', 'true: serve a live page to browsers on this machine.'),
     ('respawn_delay', '2.0', 'Time after which it is started again [s].'),
 )
 
@@ -51,8 +54,16 @@ def end(event, context):
     return Shutdown(reason=f'{event.process_name} has ended')
 
 
+def make_page(context):
+    """Return the process that serves the page, if it is asked for."""
+    if LaunchConfiguration('page').perform(context).lower() != 'true':
+        return []
+    command = [sys.executable, '-m', 'ballscrew_monitor', 'page']
+    return [ExecuteProcess(cmd=command, output='screen')]
+
+
 def make_node(context):
-    """Return the node; a parameter file counts only if one is named."""
+    """Return the node, and the page; a parameter file counts only if one is named."""
     file = find_file(context)
     switches = {
         name: ParameterValue(LaunchConfiguration(name), value_type=bool)
@@ -72,7 +83,7 @@ def make_node(context):
         parameters=[*filter(None, [file, switches])],
         arguments=['--ros-args', '--log-level', LaunchConfiguration('log_level')],
     )
-    return [node]
+    return [node, *make_page(context)]
 
 
 def generate_launch_description():

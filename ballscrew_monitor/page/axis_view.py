@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The newest of all that is known of one axis, and its last minutes, as frames."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 import math
 from typing import Any
 
-from ballscrew_monitor.messages.diagnostics import INACTIVE as NODE_INACTIVE
+from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.history import columns_of, History
 from ballscrew_monitor.page.records import advice_of, UNKNOWN
@@ -18,6 +18,7 @@ NOTHING = {'level': UNKNOWN, 'zone': UNKNOWN, 'headline': 'nothing has been hear
 NO_LIMITS = dict.fromkeys(('efficiency_limit', 'rcs_limit', 'light_load_N', 'standstill_rpm'))
 INACTIVE, GONE, ACTIVE = 'inactive', 'gone', 'active'
 """States of a node."""
+LUBRICATION, INPUTS, _ = diagnostics.PARTS
 
 
 class AxisView:
@@ -34,6 +35,7 @@ class AxisView:
         self.no_map = 'the surface of this axis is not known yet'
         self.health: Mapping[str, Any] | None = None
         self.events: dict[int, Mapping[str, Any]] = {}
+        self.acknowledged: dict[int, str] = {}  # by whom, of events by their numbers
         self.limit: Mapping[str, Any] | None = None
         self.surface: Surface | None = None
         self.map_frame: bytes | None = None
@@ -71,8 +73,8 @@ class AxisView:
     def hear_words(self, part: str, words: str) -> None:
         """Take what the diagnostics say of a part of the axis."""
         self.words[part] = words
-        if self.standing != GONE:
-            self.stand(INACTIVE if words == NODE_INACTIVE else ACTIVE)
+        if part == LUBRICATION and self.standing != GONE:
+            self.stand(INACTIVE if words == diagnostics.INACTIVE else ACTIVE)
 
     def stand(self, standing: str) -> None:
         """Take the state of the node."""
@@ -89,7 +91,28 @@ class AxisView:
             self.events[record['id']] = record
             for old in sorted(self.events)[:-MOST_EVENTS]:
                 del self.events[old]
+                self.acknowledged.pop(old, None)
             self._events_are_news = True
+
+    def show_events(self, records: Iterable[Mapping[str, Any]]) -> None:
+        """Take all events as they are now, in place of those before."""
+        events = {record['id']: record for record in records}
+        self._events_are_news |= events != self.events
+        self.events = events
+
+    def begin_again(self) -> None:
+        """Forget the rows, as time has jumped."""
+        self.history, self._sent, self.is_changed = History(), 0, True
+
+    @property
+    def active_events(self) -> list[int]:
+        """Return the numbers of the events that are active."""
+        return [number for number, event in self.events.items() if event['active']]
+
+    def acknowledge(self, numbers: Iterable[int], name: str) -> None:
+        """Remember who has acknowledged some events."""
+        self.acknowledged |= dict.fromkeys(numbers, name)
+        self._events_are_news = True
 
     def age(self, now: float) -> float:
         """Return the time since the last state [s], NaN before the first."""
@@ -141,20 +164,21 @@ class AxisView:
         return frame('events', {'axis': self.name, 'events': events})
 
     def _told(self, event: Mapping[str, Any]) -> dict[str, Any]:
-        return {**event, 'advice': advice_of(event, self.lead)}
+        by = self.acknowledged.get(event['id'], '')
+        told = {'advice': advice_of(event, self.lead), 'since_s': event['duration_s']}
+        return {**event, **told, 'acknowledged': bool(by), 'acknowledged_by': by}
 
     def _state_frame(self, now: float, since: int, *, health: bool) -> bytes:
-        event = self.events[max(self.events)] if self.events else None
-        active = event is not None and event['active']
+        told = self._told(self.events[max(self.events)]) if self.events else None
         record = {
             'axis': self.name,
             **self.state,
             'age_s': self.age(now),
-            'advice': self._told(event)['advice'] if event is not None and active else '',
-            'event': event and {**event, 'since_s': event['duration_s']},
+            'advice': told['advice'] if told is not None and told['active'] else '',
+            'event': told,
             'limit': self.limit,
             'standing': self.standing,
-            'inputs_words': self.words.get('Inputs', ''),
+            'inputs_words': self.words.get(INPUTS, ''),
         }
         if health:
             record['health'] = self.health

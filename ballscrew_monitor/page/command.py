@@ -4,41 +4,104 @@
 
 import argparse
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+import contextlib
 import dataclasses
 from pathlib import Path
 import socket
 import ssl
 import threading
-from typing import Any
+from typing import Protocol
 
 from ballscrew_monitor.core.interrupts import DONE, interrupts
+from ballscrew_monitor.page.acting import Acting, LONG, refusals
 from ballscrew_monitor.page.app import PageApp
 from ballscrew_monitor.page.guard import is_loopback, read_token, Tokens
 from ballscrew_monitor.page.hub import Hub
 from ballscrew_monitor.page.metrics import HubCollector, Metrics
-from ballscrew_monitor.page.questions import Questions
+from ballscrew_monitor.page.questions import Handler, Questions
+from ballscrew_monitor.page.recording import recorded_axes, Recording
 from ballscrew_monitor.page.ros_side import RosSide
 from ballscrew_monitor.page.server import bound_socket, PageOptions, server_of
 from ballscrew_monitor.page.what_if import WhatIf
-from ballscrew_monitor.recordings.words import say
+from ballscrew_monitor.recordings.opener import opened_log
+from ballscrew_monitor.recordings.words import say, shown_progress
+from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.settings.middleware import notice
 from ballscrew_monitor.settings.qos import started_node
+from rclpy.node import Node
 from surrogate.files import InputError
 from surrogate.surface import Surface
 
 POLL = 0.1  # [s] until a signal is noticed
 
 
-def page_command(args: argparse.Namespace) -> int:
-    """Serve until stopped; return the exit code. Raises InputError for options that are wrong."""
+def page_command(args: argparse.Namespace, nominal: Path) -> int:
+    """
+    Serve until stopped; return the exit code. Raises InputError for what is wrong.
+
+    `nominal` are the parameters of a recording that carries none.
+
+    """
     options = _checked(args)
     with interrupts(threading.Event()) as stopped, bound_socket(options) as bound:
         options = dataclasses.replace(options, port=bound.getsockname()[1])
-        say(*filter(None, [notice()]))
-        with started_node('ballscrew_page') as node:
-            asyncio.run(_serve(options, bound, node, lambda: bool(stopped)))
+        with contextlib.ExitStack() as stack:
+            begin = _begin_log(args, nominal) if args.log else _begin_node(options, stack)
+            asyncio.run(_serve(options, bound, begin, lambda: bool(stopped)))
     return DONE
+
+
+class Source(Protocol):
+    """Where the axes come from: nodes or a recording."""
+
+    @property
+    def handlers(self) -> Mapping[str, Handler]:
+        """Return what answers the requests that are its own."""
+
+    async def follow(self) -> None:
+        """Bring what is new to the hub until cancelled."""
+
+
+Begin = Callable[[Hub], Source]
+"""Makes the source of a hub, in the thread of the server."""
+
+
+def _begin_log(args: argparse.Namespace, nominal: Path) -> Begin:
+    """Judge the recording; return what plays it."""
+    with opened_log(args.log, mapping=args.map) as bag:
+        parameters = parameters_for(bag, args.params, nominal)
+        say(f'parameters: {parameters.origin}', *parameters.sentences)
+        with shown_progress(bag.duration) as on_done:
+            axes = recorded_axes(bag, parameters, on_done)
+    return lambda hub: Recording(hub, axes)
+
+
+def _begin_node(options: PageOptions, stack: contextlib.ExitStack) -> Begin:
+    """Join the ROS graph; return what follows its nodes."""
+    say(*filter(None, [notice()]))
+    node = stack.enter_context(started_node('ballscrew_page'))
+    return lambda hub: LiveSource(node, hub, options)
+
+
+class LiveSource:
+    """The nodes in the ROS graph."""
+
+    def __init__(self, node: Node, hub: Hub, options: PageOptions) -> None:
+        """Follow them through a `node`."""
+        post = asyncio.get_running_loop().call_soon_threadsafe
+        self._ros = RosSide(node, hub, post, only=options.node)
+        self.handlers = Acting(node, hub).handlers if options.acting else refusals()
+
+    async def follow(self) -> None:
+        """Listen until cancelled."""
+        self._ros.start()
+        try:
+            while self._ros.failure is None:
+                await asyncio.sleep(POLL)
+        finally:
+            self._ros.close()
+        raise self._ros.failure
 
 
 def _checked(args: argparse.Namespace) -> PageOptions:
@@ -62,6 +125,7 @@ def _checked(args: argparse.Namespace) -> PageOptions:
         cert=args.cert,
         key=args.key,
         language=args.language,
+        acting=args.allow_acting,
         oils=tuple(map(Surface.load, args.oils)),
     )
 
@@ -75,26 +139,24 @@ def _check_certificate(cert: Path, key: Path) -> None:
 
 
 async def _serve(
-    options: PageOptions, bound: socket.socket, node: Any, is_stopped: Callable[[], bool]
+    options: PageOptions, bound: socket.socket, begin: Begin, is_stopped: Callable[[], bool]
 ) -> None:
-    """Serve what the ROS side of a `node` hears."""
-    hub, tokens = Hub(), Tokens(options.token)
-    ros = RosSide(node, hub, asyncio.get_running_loop().call_soon_threadsafe, only=options.node)
+    """Serve what a source brings."""
+    hub, tokens = Hub(acting=options.acting), Tokens(options.token)
+    what_if, source = WhatIf(hub, options.oils), begin(hub)
     metrics = Metrics(HubCollector(hub, lambda: tokens.wrong))
-    what_if = WhatIf(hub, options.oils)
-    app = PageApp(
-        hub, Questions(what_if.handlers).answer, tokens, metrics, language=options.language
-    )
+    answer = Questions({**what_if.handlers, **source.handlers}, long=LONG).answer
+    app = PageApp(hub, answer, tokens, metrics, language=options.language)
     server = server_of(options, app.guarded(options.host))
-    ros.start()
-    try:
-        print(f'page {options.url} (Ctrl-C ends it)', flush=True)
-        following = asyncio.create_task(what_if.follow())
-        serving = asyncio.create_task(server.serve(sockets=[bound]))
-        while not is_stopped() and not serving.done():
-            await asyncio.sleep(POLL)
-        server.should_exit = True
-        await serving
-        following.cancel()
-    finally:
-        await asyncio.to_thread(ros.close)
+    print(f'page {options.url} (Ctrl-C ends it)', flush=True)
+    tasks = [asyncio.create_task(one.follow()) for one in (what_if, source)]
+    serving = asyncio.create_task(server.serve(sockets=[bound]))
+    while not is_stopped() and not serving.done() and not any(task.done() for task in tasks):
+        await asyncio.sleep(POLL)
+    server.should_exit = True
+    await serving
+    for task in tasks:
+        task.cancel()
+    for outcome in await asyncio.gather(*tasks, return_exceptions=True):
+        if isinstance(outcome, Exception):
+            raise outcome

@@ -11,7 +11,7 @@ when it reads again: what waits is bounded, and what it shows is whole.
 
 import asyncio
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from ballscrew_monitor.page.axis_view import ACTIVE, AxisView, GONE
@@ -93,6 +93,7 @@ class Hub:
         self.axes: dict[str, AxisView] = {}
         self.browsers: set[Browser] = set()
         self.notices: dict[str, str] = {}  # why a node is not shown
+        self.clock: Callable[[], Mapping[str, Any]] | None = None  # of a recording
         self._is_changed = False
         self._dropped = 0  # of browsers that have left
 
@@ -161,6 +162,8 @@ class Hub:
 
     def _greeting(self, language: str, now: float) -> Iterable[bytes]:
         yield frame('hello', self.hello(language))
+        if self.clock is not None:
+            yield frame('clock', self.clock())
         for view in self.axes.values():
             yield from view.greeting(now)
 

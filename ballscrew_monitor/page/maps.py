@@ -158,7 +158,7 @@ def point_of(
         direction=Direction.POSITIVE if speed else Direction.UNKNOWN,
     )
     found = estimate(point, surface, rcs_limit=limits.rcs)
-    zone, words = _judged(found.rcs, found.efficiency, load, limits)
+    zone, words = judged(found.rcs, found.efficiency, load, limits)
     return {
         'speed_rpm': abs(speed) / RPM,
         'load_N': load,
@@ -173,8 +173,8 @@ def point_of(
     }
 
 
-def _judged(rcs: float, efficiency: float, load: float, limits: Limits) -> tuple[str, str]:
-    """Return the zone of numbers, and what is wrong with them."""
+def judged(rcs: float, efficiency: float, load: float, limits: Limits) -> tuple[str, str]:
+    """Return the zone of numbers at an opposing load [N], and what is wrong with them."""
     if math.isnan(rcs):
         return UNKNOWN, ''
     if rcs >= limits.rcs:
@@ -201,14 +201,14 @@ def ghosts_of(
         found = look_up_many(surface, speed, motion.load, heat)
         known = np.isfinite(found['rcs'])
         outside = known & ~is_optimal(motion.load, found['rcs'], found['efficiency'], limits)
-        judged = steps[known].sum()
+        in_all = steps[known].sum()
         ghosts.append(
             {
                 'factor': factor,
-                'outside_share': float(steps[outside].sum() / judged) if judged else math.nan,
+                'outside_share': float(steps[outside].sum() / in_all) if in_all else math.nan,
                 'lost_J': float(np.nansum(found['friction_torque'] * speed * steps)),
                 'duration_s': float(steps.sum()),
-                'unknown_share': float(1.0 - judged / steps.sum()) if steps.sum() else math.nan,
+                'unknown_share': float(1.0 - in_all / steps.sum()) if steps.sum() else math.nan,
                 'array': f'path{at}',
             }
         )

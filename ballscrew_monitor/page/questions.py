@@ -1,9 +1,10 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a browser may ask over its socket: read within bounds, answered one at a time."""
+"""Requests of a browser over its socket: read within bounds, answered one at a time."""
 
+import asyncio
 from collections import deque
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Collection, Mapping
 import logging
 import time
 from typing import Any
@@ -36,28 +37,55 @@ class Manners:
 class Questions:
     """Hands requests to their handlers."""
 
-    def __init__(self, handlers: Mapping[str, Handler], clock: Clock = time.monotonic) -> None:
-        """Answer by `handlers` by name, on a steady `clock` [s]."""
-        self._handlers, self._clock = handlers, clock
+    def __init__(
+        self,
+        handlers: Mapping[str, Handler],
+        clock: Clock = time.monotonic,
+        *,
+        long: Collection[str] = (),
+    ) -> None:
+        """
+        Answer by `handlers` by name, on a steady `clock` [s].
+
+        While one of those named `long` answers, the browser may ask for more.
+
+        """
+        self._handlers, self._clock, self._long = handlers, clock, long
+        self._under_way: set[asyncio.Task[None]] = set()
         self._manners: weakref.WeakKeyDictionary[Browser, Manners] = weakref.WeakKeyDictionary()
 
     async def answer(self, browser: Browser, text: str) -> bool:
         """Answer a request; tell whether the browser may stay."""
         manners = self._manners.setdefault(browser, Manners())
-        number: Any = None
+        request: Mapping[str, Any] = {'id': None}
         try:
             self._check_pace(manners)
             request = _read(text)
-            number = request['id']
-            record, arrays = await self._handler(request)(browser, request)
+            handler = self._handler(request)
         except InputError as error:
             manners.faults += 1
-            record, arrays = {'ok': False, 'message': str(error)}, {}
+            _tell(browser, request, _refusal(str(error)))
+            return manners.faults <= MOST_FAULTS
+        answering = asyncio.create_task(self._answer(handler, browser, request))
+        if request['do'] in self._long:
+            self._under_way.add(answering)
+            answering.add_done_callback(self._under_way.discard)
+        else:
+            await answering
+        return True
+
+    async def _answer(
+        self, handler: Handler, browser: Browser, request: Mapping[str, Any]
+    ) -> None:
+        """Answer a request by its handler, whatever becomes of that."""
+        try:
+            answer = await handler(browser, request)
+        except InputError as error:
+            answer = _refusal(str(error))
         except Exception as error:  # the page goes on, whatever it is
             LOG.exception('a request failed')
-            record, arrays = {'ok': False, 'message': f'a fault of the program: {error!r}'}, {}
-        browser.reply(frame('answer', {'id': number, 'ok': True, 'message': '', **record}, arrays))
-        return manners.faults <= MOST_FAULTS
+            answer = _refusal(f'a fault of the program: {error!r}')
+        _tell(browser, request, answer)
 
     def _handler(self, request: Mapping[str, Any]) -> Handler:
         known, asked = self._handlers, request.get('do')
@@ -73,8 +101,17 @@ class Questions:
             raise InputError(f'more than {MOST_A_SECOND} requests came within a second')
 
 
+def _refusal(message: str) -> Answer:
+    return {'ok': False, 'message': message}, {}
+
+
+def _tell(browser: Browser, request: Mapping[str, Any], answer: Answer) -> None:
+    record = {'id': request['id'], 'ok': True, 'message': '', **answer[0]}
+    browser.reply(frame('answer', record, answer[1]))
+
+
 def _read(text: str) -> Mapping[str, Any]:
-    """Return a request; raises InputError for what is none."""
+    """Return a request; raises InputError for anything else."""
     if len(text) > LARGEST:
         raise InputError(f'the request has {len(text)} characters, allowed are {LARGEST}')
     try:

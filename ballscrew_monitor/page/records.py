@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import math
 from typing import Any
 
-from ballscrew_monitor.core.conversions import seconds, signed
+from ballscrew_monitor.core.conversions import Direction, seconds, signed
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import InputState
 from ballscrew_monitor.core.judgement import Level, Zone
@@ -34,6 +34,8 @@ def row_of(state: BallScrewState) -> list[float]:
     point, result = state.point, state.result
     still = BallScrewState.GATE_STANDSTILL in state.active_gates
     light = BallScrewState.GATE_LIGHT_LOAD in state.active_gates
+    back = point.direction == Direction.NEGATIVE
+    direction = Direction.NEGATIVE if back else Direction.POSITIVE
     return [
         seconds(stamp_of(state.header.stamp)),
         _fresh(point.speed / RPM, point.speed_source),
@@ -42,7 +44,7 @@ def row_of(state: BallScrewState) -> list[float]:
         NAN if still or light else result.efficiency,
         NAN if still else result.rcs,
         NAN if still else result.film_ratio,
-        NAN if still else signed(result.driving_torque, point.direction),
+        NAN if still else signed(result.driving_torque, direction),
         state.measured_torque,
         float(state.level),
     ]
@@ -150,8 +152,6 @@ def event_record(event: msg.OutOfZone) -> dict[str, Any]:
         'limit': event.cause.limit,
         'active': event.active,
         'shelved': event.shelved,
-        'acknowledged': False,
-        'acknowledged_by': '',
         'target_rpm': event.cause.target_speed / RPM,
         'target_load_N': event.cause.target_load,
         'words': event.advice,

@@ -46,6 +46,7 @@ class RosSide:
         self._node, self._hub, self._post, self._only = node, hub, post, only
         self._links: dict[str, AxisLink] = {}
         self._views: dict[str, AxisView] = {}
+        self.failure: Exception | None = None
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._spin, name='ros')
         node.create_subscription(DiagnosticArray, '/diagnostics', self._on_diagnostics, 10)
@@ -61,10 +62,13 @@ class RosSide:
         self._thread.join()
 
     def _spin(self) -> None:
-        self._look()
-        while not self._stopped.is_set():
-            assert self._node.executor is not None
-            self._node.executor.spin_once(timeout_sec=POLL)
+        assert self._node.executor is not None
+        try:
+            self._look()
+            while not self._stopped.is_set():
+                self._node.executor.spin_once(timeout_sec=POLL)
+        except Exception as error:  # told by the thread that waits for it
+            self.failure = error
 
     def _look(self) -> None:
         """Take up the axes that have come, and let go of those that have left."""

@@ -5,6 +5,7 @@
 from collections.abc import Iterator
 import contextlib
 import dataclasses
+import os
 from pathlib import Path
 import socket
 from typing import Any
@@ -34,6 +35,7 @@ class PageOptions:
     cert: Path | None = None
     key: Path | None = None
     language: str = ''
+    acting: bool = False
     oils: tuple[Surface, ...] = ()
 
     @property
@@ -41,6 +43,11 @@ class PageOptions:
         """Return what to type into a browser."""
         host = f'[{self.host}]' if ':' in self.host else self.host
         return f'{"https" if self.cert else "http"}://{host}:{self.port}/'
+
+
+def _why(error: OSError) -> str:
+    """Return the reason without the address that Python adds to it."""
+    return str(error) if error.errno is None else os.strerror(error.errno)
 
 
 @contextlib.contextmanager
@@ -51,7 +58,7 @@ def bound_socket(options: PageOptions) -> Iterator[socket.socket]:
         bound = socket.create_server((options.host, options.port), family=family)
     except OSError as error:
         raise InputError(
-            f'port {options.port} of {options.host} cannot be opened ({error.strerror}): stop the '
+            f'port {options.port} of {options.host} cannot be opened ({_why(error)}): stop the '
             'page that has it, or give another --port or --host'
         ) from None
     with bound:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 import dataclasses
 import functools
 import math
-from typing import Any, TYPE_CHECKING
+from typing import Any, Protocol, TYPE_CHECKING
 
 from ballscrew_monitor.core.conversions import POSITION_UNITS, Scaling, SECOND
 from ballscrew_monitor.core.estimate import PointSource
@@ -31,11 +31,22 @@ from surrogate.surface import Surface
 
 if TYPE_CHECKING:  # they ask for packages that printing does not need
     from ballscrew_monitor.report.health_history import AxisHistory, HistoryMaker
-    from ballscrew_monitor.report.log_report import RowStore
 
 Blocks = Callable[[], Iterable[JudgedColumns]]
 """Gives the blocks of rows of an axis in order, as often as it is called."""
 RCS = 'RCS'
+
+
+class RowKeeper(Protocol):
+    """Keeps the blocks of rows of all axes."""
+
+    def add(self, block: JudgedColumns) -> None:
+        """Take a block."""
+
+    def blocks(self, axis: str) -> Iterable[JudgedColumns]:
+        """Return the blocks of an axis in order."""
+
+
 FIRST_DATE = 978_307_200.0
 """Stamps before this [s since 1970] are no calendar: logs without one begin in the year 2000."""
 OnShare = Callable[[float], None]
@@ -241,7 +252,7 @@ def judge_log(
     parameters: LogParameters,
     *,
     on_share: OnShare = ignore,
-    rows: 'RowStore | None' = None,
+    rows: RowKeeper | None = None,
     on_state: OnState | None = None,
     health: 'type[HistoryMaker] | None' = None,
 ) -> LogCase:

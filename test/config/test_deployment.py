@@ -2,15 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """The systemd unit and the layouts name what is there."""
 
+import argparse
 import configparser
+import importlib
 import json
 from pathlib import Path
 import re
 import xml.etree.ElementTree as ElementTree
 
+from ballscrew_monitor import options
 from ballscrew_monitor.settings import parameters
 from ballscrew_msgs.msg import BallScrewState
 from rosidl_parser.definition import BasicType, NamespacedType
+import yaml
 
 CONFIG = Path(__file__).resolve().parents[2] / 'config'
 STATE = '/ballscrew_monitor/x/state'
@@ -78,3 +82,26 @@ def test_plots_of_foxglove_show_a_whole_recording_under_titles_and_labels():
         assert all(path['label'] for path in plot['paths'])
         # A width that follows the playhead leaves a recording empty until it is played.
         assert 'followingViewWidth' not in plot
+
+
+def test_the_dashboard_draws_what_the_page_serves():
+    """Every metric that Grafana asks for is one of `ballscrew page`."""
+    metrics = importlib.import_module('ballscrew_monitor.page.metrics')
+    names = {f'ballscrew_{name}' for name in metrics.GAUGES}
+    names |= {f'ballscrew_{name}_total' for name in metrics.COUNTERS}
+    names |= {f'ballscrew_page_{name}' for name in ('browsers', 'dropped_frames_total')}
+    names |= {'ballscrew_state_age_seconds'}
+    dashboard = json.loads((CONFIG / 'grafana_dashboard.json').read_text())
+    drawn = [one['expr'] for panel in dashboard['panels'] for one in panel['targets']]
+    asked = {name for expr in drawn for name in re.findall(r'\bballscrew_\w+', expr)}
+    assert asked <= names
+    assert {'ballscrew_level', 'ballscrew_health', 'ballscrew_rcs_ratio'} <= asked
+
+
+def test_prometheus_asks_where_the_page_is_served():
+    example = yaml.safe_load((CONFIG / 'prometheus.yml').read_text())
+    (job,) = example['scrape_configs']
+    parser = argparse.ArgumentParser()
+    options.add_page(parser)
+    served = parser.parse_args([])
+    assert job['static_configs'] == [{'targets': [f'{served.host}:{served.port}']}]

@@ -28,7 +28,7 @@ NAMES = (
 def launched(monkeypatch):
     """Return a function that runs the file with some arguments; it gives arguments and node."""
     given = dict.fromkeys(('params_file', 'use_sim_time', 'autostart'), '')
-    given |= {'respawn': 'false', 'respawn_delay': '2.0'}
+    given |= {'respawn': 'false', 'respawn_delay': '2.0', 'page': 'false'}
     recorder = mock.MagicMock()
     recorder.DeclareLaunchArgument.side_effect = lambda name, **facts: (name, facts)
     recorder.OpaqueFunction.side_effect = lambda *, function: function(None)
@@ -43,7 +43,7 @@ def launched(monkeypatch):
     def run(**arguments):
         given.update(arguments)
         *declared, nodes = runpy.run_path(str(FILE))['generate_launch_description']()
-        assert len(nodes) == 1
+        assert len(nodes) == 1 + (given['page'] == 'true')
         return dict(declared), recorder.LifecycleNode.call_args.kwargs
 
     return run
@@ -51,7 +51,7 @@ def launched(monkeypatch):
 
 def test_arguments_have_defaults_and_descriptions(launched):
     declared, _ = launched(params_file='')
-    names = 'params_file namespace use_sim_time log_level autostart respawn respawn_delay'
+    names = 'params_file namespace use_sim_time log_level autostart respawn page respawn_delay'
     assert list(declared) == names.split()
     for facts in declared.values():
         assert facts['description'].endswith('.')
@@ -101,3 +101,9 @@ def test_the_launch_ends_as_its_node_ends(launched):
 def test_a_node_that_is_to_be_started_again_does_not_end_the_launch(launched):
     _, node = launched(respawn='true', respawn_delay='0.5')
     assert (node['respawn'], node['respawn_delay'], node['on_exit']) == (True, 0.5, None)
+
+
+def test_the_page_is_a_process_beside_the_node(launched):
+    launched(page='true')
+    command = sys.modules['launch.actions'].ExecuteProcess.call_args.kwargs['cmd']
+    assert command == [sys.executable, '-m', 'ballscrew_monitor', 'page']

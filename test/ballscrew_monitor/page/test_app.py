@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is served, and sockets that are misused."""
+"""Files that are served, and sockets that are misused."""
 
 from collections import deque
 import contextlib

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Who is let in, over real sockets, and what every answer carries."""
+"""Readers that are let in, over real sockets, and headers that every answer carries."""
 
 import asyncio
 from concurrent.futures import ThreadPoolExecutor

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What browsers are sent, and what becomes of one that does not keep up."""
+"""Frames for browsers, and the fate of one that does not keep up."""
 
 import asyncio
 

@@ -1,0 +1,193 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Acts of a browser on a node, where they are allowed: acknowledge, shelve, and ask for a solve.
+
+The thread of the server waits without holding others up; everything of ROS is called in the thread
+of the executor.
+
+"""
+
+import asyncio
+from collections.abc import Callable, Mapping
+import math
+from typing import Any
+
+from ballscrew_monitor.clients.solve import goal_of, Question
+from ballscrew_monitor.page import maps
+from ballscrew_monitor.page.axis_view import AxisView
+from ballscrew_monitor.page.frames import frame
+from ballscrew_monitor.page.hub import Browser, Hub
+from ballscrew_monitor.page.questions import Answer, Handler, number_in, text_in
+from ballscrew_monitor.page.records import UNKNOWN, WORDS_OF_REGIME
+from ballscrew_msgs.action import SolveOperatingPoint
+from ballscrew_msgs.srv import ShelveAlarm
+from rclpy.action import ActionClient
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+from surrogate.files import InputError
+from surrogate.units import MINUTE, RPM
+
+ACTS = ('acknowledge', 'shelve', 'solve', 'cancel')
+LONG = ('solve',)
+"""Acts during which the browser may ask for more."""
+POLL = 0.02  # [s] until an answer is noticed
+PATIENCE = 10.0  # [s] for an answer of the node
+REPEAT = 2.0  # [s] after which a service is asked again: a first answer may be lost
+MOST_SOLVES = 4
+REFUSED = 'acting is off: start the page with --allow-acting'
+
+
+def refusals() -> dict[str, Handler]:
+    """Return what answers the acts where acting is off."""
+
+    async def refuse(browser: Browser, request: Mapping[str, Any]) -> Answer:
+        raise InputError(REFUSED)
+
+    return dict.fromkeys(ACTS, refuse)
+
+
+class Acting:
+    """Calls services and the action of the nodes of a hub."""
+
+    def __init__(self, node: Node, hub: Hub) -> None:
+        """Act through a `node` that another thread spins."""
+        self._node, self._hub = node, hub
+        self._solves: dict[tuple[Browser, Any], Any] = {}
+
+    @property
+    def handlers(self) -> dict[str, Handler]:
+        """Return what answers the acts."""
+        return {name: getattr(self, f'_{name}') for name in ACTS}
+
+    async def _acknowledge(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
+        view, name = self._hub.view(text_in(request, 'axis')), text_in(request, 'name')
+        active = view.active_events
+        said = await self._call(view, Trigger, f'{view.name}/acknowledge', Trigger.Request())
+        view.acknowledge(active, name)
+        return {'message': said}, {}
+
+    async def _shelve(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
+        view, name = self._hub.view(text_in(request, 'axis')), text_in(request, 'name')
+        duration = number_in(request, 'minutes') * MINUTE
+        reason = f'{text_in(request, "reason")} ({name})' if duration else ''
+        asked = ShelveAlarm.Request(axis=view.axis, duration=duration, reason=reason)
+        return {'message': await self._call(view, ShelveAlarm, f'{view.node}/shelve', asked)}, {}
+
+    async def _call(self, view: AxisView, kind: Any, name: str, request: Any) -> str:
+        """Return what a service answers; raises InputError with its refusal, or without one."""
+        client = await self._in_ros(self._node.create_client, kind, name)
+        answers: list[Any] = []
+        try:
+            await self._until(client.service_is_ready, PATIENCE, f'{view.node} does not answer')
+            for patience in (REPEAT, PATIENCE):
+                answers.append(await self._in_ros(client.call_async, request))
+                if await _waited(lambda: any(one.done() for one in answers), patience):
+                    break
+            else:
+                raise InputError(f'{view.node} does not answer within {PATIENCE:g} s')
+        finally:
+            await self._in_ros(self._node.destroy_client, client)
+        answer = next(one.result() for one in answers if one.done())
+        if not answer.success:
+            raise InputError(answer.message)
+        return str(answer.message)
+
+    async def _solve(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
+        view = self._hub.view(text_in(request, 'axis'))
+        if len(self._solves) >= MOST_SOLVES:
+            raise InputError(f'{MOST_SOLVES} solves are under way, wait for one of them to end')
+        question = Question(
+            axis=view.axis,
+            speed=number_in(request, 'speed_rpm') * RPM,
+            load=number_in(request, 'load_N'),
+            temperature=number_in(request, 'temperature_degC', math.nan),
+        )
+        key = browser, request['id']
+        self._solves[key] = None
+        action = f'{view.node}/solve'
+        client = await self._in_ros(ActionClient, self._node, SolveOperatingPoint, action)
+        try:
+            result = await self._solved(client, question, key)
+        finally:
+            del self._solves[key]
+            await self._in_ros(client.destroy)
+        if not result.success:
+            raise InputError(result.status)
+        return _solve_record(question, result, view), {}
+
+    async def _solved(self, client: Any, question: Question, key: tuple[Browser, Any]) -> Any:
+        """Return the result of a goal; a browser that leaves takes it back."""
+        await self._until(client.server_is_ready, PATIENCE, 'the node offers no solve')
+        post = asyncio.get_running_loop().call_soon_threadsafe
+        goal = goal_of(question)
+        sent = await self._in_ros(
+            client.send_goal_async, goal, lambda step: post(_tell_progress, *key, step)
+        )
+        await self._until(sent.done, PATIENCE, 'the node does not answer')
+        handle = sent.result()
+        if not handle.accepted:
+            raise InputError('the node refuses this solve, its log says why')
+        self._solves[key] = handle
+        answer = await self._in_ros(handle.get_result_async)
+        while not answer.done():
+            if key[0] not in self._hub.browsers:
+                await self._in_ros(handle.cancel_goal_async)
+                raise InputError('the browser has left')
+            if not client.server_is_ready():
+                raise InputError('the node has left during the solve')
+            await asyncio.sleep(POLL)
+        return answer.result().result
+
+    async def _cancel(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
+        handle = self._solves.get((browser, request.get('solve')))
+        if handle is None:
+            raise InputError('there is no such solve under way')
+        await self._in_ros(handle.cancel_goal_async)
+        return {'message': 'the solve is taken back'}, {}
+
+    async def _in_ros(self, call: Callable[..., Any], *args: Any) -> Any:
+        """Return what a call gives in the thread of the executor."""
+        assert self._node.executor is not None
+        task = self._node.executor.create_task(call, *args)
+        await self._until(task.done, PATIENCE, 'ROS does not answer')
+        return task.result()
+
+    async def _until(self, condition: Callable[[], Any], seconds: float, complaint: str) -> None:
+        if not await _waited(condition, seconds):
+            raise InputError(f'{complaint} within {seconds:g} s')
+
+
+async def _waited(condition: Callable[[], Any], seconds: float) -> bool:
+    """Wait some `seconds` [s] for a condition; tell whether it has come."""
+    clock = asyncio.get_running_loop().time
+    end = clock() + seconds
+    while not condition():
+        if clock() > end:
+            return False
+        await asyncio.sleep(POLL)
+    return True
+
+
+def _tell_progress(browser: Browser, number: Any, message: Any) -> None:
+    step = message.feedback
+    record = {'id': number, 'share': step.fraction, 'words': step.stage}
+    browser.reply(frame('progress', record | {'left_s': step.seconds_left}))
+
+
+def _solve_record(question: Question, result: Any, view: AxisView) -> dict[str, Any]:
+    """Return a result as that of `read`, and what it did to the surface."""
+    full = result.full
+    zone, _ = maps.judged(full.rcs, full.efficiency, question.load, maps.limits_of(view.limits))
+    return {
+        'speed_rpm': question.speed / RPM,
+        'load_N': question.load,
+        'temperature_degC': question.temperature,
+        'efficiency': full.efficiency,
+        'rcs': full.rcs,
+        'film_ratio': full.film_ratio,
+        'torque_N_m': full.driving_torque,
+        'regime': WORDS_OF_REGIME.get(full.regime, UNKNOWN),
+        'zone': zone,
+        'words': '; '.join(filter(None, (result.status, result.correction))),
+    }

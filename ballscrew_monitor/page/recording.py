@@ -1,0 +1,263 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A recording on the page: its judged columns along a clock that plays, pauses and jumps."""
+
+import asyncio
+from collections.abc import Iterable, Mapping
+import dataclasses
+from typing import Any
+
+from ballscrew_monitor.core.conversions import celsius, SECOND, seconds
+from ballscrew_monitor.core.estimate import PointSource
+from ballscrew_monitor.core.judgement import Level, Reason, Zone
+from ballscrew_monitor.page.axis_view import AxisView
+from ballscrew_monitor.page.frames import frame
+from ballscrew_monitor.page.history import SPAN
+from ballscrew_monitor.page.hub import Browser, Hub, PERIOD
+from ballscrew_monitor.page.questions import Answer, Handler, number_in
+from ballscrew_monitor.page.records import LEVELS, UNKNOWN, WORDS_OF_REGIME, ZONES
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.columns import JudgedColumns, LIGHT_LOAD, STANDSTILL
+from ballscrew_monitor.recordings.summary import EventRecord
+from ballscrew_monitor.report.judging import AxisCase, judge_log, OnShare
+from ballscrew_monitor.report.parameters import LogParameters
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.files import InputError
+from surrogate.units import RPM
+
+Array = NDArray[np.float64]
+RATES = (0.1, 100.0)
+CLOCK_PERIOD = 0.5  # [s] between two frames of the clock
+CODES = ('zone', 'regime', 'reason')
+REASONS = {int(reason): reason.text for reason in Reason}
+QUANTITIES = {'RCS': 'rcs', 'efficiency': 'efficiency'}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Course:
+    """Rows of an axis as those of a history, and their codes of zone, regime and reason."""
+
+    rows: Array
+    codes: NDArray[np.uint8]
+
+    def until(self, stamp: float) -> int:
+        """Return how many rows are not after a stamp [s]."""
+        return int(np.searchsorted(self.rows[:, 0], stamp, side='right'))
+
+
+def _rows_of(block: JudgedColumns) -> Array:
+    still = block.gates & STANDSTILL != 0
+    light = still | (block.gates & LIGHT_LOAD != 0)
+    columns = (
+        block.stamp / SECOND,
+        _fresh(block.speed / RPM, block.speed_source),
+        _fresh(block.axial_load, block.axial_load_source),
+        _fresh(block.temperature + celsius(0.0), block.temperature_source),
+        np.where(light, np.nan, block.efficiency),
+        *(np.where(still, np.nan, one) for one in (block.rcs, block.film_ratio)),
+        np.where(still, np.nan, block.machine_torque),
+        block.measured_torque,
+        block.level,
+    )
+    return np.column_stack(columns)[block.published]
+
+
+def _fresh(values: Array, sources: NDArray[np.uint8]) -> Array:
+    return np.where(sources == PointSource.HELD, np.nan, values)
+
+
+def _codes_of(block: JudgedColumns) -> NDArray[np.uint8]:
+    return np.column_stack([getattr(block, name) for name in CODES])[block.published]
+
+
+class RecordedAxis:
+    """One axis of a recording and its view."""
+
+    def __init__(self, log: str, case: AxisCase, course: Course) -> None:
+        """Begin before the first row."""
+        self.course, self._case = course, case
+        self.view = AxisView(log, case.axis)
+        self._at = 0
+        surface, limits = case.surface, case.settings.limits
+        low, high = map(celsius, surface.temperature_range)
+        about = {
+            'unit': 'm/min',
+            'screw': surface.screw_name,
+            'oil': surface.oil_name,
+            'tier': surface.tier,
+            'surface_id': surface.sha256[:16],
+            'corrected': 0,
+            'temperature_low_degC': low,
+            'temperature_high_degC': high,
+        }
+        self.view.know(about, surface, '')
+        self._limits = {
+            'efficiency_limit': limits.efficiency,
+            'rcs_limit': limits.rcs,
+            'light_load_N': limits.light_load,
+            'standstill_rpm': limits.standstill_speed / RPM,
+        }
+
+    def show(self, stamp: float, now: float) -> None:
+        """Show what was until a stamp [s], at `now` [s] of a steady clock."""
+        end = self.course.until(stamp)
+        begin = self._at
+        if end < begin or stamp - self.course.rows[max(begin - 1, 0), 0] > SPAN:
+            begin = self.course.until(stamp - SPAN)
+            self.view.begin_again()
+        self._at = end
+        for row in self.course.rows[begin : max(begin, end - 1)]:
+            self.view.history.take(row)
+        if end > begin:
+            record = _state_record(self.course.rows[end - 1], self.course.codes[end - 1])
+            self.view.hear(self.course.rows[end - 1].tolist(), record, self._limits, now)
+        self.view.show_events(
+            _event_record(one, stamp)
+            for one in self._case.outcome.events
+            if seconds(one.start) <= stamp
+        )
+
+
+def _state_record(row: Array, codes: NDArray[np.uint8]) -> dict[str, Any]:
+    zone, regime, reason = codes.tolist()
+    if zone == Zone.UNKNOWN:
+        headline = REASONS[reason]
+    else:
+        headline = 'optimal' if zone == Zone.OPTIMAL else 'outside the optimal zone'
+    return {
+        'level': LEVELS.get(Level(int(row[-1])), UNKNOWN),
+        'zone': ZONES.get(zone, UNKNOWN),
+        'headline': headline,
+        'regime': WORDS_OF_REGIME.get(regime, UNKNOWN),
+        'inputs': [],
+        'shelved': None,
+        'totals': {},
+    }
+
+
+def _event_record(event: EventRecord, stamp: float) -> dict[str, Any]:
+    """Return an event as it was at a stamp [s]."""
+    begin = seconds(event.start)
+    return {
+        'id': event.event_id,
+        'begin': begin,
+        'duration_s': min(event.duration, stamp - begin),
+        'quantity': QUANTITIES.get(event.quantity, UNKNOWN),
+        'worst': event.worst_value,
+        'limit': event.limit,
+        'active': stamp < begin + event.duration,
+        'shelved': False,
+        'target_rpm': event.target_speed / RPM,
+        'target_load_N': event.target_load,
+        'words': event.advice,
+    }
+
+
+class Recording:
+    """A clock over the axes of a recording; it begins to play at once."""
+
+    def __init__(self, hub: Hub, axes: Iterable[RecordedAxis]) -> None:
+        """Show axes, at least one, on a hub."""
+        self._hub, self._axes = hub, list(axes)
+        stamps = [axis.course.rows[[0, -1], 0] for axis in self._axes]
+        firsts, lasts = zip(*stamps, strict=True)
+        self._first, self._last = float(min(firsts)), float(max(lasts))
+        self._at, self._factor, self._plays = 0.0, 1.0, True
+        for axis in self._axes:
+            hub.add(axis.view)
+        hub.clock = self.clock
+
+    @property
+    def handlers(self) -> dict[str, Handler]:
+        """Return what answers the buttons."""
+        names = ('play', 'pause', 'rate', 'seek')
+        return {name: getattr(self, f'_{name}') for name in names}
+
+    def clock(self) -> dict[str, Any]:
+        """Return how the clock stands, since the first row [s]."""
+        told = {'at_s': self._at, 'span_s': self._last - self._first}
+        return told | {'rate': self._factor, 'playing': self._plays}
+
+    def advance(self, seconds: float, now: float) -> None:
+        """Play for some `seconds` [s], at `now` [s] of a steady clock; stop at the end."""
+        span = self._last - self._first
+        if self._plays:
+            self._at = min(self._at + self._factor * seconds, span)
+            self._plays = self._at < span
+        for axis in self._axes:
+            axis.show(self._first + self._at, now)
+
+    async def follow(self) -> None:
+        """Play until cancelled."""
+        loop = asyncio.get_running_loop()
+        before = told = loop.time()
+        while True:
+            now = loop.time()
+            self.advance(now - before, now)
+            if now - told >= CLOCK_PERIOD:
+                self._tell()
+                told = now
+            before = now
+            await asyncio.sleep(PERIOD)
+
+    def _tell(self) -> None:
+        self._hub.tell(frame('clock', self.clock()))
+
+    async def _play(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
+        if self._at >= self._last - self._first:
+            self._at = 0.0
+        self._plays = True
+        return self._done()
+
+    async def _pause(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
+        self._plays = False
+        return self._done()
+
+    async def _rate(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
+        rate = number_in(request, 'x')
+        if not RATES[0] <= rate <= RATES[1]:
+            raise InputError(f'x is {rate:g}, allowed is {RATES[0]:g} to {RATES[1]:g}')
+        self._factor = rate
+        return self._done()
+
+    async def _seek(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
+        self._at = min(max(number_in(request, 's'), 0.0), self._last - self._first)
+        return self._done()
+
+    def _done(self) -> Answer:
+        self._tell()
+        return {}, {}
+
+
+class CourseKeeper:
+    """Keeps of the blocks of a recording what its courses are made of."""
+
+    def __init__(self) -> None:
+        """Begin with nothing."""
+        self._parts: dict[str, list[tuple[Array, NDArray[np.uint8]]]] = {}
+
+    def add(self, block: JudgedColumns) -> None:
+        """Take a block: the rows of which the node publishes a state."""
+        self._parts.setdefault(block.axis, []).append((_rows_of(block), _codes_of(block)))
+
+    def blocks(self, axis: str) -> Iterable[JudgedColumns]:
+        """Return none: nothing is asked for again."""
+        return ()
+
+    def course(self, axis: str) -> Course:
+        """Return the rows of an axis in the order of their stamps."""
+        rows, codes = (np.concatenate(each) for each in zip(*self._parts[axis], strict=True))
+        order = np.argsort(rows[:, 0], kind='stable')
+        return Course(rows=rows[order], codes=codes[order])
+
+
+def recorded_axes(bag: Bag, parameters: LogParameters, on_share: OnShare) -> list[RecordedAxis]:
+    """Judge a recording and return its axes; raises InputError where none has a row."""
+    keeper = CourseKeeper()
+    log = judge_log(bag, parameters, on_share=on_share, rows=keeper)
+    courses = [(case, keeper.course(case.axis)) for case in log.axes]
+    axes = [RecordedAxis(log.name, case, course) for case, course in courses if len(course.rows)]
+    if not axes:
+        raise InputError(f'{bag.path}: nothing was judged on any axis, there is nothing to show')
+    return axes

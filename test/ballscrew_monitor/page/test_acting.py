@@ -1,0 +1,127 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Acts of a browser on a real node, and their refusal where acting is off."""
+
+import asyncio
+import contextlib
+
+from ballscrew_monitor.page import acting
+from ballscrew_monitor.page.acting import Acting, refusals
+from ballscrew_monitor.page.hub import Browser, Hub
+from ballscrew_monitor.page.ros_side import RosSide
+from ballscrew_monitor.settings.qos import started_node
+import pytest
+
+NAME = '/ballscrew_monitor/x'
+# Hot oil and hardly any speed: it takes long.
+LONG = {'speed_rpm': 0.5, 'load_N': 2600.0, 'temperature_degC': 80.0}
+
+
+class Actor:
+    """A browser of a page that hears a node and may act."""
+
+    def __init__(self, node, ros_node, parts):
+        self.node, self.parts, self.browser, self.hub = node, parts, Browser(), Hub(acting=True)
+        self.hub.browsers.add(self.browser)
+        self.ros = RosSide(ros_node, self.hub, lambda act, *given: act(*given))
+        self.acting = Acting(ros_node, self.hub)
+        self.ros.start()
+
+    def until(self, condition, what):
+        view = self.hub.axes.get
+        return self.node.until(lambda: view(NAME) and condition(view(NAME)), what)
+
+    def ask(self, do, **request):
+        """Return the record of an answer."""
+        return asyncio.run(self.acting.handlers[do](self.browser, self.request(**request)))[0]
+
+    @staticmethod
+    def request(**request):
+        return {'id': 1, 'axis': NAME, **request}
+
+
+@pytest.fixture
+def actor(node, page_parts):
+    with started_node('ballscrew_page', node.domain) as ros_node:
+        made = Actor(node, ros_node, page_parts)
+        with contextlib.closing(made.ros):
+            yield made
+
+
+def test_nothing_is_done_where_acting_is_off(refused):
+    handlers = refusals()
+    assert set(handlers) == set(acting.ACTS)
+    for handler in handlers.values():
+        with refused('off'):
+            asyncio.run(handler(Browser(), {}))
+
+
+def test_a_warning_is_shelved_and_acknowledged_by_name(actor, node, says, refused):
+    node.start(x__limits__raise_delay=0.0, x__max_future=3600.0)
+    publish = node.machine()
+
+    def creep():
+        publish(0.6, -1500.0)
+        node.spin()
+
+    actor.node.wait_for(lambda: NAME in actor.hub.axes, meanwhile=node.spin)
+    view = actor.hub.axes[NAME]
+    node.wait_for(lambda: view.active_events, meanwhile=creep)
+    shelve = {'minutes': 5, 'name': 'Ada', 'reason': 'oil is ordered'}
+    assert actor.ask('shelve', **shelve)['message'].startswith('shelved until ')
+    node.wait_for(lambda: view.state['shelved'], meanwhile=creep)
+    assert view.state['shelved']['reason'] == 'oil is ordered (Ada)'
+    assert 0.0 < view.state['shelved']['left_s'] <= 300.0
+    (number,) = view.active_events
+    assert actor.ask('acknowledge', name='Ada')['message'] == says('acknowledged')
+    node.until(lambda: not view.active_events, 'the end of the event')
+    told = view._told(view.events[number])
+    assert (told['acknowledged'], told['acknowledged_by']) == (True, 'Ada')
+    # What the node refuses is refused in its words.
+    with refused('too_long'):
+        actor.ask('shelve', minutes=1e6, name='Ada', reason='holidays')
+    for wanting in ({'name': ''}, {'name': 'Ada', 'minutes': 5, 'reason': None}):
+        with refused('no_name' if not wanting['name'] else 'no_reason'):
+            actor.ask('shelve', **{'minutes': 5, **wanting})
+
+
+def test_a_solve_tells_its_progress_and_its_result(actor, node):
+    node.start(x__correct_surface=False)
+    actor.until(lambda view: view.surface, 'the surface')
+    view = actor.hub.axes[NAME]
+    view.limits = actor.parts.limits
+    place = {'speed_rpm': 955.0, 'load_N': 500.0, 'temperature_degC': 40.0}
+    record = actor.ask('solve', **place)
+    assert {name: record[name] for name in place} == pytest.approx(place)
+    surface = view.surface.lookup(100.0, 500.0, 313.15)
+    assert record['efficiency'] == pytest.approx(surface.efficiency, abs=0.03)
+    assert record['words'].startswith('Solved')
+    frames = [actor.parts.read(made)[0] for made in actor.browser._replies]
+    assert {(one['kind'], one['id']) for one in frames} == {('progress', 1)}
+    assert 0.0 <= frames[-1]['share'] <= 1.0
+
+
+def test_a_solve_is_taken_back_by_request_and_with_its_browser(actor, node, refused):
+    node.start()
+    actor.until(lambda view: view.surface, 'the surface')
+    solve, cancel = (actor.acting.handlers[name] for name in ('solve', 'cancel'))
+
+    async def solving(end):
+        under_way = asyncio.create_task(solve(actor.browser, actor.request(**LONG)))
+        while not node.solvers():
+            await asyncio.sleep(0.02)
+        await end()
+        await under_way
+
+    async def by_request():
+        await cancel(actor.browser, {'id': 2, 'solve': 1})
+
+    async def by_leaving():
+        actor.hub.browsers.clear()
+
+    for end, key in ((by_request, 'cancelled'), (by_leaving, 'left')):
+        with refused(key):
+            asyncio.run(solving(end))
+        node.until(lambda: not node.solvers(), 'the end of the solve')
+    with refused('no_solve'):
+        actor.ask('cancel', solve=1)

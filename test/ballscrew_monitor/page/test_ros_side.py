@@ -1,0 +1,140 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Real nodes as the page hears them: they come, warn and go."""
+
+import contextlib
+
+from ballscrew_monitor.page import hub as hubs
+from ballscrew_monitor.page.hub import Hub
+from ballscrew_monitor.page.ros_side import RosSide, version_problem
+from ballscrew_monitor.settings.qos import started_node
+import pytest
+from surrogate.units import RPM
+
+NAME = '/ballscrew_monitor/x'
+
+
+class Heard:
+    """A hub that hears what is in the domain of a node."""
+
+    def __init__(self, node, only=''):
+        self.node, self.hub, self._only = node, Hub(), only
+
+    def __enter__(self):
+        self._stack = contextlib.ExitStack()
+        page = self._stack.enter_context(started_node('ballscrew_page', self.node.domain))
+        ros = RosSide(page, self.hub, lambda act, *given: act(*given), only=self._only)
+        self._stack.callback(ros.close)
+        ros.start()
+        return self
+
+    def __exit__(self, *error):
+        self._stack.close()
+
+    def view(self):
+        return self.hub.axes.get(NAME)
+
+    def until(self, condition, what):
+        return self.node.until(lambda: self.view() and condition(self.view()), what)
+
+
+@pytest.fixture
+def heard(node):
+    with Heard(node) as one:
+        yield one
+
+
+def warned(node, heard):
+    """Let axis x be warned of, creeping."""
+    publish = node.machine()
+
+    def move():
+        publish(0.6, -1500.0)
+        node.spin()
+
+    node.wait_for(lambda: heard.view() and heard.view().state['level'] == 'warn', meanwhile=move)
+
+
+def test_an_axis_is_heard_from_its_surface_to_its_warning(node, heard):
+    node.start(x__limits__raise_delay=0.0, x__max_future=3600.0)
+    heard.until(lambda view: view.surface, 'the surface')
+    assert heard.view().hello()['lead_mm'] == pytest.approx(10.0)
+    assert heard.view().hello()['unit'] == 'm/min'
+    warned(node, heard)
+    heard.until(lambda view: view.events, 'the event')
+    (event,) = heard.view().events.values()
+    assert (event['active'], event['id']) == (True, 1)
+    row = heard.view().history.since(0)[-1]
+    assert row[1] == pytest.approx(0.6 / RPM)
+    assert row[2] == -1500.0
+    told = heard.view()._told(event)
+    assert told['advice'].startswith('at this load feed at ')
+    assert 'm/min' in told['advice']
+
+
+def test_a_node_that_leaves_is_gone_and_one_that_returns_is_there(node, heard):
+    node.start()
+    heard.until(lambda view: view.surface, 'the surface')
+    node.stop()
+    heard.until(lambda view: view.standing == 'gone', 'the leave')
+    node.start()
+    heard.until(lambda view: view.standing == 'active', 'the return')
+    # What is published for late joiners has been heard again.
+    heard.until(lambda view: view.limits['rcs_limit'], 'a state')
+
+
+def test_an_inactive_node_says_so(node, heard):
+    node.start()
+    heard.until(lambda view: view.surface, 'the surface')
+    node.transition('deactivate')
+    heard.until(lambda view: view.standing == 'inactive', 'the state of the node')
+    node.transition('activate')
+    heard.until(lambda view: view.standing == 'active', 'the state of the node')
+
+
+def test_without_the_file_there_is_no_map_but_all_else(node, heard, quick_surface, says):
+    """The node has read the file; it is not here any more, or another one is."""
+    path = quick_surface.rename(quick_surface.with_name('gone.npz'))
+    node.start(x__surface=path)
+    heard.until(lambda view: view.surface, 'the surface')
+    path.rename(quick_surface)
+    with Heard(node) as later:
+        later.until(lambda view: view.no_map.startswith('no map'), 'the sentence')
+        assert later.view().no_map.startswith(says('no_file'))
+        assert later.view().hello()['screw'] == 'nominal'
+
+
+def test_other_nodes_are_left_out_if_one_is_named(node, heard):
+    with Heard(node, only='/other') as other:
+        node.start()
+        heard.until(lambda view: view.surface, 'the surface')
+        assert other.hub.axes == {}
+        assert other.hub.hello()['waiting'] == hubs.NO_NODE
+
+
+def test_a_node_of_another_version_is_named_and_not_heard(node, heard, monkeypatch, says):
+    hashes = iter([({'RIHS01_0'}, {'RIHS01_1'})])
+    last = ({'RIHS01_1'}, {'RIHS01_1'})
+    monkeypatch.setattr(
+        'ballscrew_monitor.page.ros_side.AxisLink.hashes', lambda self: next(hashes, last)
+    )
+    node.start()
+    node.until(lambda: heard.hub.notices, 'the notice')
+    heard.until(lambda view: view.surface, 'the surface')
+    # It has been mended meanwhile: the notice is gone.
+    assert heard.hub.hello()['notices'] == []
+
+
+def test_versions_are_told_apart_by_the_hashes_of_their_types(says):
+    assert version_problem('/m', ({'a'}, {'a'})) == ''
+    assert version_problem('/m', (set(), {'a'})) == ''
+    assert version_problem('/m', ({'a', 'b'}, {'a'})) == says('version')
+
+
+def test_the_hashes_of_a_node_and_of_the_page_are_those_of_the_interface(node, heard):
+    node.start()
+    heard.until(lambda view: view.surface, 'the surface')
+    infos = node.node.get_publishers_info_by_topic(f'{NAME}/state')
+    read = node.node.get_subscriptions_info_by_topic(f'{NAME}/state')
+    assert len({str(one.topic_type_hash) for one in (*infos, *read)}) == 1
+    assert 'RIHS01' in str(infos[0].topic_type_hash)
