@@ -117,9 +117,9 @@ class FirstScreen {
     this.write('efficiency_more', Words.say('limit_at', {
       limit: Quantities.text('efficiency', facts.efficiency_limit, facts),
     }));
-    const { speed_rpm: limit, margin } = state?.limit ?? {};
-    const moves = Math.abs(rows.last('speed_rpm')) >= facts.standstill_rpm;
-    this.write('limit', FirstScreen.distance(moves ? margin : NaN));
+    const limit = state?.limit?.speed_rpm ?? NaN;
+    const speed = Math.abs(rows.last('speed_rpm'));
+    this.write('limit', FirstScreen.distance(speed >= facts.standstill_rpm ? speed / limit - 1 : NaN));
     this.write('limit_more', Number.isFinite(limit) ? Words.say('limit_speed', {
       feed: Quantities.text('speed_rpm', limit, facts),
       turns: Quantities.text('turns_rpm', limit, facts),

@@ -84,13 +84,9 @@ class LiveMap extends OperatingMap {
 
   /** Return what gives the part of its range that a value has. */
   part() {
-    const { logarithmic, range } = LiveMap.RAMPS[this.quantity];
-    const known = this.record.arrays.cells.filter((value) => value > (logarithmic ? 0 : -Infinity));
-    const [low, high] = range ?? [known.reduce((a, b) => Math.min(a, b), Infinity),
-      known.reduce((a, b) => Math.max(a, b), -Infinity)];
-    this.shownRange = [low, high];
+    const { logarithmic, range: [low, high] } = LiveMap.RAMPS[this.quantity];
     const place = logarithmic ? (value) => Math.log(Math.max(value, low)) : (value) => value;
-    const span = place(high) - place(low) || 1;
+    const span = place(high) - place(low);
     return (value) => Math.min(1, Math.max(0, (place(value) - place(low)) / span));
   }
 
@@ -195,5 +191,4 @@ LiveMap.RAMPS = {
   efficiency: { colour: 'efficiency', range: [0.5, 1] },
   rcs: { colour: 'rcs', range: [1e-4, 1], logarithmic: true },
   film_ratio: { colour: 'hydrodynamic', range: [0.1, 10], logarithmic: true },
-  wear: { colour: 'bad', logarithmic: true },
 };

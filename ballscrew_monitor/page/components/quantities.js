@@ -13,7 +13,6 @@ const Quantities = (() => {
     efficiency: { unit: '%', factor: 100, digits: 3 },
     rcs: { unit: '%', factor: 100, digits: 2 },
     film_ratio: { unit: '', digits: 3 },
-    wear: { unit: '', digits: 2 },
     torque_N_m: { unit: 'N m', digits: 3 },
     measured_torque_N_m: { unit: 'N m', digits: 3 },
     energy: { unit: 'kJ', factor: 1e-3, digits: 3 },

@@ -5,6 +5,7 @@
 'use strict';
 
 const SPAN = 120; // time [s] that is shown at first
+const SHORTEST_RUN = 20; // time [s] that is shown while there are fewer rows
 const LEAST_SPAN = 1; // shortest time [s] that is shown
 const KEPT = 600; // longest time [s] that is shown
 const EVERY = 200; // time [ms] between two drawings of a panel
@@ -52,10 +53,11 @@ class Strips {
     return this.axis.rows.last('stamp');
   }
 
-  /** Return the shown range of time [s]. */
+  /** Return the shown range of time [s]; what runs on begins with the first row there is. */
   get range() {
     const end = this.end ?? this.now;
-    return [end - this.span, end];
+    const first = this.end === null ? this.axis.rows.column('stamp')[0] : -Infinity;
+    return [Math.max(end - this.span, Math.min(first, end - SHORTEST_RUN)), end];
   }
 
   /** Stand still, or run on with what comes. */

@@ -318,8 +318,8 @@ def make_axis(name='x', **changes):
 
 
 def make_hello(*axes, **changes):
-    hello = {'kind': 'hello', 'version': 1, 'acting': False, 'nodes': [], 'waiting': ''}
-    return hello | {'axes': list(axes)} | changes, None
+    hello = {'kind': 'hello', 'version': 1, 'acting': False, 'nodes': [], 'notices': []}
+    return hello | {'waiting': '', 'axes': list(axes)} | changes, None
 
 
 def make_rows(count, begin=0.0, rate=50.0, **changes):

@@ -81,8 +81,8 @@ def test_how_far_the_limit_is(shown, margin, text):
 def test_at_standstill_no_distance_is_told(shown, greeted, frames):
     greeted.send(*frames.state(rows=frames.rows(1, speed_rpm=4.0)))
     shown.reads('.numbers > div:last-child .big', '–')
-    greeted.send(*frames.state(rows=frames.rows(1, 1.0, speed_rpm=6.0)))
-    shown.reads('.numbers > div:last-child .big', '35 % above')
+    greeted.send(*frames.state(rows=frames.rows(1, 1.0, speed_rpm=-885.0)))
+    shown.reads('.numbers > div:last-child .big', '50 % above')
 
 
 def test_a_warning_that_is_only_held_says_so(shown, greeted, frames):

@@ -94,8 +94,9 @@ def test_a_hello_that_says_nothing_new_leaves_the_page_as_it_is(tab, greeted, fr
     greeted.send(*frames.state(level='warn'))
     tab.reads('.sign.level .word', 'Outside the optimal zone')
     assert tab.ask("document.querySelector('.first').dataset.kept") == 'yes'
-    greeted.send(*frames.hello(waiting='No node is running.', **language))
-    tab.reads('.link', 'No node is running.')
+    notices = ['Node /other speaks another version.']
+    greeted.send(*frames.hello(waiting='No node is running.', notices=notices, **language))
+    tab.reads('.link', f'No node is running. {notices[0]}')
     assert tab.ask("document.querySelectorAll('.detail > *').length") == 0
 
 
