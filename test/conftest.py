@@ -45,6 +45,7 @@ SLOW = (
     'ballscrew_monitor/node/test_node.py',
     'ballscrew_monitor/node/test_solve.py',
     'ballscrew_monitor/node/test_system.py',
+    'ballscrew_monitor/page/components',
     'ballscrew_monitor/recordings/test_axis_run.py',
     'ballscrew_monitor/recordings/test_black_box.py',
     'ballscrew_monitor/recordings/test_player.py',

@@ -84,6 +84,7 @@ class Fault(enum.IntEnum):
 
     WORSE = 401, 'the axis is worse than its baseline'
     NOT_FOLLOWED = 402, 'the health of the axis is not followed now'
+    NOT_KNOWN = 403, 'whether the axis is worse than its baseline is not known'
 
     NOT_KEPT = 501, 'sums, events or corrections are not kept'
 

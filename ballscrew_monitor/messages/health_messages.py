@@ -18,6 +18,11 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticStatus
 
 NOT_ASSESSED = 'nothing has been assessed yet'
+_CODES = {
+    Condition.UNKNOWN: Fault.NOT_KNOWN,
+    Condition.NORMAL: Fault.NONE,
+    Condition.WORSE: Fault.WORSE,
+}
 
 
 def warns(health: Health, policy: WarningPolicy) -> bool:
@@ -71,13 +76,12 @@ def health_status(
     status.hardware_id = hardware_id(node, axis, screw)
     if health is None:
         status.message = f'not known: {problem or NOT_ASSESSED}'
-        code = Fault.NOT_FOLLOWED if problem else Fault.NOTHING_YET
+        code = Fault.NOT_FOLLOWED if problem else Fault.NOT_KNOWN
         status.values = key_values([('Code', int(code))])
         return status
     status.level = WARN if warns(health, policy) else OK
     status.message = f'{health.verdict} Not followed now: {problem}' if problem else health.verdict
-    code = Fault.WORSE if health.condition is Condition.WORSE else Fault.NONE
-    code = Fault.NOT_FOLLOWED if problem else code
+    code = Fault.NOT_FOLLOWED if problem else _CODES[health.condition]
     status.values = key_values([('Code', int(code)), *_values(health)])
     return status
 

@@ -88,14 +88,12 @@ class Alarm:
         self._record(f'~/{self._axis.name}/out_of_zone', message)
 
     def follow(self, state: State, frame: Mapping[str, list[float]]) -> None:
-        """Keep the event that a state has begun, with its freeze frame, or ended, then speak."""
+        """Keep the event that a state has begun, with a freeze frame, or ended, and then speak."""
         event, monitor = self._axis.monitor.event, self._axis.monitor
         # First: who is killed meanwhile must not have said a number that is not kept.
-        point = point_facts(state.point)
-        if event.active:
-            self._note_event(Kind.EVENT_BEGIN, point=point, freeze_frame=frame)
-        else:
-            self._note_event(Kind.EVENT_END, point=point)
+        kind = Kind.EVENT_BEGIN if event.active else Kind.EVENT_END
+        before = {'freeze_frame': frame} if event.active else {}
+        self._note_event(kind, point=point_facts(state.point), **before)
         self.publish()
         if event.active:
             advice = f'; {event.advice.text}' if event.advice.text else ''

@@ -26,8 +26,16 @@ SHEETS = ('uPlot.min.css', 'page.css', 'live.css')
 SCRIPTS = (
     *('uPlot.iife.min.js', 'format.js', 'ticks.js', 'frame.js', 'map.js', 'panel.js'),
     *('words.js', 'controls.js', 'quantities.js', 'axis.js', 'painter.js', 'live.js'),
-    *('first_screen.js', 'trail.js', 'live_map.js', 'map_legend.js', 'strip_panels.js'),
-    *('strips.js', 'what_if.js', 'events.js', 'health.js', 'player.js', 'live_page.js'),
+    *('first_screen.js', 'cards.js', 'trail.js', 'live_map.js', 'map_legend.js'),
+    *(
+        'strip_panels.js',
+        'strips.js',
+        'what_if.js',
+        'events.js',
+        'health.js',
+        'player.js',
+        'live_page.js',
+    ),
 )
 """Scripts in the order in which they build on each other."""
 TYPES = {'js': 'text/javascript; charset=utf-8', 'css': 'text/css; charset=utf-8'}

@@ -81,9 +81,13 @@ def list_of(parts: Sequence[str]) -> str:
 
 def listed(names: Sequence[str]) -> str:
     """Return names after each other, the first of many, and only the begin of long ones."""
-    shown = [name if len(name) <= LONGEST else f'{name[:LONGEST]}…' for name in names[:MOST]]
     more = [f'and {len(names) - MOST} more'] if len(names) > MOST else []
-    return ', '.join([*shown, *more])
+    return ', '.join([*map(short, names[:MOST]), *more])
+
+
+def short(text: str) -> str:
+    """Return a text, or the begin of a long one."""
+    return text if len(text) <= LONGEST else f'{text[:LONGEST]}…'
 
 
 def say(*notes: str) -> None:

@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Iterator, Mapping, Sequence
 import contextlib
 import datetime
+import functools
 from pathlib import Path
 import re
 import sys
@@ -91,7 +92,10 @@ def _histories(
                 mapping = map_for(log, args.map, alone=len(logs) == 1)
                 with opened_log(log, mapping=mapping) as bag:
                     case = judge_log(
-                        bag, parameters_for(bag, args.params, nominal), health=HistoryMaker
+                        bag,
+                        parameters_for(bag, args.params, nominal),
+                        on_share=functools.partial(_show, bar, number, len(logs)),
+                        health=HistoryMaker,
                     )
                 say(*(f'{log}: check {hint}' for hint in hints_on(case.axes)))
                 yield from (axis.history for axis in case.axes if axis.history is not None)
@@ -100,6 +104,11 @@ def _histories(
         bar.show(len(logs), len(logs))
     finally:
         bar.close()
+
+
+def _show(bar: Progress, number: int, count: int, share: float) -> None:
+    """Show the share [-] of one recording of several that is judged."""
+    bar.show(number, count, share=(number + share) / count)
 
 
 def _healths(

@@ -16,8 +16,9 @@ from ballscrew_monitor.messages.reasons import slow_reason
 from ballscrew_monitor.recordings.declared import unwritten, written
 from ballscrew_monitor.recordings.words import duration, number
 from ballscrew_monitor.report.judging import AxisCase, InputSetting
+from ballscrew_monitor.report.mends import contradictions
 from ballscrew_monitor.report.survey import Gaps, Span
-from surrogate.units import MILLI, RPM, TURN
+from surrogate.units import RPM, TURN
 
 MEASURED = 'measured'
 LAG_TOLD = 0.01  # [s] between stamp and arrival from which on it is told
@@ -30,19 +31,6 @@ NAMES = {
     Source.TEMPERATURE: 'Oil temperature',
     Source.TORQUE: 'Motor torque',
 }
-TURNED = {
-    Source.SPEED: 'load and motor torque drive it the other way',
-    Source.LOAD: 'the motor torque falls where it asks for more, or it drives the nut both ways',
-    Source.TORQUE: 'it brakes where friction must be overcome',
-}
-"""Reasons to think that the sign of an input is turned."""
-TOLERANT = 30.0  # factor by which friction may miss that of the model
-UNITS_APART = {
-    (1e3, 1.0): (Source.LOAD, 'kN', 'unit: kN'),
-    (1e-3, 1.0): (Source.LOAD, 'N', 'unit: N'),
-    (1e3, 1e3): (Source.TORQUE, 'N mm', 'scale: 0.001'),
-}
-"""Torque over what the load needs, and friction over that of the model: the unit that is meant."""
 OF_MOTOR = {
     'torque': {'torque_rated_Nm': 'rated torque'},
     'current': {'torque_constant_Nm_per_A': 'torque constant', 'torque_rated_Nm': 'rated torque'},
@@ -266,7 +254,7 @@ def _hints(case: AxisCase, source: Source, setting: InputSetting, heard: Heard) 
     if case.outcome.refused.get(source, {}).get(Why.IMPLAUSIBLE):
         hints.append(f'{facts.parameter}: samples beyond what is plausible were refused: {cure}')
     hints += _of_time(heard.status, facts.parameter)
-    hints += _of_balance(case, source, facts.parameter)
+    hints += contradictions(case, source, facts.parameter)
     if source is Source.SPEED:
         hints += _of_speed(case, setting, heard, facts.parameter, cure)
     elif source is not Source.TEMPERATURE and heard.low == heard.high:
@@ -287,44 +275,6 @@ def _of_time(status: InputStatus, parameter: str) -> Sequence[str]:
             'clocks alike'
         )
     return hints
-
-
-def _of_balance(case: AxisCase, source: Source, parameter: str) -> Sequence[str]:
-    """Return that sign or size of an input contradicts the others, and what may mend it."""
-    factor = case.balance.factor
-    if source is case.balance.turned:
-        said = f'{parameter}: its sign looks turned ({TURNED[source]})'
-        return [f'{said}: {_write(case, source, "scale: -1")}, or 1 if it is -1']
-    if source is not Source.LOAD or math.isnan(factor):
-        return []
-    said = (
-        f'{parameter}: the motor torque changes {number(factor)} times as much as this load '
-        f'needs at a lead of {case.surface.lead * MILLI:g} mm'
-    )
-    return [f'{said}: {_mend_of_size(case)}']
-
-
-def _mend_of_size(case: AxisCase) -> str:
-    """Return the unit that explains how torque and load differ in size, else what to check."""
-    balance = case.balance
-    for (factor, friction), (source, unit, value) in UNITS_APART.items():
-        near = (_is_near(balance.factor, factor), _is_near(balance.friction, friction, TOLERANT))
-        if all(near):
-            return f'{NAMES[source].lower()} looks like {unit}: {_write(case, source, value)}'
-    return 'check unit and scale of both, the lead, and a gear between motor and screw'
-
-
-def _is_near(value: float, other: float, within: float = 2.0) -> bool:
-    return other / within < value < other * within
-
-
-def _write(case: AxisCase, source: Source, value: str) -> str:
-    """Return where a value is to be written, in the map or among the parameters."""
-    name = source.name.lower()
-    if case.facts.is_mapped:
-        return f'write `{value}` for axes.{case.axis}.{case.facts.column_of(name)} in the map'
-    key, _, number = value.partition(': ')
-    return f'set {case.axis}.{name}.{key} to {number}'
 
 
 def _of_speed(

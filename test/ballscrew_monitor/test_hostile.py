@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Small files that state too much or contradict themselves: one sentence, in bounded memory."""
 
+import io
 import json
 import os
 from pathlib import Path
@@ -9,6 +10,7 @@ import sqlite3
 import struct
 import subprocess
 import sys
+import zipfile
 
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.recordings.bag import Bag
@@ -19,6 +21,7 @@ import pytest
 from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as RosbagWriter
 from rosbags.typesys import get_typestore, Stores
+from surrogate.files import printable
 import zstandard
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -261,8 +264,28 @@ class Hostile:
         ):
             self.replay(name, log, '--map', self.text(f'{name}.yaml', content))
         names = ','.join(f'c{number}' for number in range(100_000))
-        for name, content in (('wide', f'{names}\n'), ('long', f't,v\n1,{"9" * 4_100_000}\n')):
-            self.commands[name] = ['import', str(self.text(f'{name}.csv', content)), '--guess']
+        for name, content in (
+            ('wide', f'{names}\n'),
+            ('wide_returns', f'{names}\r1\r'),
+            ('long', f't,v\n1,{"9" * 4_100_000}\n'),
+            ('long_return', f't,v\r1,{"9" * 4_100_000}\r'),
+            ('long_name', f'{"n" * 100_000},v\x1b[31m\n1,2\n'),
+            ('longer_name', f'"{"n" * 1_000_000}",v\n1,2\n'),
+            ('long_cell', f'x_speed,t\n{"9" * 100_000}x,2\n'),
+            ('wide_letters', ('t,v\n' + 40_000 * '1,2\n').encode('utf-16')[:-1]),
+        ):
+            self.guess(name, content)
+        packed = io.BytesIO()
+        with zipfile.ZipFile(packed, 'w', zipfile.ZIP_DEFLATED) as archive:
+            with archive.open('xl/worksheets/sheet1.xml', 'w') as part:
+                for _ in range(300):
+                    part.write(bytes(1_000_000))
+        self.guess('packed_sheet', packed.getvalue())
+
+    def guess(self, name, content):
+        path = self.folder / f'{name}.csv'
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        self.commands[name] = ['import', str(path), '--guess']
 
 
 @pytest.fixture(scope='module')
@@ -287,10 +310,12 @@ def results(short_bag, tmp_path_factory):
     }
 
 
+MOST_WORDS = 2000  # letters of a refusal
 REFUSED = (
     *('large', 'laughing_bag', 'deep_bag', 'dated_bag', 'laughing_parameters', 'deep_parameters'),
     *('dated_parameters', 'laughing_metadata', 'deep_metadata', 'dated_sheet', 'twice'),
-    *('laughing_map', 'deep_map', 'dated_map', 'wide', 'long'),
+    *('laughing_map', 'deep_map', 'dated_map', 'wide', 'wide_returns', 'long', 'long_return'),
+    *('long_name', 'longer_name', 'long_cell', 'wide_letters', 'packed_sheet'),
 )
 NOTED = (
     *('huge_message', 'endless_message', 'zstd_frame', 'zstd_both', 'zstd_endless', 'lz4_chunk'),
@@ -309,6 +334,8 @@ def test_what_is_refused_is_one_sentence(name, results, says):
     assert code == 2
     assert says(name) in said
     assert said.count('ballscrew: ') == 1
+    assert len(said) < MOST_WORDS
+    assert printable(said) == said
 
 
 @pytest.mark.parametrize('name', NOTED)

@@ -95,7 +95,11 @@ class FirstScreen {
     if (!axis.state) {
       return Words.say('waits_for_data');
     }
-    return axis.fresh ? axis.state.headline : Words.say('data_old', { age: Format.time(axis.age) });
+    if (!axis.fresh) {
+      return Words.say('data_old', { age: Format.time(axis.age) });
+    }
+    const { level, zone, headline: reason } = axis.state;
+    return level === 'warn' && zone !== 'outside' ? Words.say('warning_held', { reason }) : reason;
   }
 
   static shelved({ state }) {
@@ -113,8 +117,9 @@ class FirstScreen {
     this.write('efficiency_more', Words.say('limit_at', {
       limit: Quantities.text('efficiency', facts.efficiency_limit, facts),
     }));
-    const { speed_rpm: limit, margin } = state?.limit ?? {};
-    this.write('limit', FirstScreen.distance(margin));
+    const limit = state?.limit?.speed_rpm ?? NaN;
+    const speed = Math.abs(rows.last('speed_rpm'));
+    this.write('limit', FirstScreen.distance(speed >= facts.standstill_rpm ? speed / limit - 1 : NaN));
     this.write('limit_more', Number.isFinite(limit) ? Words.say('limit_speed', {
       feed: Quantities.text('speed_rpm', limit, facts),
       turns: Quantities.text('turns_rpm', limit, facts),
@@ -163,33 +168,3 @@ class FirstScreen {
 }
 
 FirstScreen.NUMBERS = ['speed_rpm', 'load_N', 'temperature_degC', 'efficiency', 'limit'];
-
-class Cards {
-  /** Build a card for each axis; `choose` is called with the id of the one that is pressed. */
-  constructor(axes, choose) {
-    this.axes = axes;
-    this.element = Format.element('nav', 'cards');
-    this.element.setAttribute('aria-label', Words.say('axes'));
-    this.element.hidden = axes.length < 2;
-    this.cards = axes.map((axis) => {
-      const card = Format.element('button', 'card');
-      card.type = 'button';
-      card.append(...['glyph', 'name', 'word', 'speed'].map((kind) => Format.element('span', kind)));
-      card.children[0].setAttribute('aria-hidden', 'true');
-      card.addEventListener('click', () => choose(axis.facts.id));
-      return card;
-    });
-    this.element.append(...this.cards);
-  }
-
-  draw(chosen) {
-    this.axes.forEach((axis, i) => {
-      const card = this.cards[i];
-      card.dataset.state = axis.level;
-      card.setAttribute('aria-pressed', String(axis.facts.id === chosen));
-      const speed = Quantities.text('speed_rpm', axis.rows.last('speed_rpm'), axis.facts);
-      const texts = [SIGNS[axis.level], axis.facts.axis, Words.say(`level_${axis.level}`), speed];
-      texts.forEach((text, at) => { card.children[at].textContent = text; });
-    });
-  }
-}

@@ -13,13 +13,14 @@ class Health {
     this.axis = axis;
     this.element = Format.element('section', 'health');
     this.sentence = Format.element('div');
+    this.sentence.append(Words.element('p', 'muted', 'health_none'));
     this.table = Format.element('div', 'wide');
     this.element.append(Words.element('h2', '', 'health_title'), this.sentence, this.table);
   }
 
   draw() {
     const { health } = this.axis;
-    if (health === this.shown) {
+    if (!health || health === this.shown) {
       return;
     }
     this.shown = health;

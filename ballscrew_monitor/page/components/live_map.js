@@ -74,7 +74,7 @@ class LiveMap extends OperatingMap {
     pen.fillStyle = Format.colour(LiveMap.RAMPS[this.quantity].colour);
     const part = this.part();
     this.record.arrays.cells.forEach((value, i) => {
-      pen.globalAlpha = Number.isNaN(value) ? 0 : 0.05 + 0.6 * part(value);
+      pen.globalAlpha = Number.isNaN(value) ? 0 : 0.05 + 0.5 * part(value);
       pen.fillRect(i % columns, rows - 1 - Math.floor(i / columns), 1, 1);
     });
     const { left, top, width, height } = this.area;
@@ -84,13 +84,9 @@ class LiveMap extends OperatingMap {
 
   /** Return what gives the part of its range that a value has. */
   part() {
-    const { logarithmic, range } = LiveMap.RAMPS[this.quantity];
-    const known = this.record.arrays.cells.filter((value) => value > (logarithmic ? 0 : -Infinity));
-    const [low, high] = range ?? [known.reduce((a, b) => Math.min(a, b), Infinity),
-      known.reduce((a, b) => Math.max(a, b), -Infinity)];
-    this.shownRange = [low, high];
+    const { logarithmic, range: [low, high] } = LiveMap.RAMPS[this.quantity];
     const place = logarithmic ? (value) => Math.log(Math.max(value, low)) : (value) => value;
-    const span = place(high) - place(low) || 1;
+    const span = place(high) - place(low);
     return (value) => Math.min(1, Math.max(0, (place(value) - place(low)) / span));
   }
 
@@ -192,8 +188,7 @@ class LiveMap extends OperatingMap {
 LiveMap.KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 LiveMap.FOGS = { band_unknown: 0.16, band_numerical: 0.3 };
 LiveMap.RAMPS = {
-  efficiency: { colour: 'efficiency', range: [0, 1] },
+  efficiency: { colour: 'efficiency', range: [0.5, 1] },
   rcs: { colour: 'rcs', range: [1e-4, 1], logarithmic: true },
   film_ratio: { colour: 'hydrodynamic', range: [0.1, 10], logarithmic: true },
-  wear: { colour: 'bad', logarithmic: true },
 };

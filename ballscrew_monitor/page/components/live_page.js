@@ -57,7 +57,7 @@ class LivePage {
   /** Begin with a hello; where it says nothing new, all that is on the page stays as it is. */
   begin(hello) {
     this.since = undefined;
-    this.linked(hello.waiting);
+    this.linked([hello.waiting, ...hello.notices].filter(Boolean).join(' '));
     const told = JSON.stringify({ ...hello, nodes: [] });
     if (told !== this.told) {
       this.told = told;
@@ -103,7 +103,7 @@ class LivePage {
       this.painter.add(() => first.draw(), 200),
       this.painter.add(() => this.whatIf.map.over.draw(), 100),
       this.painter.add(() => events.draw(), 1000),
-      this.painter.add(() => axis.health && health.draw(), 1000),
+      this.painter.add(() => health.draw(), 1000),
     ];
     this.news = () => {
       cards();

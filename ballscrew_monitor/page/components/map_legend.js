@@ -9,7 +9,7 @@ const MapLegend = (() => {
   function entries(map) {
     const { facts } = map.axis;
     const kinds = new Set(map.lines.map((line) => line.kind));
-    const range = (map.shownRange ?? []).map((value) => Quantities.text(map.quantity, value, facts));
+    const range = (LiveMap.RAMPS[map.quantity]?.range ?? []).map((value) => Quantities.text(map.quantity, value, facts));
     const first = map.quantity === 'zone' ? [['zone', 'legend_zone']]
       : [[`ramp-${map.quantity}`, 'legend_ramp'], ['hatched', 'legend_outside']];
     const values = {

@@ -13,7 +13,6 @@ const Quantities = (() => {
     efficiency: { unit: '%', factor: 100, digits: 3 },
     rcs: { unit: '%', factor: 100, digits: 2 },
     film_ratio: { unit: '', digits: 3 },
-    wear: { unit: '', digits: 2 },
     torque_N_m: { unit: 'N m', digits: 3 },
     measured_torque_N_m: { unit: 'N m', digits: 3 },
     energy: { unit: 'kJ', factor: 1e-3, digits: 3 },
@@ -24,7 +23,8 @@ const Quantities = (() => {
 
   /** Return feed in the unit of an axis over the speed of its screw [rev/min]. */
   function feed(axis) {
-    return axis.unit === 'm/min' ? axis.lead_mm / 1000 : axis.lead_mm;
+    const lead = axis.lead_mm ?? NaN;
+    return axis.unit === 'm/min' ? lead / 1000 : lead;
   }
 
   const of = (part, axis) => (typeof part === 'function' ? part(axis) : part);

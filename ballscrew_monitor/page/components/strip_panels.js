@@ -14,7 +14,7 @@ const StripPanels = (() => {
       of: (facts) => limited('efficiency', facts, facts.efficiency_limit),
     },
     {
-      keys: ['rcs'], colours: ['rcs'], floor: 1e-3, most: 100,
+      keys: ['rcs'], colours: ['rcs'], floor: 0.01, most: 100,
       of: (facts) => limited('rcs', facts, facts.rcs_limit),
     },
     {

@@ -5,6 +5,7 @@
 'use strict';
 
 const SPAN = 120; // time [s] that is shown at first
+const SHORTEST_RUN = 20; // time [s] that is shown while there are fewer rows
 const LEAST_SPAN = 1; // shortest time [s] that is shown
 const KEPT = 600; // longest time [s] that is shown
 const EVERY = 200; // time [ms] between two drawings of a panel
@@ -26,7 +27,7 @@ class Strips {
       this.figures.append(panel.holder);
       panel.news = painter.add(() => this.draw(panel), EVERY);
     }
-    this.observer = new ResizeObserver(() => this.resize());
+    this.observer = new ResizeObserver(() => this.news());
     this.observer.observe(this.figures);
   }
 
@@ -52,10 +53,11 @@ class Strips {
     return this.axis.rows.last('stamp');
   }
 
-  /** Return the shown range of time [s]. */
+  /** Return the shown range of time [s]; what runs on begins with the first row there is. */
   get range() {
     const end = this.end ?? this.now;
-    return [end - this.span, end];
+    const first = this.end === null ? this.axis.rows.column('stamp')[0] : -Infinity;
+    return [Math.max(end - this.span, Math.min(first, end - SHORTEST_RUN)), end];
   }
 
   /** Stand still, or run on with what comes. */
@@ -95,6 +97,9 @@ class Strips {
       return;
     }
     panel.plot ??= this.plot(panel);
+    if (panel.plot.width !== this.width()) {
+      panel.plot.setSize({ width: this.width(), height: panel.height });
+    }
     const columns = this.axis.rows.during(begin, this.span, panel.keys, 2 * this.width());
     const [times, ...lines] = columns;
     panel.plot.batch(() => {
@@ -146,16 +151,6 @@ class Strips {
 
   events() {
     return this.axis.events.map(({ begin, duration_s: length }) => ({ begin, end: begin + length }));
-  }
-
-  resize() {
-    const width = this.width();
-    for (const { plot, height } of this.panels) {
-      if (plot && plot.width !== width) {
-        plot.setSize({ width, height });
-      }
-    }
-    this.news();
   }
 
   /** Draw again in the colours that hold now. */

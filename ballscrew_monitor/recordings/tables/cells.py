@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.words import short
 import numpy as np
 from numpy.typing import NDArray
 import polars as pl
@@ -35,6 +36,11 @@ class Reading:
     extremes: Array
     note: str
 
+    @property
+    def is_time(self) -> bool:
+        """Tell whether the cells are times by their form or type, hence [s]."""
+        return self.form in (_seconds, *_TIMES)
+
     def numbers(self, cells: pl.Series) -> Array:
         """Return cells as numbers, NaN where one is not a number."""
         return _finite(self.form, cells)
@@ -53,7 +59,10 @@ class _Count:
 
     def add(self, cells: pl.Series, row: int) -> bool:
         """Count cells from `row` on; tell if all are numbers."""
-        numbers = _finite(self.form, cells)
+        return self.take(_finite(self.form, cells), cells, row)
+
+    def take(self, numbers: Array, cells: pl.Series, row: int) -> bool:
+        """Count the numbers that the form makes of cells from `row` on, as `add` does."""
         bad = np.isnan(numbers)
         missing = int(bad.sum())
         if missing:
@@ -69,7 +78,7 @@ class _Count:
 
     def _miss(self, cells: pl.Series, at: int, missing: int, row: int) -> None:
         if not self.bad:
-            what = 'nothing' if cells[at] is None else repr(cells[at])
+            what = 'nothing' if cells[at] is None else short(repr(cells[at]))
             self.first = f'{what} in row {row + at + 1}'
         self.bad += missing
 
@@ -79,7 +88,8 @@ class Cells:
 
     def __init__(self, path: Path, name: str, separator: str) -> None:
         """Begin with the column `name` of the log at `path`, whose cells have a separator."""
-        self._path, self._name, self._separator = path, name, separator
+        self._separator = separator
+        self._where = f'log {path}: column {short(repr(name))}'
         self._rows = 0
         self._first: Any = None
         self._type: pl.DataType = pl.Null()
@@ -94,20 +104,18 @@ class Cells:
             self._count(cells)
         except UNREADABLE as error:
             raise InputError(
-                f'log {self._path}: column {self._name!r} of {self._type} cannot be read as '
-                f'numbers: {first_line(error)}'
+                f'{self._where} of {self._type} cannot be read as numbers: {first_line(error)}'
             ) from None
         self._rows += len(cells)
 
     def reading(self) -> Reading:
         """Return how the column is read; raises InputError when it holds no number."""
         chosen = self._chosen()
-        where = f'log {self._path}: column {self._name!r}'
         if not chosen.good:
-            raise InputError(f'{where} holds no number, but {self._first!r}')
+            raise InputError(f'{self._where} holds no number, but {short(repr(self._first))}')
         note = (
-            f'{where} holds {chosen.bad} cells without a number, the first is {chosen.first}; '
-            'they count as unknown'
+            f'{self._where} holds {chosen.bad} cells without a number, the first is '
+            f'{chosen.first}; they count as unknown'
         )
         extremes = np.array([chosen.least, chosen.most])
         return Reading(
@@ -123,20 +131,35 @@ class Cells:
             return (_seconds,)
         if self._type.is_numeric():
             return (_plain,)
-        raise InputError(
-            f'log {self._path}: column {self._name!r} holds {self._type}, it must hold numbers'
-        )
+        raise InputError(f'{self._where} holds {self._type}, it must hold numbers')
 
     def _count(self, cells: pl.Series) -> None:
-        """Count what each form that may still be chosen makes of cells."""
-        read = False  # all of these by an earlier form: then they are no texts of a time
-        for number, one in enumerate(self._counts):
-            if number == 1 and self._separator == ',' and self._counts[0].good:
-                continue  # a comma within a cell may part thousands
-            if number > 1 and read:
-                one.pass_over(cells, self._rows)
+        """Count what each form makes of cells; what reads all of them leaves none to others."""
+        if len(self._counts) == 1:
+            self._counts[0].add(cells, self._rows)
+            return
+        points, commas, *times = self._counts
+        # A text is a number or a time of one form: the kind of most cells so far is tried first.
+        kinds = [[points, commas], *([one] for one in times)]
+        read = False
+        for kind in sorted(kinds, key=lambda kind: -max(one.good for one in kind)):
+            if read:
+                for one in kind:
+                    one.pass_over(cells, self._rows)
+            elif len(kind) > 1:
+                read = self._count_numbers(cells, points, commas)
             else:
-                read |= one.add(cells, self._rows)
+                read = kind[0].add(cells, self._rows)
+
+    def _count_numbers(self, cells: pl.Series, points: _Count, commas: _Count) -> bool:
+        """Count cells as numbers with a point and with a comma; tell if one of both reads all."""
+        commaed, pointed = (_holds(cells, mark) for mark in ',.')
+        numbers = _finite(_points, _with_points(cells) if commaed.any() else cells)
+        read = points.take(np.where(commaed, math.nan, numbers), cells, self._rows)
+        thousands = self._separator == ',' and points.good  # which a comma may part there
+        if not thousands:
+            read |= commas.take(np.where(pointed, math.nan, numbers), cells, self._rows)
+        return read
 
     def _chosen(self) -> _Count:
         """
@@ -174,13 +197,24 @@ def _seconds(times: pl.Series) -> pl.Series:
 
 
 def _points(texts: pl.Series) -> pl.Series:
+    plain = texts.cast(pl.Float64, strict=False)
+    if plain.null_count() == texts.null_count():  # blanks around numbers are rare, and cost
+        return plain
     return texts.str.strip_chars().cast(pl.Float64, strict=False)
 
 
 def _commas(texts: pl.Series) -> pl.Series:
     """Return texts as numbers with a decimal comma; one with a point becomes null."""
-    plain = texts.set(texts.str.contains('.', literal=True), None)
-    return _points(plain.str.replace(',', '.', literal=True))
+    return _points(_with_points(texts.set(pl.Series(_holds(texts, '.')), None)))
+
+
+def _with_points(texts: pl.Series) -> pl.Series:
+    return texts.str.replace(',', '.', literal=True)
+
+
+def _holds(texts: pl.Series, mark: str) -> NDArray[np.bool_]:
+    """Return which texts hold a mark."""
+    return texts.str.contains(mark, literal=True).fill_null(False).to_numpy()
 
 
 def _made(parsed: Callable[[pl.Series], pl.Series]) -> Form:

@@ -177,9 +177,11 @@ def _write(
                 writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.RELIABLE))
                 templates[name] = RowTemplate(message, len(numbers))
             streams.append((name, templates[name].rows(block.stamps, numbers)))
-        for stamp in block.stamps.tolist():
+        for number, stamp in enumerate(block.stamps.tolist(), done + 1):
             for name, rows in streams:
                 writer.write(name, next(rows), log_time=stamp, publish_time=stamp)
+            if number % BLOCK == 0:
+                show(number / series.count)
         done += len(block.stamps)
         show(done / series.count)
 

@@ -19,8 +19,8 @@ from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, Layout, RATED, UNITS
-from ballscrew_monitor.recordings.tables.read import column_names, open_table
-from ballscrew_monitor.recordings.tables.sources import layout_of
+from ballscrew_monitor.recordings.tables.read import look_through
+from ballscrew_monitor.recordings.tables.sources import layout_of, source_of
 from ballscrew_monitor.recordings.words import listed, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
@@ -84,7 +84,8 @@ class _Guesser:
     def __init__(self, path: Path, shown: Shown) -> None:
         self.path = path
         self.layout = layout_of(path)
-        self.named = [read_name(name) for name in column_names(path, self.layout)]
+        source = source_of(path, self.layout)
+        self.named = [read_name(name) for name in source.names()]
         self.assumed: dict[str, dict[str, Any]] = {}
         self.notes: list[str] = []
         self.used: dict[str, dict[str, dict[str, Any]]] = {}
@@ -102,11 +103,12 @@ class _Guesser:
         self.times = [one for one in self.named if one.kind == 'time']
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
         used = [one.column for one in [*columns, *self.times]]
-        table = open_table(path, used, layout=self.layout, optional=used, shown=shown)
+        table = look_through(source, used, optional=used, shown=shown)
         rows = NUMBERS // len(used)
         # The first rows tell how the speeds go with the positions, all of them the ranges.
         self.data = table.head(rows)
         self.extremes = {name: one.extremes for name, one in table.readings.items()}
+        self.timed = {name for name, one in table.readings.items() if one.is_time}
         self.notes += [f'{why}; it is left out' for why in table.left_out.values()]
         self.notes += [*table.notes, *names.told_by_words(self.named)]
         if rows < table.rows:
@@ -150,7 +152,8 @@ class _Guesser:
         days = next((one for one in self.times if self._is(estimates.is_of_days, one)), None)
         for one in sorted(self.times, key=lambda one: -one.rank):  # by name, then by unit
             values = self.data[one.column]
-            if days and not one.unit and self._is(estimates.is_of_a_day, one):
+            clock = one.column in self.timed and self._is(estimates.is_of_a_day, one)
+            if days is not None and clock:
                 dated = self._time_of(one, self.data[days.column] + values)
                 return dated | {'date': days.column}
             if one is not days and estimates.is_rising(values):
@@ -162,8 +165,9 @@ class _Guesser:
 
     def _time_of(self, one: Named, values: Array) -> dict[str, Any]:
         unit, absolute, why = estimates.time_unit(values[np.isfinite(values)])
-        if one.unit and not absolute:
-            unit = one.unit
+        stated = 's' if one.column in self.timed else one.unit
+        if stated and not absolute:
+            unit = stated
         elif not absolute:
             self._assume(
                 'time.unit', unit, f'column {one.column} states none that is known; {why}'

@@ -27,6 +27,7 @@ from ballscrew_monitor.recordings.tables.quantities import (
     RATED,
     UNITS,
 )
+from ballscrew_monitor.recordings.words import short
 from ballscrew_monitor.settings.parameters import check_axes
 from surrogate.files import InputError
 from surrogate.limits import read_text
@@ -327,7 +328,7 @@ def _flatten(section: Any, prefix: str) -> dict[str, Any]:
 
 def _check_keys(what: str, section: Any, known: tuple[str, ...] | None) -> None:
     if not isinstance(section, dict):
-        raise InputError(f'{what} is {section!r}, it must hold keys and values')
+        raise InputError(f'{what} is {short(repr(section))}, it must hold keys and values')
     for key in section:
         if known is not None and key not in known:
             raise InputError(f'{what} holds {key!r}, allowed are {", ".join(known)}')

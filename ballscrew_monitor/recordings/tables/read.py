@@ -17,7 +17,7 @@ from pathlib import Path
 from ballscrew_monitor.recordings.tables.cells import Array, Cells, Reading
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.sources import layout_of, Source, source_of
-from ballscrew_monitor.recordings.words import listed, Shown, shown_progress
+from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
 
@@ -80,8 +80,19 @@ def open_table(
     """
     source = source_of(path, layout)
     _check_names(source, names, layout or Layout())
+    return look_through(source, names, optional=optional, shown=shown)
+
+
+def look_through(
+    source: Source,
+    names: Collection[str],
+    *,
+    optional: Collection[str] = (),
+    shown: Shown = shown_progress,
+) -> Table:
+    """Look through columns that a table holds, as `open_table` does."""
     left_out: dict[str, str] = {}
-    found = {name: Cells(path, name, source.separator) for name in names}
+    found = {name: Cells(source.path, name, source.separator) for name in names}
     rows = 0
     with shown(source.rows, 'rows looked through') as show:
         for block in source.blocks(list(found)):
@@ -91,13 +102,13 @@ def open_table(
             rows += block.height
             show(rows / source.rows)
     if not rows:
-        raise InputError(f'log {path} holds no row, at least two are needed')
+        raise InputError(f'log {source.path} holds no row, at least two are needed')
     readings: dict[str, Reading] = {}
     for name, cells in found.items():
         with _left_out(name, left_out, optional):
             readings[name] = cells.reading()
     return Table(
-        path=path,
+        path=source.path,
         readings={name: one for name, one in readings.items() if name not in left_out},
         rows=rows,
         notes=tuple(one.note for one in readings.values() if one.note),
@@ -111,14 +122,17 @@ def _check_names(source: Source, names: Collection[str], layout: Layout) -> None
     held = source.names()
     for name in names:
         if name not in held:
-            hints = [f'{near} may be meant' for near in difflib.get_close_matches(name, held, n=1)]
+            hints = [
+                f'{short(near)} may be meant'
+                for near in difflib.get_close_matches(name, held, n=1)
+            ]
             if (found := layout_of(source.path)) != layout:
                 hints.append(
                     'the names look to stand elsewhere: write '
                     f'`skip: {found.skip}` and `header_rows: {found.header_rows}` in the map'
                 )
             raise InputError(
-                f'log {source.path}: column {name!r} is missing, the log holds '
+                f'log {source.path}: column {short(repr(name))} is missing, the log holds '
                 f'{"; ".join([listed(held), *hints])}'
             )
 

@@ -8,10 +8,11 @@ line feed, a carriage return or both. All is bounded before it is read.
 
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 import contextlib
 import csv
 import dataclasses
+import functools
 import importlib
 import io
 from pathlib import Path
@@ -24,12 +25,14 @@ from ballscrew_monitor.recordings.tables import heads
 from ballscrew_monitor.recordings.tables.cells import first_line, UNREADABLE
 from ballscrew_monitor.recordings.tables.quantities import Layout
 import numpy as np
+from numpy.typing import NDArray
 import polars as pl
 from surrogate import limits
 from surrogate.files import InputError
 
 HEAD = 65536  # [bytes] of a file that tell what it is
 LINES = 200  # of a table that tell where its names stand
+SHORT = 4096  # [bytes] of a block, in which a line usually ends
 BLOCK = 32768  # rows that are read at a time
 NUMBER = 8  # [bytes] of a cell
 ZIP, PARQUET = b'PK\3\4', b'PAR1'
@@ -219,11 +222,10 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     with text.lines() as lines:
         head = _named(path, lines, found)
     _check_columns(path, len(head.names))
-    names = head.names
     frame = pl.scan_csv(
         path if text.content is None else io.BytesIO(text.content),
         separator=head.separator,
-        with_column_names=lambda held: [*names, *held[len(names) :]][: len(held)],
+        with_column_names=functools.partial(_renamed, head.names),
         skip_lines=head.lines,
         skip_rows_after_header=found.header_rows - 1,
         infer_schema=False,
@@ -233,6 +235,12 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
         eol_char=text.line_end,
     )
     return Source(path=path, frame=frame, separator=head.separator, rows=text.lines_about)
+
+
+def _renamed(names: Sequence[str], held: Sequence[str]) -> list[str]:
+    """Return `names` for columns, and for those beyond what they are called there."""
+    count, most = len(names), len(held)
+    return [*names[:most], *held[count:]]
 
 
 def _named(path: Path, lines: Iterator[str], layout: Layout) -> heads.Head:
@@ -275,10 +283,20 @@ def _line_ends(block: bytes, line_end: bytes, quoted: bool) -> tuple[int, int]:
     """Return where the first and the last line end that do so outside of quotes, -1 if none."""
     if b'"' not in block:
         return (-1, -1) if quoted else (block.find(line_end), block.rfind(line_end))
+    for size in (SHORT, len(block)):  # of most blocks a little at both ends tells it
+        rest = max(len(block) - size, 0)
+        first = _outside(block[:size], line_end, quoted)
+        last = _outside(block[rest:], line_end, quoted ^ (block[:rest].count(b'"') % 2 == 1))
+        if len(first) and len(last):
+            return int(first[0]), rest + int(last[-1])
+    return -1, -1
+
+
+def _outside(block: bytes, line_end: bytes, quoted: bool) -> NDArray[np.intp]:
+    """Return where lines end outside of quotes."""
     letters = np.frombuffer(block, np.uint8)
     inside = (np.cumsum(letters == ord('"')) + quoted) % 2
-    ends = np.flatnonzero((letters == ord(line_end)) & (inside == 0))
-    return (int(ends[0]), int(ends[-1])) if len(ends) else (-1, -1)
+    return np.flatnonzero((letters == ord(line_end)) & (inside == 0))
 
 
 @contextlib.contextmanager

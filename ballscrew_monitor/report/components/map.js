@@ -15,7 +15,7 @@ class OperatingMap extends MapFrame {
     this.canvas.addEventListener('pointermove', (event) => this.read(event));
     this.canvas.addEventListener('pointerleave', () => this.say(this.hint()));
     this.canvas.addEventListener('click', (event) => this.lead(event));
-    new ResizeObserver(() => this.draw()).observe(element);
+    new ResizeObserver(() => requestAnimationFrame(() => this.draw())).observe(element);
     this.draw();
   }
 

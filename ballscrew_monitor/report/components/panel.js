@@ -49,7 +49,7 @@ const Panel = (() => {
     if (!panel.floor) {
       return axis;
     }
-    const filter = (plot, splits) => splits.map(decades);
+    const filter = (plot, splits) => splits.map((value) => marked(value, panel.bands));
     return { ...axis, filter, grid: { ...axis.grid, filter }, ticks: { ...axis.ticks, filter } };
   }
 
@@ -137,10 +137,11 @@ const Panel = (() => {
     }
   }
 
-  /** Return a value that begins a decade or is a limit of the film ratio, null for others. */
-  function decades(value) {
-    const first = value / 10 ** Math.floor(Math.log10(value) + 1e-9);
-    return Math.abs(first - 1) < 1e-6 || Math.abs(value - 3) < 1e-6 ? value : null;
+  /** Return a value that begins a decade or a band, null for others. */
+  function marked(value, bands) {
+    const near = (one) => Math.abs(value - one) < 1e-6;
+    const decade = value / 10 ** Math.floor(Math.log10(value) + 1e-9);
+    return Math.abs(decade - 1) < 1e-6 || bands.some((band) => near(band.low)) ? value : null;
   }
 
   return { scale, series, timeAxis, valueAxis, shade, limits, caption, read, selected };

@@ -5,6 +5,7 @@
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.health.records import (
     Baseline,
@@ -132,3 +133,21 @@ def test_what_is_not_known_is_a_sentence_and_no_warning(says):
     later = health_status('/node', 'x', 's', health(), WarningPolicy.BOTH, problem='it failed')
     assert later.level == WARN
     assert later.message == 'Axis x is worse. Not followed now: it failed'
+
+
+@pytest.mark.parametrize(
+    ('condition', 'problem', 'code'),
+    [
+        (Condition.WORSE, '', Fault.WORSE),
+        (Condition.NORMAL, '', Fault.NONE),
+        (Condition.UNKNOWN, '', Fault.NOT_KNOWN),
+        (Condition.WORSE, 'the disk is full', Fault.NOT_FOLLOWED),
+        (None, '', Fault.NOT_KNOWN),
+        (None, 'the disk is full', Fault.NOT_FOLLOWED),
+    ],
+)
+@pytest.mark.parametrize('policy', WarningPolicy)
+def test_the_code_is_that_of_the_condition_whatever_warns(condition, problem, code, policy):
+    found = None if condition is None else health(condition)
+    status = health_status('/node', 'x', 'screw', found, policy, problem=problem)
+    assert (status.values[0].key, int(status.values[0].value)) == ('Code', code)

@@ -92,3 +92,4 @@ def test_names_are_listed_up_to_a_number_and_a_length():
     many = words.listed([*'a' * words.MOST, 'x', 'y'])
     assert many.endswith('a, and 2 more')
     assert words.listed(['n' * 999]) == 'n' * words.LONGEST + '…'
+    assert words.short('n' * words.LONGEST) == 'n' * words.LONGEST

@@ -22,36 +22,7 @@ DEADLINE = 600.0  # [s] which only ends a hang
 ROOT = Path(__file__).resolve().parents[4]
 OWN = ROOT / 'ballscrew_monitor' / 'page' / 'components'
 LANGUAGES = ROOT / 'ballscrew_monitor' / 'page' / 'languages'
-SHARED = ROOT / 'ballscrew_monitor' / 'report' / 'components'
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
-STYLES = ('uPlot.min.css', 'page.css', 'live.css')
-SCRIPTS = (
-    'uPlot.iife.min.js',
-    'format.js',
-    'frame.js',
-    'map.js',
-    'panel.js',
-    'words.js',
-    'controls.js',
-    'quantities.js',
-    'axis.js',
-    'painter.js',
-    'live.js',
-    'first_screen.js',
-    'trail.js',
-    'live_map.js',
-    'map_legend.js',
-    'strip_panels.js',
-    'strips.js',
-    'what_if.js',
-    'events.js',
-    'health.js',
-    'player.js',
-    'live_page.js',
-)
-POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self'"
-)
 WATCHED = """
     window.violations = [];
     document.addEventListener('securitypolicyviolation', (event) => {
@@ -120,6 +91,16 @@ class Tab:
 
     def text(self, selector):
         return self.ask(f'document.querySelector({json.dumps(selector)})?.textContent')
+
+    def texts(self, selector):
+        """Return the texts of all elements that match."""
+        return self.ask(f"""[...document.querySelectorAll({json.dumps(selector)})]
+            .map((one) => one.textContent)""")
+
+    def button(self, place, text):
+        """Press the button of a text in a place of the page."""
+        self.ask(f"""[...document.querySelectorAll({json.dumps(place + ' button')})]
+            .find((one) => one.textContent === {json.dumps(text)}).click()""")
 
     def reads(self, selector, text):
         """Wait until an element reads so."""
@@ -245,27 +226,37 @@ class FakeServer:
         self.loop.close()
 
     def _get(self, connection, request):
+        """Serve the files of the real page; None lets a socket open."""
+        from ballscrew_monitor.page import components
+
         if request.path == '/live':
             return None
         if request.path == '/':
-            return self._respond(connection, 'text/html', page(request.headers))
-        name = request.path.removeprefix('/components/')
-        if name not in STYLES + SCRIPTS:
+            language = self._language(request)
+            return self._respond(connection, components.index(language), 'text/html')
+        known = components.table().get(request.path.removeprefix('/components/'))
+        if known is None:
             return connection.respond(HTTPStatus.NOT_FOUND, '')
-        kind = 'text/css' if name.endswith('.css') else 'text/javascript'
-        return self._respond(connection, kind, component(name))
+        return self._respond(connection, known[0].decode(), known[1])
 
-    def _respond(self, connection, kind, text):
+    def _language(self, request):
+        from ballscrew_monitor.page.components import language_of
+
+        return language_of(request.headers.get('Accept-Language', ''))
+
+    def _respond(self, connection, text, kind):
+        from ballscrew_monitor.page.guard import POLICY
+
         response = connection.respond(HTTPStatus.OK, text)
         del response.headers['Content-Type']
-        response.headers['Content-Type'] = f'{kind}; charset=utf-8'
+        response.headers['Content-Type'] = kind
         response.headers['Content-Security-Policy'] = POLICY
         return response
 
     async def _speak(self, connection):
         from websockets import ConnectionClosed
 
-        language = language_of(connection.request.headers)
+        language = self._language(connection.request)
         for record, arrays in self.greeting:
             more = {'language': language, 'words': words(language)}
             greets = record['kind'] == 'hello'
@@ -290,29 +281,6 @@ class FakeServer:
 
 def words(language):
     return json.loads((LANGUAGES / f'{language}.json').read_text(encoding='utf-8'))
-
-
-def language_of(headers):
-    wanted = headers.get('Accept-Language', 'en')[:2]
-    return wanted if (LANGUAGES / f'{wanted}.json').exists() else 'en'
-
-
-def component(name):
-    places = (OWN / name, SHARED / name, SHARED / 'uplot' / name)
-    return next(place for place in places if place.exists()).read_text(encoding='utf-8')
-
-
-def page(headers):
-    language = language_of(headers)
-    sheets = ''.join(f'<link rel="stylesheet" href="/components/{name}">' for name in STYLES)
-    scripts = ''.join(f'<script src="/components/{name}" defer></script>' for name in SCRIPTS)
-    return (
-        f'<!DOCTYPE html><html lang="{language}"><head><meta charset="utf-8">'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f'<title>Ball screw monitor</title>{sheets}</head><body><main id="page">'
-        f'<p class="link" role="status">{words(language)["link_first"]}</p></main>'
-        f'{scripts}</body></html>'
-    )
 
 
 @pytest.fixture
@@ -350,8 +318,8 @@ def make_axis(name='x', **changes):
 
 
 def make_hello(*axes, **changes):
-    hello = {'kind': 'hello', 'version': 1, 'acting': False, 'nodes': [], 'waiting': ''}
-    return hello | {'axes': list(axes)} | changes, None
+    hello = {'kind': 'hello', 'version': 1, 'acting': False, 'nodes': [], 'notices': []}
+    return hello | {'waiting': '', 'axes': list(axes)} | changes, None
 
 
 def make_rows(count, begin=0.0, rate=50.0, **changes):

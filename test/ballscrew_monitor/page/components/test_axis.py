@@ -72,6 +72,9 @@ def test_old_data_say_nothing_of_now(rows):
     facts = {'axis': 'x', 'kind': 'state', 'level': 'ok', 'arrays': {}}
     for age, level in ((4.5, 'ok'), (5.5, 'unknown')):
         state = json.dumps(facts | {'age_s': age})
-        assert rows.ask(f"""(() => {{ const axis = new Axis({{}});
-            axis.take({state}); return axis.level; }})()""") == level
+        assert (
+            rows.ask(f"""(() => {{ const axis = new Axis({{}});
+            axis.take({state}); return axis.level; }})()""")
+            == level
+        )
     assert rows.ask('new Axis({}).level') == 'unknown'

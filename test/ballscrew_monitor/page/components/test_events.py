@@ -21,44 +21,43 @@ def fill(tab, name, reason):
     }})()""")
 
 
-def press(tab, text):
-    tab.ask(f"[...document.querySelectorAll('.events button')].find((one) => one.textContent === {text!r}).click()")
-
-
 def test_warnings_are_listed_and_lead_to_their_moment(acting, greeted, frames):
-    cells = "[...document.querySelectorAll('.events td')].map((one) => one.textContent)"
     advice = 'At this load run at 6.4 m/min (640 rev/min) or faster.'
-    assert acting.ask(cells)[1:] == ['8 s', 'contact 12 %, limit 1 %', advice, '']
+    assert acting.texts('.events td')[1:] == ['8 s', 'contact 12 %, limit 1 %', advice, '']
     acting.click('.events td button')
     begin, end = acting.ask('page.strips.range')
     assert (begin, end) == pytest.approx((frames.begin + 15.0, frames.begin + 33.4))
     greeted.send(*frames.events('x', {'acknowledged_by': 'Ada'}, {'active': True}))
     acting.until("document.querySelectorAll('.events tbody tr').length === 2")
-    assert 'Ada' in acting.ask(cells)
+    assert 'Ada' in acting.texts('.events td')
     assert acting.ask("document.querySelectorAll('.events tr.bad').length") == 1
     greeted.send(*frames.events('x'))
     acting.reads('.events .wide', 'No warning yet.')
 
 
 def test_acts_carry_name_and_reason(acting, greeted, frames):
-    greeted.answers['acknowledge'] = lambda one: [({'kind': 'answer', 'ok': True, 'message': ''}, None)]
+    greeted.answers['acknowledge'] = lambda one: [
+        ({'kind': 'answer', 'ok': True, 'message': ''}, None)
+    ]
     greeted.answers['shelve'] = lambda one: [
         ({'kind': 'answer', 'ok': False, 'message': 'No warning is active.'}, None)
     ]
     words = frames.words('en')
-    press(acting, 'Acknowledge')
+    acting.button('.events', 'Acknowledge')
     acting.reads('.message', words['act_needs_name'])
     fill(acting, 'Ada', ' ')
-    press(acting, 'Shelve')
+    acting.button('.events', 'Shelve')
     acting.reads('.message', words['act_needs_reason'])
     assert greeted.requests == []
-    press(acting, 'Acknowledge')
+    acting.button('.events', 'Acknowledge')
     acting.reads('.message', 'Done.')
     fill(acting, 'Ada', 'run-in')
-    press(acting, 'Shelve')
+    acting.button('.events', 'Shelve')
     acting.reads('.message', 'No warning is active.')
     common = {'axis': '/ballscrew_monitor/x', 'name': 'Ada'}
-    assert [{key: value for key, value in one.items() if key != 'id'} for one in greeted.requests] == [
+    assert [
+        {key: value for key, value in one.items() if key != 'id'} for one in greeted.requests
+    ] == [
         common | {'do': 'acknowledge'},
         common | {'do': 'shelve', 'minutes': 15, 'reason': 'run-in'},
     ]
@@ -73,5 +72,5 @@ def test_where_acting_is_off_the_page_says_so(tab, greeted, frames):
 
 
 def test_sums_are_in_the_units_of_an_operator(acting):
-    tiles = acting.ask("[...document.querySelectorAll('.events .tile dd')].map((one) => one.textContent)")
+    tiles = acting.texts('.events .tile dd')
     assert tiles == ['46.2 h', '13 %', '80 %', '1260 kJ', '842800']

@@ -33,14 +33,17 @@ def test_values_on_screen_are_those_of_the_states(shown, greeted, frames):
 
     @settings(max_examples=12)
     @given(
-        st.floats(5, 3000), st.floats(10, 30_000), st.floats(10, 90), st.floats(0.1, 0.99),
+        st.floats(5, 3000),
+        st.floats(10, 30_000),
+        st.floats(10, 90),
+        st.floats(0.1, 0.99),
         st.sampled_from(sorted(LEVELS)),
     )
     def holds(speed, load, temperature, efficiency, level):
         values = {'speed_rpm': speed, 'load_N': load, 'temperature_degC': temperature}
         rows = frames.rows(2, efficiency=efficiency, **values)
         headline = f'state {next(number)}'
-        greeted.send(*frames.state(level=level, rows=rows, headline=headline))
+        greeted.send(*frames.state(level=level, zone='outside', rows=rows, headline=headline))
         shown.reads('.reason', headline)
         shown.reads('.sign.level .word', LEVELS[level])
         shown.until(f"document.querySelector('.sign.level').dataset.state === '{level}'")
@@ -50,7 +53,9 @@ def test_values_on_screen_are_those_of_the_states(shown, greeted, frames):
             f'{rounded(temperature, 3)} °C',
             f'{rounded(100 * efficiency, 3)} %',
         ]
-        found = shown.ask("[...document.querySelectorAll('.numbers .big')].map((one) => one.textContent)")
+        found = shown.ask(
+            "[...document.querySelectorAll('.numbers .big')].map((one) => one.textContent)"
+        )
         assert found[:4] == expected
         assert shown.text('.numbers .more') == f'{rounded(speed, 4)} rev/min'
 
@@ -73,6 +78,20 @@ def test_how_far_the_limit_is(shown, margin, text):
     assert shown.ask(f'FirstScreen.distance({margin})') == text
 
 
+def test_at_standstill_no_distance_is_told(shown, greeted, frames):
+    greeted.send(*frames.state(rows=frames.rows(1, speed_rpm=4.0)))
+    shown.reads('.numbers > div:last-child .big', '–')
+    greeted.send(*frames.state(rows=frames.rows(1, 1.0, speed_rpm=-885.0)))
+    shown.reads('.numbers > div:last-child .big', '50 % above')
+
+
+def test_a_warning_that_is_only_held_says_so(shown, greeted, frames):
+    greeted.send(*frames.state(level='warn', zone='unknown', headline='the screw stands still'))
+    shown.reads('.reason', 'The warning is held; at this moment: the screw stands still')
+    greeted.send(*frames.state(level='warn', zone='outside', headline='too slow'))
+    shown.reads('.reason', 'too slow')
+
+
 def test_advice_condition_and_inputs_are_said(shown, greeted, frames):
     inputs = [
         {'name': 'load', 'state': 'stale', 'age_s': 4.0, 'words': 'The last sample is 4 s old.'}
@@ -80,7 +99,11 @@ def test_advice_condition_and_inputs_are_said(shown, greeted, frames):
     health = frames.health('worse', verdict='The friction has risen by 30 %.')
     greeted.send(
         *frames.state(
-            level='warn', advice='Run at 6.4 m/min.', inputs=inputs, health=health,
+            level='warn',
+            zone='outside',
+            advice='Run at 6.4 m/min.',
+            inputs=inputs,
+            health=health,
             shelved={'left_s': 600.0, 'reason': 'run-in'},
         )
     )
@@ -98,9 +121,9 @@ def test_a_level_that_stays_is_not_read_out_again(shown, greeted, frames):
         new MutationObserver(() => { changes += 1; }).observe(
           document.querySelector('.sign.level .word'), { childList: true, characterData: true });
         0""")
-    for level in ('ok', 'ok', 'warn', 'warn'):
-        greeted.send(*frames.state(level=level, headline=f'now {level}'))
-        shown.reads('.reason', f'now {level}')
+    for number, level in enumerate(('ok', 'ok', 'warn', 'warn')):
+        greeted.send(*frames.state(level=level, zone='outside', headline=f'state {number}'))
+        shown.reads('.reason', f'state {number}')
     shown.until('changes === 1')
 
 
@@ -125,12 +148,18 @@ def test_a_node_that_is_gone_leaves_its_words(shown, greeted, frames):
 def test_names_with_markup_are_shown_as_text(tab, server, frames):
     axes = [frames.axis(HOSTILE, screw=HOSTILE, oil=HOSTILE), frames.axis('y')]
     state = frames.state(
-        HOSTILE, level='warn', headline=HOSTILE, advice=HOSTILE,
+        HOSTILE,
+        level='warn',
+        zone='outside',
+        headline=HOSTILE,
+        advice=HOSTILE,
         inputs=[{'name': HOSTILE, 'state': HOSTILE, 'age_s': 0.0, 'words': HOSTILE}],
         health=frames.health('worse', verdict=HOSTILE, advice=HOSTILE),
     )
     server.greeting = [
-        frames.hello(*axes), state, frames.map(HOSTILE),
+        frames.hello(*axes),
+        state,
+        frames.map(HOSTILE),
         frames.events(HOSTILE, {'advice': HOSTILE, 'acknowledged_by': HOSTILE}),
     ]
     tab.open(server.url)
@@ -138,19 +167,3 @@ def test_names_with_markup_are_shown_as_text(tab, server, frames):
     tab.reads('.card .name', HOSTILE)
     tab.until("document.querySelector('.events td')")
     assert tab.ask("document.querySelectorAll('img, main script').length") == 0
-
-
-def test_axes_are_cards_of_which_one_is_chosen(tab, server, frames):
-    server.greeting = [
-        frames.hello(frames.axis('x'), frames.axis('y', lead_mm=5.0)),
-        frames.state('x'), frames.state('y', level='warn', headline='Too slow.'),
-    ]
-    tab.open(server.url)
-    tab.until("document.querySelectorAll('.card[data-state]').length === 2")
-    levels = "[...document.querySelectorAll('.card')].map((one) => one.dataset.state).join()"
-    tab.until(f"{levels} === 'ok,warn'")
-    pressed = "[...document.querySelectorAll('.card')].map((one) => one.ariaPressed).join()"
-    assert tab.ask(pressed) == 'true,false'
-    tab.click('.card:nth-child(2)')
-    tab.reads('.reason', 'Too slow.')
-    tab.until(f"{pressed} === 'false,true'")

@@ -6,8 +6,8 @@
 def test_quantities_have_value_interval_and_picture(tab, greeted, frames):
     tab.open(greeted.url)
     tab.until("document.querySelector('.health td')")
-    rows = tab.ask("""[...document.querySelectorAll('.health tbody tr')].map(
-        (row) => [...row.cells].map((cell) => cell.querySelector('svg') ? 'picture' : cell.textContent))""")
+    rows = tab.ask("""[...document.querySelectorAll('.health tbody tr')].map((row) =>
+        [...row.cells].map((one) => (one.querySelector('svg') ? 'picture' : one.textContent)))""")
     assert rows == [
         ['Preload', '98 %', '92 to 104', 'picture'],
         ['Friction change', '3 %', '-2 to 8', 'picture'],
@@ -25,8 +25,9 @@ def test_marks_of_an_interval_are_where_they_belong(tab, greeted):
         const at = (one, name) => Number(one.getAttribute(name));
         const [zero, whole, interval] = bar.querySelectorAll('line');
         const part = (x) => (x - at(zero, 'x1')) / (at(whole, 'x1') - at(zero, 'x1'));
-        return [part(at(interval, 'x1')), part(at(interval, 'x2')), part(at(bar.querySelector('circle'), 'cx'))]
-          .map((one) => Number(one.toFixed(9)));
+        const dot = bar.querySelector('circle');
+        return [at(interval, 'x1'), at(interval, 'x2'), at(dot, 'cx')]
+          .map((x) => Number(part(x).toFixed(9)));
     })()""")
     assert found == [0.6, 0.8, 0.7]
 

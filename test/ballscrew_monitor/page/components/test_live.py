@@ -21,7 +21,8 @@ def shown(tab, greeted):
 def decoded(tab, data):
     text = base64.b64encode(data).decode()
     return tab.ask(f"""(() => {{
-        const frame = Live.decode(Uint8Array.from(atob('{text}'), (one) => one.charCodeAt(0)).buffer);
+        const bytes = Uint8Array.from(atob('{text}'), (one) => one.charCodeAt(0));
+        const frame = Live.decode(bytes.buffer);
         return {{ ...frame, arrays: Object.fromEntries(Object.entries(frame.arrays)
           .map(([name, values]) => [name, [...values].map(String)])) }};
     }})()""")
@@ -49,11 +50,7 @@ def test_a_lost_connection_is_said_and_comes_back_by_itself(shown, greeted, fram
     shown.until("document.querySelector('.link').textContent.startsWith('No connection to the')")
     assert not shown.ask("document.querySelector('.link').hidden")
     answer = shown.ask("page.live.ask({ do: 'read' })")
-    assert answer == {
-        'ok': False,
-        'message': frames.words('en')['link_needed'],
-        'arrays': {},
-    }
+    assert answer == {'ok': False, 'message': frames.words('en')['link_needed'], 'arrays': {}}
     greeted.start()
     shown.until("document.querySelector('.link').hidden")
     greeted.send(*frames.state(level='warn'))
@@ -62,7 +59,8 @@ def test_a_lost_connection_is_said_and_comes_back_by_itself(shown, greeted, fram
 
 
 def test_a_request_that_is_under_way_is_refused_when_the_connection_is_lost(shown, greeted):
-    shown.ask("globalThis.answer = null; page.live.ask({ do: 'read' }).then((one) => { answer = one; }); 0")
+    shown.ask("""globalThis.answer = null;
+        page.live.ask({ do: 'read' }).then((one) => { answer = one; }); 0""")
     shown.until('page.live.waiting.size === 1')
     greeted.stop()
     shown.until('answer && answer.ok === false')

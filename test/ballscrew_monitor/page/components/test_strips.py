@@ -23,7 +23,7 @@ def test_each_panel_holds_the_rows_in_its_unit(tab, greeted, frames):
     tab.open(greeted.url)
     tab.until(DRAWN)
     tab.until(f'{PLOTS}.every((panel) => panel.plot?.data[0].length === 500)')
-    drawn = tab.ask(f"{PLOTS}.map((panel) => panel.plot.data)")
+    drawn = tab.ask(f'{PLOTS}.map((panel) => panel.plot.data)')
     factors = {'speed_rpm': 0.01, 'efficiency': 100.0, 'rcs': 100.0}
     keys = tab.ask(f'{PLOTS}.map((panel) => panel.keys)')
     assert {key for panel in keys for key in panel} == set(frames.columns) - {'stamp', 'level'}
@@ -42,7 +42,7 @@ def test_a_panel_runs_on_stands_still_and_follows_again(shown, greeted, frames):
     assert shown.ask(f'{button}.textContent + {button}.ariaPressed') == 'Run ontrue'
     greeted.send(*frames.state(rows=frames.rows(1, 9.0)))
     shown.until(f"page.axis.rows.last('stamp') === {frames.begin + 9.0}")
-    shown.until(f'page.painter.views.every((view) => !view.news)')
+    shown.until('page.painter.views.every((view) => !view.news)')
     assert set(shown.ask(ends)) == {frames.begin + 5.0}
     shown.ask(f'{button}.click()')
     shown.until(f'{ends}.every((end) => end === {frames.begin + 9.0})')
@@ -79,7 +79,9 @@ def test_one_cursor_reads_all_panels(shown, wait_for):
 def test_rows_at_50_hz_for_long_do_not_grow_the_page(shown, greeted, frames, rate):
     def sizes():
         shown.call('HeapProfiler.collectGarbage')
-        found = {one['name']: one['value'] for one in shown.call('Performance.getMetrics')['metrics']}
+        found = {
+            one['name']: one['value'] for one in shown.call('Performance.getMetrics')['metrics']
+        }
         return found['JSHeapUsedSize'], found['Nodes']
 
     def stream(begin, seconds):

@@ -20,7 +20,9 @@ def shown(tab, greeted):
     tab.open(greeted.url)
     tab.until("document.querySelector('.over')?.height > 150")
     tab.until('page.whatIf.map.over.area')
-    tab.ask('page.whatIf.map.record.arrays.dwell.fill(0); page.whatIf.map.over.before = undefined; 0')
+    tab.ask(
+        'page.whatIf.map.record.arrays.dwell.fill(0); page.whatIf.map.over.before = undefined; 0'
+    )
     return tab
 
 

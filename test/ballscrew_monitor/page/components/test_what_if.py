@@ -36,31 +36,26 @@ def change(tab, selector, value):
     }})()""")
 
 
-def press(tab, text):
-    tab.ask(f"""[...document.querySelectorAll('.what-if button')]
-        .find((one) => one.textContent === '{text}').click()""")
-
-
 def test_another_state_is_asked_for_said_and_left(shown, greeted, frames, wait_for):
     change(shown, 'input[type=range]', 50)
     shown.reads('.what-if h2', 'Operating map at 50 °C')
     change(shown, 'label:nth-of-type(3) select', 'ISO VG 46')
     said = 'What if: this map is for 50 °C and ISO VG 46. It is not the present state.'
     shown.reads('.assumed', said)
-    shown.until("page.whatIf.map.record.temperature_degC === 50")
+    shown.until('page.whatIf.map.record.temperature_degC === 50')
     wanted = {'quantity': 'efficiency', 'temperature_degC': 50, 'oil': 'ISO VG 46'}
     wait_for(lambda: wanted.items() <= greeted.requests[-1].items(), 'the oil')
     # A map of the present state does not take the place of the one that was asked for.
     greeted.send(*frames.map(temperature_degC=36.0))
     shown.until('page.axis.map.temperature_degC === 36')
     assert shown.text('.what-if h2') == 'Operating map at 50 °C'
-    press(shown, 'Back to now')
+    shown.button('.what-if', 'Back to now')
     shown.reads('.what-if h2', 'Operating map at 35 °C')
     assert shown.text('.assumed') == ''
 
 
 def test_a_pinned_place_is_read_solved_and_the_solve_cancelled(shown, greeted):
-    assert shown.ask("page.whatIf.solve.disabled")
+    assert shown.ask('page.whatIf.solve.disabled')
     shown.ask("""(() => {
         const { map } = page.whatIf;
         const box = map.canvas.getBoundingClientRect();
@@ -71,7 +66,7 @@ def test_a_pinned_place_is_read_solved_and_the_solve_cancelled(shown, greeted):
     greeted.answers['solve'] = lambda one: [
         ({'kind': 'progress', 'share': 0.4, 'words': 'Film of the worst contact.'}, None)
     ]
-    press(shown, 'Solve the pinned place')
+    shown.button('.what-if', 'Solve the pinned place')
     shown.reads('.results', 'Solving, 40 % done. Film of the worst contact.')
     solve = greeted.requests[-1]
     pixel = 0.05  # of the map, in speed and load
@@ -82,13 +77,13 @@ def test_a_pinned_place_is_read_solved_and_the_solve_cancelled(shown, greeted):
         return [(refusal, None), ({'kind': 'answer', 'ok': True}, None)]
 
     greeted.answers['cancel'] = cancelled
-    press(shown, 'Cancel the solve')
+    shown.button('.what-if', 'Cancel the solve')
     shown.reads('.results', 'Cancelled.')
     assert greeted.requests[-1]['solve'] == solve['id']
     greeted.answers['solve'] = lambda one: [
         (POINT | {'kind': 'answer', 'ok': True} | {key: one[key] for key in PLACE}, None)
     ]
-    press(shown, 'Solve the pinned place')
+    shown.button('.what-if', 'Solve the pinned place')
     point = 'optimal. Efficiency 93.1 %, contact 0.2 %, film ratio 2.13, torque 1.25 N m.'
     shown.until(f"""/^Solved: [.\\d]+ m.min .*: {point}$/.test(
         document.querySelector('.results').textContent)""")
@@ -104,7 +99,7 @@ def test_other_feeds_have_their_sentences_and_paths(shown, greeted):
     greeted.answers['ghosts'] = lambda one: [
         ({'kind': 'answer', 'ok': True, 'ghosts': ghosts}, paths)
     ]
-    press(shown, 'Try 80, 100 and 120 % feed')
+    shown.button('.what-if', 'Try 80, 100 and 120 % feed')
     shown.until("document.querySelectorAll('.results p').length === 3")
     assert greeted.requests[-1]['factors'] == [0.8, 1.0, 1.2]
     assert shown.text('.results p') == (
@@ -119,7 +114,7 @@ def test_a_refusal_is_said_and_a_missing_surface_too(tab, shown, greeted, frames
     greeted.answers['ghosts'] = lambda one: [
         ({'kind': 'answer', 'ok': False, 'message': 'The axis has not moved yet.'}, None)
     ]
-    press(shown, 'Try 80, 100 and 120 % feed')
+    shown.button('.what-if', 'Try 80, 100 and 120 % feed')
     shown.reads('.results', 'The axis has not moved yet.')
     words = 'The surface file is not on this machine.'
     greeted.send(*frames.hello(frames.axis(no_map=words), words=frames.words('en'), language='en'))

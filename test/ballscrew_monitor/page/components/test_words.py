@@ -44,7 +44,9 @@ def test_every_key_is_said_and_every_text_that_is_said_has_one(frames):
     literals = set(re.findall(r"'([a-z]+(?:_\w+)+)'", code))
     unsaid = {
         key
-        for key in table.keys() - literals - {'title', 'shelve', 'axes', 'acknowledge', 'decimal_mark'}
+        for key in table.keys()
+        - literals
+        - {'title', 'shelve', 'axes', 'acknowledge', 'decimal_mark'}
         if key.split('_')[0] not in GROUPS and key != 'link_first'
     }
     assert not unsaid

@@ -20,6 +20,7 @@ from ballscrew_monitor.recordings.log_facts import (
 )
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.recordings.tables import cells, sources
+from ballscrew_monitor.recordings.tables import convert as convert_module
 from ballscrew_monitor.recordings.tables.convert import (
     BLOCK,
     convert,
@@ -375,3 +376,11 @@ def test_an_axis_whose_motion_cannot_be_read_is_refused(tmp_path, write_csv, ref
     axis['position'] = {'column': 'p', 'unit': 'mm'}
     facts = convert(log, make_map(content), tmp_path / 'bag')
     assert 'x.speed' in {one.key for one in facts.assumptions}
+
+
+def test_rows_are_shown_within_a_block(monkeypatch, tmp_path, write_csv, mill):
+    monkeypatch.setattr(convert_module, 'BLOCK', 100)
+    log, shown = write_csv(tmp_path / 'mill.csv', mill(1000)), Shown()
+    convert(log, make_map(guess(log).content), tmp_path / 'bag', shown=shown)
+    shares = shown.shares['rows written', 1000]
+    assert shares == pytest.approx([*(number / 10 for number in range(1, 11)), 1.0])

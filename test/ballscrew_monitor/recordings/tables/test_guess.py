@@ -228,3 +228,13 @@ def test_a_german_log_is_understood(tmp_path):
     (block,) = read_series(path, make_map(content)).blocks()
     first = round(begin.replace(tzinfo=dt.UTC).timestamp()) * 10**9
     np.testing.assert_array_equal(block.stamps - first, np.arange(len(SPEED)) * 20_000_000)
+
+
+def test_a_time_of_day_counts_in_seconds_and_a_count_beside_a_date_is_none(guessed):
+    clocks = [f'03:{row // 6:02d}:{row % 6}0' for row in range(200)]
+    made = guessed({'Uhrzeit': clocks, 'x_vel': SPEED, 'x_force': SPEED})
+    assert made.content['time'] == {'column': 'Uhrzeit', 'unit': 's'}
+    dates = ['02.01.2026'] * 200
+    made = guessed({'Datum': dates, 'Zeit': TIME, 'x_vel': SPEED, 'x_force': SPEED})
+    assert made.content['time'] == {'column': 'Zeit'}
+    assert made.content['assumed']['time.unit']['value'] == 's'
