@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rows of a table in the order of their times, with stamps, in blocks."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 import dataclasses
 import math
 
@@ -104,8 +104,9 @@ class Times:
         self._check()
         if self._back:
             self._steps = Steps()
-            for rows in self.rows():
-                self._steps.add((rows.stamps - self.begin).astype(np.float64))
+            with shown(table.rows, 'rows put in order') as show:
+                for rows in self.rows(show):
+                    self._steps.add((rows.stamps - self.begin).astype(np.float64))
 
     @property
     def begin(self) -> int:
@@ -135,18 +136,19 @@ class Times:
             )
         return found
 
-    def rows(self) -> Iterator[Rows]:
-        """Yield the rows that have a time in the order of it, in blocks."""
+    def rows(self, show: Callable[[float], None] = lambda share: None) -> Iterator[Rows]:
+        """Yield the rows that have a time in the order of it, in blocks; show how far it is."""
         if not self._back:
-            return self._as_written()
+            return self._as_written(show)
         coarse = float(np.spacing(max(abs(self._begin), abs(self._end))))
-        return _in_order(self._as_written(), math.ceil((self._late + 4 * coarse) * SECOND))
+        return _in_order(self._as_written(show), math.ceil((self._late + 4 * coarse) * SECOND))
 
-    def _as_written(self) -> Iterator[Rows]:
+    def _as_written(self, show: Callable[[float], None]) -> Iterator[Rows]:
         row = 0
         for columns in self._table.blocks():
             times = self._times(columns, row)
             row += len(times)
+            show(row / self._table.rows)
             known = np.isfinite(times)
             if known.any():
                 yield Rows(

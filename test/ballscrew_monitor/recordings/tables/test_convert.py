@@ -384,3 +384,18 @@ def test_rows_are_shown_within_a_block(monkeypatch, tmp_path, write_csv, mill):
     convert(log, make_map(guess(log).content), tmp_path / 'bag', shown=shown)
     shares = shown.shares['rows written', 1000]
     assert shares == pytest.approx([*(number / 10 for number in range(1, 11)), 1.0])
+
+
+def test_it_is_shown_how_far_rows_are_put_in_order(small_blocks, tmp_path, write_csv, mill):
+    columns = mill(320)
+    columns['t'] = np.roll(np.arange(320.0) / 10, 5)
+    log, shown = write_csv(tmp_path / 'mill.csv', columns), Shown()
+    content = guess(log).content
+    content['time'] = {'column': 't', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'}
+    content['assumed'] = {
+        key: one for key, one in content['assumed'].items() if not key.startswith('time')
+    }
+    convert(log, make_map(content), tmp_path / 'bag', shown=shown)
+    assert max(small_blocks) == 32
+    shares = shown.shares['rows put in order', 320]
+    assert shares == pytest.approx([number / 10 for number in range(1, 11)])
