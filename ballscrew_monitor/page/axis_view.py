@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import math
 from typing import Any
 
-from ballscrew_monitor.messages import diagnostics
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.history import columns_of, History
 from ballscrew_monitor.page.records import advice_of, UNKNOWN
@@ -74,7 +74,7 @@ class AxisView:
         """Take what the diagnostics say of a part of the axis."""
         self.words[part] = words
         if part == LUBRICATION and self.standing != GONE:
-            self.stand(INACTIVE if words == diagnostics.INACTIVE else ACTIVE)
+            self.stand(INACTIVE if words == Fault.INACTIVE.text else ACTIVE)
 
     def stand(self, standing: str) -> None:
         """Take the state of the node."""
