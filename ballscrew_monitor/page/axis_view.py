@@ -7,6 +7,7 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.fault_codes import Fault
+from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.history import columns_of, History
 from ballscrew_monitor.page.records import advice_of, UNKNOWN
