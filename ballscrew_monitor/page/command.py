@@ -16,6 +16,7 @@ from typing import Protocol
 from ballscrew_monitor.core.interrupts import DONE, interrupts
 from ballscrew_monitor.page.acting import Acting, LONG, refusals
 from ballscrew_monitor.page.app import PageApp
+from ballscrew_monitor.page.components import languages
 from ballscrew_monitor.page.guard import is_loopback, read_token, Tokens
 from ballscrew_monitor.page.hub import Hub
 from ballscrew_monitor.page.metrics import HubCollector, Metrics
@@ -113,6 +114,11 @@ def _checked(args: argparse.Namespace) -> PageOptions:
         raise InputError(
             f'--host is {args.host}, which others reach: a page for others needs --token-file'
         )
+    _check_belonging(args)
+    if args.language not in ('', *languages()):
+        raise InputError(
+            f'--language is {args.language}, allowed is {", ".join(sorted(languages()))}'
+        )
     if not 0 <= args.port <= 0xFFFF:
         raise InputError(f'--port is {args.port}, allowed is 0 to 65535, 0 for any that is free')
     if args.cert is not None:
@@ -120,7 +126,7 @@ def _checked(args: argparse.Namespace) -> PageOptions:
     return PageOptions(
         host=args.host,
         port=args.port,
-        node=args.node,
+        node=f'/{args.node.strip("/")}' if args.node else '',
         token=token,
         cert=args.cert,
         key=args.key,
@@ -128,6 +134,14 @@ def _checked(args: argparse.Namespace) -> PageOptions:
         acting=args.allow_acting,
         oils=tuple(map(Surface.load, args.oils)),
     )
+
+
+def _check_belonging(args: argparse.Namespace) -> None:
+    """Raise InputError for an option of nodes with a recording, and the other way round."""
+    for name in ('node', 'allow_acting') if args.log else ('map', 'params'):
+        if getattr(args, name):
+            what = 'running nodes' if args.log else 'a recording'
+            raise InputError(f'--{name.replace("_", "-")} is for {what}: leave it out')
 
 
 def _check_certificate(cert: Path, key: Path) -> None:

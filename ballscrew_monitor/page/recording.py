@@ -9,7 +9,8 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import celsius, SECOND, seconds
 from ballscrew_monitor.core.estimate import PointSource
-from ballscrew_monitor.core.judgement import Level, Reason, Zone
+from ballscrew_monitor.core.judgement import Reason, Zone
+from ballscrew_monitor.page import maps
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.history import SPAN
@@ -107,10 +108,11 @@ class RecordedAxis:
             begin = self.course.until(stamp - SPAN)
             self.view.begin_again()
         self._at = end
-        for row in self.course.rows[begin : max(begin, end - 1)]:
+        last = max(begin, end - 1)
+        for row in self.course.rows[begin:last]:
             self.view.history.take(row)
         if end > begin:
-            record = _state_record(self.course.rows[end - 1], self.course.codes[end - 1])
+            record = self._state_record(self.course.rows[end - 1], self.course.codes[end - 1])
             self.view.hear(self.course.rows[end - 1].tolist(), record, self._limits, now)
         self.view.show_events(
             _event_record(one, stamp)
@@ -118,22 +120,19 @@ class RecordedAxis:
             if seconds(one.start) <= stamp
         )
 
-
-def _state_record(row: Array, codes: NDArray[np.uint8]) -> dict[str, Any]:
-    zone, regime, reason = codes.tolist()
-    if zone == Zone.UNKNOWN:
-        headline = REASONS[reason]
-    else:
-        headline = 'optimal' if zone == Zone.OPTIMAL else 'outside the optimal zone'
-    return {
-        'level': LEVELS.get(Level(int(row[-1])), UNKNOWN),
-        'zone': ZONES.get(zone, UNKNOWN),
-        'headline': headline,
-        'regime': WORDS_OF_REGIME.get(regime, UNKNOWN),
-        'inputs': [],
-        'shelved': None,
-        'totals': {},
-    }
+    def _state_record(self, row: Array, codes: NDArray[np.uint8]) -> dict[str, Any]:
+        zone, regime, reason = codes.tolist()
+        _, _, load, _, efficiency, rcs, *_, level = row.tolist()
+        _, headline = maps.judged(rcs, efficiency, load, self._case.settings.limits)
+        return {
+            'level': LEVELS.get(int(level), UNKNOWN),
+            'zone': ZONES.get(zone, UNKNOWN),
+            'headline': REASONS[reason] if zone == Zone.UNKNOWN else headline,
+            'regime': WORDS_OF_REGIME.get(regime, UNKNOWN),
+            'inputs': [],
+            'shelved': None,
+            'totals': {},
+        }
 
 
 def _event_record(event: EventRecord, stamp: float) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 import math
 from typing import Any
 
+from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import Direction, seconds, signed
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import InputState
@@ -159,14 +160,22 @@ def event_record(event: msg.OutOfZone) -> dict[str, Any]:
 
 
 def advice_of(event: Mapping[str, Any], lead: float) -> str:
-    """Return the advice on an event as feed and load, lead [m]; else the words of the node."""
-    speed, load = event['target_rpm'], event['target_load_N']
+    """
+    Return the advice on an event as feed and load, lead [m].
+
+    Without targets, or where the node says why it has ended the event, its own words.
+
+    """
+    speed, load, words = event['target_rpm'] * RPM, event['target_load_N'], str(event['words'])
+    own = Advice(target_speed=speed, target_load=load).text
+    if not own or not words.startswith(own):
+        return words
     parts = []
-    if event['active'] and math.isfinite(speed):
-        parts.append(f'at this load feed at {feed_text(speed * RPM, lead)}')
-    if event['active'] and math.isfinite(load):
+    if math.isfinite(speed):
+        parts.append(f'at this load feed at {feed_text(speed, lead)}')
+    if math.isfinite(load):
         parts.append(f'at this speed load with {number(load)} N')
-    return ' or '.join(parts) or str(event['words'])
+    return ' or '.join(parts) + words.removeprefix(own)
 
 
 def feed_text(speed: float, lead: float) -> str:

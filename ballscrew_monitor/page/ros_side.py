@@ -46,6 +46,7 @@ class RosSide:
         self._node, self._hub, self._post, self._only = node, hub, post, only
         self._links: dict[str, AxisLink] = {}
         self._views: dict[str, AxisView] = {}
+        self._refused: dict[str, set[str]] = {}  # hashes of another version
         self.failure: Exception | None = None
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._spin, name='ros')
@@ -80,7 +81,8 @@ class RosSide:
             if self._only in ('', node_of(topic.removesuffix('/state')))
         }
         for base in sorted(found - self._links.keys()):
-            self._take_up(base)
+            if self._refused.get(base) != sent_hashes(self._node, base):
+                self._take_up(base)
         for base in sorted(self._links.keys() - found):
             self._links.pop(base).close()
             self._post(self._hub.lose, node_of(base), f'{node_of(base)} has left the ROS graph')
@@ -91,9 +93,11 @@ class RosSide:
         node = node_of(base)
         view = self._views.setdefault(base, AxisView(node, base.rpartition('/')[2]))
         link = AxisLink(self._node, view, self._post)
-        problem = version_problem(node, link.hashes())
+        hashes = link.hashes()
+        problem = version_problem(node, hashes)
         self._post(self._hub.notice, node, problem)
         if problem:  # nothing is spun between subscribing and this
+            self._refused[base] = hashes[0]
             link.close()
             return
         self._links[base] = link
@@ -110,6 +114,12 @@ class RosSide:
 def node_of(base: str) -> str:
     """Return the full name of the node whose axis has topics below `base`."""
     return base.rpartition('/')[0]
+
+
+def sent_hashes(node: Node, base: str) -> set[str]:
+    """Return the hashes of the type of the state below `base`, as it is sent."""
+    sent = node.get_publishers_info_by_topic(f'{base}/state')
+    return {str(one.topic_type_hash) for one in sent}
 
 
 def version_problem(node: str, hashes: tuple[set[str], set[str]]) -> str:
@@ -152,12 +162,9 @@ class AxisLink:
 
     def hashes(self) -> tuple[set[str], set[str]]:
         """Return the hashes of the type of the state, as it is sent and as we read it."""
-        topic = f'{self.view.name}/state'
-        sent = self._node.get_publishers_info_by_topic(topic)
-        read = self._node.get_subscriptions_info_by_topic(topic)
-        mine = [one for one in read if one.node_name == self._node.get_name()]
-        theirs, ours = ({str(one.topic_type_hash) for one in part} for part in (sent, mine))
-        return theirs, ours
+        read = self._node.get_subscriptions_info_by_topic(f'{self.view.name}/state')
+        mine = {str(one.topic_type_hash) for one in read if one.node_name == self._node.get_name()}
+        return sent_hashes(self._node, self.view.name), mine
 
     def ask(self) -> None:
         """Ask for the parameters, until they are known; a first answer may be lost."""

@@ -15,6 +15,7 @@ import sys
 import urllib.request
 
 from ballscrew_monitor import cli
+from ballscrew_monitor.page.components import languages
 import pytest
 from websockets.sync.client import connect
 
@@ -57,7 +58,8 @@ def frames(url):
     ) as live:
         for made in live:
             (size,) = struct.unpack_from('<I', made)
-            yield json.loads(made[4 : size + 4])
+            end = 4 + size
+            yield json.loads(made[4:end])
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
@@ -131,6 +133,9 @@ def test_a_certificate_makes_it_https(node, tmp_path):
         (['--port', '70000'], 'port_range'),
         (['--token-file', 'none'], 'token'),
         (['--oils', 'none.npz'], 'oils'),
+        (['--map', 'x'], 'of_recording'),
+        (['x.mcap', '--allow-acting'], 'of_nodes'),
+        (['x.mcap'], 'no_log'),
         (['--host', '203.0.113.7', '--token-file', 'TOKEN'], 'not_here'),
     ],
 )
@@ -139,6 +144,12 @@ def test_wrong_options_are_one_sentence(tmp_path, monkeypatch, capsys, says, arg
     (tmp_path / 'TOKEN').write_text(TOKEN)
     assert cli.main(['page', *arguments]) == 2
     assert capsys.readouterr().err == f'ballscrew: {says(key)}\n'
+
+
+def test_a_language_that_is_not_there_is_refused(capsys, says):
+    assert cli.main(['page', '--language', 'xx']) == 2
+    known = ', '.join(sorted(languages()))
+    assert capsys.readouterr().err == f'ballscrew: {says("language", known=known)}\n'
 
 
 def test_a_library_that_is_missing_is_named(monkeypatch, capsys, says):
@@ -159,3 +170,20 @@ def test_only_loopback_is_bound_unless_told(node, bound_addresses):
     finally:
         process.terminate()
         process.communicate(timeout=DEADLINE)
+
+
+def test_a_recording_is_played(node, short_bag):
+    """Without a node, from its begin; the clock says so."""
+    process, url = begin(node, short_bag)
+    try:
+        kinds = {}
+        for record in frames(url):
+            kinds[record['kind']] = record
+            if {'clock', 'state', 'map'} <= kinds.keys():
+                break
+        assert kinds['clock']['span_s'] == pytest.approx(3.0, abs=0.1)
+        assert kinds['hello']['axes'][0]['node'] == short_bag.name
+    finally:
+        process.terminate()
+        process.communicate(timeout=DEADLINE)
+    assert process.returncode == 0

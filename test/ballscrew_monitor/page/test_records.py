@@ -5,6 +5,7 @@
 import json
 import math
 
+from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.page import records
@@ -77,20 +78,27 @@ def test_the_headline_is_the_worst_finding_else_the_zone(says):
     assert records.headline(state) == says('nothing')
 
 
-def event(**changes):
-    """Return the record of an active event with both targets."""
-    cause = msg.Finding(code=msg.Finding.CODE_RCS_HIGH, target_speed=62.8319, target_load=-812.0)
-    made = msg.OutOfZone(event_id=3, active=True, cause=cause, advice='as the node has it')
-    return records.event_record(made) | changes
+def event(speed=62.8319, load=-812.0, *, words=None):
+    """Return the record of an event with targets, in the words of the node unless told."""
+    said = Advice(target_speed=speed, target_load=load, carry='surely').text
+    cause = msg.Finding(code=msg.Finding.CODE_RCS_HIGH, target_speed=speed, target_load=load)
+    return records.event_record(
+        msg.OutOfZone(event_id=3, cause=cause, advice=said if words is None else words)
+    )
 
 
 def test_advice_is_in_terms_of_the_axis(says):
     assert records.advice_of(event(), 0.01) == says('advice')
     assert records.advice_of(event(), math.nan) == says('advice_without_lead')
-    assert records.advice_of(event(target_rpm=math.nan), 0.01) == says('advice_load')
-    assert records.advice_of(event(active=False), 0.01) == 'as the node has it'
-    none = event(target_rpm=math.nan, target_load_N=math.nan)
-    assert records.advice_of(none, 0.01) == 'as the node has it'
+    assert records.advice_of(event(speed=math.nan), 0.01) == says('advice_load')
+
+
+def test_other_words_of_the_node_stay():
+    """Of an event that it ended, or without a point that clears."""
+    assert (
+        records.advice_of(event(words='the node was shut down'), 0.01) == 'the node was shut down'
+    )
+    assert records.advice_of(event(math.nan, math.nan), 0.01) == ''
 
 
 def test_diagnostics_of_axes_are_told_from_others():

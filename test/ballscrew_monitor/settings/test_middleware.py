@@ -28,6 +28,7 @@ COMMANDS = {
     'play': ['ballscrew_monitor', 'play', 'bag'],
     'solve': ['ballscrew_monitor', 'solve', '--axis', 'x'],
     'doctor': ['ballscrew_monitor', 'doctor'],
+    'page': ['ballscrew_monitor', 'page', '--port', '0'],
 }
 
 
