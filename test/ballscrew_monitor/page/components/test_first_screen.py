@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is on the first screen is what was sent, in the axis' own terms; old data say nothing."""
+"""The first screen shows what was sent, in the axis' own terms; old data say nothing."""
 
 import itertools
 import math
