@@ -39,7 +39,7 @@ SCRIPTS = (
 )
 """Scripts in the order in which they build on each other."""
 TYPES = {'js': 'text/javascript; charset=utf-8', 'css': 'text/css; charset=utf-8'}
-ENGLISH, LANGUAGES = 'en', ('en.json', 'de.json')
+ENGLISH = 'en'
 
 
 @functools.cache
@@ -58,9 +58,9 @@ def table() -> dict[str, tuple[bytes, str]]:
 def languages() -> dict[str, dict[str, str]]:
     """Return the words of each language by its name, such as `en`."""
     texts = {
-        name.removesuffix('.json'): ROOM.joinpath('languages', name).read_text(encoding='utf-8')
-        for name in LANGUAGES
-        if ROOM.joinpath('languages', name).is_file()
+        file.name.removesuffix('.json'): file.read_text(encoding='utf-8')
+        for file in ROOM.joinpath('languages').iterdir()
+        if file.name.endswith('.json')
     }
     return {ENGLISH: {}} | {name: read_json(text) for name, text in texts.items()}
 

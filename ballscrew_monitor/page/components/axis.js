@@ -146,6 +146,7 @@ class Axis {
     this.rows = new Rows(Axis.COLUMNS);
     this.events = [];
     this.gone = '';
+    this.recorded = false;
   }
 
   /** Take a frame about this axis. */
@@ -170,9 +171,9 @@ class Axis {
     return this.state ? (this.state.age_s ?? NaN) + (performance.now() - this.arrived) / 1000 : NaN;
   }
 
-  /** Tell whether the newest state still says something about now. */
+  /** Tell whether the newest state says something about now, or about the place of a recording. */
   get fresh() {
-    return !this.gone && this.age < STALE;
+    return !this.gone && (this.age < STALE || Boolean(this.state && this.recorded));
   }
 
   /** Return the level that may be shown: of old data none. */

@@ -16,9 +16,10 @@ class Events {
     this.message = Format.element('p', 'message');
     this.message.setAttribute('role', 'status');
     this.totals = Format.element('dl', 'tiles');
+    this.sums = Format.element('div');
+    this.sums.append(Words.element('h2', '', 'totals_title'), this.totals);
     this.element.append(
-      Words.element('h2', '', 'events_title'), this.form(), this.message, this.list,
-      Words.element('h2', '', 'totals_title'), this.totals,
+      Words.element('h2', '', 'events_title'), this.form(), this.message, this.list, this.sums,
     );
   }
 
@@ -66,13 +67,14 @@ class Events {
       this.list.replaceChildren(events.length ? this.table(events) : Words.element('p', 'muted', 'events_none'));
     }
     const text = (name, value) => Quantities.text(name, value, this.axis.facts);
-    this.totals.replaceChildren(...(totals ? [
+    this.sums.hidden = totals?.running_time === undefined;
+    this.totals.replaceChildren(...(this.sums.hidden ? [] : [
       Events.tile('hours', text('hours', totals.running_time)),
       Events.tile('outside', text('share', totals.outside_time / totals.running_time)),
       Events.tile('mixed', text('share', (totals.mixed_time + totals.boundary_time) / totals.running_time)),
       Events.tile('energy', text('energy', totals.energy_lost)),
       Events.tile('revolutions', text('revolutions', totals.revolutions)),
-    ] : []));
+    ]));
   }
 
   static tile(key, text) {

@@ -98,8 +98,22 @@ class FirstScreen {
     if (!axis.fresh) {
       return Words.say('data_old', { age: Format.time(axis.age) });
     }
-    const { level, zone, headline: reason } = axis.state;
-    return level === 'warn' && zone !== 'outside' ? Words.say('warning_held', { reason }) : reason;
+    const { level, zone, headline } = axis.state;
+    if (level === 'warn' && zone !== 'outside') {
+      return Words.say('warning_held', { reason: headline });
+    }
+    return (zone === 'outside' && this.cause()) || headline;
+  }
+
+  /** Say which limit the newest row is beyond; nothing where that cannot be told from it. */
+  cause() {
+    const { axis: { rows, facts } } = this;
+    const said = (name) => Words.say(`cause_${name}`, {
+      value: Quantities.text(name, rows.last(name), facts),
+      limit: Quantities.text(name, facts[`${name}_limit`], facts),
+    });
+    return (rows.last('rcs') >= facts.rcs_limit && said('rcs'))
+      || (rows.last('efficiency') < facts.efficiency_limit && said('efficiency')) || '';
   }
 
   static shelved({ state }) {
@@ -147,11 +161,12 @@ class FirstScreen {
   drawInputs() {
     const { axis } = this;
     const age = Format.time(axis.age, axis.age < 10 ? 0.1 : 1);
-    this.write('age', axis.state ? Words.say('data_age', { age }) : '');
+    const told = axis.recorded ? Words.say('data_recorded') : Words.say('data_age', { age });
+    this.write('age', axis.state ? told : '');
     const inputs = axis.state?.inputs ?? [];
-    const told = JSON.stringify(inputs.map(({ name, state, words }) => [name, state, words]));
-    if (told !== this.shown) {
-      this.shown = told;
+    const listed = JSON.stringify(inputs.map(({ name, state, words }) => [name, state, words]));
+    if (listed !== this.shown) {
+      this.shown = listed;
       this.parts.inputs.replaceChildren(...inputs.map(FirstScreen.input));
     }
   }

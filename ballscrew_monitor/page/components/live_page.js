@@ -31,6 +31,7 @@ class LivePage {
       this.begin(frame);
     } else if (frame.kind === 'clock') {
       this.player?.take(frame);
+      this.axes.forEach((axis) => { axis.recorded = true; });
     } else if (frame.kind === 'gone') {
       this.leave(frame);
     } else {

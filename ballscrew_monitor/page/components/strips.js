@@ -107,7 +107,7 @@ class Strips {
       panel.plot.setScale('x', { min: begin, max: end });
     });
     this.title.textContent = Words.say(this.end === null ? 'strips_running' : 'strips_standing', {
-      span: Format.time(this.span), from: Strips.clock(begin), to: Strips.clock(end),
+      span: Format.time(end - begin), from: Strips.clock(begin), to: Strips.clock(end),
     });
   }
 

@@ -18,10 +18,16 @@ const Panel = (() => {
     }
     let [least, most] = [Math.min(...seen), Math.max(...seen)];
     if (panel.floor) {
-      return [Math.max(panel.floor, least) / 1.3, Math.max(most, 2 * panel.floor) * 1.3];
+      return [firstDigit(Math.max(panel.floor, least) / 1.3), Math.max(most, 2 * panel.floor) * 1.3];
     }
     const margin = 0.06 * (most - least) || 0.05 * Math.abs(most) || 1;
     return [least - margin, panel.most === null ? most + margin : Math.min(most + margin, panel.most)];
+  }
+
+  /** Return a number down to its first digit: from another, uPlot steps beside decades for ever. */
+  function firstDigit(value) {
+    const power = 10 ** Math.floor(Math.log10(value));
+    return Math.floor(value / power) * power;
   }
 
   function series(one) {

@@ -332,7 +332,7 @@ def make_rows(count, begin=0.0, rate=50.0, **changes):
         'load_N': -900.0 * np.sign(speed) + 200.0 * np.cos(0.7 * time),
         'temperature_degC': 35.0 + 0.01 * time,
         'efficiency': 0.93 + 0.03 * np.sin(time),
-        'rcs': 10.0 ** (-3.0 + np.cos(0.3 * time)),
+        'rcs': 10.0 ** (-3.0 + 0.9 * np.cos(0.3 * time)),
         'film_ratio': 1.5 + 1.2 * np.abs(np.sin(0.3 * time)),
         'torque_N_m': 1.5 * np.sign(speed),
         'measured_torque_N_m': 1.55 * np.sign(speed) + 0.02 * np.sin(9.0 * time),

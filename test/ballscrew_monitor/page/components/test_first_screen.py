@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is on the first screen is what was sent, in the axis' own terms; old data say nothing."""
+"""The first screen shows what was sent, in the axis' own terms; old data say nothing."""
 
 import itertools
 import math
@@ -36,7 +36,7 @@ def test_values_on_screen_are_those_of_the_states(shown, greeted, frames):
         st.floats(5, 3000),
         st.floats(10, 30_000),
         st.floats(10, 90),
-        st.floats(0.1, 0.99),
+        st.floats(0.86, 0.99),
         st.sampled_from(sorted(LEVELS)),
     )
     def holds(speed, load, temperature, efficiency, level):
@@ -90,6 +90,31 @@ def test_a_warning_that_is_only_held_says_so(shown, greeted, frames):
     shown.reads('.reason', 'The warning is held; at this moment: the screw stands still')
     greeted.send(*frames.state(level='warn', zone='outside', headline='too slow'))
     shown.reads('.reason', 'too slow')
+
+
+@pytest.mark.parametrize(
+    ('values', 'said'),
+    [
+        (
+            {'rcs': 0.27, 'efficiency': 0.5},
+            'The oil film is too thin: 27 % of the load is carried where metal pierces it, '
+            'the limit is 1 %.',
+        ),
+        (
+            {'rcs': 0.001, 'efficiency': 0.727},
+            'Friction takes too much: the efficiency is 72.7 %, the limit is 85 %.',
+        ),
+        ({'rcs': 0.001, 'efficiency': 0.9}, 'as the node says'),
+        ({'rcs': math.nan, 'efficiency': math.nan}, 'as the node says'),
+    ],
+)
+def test_the_reason_is_the_limit_that_the_newest_row_is_beyond(
+    shown, greeted, frames, values, said
+):
+    rows = frames.rows(1, **values)
+    told = {'level': 'warn', 'zone': 'outside', 'headline': 'as the node says'}
+    greeted.send(*frames.state(rows=rows, **told))
+    shown.reads('.reason', said)
 
 
 def test_advice_condition_and_inputs_are_said(shown, greeted, frames):

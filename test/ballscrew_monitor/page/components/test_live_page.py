@@ -110,7 +110,8 @@ def test_states_of_the_real_server_are_on_the_screen(tab, served, page_parts):
     tab.reads('.no-map', 'the surface file is not on this machine')
     for number, level in enumerate(('ok', 'warn', 'unknown')):
         state = {'level': level, 'zone': 'outside', 'headline': f'state {number}', 'inputs': []}
-        row = page_parts.row(2.0 + number, load_N=1000.0 + number, speed_rpm=321.0 + number)
+        values = {'load_N': 1000.0, 'speed_rpm': 321.0 + number, 'rcs': 1e-3, 'efficiency': 0.9}
+        row = page_parts.row(2.0 + number, **values)
         page.call(view.hear, row, state, page_parts.limits, time.monotonic())
         tab.reads('.reason', f'state {number}')
         tab.until(f"document.querySelector('.sign.level').dataset.state === '{level}'")

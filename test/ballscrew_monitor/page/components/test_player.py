@@ -23,3 +23,13 @@ def test_the_player_is_there_for_a_recording_and_asks(tab, greeted, wait_for):
     assert asked == [{'do': 'pause'}, {'do': 'seek', 's': 30}, {'do': 'rate', 'x': 10}]
     greeted.send(clock | {'playing': False})
     tab.reads('.player button', 'Play')
+
+
+def test_a_recording_that_stands_still_does_not_grow_old(tab, greeted, frames):
+    tab.open(greeted.url)
+    tab.reads('.word', 'Optimal zone')
+    greeted.send({'kind': 'clock', 'at_s': 12.0, 'span_s': 60.0, 'rate': 1, 'playing': False})
+    greeted.send(*frames.state(age_s=100.0, headline='At its place.'))
+    tab.reads('.reason', 'At its place.')
+    tab.reads('.age', 'A recording, not the present state')
+    assert tab.text('.sign.level .word') == 'Optimal zone'

@@ -11,8 +11,8 @@ import pytest
 MOST_LINES = 200
 # Keys that are made of a name that a frame sends.
 GROUPS = (
-    *'condition event health input label_ legend level line map name quantity short state'.split(),
-    *'total zone'.split(),
+    *'cause condition event health input label_ legend level line map name quantity'.split(),
+    *'short state total zone'.split(),
 )
 
 
