@@ -13,6 +13,7 @@ from ballscrew_monitor.settings.qos import started_node
 import pytest
 
 NAME = '/ballscrew_monitor/x'
+DEADLINE = 600.0  # [s] which only ends a hang
 # Hot oil and hardly any speed: it takes long.
 LONG = {'speed_rpm': 0.5, 'load_N': 2600.0, 'temperature_degC': 80.0}
 
@@ -41,7 +42,8 @@ class Actor:
 
 
 @pytest.fixture
-def actor(node, page_parts):
+def actor(node, page_parts, monkeypatch):
+    monkeypatch.setattr(acting, 'PATIENCE', DEADLINE)
     with started_node('ballscrew_page', node.domain) as ros_node:
         made = Actor(node, ros_node, page_parts)
         with contextlib.closing(made.ros):
