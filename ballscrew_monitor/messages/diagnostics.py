@@ -211,7 +211,7 @@ def _lubrication(state: State, event: Event, policy: WarningPolicy) -> StatusSum
     code = _NOT_JUDGED.get(validity, Fault.NONE)
     if code is Fault.NO_INPUT:
         return StatusSummary(STALE, code.text, code)
-    if code is Fault.NOT_MOVED and state.point.derived is not None and not still:
+    if code is Fault.NOT_MOVED and state.point.derived and not still:
         return StatusSummary(WARN, Fault.NOT_DERIVED.text, Fault.NOT_DERIVED)
     if code and not (still and validity in _OF_STANDSTILL):
         return StatusSummary(WARN, code.text, code)

@@ -9,6 +9,7 @@ import re
 
 from ballscrew_monitor.core import sqlite_file
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.estimate import PointValidity
 from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import Level, WarningPolicy
@@ -110,6 +111,20 @@ def test_all_is_well_once_the_delay_is_over(core):
     assert {status.hardware_id for status in made.values()} == {'x: constant'}
     status = after(core, LOAD, SPEED, clear_delay=SECOND)['Lubrication']
     assert said(status) == (WARN, 'not judged for long enough yet')
+
+
+@pytest.mark.parametrize(('derived', 'key'), [(False, 'not_moved'), (True, 'not_derived')])
+def test_the_torque_is_blamed_only_where_the_load_follows_from_it(core, derived, key, says):
+    monitor = core.monitor(None, core.limits())
+    monitor.update(LOAD)
+    state = monitor.update(SPEED)
+    unknown = dataclasses.replace(
+        state,
+        point=dataclasses.replace(state.point, derived=derived),
+        estimate=dataclasses.replace(state.estimate, validity=PointValidity.UNKNOWN),
+    )
+    lubrication, _ = diagnostics.summaries(unknown, Event(), LINKS)
+    assert (lubrication.level, lubrication.message) == (WARN, says(key))
 
 
 @pytest.mark.parametrize('late', [[], [LATE]])

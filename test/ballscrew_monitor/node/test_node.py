@@ -26,7 +26,7 @@ from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import DEPTH
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, PointResult
-from ballscrew_msgs.srv import EvaluateOperatingPoint, ShelveAlarm
+from ballscrew_msgs.srv import AcknowledgeAlarm, EvaluateOperatingPoint, ShelveAlarm
 from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
 from rcl_interfaces.msg import Parameter as ParameterMessage
@@ -447,6 +447,7 @@ def solves(node):
 
 REQUESTS = {
     'acknowledge': (Trigger, {}, 'an acknowledgement'),
+    'acknowledge_as': (AcknowledgeAlarm, {'name': 'Ada'}, 'an acknowledgement'),
     'reset_totals': (Trigger, {}, 'a reset of its totals'),
     'shelve': (ShelveAlarm, {'duration': 60.0, 'reason': 'why'}, 'its shelving'),
 }
