@@ -33,15 +33,23 @@ SUMMARY = 32 * MEGA
 WAITING = 64 * MEGA
 """Most that messages hold which wait for earlier ones [byte]."""
 PACKING = 200
-"""Largest size of an unpacked bag over the size of its file [-]; one chunk is always allowed."""
+"""Largest size of what is unpacked over that of its file [-]; one chunk is always allowed."""
 COLUMNS = 5000
 """Most columns of a table."""
 LINE = 4 * MEGA
 """Longest line of a table [byte]."""
 WORKBOOK = 512 * MEGA
-"""Largest workbook, unpacked, and text of UTF-16, which are read at once [byte]."""
+"""
+Largest workbook, unpacked, and text of UTF-16, which are read at once; what columns of a Parquet
+file may always come to [byte].
+"""
 SURFACE = 256 * 2**20
 """Largest surface file, and the most that it may come to when unpacked [byte]."""
+
+
+def most_unpacked(size: int) -> int:
+    """Return what a file of a size [byte] may come to when it is unpacked [byte]."""
+    return max(PACKING * size, CHUNK)
 
 
 def read_text(path: str | Path, *, encoding: str = 'utf-8', most: int = TEXT) -> str:

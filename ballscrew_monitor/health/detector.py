@@ -84,9 +84,10 @@ def first_alarm(series: Iterable[tuple[float, float]]) -> float | None:
 
 def note_on_runs(points: Sequence[ComparablePoint], motion: Motion, model: Model) -> str:
     """
-    Return in a sentence since when the reference runs differ from those before, or ''.
+    Return in a sentence since when friction free of load differs from that before, or ''.
 
-    The reading of a day is its measured friction over that of the model, at the places of its run;
+    The reading of a day is its measured friction over that of the model, at the places of its run,
+    or of all its motion where an axis is always free of process force;
     `motion` [s] of each day tells how long the screw has run in.
 
     """
@@ -101,8 +102,8 @@ def note_on_runs(points: Sequence[ComparablePoint], motion: Motion, model: Model
     before = [one for time, one in zip(times[:at], readings) if time >= RUNNING_IN]
     change = readings[at] / np.nanmean(before) - 1.0
     return (
-        f'the reference run of {clock_text(days[at] * DAY)[:10]} has a friction that differs by '
-        f'{100.0 * change:+.0f} % from those before, more than those scatter'
+        f'the friction without process force of {clock_text(days[at] * DAY)[:10]} differs by '
+        f'{100.0 * change:+.0f} % from the readings before, more than those scatter'
     )
 
 

@@ -16,7 +16,7 @@ import struct
 from typing import Any, BinaryIO
 import zlib
 
-from ballscrew_monitor.recordings.unpacking import most_unpacked, unpacked
+from ballscrew_monitor.recordings.unpacking import unpacked
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.reader import SeekingReader
@@ -80,7 +80,7 @@ def _check(summary: Summary, size: int) -> None:
 
     """
     come_to = sum(one.uncompressed_size for one in summary.chunk_indexes)
-    if come_to > most_unpacked(size):
+    if come_to > limits.most_unpacked(size):
         raise McapError(_too_much(come_to))
     statistics = summary.statistics
     assert statistics is not None
@@ -153,7 +153,7 @@ def whole_records(file: Path, *, strict: bool = False) -> Iterator[Any]:
     come to too much.
 
     """
-    come_to, most = 0, most_unpacked(file.stat().st_size)
+    come_to, most = 0, limits.most_unpacked(file.stat().st_size)
     with file.open('rb') as stream:
         summary = None
         with contextlib.suppress(*DAMAGE, OSError):

@@ -50,11 +50,6 @@ def _of_lz4(packed: bytes, most: int) -> bytes:
 READ = {'zstd': _of_zstd, 'lz4': _of_lz4}
 
 
-def most_unpacked(size: int) -> int:
-    """Return what a file of a size [bytes] may come to when unpacked [bytes]."""
-    return max(limits.PACKING * size, limits.CHUNK)
-
-
 def unpack_file(file: Path, folder: Path, *, salvage: bool) -> Path:
     """
     Return the unpacked copy in `folder` of a zstd file.
@@ -64,7 +59,7 @@ def unpack_file(file: Path, folder: Path, *, salvage: bool) -> Path:
 
     """
     target = folder / file.name.removesuffix('.zstd')
-    most = min(most_unpacked(file.stat().st_size), shutil.disk_usage(folder).free // 2)
+    most = min(limits.most_unpacked(file.stat().st_size), shutil.disk_usage(folder).free // 2)
     with file.open('rb') as packed, target.open('wb') as stream:
         try:
             _copy(packed, stream, most)

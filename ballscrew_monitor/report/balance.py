@@ -80,7 +80,8 @@ class Balancer:
         # All by all of load torque, motion, one and motor torque: where load and torque are known,
         # where the load is, and where the torque is.
         self._both, self._load, self._torque = (np.zeros((4, 4)) for _ in range(3))
-        self._modelled = 0.0  # friction by the model, where both are known [N m]
+        # Friction by the model [N m] where both are known, and in how many rows it is.
+        self._modelled, self._judged = 0.0, 0
 
     def add(self, block: JudgedColumns) -> None:
         """Take the next rows."""
@@ -95,7 +96,9 @@ class Balancer:
         self._load += _sums(rows[:, load_known])
         self._torque += _sums(rows[:, torque_known])
         self._both += _sums(rows[:, both])
-        self._modelled += float(np.nansum(block.friction_torque[moving][both]))
+        friction = block.friction_torque[moving][both]
+        self._modelled += float(np.nansum(friction))
+        self._judged += int(np.isfinite(friction).sum())
 
     def result(self) -> Balance:
         """Return what contradicts itself, by all rows so far."""
@@ -110,8 +113,10 @@ class Balancer:
             return Balance(turned=Source.SPEED)
         if load.explained < SURE or 1.0 / LARGEST < load.value < LARGEST:
             return Balance()
-        modelled = self._modelled / self._both[_ONE, _ONE]
-        return Balance(factor=load.value, friction=friction.value / modelled if modelled else 0.0)
+        if not self._judged:
+            return Balance(factor=load.value)
+        modelled = self._modelled / self._judged
+        return Balance(factor=load.value, friction=friction.value / modelled)
 
     def _turned_by_motion(self) -> Source | None:
         """Return whose sign looks turned where the load goes with the motion, or is not known."""

@@ -43,12 +43,17 @@ def contradictions(case: AxisCase, source: Source, parameter: str) -> Sequence[s
 
 def _mend_of_size(case: AxisCase) -> str:
     """Return the unit that explains how torque and load differ in size, else what to check."""
-    balance = case.balance
-    for (factor, friction), (source, unit, value) in UNITS_APART.items():
-        near = (_is_near(balance.factor, factor), _is_near(balance.friction, friction, TOLERANT))
-        if all(near):
-            return f'the {WORDS[source]} looks like {unit}: {_write(case, source, value)}'
-    return 'check unit and scale of both, the lead, and a gear between motor and screw'
+    friction = case.balance.friction
+    fitting = [
+        meant
+        for (factor, times), meant in UNITS_APART.items()
+        if _is_near(case.balance.factor, factor)
+        and (math.isnan(friction) or _is_near(friction, times, TOLERANT))
+    ]
+    if len(fitting) != 1:
+        return 'check unit and scale of both, the lead, and a gear between motor and screw'
+    source, unit, value = fitting[0]
+    return f'the {WORDS[source]} looks like {unit}: {_write(case, source, value)}'
 
 
 def _is_near(value: float, other: float, within: float = 2.0) -> bool:

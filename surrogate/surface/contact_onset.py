@@ -92,7 +92,7 @@ class ContactOnset:
                 f'at {self.temperature - ZERO_CELSIUS:.3g} degC'
             )
         limit = self._speed(self.fastest, as_feed)
-        return f"{begins}; this screw's limit is {limit}; {self._zone()}"
+        return f"{begins}; this screw's limit is {limit}; {self._zone(as_feed)}"
 
     def record(self) -> dict[str, Any]:
         """Return the sentence and its speeds [rad/s] as plain data."""
@@ -116,12 +116,12 @@ class ContactOnset:
         feed = _rounded(speed * self.lead / TURN * MINUTE)
         return f'{feed} m/min, {turns}' if as_feed else turns
 
-    def _zone(self) -> str:
+    def _zone(self, as_feed: bool) -> str:
         if self.zone:
             return f'in {self.oil} there is an optimal zone'
         text = f'in {self.oil} there is no optimal zone'
         if self.reach < (1 - 1e-6) * self.fastest:
-            text += f' up to {_rounded(self.reach / RPM)} rev/min, where the surface ends'
+            text += f' up to {self._speed(self.reach, as_feed)}, where the surface ends'
         if math.isfinite(self.slower):
             return f'{text}: contact begins slow enough {self._remedies()}'
         return f'{text}: where no contact is, friction takes too much; lower the preload'
@@ -223,7 +223,7 @@ def _colder(has_zone: Callable[[float], bool], temperature: float, coldest: floa
     """Return the warmest temperature [K] below a given one that has a zone, NaN if none does."""
     places: list[float] = np.linspace(temperature, coldest, TEMPERATURES + 1).tolist()
     found = next((i for i in range(1, len(places)) if has_zone(places[i])), None)
-    if found is None or temperature == coldest:
+    if found is None:
         return NAN
     bad, good = places[found - 1], places[found]
     for _ in range(HALVINGS):

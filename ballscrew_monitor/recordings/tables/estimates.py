@@ -103,6 +103,32 @@ def is_of_a_day(extremes: Array) -> bool:
     return bool((extremes >= 0.0).all() and (extremes < DAY).all())
 
 
+class Midnights:
+    """
+    Times of a day [s] made to go on through midnight, where they begin again.
+
+    A fall of more than half a day is midnight, a rise of as much a row that comes late after it.
+
+    """
+
+    def __init__(self) -> None:
+        """Begin on the day of the first row."""
+        self._last, self._day = math.nan, 0
+
+    def passed(self, times: Array) -> Array:
+        """Return further times since the first midnight [s], NaN where one is."""
+        known = np.isfinite(times)
+        steps = np.diff(times[known], prepend=self._last)
+        days = np.full(len(steps), self._day)
+        for at in np.flatnonzero(np.abs(steps) > DAY / 2):
+            self._day = self._day + 1 if steps[at] < 0.0 else max(self._day - 1, 0)
+            days[at:] = self._day
+        self._last = times[known][-1] if known.any() else self._last
+        made = times.copy()
+        made[known] += DAY * days
+        return made
+
+
 def is_rising(values: Array) -> bool:
     """Tell whether values can be times: they rise, but for a few."""
     steps = np.diff(values[np.isfinite(values)])

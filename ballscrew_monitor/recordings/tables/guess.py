@@ -156,6 +156,7 @@ class _Guesser:
             if days is not None and clock:
                 dated = self._time_of(one, self.data[days.column] + values)
                 return dated | {'date': days.column}
+            values = estimates.Midnights().passed(values) if clock else values
             if one is not days and estimates.is_rising(values):
                 return self._time_of(one, values)
         return {}

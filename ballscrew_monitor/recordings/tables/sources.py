@@ -15,6 +15,7 @@ import dataclasses
 import functools
 import importlib
 import io
+import math
 from pathlib import Path
 import sys
 from typing import BinaryIO
@@ -47,12 +48,19 @@ NO_DAY = '1899-12-31 '
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Source:
-    """A table as it stands in a file, the separator of its cells if it has one, rows about."""
+    """
+    A table as it stands in a file: the separator of its cells if it has one, rows about.
+
+    The columns that are read may come to `most` [bytes]: those at rest take next to no room in a
+    file of Parquet, so that all of them together tell nothing.
+
+    """
 
     path: Path
     frame: pl.LazyFrame
     separator: str
     rows: int
+    most: float = math.inf
 
     def names(self) -> list[str]:
         """Return the names of all columns."""
@@ -60,7 +68,14 @@ class Source:
             return self.frame.collect_schema().names()
 
     def blocks(self, names: Collection[str]) -> Iterator[pl.DataFrame]:
-        """Yield the columns `names` in blocks of rows; none is empty."""
+        """Yield the columns `names` in blocks of rows; none is empty. Raises InputError."""
+        come_to = NUMBER * self.rows * len(names)
+        if come_to > self.most:
+            raise InputError(
+                f'log {self.path}: {len(names)} columns of {self.rows} rows come to '
+                f'{come_to / limits.MEGA:.0f} MB, allowed are {limits.PACKING} times the size of '
+                'the file'
+            )
         with _readable(self.path):
             batches = self.frame.select(list(names)).collect_batches(chunk_size=BLOCK, lazy=True)
             for batch in batches:
@@ -104,13 +119,9 @@ def _parquet(path: Path) -> Source:
         rows = int(frame.select(pl.len()).collect().item())
         names = frame.collect_schema().names()
     _check_columns(path, len(names))
-    if NUMBER * rows * len(names) > max(limits.PACKING * size, limits.CHUNK):
-        raise InputError(
-            f'log {path} of {size} bytes holds {rows} rows of {len(names)} columns, allowed are '
-            f'{limits.PACKING} times its size'
-        )
+    most = max(limits.most_unpacked(size), limits.WORKBOOK)
     named = frame.rename(dict(zip(names, heads.unlike(names))))
-    return Source(path=path, frame=named, separator='', rows=max(rows, 1))
+    return Source(path=path, frame=named, separator='', rows=max(rows, 1), most=most)
 
 
 def _sheet(path: Path, layout: Layout | None) -> Source:
@@ -148,7 +159,7 @@ def _rows_of(cells: pl.DataFrame) -> list[list[str]]:
 
 def _check_packed(path: Path) -> None:
     """Raise InputError if a workbook comes to more than is allowed, whatever it says of itself."""
-    most = min(max(limits.PACKING * path.stat().st_size, limits.CHUNK), limits.WORKBOOK)
+    most = min(limits.most_unpacked(path.stat().st_size), limits.WORKBOOK)
     unpacked = 0
     with _readable(path, *UNPACKABLE), zipfile.ZipFile(path) as archive:
         for part in archive.infolist():

@@ -8,6 +8,7 @@ import math
 
 from ballscrew_monitor.core.conversions import SECOND, TIME_UNITS
 from ballscrew_monitor.recordings.tables.cells import Array
+from ballscrew_monitor.recordings.tables.estimates import is_of_a_day, Midnights
 from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
 from ballscrew_monitor.recordings.tables.read import Table
 from ballscrew_monitor.recordings.tables.sources import BLOCK
@@ -144,9 +145,9 @@ class Times:
         return _in_order(self._as_written(show), math.ceil((self._late + 4 * coarse) * SECOND))
 
     def _as_written(self, show: Callable[[float], None]) -> Iterator[Rows]:
-        row = 0
+        row, midnights = 0, self._midnights()
         for columns in self._table.blocks():
-            times = self._times(columns, row)
+            times = self._times(columns, row, midnights)
             row += len(times)
             show(row / self._table.rows)
             known = np.isfinite(times)
@@ -158,10 +159,10 @@ class Times:
 
     def _look(self, shown: Shown) -> None:
         """Look through the times of all rows."""
-        row, names = 0, self._mapping.time_columns
+        row, names, midnights = 0, self._mapping.time_columns, self._midnights()
         with shown(self._table.rows, 'times looked through') as show:
             for block in self._table.blocks(names or list(self._table.readings)[:1]):
-                times = self._times(block, row)
+                times = self._times(block, row, midnights)
                 row += len(times)
                 self._count(times[np.isfinite(times)])
                 show(row / self._table.rows)
@@ -181,14 +182,23 @@ class Times:
         self.count += len(times)
         self._last = times[-1:]
 
-    def _times(self, columns: dict[str, Array], row: int) -> Array:
+    def _midnights(self) -> Midnights | None:
+        """Return what makes times of a day go on, None where the log has others, or dates."""
+        time = self._mapping.time
+        if time is None or self._mapping.date:
+            return None
+        reading = self._table.readings[time.name]
+        return Midnights() if reading.is_time and is_of_a_day(reading.extremes) else None
+
+    def _times(self, columns: dict[str, Array], row: int, midnights: Midnights | None) -> Array:
         """Return the times of rows from `row` on [s], as the log counts them."""
         time = self._mapping.time
         if time is None:
             count = len(next(iter(columns.values())))
             return np.arange(row, row + count) / self._mapping.rate
         days = columns[self._mapping.date] if self._mapping.date else 0.0
-        return days + line(columns[time.name], time, TIME_UNITS[time.unit])
+        told = columns[time.name] if midnights is None else midnights.passed(columns[time.name])
+        return days + line(told, time, TIME_UNITS[time.unit])
 
     def _nanoseconds(self, times: Array) -> Array:
         """Return times [ns] since the first of them, or since 1970 where the log tells it."""

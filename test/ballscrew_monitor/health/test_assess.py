@@ -154,9 +154,9 @@ def test_reference_runs_that_change_are_a_note(axis, motion):
     runs = [dataclasses.replace(one, load_source=LoadSource.FREE) for one in points]
     bins = [bin_of_day(day) for day in sorted({one.first_day for one in points})]
     notes = axis.health(runs, spectrum=bins).notes
-    assert [one for one in notes if one.startswith('the reference run of ')]
+    assert [one for one in notes if one.startswith('the friction without process ')]
     for quiet in (axis.health(runs), axis.health(points, spectrum=bins)):
-        assert not [one for one in quiet.notes if one.startswith('the reference run of ')]
+        assert not [one for one in quiet.notes if one.startswith('the friction without process ')]
 
 
 def bin_of_day(day):

@@ -216,7 +216,7 @@ def test_a_screw_that_wears_is_told_before_two_readings_below_ten_percent(
     """By what was seen until then alone."""
     readings = [reading for _, reading in worn[name]]
     seen = 1 + alarm // 35
-    said = f'the reference run of {day_of_hour(motion, alarm)} '
+    said = f'the friction without process force of {day_of_hour(motion, alarm)} '
     assert note_on_runs(*runs(readings)).startswith(said)
     assert note_on_runs(*runs(readings[:seen])) == note_on_runs(*runs(readings))
     assert note_on_runs(*runs(readings[: seen - 1])) == ''

@@ -36,7 +36,7 @@ NOISE = np.random.default_rng(1).normal(size=COUNT)
 def balance(judged):
     """Return a function that balances rows in motion, in two blocks."""
 
-    def made(force, torque, motion=MOTION, source=PointSource.MEASURED):
+    def made(force, torque, motion=MOTION, source=PointSource.MEASURED, modelled=0.2):
         balancer = Balancer(lead=LEAD, standstill=0.1)
         direction = np.where(motion > 0, Direction.POSITIVE, Direction.NEGATIVE)
         for part in (slice(150), slice(150, None)):
@@ -49,7 +49,7 @@ def balance(judged):
                     axial_load_source=source,
                     motor_torque=np.broadcast_to(torque, COUNT)[part],
                     motor_torque_source=PointSource.MEASURED,
-                    friction_torque=0.2,
+                    friction_torque=np.broadcast_to(modelled, COUNT)[part],
                 )
             )
         return balancer.result()
@@ -133,6 +133,17 @@ def test_a_wrong_size_is_told_with_the_friction_beside_it(load, torque, friction
     assert found.turned is None
     assert found.factor == pytest.approx(1e3, rel=0.02)
     assert found.friction == pytest.approx(friction, rel=0.05)
+
+
+def test_rows_that_are_not_judged_do_not_thin_out_the_friction_of_the_model(balance):
+    """A load in a unit that is too small is mostly beyond the surface."""
+    force, known = FORCES['of a process'], np.where(np.arange(COUNT) % 50 == 0, 0.2, np.nan)
+    torque = torque_of(force, noise=0.001)
+    found = balance(1e3 * force, torque, modelled=known)
+    assert found.friction == pytest.approx(1.0, rel=0.05)
+    unknown = balance(1e3 * force, torque, modelled=np.nan)
+    assert unknown.factor == pytest.approx(found.factor)
+    assert np.isnan(unknown.friction)
 
 
 @pytest.mark.skipif(

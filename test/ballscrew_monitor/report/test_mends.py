@@ -3,6 +3,7 @@
 """Mends of inputs whose sign or size contradicts the others."""
 
 import dataclasses
+import math
 
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.report.balance import Balance
@@ -49,6 +50,8 @@ def test_a_turned_sign_is_told_with_what_mends_it(judged, source, known, key, sa
     [
         (1100.0, 0.9, 'looks_like_kn'),
         (0.0009, 1.2, 'looks_like_n'),
+        (0.0009, math.nan, 'looks_like_n'),  # a load beyond the surface: no friction of the model
+        (1100.0, math.nan, 'size_of_either'),
         (980.0, 1500.0, 'looks_like_n_mm'),
         (5.0, 1.0, 'check_both'),
     ],

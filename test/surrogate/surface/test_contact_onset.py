@@ -63,6 +63,8 @@ def test_the_sentence_names_speed_limit_zone_and_what_gives_one(key, changes, sa
 
 def test_a_feed_axis_reads_its_own_unit_first(says):
     assert KNOWN.sentence(as_feed=True) == says('feed')
+    short = replace(KNOWN, zone=False, reach=1000 * RPM)
+    assert short.sentence(as_feed=True) == says('feed_of_short_surface')
 
 
 def test_the_record_has_the_numbers_of_the_sentence():

@@ -3,13 +3,17 @@
 """Rates and units estimated from the numbers of a log."""
 
 from ballscrew_monitor.recordings.tables.estimates import (
+    DAY,
     is_rising,
+    Midnights,
     period,
     position_unit,
     speed_unit,
     time_unit,
     usual_rate,
 )
+from hypothesis import given
+from hypothesis import strategies as st
 import numpy as np
 import pytest
 
@@ -68,3 +72,22 @@ def test_times_rise_but_for_a_few():
     assert is_rising(rising)
     assert not is_rising(np.zeros(50))
     assert not is_rising(np.sin(np.arange(50.0)))
+
+
+@given(
+    st.floats(0.0, DAY - 1.0),
+    st.lists(st.floats(-5.0, 0.49 * DAY), min_size=1, max_size=40),
+    st.integers(1, 41),
+)
+def test_times_of_a_day_go_on_through_midnight_in_blocks_of_any_size(begin, steps, block):
+    """Rows that come a little late after midnight are of the day before it."""
+    true = np.maximum(np.cumsum([begin, *steps]), 0.0)
+    told, midnights = true % DAY, Midnights()
+    parts = [told[first : first + block] for first in range(0, len(told), block)]
+    np.testing.assert_allclose(np.concatenate([midnights.passed(one) for one in parts]), true)
+
+
+def test_what_is_no_time_of_a_day_stays_so_and_passes_no_midnight():
+    found = Midnights().passed(np.array([np.nan, DAY - 1.0, np.nan, 1.0, np.nan]))
+    np.testing.assert_array_equal(found, [np.nan, DAY - 1.0, np.nan, DAY + 1.0, np.nan])
+    assert Midnights().passed(np.zeros(0)).size == 0

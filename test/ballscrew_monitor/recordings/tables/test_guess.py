@@ -234,6 +234,9 @@ def test_a_time_of_day_counts_in_seconds_and_a_count_beside_a_date_is_none(guess
     clocks = [f'03:{row // 6:02d}:{row % 6}0' for row in range(200)]
     made = guessed({'Uhrzeit': clocks, 'x_vel': SPEED, 'x_force': SPEED})
     assert made.content['time'] == {'column': 'Uhrzeit', 'unit': 's'}
+    night = [f'{minute}:{row:02d}' for minute in ('23:59', '00:00') for row in range(60)]
+    made = guessed({'Uhrzeit': night, 'x_vel': SPEED[:120], 'x_force': SPEED[:120]})
+    assert made.content['time'] == {'column': 'Uhrzeit', 'unit': 's'}
     dates = ['02.01.2026'] * 200
     made = guessed({'Datum': dates, 'Zeit': TIME, 'x_vel': SPEED, 'x_force': SPEED})
     assert made.content['time'] == {'column': 'Zeit'}

@@ -149,6 +149,13 @@ def test_rows_far_out_of_order_are_sorted_too(read, spread):
     assert made.usual_period == pytest.approx(np.median(np.diff(made.stamps)) * 1e-9)
 
 
+def test_a_time_of_day_goes_on_through_midnight(read):
+    clocks = [f'{hour:02d}:30:00' for hour in (22, 23, 0, 1)]
+    made = read({'t': clocks, 'v': [1, 2, 3, 4]})
+    np.testing.assert_array_equal(made.stamps - EPOCH, np.arange(4) * 3600 * 10**9)
+    assert made.axes[0].speed == pytest.approx(np.arange(1, 5) * 0.2 * math.pi)
+
+
 def test_few_rows_wait_for_one_that_is_a_little_late(small_reads, tmp_path, write_csv):
     times = np.arange(3000) * 0.01
     times[1:-1:7] += 0.05

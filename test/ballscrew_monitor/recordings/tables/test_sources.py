@@ -151,8 +151,22 @@ def test_lines_and_columns_are_bounded(text, key, log, monkeypatch, refused):
         refused(key, column_names, path)
 
 
-def test_a_small_parquet_file_of_many_cells_is_refused(tmp_path, refused):
+def test_a_small_parquet_file_of_many_cells_is_refused(tmp_path, refused, monkeypatch):
     path = tmp_path / 'log.parquet'
-    pl.DataFrame({'a': np.zeros(9_000_000)}).write_parquet(path)
-    assert path.stat().st_size < 100_000
-    refused('many_cells', column_names, path)
+    pl.DataFrame({'a': np.zeros(100_000), 'b': np.zeros(100_000)}).write_parquet(path)
+    monkeypatch.setattr(limits, 'PACKING', 1)
+    monkeypatch.setattr(limits, 'WORKBOOK', 800_000)
+    monkeypatch.setattr(limits, 'CHUNK', 0)
+    assert open_table(path, ['a']).rows == 100_000
+    refused('many_cells', open_table, path, ['a', 'b'])
+
+
+def test_a_parquet_file_of_an_axis_at_rest_is_read(tmp_path, monkeypatch):
+    """Columns that stay as they are take no room: what is read counts, not all that is there."""
+    path, rest = tmp_path / 'log.parquet', np.zeros(100_000)
+    names = [f'X_{number}' for number in range(99)]
+    columns = {'t': np.arange(len(rest)) / 1000.0} | dict.fromkeys(names, rest)
+    pl.DataFrame(columns).write_parquet(path)
+    monkeypatch.setattr(limits, 'WORKBOOK', 0)
+    assert 8 * len(rest) * len(columns) > limits.most_unpacked(path.stat().st_size)
+    assert open_table(path, ['t', *names[:3]]).rows == len(rest)
