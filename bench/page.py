@@ -3,11 +3,14 @@
 """
 Measure the page beside a bare rclpy subscriber of the same states, in the same run.
 
-Usage: python bench/page.py [--axes 4] [--rate 50] [--browsers 1,20] [--seconds 10]. This process
-publishes states of a node that is not there, and reads as many browsers. Page and subscriber are
-one process each and hear the same messages, so that a busy machine harms both: the ratio of their
-shares of a core is what the page costs. The latency is from the publication of a state to the
-frame with its row at a browser.
+Usage: python bench/page.py [--axes 4] [--rate 50] [--browsers 1,20] [--seconds 10]
+[--minutes 0.5]. This process publishes states of a node that is not there, and reads as many
+browsers. Page and subscriber are one process each and hear the same messages, so that a busy
+machine harms both: the ratio of their shares of a core is what the page costs. The latency is from
+the publication of a state to the frame with its row at a browser.
+
+Then Chromium shows the page, which has no map here, for some minutes: how long a frame of the
+screen keeps its main thread, and how much memory its scripts hold before and after.
 
 """
 
@@ -17,7 +20,6 @@ from collections.abc import Iterator
 import contextlib
 import json
 import os
-import statistics
 import struct
 import subprocess
 import sys
@@ -30,6 +32,7 @@ from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.settings.qos import started_node
 from ballscrew_msgs.msg import BallScrewState, InputHealth
 import numpy as np
+from page_parts import screen
 from websockets.asyncio.client import connect
 
 NODE = '/bench'
@@ -129,8 +132,9 @@ async def browse_all(url: str, count: int, seconds: float) -> tuple[list[float],
     return latencies, sum(frames)
 
 
-def measure(axes: int, rate: float, browsers: int, seconds: float) -> None:
-    """Print a line of the page with some browsers."""
+@contextlib.contextmanager
+def served(axes: int, rate: float) -> Iterator[tuple[str, int, int]]:
+    """Serve the page; give its address, and the numbers of the bare process and of the page."""
     with contextlib.ExitStack() as stack:
         domain = stack.enter_context(free_domain())
         node = stack.enter_context(started_node('bench', domain))
@@ -139,21 +143,39 @@ def measure(axes: int, rate: float, browsers: int, seconds: float) -> None:
         page, line = stack.enter_context(
             child(domain, '-m', 'ballscrew_monitor', 'page', '--port', '0')
         )
-        url = line.split()[1]
+        yield line.split()[1], bare, page
+
+
+def measure(axes: int, rate: float, browsers: int, seconds: float) -> None:
+    """Print a line of the page with some browsers."""
+    with served(axes, rate) as (url, bare, page):
         asyncio.run(browse_all(url, 1, 3.0))  # all have found each other
         before = cpu_time(bare), cpu_time(page)
         latencies, frames = asyncio.run(browse_all(url, browsers, seconds))
         used = cpu_time(bare) - before[0], cpu_time(page) - before[1]
-        ordered = sorted(latencies)
+        middle, most, last = 1e3 * np.percentile(latencies, (50, 95, 99))
         print(
             f'{axes} axes, {rate:g} Hz, {browsers:2} browsers: '
             f'page {100 * used[1] / seconds:.1f} % of a core, '
             f'{used[1] / max(used[0], 0.01):.2f} times a bare subscriber; '
             f'{frames / seconds / browsers:.0f} frames a second each; latency '
-            f'{1e3 * statistics.median(ordered):.0f} ms, p95 '
-            f'{1e3 * ordered[int(0.95 * len(ordered))]:.0f} ms',
+            f'{middle:.0f} ms, p95 {most:.0f} ms, p99 {last:.0f} ms',
             flush=True,
         )
+
+
+def measure_screen(axes: int, rate: float, minutes: float) -> None:
+    """Print a line of the browser that shows the page."""
+    with screen.opened() as tab, served(axes, rate) as (url, _, _):
+        shown = screen.watch(tab, url, 60.0 * minutes)
+    middle, most = np.percentile(shown.frames, (50, 95))
+    print(
+        f'{axes} axes, {rate:g} Hz, on the screen: {len(shown.frames)} frames in {minutes:g} min, '
+        f'each {middle:.1f} ms of the main thread, p95 {most:.1f} ms; busy for '
+        f'{100 * shown.busy:.0f} % of the time; heap {shown.heap[0]:.1f} MB before and '
+        f'{shown.heap[1]:.1f} MB after',
+        flush=True,
+    )
 
 
 def main() -> int:
@@ -163,9 +185,11 @@ def main() -> int:
     parser.add_argument('--rate', type=float, default=50.0)
     parser.add_argument('--browsers', default='1,20')
     parser.add_argument('--seconds', type=float, default=10.0)
+    parser.add_argument('--minutes', type=float, default=0.5)
     args = parser.parse_args()
     for count in map(int, args.browsers.split(',')):
         measure(args.axes, args.rate, count, args.seconds)
+    measure_screen(args.axes, args.rate, args.minutes)
     return 0
 
 

@@ -115,13 +115,11 @@ class Hub:
             raise InputError(f'axis {name!r} is unknown, known are: {known}')
         return self.axes[name]
 
-    def lose(self, node: str, words: str) -> None:
+    def lose(self, node: str) -> None:
         """Say that a node is gone; what was heard of it stays, with its age."""
         for view in self.axes.values():
             if view.node == node:
                 view.stand(GONE)
-        for browser in self.browsers:
-            browser.reply(frame('gone', {'node': node, 'words': words}))
 
     def notice(self, node: str, words: str) -> None:
         """Say why a node is not shown, or with empty words that it is."""

@@ -145,7 +145,6 @@ class Axis {
     this.facts = facts;
     this.rows = new Rows(Axis.COLUMNS);
     this.events = [];
-    this.gone = '';
     this.recorded = false;
   }
 
@@ -157,13 +156,18 @@ class Axis {
     } else if (frame.kind === 'state') {
       this.health = frame.health ?? this.health;
       this.totals = frame.totals ?? this.totals;
-      [this.state, this.arrived, this.gone] = [frame, performance.now(), ''];
+      [this.state, this.arrived] = [frame, performance.now()];
       this.rows.append(frame.arrays);
     } else if (frame.kind === 'map') {
       this.map = frame;
     } else if (frame.kind === 'events') {
       this.events = frame.events;
     }
+  }
+
+  /** Tell whether the node of this axis has left. */
+  get gone() {
+    return this.state?.standing === 'gone';
   }
 
   /** Return the age of the newest data [s], NaN before the first. */

@@ -90,7 +90,7 @@ class FirstScreen {
   reason() {
     const { axis } = this;
     if (axis.gone) {
-      return axis.gone;
+      return Words.say('node_left', { node: axis.facts.node });
     }
     if (!axis.state) {
       return Words.say('waits_for_data');

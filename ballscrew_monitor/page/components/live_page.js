@@ -32,8 +32,6 @@ class LivePage {
     } else if (frame.kind === 'clock') {
       this.player?.take(frame);
       this.axes.forEach((axis) => { axis.recorded = true; });
-    } else if (frame.kind === 'gone') {
-      this.leave(frame);
     } else {
       this.tell(frame);
     }
@@ -118,15 +116,6 @@ class LivePage {
   show(begin, end) {
     this.strips.show(begin, end);
     this.strips.element.scrollIntoView({ block: 'start' });
-  }
-
-  leave({ node, words }) {
-    for (const axis of this.axes.values()) {
-      if (axis.facts.node === node) {
-        axis.gone = words;
-      }
-    }
-    this.news?.();
   }
 
   /** Say that the connection is lost, since when, and that nobody needs to do anything. */

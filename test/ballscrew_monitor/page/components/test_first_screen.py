@@ -161,10 +161,10 @@ def test_of_old_data_nothing_is_concluded(shown, greeted, frames):
     shown.reads('.sign.level .word', 'Optimal zone')
 
 
-def test_a_node_that_is_gone_leaves_its_words(shown, greeted, frames):
-    words = 'The node has ended; its last data are shown.'
-    greeted.send({'kind': 'gone', 'node': '/ballscrew_monitor', 'words': words})
-    shown.reads('.reason', words)
+def test_a_node_that_is_gone_is_said_to_be(shown, greeted, frames):
+    greeted.send(*frames.state(standing='gone'))
+    left = frames.words('en')['node_left'].format(node='/ballscrew_monitor')
+    shown.reads('.reason', left)
     shown.reads('.sign.level .word', 'Not known')
     greeted.send(*frames.state())
     shown.reads('.sign.level .word', 'Optimal zone')

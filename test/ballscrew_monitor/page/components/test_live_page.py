@@ -4,14 +4,28 @@
 
 import hashlib
 import json
+import math
 from pathlib import Path
 import re
+import subprocess
+import sys
 import time
 
+from ballscrew_msgs.msg import BallScrewState
 import pytest
+from surrogate.units import RPM
 
 AXE = Path(__file__).resolve().parents[3] / 'data' / 'axe'
 QUIET = 'page.painter.views.every((view) => !view.news)'
+LEVELS = {
+    BallScrewState.LEVEL_OK: 'Optimal zone',
+    BallScrewState.LEVEL_WARN: 'Outside the optimal zone',
+    BallScrewState.LEVEL_UNKNOWN: 'Not known',
+}
+PROMPT = {'x__limits__raise_delay': 0.0, 'x__limits__clear_delay': 0.0}
+PROMPT |= {'x__max_future': 3600.0, 'x__publish_period': 0.1}
+FAST, SLOW, STILL = (100.0, -1000.0), (0.6, -1500.0), (0.0, -1000.0)
+"""Speed [rad/s] and load [N] in the optimal zone, outside, and without motion."""
 
 
 def open_whole(tab, url, **options):
@@ -119,3 +133,88 @@ def test_states_of_the_real_server_are_on_the_screen(tab, served, page_parts):
         assert found[1] == f'{321 + number} rev/min'
         assert found[2] == '1000 N'
     assert tab.ask("document.querySelectorAll('main b').length") == 0
+
+
+@pytest.fixture
+def beside(tab, node):
+    """Return a tab with the page of `ballscrew page` beside a node that is not started yet."""
+    process = subprocess.Popen(
+        [sys.executable, '-m', 'ballscrew_monitor', 'page', '--port', '0'],
+        env=node.environment,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        tab.open(process.stdout.readline().split()[1])
+        yield tab
+    finally:
+        process.terminate()
+        process.communicate()
+
+
+def in_digits(value, digits, unit):
+    """Return a value as the page writes it."""
+    text = f'{float(f"{value:.{digits}g}"):g}'
+    return '–' if math.isnan(value) else f'{text} {unit}'
+
+
+def read_off(tab):
+    """Return level, feed, speed, load and efficiency as the screen shows them."""
+    found = tab.texts('.numbers :is(.big, .more)')
+    return found and [tab.text('.sign.level .word'), *found[:3], found[6]]
+
+
+def as_shown(state):
+    """Return what the screen shall show of a state of the nominal screw, of 10 mm lead."""
+    still = BallScrewState.GATE_STANDSTILL in state.active_gates
+    turns = state.point.speed / RPM
+    return [
+        LEVELS[state.level],
+        in_digits(turns * 0.01, 3, 'm/min'),
+        in_digits(turns, 4, 'rev/min'),
+        in_digits(state.point.axial_load, 3, 'N'),
+        in_digits(math.nan if still else 100.0 * state.result.efficiency, 3, '%'),
+    ]
+
+
+def shown_at(tab, node, move):
+    """Publish until the screen shows the state that was received last; return that."""
+    states, publish, place = move
+
+    def repeat():
+        publish(*place)
+        node.spin()
+
+    def is_shown():
+        here = states and (states[-1].point.speed, states[-1].point.axial_load) == place
+        return here and read_off(tab) == as_shown(states[-1])
+
+    node.wait_for(is_shown, f'{place} on the screen', meanwhile=repeat)
+    return states[-1]
+
+
+def test_a_real_node_is_on_the_screen_as_a_subscriber_hears_it(beside, node):
+    node.start(**PROMPT)
+    states, publish = node.watched()
+    levels = [shown_at(beside, node, (states, publish, at)).level for at in (FAST, SLOW, FAST)]
+    assert levels == [BallScrewState.LEVEL_OK, BallScrewState.LEVEL_WARN, BallScrewState.LEVEL_OK]
+    assert shown_at(beside, node, (states, publish, STILL)).point.speed == 0.0
+    beside.reads('.health-of-inputs b', 'Speed')
+    beside.until('page.axis.map')
+
+
+def test_a_real_node_that_ends_is_gone_and_is_back_once_it_is_started(beside, node, frames):
+    left = frames.words('en')['node_left'].format(node=node.name)
+    node.start(**PROMPT)
+    states, publish = node.watched()
+    shown_at(beside, node, (states, publish, FAST))
+    node.stop()
+    beside.reads('.reason', left)
+    beside.reads('.sign.level .word', 'Not known')
+    # It stays so, whatever the page is told besides.
+    beside.until('page.axis.age > 2')
+    assert beside.text('.reason') == left
+    states.clear()
+    node.start(**PROMPT)
+    assert shown_at(beside, node, (states, publish, SLOW)).level == BallScrewState.LEVEL_WARN
+    assert beside.text('.reason') != left
