@@ -8,9 +8,7 @@ stay unused. The hundreds name the status; below 100 a code belongs to several.
 
 """
 
-import enum
-
-from ballscrew_monitor.core.judgement import Code
+from ballscrew_monitor.core.judgement import Code, Worded
 
 STATUSES = (
     *('any of an axis', 'Lubrication', 'Inputs', 'Surface', 'Health'),
@@ -19,16 +17,8 @@ STATUSES = (
 """The status that a code belongs to, by its hundreds."""
 
 
-class Fault(enum.IntEnum):
+class Fault(Worded):
     """What is wrong, its number and in words; NONE where nothing is."""
-
-    text: str
-
-    def __new__(cls, number: int, text: str) -> 'Fault':
-        """Return the fault of a number and a text."""
-        made = int.__new__(cls, number)
-        made._value_, made.text = number, text
-        return made
 
     @property
     def status(self) -> str:

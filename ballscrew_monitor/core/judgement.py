@@ -5,6 +5,7 @@
 import dataclasses
 import enum
 import math
+from typing import Self
 
 from ballscrew_monitor.core.estimate import PointEstimate, PointValidity
 from surrogate.files import InputError
@@ -66,16 +67,20 @@ class WarningPolicy(enum.StrEnum):
         return self is not WarningPolicy.ZONE
 
 
-class Reason(enum.IntEnum):
-    """Why an instant has no zone, its number and in words; JUDGED where it has one."""
+class Worded(enum.IntEnum):
+    """Number that stands for a text."""
 
     text: str
 
-    def __new__(cls, number: int, text: str) -> 'Reason':
-        """Return the reason of a number and a text."""
+    def __new__(cls, number: int, text: str) -> Self:
+        """Return the member of a number and a text."""
         made = int.__new__(cls, number)
         made._value_, made.text = number, text
         return made
+
+
+class Reason(Worded):
+    """Why an instant has no zone, its number and in words; JUDGED where it has one."""
 
     JUDGED = 0, 'judged'
     STANDSTILL = 1, 'the screw stands still'
