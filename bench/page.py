@@ -164,9 +164,9 @@ def measure(axes: int, rate: float, browsers: int, seconds: float) -> None:
         )
 
 
-def measure_screen(axes: int, rate: float, minutes: float) -> None:
-    """Print a line of the browser that shows the page."""
-    with screen.opened() as tab, served(axes, rate) as (url, _, _):
+def measure_screen(axes: int, rate: float, browser: str, minutes: float) -> None:
+    """Print a line of a browser that shows the page."""
+    with screen.opened(browser) as tab, served(axes, rate) as (url, _, _):
         shown = screen.watch(tab, url, 60.0 * minutes)
     middle, most = np.percentile(shown.frames, (50, 95))
     print(
@@ -189,7 +189,10 @@ def main() -> int:
     args = parser.parse_args()
     for count in map(int, args.browsers.split(',')):
         measure(args.axes, args.rate, count, args.seconds)
-    measure_screen(args.axes, args.rate, args.minutes)
+    if browser := screen.found_browser():
+        measure_screen(args.axes, args.rate, browser, args.minutes)
+    else:
+        print('no Chromium is installed: the screen is not measured')
     return 0
 
 

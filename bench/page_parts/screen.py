@@ -80,15 +80,17 @@ class Tab:
         return float(found['usedSize'] + found['backingStorageSize']) / MEGABYTE
 
 
+def found_browser() -> str:
+    """Return the path of a browser, empty without one."""
+    return next(filter(None, map(shutil.which, BROWSERS)), '')
+
+
 @contextlib.contextmanager
-def opened() -> Iterator[Tab]:
-    """Start a browser and give a tab of it; raises LookupError without one."""
-    found = next(filter(None, map(shutil.which, BROWSERS)), None)
-    if found is None:
-        raise LookupError('no chromium is installed')
+def opened(browser: str) -> Iterator[Tab]:
+    """Start a browser and give a tab of it."""
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         options = '--headless --no-sandbox --disable-gpu --remote-debugging-port=0'
-        command = [found, *options.split(), f'--user-data-dir={profile}', 'about:blank']
+        command = [browser, *options.split(), f'--user-data-dir={profile}', 'about:blank']
         quiet = subprocess.DEVNULL
         process = subprocess.Popen(command, stdout=quiet, stderr=quiet)
         try:

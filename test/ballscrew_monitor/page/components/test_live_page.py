@@ -24,6 +24,9 @@ LEVELS = {
 }
 PROMPT = {'x__limits__raise_delay': 0.0, 'x__limits__clear_delay': 0.0}
 PROMPT |= {'x__max_future': 3600.0, 'x__publish_period': 0.1}
+TOO_THIN = (
+    'The oil film is too thin: {} of the load is carried where metal pierces it, the limit is {}.'
+)
 FAST, SLOW, STILL = (100.0, -1000.0), (0.6, -1500.0), (0.0, -1000.0)
 """Speed [rad/s] and load [N] in the optimal zone, outside, and without motion."""
 
@@ -159,9 +162,17 @@ def in_digits(value, digits, unit):
 
 
 def read_off(tab):
-    """Return level, feed, speed, load and efficiency as the screen shows them."""
+    """Return level, reason, feed, speed, load and efficiency as the screen shows them."""
     found = tab.texts('.numbers :is(.big, .more)')
-    return found and [tab.text('.sign.level .word'), *found[:3], found[6]]
+    return found and [tab.text('.sign.level .word'), tab.text('.reason'), *found[:3], found[6]]
+
+
+def reason_of(state):
+    """Return why the zone of a state is what it is, in the words of the page."""
+    if BallScrewState.GATE_STANDSTILL in state.active_gates:
+        return 'the screw stands still'
+    shares = (in_digits(100.0 * one, 2, '%') for one in (state.result.rcs, state.rcs_limit))
+    return TOO_THIN.format(*shares) if state.zone == BallScrewState.ZONE_OUTSIDE else 'optimal'
 
 
 def as_shown(state):
@@ -170,6 +181,7 @@ def as_shown(state):
     turns = state.point.speed / RPM
     return [
         LEVELS[state.level],
+        reason_of(state),
         in_digits(turns * 0.01, 3, 'm/min'),
         in_digits(turns, 4, 'rev/min'),
         in_digits(state.point.axial_load, 3, 'N'),
@@ -217,4 +229,3 @@ def test_a_real_node_that_ends_is_gone_and_is_back_once_it_is_started(beside, no
     states.clear()
     node.start(**PROMPT)
     assert shown_at(beside, node, (states, publish, SLOW)).level == BallScrewState.LEVEL_WARN
-    assert beside.text('.reason') != left
