@@ -210,7 +210,8 @@ def _events(args: argparse.Namespace) -> int:
             continue
         event = f'event {record["event"]}' if 'event' in record else ''
         told = next((str(record[name]) for name in TOLD if record.get(name)), '')
-        words = ': '.join(filter(None, (event, told)))
+        by = f'by {record["name"]}' if record.get('name') else ''
+        words = ': '.join(filter(None, (event, by, told)))
         line = f'{entry.time}  {entry.axis or "-":<8}  {entry.kind:<14}  {words}'
         print(printable(line.rstrip()))
     return 0

@@ -24,8 +24,8 @@ from surrogate.units import TURN
 NAN = math.nan
 LONGEST_SHELVING = 86400 * SECOND
 """No warning is shelved longer than this [ns], however the clock is set."""
-LONGEST_REASON = 500
-"""Characters of a reason; a state carries it."""
+LONGEST_REASON, LONGEST_NAME = 500, 200
+"""Characters of a reason, which a state carries, and of a name."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -194,14 +194,39 @@ def shelve(now: int, duration: float, reason: str) -> Shelving:
         raise InputError(f'duration is {duration:g} s, allowed is 0 to {longest:g} s')
     if duration == 0.0:
         return NOT_SHELVED
-    reason = ' '.join(reason.split())
-    if not reason or len(reason) > LONGEST_REASON:
-        raise InputError(
-            f'reason has {len(reason)} characters, it must say why in 1 to {LONGEST_REASON}'
-        )
+    reason = _line(reason, 'reason', 'why', 1, LONGEST_REASON)
     if now == 0:
         raise InputError('the clock of the node stands at zero, play /clock first')
     return Shelving(until=now + nanoseconds(duration), reason=reason)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Acknowledgement:
+    """Who has seen a warning, and why it ends; empty where that was not said."""
+
+    name: str = ''
+    reason: str = ''
+
+
+NAMELESS = Acknowledgement()
+
+
+def acknowledgement(name: str, reason: str) -> Acknowledgement:
+    """Return that of a name; raises InputError for a missing name and for texts too long."""
+    return Acknowledgement(
+        name=_line(name, 'name', 'who', 1, LONGEST_NAME),
+        reason=_line(reason, 'reason', 'why', 0, LONGEST_REASON),
+    )
+
+
+def _line(text: str, name: str, what: str, least: int, most: int) -> str:
+    """Return a text in one line; raises InputError unless it has `least` to `most` characters."""
+    line = ' '.join(text.split())
+    if not least <= len(line) <= most:
+        raise InputError(
+            f'{name} has {len(line)} characters, it must say {what} in {least} to {most}'
+        )
+    return line
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -8,7 +8,7 @@ from typing import Any, TYPE_CHECKING
 
 from ballscrew_monitor.core.conversions import clock_text, seconds
 from ballscrew_monitor.core.judgement import Level
-from ballscrew_monitor.core.state import NOT_SHELVED, Shelving, State
+from ballscrew_monitor.core.state import Acknowledgement, NAMELESS, NOT_SHELVED, Shelving, State
 from ballscrew_monitor.messages.state_messages import out_of_zone_message
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts, totals_facts
@@ -118,10 +118,11 @@ class Alarm:
         """Wait until all subscribers have the last message, at most for a `duration`."""
         self._publisher.wait_for_all_acked(duration)
 
-    def acknowledge(self) -> None:
+    def acknowledge(self, by: Acknowledgement = NAMELESS) -> None:
         """Set the level back to UNKNOWN and end the event, because somebody has seen it."""
         ended = self._axis.monitor.acknowledge(self._now)
-        self._note(Kind.ACKNOWLEDGE, event=self._axis.monitor.event.number)
+        number = self._axis.monitor.event.number
+        self._note(Kind.ACKNOWLEDGE, event=number, name=by.name, reason=by.reason)
         if ended is not None:
             self.publish()
             self._note_event(Kind.EVENT_END)

@@ -3,8 +3,8 @@
 """
 The services that change axes.
 
-Those without a request act on all axes at once, and on each under its name; `shelve` names its
-axis.
+Those without a request act on all axes at once, and on each under its name; `shelve` and
+`acknowledge_as` name their axis.
 
 """
 
@@ -13,11 +13,11 @@ import functools
 from typing import Any
 
 from ballscrew_monitor.core.conversions import clock_text
-from ballscrew_monitor.core.state import shelve
+from ballscrew_monitor.core.state import Acknowledgement, acknowledgement, NAMELESS, shelve
 from ballscrew_monitor.messages.state_messages import fill_time
 from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.settings.axis import reload_surface
-from ballscrew_msgs.srv import ShelveAlarm
+from ballscrew_msgs.srv import AcknowledgeAlarm, ShelveAlarm
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 from surrogate.files import InputError
@@ -60,7 +60,10 @@ class AxisServices:
             self._make(f'~/{name}', act, values['axes'])
             for axis in values['axes']:
                 self._make(f'~/{axis}/{name}', act, [axis])
-        node.create_service(ShelveAlarm, '~/shelve', self._serve_shelve)
+        shelve_named = functools.partial(self._serve_named, self._shelve)
+        node.create_service(ShelveAlarm, '~/shelve', shelve_named)
+        acknowledge_named = functools.partial(self._serve_named, self._acknowledge_as)
+        node.create_service(AcknowledgeAlarm, '~/acknowledge_as', acknowledge_named)
 
     def _make(self, name: str, act: Act, axes: list[str]) -> None:
         self._node.create_service(Trigger, name, functools.partial(self._serve, act, axes))
@@ -109,13 +112,16 @@ class AxisServices:
             publisher.guarded('a reset of its totals', publisher.alarm.reset_totals)
         return f'set the totals to zero of {_names(publishers)}'
 
-    def _acknowledge(self, publishers: Publishers) -> str:
+    def _acknowledge(self, publishers: Publishers, by: Acknowledgement = NAMELESS) -> str:
         """Set the levels back to UNKNOWN and end the events."""
         for publisher in publishers.values():
-            publisher.guarded('an acknowledgement', publisher.alarm.acknowledge)
+            publisher.guarded('an acknowledgement', publisher.alarm.acknowledge, by)
         return f'acknowledged of {_names(publishers)}'
 
-    def _serve_shelve(self, request: Any, response: Any) -> Any:
+    def _serve_named(
+        self, act: Callable[[Publishers, Any, Any], None], request: Any, response: Any
+    ) -> Any:
+        """Act on the axis that a request names, or on all; answer an InputError by its text."""
         publishers = self._publishers
         axes = [request.axis] if request.axis else list(publishers)
         unknown = [axis for axis in axes if axis not in publishers]
@@ -124,16 +130,20 @@ class AxisServices:
         elif unknown:
             response.message = self._why_unknown(unknown[0])
         else:
-            self._shelve({axis: publishers[axis] for axis in axes}, request, response)
+            try:
+                act({axis: publishers[axis] for axis in axes}, request, response)
+            except InputError as error:
+                response.message = str(error)
         return response
+
+    def _acknowledge_as(self, publishers: Publishers, request: Any, response: Any) -> None:
+        by = acknowledgement(request.name, request.reason)
+        done = f'{self._acknowledge(publishers, by)} by {by.name}'
+        self._answer(response, publishers, done, 'acknowledge', ())
 
     def _shelve(self, publishers: Publishers, request: Any, response: Any) -> None:
         now = self._node.get_clock().now().nanoseconds
-        try:
-            shelving = shelve(now, request.duration, request.reason)
-        except InputError as error:
-            response.message = str(error)
-            return
+        shelving = shelve(now, request.duration, request.reason)
         for publisher in publishers.values():
             publisher.guarded('its shelving', publisher.shelve, shelving)
         until = f'shelved until {clock_text(shelving.until)}' if shelving.until else ''

@@ -21,10 +21,9 @@ from ballscrew_monitor.page.hub import Browser, Hub
 from ballscrew_monitor.page.questions import Answer, Handler, number_in, text_in
 from ballscrew_monitor.page.records import UNKNOWN, WORDS_OF_REGIME
 from ballscrew_msgs.action import SolveOperatingPoint
-from ballscrew_msgs.srv import ShelveAlarm
+from ballscrew_msgs.srv import AcknowledgeAlarm, ShelveAlarm
 from rclpy.action import ActionClient
 from rclpy.node import Node
-from std_srvs.srv import Trigger
 from surrogate.files import InputError
 from surrogate.units import MINUTE, RPM
 
@@ -62,8 +61,10 @@ class Acting:
 
     async def _acknowledge(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
         view, name = self._hub.view(text_in(request, 'axis')), text_in(request, 'name')
+        reason = text_in(request, 'reason') if request.get('reason') else ''
         active = view.active_events
-        said = await self._call(view, Trigger, f'{view.name}/acknowledge', Trigger.Request())
+        asked = AcknowledgeAlarm.Request(axis=view.axis, name=name, reason=reason)
+        said = await self._call(view, AcknowledgeAlarm, 'acknowledge_as', asked)
         view.acknowledge(active, name)
         return {'message': said}, {}
 
@@ -72,14 +73,15 @@ class Acting:
         duration = number_in(request, 'minutes') * MINUTE
         reason = f'{text_in(request, "reason")} ({name})' if duration else ''
         asked = ShelveAlarm.Request(axis=view.axis, duration=duration, reason=reason)
-        return {'message': await self._call(view, ShelveAlarm, f'{view.node}/shelve', asked)}, {}
+        return {'message': await self._call(view, ShelveAlarm, 'shelve', asked)}, {}
 
     async def _call(self, view: AxisView, kind: Any, name: str, request: Any) -> str:
         """Return what a service answers; raises InputError with its refusal, or without one."""
-        client = await self._in_ros(self._node.create_client, kind, name)
+        client = await self._in_ros(self._node.create_client, kind, f'{view.node}/{name}')
         answers: list[Any] = []
         try:
-            await self._until(client.service_is_ready, PATIENCE, f'{view.node} does not answer')
+            if not await _waited(client.service_is_ready, PATIENCE):
+                raise InputError(await self._in_ros(self._why_silent, view.node, name))
             for patience in (REPEAT, PATIENCE):
                 answers.append(await self._in_ros(client.call_async, request))
                 if await _waited(lambda: any(one.done() for one in answers), patience):
@@ -92,6 +94,15 @@ class Acting:
         if not answer.success:
             raise InputError(answer.message)
         return str(answer.message)
+
+    def _why_silent(self, node: str, name: str) -> str:
+        """Return why a service of a `node` is not there: one of an older version lacks it."""
+        if node in self._node.get_fully_qualified_node_names():
+            return (
+                f'{node} has no service {name}, it is older than this page: '
+                'install the same version of ballscrew_monitor on both'
+            )
+        return f'{node} does not answer within {PATIENCE:g} s'
 
     async def _solve(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
         view = self._hub.view(text_in(request, 'axis'))

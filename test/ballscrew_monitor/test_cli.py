@@ -180,6 +180,8 @@ def test_a_reader_that_has_seen_enough_is_no_crash(short_bag):
 def make_state(tmp_path):
     state = RestartState(tmp_path / 'ballscrew_monitor' / 'ballscrew_monitor')
     state.keep(None, entry_of(Kind.NODE_START, None, 1, {}))
+    seen = {'event': 4, 'name': 'Ada\x1b[2J', 'reason': 'nut is ordered'}
+    state.keep(None, entry_of(Kind.ACKNOWLEDGE, 'x', 2, seen))
     facts = {'event': 4, 'text': '', 'ending': 'ended', 'worst_value': float('nan')}
     state.keep(None, entry_of(Kind.EVENT_END, 'x', 2, facts))
     state.flush()
@@ -189,12 +191,14 @@ def make_state(tmp_path):
 
 def test_the_event_log_is_printed_as_text_and_json(state, capsys, monkeypatch, tmp_path):
     assert cli.main(['events', str(state.folder)]) == 0
-    start, end = capsys.readouterr().out.splitlines()
+    start, seen, end = capsys.readouterr().out.splitlines()
     assert start.split()[1:] == ['-', 'node_start']
+    assert seen.endswith(r'  x         acknowledge     event 4: by Ada\x1b[2J: nut is ordered')
     assert end.split()[1:] == ['x', 'event_end', 'event', '4:', 'ended']
     monkeypatch.setenv('XDG_STATE_HOME', str(tmp_path))
     state.close()
     assert cli.main(['events', '--json']) == 0
-    start, end = map(json.loads, capsys.readouterr().out.splitlines())
+    start, seen, end = map(json.loads, capsys.readouterr().out.splitlines())
+    assert (seen['name'], seen['reason']) == ('Ada\x1b[2J', 'nut is ordered')
     assert (start['kind'], start['axis'], start['stamp_ns']) == ('node_start', None, 1)
     assert (end['event'], end['worst_value'], end['ending']) == (4, None, 'ended')

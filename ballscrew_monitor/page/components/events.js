@@ -31,7 +31,9 @@ class Events {
     const times = SHELF.map((minutes) => [String(minutes), Words.say('shelve_minutes', { minutes })]);
     const shelf = Controls.select('shelve_time', times, () => {});
     this.minutes = shelf.querySelector('select');
-    const acknowledge = Controls.button('acknowledge', () => this.act({ do: 'acknowledge' }));
+    const acknowledge = Controls.button('acknowledge', () => this.act({
+      do: 'acknowledge', reason: this.reason.value.trim() || undefined,
+    }));
     const shelve = Controls.button('shelve', () => this.act({
       do: 'shelve', minutes: Number(this.minutes.value), reason: this.reason.value,
     }));

@@ -1,11 +1,18 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""A warning is shelved for a stated time and a reason, and never for longer than a day."""
+"""A warning is shelved for a stated time, at most a day, and acknowledged by a name."""
 
 import math
 
 from ballscrew_monitor.core.conversions import clock_text, SECOND
-from ballscrew_monitor.core.state import LONGEST_SHELVING, NOT_SHELVED, shelve, Shelving
+from ballscrew_monitor.core.state import (
+    Acknowledgement,
+    acknowledgement,
+    LONGEST_SHELVING,
+    NOT_SHELVED,
+    shelve,
+    Shelving,
+)
 import pytest
 
 NOW = 1_800_000_000 * SECOND
@@ -48,6 +55,25 @@ def test_a_clock_that_is_behind_does_not_end_it(wrong):
 )
 def test_what_is_refused(now, duration, reason, sentence, refused):
     refused(sentence, shelve, now, duration, reason)
+
+
+def test_an_acknowledgement_is_one_line_each():
+    by = acknowledgement(' Ada\nByron ', '\tnut  is ordered\n')
+    assert by == Acknowledgement(name='Ada Byron', reason='nut is ordered')
+    assert acknowledgement('A' * 200, ' \n') == Acknowledgement(name='A' * 200)
+    assert acknowledgement('A', 'x' * 500).reason == 'x' * 500
+
+
+@pytest.mark.parametrize(
+    ('name', 'reason', 'sentence'),
+    [
+        (' \n', 'why', 'name_has_0'),
+        ('A' * 201, '', 'name_has_201'),
+        ('Ada', 'x' * 501, 'acknowledged_for_501'),
+    ],
+)
+def test_an_acknowledgement_says_who_and_not_too_much(name, reason, sentence, refused):
+    refused(sentence, acknowledgement, name, reason)
 
 
 def test_a_stamp_for_people():

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""State that outlives the node, over the real middleware: kills, a full disk, shelving."""
+"""State that outlives the node, over the real middleware: kills, a full disk, shelving, names."""
 
 import contextlib
 import json
@@ -16,7 +16,7 @@ from ballscrew_monitor.core.state import Event, Totals
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_database import FILE, read_entries
 from ballscrew_msgs.msg import BallScrewState
-from ballscrew_msgs.srv import ShelveAlarm
+from ballscrew_msgs.srv import AcknowledgeAlarm, ShelveAlarm
 from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
 from std_msgs.msg import Bool
@@ -192,6 +192,34 @@ def test_a_damaged_file_is_one_sentence_and_begins_anew(axis):
     damaged = f'{path} is damaged (file is not a database), moved to state.sqlite3.aside'
     assert message == damaged
     assert path.with_suffix('.sqlite3.aside').exists()
+
+
+def test_an_acknowledgement_keeps_who_and_why(axis, capsys, says):
+    axis.start(x__limits__raise_delay=0.2)
+    node, ask = axis.node, {'axis': 'x', 'name': ' Ada\n', 'reason': 'nut is  ordered'}
+    axis.begin(1)
+    for change, key in (
+        ({'name': ' '}, 'name_has_0'),
+        ({'name': 'A' * 201}, 'name_has_201'),
+        ({'reason': 'x' * 501}, 'acknowledged_for_501'),
+        ({'axis': 'q'}, 'axis_unknown'),
+    ):
+        answer = node.call(AcknowledgeAlarm, 'acknowledge_as', **ask | change)
+        assert (answer.success, answer.message) == (False, says(key))
+    assert axis.events[-1].active
+    assert axis.log()[-1]['kind'] == 'event_begin'
+    answer = node.call(AcknowledgeAlarm, 'acknowledge_as', **ask)
+    assert (answer.success, answer.message) == (True, says('acknowledged'))
+    node.until(lambda: not axis.events[-1].active, 'the end of the event')
+    seen = [one for one in axis.log() if one['kind'] == 'acknowledge'][0]
+    assert (seen['event'], seen['name'], seen['reason']) == (1, 'Ada', 'nut is ordered')
+    assert cli.main(['events', str(axis.folder)]) == 0
+    assert says('acknowledged_in_log') in capsys.readouterr().out
+    # Of all axes; the plain service carries no name.
+    assert node.call(AcknowledgeAlarm, 'acknowledge_as', name='Bo').success
+    assert node.call(Trigger, 'acknowledge').message == 'acknowledged of x'
+    names = [one['name'] for one in axis.log() if one['kind'] == 'acknowledge']
+    assert list(dict.fromkeys(names)) == ['Ada', 'Bo', '']  # a request may be repeated
 
 
 def test_a_shelved_warning_calls_nobody_and_outlives_the_node(axis, says):

@@ -26,7 +26,7 @@ from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import DEPTH
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, PointResult
-from ballscrew_msgs.srv import EvaluateOperatingPoint, ShelveAlarm
+from ballscrew_msgs.srv import AcknowledgeAlarm, EvaluateOperatingPoint, ShelveAlarm
 from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
 from rcl_interfaces.msg import Parameter as ParameterMessage
@@ -435,8 +435,8 @@ def looks(node):
         node._kept._look()
 
 
-def serves(node, name, kind, **request):
-    service = next(one for one in node.services if one.srv_name == name)
+def serves(node, path, kind, **request):
+    service = next(one for one in node.services if one.srv_name == path)
     answer = service.callback(kind.Request(**request), kind.Response())
     assert (answer.success, 'ZeroDivisionError' in answer.message) == (False, True)
 
@@ -447,6 +447,7 @@ def solves(node):
 
 REQUESTS = {
     'acknowledge': (Trigger, {}, 'an acknowledgement'),
+    'acknowledge_as': (AcknowledgeAlarm, {'name': 'Ada'}, 'an acknowledgement'),
     'reset_totals': (Trigger, {}, 'a reset of its totals'),
     'shelve': (ShelveAlarm, {'duration': 60.0, 'reason': 'why'}, 'its shelving'),
 }
@@ -474,7 +475,7 @@ DEFECTS = {
         '_evaluate',
         functools.partial(
             serves,
-            name='~/evaluate',
+            path='~/evaluate',
             kind=EvaluateOperatingPoint,
             axis='x',
             points=[OperatingPoint()],
@@ -485,7 +486,7 @@ DEFECTS = {
     name: (
         views,
         'event_of',
-        functools.partial(serves, name=f'~/{name}', kind=kind, **request),
+        functools.partial(serves, path=f'~/{name}', kind=kind, **request),
         place,
     )
     for name, (kind, request, place) in REQUESTS.items()

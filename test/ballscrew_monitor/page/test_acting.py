@@ -5,8 +5,10 @@
 import asyncio
 import contextlib
 
+from ballscrew_monitor.node.state_database import read_entries
 from ballscrew_monitor.page import acting
 from ballscrew_monitor.page.acting import Acting, refusals
+from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.hub import Browser, Hub
 from ballscrew_monitor.page.ros_side import RosSide
 from ballscrew_monitor.settings.qos import started_node
@@ -56,8 +58,8 @@ def test_nothing_is_done_where_acting_is_off(refused):
             asyncio.run(handler(Browser(), {}))
 
 
-def test_a_warning_is_shelved_and_acknowledged_by_name(actor, node, says, refused):
-    node.start(x__limits__raise_delay=0.0, x__max_future=3600.0)
+def test_a_warning_is_shelved_and_acknowledged_by_name(actor, node, tmp_path, says, refused):
+    node.start(x__limits__raise_delay=0.0, x__max_future=3600.0, state_dir=tmp_path)
     publish = node.machine()
 
     def creep():
@@ -73,16 +75,39 @@ def test_a_warning_is_shelved_and_acknowledged_by_name(actor, node, says, refuse
     assert view.state['shelved']['reason'] == 'oil is ordered (Ada)'
     assert 0.0 < view.state['shelved']['left_s'] <= 300.0
     (number,) = view.active_events
-    assert actor.ask('acknowledge', name='Ada')['message'] == says('acknowledged')
+    seen = {'name': 'Ada', 'reason': 'oil is ordered'}
+    assert actor.ask('acknowledge', **seen)['message'] == says('acknowledged')
     node.until(lambda: not view.active_events, 'the end of the event')
-    told = view._told(view.events[number])
+    record, _ = actor.parts.read(view.events_frame())
+    told = {event['id']: event for event in record['events']}[number]
     assert (told['acknowledged'], told['acknowledged_by']) == (True, 'Ada')
+
+    def logged():
+        entries = [entry.record() for entry in read_entries(tmp_path)]
+        return [one for one in entries if one['kind'] == 'acknowledge']
+
+    entry = node.until(logged, 'the entry of the log')[0]
+    assert {key: entry[key] for key in ('event', *seen)} == {'event': number, **seen}
     # What the node refuses is refused in its words.
     with refused('too_long'):
         actor.ask('shelve', minutes=1e6, name='Ada', reason='holidays')
+    with refused('no_name'):
+        actor.ask('acknowledge', name='')
+    with refused('no_reason'):
+        actor.ask('acknowledge', name='Ada', reason='x' * 201)
     for wanting in ({'name': ''}, {'name': 'Ada', 'minutes': 5, 'reason': None}):
         with refused('no_name' if not wanting['name'] else 'no_reason'):
             actor.ask('shelve', **{'minutes': 5, **wanting})
+
+
+def test_a_node_of_an_older_version_is_named(actor, node, refused):
+    """One that is not there at all does not answer."""
+    for name in ('/older/x', '/nobody/x'):
+        actor.hub.add(AxisView(*name.rsplit('/', 1)))
+    with started_node('older', node.domain), refused('older'):
+        actor.ask('acknowledge', axis='/older/x', name='Ada')
+    with refused('nobody'):
+        actor.ask('acknowledge', axis='/nobody/x', name='Ada')
 
 
 def test_a_solve_tells_its_progress_and_its_result(actor, node):

@@ -54,12 +54,15 @@ def test_acts_carry_name_and_reason(acting, greeted, frames):
     fill(acting, 'Ada', 'run-in')
     acting.button('.events', 'Shelve')
     acting.reads('.message', 'No warning is active.')
+    acting.button('.events', 'Acknowledge')
+    acting.reads('.message', 'Done.')
     common = {'axis': '/ballscrew_monitor/x', 'name': 'Ada'}
     assert [
         {key: value for key, value in one.items() if key != 'id'} for one in greeted.requests
     ] == [
         common | {'do': 'acknowledge'},
         common | {'do': 'shelve', 'minutes': 15, 'reason': 'run-in'},
+        common | {'do': 'acknowledge', 'reason': 'run-in'},
     ]
 
 
