@@ -435,8 +435,8 @@ def looks(node):
         node._kept._look()
 
 
-def serves(node, name, kind, **request):
-    service = next(one for one in node.services if one.srv_name == name)
+def serves(node, path, kind, **request):
+    service = next(one for one in node.services if one.srv_name == path)
     answer = service.callback(kind.Request(**request), kind.Response())
     assert (answer.success, 'ZeroDivisionError' in answer.message) == (False, True)
 
@@ -475,7 +475,7 @@ DEFECTS = {
         '_evaluate',
         functools.partial(
             serves,
-            name='~/evaluate',
+            path='~/evaluate',
             kind=EvaluateOperatingPoint,
             axis='x',
             points=[OperatingPoint()],
@@ -486,7 +486,7 @@ DEFECTS = {
     name: (
         views,
         'event_of',
-        functools.partial(serves, name=f'~/{name}', kind=kind, **request),
+        functools.partial(serves, path=f'~/{name}', kind=kind, **request),
         place,
     )
     for name, (kind, request, place) in REQUESTS.items()
