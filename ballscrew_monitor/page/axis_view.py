@@ -11,6 +11,7 @@ from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.history import columns_of, History
 from ballscrew_monitor.page.records import advice_of, UNKNOWN
+from surrogate.files import to_json
 from surrogate.surface import Surface
 from surrogate.units import MILLI
 
@@ -69,7 +70,7 @@ class AxisView:
     def know(self, about: Mapping[str, Any], surface: Surface | None, no_map: str) -> None:
         """Take what the axis is, and its surface, or why that is not here."""
         self.about, self.surface, self.no_map = about, surface, no_map
-        self.map_frame, self.is_changed = None, True
+        self.map_frame, self.limit, self.is_changed = None, None, True
 
     def hear_words(self, part: str, words: str) -> None:
         """Take what the diagnostics say of a part of the axis."""
@@ -96,9 +97,10 @@ class AxisView:
             self._events_are_news = True
 
     def show_events(self, records: Iterable[Mapping[str, Any]]) -> None:
-        """Take all events as they are now, in place of those before."""
-        events = {record['id']: record for record in records}
-        self._events_are_news |= events != self.events
+        """Take all events as they are now in their order, in place of those before."""
+        events = {record['id']: record for record in list(records)[-MOST_EVENTS:]}
+        # Numbers that are not known are not equal to themselves.
+        self._events_are_news |= to_json(events) != to_json(self.events)
         self.events = events
 
     def begin_again(self) -> None:

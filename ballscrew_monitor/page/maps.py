@@ -18,6 +18,7 @@ from ballscrew_monitor.core.estimate import estimate, MachinePoint
 from ballscrew_monitor.core.judgement import Code, Limits, violation
 from ballscrew_monitor.page.history import COLUMNS
 from ballscrew_monitor.page.records import UNKNOWN, WORDS_OF_REGIME
+from ballscrew_monitor.recordings.words import number
 from ballscrew_monitor.report.map_record import map_line, map_lines, MapLine, NO_NUMBER, zone_cells
 from ballscrew_monitor.report.operating_field import (
     Field,
@@ -38,6 +39,7 @@ BANDS = ('band_unknown', 'band_numerical')
 """Kinds of the lines of the two bands of a surface, each with a low and a high edge."""
 LONGEST_STEP = 1.0  # [s] between two rows; more is a gap
 MOST_POINTS = 2000  # of the path of a ghost
+MOST_UNKNOWN = 0.01  # of the time of a ghost, up to which its energy is that of the rest
 SPEEDS = 120  # at which the limit of RCS is looked for
 Answer = tuple[dict[str, Any], dict[str, Any]]
 
@@ -190,7 +192,8 @@ def ghosts_of(
     """
     Return what a motion comes to at its feed times factors [-], the loads unchanged.
 
-    Share of the judged time outside the zone [-], energy lost [J], and time [s] of each.
+    Share of the judged time outside the zone [-], energy lost [J], and time [s] of each. Where
+    more than `MOST_UNKNOWN` of the time is beyond the surface, the energy is NaN; `words` say why.
 
     """
     ghosts, arrays = [], {}
@@ -201,20 +204,32 @@ def ghosts_of(
         found = look_up_many(surface, speed, motion.load, heat)
         known = np.isfinite(found['rcs'])
         outside = known & ~is_optimal(motion.load, found['rcs'], found['efficiency'], limits)
-        in_all = steps[known].sum()
+        judged_time, time = steps[known].sum(), steps.sum()
+        unknown = float(steps[~known].sum() / time) if time else math.nan
+        lost = (found['friction_torque'] * speed * steps)[known].sum()
+        share = steps[outside].sum() / judged_time if judged_time else math.nan
         ghosts.append(
             {
                 'factor': factor,
-                'outside_share': float(steps[outside].sum() / in_all) if in_all else math.nan,
-                'lost_J': float(np.nansum(found['friction_torque'] * speed * steps)),
-                'duration_s': float(steps.sum()),
-                'unknown_share': float(1.0 - in_all / steps.sum()) if steps.sum() else math.nan,
+                'outside_share': float(share),
+                'lost_J': float(lost) if unknown <= MOST_UNKNOWN else math.nan,
+                'duration_s': float(time),
+                'unknown_share': unknown,
+                'words': _left_out(unknown),
                 'array': f'path{at}',
             }
         )
         every = max(1, math.ceil(speed.size / MOST_POINTS))
         arrays[f'path{at}'] = np.column_stack([speed / RPM, motion.load])[::every]
     return {'ghosts': ghosts}, arrays
+
+
+def _left_out(unknown: float) -> str:
+    """Return what becomes of the part of a motion [-] that no surface knows."""
+    if not unknown > 0.0:
+        return ''
+    end = ' and is left out' if unknown <= MOST_UNKNOWN else ': the energy lost is not known'
+    return f'{number(100.0 * unknown)} % of the time lies beyond the surface{end}'
 
 
 def oil_temperature(rows: Array, surface: Surface) -> float:

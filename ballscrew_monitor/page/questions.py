@@ -134,8 +134,8 @@ def number_in(request: Mapping[str, Any], name: str, default: float | None = Non
 
 
 def text_in(request: Mapping[str, Any], name: str, most: int = 200) -> str:
-    """Return a text of a request; raises InputError for another value or one too long."""
+    """Return a text of one line of a request; raises InputError for anything else."""
     value = request.get(name)
-    if not isinstance(value, str) or not value or len(value) > most:
-        raise InputError(f'{name} must be a text of 1 to {most} characters')
+    if not isinstance(value, str) or not 1 <= len(value) <= most or not value.isprintable():
+        raise InputError(f'{name} must be a text of 1 to {most} printable characters')
     return value

@@ -104,7 +104,8 @@ class RecordedAxis:
         """Show what was until a stamp [s], at `now` [s] of a steady clock."""
         end = self.course.until(stamp)
         begin = self._at
-        if end < begin or stamp - self.course.rows[max(begin - 1, 0), 0] > SPAN:
+        is_far = end > begin and stamp - self.course.rows[max(begin - 1, 0), 0] > SPAN
+        if end < begin or is_far:
             begin = self.course.until(stamp - SPAN)
             self.view.begin_again()
         self._at = end

@@ -21,10 +21,10 @@ from ballscrew_monitor.page.surfaces import known_surface
 from ballscrew_monitor.settings.qos import LATCHED_QOS
 from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.srv import GetParameters
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
-from rclpy.parameter_client import AsyncParameterClient
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from rclpy.task import Future
 
@@ -153,12 +153,13 @@ class AxisLink:
             node.create_subscription(kind, f'{view.name}/{name}', hear, qos)
             for name, (kind, hear, qos) in kinds.items()
         ]
-        self._parameters = AsyncParameterClient(node, view.node)
+        self._parameters = node.create_client(GetParameters, f'{view.node}/get_parameters')
 
     def close(self) -> None:
-        """Unsubscribe."""
+        """Unsubscribe, and ask no more."""
         for one in self._subscriptions:
             self._node.destroy_subscription(one)
+        self._node.destroy_client(self._parameters)
 
     def hashes(self) -> tuple[set[str], set[str]]:
         """Return the hashes of the type of the state, as it is sent and as we read it."""
@@ -168,10 +169,11 @@ class AxisLink:
 
     def ask(self) -> None:
         """Ask for the parameters, until they are known; a first answer may be lost."""
-        if self._values or not self._parameters.services_are_ready():
+        if self._values or not self._parameters.service_is_ready():
             return
         names = [f'{self.view.axis}.{leaf}' for leaf in LEAVES]
-        self._asked = self._parameters.get_parameters(names, self._on_parameters)
+        self._asked = self._parameters.call_async(GetParameters.Request(names=names))
+        self._asked.add_done_callback(self._on_parameters)
 
     def _on_parameters(self, future: Future) -> None:
         answer = future.result()

@@ -182,10 +182,10 @@ class WhatIf {
       return;
     }
     const text = (name, value) => Quantities.text(name, value, this.axis.facts);
-    this.result(...answer.ghosts.map((ghost) => Words.say('ghost_is', {
+    this.result(...answer.ghosts.map((ghost) => `${Words.say('ghost_is', {
       feed: text('share', ghost.factor), outside: text('share', ghost.outside_share),
       lost: text('energy', ghost.lost_J), time: Format.time(ghost.duration_s),
-    })));
+    })} ${ghost.words}`.trim()));
     this.map.over.ghosts = answer.ghosts.map((ghost) => ({
       points: answer.arrays[ghost.array], label: text('share', ghost.factor),
     }));

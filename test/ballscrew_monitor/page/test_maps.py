@@ -144,6 +144,29 @@ def test_ghosts_move_the_same_way(surface, limits, page_parts, factors):
         assert one['outside_share'] == pytest.approx(judged[:3].count('outside') / 3.0)
 
 
+def test_with_a_full_film_a_faster_ghost_loses_more_over_the_same_way(surface, limits, page_parts):
+    motion = Motion.of(rows_of(page_parts, [900.0, 1100.0, -1200.0], [-600.0, 0.0, 900.0]), limits)
+    factors = [0.8, 0.9, 1.0, 1.1, 1.2, 1.5]
+    ghosts = maps.ghosts_of(surface, limits, motion, WARMTH, factors)[0]['ghosts']
+    assert {(one['unknown_share'], one['words']) for one in ghosts} == {(0.0, '')}
+    assert np.all(np.diff([one['lost_J'] for one in ghosts]) > 0.0)
+
+
+def test_a_ghost_that_leaves_the_surface_says_how_long_and_loses_no_number_to_it(
+    surface, limits, page_parts, says
+):
+    """Of 1000 steps five are left out; of a quarter of the time nothing is invented."""
+    top = surface.speed_range[1] / RPM
+    for fast, key in ((5, 'left_out'), (250, 'beyond')):
+        rows = rows_of(page_parts, [0.9 * top] * fast + [1000.0] * (1001 - fast), [-600.0] * 1001)
+        motion = Motion.of(rows, limits)
+        within, beyond = maps.ghosts_of(surface, limits, motion, WARMTH, [1.0, 1.2])[0]['ghosts']
+        assert (within['unknown_share'], within['words']) == (0.0, '')
+        assert beyond['unknown_share'] == pytest.approx(fast / 1000.0, rel=1e-3)
+        assert beyond['words'] == says(key)
+        assert math.isnan(beyond['lost_J']) is (beyond['unknown_share'] > maps.MOST_UNKNOWN)
+
+
 def test_ghosts_of_no_motion_know_nothing(surface, limits, page_parts):
     motion = Motion.of(rows_of(page_parts, [0.0, 0.0], [0.0, 0.0]), limits)
     ((ghost,), _) = maps.ghosts_of(surface, limits, motion, WARMTH, [1.0])[0].values(), 0

@@ -117,5 +117,5 @@ def test_a_fault_of_the_program_is_an_answer(asking, caplog):
 
 def test_a_text_has_a_length(refused):
     assert text_in({'name': 'x'}, 'name') == 'x'
-    for value in (None, 1, '', 'x' * 201):
+    for value in (None, 1, '', 'x' * 201, 'a\nb', '\ud800'):
         refused('text', text_in, {'name': value}, 'name')

@@ -3,6 +3,7 @@
 """A recording plays as the node would have said it, along a clock of its own."""
 
 import asyncio
+import math
 from types import SimpleNamespace
 
 from ballscrew_monitor.options import PARAMS
@@ -124,6 +125,22 @@ def test_events_are_shown_from_their_begin_as_far_as_they_have_come(playing):
     ask(playing, 'seek', s=3.0)
     playing.advance(0.0, 0.0)
     assert view.events[event.event_id]['duration_s'] <= event.duration
+
+
+def test_a_recording_that_is_paused_has_no_news(playing, monkeypatch):
+    """Not even of events with numbers that are not known, nor long after the last row."""
+    view = axis_of(playing)
+    ask(playing, 'pause')
+    ask(playing, 'seek', s=3.0)
+    playing.advance(0.0, 0.0)
+    view.news(0.0, 1.0)
+    (event,) = view.events.values()
+    assert math.isnan(event['target_rpm']) or math.isnan(event['target_load_N'])
+    monkeypatch.setattr(recording, 'SPAN', 1.0)
+    for past in (0.0, 2.0):
+        playing._axes[0].show(playing._last + past, 0.5)
+        assert view.news(0.5, 1.0) == []
+        assert view.history.count
 
 
 def test_browsers_are_told_the_clock(playing, page_parts):

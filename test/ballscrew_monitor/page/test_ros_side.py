@@ -3,6 +3,8 @@
 """Real nodes as the page hears them: they come, warn and go."""
 
 import contextlib
+from pathlib import Path
+import xml.etree.ElementTree as ElementTree
 
 from ballscrew_monitor.page import hub as hubs
 from ballscrew_monitor.page.hub import Hub
@@ -12,6 +14,7 @@ import pytest
 from surrogate.units import RPM
 
 NAME = '/ballscrew_monitor/x'
+POLICY = Path(__file__).resolve().parents[3] / 'config' / 'sros2_policy.xml'
 
 
 class Heard:
@@ -22,8 +25,8 @@ class Heard:
 
     def __enter__(self):
         self._stack = contextlib.ExitStack()
-        page = self._stack.enter_context(started_node('ballscrew_page', self.node.domain))
-        ros = RosSide(page, self.hub, lambda act, *given: act(*given), only=self._only)
+        self.page = self._stack.enter_context(started_node('ballscrew_page', self.node.domain))
+        ros = RosSide(self.page, self.hub, lambda act, *given: act(*given), only=self._only)
         self._stack.callback(ros.close)
         ros.start()
         return self
@@ -77,6 +80,8 @@ def test_a_node_that_leaves_is_gone_and_one_that_returns_is_there(node, heard):
     heard.until(lambda view: view.surface, 'the surface')
     node.stop()
     heard.until(lambda view: view.standing == 'gone', 'the leave')
+    # Nothing of it is kept open, however often it comes and goes.
+    assert list(heard.page.clients) == []
     node.start()
     heard.until(lambda view: view.standing == 'active', 'the return')
     # What is published for late joiners has been heard again.
@@ -129,6 +134,19 @@ def test_versions_are_told_apart_by_the_hashes_of_their_types(says):
     assert version_problem('/m', ({'a'}, {'a'})) == ''
     assert version_problem('/m', (set(), {'a'})) == ''
     assert version_problem('/m', ({'a', 'b'}, {'a'})) == says('version')
+
+
+def test_the_policy_of_sros2_allows_all_that_the_page_has(node, heard):
+    node.start()
+    heard.until(lambda view: view.surface, 'the surface')
+    profile = ElementTree.parse(POLICY).find(".//profile[@node='ballscrew_page']")
+    for kind, use, found in (
+        ('topics', 'subscribe', {one.topic_name for one in heard.page.subscriptions}),
+        ('topics', 'publish', {one.topic_name for one in heard.page.publishers}),
+        ('services', 'request', {one.srv_name for one in heard.page.clients}),
+        ('services', 'reply', {one.service_name for one in heard.page.services}),
+    ):
+        assert found == {one.text for one in profile.findall(f'{kind}[@{use}="ALLOW"]/*')}
 
 
 def test_the_hashes_of_a_node_and_of_the_page_are_those_of_the_interface(node, heard):

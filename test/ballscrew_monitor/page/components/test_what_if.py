@@ -92,7 +92,7 @@ def test_a_pinned_place_is_read_solved_and_the_solve_cancelled(shown, greeted):
 def test_other_feeds_have_their_sentences_and_paths(shown, greeted):
     ghosts = [
         {'factor': factor, 'outside_share': 0.1 / factor, 'lost_J': 1500.0, 'duration_s': 120.0}
-        | {'array': f'path{number}'}
+        | {'array': f'path{number}', 'words': ['beyond the surface', '', ''][number]}
         for number, factor in enumerate((0.8, 1.0, 1.2))
     ]
     paths = {f'path{number}': [100.0, 500.0, 300.0, 600.0] for number in range(3)}
@@ -104,7 +104,7 @@ def test_other_feeds_have_their_sentences_and_paths(shown, greeted):
     assert greeted.requests[-1]['factors'] == [0.8, 1.0, 1.2]
     assert shown.text('.results p') == (
         'At 80 % of the feed: 13 % of the motion outside the optimal zone, '
-        '1.5 kJ lost to friction in 2:00.'
+        '1.5 kJ lost to friction in 2:00. beyond the surface'
     )
     labels = shown.ask('page.whatIf.map.over.ghosts.map((one) => [one.label, [...one.points]])')
     assert labels == [[name, [100, 500, 300, 600]] for name in ('80 %', '100 %', '120 %')]
