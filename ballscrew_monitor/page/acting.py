@@ -32,6 +32,7 @@ LONG = ('solve',)
 """Acts during which the browser may ask for more."""
 POLL = 0.02  # [s] until an answer is noticed
 PATIENCE = 10.0  # [s] for an answer of the node
+STUCK = 60.0  # [s] for a turn in the thread of ROS
 REPEAT = 2.0  # [s] after which a service is asked again: a first answer may be lost
 MOST_SOLVES = 4
 REFUSED = 'acting is off: start the page with --allow-acting'
@@ -161,7 +162,7 @@ class Acting:
         """Return what a call gives in the thread of the executor."""
         assert self._node.executor is not None
         task = self._node.executor.create_task(call, *args)
-        await self._until(task.done, PATIENCE, 'ROS does not answer')
+        await self._until(task.done, STUCK, 'ROS does not answer')
         return task.result()
 
     async def _until(self, condition: Callable[[], Any], seconds: float, complaint: str) -> None:

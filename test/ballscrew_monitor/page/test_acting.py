@@ -5,14 +5,16 @@
 import asyncio
 import contextlib
 
+from action_msgs.msg import GoalStatus, GoalStatusArray
 from ballscrew_monitor.node.state_database import read_entries
 from ballscrew_monitor.page import acting
 from ballscrew_monitor.page.acting import Acting, refusals
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.hub import Browser, Hub
 from ballscrew_monitor.page.ros_side import RosSide
-from ballscrew_monitor.settings.qos import started_node
+from ballscrew_monitor.settings.qos import LATCHED_QOS, started_node
 import pytest
+from surrogate.files import InputError
 
 NAME = '/ballscrew_monitor/x'
 DEADLINE = 600.0  # [s] which only ends a hang
@@ -25,6 +27,7 @@ class Actor:
 
     def __init__(self, node, ros_node, parts):
         self.node, self.parts, self.browser, self.hub = node, parts, Browser(), Hub(acting=True)
+        self.ros_node = ros_node
         self.hub.browsers.add(self.browser)
         self.ros = RosSide(ros_node, self.hub, lambda act, *given: act(*given))
         self.acting = Acting(ros_node, self.hub)
@@ -102,11 +105,14 @@ def test_a_warning_is_shelved_and_acknowledged_by_name(actor, node, tmp_path, sa
             actor.ask('shelve', **{'minutes': 5, **wanting})
 
 
-def test_a_node_of_an_older_version_is_named(actor, node, refused):
+def test_a_node_of_an_older_version_is_named(actor, node, refused, monkeypatch):
     """One that is not there at all does not answer."""
+    monkeypatch.setattr(acting, 'PATIENCE', 1.0)
     for name in ('/older/x', '/nobody/x'):
         actor.hub.add(AxisView(*name.rsplit('/', 1)))
     with started_node('older', node.domain), refused('older'):
+        names = actor.ros_node.get_fully_qualified_node_names
+        node.wait_for(lambda: '/older' in names(), 'the older node in the graph')
         actor.ask('acknowledge', axis='/older/x', name='Ada')
     with refused('nobody'):
         actor.ask('acknowledge', axis='/nobody/x', name='Ada')
@@ -141,14 +147,27 @@ def test_a_solve_is_taken_back_by_request_and_with_its_browser(actor, node, refu
         await under_way
 
     async def by_request():
-        await cancel(actor.browser, {'id': 2, 'solve': 1})
+        """The page may hear of its goal later than the process of the solve begins."""
+        while True:
+            with contextlib.suppress(InputError):
+                return await cancel(actor.browser, {'id': 2, 'solve': 1})
+            await asyncio.sleep(0.02)
 
     async def by_leaving():
         actor.hub.browsers.clear()
 
-    for end, key in ((by_request, 'cancelled'), (by_leaving, 'left')):
+    goals = node.listen(GoalStatusArray, '/ballscrew_monitor/solve/_action/status', LATCHED_QOS)
+    for number, (end, key) in enumerate(
+        ((by_request, 'cancelled'), (by_leaving, 'left')), start=1
+    ):
         with refused(key):
             asyncio.run(solving(end))
-        node.until(lambda: not node.solvers(), 'the end of the solve')
+        all_back = [GoalStatus.STATUS_CANCELED] * number
+        node.until(
+            lambda all_back=all_back: (
+                goals and [one.status for one in goals[-1].status_list] == all_back
+            ),
+            'the end of the solve',
+        )
     with refused('no_solve'):
         actor.ask('cancel', solve=1)
