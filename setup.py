@@ -94,6 +94,7 @@ setup(
         'report': ['contourpy>=1.0', 'polars>=1.0'],
         'page': [
             'contourpy>=1.0',
+            'h11>=0.14',
             'prometheus-client>=0.20',
             'starlette>=0.37',
             'uvicorn>=0.40',

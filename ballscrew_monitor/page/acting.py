@@ -10,6 +10,7 @@ of the executor.
 
 import asyncio
 from collections.abc import Callable, Mapping
+from concurrent.futures import Future
 import math
 from typing import Any
 
@@ -116,6 +117,8 @@ class Acting:
             temperature=number_in(request, 'temperature_degC', math.nan),
         )
         key = browser, request['id']
+        if key in self._solves:
+            raise InputError(f'a solve with the id {request["id"]} is under way')
         self._solves[key] = None
         action = f'{view.node}/solve'
         client = await self._in_ros(ActionClient, self._node, SolveOperatingPoint, action)
@@ -159,11 +162,19 @@ class Acting:
         return {'message': 'the solve is taken back'}, {}
 
     async def _in_ros(self, call: Callable[..., Any], *args: Any) -> Any:
-        """Return what a call gives in the thread of the executor."""
+        """Return what a call gives in the thread of the executor, or raise what it raises."""
         assert self._node.executor is not None
-        task = self._node.executor.create_task(call, *args)
-        await self._until(task.done, STUCK, 'ROS does not answer')
-        return task.result()
+        done: Future[Any] = Future()
+
+        def calling() -> None:
+            try:
+                done.set_result(call(*args))
+            except Exception as error:  # raised by a task, it would end the thread
+                done.set_exception(error)
+
+        self._node.executor.create_task(calling)
+        await self._until(done.done, STUCK, 'ROS does not answer')
+        return done.result()
 
     async def _until(self, condition: Callable[[], Any], seconds: float, complaint: str) -> None:
         if not await _waited(condition, seconds):

@@ -18,6 +18,7 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 LARGEST_FORM = 4 * MOST_TOKEN  # [byte]
+FORM_TIME = 10.0  # [s] to send it
 TRY_LATER, RUDE = 1013, 1008  # codes with which a socket is closed
 BUSY = 'Too many browsers look at this page.'
 NO_REQUESTS = 'Too much was sent that is no request.'
@@ -44,6 +45,7 @@ class PageApp:
 
         """
         self._language = language
+        self.failure: BaseException | None = None
         self._hub, self._answer, self._tokens, self._metrics = hub, answer, tokens, metrics
 
     def guarded(self, host: str) -> Guard:
@@ -65,8 +67,12 @@ class PageApp:
     async def _ticking(self, app: Starlette) -> AsyncIterator[None]:
         """Let the hub send what is new while the server runs."""
         ticking = asyncio.create_task(self._tick())
+        ticking.add_done_callback(self._note_end)
         yield
         ticking.cancel()
+
+    def _note_end(self, ticking: 'asyncio.Task[None]') -> None:
+        self.failure = None if ticking.cancelled() else ticking.exception()
 
     async def _tick(self) -> None:
         while True:
@@ -83,6 +89,8 @@ class PageApp:
         return Response(found[0], media_type=found[1])
 
     async def _healthz(self, request: Request) -> Response:
+        if self.failure is not None:
+            return PlainTextResponse('The page sends nothing any more.', status_code=503)
         return PlainTextResponse('ok')
 
     async def _no_icon(self, request: Request) -> Response:
@@ -146,9 +154,11 @@ async def _send(socket: WebSocket, browser: Browser) -> None:
 async def _token_in(request: Request) -> str:
     """Return the token in a form, of which no more is read than that may take."""
     content = b''
-    async for part in request.stream():
-        content += part
-        if len(content) > LARGEST_FORM:
-            return ''
+    with contextlib.suppress(TimeoutError):
+        async with asyncio.timeout(FORM_TIME):
+            async for part in request.stream():
+                content += part
+                if len(content) > LARGEST_FORM:
+                    return ''
     fields = parse_qs(content.decode('utf-8', 'replace'))
     return fields.get('token', [''])[0]

@@ -84,7 +84,7 @@ class Tokens:
         return hmac.digest((self._token or '').encode(), b'page', hashlib.sha256).hex()
 
     def admits(self, headers: Headers) -> bool:
-        """Tell whether a request carries the cookie, or the token as a bearer."""
+        """Tell whether a request carries cookie or token, a bearer; count wrong ones."""
         if self._token is None:
             return True
         cookies = SimpleCookie()
@@ -94,7 +94,9 @@ class Tokens:
             return False
         carried = cookies[COOKIE].value if COOKIE in cookies else ''
         bearer = headers.get('authorization', '').removeprefix('Bearer ')
-        return _same(carried, self.cookie) or _same(bearer, self._token)
+        admitted = _same(carried, self.cookie) or _same(bearer, self._token)
+        self.wrong += bool((carried or bearer) and not admitted)
+        return admitted
 
     async def accept(self, token: str) -> bool | None:
         """Tell whether a token is right; None where too many wrong ones are being answered."""

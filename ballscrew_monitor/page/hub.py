@@ -115,11 +115,10 @@ class Hub:
             raise InputError(f'axis {name!r} is unknown, known are: {known}')
         return self.axes[name]
 
-    def lose(self, node: str) -> None:
-        """Say that a node is gone; what was heard of it stays, with its age."""
-        for view in self.axes.values():
-            if view.node == node:
-                view.stand(GONE)
+    def lose(self, name: str) -> None:
+        """Say that an axis is gone; what was heard of it stays, with its age."""
+        if name in self.axes:
+            self.axes[name].stand(GONE)
 
     def notice(self, node: str, words: str) -> None:
         """Say why a node is not shown, or with empty words that it is."""
@@ -167,7 +166,10 @@ class Hub:
 
     def hello(self, language: str = ENGLISH) -> dict[str, Any]:
         """Return who is there, and the words of a language."""
-        nodes = {view.node: view.standing for view in self.axes.values()}
+        nodes: dict[str, str] = {}
+        for view in self.axes.values():
+            if nodes.get(view.node, GONE) == GONE:
+                nodes[view.node] = view.standing
         return {
             'version': VERSION,
             'acting': self.acting,

@@ -85,7 +85,7 @@ class RosSide:
                 self._take_up(base)
         for base in sorted(self._links.keys() - found):
             self._links.pop(base).close()
-            self._post(self._hub.lose, node_of(base))
+            self._post(self._hub.lose, base)
         for link in self._links.values():
             link.ask()
 

@@ -10,12 +10,15 @@ from pathlib import Path
 import socket
 from typing import Any
 
+import h11
 from surrogate.files import InputError
 from surrogate.surface import Surface
 import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol
 
 LARGEST_MESSAGE = 65_536  # [byte] from a browser; beyond, its socket is closed unread
 MOST_CONNECTIONS = 300
+FIRST_WORDS = 10.0  # [s] for a connection to ask for something
 LAST_WORDS = 2  # [s] for connections to end
 
 
@@ -65,6 +68,20 @@ def bound_socket(options: PageOptions) -> Iterator[socket.socket]:
         yield bound
 
 
+class PatientProtocol(H11Protocol):
+    """A connection that is closed if it asks for nothing in time."""
+
+    def connection_made(self, transport: Any) -> None:
+        """Begin to wait for the head of the first request."""
+        super().connection_made(transport)
+        self.loop.call_later(FIRST_WORDS, self._end_if_silent)
+
+    def _end_if_silent(self) -> None:
+        is_live_socket = self.transport.get_protocol() is not self
+        if self.conn.their_state is h11.IDLE and not is_live_socket:
+            self.transport.close()
+
+
 class QuietServer(uvicorn.Server):
     """A server that leaves signals to the command."""
 
@@ -81,6 +98,7 @@ def server_of(options: PageOptions, app: Any) -> QuietServer:
         access_log=False,
         server_header=False,
         proxy_headers=False,
+        http=PatientProtocol,
         ws='websockets-sansio',
         ws_max_size=LARGEST_MESSAGE,
         ws_per_message_deflate=False,

@@ -13,6 +13,7 @@ from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.hub import Browser, Hub
 from ballscrew_monitor.page.ros_side import RosSide
 from ballscrew_monitor.settings.qos import LATCHED_QOS, started_node
+from ballscrew_msgs.srv import ShelveAlarm
 import pytest
 from surrogate.files import InputError
 
@@ -118,6 +119,16 @@ def test_a_node_of_an_older_version_is_named(actor, node, refused, monkeypatch):
         actor.ask('acknowledge', axis='/nobody/x', name='Ada')
 
 
+def test_what_ros_refuses_is_raised_and_the_page_goes_on(actor, node):
+    node.start()
+    actor.until(lambda view: view.surface, 'the surface')
+    asked = ShelveAlarm.Request(reason='\ud800')  # half a character
+    with pytest.raises(UnicodeEncodeError):
+        asyncio.run(actor.acting._call(actor.hub.axes[NAME], ShelveAlarm, 'shelve', asked))
+    assert actor.ros.failure is None
+    assert actor.ask('acknowledge', name='Ada')['message']
+
+
 def test_a_solve_tells_its_progress_and_its_result(actor, node):
     node.start(x__correct_surface=False)
     actor.until(lambda view: view.surface, 'the surface')
@@ -148,6 +159,8 @@ def test_a_solve_is_taken_back_by_request_and_with_its_browser(actor, node, refu
 
     async def by_request():
         """The page may hear of its goal later than the process of the solve begins."""
+        with refused('twice'):
+            await solve(actor.browser, actor.request(**LONG))
         while True:
             with contextlib.suppress(InputError):
                 return await cancel(actor.browser, {'id': 2, 'solve': 1})

@@ -4,8 +4,9 @@
 
 from collections import deque
 import contextlib
+import socket
 
-from ballscrew_monitor.page import app, components, hub
+from ballscrew_monitor.page import app, components, hub, server
 from ballscrew_monitor.page.questions import MOST_FAULTS
 import pytest
 from websockets.exceptions import ConnectionClosed
@@ -83,6 +84,24 @@ def test_a_hundred_megabytes_are_not_taken(served):
         with page.look() as socket, pytest.raises(ConnectionClosed):
             send(socket, message)
     assert page.ask('/healthz')[::2] == (200, 'ok')
+
+
+def test_a_connection_that_asks_for_nothing_is_closed(served, page_parts, monkeypatch):
+    """A browser that listens stays."""
+    monkeypatch.setattr(server, 'FIRST_WORDS', 0.2)
+    page = served()
+    with page.look() as browser:
+        with socket.create_connection(('127.0.0.1', page.port)) as silent:
+            assert silent.recv(1) == b''
+        page.call(page.hub.tell, b'more')
+        while browser.recv() != b'more':
+            pass
+
+
+def test_a_page_that_sends_nothing_any_more_says_so(served, wait_for):
+    page = served()
+    page.call(setattr, page.hub, 'tick', None)
+    wait_for(lambda: page.ask('/healthz')[0] == 503)
 
 
 def test_browsers_that_leave_are_forgotten(served, wait_for):

@@ -96,6 +96,10 @@ def test_the_token_gives_a_cookie_that_opens_all(served):
     assert TOKEN not in cookie
     carried = cookie.split(';')[0]
     assert page.ask('/', Cookie=carried)[0] == 200
+    assert page.tokens.wrong == 0
+    assert page.ask('/metrics', Cookie=f'{carried}0')[0] == 401
+    assert page.ask('/metrics', Authorization='Bearer guessed')[0] == 401
+    assert page.tokens.wrong == 2
     assert page.ask('/metrics', Cookie=carried)[0] == 200
     with page.look(additional_headers={'Cookie': carried}) as socket:
         assert b'hello' in socket.recv()

@@ -86,10 +86,15 @@ def test_new_limits_and_new_axes_greet_again(page_parts):
 def test_a_node_that_is_gone_is_told_and_what_it_said_stays(page_parts):
     hub, browser = Hub(), Browser()
     hub.add(page_parts.axis())
+    hub.add(page_parts.axis(axis='y'))
     hub.tick(0.0)
     hub.join(browser, 0.0)
-    read_all(page_parts, browser)
-    hub.lose('/monitor')
+    hub.lose('/monitor/x')
+    hub.tick(1.0)
+    found = read_all(page_parts, browser)
+    hello = [record for record, _ in found if record['kind'] == 'hello'][-1]
+    assert hello['nodes'] == [{'name': '/monitor', 'state': 'active'}]
+    hub.lose('/monitor/y')
     hub.tick(5.0)
     found = read_all(page_parts, browser)
     hello = next(record for record, _ in found if record['kind'] == 'hello')

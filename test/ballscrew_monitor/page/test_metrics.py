@@ -70,7 +70,7 @@ def test_what_is_not_known_is_left_out(hub):
 
 
 def test_the_level_of_a_node_that_is_gone_is_unknown(hub):
-    hub.lose('/monitor')
+    hub.lose('/monitor/x "y"')
     assert numbers(hub)['level',] == 0.0
 
 
