@@ -96,6 +96,9 @@ class FirstScreen {
       return Words.say('waits_for_data');
     }
     if (!axis.fresh) {
+      if (axis.state.standing === 'inactive') {
+        return Words.say('node_inactive', { node: axis.facts.node });
+      }
       return Words.say('data_old', { age: Format.time(axis.age) });
     }
     const { level, zone, headline } = axis.state;

@@ -157,6 +157,10 @@ def test_of_old_data_nothing_is_concluded(shown, greeted, frames):
     shown.reads('.sign.level .word', 'Not known')
     assert 'nothing is known of now' in shown.text('.reason')
     assert shown.text('.advice') == ''
+    greeted.send(*frames.state(age_s=7.0, standing='inactive'))
+    inactive = frames.words('en')['node_inactive'].format(node='/ballscrew_monitor')
+    shown.reads('.reason', inactive)
+    shown.reads('.sign.level .word', 'Not known')
     greeted.send(*frames.state())
     shown.reads('.sign.level .word', 'Optimal zone')
 
