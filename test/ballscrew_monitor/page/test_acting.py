@@ -158,7 +158,7 @@ def test_a_solve_is_taken_back_by_request_and_with_its_browser(actor, node, refu
         await under_way
 
     async def by_request():
-        """The page may hear of its goal later than the process of the solve begins."""
+        """Try until the page has heard of its goal, maybe after the solve has begun."""
         with refused('twice'):
             await solve(actor.browser, actor.request(**LONG))
         while True:

@@ -152,7 +152,9 @@ def test_the_policy_of_sros2_allows_all_that_the_page_has(node, heard):
 def test_the_hashes_of_a_node_and_of_the_page_are_those_of_the_interface(node, heard):
     node.start()
     heard.until(lambda view: view.surface, 'the surface')
-    infos = node.node.get_publishers_info_by_topic(f'{NAME}/state')
+    infos = node.until(
+        lambda: node.node.get_publishers_info_by_topic(f'{NAME}/state'), 'the publisher'
+    )
     read = node.node.get_subscriptions_info_by_topic(f'{NAME}/state')
     assert len({str(one.topic_type_hash) for one in (*infos, *read)}) == 1
     assert 'RIHS01' in str(infos[0].topic_type_hash)

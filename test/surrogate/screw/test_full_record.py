@@ -31,6 +31,7 @@ from surrogate.screw.full_record import (
 from surrogate.screw.nut import contact_slip
 from surrogate.screw.onset import with_raceway
 from surrogate.screw.solve import solve_screw
+from surrogate.surface import onset_of_surface, shipped_surface, Surface
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 SMALL = Settings(nx=65, ny=65, error_estimate=False)
@@ -312,8 +313,11 @@ def test_the_page_lists_every_key():
     (own,) = (line for line in table.splitlines() if line.startswith('| `contacts`'))
     point, found = record(60, 800.0)
     formulas = closed_form_record(SCREW, OIL, point)
+    onset = onset_of_surface(Surface.load(shipped_surface())).record()
+    beside = {'contact_onset', *onset} - found.keys()
+    assert all(f'`{key}`' in table for key in beside)
     for lines, full, closed, others in (
-        (table.replace(own, '`contacts`'), found, formulas, {'reason'}),
+        (table.replace(own, '`contacts`'), found, formulas, {'reason', *beside}),
         (own, found['contacts'][0], formulas['contacts'][0], {'contacts'}),
     ):
         listed = {key: bool(star) for key, star in re.findall(r'`(\w+)`(\*?)', lines)}

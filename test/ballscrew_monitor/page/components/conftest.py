@@ -64,7 +64,7 @@ class Tab:
     def close(self):
         self.browser.call('Target.closeTarget', targetId=self.target)
 
-    def open(self, url, *, width=1280, height=900, dark=False, language='en'):
+    def visit(self, url, *, width=1280, height=900, dark=False, language='en'):
         """Open a page in a window of a size, light or dark, for a reader of a language."""
         scheme = {'name': 'prefers-color-scheme', 'value': 'dark' if dark else 'light'}
         self.call('Emulation.setEmulatedMedia', features=[scheme])

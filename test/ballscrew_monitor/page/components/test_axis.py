@@ -13,7 +13,7 @@ KEPT = 36_000
 @pytest.fixture
 def rows(tab, greeted):
     """Return the tab with rows of two columns."""
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.reads('.word', 'Optimal zone')
     tab.ask("globalThis.rows = new Rows(['stamp', 'load_N']); 0")
     return tab

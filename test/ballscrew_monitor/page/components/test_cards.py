@@ -9,7 +9,7 @@ def test_axes_are_cards_of_which_one_is_chosen(tab, server, frames):
         frames.state('x'),
         frames.state('y', level='warn', zone='outside', headline='Too slow.'),
     ]
-    tab.open(server.url)
+    tab.visit(server.url)
     tab.until("document.querySelectorAll('.card[data-state]').length === 2")
     levels = "[...document.querySelectorAll('.card')].map((one) => one.dataset.state).join()"
     tab.until(f"{levels} === 'ok,warn'")

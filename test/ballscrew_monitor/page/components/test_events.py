@@ -9,7 +9,7 @@ import pytest
 def acting(tab, greeted, frames):
     """Return the tab of a page that may act."""
     greeted.greeting[0] = frames.hello(frames.axis(), acting=True)
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.until("document.querySelector('.events td')")
     return tab
 
@@ -67,7 +67,7 @@ def test_acts_carry_name_and_reason(acting, greeted, frames):
 
 
 def test_where_acting_is_off_the_page_says_so(tab, greeted, frames):
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.until("document.querySelector('.events td')")
     tab.reads('.message', frames.words('en')['acting_off'])
     controls = '.events .controls :is(button, input, select)'

@@ -15,7 +15,7 @@ HOSTILE = '<img src=x onerror=alert(1)><script>alert(2)</script>'
 
 @pytest.fixture
 def shown(tab, greeted):
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.reads('.word', 'Optimal zone')
     return tab
 
@@ -191,7 +191,7 @@ def test_names_with_markup_are_shown_as_text(tab, server, frames):
         frames.map(HOSTILE),
         frames.events(HOSTILE, {'advice': HOSTILE, 'acknowledged_by': HOSTILE}),
     ]
-    tab.open(server.url)
+    tab.visit(server.url)
     tab.reads('.reason', HOSTILE)
     tab.reads('.card .name', HOSTILE)
     tab.until("document.querySelector('.events td')")

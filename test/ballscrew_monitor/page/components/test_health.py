@@ -4,7 +4,7 @@
 
 
 def test_quantities_have_value_interval_and_picture(tab, greeted, frames):
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.until("document.querySelector('.health td')")
     rows = tab.ask("""[...document.querySelectorAll('.health tbody tr')].map((row) =>
         [...row.cells].map((one) => (one.querySelector('svg') ? 'picture' : one.textContent)))""")
@@ -18,7 +18,7 @@ def test_quantities_have_value_interval_and_picture(tab, greeted, frames):
 
 
 def test_marks_of_an_interval_are_where_they_belong(tab, greeted):
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.until("document.querySelector('.health td')")
     found = tab.ask("""(() => {
         const bar = Health.bar(0.7, 0.6, 0.8);
@@ -33,7 +33,7 @@ def test_marks_of_an_interval_are_where_they_belong(tab, greeted):
 
 
 def test_a_new_assessment_replaces_the_old_and_none_is_kept(tab, greeted, frames):
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.until("document.querySelector('.health td')")
     greeted.send(*frames.state(health=frames.health('worse', verdict='Worse.', quantities=[])))
     tab.reads('.health .sentence', 'Axis worse than before Worse.')

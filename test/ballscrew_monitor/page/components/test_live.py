@@ -13,7 +13,7 @@ import pytest
 
 @pytest.fixture
 def shown(tab, greeted):
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.reads('.word', 'Optimal zone')
     return tab
 

@@ -9,7 +9,7 @@ MAP = 'page.whatIf.map'
 
 @pytest.fixture
 def shown(tab, greeted):
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.until("document.querySelector('.over')?.height > 150")
     tab.until(f'{MAP}.area')
     return tab

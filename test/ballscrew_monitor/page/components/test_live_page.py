@@ -33,7 +33,7 @@ FAST, SLOW, STILL = (100.0, -1000.0), (0.6, -1500.0), (0.0, -1000.0)
 
 def open_whole(tab, url, **options):
     """Open a page and wait until all of its parts are drawn."""
-    tab.open(url, **options)
+    tab.visit(url, **options)
     tab.until("document.querySelectorAll('.u-over').length === 7")
     tab.until("document.querySelector('.health td')")
     tab.until("document.querySelector('.legend li')")
@@ -123,7 +123,7 @@ def test_states_of_the_real_server_are_on_the_screen(tab, served, page_parts):
     about = {'unit': 'm/min', 'oil': 'iso_vg_68', 'screw': 'nominal'}
     page.call(view.know, about, None, 'the surface file is not on this machine')
     page.call(page.hub.add, view)
-    tab.open(f'http://127.0.0.1:{page.port}/')
+    tab.visit(f'http://127.0.0.1:{page.port}/')
     tab.reads('.no-map', 'the surface file is not on this machine')
     for number, level in enumerate(('ok', 'warn', 'unknown')):
         state = {'level': level, 'zone': 'outside', 'headline': f'state {number}', 'inputs': []}
@@ -148,7 +148,7 @@ def beside(tab, node):
         text=True,
     )
     try:
-        tab.open(process.stdout.readline().split()[1])
+        tab.visit(process.stdout.readline().split()[1])
         yield tab
     finally:
         process.terminate()

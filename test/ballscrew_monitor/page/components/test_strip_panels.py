@@ -8,7 +8,7 @@ import pytest
 
 @pytest.fixture
 def shown(tab, greeted):
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.until("document.querySelectorAll('.u-over').length === 7")
     return tab
 

@@ -11,7 +11,7 @@ DRAWN = "document.querySelectorAll('.u-over').length === 7"
 
 @pytest.fixture
 def shown(tab, greeted):
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.until(DRAWN)
     return tab
 
@@ -20,7 +20,7 @@ def test_each_panel_holds_the_rows_in_its_unit(tab, greeted, frames):
     rows = frames.rows(500, -10.0)
     greeted.greeting[1] = ({'kind': 'history', 'axis': '/ballscrew_monitor/x'}, rows)
     greeted.greeting[4] = frames.state(rows=frames.rows(0))
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.until(DRAWN)
     tab.until(f'{PLOTS}.every((panel) => panel.plot?.data[0].length === 500)')
     drawn = tab.ask(f'{PLOTS}.map((panel) => panel.plot.data)')

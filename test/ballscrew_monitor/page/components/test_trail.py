@@ -17,7 +17,7 @@ def spend(tab, stamps, speeds, loads):
 
 @pytest.fixture
 def shown(tab, greeted):
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.until("document.querySelector('.over')?.height > 150")
     tab.until('page.whatIf.map.over.area')
     tab.ask(

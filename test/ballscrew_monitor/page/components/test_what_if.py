@@ -23,7 +23,7 @@ def shown(tab, greeted, frames):
         (POINT | {'kind': 'answer', 'ok': True} | {key: one[key] for key in PLACE}, None)
     ]
     greeted.greeting[0] = frames.hello(frames.axis(), acting=True)
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.reads('.what-if h2', 'Operating map at 35 °C')
     return tab
 

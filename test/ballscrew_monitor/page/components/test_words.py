@@ -57,7 +57,7 @@ def test_every_key_is_said_and_every_text_that_is_said_has_one(frames):
 
 
 def test_values_are_filled_in_once_and_unknown_keys_show_themselves(tab, greeted):
-    tab.open(greeted.url)
+    tab.visit(greeted.url)
     tab.reads('.word', 'Optimal zone')
     said = json.loads(
         tab.ask("""JSON.stringify([
@@ -75,7 +75,7 @@ def test_values_are_filled_in_once_and_unknown_keys_show_themselves(tab, greeted
 
 
 def test_german_numbers_have_a_comma(tab, greeted, frames):
-    tab.open(greeted.url, language='de')
+    tab.visit(greeted.url, language='de')
     tab.reads('.word', 'Optimaler Bereich')
     assert tab.ask('document.documentElement.lang') == 'de'
     greeted.send(*frames.state(rows=frames.rows(1, speed_rpm=672.4)))

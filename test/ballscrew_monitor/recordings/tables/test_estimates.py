@@ -83,7 +83,7 @@ def test_times_of_a_day_go_on_through_midnight_in_blocks_of_any_size(begin, step
     """Rows that come a little late after midnight are of the day before it."""
     true = np.maximum(np.cumsum([begin, *steps]), 0.0)
     told, midnights = true % DAY, Midnights()
-    parts = [told[first : first + block] for first in range(0, len(told), block)]
+    parts = np.split(told, range(block, len(told), block))
     np.testing.assert_allclose(np.concatenate([midnights.passed(one) for one in parts]), true)
 
 

@@ -23,7 +23,7 @@ SETTINGS = FullSettings(
     load_cells=2,
     held_out=3,
 )
-CHAINS = 12
+CHAINS = 15
 
 
 @pytest.fixture(autouse=True)
