@@ -121,6 +121,7 @@ class _Conversation:
 
     def run(self, wait: float, *, as_json: bool) -> int:
         """Ask and print; return the exit code unless interrupted."""
+        refusals = self._hear_refusals()
         action = self._find(wait)
         if action is None:
             return self._give_up(f'no node offers {ACTION_TYPE} within {wait:g} s: {WHERE}')
@@ -128,14 +129,13 @@ class _Conversation:
         silence = f'{action} does not answer within {wait:g} s'
         if not self._until(client.server_is_ready, wait):
             return self._give_up(silence)
-        refusals = self._hear_refusals()
         sent = client.send_goal_async(goal_of(self._question), feedback_callback=_show)
         handle = self._until(lambda: sent.done() and sent.result(), wait)
         if handle is None:
             self._take_back_late(sent)
             return self._give_up(silence)
         if not handle.accepted:
-            self._until(lambda: refusals, LAST_WORD)
+            self._until(lambda: refusals, max(wait, LAST_WORD))
             return _complain(refusals[-1] if refusals else REJECTED)
         answer = handle.get_result_async()
         over = self._until(lambda: answer.done() or not client.server_is_ready())

@@ -105,9 +105,8 @@ class SolveServer:
         refusal = point if isinstance(point, str) else self.solver.refusal
         if not refusal:
             return GoalResponse.ACCEPT
-        self._node.get_logger().warning(
-            f'solve of axis {request.axis} rejected: {refusal}', throttle_duration_sec=1.0
-        )
+        # Each is logged, since who has sent the goal reads the reason there.
+        self._node.get_logger().warning(f'solve of axis {request.axis} rejected: {refusal}')
         return GoalResponse.REJECT
 
     def _wanted(self, request: Any) -> tuple[AxisPublisher | str, MachinePoint | str]:

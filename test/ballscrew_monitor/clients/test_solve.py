@@ -193,6 +193,7 @@ def test_a_server_not_ready_is_sent_no_goal(
     monkeypatch.setattr(
         solve, 'get_action_names_and_types', lambda node: [('/m/solve', [solve.ACTION_TYPE])]
     )
+    monkeypatch.setattr(_Conversation, '_hear_refusals', lambda self: [])
     monkeypatch.setattr(_Conversation, '_until', lambda self, given, wait: given())
     talk = _Conversation(None, Question(axis='x'), interrupted)
     assert talk.run(2.0, as_json=False) == code
@@ -200,6 +201,7 @@ def test_a_server_not_ready_is_sent_no_goal(
 
 
 def test_an_interrupt_before_a_node_is_found_needs_no_words(monkeypatch, capsys):
+    monkeypatch.setattr(_Conversation, '_hear_refusals', lambda self: [])
     monkeypatch.setattr(_Conversation, '_until', lambda self, given, wait: None)
     talk = _Conversation(None, Question(axis='x'), [signal.SIGTERM])
     assert talk.run(2.0, as_json=False) == 130
