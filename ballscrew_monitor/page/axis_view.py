@@ -8,9 +8,11 @@ from typing import Any
 
 from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.messages import diagnostics
+from ballscrew_monitor.page import maps
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.history import columns_of, History
-from ballscrew_monitor.page.records import advice_of, UNKNOWN
+from ballscrew_monitor.page.records import UNKNOWN
+from ballscrew_monitor.recordings.words import feed_first
 from surrogate.files import to_json
 from surrogate.surface import Surface
 from surrogate.units import MILLI
@@ -38,7 +40,7 @@ class AxisView:
         self.health: Mapping[str, Any] | None = None
         self.events: dict[int, Mapping[str, Any]] = {}
         self.acknowledged: dict[int, str] = {}  # by whom, of events by their numbers
-        self.limit: Mapping[str, Any] | None = None
+        self.warmth = math.nan  # of the oil as it was last known [degC]
         self.surface: Surface | None = None
         self.map_frame: bytes | None = None
         self.grades: list[str] = []  # oils of which there are surfaces
@@ -70,7 +72,7 @@ class AxisView:
     def know(self, about: Mapping[str, Any], surface: Surface | None, no_map: str) -> None:
         """Take what the axis is, and its surface, or why that is not here."""
         self.about, self.surface, self.no_map = about, surface, no_map
-        self.map_frame, self.limit, self.is_changed = None, None, True
+        self.map_frame, self.is_changed = None, True
 
     def hear_words(self, part: str, words: str) -> None:
         """Take what the diagnostics say of a part of the axis."""
@@ -126,6 +128,14 @@ class AxisView:
         """Return the lead of the screw [m], NaN without its surface."""
         return math.nan if self.surface is None else self.surface.lead
 
+    @property
+    def limit(self) -> dict[str, float] | None:
+        """Return the limit of RCS for the newest row, None where that is not known."""
+        rows = self.history.since(self.history.count - 1)
+        if self.surface is None or self.limits['rcs_limit'] is None or not len(rows):
+            return None
+        return maps.limit_record(self.surface, maps.limits_of(self.limits), rows[-1], self.warmth)
+
     def hello(self) -> dict[str, Any]:
         """Return what the axis is."""
         return {
@@ -168,7 +178,9 @@ class AxisView:
 
     def _told(self, event: Mapping[str, Any]) -> dict[str, Any]:
         by = self.acknowledged.get(event['id'], '')
-        told = {'advice': advice_of(event, self.lead), 'since_s': event['duration_s']}
+        words = event['words']
+        advice = feed_first(words, self.lead) if math.isfinite(self.lead) else words
+        told = {'advice': advice, 'since_s': event['duration_s']}
         return {**event, **told, 'acknowledged': bool(by), 'acknowledged_by': by}
 
     def _state_frame(self, now: float, since: int, *, health: bool) -> bytes:

@@ -145,6 +145,23 @@ def limit_speed(surface: Surface, limits: Limits, load: float, temperature: floa
     return float(speeds[at] * (speeds[at + 1] / speeds[at]) ** part)
 
 
+def limit_record(
+    surface: Surface, limits: Limits, row: Array, warmth: float
+) -> dict[str, float] | None:
+    """
+    Return the speed of the limit of RCS at the load of a row, and how far above it the row is.
+
+    None where there is no limit. `warmth` [degC] is that of a row without its own.
+
+    """
+    speed, load, heat = (row[COLUMNS.index(name)] for name in COLUMNS[1:4])
+    opposing = -load if speed > 0.0 else load
+    limit = limit_speed(surface, limits, opposing, warmth if math.isnan(heat) else heat) / RPM
+    if math.isnan(limit):
+        return None
+    return {'speed_rpm': limit, 'margin': float(abs(speed) / limit - 1.0)}
+
+
 def _everywhere(like: Array, *values: float) -> tuple[Array, ...]:
     return tuple(np.full(like.size, value) for value in values)
 

@@ -11,14 +11,12 @@ import asyncio
 from collections.abc import Callable, Iterable, Mapping
 import dataclasses
 import logging
-import math
 from typing import Any
 
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.page import maps
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.frames import frame
-from ballscrew_monitor.page.history import COLUMNS
 from ballscrew_monitor.page.hub import Browser, Hub
 from ballscrew_monitor.page.questions import Answer, Handler, number_in, text_in
 from surrogate.files import InputError
@@ -72,7 +70,7 @@ class WhatIf:
         return [oil, *(one.oil_name for one in self._oils if one.screw_name == screw)]
 
     async def follow(self) -> None:
-        """Keep the map and the limit of every axis as its motion is now, until cancelled."""
+        """Keep the map of every axis as its motion is now, until cancelled."""
         while True:
             for view in tuple(self._hub.axes.values()):
                 if view.surface is not None and view.limits['rcs_limit'] is not None:
@@ -95,7 +93,7 @@ class WhatIf:
         rows, limits = view.history.since(0), maps.limits_of(view.limits)
         motion = maps.Motion.of(rows, limits)
         warmth = maps.oil_temperature(rows, surface)
-        view.limit = await self._in_turn(_limit_record, surface, limits, rows, warmth)
+        view.warmth = warmth
         wanted = Followed(
             sha256=surface.sha256, limits=limits, temperature=warmth, loads=motion.load_span()
         )
@@ -169,17 +167,3 @@ class WhatIf:
             raise InputError('the axis has not moved in the last minutes')
         warmth = number_in(request, 'temperature_degC', maps.oil_temperature(rows, surface))
         return await self._in_turn(maps.ghosts_of, surface, limits, motion, warmth, known)
-
-
-def _limit_record(
-    surface: Surface, limits: Limits, rows: Any, temperature: float
-) -> dict[str, float] | None:
-    """Return the speed of the limit of RCS at the last load, and how far above it the axis is."""
-    if not len(rows):
-        return None
-    speed, load = (rows[-1, COLUMNS.index(name)] for name in ('speed_rpm', 'load_N'))
-    opposing = -load if speed > 0.0 else load
-    limit = maps.limit_speed(surface, limits, opposing, temperature) / RPM
-    if math.isnan(limit):
-        return None
-    return {'speed_rpm': limit, 'margin': abs(speed) / limit - 1.0}

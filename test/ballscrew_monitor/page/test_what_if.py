@@ -3,13 +3,22 @@
 """Maps that follow an axis, and questions over its surface, through the answers to a browser."""
 
 import asyncio
+import math
 
+from ballscrew_monitor.core.conversions import kelvin
 from ballscrew_monitor.page.hub import Browser, Hub
 from ballscrew_monitor.page.what_if import WARMER, WhatIf
 import pytest
 from surrogate.surface import shipped_surface, Surface
+from surrogate.units import RPM
 
 NAME = '/monitor/x'
+# Speed [rev/min], load on the nut [N], temperature [degC] and the load that opposes the motion.
+LIMITED = (
+    (300.0, -2860.0, 20.0, 2860.0),
+    (300.0, 2860.0, 45.0, -2860.0),
+    (-300.0, 1000.0, math.nan, 1000.0),
+)
 
 
 @pytest.fixture(scope='module')
@@ -75,11 +84,21 @@ def test_a_browser_is_sent_the_map_and_greeted_with_it(asked, page_parts):
     assert made in later._waiting
 
 
-def test_the_limit_of_the_present_load_is_in_the_state(asked):
+def test_the_limit_is_that_of_the_newest_row(asked, surface):
     asked.keep()
-    assert asked.view.limit['margin'] == pytest.approx(300.0 / asked.view.limit['speed_rpm'] - 1.0)
-    asked.view.history.take(asked.parts.row(9.0, speed_rpm=300.0, load_N=float('nan')))
-    asked.keep()
+    for at, (speed, load, warmth, opposing) in enumerate(LIMITED):
+        row = asked.parts.row(9.0 + at, speed_rpm=speed, load_N=load, temperature_degC=warmth)
+        asked.view.history.take(row)
+        limit, heat = asked.view.limit, asked.view.warmth if math.isnan(warmth) else warmth
+        rcs = surface.lookup(limit['speed_rpm'] * RPM, opposing, kelvin(heat)).rcs
+        assert rcs == pytest.approx(asked.view.limits['rcs_limit'], rel=0.02)
+        assert limit['margin'] == pytest.approx(300.0 / limit['speed_rpm'] - 1.0)
+    asked.view.know({}, None, 'no map here')
+    assert asked.view.limit is None
+
+
+def test_without_a_load_there_is_no_limit(asked):
+    asked.view.history.take(asked.parts.row(19.0, speed_rpm=300.0, load_N=math.nan))
     assert asked.view.limit is None
 
 
