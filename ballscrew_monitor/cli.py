@@ -8,7 +8,6 @@ Subcommands that need ROS import it in their handlers, so that the offline ones 
 """
 
 import argparse
-import importlib.util
 import json
 import math
 import os
@@ -33,7 +32,7 @@ BAD_INPUT, BUG, INTERRUPTED = 2, 70, SIGNALLED + signal.SIGINT
 NODE = 'ballscrew_monitor'  # the default name of the node
 # Facts of the event log that are sentences or words: the first that is not empty is printed.
 TOLD = ('text', 'ending', 'advice', 'reason', 'until', 'result', 'sha256')
-WEB = ('starlette', 'uvicorn', 'websockets', 'prometheus_client')  # what the page needs
+WEB = 'pip install starlette uvicorn websockets prometheus-client'
 # What some commands need beyond the rest, and how to get it.
 NEEDED = {
     'mcap': 'pip install mcap zstandard',
@@ -44,6 +43,7 @@ NEEDED = {
     'contourpy': 'pip install polars contourpy',
     'fastexcel': 'pip install fastexcel, or save the sheet as CSV',
     'matplotlib': 'pip install matplotlib',
+    **dict.fromkeys(('starlette', 'uvicorn', 'h11', 'websockets', 'prometheus_client'), WEB),
     'rclpy': 'source the set-up file of ROS 2',
     'ballscrew_msgs': 'source the set-up file of the workspace in which it was built',
 }
@@ -238,12 +238,6 @@ def _play(args: argparse.Namespace) -> int:
 
 
 def _page(args: argparse.Namespace) -> int:
-    missing = [name for name in WEB if importlib.util.find_spec(name) is None]
-    if missing:
-        raise InputError(
-            f'{", ".join(missing)} is not installed, the page needs it: '
-            f'pip install {" ".join(WEB).replace("_", "-")}'
-        )
     from ballscrew_monitor.page.command import page_command
 
     return page_command(args, options.PARAMS)

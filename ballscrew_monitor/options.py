@@ -13,6 +13,7 @@ TREE = Path(__file__).resolve().parent.parent
 """The repository, when the package runs from it: the defaults hold in any working directory."""
 BAG, PARAMS = TREE / 'bags' / 'nominal_cycle', TREE / 'config' / 'nominal_cycle.yaml'
 BAG_TEXT, PARAMS_TEXT = (f'{path.relative_to(TREE)} of the repository' for path in (BAG, PARAMS))
+MAP_TEXT = 'map of the columns of a table: CSV, Parquet or xlsx'
 OUT = Path('out')
 Parser = argparse.ArgumentParser
 
@@ -55,7 +56,7 @@ def add_replay(parser: Parser) -> None:
     """Add what `ballscrew replay` may be told."""
     text = 'bag directory or file, a folder of them; a table with --map'
     _add_file(parser, 'logs', 'LOG', text, nargs='+')
-    _add_file(parser, '--map', 'FILE', 'map of the columns of a table: CSV, Parquet or xlsx')
+    _add_file(parser, '--map', 'FILE', MAP_TEXT)
     text = f'parameters of the node (default those that the log carries, else {PARAMS_TEXT})'
     _add_file(parser, '--params', 'FILE', text)
     _add_file(parser, '--out', 'DIR', 'directory for the report, its tables and data')
@@ -67,7 +68,7 @@ def add_health(parser: Parser) -> None:
     """Add what `ballscrew health` may be told."""
     text = 'bag directory or file, a folder of them; a table with --map; state_dir of a node'
     _add_file(parser, 'logs', 'LOG', text, nargs='+')
-    _add_file(parser, '--map', 'FILE', 'map of the columns of a table: CSV, Parquet or xlsx')
+    _add_file(parser, '--map', 'FILE', MAP_TEXT)
     text = f'parameters of the node (default those that a log carries, else {PARAMS_TEXT})'
     _add_file(parser, '--params', 'FILE', text)
     text = 'motion of the first logs that is normal (default 0.16, ten minutes)'
@@ -148,9 +149,9 @@ def add_solve(parser: Parser) -> None:
 
 def add_page(parser: Parser) -> None:
     """Add what `ballscrew page` may be told."""
-    text = 'recording to play (default: the running nodes), bag, or CSV or Parquet with --map'
+    text = 'recording to play (default: the running nodes), a bag, or a table with --map'
     _add_file(parser, 'log', 'LOG', text, nargs='?')
-    _add_file(parser, '--map', 'FILE', 'map of the columns of a CSV or Parquet file')
+    _add_file(parser, '--map', 'FILE', MAP_TEXT)
     text = f'parameters of a recording (default those that it carries, else {PARAMS_TEXT})'
     _add_file(parser, '--params', 'FILE', text)
     text = 'full name of the node (default all of them, as they come and go)'

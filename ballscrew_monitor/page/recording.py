@@ -8,7 +8,6 @@ import dataclasses
 from typing import Any
 
 from ballscrew_monitor.core.conversions import celsius, SECOND, seconds
-from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.judgement import Reason, Zone
 from ballscrew_monitor.page import maps
 from ballscrew_monitor.page.axis_view import AxisView
@@ -22,6 +21,7 @@ from ballscrew_monitor.recordings.columns import JudgedColumns, LIGHT_LOAD, STAN
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report.judging import AxisCase, judge_log, OnShare
 from ballscrew_monitor.report.parameters import LogParameters
+from ballscrew_monitor.report.time_series import fresh
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
@@ -52,9 +52,9 @@ def _rows_of(block: JudgedColumns) -> Array:
     light = still | (block.gates & LIGHT_LOAD != 0)
     columns = (
         block.stamp / SECOND,
-        _fresh(block.speed / RPM, block.speed_source),
-        _fresh(block.axial_load, block.axial_load_source),
-        _fresh(block.temperature + celsius(0.0), block.temperature_source),
+        fresh(block.speed / RPM, block.speed_source),
+        fresh(block.axial_load, block.axial_load_source),
+        fresh(block.temperature + celsius(0.0), block.temperature_source),
         np.where(light, np.nan, block.efficiency),
         *(np.where(still, np.nan, one) for one in (block.rcs, block.film_ratio)),
         np.where(still, np.nan, block.machine_torque),
@@ -62,10 +62,6 @@ def _rows_of(block: JudgedColumns) -> Array:
         block.level,
     )
     return np.column_stack(columns)[block.published]
-
-
-def _fresh(values: Array, sources: NDArray[np.uint8]) -> Array:
-    return np.where(sources == PointSource.HELD, np.nan, values)
 
 
 def _codes_of(block: JudgedColumns) -> NDArray[np.uint8]:
@@ -148,8 +144,6 @@ def _event_record(event: EventRecord, stamp: float) -> dict[str, Any]:
         'limit': event.limit,
         'active': stamp < begin + event.duration,
         'shelved': False,
-        'target_rpm': event.target_speed / RPM,
-        'target_load_N': event.target_load,
         'words': event.advice,
     }
 

@@ -2,21 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Messages of a node as records of frames: plain numbers, words and sentences, no markup."""
 
-from collections.abc import Mapping
 import math
 from typing import Any
 
-from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import Direction, seconds, signed
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import InputState
 from ballscrew_monitor.core.judgement import Level, Zone
 from ballscrew_monitor.messages.health_messages import stamp_of
-from ballscrew_monitor.recordings.words import number
+from ballscrew_monitor.messages.state_messages import TIERS
 from ballscrew_msgs import msg
 from ballscrew_msgs.msg import BallScrewState
 from surrogate.surface import REGIMES
-from surrogate.units import MINUTE, RPM, TURN
+from surrogate.units import RPM
 
 # A code of another version of the interface is unknown, like 0.
 LEVELS: dict[int, str] = {Level.OK: 'ok', Level.WARN: 'warn'}
@@ -26,7 +24,7 @@ STATES_OF_INPUT = {int(state): state.name.lower() for state in InputState}
 CONDITIONS = {msg.AxisHealth.CONDITION_NORMAL: 'normal', msg.AxisHealth.CONDITION_WORSE: 'worse'}
 UNKNOWN = 'unknown'
 QUANTITIES = {msg.Finding.CODE_RCS_HIGH: 'rcs', msg.Finding.CODE_EFFICIENCY_LOW: 'efficiency'}
-TIERS = {msg.PointResult.TIER_CLOSED_FORM: 'closed_form', msg.PointResult.TIER_FULL: 'full'}
+WORDS_OF_TIER = {code: tier for tier, code in TIERS.items()}
 NAN = math.nan
 
 
@@ -153,37 +151,8 @@ def event_record(event: msg.OutOfZone) -> dict[str, Any]:
         'limit': event.cause.limit,
         'active': event.active,
         'shelved': event.shelved,
-        'target_rpm': event.cause.target_speed / RPM,
-        'target_load_N': event.cause.target_load,
         'words': event.advice,
     }
-
-
-def advice_of(event: Mapping[str, Any], lead: float) -> str:
-    """
-    Return the advice on an event as feed and load, lead [m].
-
-    Without targets, or where the node says why it has ended the event, its own words.
-
-    """
-    speed, load, words = event['target_rpm'] * RPM, event['target_load_N'], str(event['words'])
-    own = Advice(target_speed=speed, target_load=load).text
-    if not own or not words.startswith(own):
-        return words
-    parts = []
-    if math.isfinite(speed):
-        parts.append(f'at this load feed at {feed_text(speed, lead)}')
-    if math.isfinite(load):
-        parts.append(f'at this speed load with {number(load)} N')
-    return ' or '.join(parts) + words.removeprefix(own)
-
-
-def feed_text(speed: float, lead: float) -> str:
-    """Return the feed of a screw speed [rad/s] in words; without the lead [m] the speed alone."""
-    turns = f'{speed / RPM:.0f} rev/min'
-    if not math.isfinite(lead):
-        return turns
-    return f'{number(speed / TURN * lead * MINUTE)} m/min ({turns})'
 
 
 def surface_record(info: msg.SurfaceInfo, unit: str) -> dict[str, Any]:
@@ -192,7 +161,7 @@ def surface_record(info: msg.SurfaceInfo, unit: str) -> dict[str, Any]:
         'unit': unit if unit == 'mm/min' else 'm/min',
         'screw': info.screw,
         'oil': info.oil,
-        'tier': TIERS.get(info.tier, UNKNOWN),
+        'tier': WORDS_OF_TIER.get(info.tier, UNKNOWN),
         'surface_id': info.sha256[:16],
         'corrected': len(info.corrected_speed),
         'temperature_low_degC': info.temperature_min,

@@ -15,6 +15,7 @@ from surrogate.files import InputError
 from surrogate.surface import Surface
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
 LARGEST_MESSAGE = 65_536  # [byte] from a browser; beyond, its socket is closed unread
 MOST_CONNECTIONS = 300
@@ -99,7 +100,7 @@ def server_of(options: PageOptions, app: Any) -> QuietServer:
         server_header=False,
         proxy_headers=False,
         http=PatientProtocol,
-        ws='websockets-sansio',
+        ws=WebSocketsSansIOProtocol,
         ws_max_size=LARGEST_MESSAGE,
         ws_per_message_deflate=False,
         limit_concurrency=MOST_CONNECTIONS,

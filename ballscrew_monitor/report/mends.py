@@ -65,5 +65,5 @@ def _write(case: AxisCase, source: Source, value: str) -> str:
     name = source.name.lower()
     if case.facts.is_mapped:
         return f'write `{value}` for axes.{case.axis}.{case.facts.column_of(name)} in the map'
-    key, _, number = value.partition(': ')
-    return f'set {case.axis}.{name}.{key} to {number}'
+    key, _, amount = value.partition(': ')
+    return f'set {case.axis}.{name}.{key} to {amount}'

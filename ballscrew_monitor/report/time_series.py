@@ -177,9 +177,9 @@ def rows_of(case: AxisCase, block: columns.JudgedColumns, numbers: Iterable[str]
     )
     made = {
         'time': (line - case.survey.first) / SECOND,
-        'speed': _fresh(block.speed / _motion(case).amount, block.speed_source),
-        'load': _fresh(block.axial_load, block.axial_load_source),
-        'temperature': _fresh(warmth, block.temperature_source),
+        'speed': fresh(block.speed / _motion(case).amount, block.speed_source),
+        'load': fresh(block.axial_load, block.axial_load_source),
+        'temperature': fresh(warmth, block.temperature_source),
         'efficiency': np.where(unjudged, np.nan, 100.0 * block.efficiency),
         'film_ratio': np.where(still, np.nan, block.film_ratio),
         'rcs': np.where(still, np.nan, block.rcs),
@@ -195,7 +195,7 @@ def rows_of(case: AxisCase, block: columns.JudgedColumns, numbers: Iterable[str]
     return rows
 
 
-def _fresh(values: columns.Floats, sources: columns.Codes) -> columns.Floats:
+def fresh(values: columns.Floats, sources: columns.Codes) -> columns.Floats:
     """Return numbers without those that are only held since their input went quiet."""
     return np.where(sources == PointSource.HELD, np.nan, values)
 

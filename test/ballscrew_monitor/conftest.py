@@ -27,6 +27,7 @@ from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.cycle import domain as domains
 from ballscrew_monitor.cycle.domain import free_domain, SHARED_MEMORY
 from ballscrew_monitor.cycle.node_process import child_environment
+from ballscrew_monitor.health.records import SpectrumBin
 from ballscrew_monitor.judge import derived_load, point, step
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.node.solver_process import MODULE, path_to_this_code
@@ -557,6 +558,24 @@ class NodeProcess:
                 self.process.wait(DEADLINE)
             finally:
                 self.process.kill()
+
+
+def day_of_motion(day):
+    """Return the load spectrum of hours without load on a day [-] since 1970."""
+    return SpectrumBin(
+        first_day=day,
+        load_band=0,
+        axial_load=0.0,
+        angle=4e5,
+        speed=40.0,
+        time=10_000.0,
+        wear_time=(10_000.0,),
+    )
+
+
+@pytest.fixture(scope='session')
+def bin_of_day():
+    return day_of_motion
 
 
 @pytest.fixture(scope='session')

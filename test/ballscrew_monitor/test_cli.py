@@ -99,7 +99,10 @@ def test_a_fault_of_the_program_is_a_sentence_and_a_file_to_send(
 
 @pytest.mark.parametrize(
     ('module', 'command'),
-    [('mcap', 'replay'), ('zstandard', 'play'), ('matplotlib', 'run'), ('ballscrew_msgs', 'run')],
+    [
+        *(('mcap', 'replay'), ('zstandard', 'play'), ('matplotlib', 'run')),
+        *(('ballscrew_msgs', 'run'), ('starlette', 'page'), ('websockets', 'page')),
+    ],
 )
 def test_what_is_not_installed_is_named_with_its_cure(module, command, short_bag):
     arguments = ['--bag', str(short_bag)] if command == 'run' else [str(short_bag)]

@@ -17,7 +17,6 @@ from ballscrew_monitor.health.records import (
     LoadSource,
     Place,
     Quantity,
-    SpectrumBin,
 )
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.words import ADVICE, advice_of, health_record, verdict_of
@@ -149,7 +148,7 @@ def test_a_leap_everywhere_asks_for_another_screw(axis, motion):
     assert any('if the screw was changed, name a new baseline' in one for one in health.notes)
 
 
-def test_reference_runs_that_change_are_a_note(axis, motion):
+def test_reference_runs_that_change_are_a_note(axis, motion, bin_of_day):
     points = axis.days(motion, 40, lambda point, day: 0.05 if day > 20 else 0.0)
     runs = [dataclasses.replace(one, load_source=LoadSource.FREE) for one in points]
     bins = [bin_of_day(day) for day in sorted({one.first_day for one in points})]
@@ -157,18 +156,6 @@ def test_reference_runs_that_change_are_a_note(axis, motion):
     assert [one for one in notes if one.startswith('the friction without process ')]
     for quiet in (axis.health(runs), axis.health(points, spectrum=bins)):
         assert not [one for one in quiet.notes if one.startswith('the friction without process ')]
-
-
-def bin_of_day(day):
-    return SpectrumBin(
-        first_day=day,
-        load_band=0,
-        axial_load=0.0,
-        angle=4e5,
-        speed=40.0,
-        time=10_000.0,
-        wear_time=(10_000.0,),
-    )
 
 
 @pytest.mark.parametrize('seed', range(6))

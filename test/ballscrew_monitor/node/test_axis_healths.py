@@ -9,7 +9,7 @@ import signal
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.health.baseline import LEARNED
 from ballscrew_monitor.health.points import add, model_torque
-from ballscrew_monitor.health.records import SpectrumBin, Stretch
+from ballscrew_monitor.health.records import Stretch
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import FILE, HealthStore, read_health
 from ballscrew_monitor.recordings.bag import Bag
@@ -35,16 +35,17 @@ def loaded_surface():
 
 
 @pytest.fixture(name='axis')
-def make_axis(node, tmp_path, surface):
+def make_axis(node, tmp_path, surface, bin_of_day):
     """Return an axis whose node keeps in a folder, and is not started yet."""
-    return Axis(node, tmp_path / 'state', surface)
+    return Axis(node, tmp_path / 'state', surface, bin_of_day)
 
 
 class Axis:
     """A node with a torque, and all that is heard of its health."""
 
-    def __init__(self, node, folder, surface):
+    def __init__(self, node, folder, surface, bin_of_day):
         self.node, self.folder, self.surface = node, folder, surface
+        self.bin_of_day = bin_of_day
         self.states, self.healths = node.states(), node.healths()
         self.publish = None
 
@@ -67,7 +68,7 @@ class Axis:
                         motor_torque=factor * torque * (1.0 + 0.002 * (second % 3 - 1)),
                     )
                     assert add(points, one, self.surface, day) == ''
-            bins.append(a_bin(day))
+            bins.append(self.bin_of_day(day))
         with contextlib.closing(HealthStore(self.folder)) as store:
             store.load()
             store.add('x', points.values(), bins)
@@ -104,18 +105,6 @@ class Axis:
 
     def kept(self):
         return read_health(self.folder)['x']
-
-
-def a_bin(day):
-    return SpectrumBin(
-        first_day=day,
-        load_band=0,
-        axial_load=0.0,
-        angle=4e5,
-        speed=40.0,
-        time=10_000.0,
-        wear_time=(10_000.0,),
-    )
 
 
 def stamp_of(message):

@@ -174,7 +174,7 @@ def test_a_solve_is_taken_back_by_request_and_with_its_browser(actor, node, refu
         ((by_request, 'cancelled'), (by_leaving, 'left')), start=1
     ):
         with refused(key):
-            asyncio.run(solving(end))
+            asyncio.run(asyncio.wait_for(solving(end), DEADLINE))
         all_back = [GoalStatus.STATUS_CANCELED] * number
         node.until(
             lambda all_back=all_back: (

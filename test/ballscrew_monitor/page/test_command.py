@@ -152,15 +152,6 @@ def test_a_language_that_is_not_there_is_refused(capsys, says):
     assert capsys.readouterr().err == f'ballscrew: {says("language", known=known)}\n'
 
 
-def test_a_library_that_is_missing_is_named(monkeypatch, capsys, says):
-    found = cli.importlib.util.find_spec
-    monkeypatch.setattr(
-        cli.importlib.util, 'find_spec', lambda name: None if name == 'uvicorn' else found(name)
-    )
-    assert cli.main(['page']) == 2
-    assert capsys.readouterr().err == f'ballscrew: {says("library")}\n'
-
-
 def test_only_loopback_is_bound_unless_told(node, bound_addresses):
     process, url = begin(node)
     try:

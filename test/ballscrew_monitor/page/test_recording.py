@@ -129,13 +129,15 @@ def test_events_are_shown_from_their_begin_as_far_as_they_have_come(playing):
 
 def test_a_recording_that_is_paused_has_no_news(playing, monkeypatch):
     """Not even of events with numbers that are not known, nor long after the last row."""
-    view = axis_of(playing)
+    view, of_event = axis_of(playing), recording._event_record
+    unknown = {'worst': math.nan}
+    monkeypatch.setattr(recording, '_event_record', lambda *known: of_event(*known) | unknown)
     ask(playing, 'pause')
     ask(playing, 'seek', s=3.0)
     playing.advance(0.0, 0.0)
     view.news(0.0, 1.0)
     (event,) = view.events.values()
-    assert math.isnan(event['target_rpm']) or math.isnan(event['target_load_N'])
+    assert math.isnan(event['worst'])
     monkeypatch.setattr(recording, 'SPAN', 1.0)
     for past in (0.0, 2.0):
         playing._axes[0].show(playing._last + past, 0.5)

@@ -4,6 +4,7 @@
 
 import json
 import math
+from types import SimpleNamespace
 
 from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import Direction
@@ -17,6 +18,8 @@ from hypothesis import strategies as st
 import pytest
 from surrogate.files import to_json
 from surrogate.units import RPM
+
+ADVICE = Advice(target_speed=600.0 * RPM, target_load=-812.0, carry='surely').text
 
 
 def test_every_message_is_plain_json(filled):
@@ -78,27 +81,21 @@ def test_the_headline_is_the_worst_finding_else_the_zone(says):
     assert records.headline(state) == says('nothing')
 
 
-def event(speed=62.8319, load=-812.0, *, words=None):
-    """Return the record of an event with targets, in the words of the node unless told."""
-    said = Advice(target_speed=speed, target_load=load, carry='surely').text
-    cause = msg.Finding(code=msg.Finding.CODE_RCS_HIGH, target_speed=speed, target_load=load)
-    return records.event_record(
-        msg.OutOfZone(event_id=3, cause=cause, advice=said if words is None else words)
-    )
-
-
-def test_advice_is_in_terms_of_the_axis(says):
-    assert records.advice_of(event(), 0.01) == says('advice')
-    assert records.advice_of(event(), math.nan) == says('advice_without_lead')
-    assert records.advice_of(event(speed=math.nan), 0.01) == says('advice_load')
-
-
-def test_other_words_of_the_node_stay():
-    """Of an event that it ended, or without a point that clears."""
-    assert (
-        records.advice_of(event(words='the node was shut down'), 0.01) == 'the node was shut down'
-    )
-    assert records.advice_of(event(math.nan, math.nan), 0.01) == ''
+@pytest.mark.parametrize(
+    ('surface', 'words', 'key'),
+    [
+        (SimpleNamespace(lead=0.01), ADVICE, 'advice'),
+        (None, ADVICE, 'advice_without_lead'),
+        (SimpleNamespace(lead=0.01), 'the node was shut down', 'shut_down'),
+    ],
+)
+def test_advice_is_in_terms_of_the_axis(page_parts, says, surface, words, key):
+    """Without its lead, and where the node ends the event, the words of the node stay."""
+    view = page_parts.axis()
+    view.surface = surface
+    view.hear_event(records.event_record(msg.OutOfZone(event_id=3, active=True, advice=words)))
+    (told,) = page_parts.read(view.events_frame())[0]['events']
+    assert told['advice'] == says(key)
 
 
 def test_diagnostics_of_axes_are_told_from_others():

@@ -71,8 +71,8 @@ def test_an_axis_is_heard_from_its_surface_to_its_warning(node, heard):
     assert row[1] == pytest.approx(0.6 / RPM)
     assert row[2] == -1500.0
     told = heard.view()._told(event)
-    assert told['advice'].startswith('at this load feed at ')
-    assert 'm/min' in told['advice']
+    assert told['advice'].startswith('at this load run at ')
+    assert ' m/min, ' in told['advice']
 
 
 def test_a_node_that_leaves_is_gone_and_one_that_returns_is_there(node, heard):

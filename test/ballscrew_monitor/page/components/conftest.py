@@ -15,6 +15,7 @@ import subprocess
 import threading
 import types
 
+from ballscrew_monitor.page.history import COLUMNS
 import numpy as np
 import pytest
 
@@ -30,18 +31,6 @@ WATCHED = """
     });
 """
 KEYS = {'Enter': 13, 'ArrowLeft': 37, 'ArrowUp': 38, 'ArrowRight': 39, 'ArrowDown': 40, 'Tab': 9}
-COLUMNS = (
-    'stamp',
-    'speed_rpm',
-    'load_N',
-    'temperature_degC',
-    'efficiency',
-    'rcs',
-    'film_ratio',
-    'torque_N_m',
-    'measured_torque_N_m',
-    'level',
-)
 BEGIN = 1_767_600_000.0
 """Stamp of the first row [s]."""
 
