@@ -42,6 +42,7 @@ class AxisView:
         self.acknowledged: dict[int, str] = {}  # by whom, of events by their numbers
         self.warmth = math.nan  # of the oil as it was last known [degC]
         self.surface: Surface | None = None
+        self.without = 0  # corrections of the node that the surface lacks
         self.map_frame: bytes | None = None
         self.grades: list[str] = []  # oils of which there are surfaces
         self.words: dict[str, str] = {}  # of the diagnostics by their parts
@@ -69,9 +70,11 @@ class AxisView:
         self.is_changed |= limits != self.limits
         self.limits = limits
 
-    def know(self, about: Mapping[str, Any], surface: Surface | None, no_map: str) -> None:
-        """Take what the axis is, and its surface, or why that is not here."""
-        self.about, self.surface, self.no_map = about, surface, no_map
+    def know(
+        self, about: Mapping[str, Any], surface: Surface | None, no_map: str, without: int = 0
+    ) -> None:
+        """Take what it is, and its surface `without` some corrections, or why that is missing."""
+        self.about, self.surface, self.no_map, self.without = about, surface, no_map, without
         self.map_frame, self.is_changed = None, True
 
     def hear_words(self, part: str, words: str) -> None:

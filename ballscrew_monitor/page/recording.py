@@ -83,8 +83,6 @@ class RecordedAxis:
             'screw': surface.screw_name,
             'oil': surface.oil_name,
             'tier': surface.tier,
-            'surface_id': surface.sha256[:16],
-            'corrected': 0,
             'temperature_low_degC': low,
             'temperature_high_degC': high,
         }

@@ -162,8 +162,6 @@ def surface_record(info: msg.SurfaceInfo, unit: str) -> dict[str, Any]:
         'screw': info.screw,
         'oil': info.oil,
         'tier': WORDS_OF_TIER.get(info.tier, UNKNOWN),
-        'surface_id': info.sha256[:16],
-        'corrected': len(info.corrected_speed),
         'temperature_low_degC': info.temperature_min,
         'temperature_high_degC': info.temperature_max,
     }
