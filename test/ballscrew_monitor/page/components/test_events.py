@@ -77,3 +77,12 @@ def test_where_acting_is_off_the_page_says_so(tab, greeted, frames):
 def test_sums_are_in_the_units_of_an_operator(acting):
     tiles = acting.texts('.events .tile dd')
     assert tiles == ['46.2 h', '13 %', '80 %', '1260 kJ', '842800']
+    acting.reads('.events div h2', 'Totals')
+
+
+def test_sums_of_a_recording_are_those_of_its_end(acting, greeted, frames):
+    greeted.send({'kind': 'clock', 'at_s': 12.0, 'span_s': 60.0, 'rate': 1, 'playing': False})
+    record, _ = frames.state()
+    greeted.send(record | {'totals': record['totals'] | {'running_time': 312.0}})
+    acting.reads('.events .tile dd', '5:12')
+    acting.reads('.events div h2', 'Totals at the end of the recording')
