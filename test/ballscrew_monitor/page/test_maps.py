@@ -5,9 +5,12 @@
 import math
 
 from ballscrew_monitor.core.conversions import kelvin
-from ballscrew_monitor.page import maps
+from ballscrew_monitor.core.judgement import rcs_to_clear
+from ballscrew_monitor.messages.state_messages import out_of_zone_message, StateWriter, TIERS
+from ballscrew_monitor.page import maps, records
 from ballscrew_monitor.page.maps import Motion
-from hypothesis import given
+from ballscrew_monitor.recordings.words import TURNS
+from hypothesis import assume, given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
@@ -122,6 +125,34 @@ def test_at_the_limit_speed_rcs_is_at_its_limit(surface, limits, load, degrees):
         at, above = (surface.lookup(f * speed, load, kelvin(degrees)).rcs for f in (1.0, 1.1))
         assert at == pytest.approx(limits.rcs, rel=0.2)
         assert above < limits.rcs
+
+
+@given(
+    load=st.floats(-3000.0, 3000.0),
+    degrees=st.floats(15.0, 75.0),
+    part=st.floats(0.1, 0.99),
+    sign=st.sampled_from([1.0, -1.0]),
+)
+def test_the_advice_on_a_standing_warning_lies_just_beyond_the_limit(
+    core, surface, usual_limits, page_parts, load, degrees, part, sign
+):
+    """By the hysteresis, as far as its words are rounded: at the limit itself nothing clears."""
+    limit = maps.limit_speed(surface, usual_limits, load, degrees)
+    assume(part * limit > usual_limits.standstill_speed)
+    monitor = core.monitor(surface, usual_limits, default_temperature=kelvin(degrees))
+    moves = core.motion(sign * part * limit, force=-sign * load)
+    (state,) = core.feed(monitor, moves)
+    message = StateWriter('x', TIERS[surface.tier]).write(state)
+    view = page_parts.axis()
+    view.know({}, surface, '')
+    view.hear(records.row_of(message), {}, records.limits_record(message), 0.0)
+    event = out_of_zone_message('x', state.event, shelved=False)
+    assume(math.isfinite(event.cause.target_speed))
+    assert view.limit['speed_rpm'] == pytest.approx(limit / RPM)
+    assert view.limit['margin'] == pytest.approx(part - 1.0)
+    assert view.limit['speed_rpm'] < abs(float(TURNS.search(event.advice)[1]))
+    found = surface.lookup(abs(event.cause.target_speed), load, kelvin(degrees))
+    assert found.rcs == pytest.approx(rcs_to_clear(usual_limits), rel=1e-3)
 
 
 @given(factors=st.lists(st.floats(0.5, 1.5), min_size=1, max_size=3))
