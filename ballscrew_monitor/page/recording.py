@@ -147,6 +147,8 @@ def _event_record(event: EventRecord, stamp: float) -> dict[str, Any]:
         'limit': event.limit,
         'active': stamp < begin + event.duration,
         'shelved': False,
+        'acknowledged': False,
+        'acknowledged_by': '',
         'words': event.advice,
     }
 

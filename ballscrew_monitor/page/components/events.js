@@ -109,7 +109,8 @@ class Events {
     const first = Format.element('td', 'short');
     first.append(when);
     const length = Format.time(event.duration_s) + (event.active ? ` ${Words.say('event_active')}` : '');
-    const who = event.acknowledged_by || (event.shelved ? Words.say('event_shelved') : '');
+    const how = ['acknowledged', 'shelved'].find((one) => event[one]);
+    const who = event.acknowledged_by || (how ? Words.say(`event_${how}`) : '');
     row.append(first, ...[length, this.worst(event), event.advice, who]
       .map((text) => Format.element('td', '', text)));
     return row;

@@ -447,6 +447,7 @@ def make_events(axis='x', *events):
         'limit': 0.01,
         'advice': 'At this load run at 6.4 m/min (640 rev/min) or faster.',
         'active': False,
+        'acknowledged': False,
         'acknowledged_by': '',
         'shelved': False,
     }

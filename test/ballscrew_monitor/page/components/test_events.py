@@ -27,9 +27,12 @@ def test_warnings_are_listed_and_lead_to_their_moment(acting, greeted, frames):
     acting.click('.events td button')
     begin, end = acting.ask('page.strips.range')
     assert (begin, end) == pytest.approx((frames.begin + 15.0, frames.begin + 33.4))
-    greeted.send(*frames.events('x', {'acknowledged_by': 'Ada'}, {'active': True}))
-    acting.until("document.querySelectorAll('.events tbody tr').length === 2")
-    assert 'Ada' in acting.texts('.events td')
+    seen = {'acknowledged': True, 'acknowledged_by': 'Ada: oil is ordered'}
+    nameless = {'acknowledged': True}
+    greeted.send(*frames.events('x', seen, {'active': True}, nameless, {'shelved': True}))
+    acting.until("document.querySelectorAll('.events tbody tr').length === 4")
+    who = acting.texts('.events td:last-child')
+    assert who == ['Ada: oil is ordered', '', 'without a name', 'shelved']
     assert acting.ask("document.querySelectorAll('.events tr.bad').length") == 1
     greeted.send(*frames.events('x'))
     acting.reads('.events .wide', 'No warning yet.')
