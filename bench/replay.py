@@ -7,8 +7,9 @@ Usage: python bench/replay.py [--seconds S] [--long L] [--repeats N]. Makes a re
 at 1 kHz of S seconds and one at 100 Hz of L seconds in a temporary folder, and prints duration
 over processor time, which other work on the machine changes little: judged alone, with the load
 out of the torque, with the speed out of positions, of the recording that a node makes of itself,
-and end to end as `ballscrew replay --out` does it, with table, page and judged bag. Beside them
-the time of one Python call, measured in the same run, and of a lookup all over the surface.
+and end to end as `ballscrew replay --out` does it, with table, page and judged bag; and how fast a
+CSV of the same signals becomes a bag. Beside them the time of one Python call, measured in the
+same run, and of a lookup all over the surface.
 
 """
 
@@ -25,12 +26,15 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.own_recording import recorded_values
 from ballscrew_monitor.recordings.replay import replay, replay_parts
+from ballscrew_monitor.recordings.tables.convert import convert
+from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.report.log_report import LogResult, report_log
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.settings import parameters
 from geometry_msgs.msg import WrenchStamped
 from node_parts.alone import record_alone
 import numpy as np
+import polars as pl
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from surrogate.surface import look_up_many, shipped_surface, Surface
@@ -49,6 +53,18 @@ TORQUE = {
     'inertia': 0.0012,
 }
 POSITION = {'speed__field': 'position[x_axis]', 'speed__unit': 'rad'}
+TABLE = {
+    'time': {'column': 'time', 'unit': 's', 'epoch': '2023-11-14T22:13:20Z'},
+    'axes': {
+        'x': {
+            'lead_mm': 10.0,
+            'speed': {'column': 'velocity', 'unit': 'rad/s'},
+            'position': {'column': 'position', 'unit': 'rad'},
+            'load': {'column': 'load', 'unit': 'N'},
+            'torque': {'column': 'effort', 'unit': 'N m'},
+        }
+    },
+}
 TYPES = {'/joint_states': 'sensor_msgs/msg/JointState', '/load': 'geometry_msgs/msg/WrenchStamped'}
 
 
@@ -121,6 +137,13 @@ def report(bag: Bag, out: Path) -> LogResult:
     return report_log(bag, out, LogParameters(values=values(0.1), origin='the bench'))
 
 
+def write_table(folder: Path, duration: float, rate: float) -> Path:
+    """Return a CSV of the signals at a rate [Hz]."""
+    log = folder / 'table.csv'
+    pl.DataFrame(signals(duration, rate)).write_csv(log)
+    return log
+
+
 def lookups(repeats: int) -> float:
     """Return how many points are looked up in a second."""
     surface, drawn = Surface.load(shipped_surface()), np.random.default_rng(1)
@@ -148,6 +171,7 @@ def rows_of(asked: argparse.Namespace, folder: Path) -> list[Row]:
     long = write(folder / 'long', asked.long, 100.0)
     own = record_alone(folder / 'own', values(0.1), bursts(asked.seconds, 1000.0))
     recorded = recorded_values(own)
+    table, made = write_table(folder, asked.seconds, 1000.0), folder / 'of_table'
     torque, position = values(0.1, **TORQUE), values(0.1, **POSITION)
     return [
         Row('1 kHz, columns', 2000, quick, lambda: replay_parts(quick, values(0.1), states=False)),
@@ -163,6 +187,7 @@ def rows_of(asked: argparse.Namespace, folder: Path) -> list[Row]:
             quick,
             lambda: replay_parts(quick, position, states=False),
         ),
+        Row('1 kHz, a CSV to a bag', 0, quick, lambda: [convert(table, make_map(TABLE), made)]),
         Row('1 kHz, own recording', 500, own, lambda: replay_parts(own, recorded, states=False)),
     ]
 

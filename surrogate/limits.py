@@ -27,13 +27,13 @@ MESSAGE = 32 * MEGA
 CHUNK = 64 * MEGA
 """Most that the records of a chunk come to, unpacked [byte]."""
 RECORDS = 500_000
-"""Most records of a chunk."""
+"""Most records of a chunk; it holds no more than it has bytes in its file."""
 SUMMARY = 32 * MEGA
 """Largest summary of an MCAP file [byte]."""
 WAITING = 64 * MEGA
 """Most that messages hold which wait for earlier ones [byte]."""
 PACKING = 200
-"""Largest size of what is unpacked over that of its file [-]; one chunk is always allowed."""
+"""Largest size of what is unpacked over that of its file [-]; `CHUNK` is always allowed."""
 COLUMNS = 5000
 """Most columns of a table."""
 LINE = 4 * MEGA

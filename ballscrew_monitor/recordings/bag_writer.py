@@ -29,6 +29,7 @@ from ballscrew_monitor.recordings.mcap_file import (
     type_hash,
 )
 import numpy as np
+from numpy.typing import NDArray
 from surrogate.files import InputError, replace_file
 import yaml
 
@@ -173,6 +174,19 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
                 self._note(topic, len(own), int(times[own].min()), int(times[own].max()))
         channels = np.array([self._channels[topic] for topic in topics])
         self._writer.add_messages(channels[which], contents, log_time=times, sequence=sequence)
+
+    def write_rows(self, contents: Mapping[str, NDArray[np.void]], times: Integers) -> None:
+        """
+        Append row after row a serialised message of each topic, of one size each, and number them.
+
+        `times` [ns] are those at which the rows were logged and count as published.
+
+        """
+        channels = [self._channels[topic] for topic in contents]
+        first = [self._counts[topic] for topic in contents]
+        self._writer.add_rows(channels, [*contents.values()], log_time=times, first=first)
+        for topic in contents:
+            self._note(topic, len(times), int(times.min()), int(times.max()))
 
     def _note(self, topic: str, count: int, first: int, last: int) -> None:
         """Count messages and widen the span of log times [ns]."""

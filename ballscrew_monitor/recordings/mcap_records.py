@@ -23,7 +23,6 @@ from mcap.reader import SeekingReader
 from mcap.records import Channel, Chunk, Message, Metadata, Schema
 from mcap.summary import Summary
 from surrogate import limits
-from surrogate.files import InputError
 from zstandard import ZstdError
 
 # What the reader is known to raise for a file that is not as it should be.
@@ -43,7 +42,6 @@ DAMAGE = (
 )
 MAGIC_SIZE = 8  # [bytes] at the begin and at the end of a file
 RECORD = struct.Struct('<BQ')  # operation code and length of what follows
-CHUNK_HEAD = struct.Struct('<QQQ')  # first and last log time, size when unpacked
 FOOTER = struct.Struct('<BQQQI')  # code, length, begin of summary and its offsets, checksum
 KINDS: dict[int, Any] = {3: Schema, 4: Channel, 12: Metadata}
 """Records that are read besides messages and chunks, by their operation codes."""
@@ -68,20 +66,12 @@ def read_summary(stream: BinaryIO) -> Summary:
     summary = reader.get_summary()
     if summary is None or summary.statistics is None:
         raise McapError('it has no summary')
-    _check(summary, whole)
+    _check(summary)
     return summary
 
 
-def _check(summary: Summary, size: int) -> None:
-    """
-    Raise McapError if the statistics of a summary contradict it, or themselves.
-
-    So it does if the chunks of a file of a `size` [bytes] come to too much.
-
-    """
-    come_to = sum(one.uncompressed_size for one in summary.chunk_indexes)
-    if come_to > limits.most_unpacked(size):
-        raise McapError(_too_much(come_to))
+def _check(summary: Summary) -> None:
+    """Raise McapError if the statistics of a summary contradict it, or themselves."""
     statistics = summary.statistics
     assert statistics is not None
     named = {one.chunk_start_offset for one in summary.chunk_indexes}
@@ -96,14 +86,6 @@ def _check(summary: Summary, size: int) -> None:
         raise McapError(
             f'its statistics count {statistics.message_count} messages, of its channels {counted}'
         )
-
-
-def _too_much(come_to: int) -> str:
-    """Return that the chunks of a file come to so many bytes or more."""
-    return (
-        f'its chunks come to {come_to / limits.MEGA:.0f} MB or more when unpacked, '
-        f'allowed are {limits.PACKING} times its size'
-    )
 
 
 def read_metadata(stream: BinaryIO) -> Iterator[Metadata]:
@@ -130,14 +112,22 @@ def chunk_data(chunk: Chunk) -> bytes:
     return data
 
 
-def walked(data: bytes) -> list[tuple[int, int]]:
-    """Return code and begin [bytes] of the records of a chunk; raises ValueError."""
+def walked(data: bytes, stored: int) -> list[tuple[int, int]]:
+    """
+    Return code and begin [bytes] of the records of a chunk; raises ValueError.
+
+    A chunk of `stored` [bytes] in its file holds no more records: the times of a message alone
+    take three bytes and more, while pictures of one grey take next to none. So the size of a file
+    bounds the work, and that of a chunk the memory.
+
+    """
     found, at, end, unpack = [], 0, len(data) - RECORD.size, RECORD.unpack_from
+    most = min(limits.RECORDS, stored)
     while at <= end:
         code, length = unpack(data, at)
         found.append((code, at))
-        if len(found) > limits.RECORDS:
-            raise ValueError(f'it holds more than {limits.RECORDS} records')
+        if len(found) > most:
+            raise ValueError(f'it holds more than {most} records')
         at += RECORD.size + length
     if at != len(data):
         raise ValueError('its last record is cut off')
@@ -149,11 +139,9 @@ def whole_records(file: Path, *, strict: bool = False) -> Iterator[Any]:
     Yield the records of an MCAP file that are whole, those of a chunk in its place.
 
     What a summary holds comes first; it tells where chunks begin behind damage, which nothing
-    follows else. A `strict` reader raises one of `DAMAGE` instead. Raises InputError if the chunks
-    come to too much.
+    follows else. A `strict` reader raises one of `DAMAGE` instead.
 
     """
-    come_to, most = 0, limits.most_unpacked(file.stat().st_size)
     with file.open('rb') as stream:
         summary = None
         with contextlib.suppress(*DAMAGE, OSError):
@@ -161,9 +149,6 @@ def whole_records(file: Path, *, strict: bool = False) -> Iterator[Any]:
             yield from [*summary.schemas.values(), *summary.channels.values()]
         begins = sorted(one.chunk_start_offset for one in summary.chunk_indexes) if summary else []
         for code, at, length in _framed(stream, begins, strict=strict):
-            come_to += _size_of_chunk(stream, at) if code == CHUNK else 0
-            if come_to > most:
-                raise InputError(f'bag {file} cannot be read, {_too_much(come_to)}')
             try:
                 stream.seek(at + RECORD.size)
                 yield from _read(stream, code, length)
@@ -196,18 +181,10 @@ def _framed(
         raise McapError('its last record is cut off')
 
 
-def _size_of_chunk(stream: BinaryIO, at: int) -> int:
-    """Return what is to be unpacked of the chunk at a byte, 0 if that is refused [bytes]."""
-    stream.seek(at + RECORD.size)
-    head = stream.read(CHUNK_HEAD.size)
-    size = CHUNK_HEAD.unpack(head)[2] if len(head) == CHUNK_HEAD.size else 0
-    return int(size) if size <= limits.CHUNK else 0
-
-
 def _read(stream: BinaryIO, code: int, length: int) -> Iterator[Any]:
     if code == CHUNK:
         data = chunk_data(Chunk.read(ReadDataStream(io.BytesIO(_body(stream, length)))))
-        for kind, at in walked(data):
+        for kind, at in walked(data, length):
             begin = at + RECORD.size
             end = begin + RECORD.unpack_from(data, at)[1]
             yield from _known(kind, data[begin:end])

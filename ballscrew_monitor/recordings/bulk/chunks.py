@@ -126,7 +126,7 @@ def read_chunk(stream: BinaryIO, place: ChunkIndex) -> Messages:
         chunk, indexes = raw[: place.chunk_length], raw[slice(place.chunk_length, None)]
         data = _records(chunk, place.uncompressed_size)
         starts = _indexed(data, indexes)
-        return _messages(data, _walked(data) if starts is None else starts)
+        return _messages(data, _walked(data, length) if starts is None else starts)
     except ChunkDamage:
         raise
     except DAMAGE as error:
@@ -185,9 +185,9 @@ def _is_no_message(data: bytes, begin: int, end: int) -> bool:
     return begin == end
 
 
-def _walked(data: bytes) -> Integers:
-    """Return where message records begin, one after another."""
-    return np.array([at for code, at in walked(data) if code == MESSAGE], dtype=np.int64)
+def _walked(data: bytes, stored: int) -> Integers:
+    """Return where message records begin, one after another, in a chunk of `stored` [bytes]."""
+    return np.array([at for code, at in walked(data, stored) if code == MESSAGE], dtype=np.int64)
 
 
 def _messages(data: bytes, starts: Integers) -> Messages:

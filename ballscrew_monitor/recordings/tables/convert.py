@@ -44,7 +44,6 @@ SLOW = 0.5  # of the timeout: rows that far apart leave no room for a late one
 PASSES = 3  # over a table, at most, of which each is shown
 SAME = 1e-6  # part by which two leads may differ
 NAMES_NONE = 'the map names none'
-BLOCK = 4096  # rows that are made at a time
 _STAMP = (1_234_567_891, 987_654_321)  # [s], [ns]
 
 
@@ -170,18 +169,14 @@ def _write(
     for block in series.blocks():
         for fit in fits:
             fit.add(block)
-        streams = []
+        rows = {}
         for name, message, numbers in _topics(block):
             if name not in templates:
                 kind = type_name_of(message)
                 writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.RELIABLE))
                 templates[name] = RowTemplate(message, len(numbers))
-            streams.append((name, templates[name].rows(block.stamps, numbers)))
-        for number, stamp in enumerate(block.stamps.tolist(), done + 1):
-            for name, rows in streams:
-                writer.write(name, next(rows), log_time=stamp, publish_time=stamp)
-            if number % BLOCK == 0:
-                show(number / series.count)
+            rows[name] = templates[name].rows(block.stamps, numbers)
+        writer.write_rows(rows, block.stamps)
         done += len(block.stamps)
         show(done / series.count)
 
@@ -254,16 +249,14 @@ class RowTemplate:
 
     def rows(
         self, stamps: NDArray[np.int64], numbers: Sequence[NDArray[np.float64]]
-    ) -> Iterator[bytes]:
-        """Yield the message of each row, of its stamp [ns] and its numbers."""
-        for begin in range(0, len(stamps), BLOCK):
-            part = slice(begin, begin + BLOCK)
-            content = bytearray(self._data * len(stamps[part]))
-            rows = np.frombuffer(content, self._row)
-            rows['sec'], rows['nanosec'] = np.divmod(stamps[part], SECOND)
-            for name, values in zip(self._names, numbers, strict=True):
-                rows[name] = values[part]
-            yield from np.frombuffer(content, f'V{len(self._data)}').tolist()
+    ) -> NDArray[np.void]:
+        """Return the message of each row, of its stamp [ns] and its numbers."""
+        content = bytearray(self._data * len(stamps))
+        rows = np.frombuffer(content, self._row)
+        rows['sec'], rows['nanosec'] = np.divmod(stamps, SECOND)
+        for name, values in zip(self._names, numbers, strict=True):
+            rows[name] = values
+        return np.frombuffer(content, f'V{len(self._data)}')
 
 
 def print_guess(log: Path) -> None:

@@ -12,7 +12,7 @@ from ballscrew_monitor.recordings.mcap_records import (
     whole_records,
 )
 from mcap.records import Message
-from mcap.writer import CompressionType, Writer
+from mcap.writer import CompressionType, IndexType, Writer
 import pytest
 from surrogate import limits
 
@@ -87,25 +87,30 @@ def test_a_strict_reader_says_where_a_record_is_damaged(file, refused):
         numbers(file, strict=True)
 
 
-def test_chunks_that_come_to_too_much_together_are_refused(file, refused, monkeypatch):
-    """Each is within its own limit; neither the index nor the file without one gets past it."""
-    sizes = [one.uncompressed_size for one in summary_of(file).chunk_indexes]
-    monkeypatch.setattr(limits, 'PACKING', 0)
-    monkeypatch.setattr(limits, 'CHUNK', sum(sizes))
-    assert numbers(file, strict=True) == list(range(COUNT))
-    monkeypatch.setattr(limits, 'CHUNK', sum(sizes) - 1)
-    with refused('summary_too_much'):
-        summary_of(file)
-    for strict in (False, True):
-        with refused('too_much', file=file):
-            numbers(file, strict=strict)
-    monkeypatch.setattr(limits, 'PACKING', 1)  # the size of the file counts
-    assert numbers(file) == list(range(COUNT))
+def test_pictures_of_one_grey_pass_and_records_that_pack_as_well_do_not(tmp_path, refused):
+    """Both come to over a thousand times their file; equal messages tell no times of their own."""
+    pictures, bomb = tmp_path / 'pictures.mcap', tmp_path / 'bomb.mcap'
+    for file, kept, size, count in ((pictures, True, 1280 * 1024, 50), (bomb, False, 0, 40_000)):
+        with file.open('wb') as stream:
+            writer = Writer(stream, index_types=IndexType.ALL if kept else IndexType.NONE)
+            writer.start('ros2', 'test')
+            schema = writer.register_schema('T', 'ros2msg', b'')
+            channel = writer.register_channel('/a', 'cdr', schema)
+            for number in range(count):
+                writer.add_message(channel, number * kept, bytes(size), 0)
+            writer.finish()
+    assert 1000 * pictures.stat().st_size < 50 * 1280 * 1024
+    assert numbers(pictures) == [*range(50)]
+    with refused('bomb'):
+        numbers(bomb, strict=True)
+    assert numbers(bomb) == []
 
 
 def test_a_chunk_of_too_many_records_is_not_taken_apart(refused, monkeypatch):
-    monkeypatch.setattr(limits, 'RECORDS', 3)
+    """As many as are allowed at all, and as the chunk has bytes in its file."""
     record = struct.pack('<BQ', 0x80, 0)
-    assert walked(3 * record) == [(0x80, 0), (0x80, 9), (0x80, 18)]
-    refused('many', walked, 4 * record)
-    refused('cut', walked, 3 * record + b'\x80')
+    for limit, stored in ((3, 100), (4, 3)):
+        monkeypatch.setattr(limits, 'RECORDS', limit)
+        assert walked(3 * record, stored) == [(0x80, 0), (0x80, 9), (0x80, 18)]
+        refused('many', walked, 4 * record, stored)
+        refused('cut', walked, 3 * record + b'\x80', stored)

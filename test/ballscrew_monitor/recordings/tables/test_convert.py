@@ -3,14 +3,18 @@
 """Conversion of tables to judged bags: a small log always, the real one where it is."""
 
 import contextlib
+import io
 import json
+import math
 import os
 from pathlib import Path
 import sys
+import tempfile
 
 from ballscrew_monitor import cli
 from ballscrew_monitor.core.cdr import serialized
-from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.conversions import celsius, kelvin, SECOND
+from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import (
     facts_of,
@@ -20,29 +24,27 @@ from ballscrew_monitor.recordings.log_facts import (
 )
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.recordings.tables import cells, sources
-from ballscrew_monitor.recordings.tables import convert as convert_module
-from ballscrew_monitor.recordings.tables.convert import (
-    BLOCK,
-    convert,
-    marks,
-    print_guess,
-    RowTemplate,
-)
+from ballscrew_monitor.recordings.tables.convert import convert, print_guess
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.settings import parameters
 from ballscrew_msgs.msg import InputHealth
-from mcap.reader import make_reader
+from geometry_msgs.msg import WrenchStamped
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mcap.reader import make_reader, NonSeekingReader, SeekingReader
 from mcap_ros2.decoder import DecoderFactory
 import numpy as np
 import polars as pl
 import pytest
+from rclpy.serialization import deserialize_message
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import get_typestore, Stores
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import JointState, Temperature
 import yaml
 
 ROOT = Path(__file__).resolve().parents[4]
+BEGIN = 946_684_800 * SECOND  # [ns] of 2000
 NOMINAL = ROOT / 'config' / 'nominal_cycle.yaml'
 TYPES = {
     '/joint_states': 'sensor_msgs/msg/JointState',
@@ -289,20 +291,59 @@ def test_every_sample_of_the_real_log_is_judged_or_refused_with_a_reason(tmp_pat
     check_every_sample(bag, 1055)
 
 
-def test_rows_are_those_of_one_by_one_to_the_last_bit():
-    count = BLOCK + 3
-    stamps = np.arange(count, dtype=np.int64) * 123_456_789 + 1_999_999_999 * SECOND
-    numbers = [np.linspace(-1e3, 1e3, count), np.full(count, np.nan), np.arange(2.0 * count)[::2]]
-    first, second, third = marks(3)
-    shape = JointState(name=['x', 'long_name'], velocity=[first, second], effort=[third])
-    made = list(RowTemplate(shape, 3).rows(stamps, numbers))
-    assert len(made) == count
-    for row in (0, 1, BLOCK - 1, BLOCK, count - 1):
-        message = JointState(name=['x', 'long_name'])
-        message.header.stamp.sec, message.header.stamp.nanosec = divmod(int(stamps[row]), SECOND)
-        message.velocity = [float(numbers[0][row]), float(numbers[1][row])]
-        message.effort = [float(numbers[2][row])]
-        assert made[row] == serialized(message)
+TWO_AXES = ('/x/oil_temperature', '/x/axial_load', '/y/axial_load', '/joint_states')
+FINITE = st.floats(-1e15, 1e15)
+ROW = st.tuples(st.integers(0, 100_000), FINITE, *[st.none() | FINITE] * 3)
+
+
+@given(first=st.tuples(st.just(0), *[FINITE] * 4), others=st.lists(ROW, min_size=1))
+@settings(max_examples=25)
+def test_a_bag_holds_each_row_to_the_last_bit_for_every_reader(first, others):
+    """Rows of steps [ms], gaps among them; some columns miss values, as slower signals do."""
+    steps, *columns = zip(first, *others)
+    table = {'t': np.cumsum(steps), **dict(zip('vFTM', columns))}
+    units = {'speed': 'rad/s', 'load': 'N', 'temperature': 'degC', 'torque': 'N m'}
+    both = [{'lead_mm': 10.0}, {'lead_mm': 10.0, 'speed': {'column': 'M', 'unit': 'rad/s'}}]
+    for (kind, unit), name in zip(units.items(), 'vFTM'):
+        both[0][kind] = {'column': name, 'unit': unit}
+    time = {'column': 't', 'unit': 'ms', 'epoch': '2000-01-01T00:00:00Z'}
+    content = {'time': time, 'axes': dict(zip('xy', both))}
+    stamps = BEGIN + table['t'] * 1_000_000
+    numbers = [[math.nan if one is None else one + 0.0 for one in column] for column in columns]
+    with tempfile.TemporaryDirectory() as folder:
+        log = Path(folder) / 'log.csv'
+        pl.DataFrame(table).write_csv(log)
+        convert(log, make_map(content), log.parent)
+        (file,) = Bag(log.parent).files
+        data = file.read_bytes()
+    expected = [
+        (stamp, serialized(message))
+        for stamp, *row in zip(stamps.tolist(), *numbers)
+        for message in messages_of(stamp, *row)
+    ]
+    for reader in (SeekingReader, NonSeekingReader):
+        found = [*reader(io.BytesIO(data), validate_crcs=True).iter_messages()]
+        assert [(one.log_time, one.data) for *_, one in found] == expected
+        assert [(one.publish_time, one.sequence) for *_, one in found] == [
+            (stamp, row) for row, stamp in enumerate(stamps) for _ in TWO_AXES
+        ]
+        assert [channel.topic for _, channel, _ in found] == [*TWO_AXES] * len(stamps)
+    for (schema, *_), (_, content) in zip(found, expected):
+        message = deserialize_message(content, message_class(schema.name))
+        assert serialized(message) == content
+
+
+def messages_of(stamp, speed, force, warmth, torque):
+    """Return the messages of a row, made one by one: y has the torque for its speed, no load."""
+    messages = [Temperature(temperature=celsius(kelvin(warmth)))]
+    for axis, one in (('x', force), ('y', math.nan)):
+        messages.append(WrenchStamped())
+        messages[-1].header.frame_id, messages[-1].wrench.force.x = f'{axis}_nut', one
+    joints = JointState(name=['x_axis', 'y_axis'], velocity=[speed, torque])
+    joints.effort = [torque, math.nan]
+    for message in (*messages, joints):
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
+    return *messages, joints
 
 
 def test_a_guess_is_a_map_that_works_unedited(mill_log, tmp_path, capsys, says):
@@ -376,14 +417,6 @@ def test_an_axis_whose_motion_cannot_be_read_is_refused(tmp_path, write_csv, ref
     axis['position'] = {'column': 'p', 'unit': 'mm'}
     facts = convert(log, make_map(content), tmp_path / 'bag')
     assert 'x.speed' in {one.key for one in facts.assumptions}
-
-
-def test_rows_are_shown_within_a_block(monkeypatch, tmp_path, write_csv, mill):
-    monkeypatch.setattr(convert_module, 'BLOCK', 100)
-    log, shown = write_csv(tmp_path / 'mill.csv', mill(1000)), Shown()
-    convert(log, make_map(guess(log).content), tmp_path / 'bag', shown=shown)
-    shares = shown.shares['rows written', 1000]
-    assert shares == pytest.approx([*(number / 10 for number in range(1, 11)), 1.0])
 
 
 def test_it_is_shown_how_far_rows_are_put_in_order(small_blocks, tmp_path, write_csv, mill):
