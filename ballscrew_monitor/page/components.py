@@ -102,14 +102,15 @@ def index(language: str = ENGLISH) -> str:
     return _document(language, main, *scripts)
 
 
-def login(said: str = '') -> str:
-    """Return the form that asks for the token, and what became of the last one."""
+def login(language: str = ENGLISH, key: str = '') -> str:
+    """Return the form that asks for the token, and by a key what became of the last one."""
+    words = languages()[language]
     field = element('input', type='password', name_='token', autocomplete='current-password')
     form = element(
         'form',
-        element('label', 'Token ', field),
-        element('button', 'Open', type='submit'),
+        element('label', f'{words["login_token"]} ', field),
+        element('button', words['login_open'], type='submit'),
         method='post',
         action='/login',
     )
-    return _document(ENGLISH, element('main', form, element('p', said)))
+    return _document(language, element('main', form, element('p', words.get(key, ''))))

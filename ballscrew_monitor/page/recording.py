@@ -7,15 +7,22 @@ from collections.abc import Iterable, Mapping
 import dataclasses
 from typing import Any
 
-from ballscrew_monitor.core.conversions import celsius, SECOND, seconds
-from ballscrew_monitor.core.judgement import Reason, Zone
+from ballscrew_monitor.core.conversions import (
+    celsius,
+    direction_of,
+    opposing_load,
+    SECOND,
+    seconds,
+)
+from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.page import maps
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.history import SPAN
 from ballscrew_monitor.page.hub import Browser, Hub, PERIOD
+from ballscrew_monitor.page.phrases import advised, unjudged
 from ballscrew_monitor.page.questions import Answer, Handler, number_in
-from ballscrew_monitor.page.records import LEVELS, UNKNOWN, WORDS_OF_REGIME, ZONES
+from ballscrew_monitor.page.records import LEVELS, range_record, UNKNOWN, WORDS_OF_REGIME, ZONES
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.columns import JudgedColumns, LIGHT_LOAD, STANDSTILL
 from ballscrew_monitor.recordings.summary import EventRecord
@@ -31,7 +38,6 @@ Array = NDArray[np.float64]
 RATES = (0.1, 100.0)
 CLOCK_PERIOD = 0.5  # [s] between two frames of the clock
 CODES = ('zone', 'regime', 'reason')
-REASONS = {int(reason): reason.text for reason in Reason}
 QUANTITIES = {'RCS': 'rcs', 'efficiency': 'efficiency'}
 
 
@@ -85,8 +91,7 @@ class RecordedAxis:
             'tier': surface.tier,
             'surface_id': surface.sha256[:16],
             'corrected': 0,
-            'temperature_low_degC': low,
-            'temperature_high_degC': high,
+            **range_record(surface.speed_range, surface.load_range, (low, high)),
         }
         self.view.know(about, surface, '')
         self._limits = {
@@ -119,12 +124,15 @@ class RecordedAxis:
 
     def _state_record(self, row: Array, codes: NDArray[np.uint8]) -> dict[str, Any]:
         zone, regime, reason = codes.tolist()
-        _, _, load, _, efficiency, rcs, *_, level = row.tolist()
+        _, speed, load, warmth, efficiency, rcs, *_, level = row.tolist()
         _, headline = maps.judged(rcs, efficiency, load, self._case.settings.limits)
+        if zone == Zone.UNKNOWN:
+            opposing = opposing_load(load, direction_of(speed))
+            headline = unjudged(reason, abs(speed), opposing, warmth)
         return {
             'level': LEVELS.get(int(level), UNKNOWN),
             'zone': ZONES.get(zone, UNKNOWN),
-            'headline': REASONS[reason] if zone == Zone.UNKNOWN else headline,
+            'headline': headline,
             'regime': WORDS_OF_REGIME.get(regime, UNKNOWN),
             'inputs': [],
             'shelved': None,
@@ -144,7 +152,7 @@ def _event_record(event: EventRecord, stamp: float) -> dict[str, Any]:
         'limit': event.limit,
         'active': stamp < begin + event.duration,
         'shelved': False,
-        'words': event.advice,
+        'advice': advised(event.advice, event.target_speed, event.target_load),
     }
 
 

@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ElementTree
 
 from ballscrew_monitor.page import hub as hubs
 from ballscrew_monitor.page.hub import Hub
+from ballscrew_monitor.page.phrases import english
 from ballscrew_monitor.page.ros_side import RosSide, version_problem
 from ballscrew_monitor.settings.qos import started_node
 import pytest
@@ -104,8 +105,8 @@ def test_without_the_file_there_is_no_map_but_all_else(node, heard, quick_surfac
     heard.until(lambda view: view.surface, 'the surface')
     path.rename(quick_surface)
     with Heard(node) as later:
-        later.until(lambda view: view.no_map.startswith('no map'), 'the sentence')
-        assert later.view().no_map.startswith(says('no_file'))
+        later.until(lambda view: view.no_map['key'] == 'no_map_no_file', 'the reason')
+        assert english(later.view().no_map).startswith(says('no_file'))
         assert later.view().hello()['screw'] == 'nominal'
 
 
@@ -133,7 +134,7 @@ def test_a_node_of_another_version_is_named_and_not_heard(node, heard, monkeypat
 def test_versions_are_told_apart_by_the_hashes_of_their_types(says):
     assert version_problem('/m', ({'a'}, {'a'})) == ''
     assert version_problem('/m', (set(), {'a'})) == ''
-    assert version_problem('/m', ({'a', 'b'}, {'a'})) == says('version')
+    assert english(version_problem('/m', ({'a', 'b'}, {'a'}))) == says('version')
 
 
 def test_the_policy_of_sros2_allows_all_that_the_page_has(node, heard):
