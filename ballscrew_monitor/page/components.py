@@ -62,7 +62,7 @@ def languages() -> dict[str, dict[str, str]]:
         for file in ROOM.joinpath('languages').iterdir()
         if file.name.endswith('.json')
     }
-    return {ENGLISH: {}} | {name: read_json(text) for name, text in texts.items()}
+    return {name: read_json(text) for name, text in texts.items()}
 
 
 def language_of(accepted: str, wanted: str = '') -> str:
@@ -83,7 +83,7 @@ def _document(language: str, *body: str) -> str:
         'head',
         element('meta', charset='utf-8'),
         element('meta', name_='viewport', content='width=device-width, initial-scale=1'),
-        element('title', 'Ball screws'),
+        element('title', languages()[language]['title']),
         *sheets,
     )
     return f'<!DOCTYPE html>\n{element("html", head, element("body", *body), lang=language)}\n'
@@ -92,7 +92,7 @@ def _document(language: str, *body: str) -> str:
 @functools.cache
 def index(language: str = ENGLISH) -> str:
     """Return the page; all that changes comes over its socket."""
-    said = languages()[language].get('link_first', 'Waiting for the server.')
+    said = languages()[language]['link_first']
     scripts = (
         element('script', src=f'/components/{name}', defer='')
         for name in SCRIPTS

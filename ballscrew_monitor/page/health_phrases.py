@@ -42,7 +42,7 @@ def advice_phrase(health: AxisHealth) -> Said:
     codes = [CAUSES.get(one.code) for one in likely]
     if health.condition != AxisHealth.CONDITION_WORSE or not codes or None in codes:
         return free(health.advice) if health.advice else ''
-    # What is told of two causes alike is told once.
+    # Two causes may have one remedy, which is said once.
     told = {ADVICE[code]: phrase(f'remedy_{code.name.lower()}') for code in codes if code}
     return functools.reduce(_or, told.values())
 
