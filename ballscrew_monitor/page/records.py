@@ -5,10 +5,12 @@
 import math
 from typing import Any
 
+from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import Direction, opposing_load, seconds, signed
 from ballscrew_monitor.core.estimate import PointSource, PointValidity
 from ballscrew_monitor.core.inputs import InputState
 from ballscrew_monitor.core.judgement import Level, Reason, Zone
+from ballscrew_monitor.core.state import ACKNOWLEDGED
 from ballscrew_monitor.judge.zone import BY_VALIDITY
 from ballscrew_monitor.messages.health_messages import stamp_of
 from ballscrew_monitor.messages.state_messages import TIERS
@@ -203,6 +205,10 @@ def health_record(health: msg.AxisHealth) -> dict[str, Any]:
 
 def event_record(event: msg.OutOfZone) -> dict[str, Any]:
     """Return an event."""
+    targets = event.cause.target_speed, event.cause.target_load
+    advice, ending = str(event.advice), ''
+    if advice.startswith(ACKNOWLEDGED):
+        advice, ending = Advice(target_speed=targets[0], target_load=targets[1]).text, advice
     return {
         'id': event.event_id,
         'begin': seconds(stamp_of(event.start)),
@@ -212,7 +218,9 @@ def event_record(event: msg.OutOfZone) -> dict[str, Any]:
         'limit': event.cause.limit,
         'active': event.active,
         'shelved': event.shelved,
-        'advice': advised(event.advice, event.cause.target_speed, event.cause.target_load),
+        'advice': advised(advice, *targets),
+        'acknowledged': bool(ending),
+        'acknowledged_by': ending.partition(' by ')[2],
     }
 
 
@@ -223,8 +231,6 @@ def surface_record(info: msg.SurfaceInfo, unit: str) -> dict[str, Any]:
         'screw': info.screw,
         'oil': info.oil,
         'tier': WORDS_OF_TIER.get(info.tier, UNKNOWN),
-        'surface_id': info.sha256[:16],
-        'corrected': len(info.corrected_speed),
         **range_record(
             (info.speed_min, info.speed_max),
             (info.axial_load_min, info.axial_load_max),

@@ -18,7 +18,7 @@ from ballscrew_monitor.page import records
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.hub import Hub
 from ballscrew_monitor.page.phrases import phrase, Said
-from ballscrew_monitor.page.surfaces import known_surface
+from ballscrew_monitor.page.surfaces import SurfaceLink
 from ballscrew_monitor.settings.qos import LATCHED_QOS
 from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticArray
@@ -152,12 +152,14 @@ class AxisLink:
             for name, (kind, hear, qos) in kinds.items()
         ]
         self._parameters = node.create_client(GetParameters, f'{view.node}/get_parameters')
+        self._surface = SurfaceLink(node, view, post)
 
     def close(self) -> None:
         """Unsubscribe, and ask no more."""
         for one in self._subscriptions:
             self._node.destroy_subscription(one)
         self._node.destroy_client(self._parameters)
+        self._surface.close()
 
     def hashes(self) -> tuple[set[str], set[str]]:
         """Return the hashes of the type of the state, as it is sent and as we read it."""
@@ -166,7 +168,8 @@ class AxisLink:
         return sent_hashes(self._node, self.view.name), mine
 
     def ask(self) -> None:
-        """Ask for the parameters, until they are known; a first answer may be lost."""
+        """Ask for parameters and corrections until they are known; a first answer may be lost."""
+        self._surface.ask()
         if self._values or not self._parameters.service_is_ready():
             return
         names = [f'{self.view.axis}.{leaf}' for leaf in LEAVES]
@@ -197,4 +200,4 @@ class AxisLink:
     def _tell_surface(self) -> None:
         if self._info is not None and self._values:
             about = records.surface_record(self._info, self._values['speed.unit'])
-            self._post(self.view.know, about, *known_surface(self._info, self._values['surface']))
+            self._surface.tell(about, self._info, self._values['surface'])

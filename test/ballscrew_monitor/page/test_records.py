@@ -8,8 +8,11 @@ import math
 from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.estimate import PointSource, PointValidity
+from ballscrew_monitor.core.memory import RESTARTED
+from ballscrew_monitor.core.state import Acknowledgement, NAMELESS
 from ballscrew_monitor.page import records
 from ballscrew_monitor.page.history import COLUMNS
+from ballscrew_monitor.page.phrases import advised
 from ballscrew_msgs import msg
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
@@ -19,6 +22,7 @@ import pytest
 from surrogate.files import to_json
 from surrogate.units import RPM
 
+TARGETS = Advice(target_speed=600.0 * RPM, target_load=-812.0)
 ADVICE = Advice(target_speed=600.0 * RPM, target_load=-812.0, carry='surely')
 
 
@@ -157,6 +161,25 @@ def test_a_fault_is_told_by_its_code_unless_the_screen_says_it_already(page_part
     view.hear_code('Inputs', records.code_of(status))
     assert page_parts.read(view.news(0.0, 0.0)[-1])[0]['faults'] == told
     assert records.code_of(DiagnosticStatus()) == 0
+
+
+@given(name=st.text(min_size=1), reason=st.text(), advice=st.sampled_from([Advice(), TARGETS]))
+def test_an_event_says_by_whom_it_was_acknowledged_and_keeps_its_advice(name, reason, advice):
+    """Whoever did it, on this page or elsewhere; one that ended by itself was not."""
+    event = msg.OutOfZone(event_id=3, advice=Acknowledgement(name=name, reason=reason).ending)
+    event.cause.target_speed, event.cause.target_load = advice.target_speed, advice.target_load
+    record = records.event_record(event)
+    assert record['acknowledged']
+    assert record['acknowledged_by'] == (f'{name}: {reason}' if reason else name)
+    assert record['advice'] == advised(advice.text, advice.target_speed, advice.target_load)
+    event.advice = NAMELESS.ending
+    record = records.event_record(event)
+    assert (record['acknowledged'], record['acknowledged_by']) == (True, '')
+    for words in filter(None, (advice.text, RESTARTED)):
+        event.advice = words
+        record = records.event_record(event)
+        assert not record['acknowledged']
+        assert (record['advice'] == {'free': words}) is (words == RESTARTED)
 
 
 def test_diagnostics_of_axes_are_told_from_others():
