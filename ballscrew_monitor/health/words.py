@@ -4,6 +4,7 @@
 
 from collections.abc import Sequence
 import dataclasses
+import enum
 import math
 from typing import Any
 
@@ -46,30 +47,46 @@ def percent(quantity: Quantity) -> str:
     return f'{value:+.0f} % ({low:+.0f} to {high:+.0f} %)'
 
 
-def _why(drag: Quantity, preload: Quantity, causes: Sequence[Cause]) -> str:
+class Certainty(enum.Enum):
+    """How sure the cause of a change is, in words around it."""
+
+    NONE = 'the cause is not known'
+    PERHAPS = 'perhaps {}, or the preload is lost, which could not be tried'
+    LIKELY = 'most likely {}'
+    SURE = 'the cause is that {}'
+
+
+def explained(change: float, causes: Sequence[Any]) -> tuple[Certainty, Sequence[Any]]:
+    """
+    Return how sure the cause of a change of the drag [-] is, and the likely ones, the best first.
+
+    `causes` are those of health or of its message.
+
+    """
     fitting = [one for one in causes if not one.excluded]
-    if not fitting:
-        return 'the cause is not known'
-    best = fitting[0]
-    if best.code is CauseCode.PRELOAD_LOST and preload.is_known:
+    likely = [one for one in fitting if one.weight > 0.25 * fitting[0].weight]
+    if not likely:
+        return Certainty.NONE, likely
+    if change < 0.0 and all(one.code != CauseCode.PRELOAD_LOST for one in causes):
+        return Certainty.PERHAPS, likely
+    return Certainty.LIKELY if len(likely) > 1 else Certainty.SURE, likely
+
+
+def _why(drag: Quantity, preload: Quantity, causes: Sequence[Cause]) -> str:
+    certainty, likely = explained(drag.value, causes)
+    said = likely[0].text if likely else ''
+    if likely and likely[0].code is CauseCode.PRELOAD_LOST and preload.is_known:
         value, low, high = (100 * part for part in (preload.value, preload.low, preload.high))
         said = f'the preload is {value:.0f} % of what it was ({low:.0f} to {high:.0f} %)'
-    else:
-        said = best.text
-    if drag.value < 0.0 and all(one.code is not CauseCode.PRELOAD_LOST for one in causes):
-        return f'perhaps {said}, or the preload is lost, which could not be tried'
-    others = [one for one in fitting[1:] if one.weight > 0.25 * best.weight]
-    return f'most likely {said}' if others else f'the cause is that {said}'
+    return certainty.value.format(said)
 
 
 def advice_of(condition: Condition, causes: Sequence[Cause]) -> str:
     """Return what to do about the likely causes, empty for nothing."""
-    fitting = [one for one in causes if not one.excluded]
-    if condition is not Condition.WORSE or not fitting:
+    if condition is not Condition.WORSE:
         return ''
-    told = [one for one in fitting if one.weight > 0.25 * fitting[0].weight]
-    texts = list(dict.fromkeys(ADVICE[one.code] for one in told))
-    return '; or '.join(texts)
+    _, likely = explained(math.nan, causes)
+    return '; or '.join(dict.fromkeys(ADVICE[one.code] for one in likely))
 
 
 def health_record(health: Health) -> dict[str, Any]:

@@ -14,11 +14,15 @@ from concurrent.futures import Future
 import math
 from typing import Any
 
+from action_msgs.msg import GoalStatus
 from ballscrew_monitor.clients.solve import goal_of, Question
+from ballscrew_monitor.core.conversions import clock_text
+from ballscrew_monitor.messages.health_messages import stamp_of
 from ballscrew_monitor.page import maps
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.hub import Browser, Hub
+from ballscrew_monitor.page.phrases import free, Phrase, phrase, Refused
 from ballscrew_monitor.page.questions import Answer, Handler, number_in, text_in
 from ballscrew_monitor.page.records import UNKNOWN, WORDS_OF_REGIME
 from ballscrew_msgs.action import SolveOperatingPoint
@@ -65,48 +69,50 @@ class Acting:
         view, name = self._hub.view(text_in(request, 'axis')), text_in(request, 'name')
         reason = text_in(request, 'reason') if request.get('reason') else ''
         asked = AcknowledgeAlarm.Request(axis=view.axis, name=name, reason=reason)
-        return {'message': await self._call(view, AcknowledgeAlarm, 'acknowledge_as', asked)}, {}
+        said = (await self._call(view, AcknowledgeAlarm, 'acknowledge_as', asked)).message
+        plain, done = f'acknowledged of {view.axis} by {name}', phrase('acknowledged', name=name)
+        return {'message': done if said == plain else free(said)}, {}
 
     async def _shelve(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
         view, name = self._hub.view(text_in(request, 'axis')), text_in(request, 'name')
         duration = number_in(request, 'minutes') * MINUTE
         reason = f'{text_in(request, "reason")} ({name})' if duration else ''
         asked = ShelveAlarm.Request(axis=view.axis, duration=duration, reason=reason)
-        return {'message': await self._call(view, ShelveAlarm, 'shelve', asked)}, {}
+        answer = await self._call(view, ShelveAlarm, 'shelve', asked)
+        until = clock_text(stamp_of(answer.until))
+        plain, done = f'shelved until {until}: {view.axis}', phrase('shelved_until', until=until)
+        return {'message': done if answer.message == plain else free(answer.message)}, {}
 
-    async def _call(self, view: AxisView, kind: Any, name: str, request: Any) -> str:
+    async def _call(self, view: AxisView, kind: Any, name: str, request: Any) -> Any:
         """Return what a service answers; raises InputError with its refusal, or without one."""
         client = await self._in_ros(self._node.create_client, kind, f'{view.node}/{name}')
         answers: list[Any] = []
         try:
             if not await _waited(client.service_is_ready, PATIENCE):
-                raise InputError(await self._in_ros(self._why_silent, view.node, name))
+                raise Refused(await self._in_ros(self._why_silent, view.node, name))
             for patience in (REPEAT, PATIENCE):
                 answers.append(await self._in_ros(client.call_async, request))
                 if await _waited(lambda: any(one.done() for one in answers), patience):
                     break
             else:
-                raise InputError(f'{view.node} does not answer within {PATIENCE:g} s')
+                raise Refused(_silent('node_silent', PATIENCE, node=view.node))
         finally:
             await self._in_ros(self._node.destroy_client, client)
         answer = next(one.result() for one in answers if one.done())
         if not answer.success:
             raise InputError(answer.message)
-        return str(answer.message)
+        return answer
 
-    def _why_silent(self, node: str, name: str) -> str:
+    def _why_silent(self, node: str, name: str) -> Phrase:
         """Return why a service of a `node` is not there: one of an older version lacks it."""
         if node in self._node.get_fully_qualified_node_names():
-            return (
-                f'{node} has no service {name}, it is older than this page: '
-                'install the same version of ballscrew_monitor on both'
-            )
-        return f'{node} does not answer within {PATIENCE:g} s'
+            return phrase('node_older', node=node, name=name)
+        return _silent('node_silent', PATIENCE, node=node)
 
     async def _solve(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
         view = self._hub.view(text_in(request, 'axis'))
         if len(self._solves) >= MOST_SOLVES:
-            raise InputError(f'{MOST_SOLVES} solves are under way, wait for one of them to end')
+            raise Refused(phrase('solves_many', count=str(MOST_SOLVES)))
         question = Question(
             axis=view.axis,
             speed=number_in(request, 'speed_rpm') * RPM,
@@ -130,16 +136,16 @@ class Acting:
 
     async def _solved(self, client: Any, question: Question, key: tuple[Browser, Any]) -> Any:
         """Return the result of a goal; a browser that leaves takes it back."""
-        await self._until(client.server_is_ready, PATIENCE, 'the node offers no solve')
+        await self._until(client.server_is_ready, PATIENCE, 'solve_none')
         post = asyncio.get_running_loop().call_soon_threadsafe
         goal = goal_of(question)
         sent = await self._in_ros(
             client.send_goal_async, goal, lambda step: post(_tell_progress, *key, step)
         )
-        await self._until(sent.done, PATIENCE, 'the node does not answer')
+        await self._until(sent.done, PATIENCE, 'solve_silent')
         handle = sent.result()
         if not handle.accepted:
-            raise InputError('the node refuses this solve, its log says why')
+            raise Refused(phrase('solve_refused'))
         self._solves[key] = handle
         answer = await self._in_ros(handle.get_result_async)
         while not answer.done():
@@ -147,8 +153,10 @@ class Acting:
                 await self._in_ros(handle.cancel_goal_async)
                 raise InputError('the browser has left')
             if not client.server_is_ready():
-                raise InputError('the node has left during the solve')
+                raise Refused(phrase('solve_node_left'))
             await asyncio.sleep(POLL)
+        if answer.result().status == GoalStatus.STATUS_CANCELED:
+            raise Refused(phrase('solve_cancelled'))
         return answer.result().result
 
     async def _cancel(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
@@ -170,12 +178,17 @@ class Acting:
                 done.set_exception(error)
 
         self._node.executor.create_task(calling)
-        await self._until(done.done, STUCK, 'ROS does not answer')
+        await self._until(done.done, STUCK, 'ros_silent')
         return done.result()
 
-    async def _until(self, condition: Callable[[], Any], seconds: float, complaint: str) -> None:
+    async def _until(self, condition: Callable[[], Any], seconds: float, key: str) -> None:
         if not await _waited(condition, seconds):
-            raise InputError(f'{complaint} within {seconds:g} s')
+            raise Refused(_silent(key, seconds))
+
+
+def _silent(key: str, seconds: float, **values: str) -> Phrase:
+    """Return that there is no answer within some `seconds` [s]."""
+    return phrase(key, seconds=f'{seconds:g}', **values)
 
 
 async def _waited(condition: Callable[[], Any], seconds: float) -> bool:
@@ -209,5 +222,5 @@ def _solve_record(question: Question, result: Any, view: AxisView) -> dict[str, 
         'torque_N_m': full.driving_torque,
         'regime': WORDS_OF_REGIME.get(full.regime, UNKNOWN),
         'zone': zone,
-        'words': '; '.join(filter(None, (result.status, result.correction))),
+        'words': free('; '.join(filter(None, (result.status, result.correction)))),
     }

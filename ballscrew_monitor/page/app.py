@@ -101,14 +101,14 @@ class PageApp:
         return components.language_of(accepted, self._language)
 
     async def _login(self, request: Request) -> Response:
+        language = self._language_of(request)
         if request.method != 'POST':
-            return HTMLResponse(components.login(), status_code=401)
+            return HTMLResponse(components.login(language), status_code=401)
         accepted = await self._tokens.accept(await _token_in(request))
         if accepted is None:
-            said = 'Too many wrong tokens at the same time, try again in some seconds.'
-            return HTMLResponse(components.login(said), status_code=429)
+            return HTMLResponse(components.login(language, 'login_busy'), status_code=429)
         if not accepted:
-            return HTMLResponse(components.login('This is not the token.'), status_code=401)
+            return HTMLResponse(components.login(language, 'login_wrong'), status_code=401)
         answer = RedirectResponse('/', status_code=303)
         answer.set_cookie(
             COOKIE,

@@ -11,18 +11,21 @@ from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.page import maps
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.history import columns_of, History
+from ballscrew_monitor.page.phrases import phrase, Said
 from ballscrew_monitor.page.records import UNKNOWN
-from ballscrew_monitor.recordings.words import feed_first
 from surrogate.files import to_json
 from surrogate.surface import Surface
 from surrogate.units import MILLI
 
 MOST_EVENTS = 100  # the newest are kept
-NOTHING = {'level': UNKNOWN, 'zone': UNKNOWN, 'headline': 'nothing has been heard yet'}
+NOTHING = {'level': UNKNOWN, 'zone': UNKNOWN, 'headline': phrase('nothing_heard')}
 NO_LIMITS = dict.fromkeys(('efficiency_limit', 'rcs_limit', 'light_load_N', 'standstill_rpm'))
 INACTIVE, GONE, ACTIVE = 'inactive', 'gone', 'active'
 """States of a node."""
-LUBRICATION, INPUTS, _ = diagnostics.PARTS
+LUBRICATION = diagnostics.PARTS[0]
+SEEN_FAULTS = {Fault.NONE, Fault.INACTIVE, Fault.NOTHING_YET, Fault.WORSE, Fault.NOT_KNOWN}
+TOLD_FAULTS = {int(one) for one in Fault if one.status != LUBRICATION} - SEEN_FAULTS
+"""Codes that are told beside level, reason and condition, which say the others."""
 
 
 class AxisView:
@@ -36,7 +39,7 @@ class AxisView:
         self.state: Mapping[str, Any] = NOTHING
         self.limits: Mapping[str, Any] = NO_LIMITS
         self.about: Mapping[str, Any] = {}
-        self.no_map = 'the surface of this axis is not known yet'
+        self.no_map: Said = phrase('no_map_yet')
         self.health: Mapping[str, Any] | None = None
         self.events: dict[int, Mapping[str, Any]] = {}
         self.warmth = math.nan  # of the oil as it was last known [degC]
@@ -44,7 +47,7 @@ class AxisView:
         self.without = 0  # corrections of the node that the surface lacks
         self.map_frame: bytes | None = None
         self.grades: list[str] = []  # oils of which there are surfaces
-        self.words: dict[str, str] = {}  # of the diagnostics by their parts
+        self.codes: dict[str, int] = {}  # of the diagnostics by their parts
         self.is_changed = False  # what `hello` says
         self._heard = math.nan  # [s]
         self._sent = 0  # rows
@@ -70,17 +73,17 @@ class AxisView:
         self.limits = limits
 
     def know(
-        self, about: Mapping[str, Any], surface: Surface | None, no_map: str, without: int = 0
+        self, about: Mapping[str, Any], surface: Surface | None, no_map: Said, without: int = 0
     ) -> None:
         """Take what it is, and its surface `without` some corrections, or why that is missing."""
         self.about, self.surface, self.no_map, self.without = about, surface, no_map, without
         self.map_frame, self.is_changed = None, True
 
-    def hear_words(self, part: str, words: str) -> None:
-        """Take what the diagnostics say of a part of the axis."""
-        self.words[part] = words
+    def hear_code(self, part: str, code: int) -> None:
+        """Take the code of the diagnostics of a part of the axis."""
+        self.codes[part] = code
         if part == LUBRICATION and self.standing != GONE:
-            self.stand(INACTIVE if words == Fault.INACTIVE.text else ACTIVE)
+            self.stand(INACTIVE if code == Fault.INACTIVE else ACTIVE)
 
     def stand(self, standing: str) -> None:
         """Take the state of the node."""
@@ -168,9 +171,7 @@ class AxisView:
         return frame('events', {'axis': self.name, 'events': events})
 
     def _told(self, event: Mapping[str, Any]) -> dict[str, Any]:
-        words = event['words']
-        advice = feed_first(words, self.lead) if math.isfinite(self.lead) else words
-        return {**event, 'advice': advice, 'since_s': event['duration_s']}
+        return {**event, 'since_s': event['duration_s']}
 
     def _state_frame(self, now: float, since: int, *, health: bool) -> bytes:
         told = self._told(self.events[max(self.events)]) if self.events else None
@@ -182,7 +183,7 @@ class AxisView:
             'event': told,
             'limit': self.limit,
             'standing': self.standing,
-            'inputs_words': self.words.get(INPUTS, ''),
+            'faults': sorted(TOLD_FAULTS.intersection(self.codes.values())),
         }
         if health:
             record['health'] = self.health

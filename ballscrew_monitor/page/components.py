@@ -62,7 +62,7 @@ def languages() -> dict[str, dict[str, str]]:
         for file in ROOM.joinpath('languages').iterdir()
         if file.name.endswith('.json')
     }
-    return {ENGLISH: {}} | {name: read_json(text) for name, text in texts.items()}
+    return {name: read_json(text) for name, text in texts.items()}
 
 
 def language_of(accepted: str, wanted: str = '') -> str:
@@ -83,7 +83,7 @@ def _document(language: str, *body: str) -> str:
         'head',
         element('meta', charset='utf-8'),
         element('meta', name_='viewport', content='width=device-width, initial-scale=1'),
-        element('title', 'Ball screws'),
+        element('title', languages()[language]['title']),
         *sheets,
     )
     return f'<!DOCTYPE html>\n{element("html", head, element("body", *body), lang=language)}\n'
@@ -92,7 +92,7 @@ def _document(language: str, *body: str) -> str:
 @functools.cache
 def index(language: str = ENGLISH) -> str:
     """Return the page; all that changes comes over its socket."""
-    said = languages()[language].get('link_first', 'Waiting for the server.')
+    said = languages()[language]['link_first']
     scripts = (
         element('script', src=f'/components/{name}', defer='')
         for name in SCRIPTS
@@ -102,14 +102,15 @@ def index(language: str = ENGLISH) -> str:
     return _document(language, main, *scripts)
 
 
-def login(said: str = '') -> str:
-    """Return the form that asks for the token, and what became of the last one."""
+def login(language: str = ENGLISH, key: str = '') -> str:
+    """Return the form that asks for the token, and by a key what became of the last one."""
+    words = languages()[language]
     field = element('input', type='password', name_='token', autocomplete='current-password')
     form = element(
         'form',
-        element('label', 'Token ', field),
-        element('button', 'Open', type='submit'),
+        element('label', f'{words["login_token"]} ', field),
+        element('button', words['login_open'], type='submit'),
         method='post',
         action='/login',
     )
-    return _document(ENGLISH, element('main', form, element('p', said)))
+    return _document(language, element('main', form, element('p', words.get(key, ''))))

@@ -17,6 +17,7 @@ from typing import Any
 from ballscrew_monitor.page.axis_view import ACTIVE, AxisView, GONE
 from ballscrew_monitor.page.components import ENGLISH, languages
 from ballscrew_monitor.page.frames import frame
+from ballscrew_monitor.page.phrases import Phrase, phrase, Said
 from surrogate.files import InputError
 
 VERSION = 1  # of the frames
@@ -26,10 +27,7 @@ MOST_WAITING = 512  # frames for a browser
 MOST_REPLIES = 64
 MOST_AXES = 64
 MOST_BROWSERS = 100
-NO_NODE = (
-    'no node of ballscrew_monitor is in the ROS graph yet: start one, and mind ROS_DOMAIN_ID and '
-    'ROS_AUTOMATIC_DISCOVERY_RANGE'
-)
+NO_NODE = phrase('waits_for_node')
 
 
 class Browser:
@@ -87,12 +85,12 @@ class Browser:
 class Hub:
     """Axes and browsers; `acting` tells whether a browser may change something."""
 
-    def __init__(self, *, acting: bool = False, waiting: str = NO_NODE) -> None:
+    def __init__(self, *, acting: bool = False, waiting: Phrase = NO_NODE) -> None:
         """Begin with nobody; `waiting` is said while there is no axis."""
         self.acting, self._waiting = acting, waiting
         self.axes: dict[str, AxisView] = {}
         self.browsers: set[Browser] = set()
-        self.notices: dict[str, str] = {}  # why a node is not shown
+        self.notices: dict[str, Said] = {}  # why a node is not shown
         self.clock: Callable[[], Mapping[str, Any]] | None = None  # of a recording
         self._is_changed = False
         self._dropped = 0  # of browsers that have left
@@ -120,7 +118,7 @@ class Hub:
         if name in self.axes:
             self.axes[name].stand(GONE)
 
-    def notice(self, node: str, words: str) -> None:
+    def notice(self, node: str, words: Said) -> None:
         """Say why a node is not shown, or with empty words that it is."""
         if self.notices.get(node, '') != words:
             self.notices[node] = words

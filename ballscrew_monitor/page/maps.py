@@ -15,10 +15,11 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import celsius, Direction, kelvin, opposing_load
 from ballscrew_monitor.core.estimate import estimate, MachinePoint
-from ballscrew_monitor.core.judgement import Code, Limits, violation
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.judge.zone import BY_VALIDITY
 from ballscrew_monitor.page.history import COLUMNS
+from ballscrew_monitor.page.phrases import phrase, Said, unjudged, violated
 from ballscrew_monitor.page.records import UNKNOWN, WORDS_OF_REGIME
-from ballscrew_monitor.recordings.words import number
 from ballscrew_monitor.report.map_record import map_line, map_lines, MapLine, NO_NUMBER, zone_cells
 from ballscrew_monitor.report.operating_field import (
     Field,
@@ -186,8 +187,9 @@ def point_of(
     )
     found = estimate(point, surface, rcs_limit=limits.rcs)
     zone, words = judged(found.rcs, found.efficiency, load, limits)
+    turns, reason = abs(speed) / RPM, BY_VALIDITY[found.validity]
     return {
-        'speed_rpm': abs(speed) / RPM,
+        'speed_rpm': turns,
         'load_N': load,
         'temperature_degC': temperature,
         'efficiency': found.efficiency,
@@ -196,19 +198,19 @@ def point_of(
         'torque_N_m': found.machine_torque,
         'regime': WORDS_OF_REGIME.get(found.regime, UNKNOWN),
         'zone': zone,
-        'words': found.reason or words,
+        'words': words or unjudged(reason, turns, load, temperature),
     }
 
 
-def judged(rcs: float, efficiency: float, load: float, limits: Limits) -> tuple[str, str]:
+def judged(rcs: float, efficiency: float, load: float, limits: Limits) -> tuple[str, Said]:
     """Return the zone of numbers at an opposing load [N], and what is wrong with them."""
     if math.isnan(rcs):
         return UNKNOWN, ''
     if rcs >= limits.rcs:
-        return 'outside', violation(Code.RCS_HIGH, rcs, limits.rcs).text
+        return 'outside', violated('rcs', rcs, limits.rcs)
     if abs(load) >= limits.light_load and not efficiency >= limits.efficiency:
-        return 'outside', violation(Code.EFFICIENCY_LOW, efficiency, limits.efficiency).text
-    return 'optimal', 'optimal'
+        return 'outside', violated('efficiency', efficiency, limits.efficiency)
+    return 'optimal', phrase('optimal')
 
 
 def ghosts_of(
@@ -249,12 +251,12 @@ def ghosts_of(
     return {'ghosts': ghosts}, arrays
 
 
-def _left_out(unknown: float) -> str:
+def _left_out(unknown: float) -> Said:
     """Return what becomes of the part of a motion [-] that no surface knows."""
     if not unknown > 0.0:
         return ''
-    end = ' and is left out' if unknown <= MOST_UNKNOWN else ': the energy lost is not known'
-    return f'{number(100.0 * unknown)} % of the time lies beyond the surface{end}'
+    key = 'ghost_left_out' if unknown <= MOST_UNKNOWN else 'ghost_not_known'
+    return phrase(key, share={'share': unknown})
 
 
 def oil_temperature(rows: Array, surface: Surface) -> float:

@@ -12,6 +12,7 @@ import weakref
 
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.hub import Browser
+from ballscrew_monitor.page.phrases import free, phrase, Refused
 from surrogate.files import InputError
 from surrogate.limits import read_json
 
@@ -64,7 +65,7 @@ class Questions:
             handler = self._handler(request)
         except InputError as error:
             manners.faults += 1
-            _tell(browser, request, _refusal(str(error)))
+            _tell(browser, request, _refusal(error))
             return manners.faults <= MOST_FAULTS
         answering = asyncio.create_task(self._answer(handler, browser, request))
         if request['do'] in self._long:
@@ -81,10 +82,10 @@ class Questions:
         try:
             answer = await handler(browser, request)
         except InputError as error:
-            answer = _refusal(str(error))
+            answer = _refusal(error)
         except Exception as error:  # the page goes on, whatever it is
             LOG.exception('a request failed')
-            answer = _refusal(f'a fault of the program: {error!r}')
+            answer = _refusal(Refused(phrase('program_fault', why=free(repr(error)))))
         _tell(browser, request, answer)
 
     def _handler(self, request: Mapping[str, Any]) -> Handler:
@@ -101,8 +102,9 @@ class Questions:
             raise InputError(f'more than {MOST_A_SECOND} requests came within a second')
 
 
-def _refusal(message: str) -> Answer:
-    return {'ok': False, 'message': message}, {}
+def _refusal(error: InputError) -> Answer:
+    said = error.said if isinstance(error, Refused) else str(error)
+    return {'ok': False, 'message': said}, {}
 
 
 def _tell(browser: Browser, request: Mapping[str, Any], answer: Answer) -> None:

@@ -7,16 +7,30 @@ from collections.abc import Iterable, Mapping
 import dataclasses
 from typing import Any
 
-from ballscrew_monitor.core.conversions import celsius, SECOND, seconds
-from ballscrew_monitor.core.judgement import Reason, Zone
+from ballscrew_monitor.core.conversions import (
+    celsius,
+    direction_of,
+    opposing_load,
+    SECOND,
+    seconds,
+)
+from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.messages.state_messages import fill_totals
 from ballscrew_monitor.page import maps
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.history import SPAN
 from ballscrew_monitor.page.hub import Browser, Hub, PERIOD
+from ballscrew_monitor.page.phrases import advised, unjudged
 from ballscrew_monitor.page.questions import Answer, Handler, number_in
-from ballscrew_monitor.page.records import LEVELS, totals_record, UNKNOWN, WORDS_OF_REGIME, ZONES
+from ballscrew_monitor.page.records import (
+    LEVELS,
+    range_record,
+    totals_record,
+    UNKNOWN,
+    WORDS_OF_REGIME,
+    ZONES,
+)
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.columns import JudgedColumns, LIGHT_LOAD, STANDSTILL
 from ballscrew_monitor.recordings.summary import EventRecord
@@ -33,7 +47,6 @@ Array = NDArray[np.float64]
 RATES = (0.1, 100.0)
 CLOCK_PERIOD = 0.5  # [s] between two frames of the clock
 CODES = ('zone', 'regime', 'reason')
-REASONS = {int(reason): reason.text for reason in Reason}
 QUANTITIES = {'RCS': 'rcs', 'efficiency': 'efficiency'}
 
 
@@ -85,8 +98,7 @@ class RecordedAxis:
             'screw': surface.screw_name,
             'oil': surface.oil_name,
             'tier': surface.tier,
-            'temperature_low_degC': low,
-            'temperature_high_degC': high,
+            **range_record(surface.speed_range, surface.load_range, (low, high)),
         }
         self.view.know(about, surface, '')
         totals = msg.Totals()
@@ -122,12 +134,15 @@ class RecordedAxis:
 
     def _state_record(self, row: Array, codes: NDArray[np.uint8]) -> dict[str, Any]:
         zone, regime, reason = codes.tolist()
-        _, _, load, _, efficiency, rcs, *_, level = row.tolist()
+        _, speed, load, warmth, efficiency, rcs, *_, level = row.tolist()
         _, headline = maps.judged(rcs, efficiency, load, self._case.settings.limits)
+        if zone == Zone.UNKNOWN:
+            opposing = opposing_load(load, direction_of(speed))
+            headline = unjudged(reason, abs(speed), opposing, warmth)
         return {
             'level': LEVELS.get(int(level), UNKNOWN),
             'zone': ZONES.get(zone, UNKNOWN),
-            'headline': REASONS[reason] if zone == Zone.UNKNOWN else headline,
+            'headline': headline,
             'regime': WORDS_OF_REGIME.get(regime, UNKNOWN),
             'inputs': [],
             'shelved': None,
@@ -147,9 +162,9 @@ def _event_record(event: EventRecord, stamp: float) -> dict[str, Any]:
         'limit': event.limit,
         'active': stamp < begin + event.duration,
         'shelved': False,
+        'advice': advised(event.advice, event.target_speed, event.target_load),
         'acknowledged': False,
         'acknowledged_by': '',
-        'words': event.advice,
     }
 
 

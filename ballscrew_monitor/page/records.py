@@ -6,15 +6,28 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.advice import Advice
-from ballscrew_monitor.core.conversions import Direction, seconds, signed
-from ballscrew_monitor.core.estimate import PointSource
+from ballscrew_monitor.core.conversions import Direction, opposing_load, seconds, signed
+from ballscrew_monitor.core.estimate import PointSource, PointValidity
 from ballscrew_monitor.core.inputs import InputState
-from ballscrew_monitor.core.judgement import Level, Zone
+from ballscrew_monitor.core.judgement import Level, Reason, Zone
 from ballscrew_monitor.core.state import ACKNOWLEDGED
+from ballscrew_monitor.judge.zone import BY_VALIDITY
 from ballscrew_monitor.messages.health_messages import stamp_of
 from ballscrew_monitor.messages.state_messages import TIERS
+from ballscrew_monitor.page.health_phrases import advice_phrase, verdict_phrase
+from ballscrew_monitor.page.phrases import (
+    advised,
+    detailed,
+    free,
+    missing,
+    Phrase,
+    phrase,
+    unjudged,
+    violated,
+)
 from ballscrew_msgs import msg
 from ballscrew_msgs.msg import BallScrewState
+from diagnostic_msgs.msg import DiagnosticStatus
 from surrogate.surface import REGIMES
 from surrogate.units import RPM
 
@@ -26,7 +39,11 @@ STATES_OF_INPUT = {int(state): state.name.lower() for state in InputState}
 CONDITIONS = {msg.AxisHealth.CONDITION_NORMAL: 'normal', msg.AxisHealth.CONDITION_WORSE: 'worse'}
 UNKNOWN = 'unknown'
 QUANTITIES = {msg.Finding.CODE_RCS_HIGH: 'rcs', msg.Finding.CODE_EFFICIENCY_LOW: 'efficiency'}
+OF_UNJUDGED = msg.Finding.CODE_OUT_OF_RANGE, msg.Finding.CODE_INPUT_LOST
 WORDS_OF_TIER = {code: tier for tier, code in TIERS.items()}
+Pair = tuple[float, float]
+OF_TORQUE = Reason.NO_DIRECTION, Reason.LOAD_OUT_OF_RANGE
+"""What is said of a point in motion whose load the motor torque does not tell."""
 NAN = math.nan
 
 
@@ -70,17 +87,61 @@ def state_record(state: BallScrewState) -> dict[str, Any]:
     }
 
 
-def headline(state: BallScrewState) -> str:
+def headline(state: BallScrewState) -> Phrase:
     """Return in one sentence why the level or the zone is what it is."""
-    found = sorted(state.findings, key=lambda one: -one.severity)
-    if found:
-        return str(found[0].text)
+    worst = max(state.findings, key=lambda one: one.severity, default=None)
+    if worst is None:
+        return _without_finding(state)
+    if worst.code in QUANTITIES:
+        quantity = QUANTITIES[worst.code]
+        derived = quantity == 'efficiency' and _is_derived(state)
+        return violated(quantity, worst.value, worst.limit, derived=derived)
+    return why_unjudged(state) if worst.code in OF_UNJUDGED else free(worst.text)
+
+
+def _without_finding(state: BallScrewState) -> Phrase:
     if BallScrewState.GATE_STANDSTILL in state.active_gates:
-        return 'the screw stands still'
+        return _unjudged(state, Reason.STANDSTILL)
     if state.zone == Zone.OPTIMAL:
         light = BallScrewState.GATE_LIGHT_LOAD in state.active_gates
-        return 'optimal, the load is too light to judge the efficiency' if light else 'optimal'
-    return str(state.result.reason) or 'nothing has been judged yet'
+        return phrase('optimal_light' if light else 'optimal')
+    return why_unjudged(state) if state.result.reason else phrase('nothing_judged')
+
+
+def why_unjudged(state: BallScrewState) -> Phrase:
+    """Return why an instant has no zone; a code of another version has the words of its node."""
+    validity, said = state.result.validity, str(state.result.reason)
+    if validity == PointValidity.NO_INPUT:
+        return missing(_missing(state))
+    if validity >= len(BY_VALIDITY):
+        return free(said)
+    reason = BY_VALIDITY[validity]
+    if reason in OF_TORQUE and _is_derived(state) and state.point.direction:
+        return detailed(_unjudged(state, Reason.NO_DERIVED_LOAD), said)
+    return _unjudged(state, reason)
+
+
+def _unjudged(state: BallScrewState, reason: int) -> Phrase:
+    point = state.point
+    direction = Direction.NEGATIVE if point.direction == Direction.NEGATIVE else Direction.POSITIVE
+    load = opposing_load(point.axial_load, direction)
+    return unjudged(reason, abs(point.speed) / RPM, load, point.temperature)
+
+
+def _is_derived(state: BallScrewState) -> bool:
+    """Tell whether the load follows from the motor torque."""
+    return any(one.name == 'load' and one.state == InputState.DERIVED for one in state.inputs)
+
+
+def _missing(state: BallScrewState) -> list[str]:
+    """Return the inputs of a point without a valid sample; a derived load rests on the torque."""
+    load = 'motor_torque' if _is_derived(state) else 'axial_load'
+    fields = {'speed': 'speed', 'load': load, 'temperature': 'temperature'}
+    return [
+        'torque' if field == 'motor_torque' else name
+        for name, field in fields.items()
+        if math.isnan(_fresh(getattr(state.point, field), getattr(state.point, f'{field}_source')))
+    ]
 
 
 def _input(health: msg.InputHealth) -> dict[str, Any]:
@@ -124,8 +185,8 @@ def health_record(health: msg.AxisHealth) -> dict[str, Any]:
     return {
         'condition': CONDITIONS.get(health.condition, UNKNOWN),
         'warning': health.warning,
-        'verdict': health.verdict,
-        'advice': health.advice,
+        'verdict': verdict_phrase(health),
+        'advice': advice_phrase(health),
         'notes': list(health.notes),
         'quantities': [
             {
@@ -143,11 +204,11 @@ def health_record(health: msg.AxisHealth) -> dict[str, Any]:
 
 
 def event_record(event: msg.OutOfZone) -> dict[str, Any]:
-    """Return an event, without the advice in terms of its axis."""
+    """Return an event."""
+    targets = event.cause.target_speed, event.cause.target_load
     advice, ending = str(event.advice), ''
     if advice.startswith(ACKNOWLEDGED):
-        targets = {name: getattr(event.cause, name) for name in ('target_speed', 'target_load')}
-        advice, ending = Advice(**targets).text, advice
+        advice, ending = Advice(target_speed=targets[0], target_load=targets[1]).text, advice
     return {
         'id': event.event_id,
         'begin': seconds(stamp_of(event.start)),
@@ -157,7 +218,7 @@ def event_record(event: msg.OutOfZone) -> dict[str, Any]:
         'limit': event.cause.limit,
         'active': event.active,
         'shelved': event.shelved,
-        'words': advice,
+        'advice': advised(advice, *targets),
         'acknowledged': bool(ending),
         'acknowledged_by': ending.partition(' by ')[2],
     }
@@ -170,9 +231,30 @@ def surface_record(info: msg.SurfaceInfo, unit: str) -> dict[str, Any]:
         'screw': info.screw,
         'oil': info.oil,
         'tier': WORDS_OF_TIER.get(info.tier, UNKNOWN),
-        'temperature_low_degC': info.temperature_min,
-        'temperature_high_degC': info.temperature_max,
+        **range_record(
+            (info.speed_min, info.speed_max),
+            (info.axial_load_min, info.axial_load_max),
+            (info.temperature_min, info.temperature_max),
+        ),
     }
+
+
+def range_record(speed: Pair, load: Pair, temperature: Pair) -> dict[str, float]:
+    """Return what a surface spans: speeds [rad/s], opposing loads [N] and temperatures [degC]."""
+    return {
+        'speed_low_rpm': speed[0] / RPM,
+        'speed_high_rpm': speed[1] / RPM,
+        'load_low_N': load[0],
+        'load_high_N': load[1],
+        'temperature_low_degC': temperature[0],
+        'temperature_high_degC': temperature[1],
+    }
+
+
+def code_of(status: DiagnosticStatus) -> int:
+    """Return the code of the fault that a diagnostic status states, 0 for none."""
+    codes = [one.value for one in status.values if one.key == 'Code' and one.value.isdecimal()]
+    return int(codes[0]) if codes else 0
 
 
 def place_of(name: str) -> tuple[str, str, str] | None:

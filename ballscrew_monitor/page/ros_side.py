@@ -17,6 +17,7 @@ from typing import Any
 from ballscrew_monitor.page import records
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.hub import Hub
+from ballscrew_monitor.page.phrases import phrase, Said
 from ballscrew_monitor.page.surfaces import SurfaceLink
 from ballscrew_monitor.settings.qos import LATCHED_QOS
 from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone, SurfaceInfo
@@ -108,7 +109,7 @@ class RosSide:
             found = records.place_of(status.name)
             link = self._links.get('/'.join(found[:2])) if found else None
             if found and link:
-                self._post(link.view.hear_words, found[2], str(status.message))
+                self._post(link.view.hear_code, found[2], records.code_of(status))
 
 
 def node_of(base: str) -> str:
@@ -122,15 +123,12 @@ def sent_hashes(node: Node, base: str) -> set[str]:
     return {str(one.topic_type_hash) for one in sent}
 
 
-def version_problem(node: str, hashes: tuple[set[str], set[str]]) -> str:
+def version_problem(node: str, hashes: tuple[set[str], set[str]]) -> Said:
     """Return why a node is not listened to, by hashes of its type and of ours; empty if it is."""
     theirs, ours = hashes
     if theirs <= ours:
         return ''
-    return (
-        f'{node} speaks another version of ballscrew_msgs than this page and is not shown: '
-        'install the same version of ballscrew_monitor on both'
-    )
+    return phrase('other_version', node=node)
 
 
 class AxisLink:

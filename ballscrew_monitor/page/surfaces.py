@@ -19,6 +19,7 @@ from typing import Any
 from ballscrew_monitor.core.conversions import celsius, Direction, kelvin, opposing_load
 from ballscrew_monitor.core.full_point import corrected, JUDGED, KeptSolve, SolvedAt
 from ballscrew_monitor.page.axis_view import AxisView
+from ballscrew_monitor.page.phrases import free, Phrase, phrase, Said
 from ballscrew_msgs.msg import OperatingPoint, PointResult, SurfaceInfo
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 import numpy as np
@@ -32,7 +33,7 @@ Post = Callable[..., Any]
 """Calls a function with arguments in the thread of the hub."""
 
 
-def known_surface(info: SurfaceInfo, wanted: str) -> tuple[Surface | None, str]:
+def known_surface(info: SurfaceInfo, wanted: str) -> tuple[Surface | None, Said]:
     """
     Return the surface that `info` describes, or None and why there is none.
 
@@ -41,25 +42,23 @@ def known_surface(info: SurfaceInfo, wanted: str) -> tuple[Surface | None, str]:
 
     """
     if not info.sha256:
-        return None, 'no map: the node has no surface loaded'
+        return None, phrase('no_map_none')
     try:
         path = find_surface(wanted, info.screw, info.oil)
         surface = Surface.load(path, screw=info.screw, oil=info.oil)
     except SurfaceError as error:
-        return None, f'no map: the surface file of the node is not on this machine: {error}'
+        return None, phrase('no_map_no_file', why=free(str(error)))
     if surface.sha256 != info.sha256 and not len(info.corrected_speed):
         return None, _another(info, wanted)
     return surface, ''
 
 
-def _another(info: SurfaceInfo, wanted: str) -> str:
+def _another(info: SurfaceInfo, wanted: str) -> Phrase:
     """Return that the file is another one; the hash of a corrected surface is not of its file."""
     path = find_surface(wanted, info.screw, info.oil)
-    known = '' if len(info.corrected_speed) else f' (SHA-256 {info.sha256[:16]})'
-    return (
-        f'no map: {path} is another surface than the one that the node judges with, copy '
-        f'that one here{known}'
-    )
+    if len(info.corrected_speed):
+        return phrase('no_map_another', path=str(path))
+    return phrase('no_map_other', path=str(path), sha256=info.sha256[:16])
 
 
 def places_of(info: SurfaceInfo, surface: Surface) -> list[SolvedAt]:
@@ -121,7 +120,7 @@ class Question:
     surface: Surface
     places: list[SolvedAt]
     count: int
-    another: str  # said where the answers are of another surface
+    another: Phrase  # said where the answers are of another surface
 
 
 class SurfaceLink:

@@ -18,6 +18,7 @@ from ballscrew_monitor.page import maps
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.hub import Browser, Hub
+from ballscrew_monitor.page.phrases import free, phrase, Refused
 from ballscrew_monitor.page.questions import Answer, Handler, number_in, text_in
 from surrogate.files import InputError
 from surrogate.surface import Surface
@@ -83,7 +84,7 @@ class WhatIf:
             await self.keep(view, surface)
         except Exception as error:
             LOG.exception('no map of %s', view.name)
-            view.know(view.about, None, f'no map: a fault of the program: {error!r}')
+            view.know(view.about, None, phrase('no_map_fault', why=free(repr(error))))
 
     async def keep(self, view: AxisView, surface: Surface) -> None:
         """Make the map of an axis as its motion is now, if the last one does not suit."""
@@ -117,9 +118,9 @@ class WhatIf:
         """Return the axis of a request, its surface and limits; raises InputError without."""
         view = self._hub.view(text_in(request, 'axis'))
         if view.surface is None:
-            raise InputError(view.no_map)
+            raise Refused(view.no_map)
         if view.limits['rcs_limit'] is None:
-            raise InputError('the limits of this axis are not known yet')
+            raise Refused(phrase('no_limits'))
         return view, self._with_oil(view, request.get('oil')), maps.limits_of(view.limits)
 
     def _with_oil(self, view: AxisView, oil: Any) -> Surface:
@@ -167,6 +168,6 @@ class WhatIf:
         rows = view.history.since(0)
         motion = maps.Motion.of(rows, limits)
         if not motion.speed.size:
-            raise InputError('the axis has not moved in the last minutes')
+            raise Refused(phrase('not_moved'))
         warmth = number_in(request, 'temperature_degC', maps.oil_temperature(rows, surface))
         return await self._in_turn(maps.ghosts_of, surface, limits, motion, warmth, known)

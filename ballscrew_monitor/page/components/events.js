@@ -60,7 +60,8 @@ class Events {
       return;
     }
     const answer = await this.live.ask({ axis: this.axis.facts.id, name: this.name.value.trim(), ...request });
-    this.message.textContent = answer.message || Words.say(answer.ok ? 'act_done' : 'act_refused');
+    const said = answer.message || { key: answer.ok ? 'act_done' : 'act_refused' };
+    Words.tell(this.message, said, this.axis.facts);
   }
 
   draw() {
@@ -111,8 +112,10 @@ class Events {
     const length = Format.time(event.duration_s) + (event.active ? ` ${Words.say('event_active')}` : '');
     const how = ['acknowledged', 'shelved'].find((one) => event[one]);
     const who = event.acknowledged_by || (how ? Words.say(`event_${how}`) : '');
-    row.append(first, ...[length, this.worst(event), event.advice, who]
-      .map((text) => Format.element('td', '', text)));
+    const advice = Format.element('td');
+    Words.tell(advice, event.advice, this.axis.facts);
+    const texts = [length, this.worst(event), who].map((text) => Format.element('td', '', text));
+    row.append(first, ...texts.slice(0, 2), advice, texts[2]);
     return row;
   }
 

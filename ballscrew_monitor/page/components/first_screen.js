@@ -55,7 +55,7 @@ class FirstScreen {
 
   inputs() {
     const holder = Format.element('div', 'health-of-inputs');
-    holder.append(this.part('age', 'p'), this.part('inputs', 'ul'));
+    holder.append(this.part('age', 'p'), this.part('inputs', 'ul'), this.part('faults', 'div'));
     return holder;
   }
 
@@ -71,10 +71,10 @@ class FirstScreen {
     this.sign('level', axis.level, Words.say(`level_${axis.level}`));
     const condition = axis.health?.condition ?? 'unknown';
     this.sign('condition', condition, Words.say(`condition_${condition}`));
-    this.write('reason', this.reason());
+    this.tell('reason', this.reason());
     const advice = axis.fresh && axis.state.advice;
-    this.write('advice', advice ? Words.say('what_to_do', { advice }) : '');
-    this.write('change', condition === 'worse' ? axis.health.verdict : '');
+    this.tell('advice', advice ? { key: 'what_to_do', values: { advice } } : '');
+    this.tell('change', condition === 'worse' ? axis.health.verdict : '');
     this.write('shelved', FirstScreen.shelved(axis));
     this.drawNumbers();
     this.drawInputs();
@@ -86,37 +86,27 @@ class FirstScreen {
     this.write(name, word);
   }
 
+  tell(name, said) {
+    Words.tell(this.parts[name], said, this.axis.facts);
+  }
+
   /** Return the reason of the level: of old data, that they are old. */
   reason() {
     const { axis } = this;
     if (axis.gone) {
-      return Words.say('node_left', { node: axis.facts.node });
+      return { key: 'node_left', values: { node: axis.facts.node } };
     }
     if (!axis.state) {
-      return Words.say('waits_for_data');
+      return { key: 'waits_for_data' };
     }
     if (!axis.fresh) {
-      if (axis.state.standing === 'inactive') {
-        return Words.say('node_inactive', { node: axis.facts.node });
-      }
-      return Words.say('data_old', { age: Format.time(axis.age) });
+      return axis.state.standing === 'inactive'
+        ? { key: 'node_inactive', values: { node: axis.facts.node } }
+        : { key: 'data_old', values: { age: Format.time(axis.age) } };
     }
     const { level, zone, headline } = axis.state;
-    if (level === 'warn' && zone !== 'outside') {
-      return Words.say('warning_held', { reason: headline });
-    }
-    return (zone === 'outside' && this.cause()) || headline;
-  }
-
-  /** Say which limit the newest row is beyond; nothing where that cannot be told from it. */
-  cause() {
-    const { axis: { rows, facts } } = this;
-    const said = (name) => Words.say(`cause_${name}`, {
-      value: Quantities.text(name, rows.last(name), facts),
-      limit: Quantities.text(name, facts[`${name}_limit`], facts),
-    });
-    return (rows.last('rcs') >= facts.rcs_limit && said('rcs'))
-      || (rows.last('efficiency') < facts.efficiency_limit && said('efficiency')) || '';
+    const held = level === 'warn' && zone !== 'outside';
+    return held ? { key: 'warning_held', values: { reason: headline } } : headline;
   }
 
   static shelved({ state }) {
@@ -166,11 +156,14 @@ class FirstScreen {
     const age = Format.time(axis.age, axis.age < 10 ? 0.1 : 1);
     const told = axis.recorded ? Words.say('data_recorded') : Words.say('data_age', { age });
     this.write('age', axis.state ? told : '');
-    const inputs = axis.state?.inputs ?? [];
-    const listed = JSON.stringify(inputs.map(({ name, state, words }) => [name, state, words]));
+    const { inputs = [], faults = [] } = axis.state ?? {};
+    const listed = JSON.stringify([faults, inputs.map(({ name, state, words }) => [name, state, words])]);
     if (listed !== this.shown) {
       this.shown = listed;
       this.parts.inputs.replaceChildren(...inputs.map(FirstScreen.input));
+      this.parts.faults.replaceChildren(...faults.map((code) => Words.line('fault', {
+        key: 'fault_is', values: { code, fault: { key: `fault_${code}` } },
+      })));
     }
   }
 
@@ -179,7 +172,7 @@ class FirstScreen {
     item.dataset.state = state;
     item.append(Format.element('b', '', Words.named('input', name)), ' ', Words.named('state', state));
     if (words) {
-      item.append(Format.element('span', 'words', words));
+      item.append(Words.free(words, 'words'));
     }
     return item;
   }

@@ -26,9 +26,9 @@ class Health {
     this.shown = health;
     const kind = { normal: 'good', worse: 'bad' }[health.condition] ?? '';
     const verdict = Format.element('div', `verdict ${kind}`);
-    const sentence = Format.element('p', 'sentence');
-    sentence.append(Words.element('strong', '', `condition_${health.condition}`), ' ', health.verdict);
-    verdict.append(sentence, Format.element('p', '', health.advice));
+    const sentence = Words.line('sentence', health.verdict, this.axis.facts);
+    sentence.prepend(Words.element('strong', '', `condition_${health.condition}`), ' ');
+    verdict.append(sentence, Words.line('', health.advice, this.axis.facts));
     this.sentence.replaceChildren(verdict);
     this.table.replaceChildren(Health.rows(health.quantities));
   }

@@ -67,7 +67,7 @@ class Live {
   }
 
   refusal() {
-    return { ok: false, message: Words.say('link_needed'), arrays: {} };
+    return { ok: false, message: { key: 'link_needed' }, arrays: {} };
   }
 
   /** Send a request and return its answer to come, under `id` of the promise. */

@@ -56,7 +56,8 @@ class LivePage {
   /** Begin with a hello; where it says nothing new, all that is on the page stays as it is. */
   begin(hello) {
     this.since = undefined;
-    this.linked([hello.waiting, ...hello.notices].filter(Boolean).join(' '));
+    Words.use(hello.words, hello.language);
+    this.linked(...[hello.waiting, ...hello.notices].filter(Boolean));
     const told = JSON.stringify({ ...hello, nodes: [] });
     if (told !== this.told) {
       this.told = told;
@@ -65,7 +66,6 @@ class LivePage {
   }
 
   rebuild(hello) {
-    Words.use(hello.words, hello.language);
     this.acting = hello.acting;
     this.axes = new Map(hello.axes.map((facts) => [facts.id, new Axis(facts)]));
     document.title = Words.say('title');
@@ -122,14 +122,14 @@ class LivePage {
   lost() {
     this.since ??= Date.now() / 1000;
     if (this.told) {
-      this.linked(Words.say('link_lost', { since: Strips.clock(this.since) }));
+      this.linked({ key: 'link_lost', values: { since: Strips.clock(this.since) } });
     }
     this.news?.();
   }
 
-  linked(text) {
-    this.link.textContent = text;
-    this.link.hidden = !text;
+  linked(...told) {
+    this.link.replaceChildren(...told.flatMap((said, i) => [...(i ? [' '] : []), ...Words.told(said)]));
+    this.link.hidden = !told.length;
   }
 
   recolour() {

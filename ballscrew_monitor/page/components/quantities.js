@@ -40,10 +40,40 @@ const Quantities = (() => {
     return unit(name, axis) && known ? `${shown} ${unit(name, axis)}` : shown;
   }
 
+  /** Return a value of a phrase: {value, unit}, or the number of a quantity by its name. */
+  function value(given, axis) {
+    if ('unit' in given) {
+      return measured(given.value, given.unit);
+    }
+    const [[name, number]] = Object.entries(given);
+    return name === 'speed' ? speed(number, axis) : text(name, number, axis);
+  }
+
+  /** Return a speed [rev/min] as feed and turns, as turns alone where the lead is not known. */
+  function speed(turns, axis) {
+    const names = axis.lead_mm ? ['speed_rpm', 'turns_rpm'] : ['turns_rpm'];
+    return names.map((name) => text(name, turns, axis)).join(', ');
+  }
+
+  /** Return a number with its unit as it is told, a share in percent. */
+  function measured(number, told) {
+    return told === '-' ? `${Format.number(100 * (number ?? NaN))} %` : `${Format.number(number)} ${told}`;
+  }
+
+  /** Return between what the surface of an axis is known, as texts. */
+  function ends(axis) {
+    return {
+      speed_low: speed(axis.speed_low_rpm, axis), speed_high: speed(axis.speed_high_rpm, axis),
+      load_low: text('load_N', axis.load_low_N, axis), load_high: text('load_N', axis.load_high_N, axis),
+      temperature_low: text('temperature_degC', axis.temperature_low_degC, axis),
+      temperature_high: text('temperature_degC', axis.temperature_high_degC, axis),
+    };
+  }
+
   /** Return the opposing load [N] and the speed without sign of a point of the machine frame. */
   function folded(speed, load) {
     return { speed: Math.abs(speed), load: -Math.sign(speed) * load };
   }
 
-  return { unit, factor, text, folded };
+  return { unit, factor, text, value, measured, ends, folded };
 })();

@@ -19,7 +19,7 @@ class WhatIf {
     this.results = Format.element('div', 'results');
     this.askMap = live.newest((answer) => this.show(answer));
     this.askPoint = live.newest((answer) => this.told(answer));
-    const parts = axis.facts.no_map ? [Format.element('p', 'no-map', axis.facts.no_map)]
+    const parts = axis.facts.no_map ? [Words.line('no-map', axis.facts.no_map, axis.facts)]
       : [this.choices(), this.assumed, this.holder, this.legend, this.questions(acting), this.results];
     this.element.append(this.title, ...parts);
     this.say();
@@ -142,37 +142,39 @@ class WhatIf {
   }
 
   told(answer) {
-    this.map.say(answer.ok ? this.sentence(answer) : answer.message);
+    Words.tell(this.map.note, answer.ok ? this.sentence(answer) : answer.message, this.axis.facts);
   }
 
-  /** Say what a point is like. */
-  sentence(answer) {
-    const { facts } = this.axis;
-    const text = (name, value) => Quantities.text(name, value, facts);
-    return Words.say('point_is', {
-      feed: text('speed_rpm', answer.speed_rpm), turns: text('turns_rpm', answer.speed_rpm),
-      load: text('load_N', answer.load_N), temperature: text('temperature_degC', answer.temperature_degC),
-      zone: Words.say(`zone_${answer.zone ?? 'unknown'}`), efficiency: text('efficiency', answer.efficiency),
-      rcs: text('rcs', answer.rcs), film: text('film_ratio', answer.film_ratio),
-      torque: text('torque_N_m', answer.torque_N_m),
-    }) + (answer.words ? ` ${answer.words}` : '');
+  /** Return what a point is like. */
+  sentence({ speed_rpm, load_N, temperature_degC, zone = 'unknown', words, ...found }) {
+    return WhatIf.both({ key: 'point_is', values: {
+      feed: { speed_rpm }, turns: { turns_rpm: speed_rpm }, load: { load_N },
+      temperature: { temperature_degC }, zone: { key: `zone_${zone}` },
+      efficiency: { efficiency: found.efficiency }, rcs: { rcs: found.rcs },
+      film: { film_ratio: found.film_ratio }, torque: { torque_N_m: found.torque_N_m },
+    } }, words);
   }
 
-  result(...texts) {
-    this.results.replaceChildren(...texts.map((text) => Format.element('p', '', text)));
+  /** Return two phrases after each other; there may be no second one. */
+  static both(first, second) {
+    return second ? { key: 'first_second', values: { first, second } } : first;
+  }
+
+  result(...told) {
+    this.results.replaceChildren(...told.map((said) => Words.line('', said, this.axis.facts)));
   }
 
   /** Ask for a full solve of the pinned place, and say how far it is. */
   async solved() {
-    const tell = ({ share, words }) => this.result(Words.say('solve_runs', {
-      share: Quantities.text('share', share, this.axis.facts), words: words ?? '',
-    }));
+    const tell = ({ share, words }) => this.result({ key: 'solve_runs', values: {
+      share: { share }, words: Words.named('stage', words),
+    } });
     const answer = this.live.ask({ do: 'solve', ...this.place(this.map.over.pinned) }, tell);
     [this.solving, this.stop.hidden, this.solve.disabled] = [answer.id, false, true];
-    tell({ share: 0 });
+    tell({ share: 0, words: 'waiting' });
     const found = await answer;
     [this.stop.hidden, this.solve.disabled] = [true, false];
-    this.result(found.ok ? Words.say('solve_done', { point: this.sentence(found) }) : found.message);
+    this.result(found.ok ? { key: 'solve_done', values: { point: this.sentence(found) } } : found.message);
   }
 
   /** Ask what the programme of the last minutes would be at other feeds. */
@@ -182,13 +184,13 @@ class WhatIf {
       this.result(answer.message);
       return;
     }
-    const text = (name, value) => Quantities.text(name, value, this.axis.facts);
-    this.result(...answer.ghosts.map((ghost) => `${Words.say('ghost_is', {
-      feed: text('share', ghost.factor), outside: text('share', ghost.outside_share),
-      lost: text('energy', ghost.lost_J), time: Format.time(ghost.duration_s),
-    })} ${ghost.words}`.trim()));
+    this.result(...answer.ghosts.map((ghost) => WhatIf.both({ key: 'ghost_is', values: {
+      feed: { share: ghost.factor }, outside: { share: ghost.outside_share },
+      lost: { energy: ghost.lost_J }, time: Format.time(ghost.duration_s),
+    } }, ghost.words)));
     this.map.over.ghosts = answer.ghosts.map((ghost) => ({
-      points: answer.arrays[ghost.array], label: text('share', ghost.factor),
+      points: answer.arrays[ghost.array],
+      label: Quantities.text('share', ghost.factor, this.axis.facts),
     }));
     this.map.over.draw();
   }

@@ -11,6 +11,7 @@ from ballscrew_monitor.page import acting
 from ballscrew_monitor.page.acting import Acting, refusals
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.hub import Browser, Hub
+from ballscrew_monitor.page.phrases import english
 from ballscrew_monitor.page.ros_side import RosSide
 from ballscrew_monitor.settings.qos import LATCHED_QOS, started_node
 from ballscrew_msgs.srv import AcknowledgeAlarm, ShelveAlarm
@@ -81,13 +82,13 @@ def test_a_warning_is_shelved_and_acknowledged_by_name(actor, node, tmp_path, sa
     view = actor.hub.axes[NAME]
     node.wait_for(lambda: number_active(view), meanwhile=creep)
     shelve = {'minutes': 5, 'name': 'Ada', 'reason': 'oil is ordered'}
-    assert actor.ask('shelve', **shelve)['message'].startswith('shelved until ')
+    assert actor.ask('shelve', **shelve)['message']['key'] == 'shelved_until'
     node.wait_for(lambda: view.state['shelved'], meanwhile=creep)
     assert view.state['shelved']['reason'] == 'oil is ordered (Ada)'
     assert 0.0 < view.state['shelved']['left_s'] <= 300.0
     number = number_active(view)
     seen = {'name': 'Ada', 'reason': 'oil is ordered'}
-    assert actor.ask('acknowledge', **seen)['message'] == says('acknowledged')
+    assert english(actor.ask('acknowledge', **seen)['message']) == says('acknowledged')
     node.until(lambda: not number_active(view), 'the end of the event')
 
     def told():
@@ -152,7 +153,7 @@ def test_a_solve_tells_its_progress_and_its_result(actor, node):
     assert {name: record[name] for name in place} == pytest.approx(place)
     surface = view.surface.lookup(100.0, 500.0, 313.15)
     assert record['efficiency'] == pytest.approx(surface.efficiency, abs=0.03)
-    assert record['words'].startswith('Solved')
+    assert english(record['words']).startswith('Solved')
     frames = [actor.parts.read(made)[0] for made in actor.browser._replies]
     assert {(one['kind'], one['id']) for one in frames} == {('progress', 1)}
     assert 0.0 <= frames[-1]['share'] <= 1.0

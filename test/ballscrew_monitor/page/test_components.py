@@ -6,6 +6,7 @@ import re
 
 from ballscrew_monitor.page import components
 from ballscrew_monitor.page.guard import POLICY
+import pytest
 
 
 def test_documents_ask_for_files_of_the_table_alone():
@@ -31,8 +32,12 @@ def test_the_language_is_the_first_that_is_accepted(monkeypatch):
     assert components.language_of('de', 'xx') == 'en'
 
 
-def test_what_is_said_of_a_token_is_escaped():
-    assert '<b>' not in components.login('<b>')
+@pytest.mark.parametrize('language', components.languages())
+def test_the_form_for_the_token_speaks_the_language_of_its_reader(language):
+    words = components.languages()[language]
+    text = components.login(language, 'login_wrong')
+    assert f'lang="{language}"' in text
+    assert all(words[key] in text for key in ('login_token', 'login_open', 'login_wrong'))
 
 
 def test_the_policy_lets_in_nothing_from_elsewhere():

@@ -56,15 +56,18 @@ def test_a_point_is_what_the_surface_says(surface, limits, speed, load):
     assert record['words']
 
 
-def test_points_beyond_the_surface_say_why(surface, limits, says):
+def test_points_beyond_the_surface_say_why(surface, limits):
     for key, point in {
-        'fast': (1e4, 0.0, WARMTH),
-        'still': (0.0, 0.0, WARMTH),
-        'loaded': (10.0, 1e6, WARMTH),
-        'hot': (10.0, 0.0, 300.0),
+        'speed_above_range': (1e4, 0.0, WARMTH),
+        'no_direction': (0.0, 0.0, WARMTH),
+        'load_out_of_range': (10.0, 1e6, WARMTH),
+        'temperature_out_of_range': (10.0, 0.0, 300.0),
     }.items():
-        record = maps.point_of(surface, limits, *point)
-        assert (record['zone'], record['words']) == ('unknown', says(key))
+        record, (speed, load, warmth) = maps.point_of(surface, limits, *point), point
+        where = {'speed': {'speed': speed / RPM}, 'load': {'load_N': load}}
+        where['temperature'] = {'temperature_degC': warmth}
+        assert record['zone'] == 'unknown'
+        assert record['words'] == {'key': f'reason_{key}', 'values': where}
 
 
 def test_a_map_is_the_surface_amid_its_cells(surface, limits, page_parts):
@@ -213,17 +216,18 @@ def test_with_a_full_film_a_faster_ghost_loses_more_over_the_same_way(surface, l
 
 
 def test_a_ghost_that_leaves_the_surface_says_how_long_and_loses_no_number_to_it(
-    surface, limits, page_parts, says
+    surface, limits, page_parts
 ):
     """Of 1000 steps five are left out; of a quarter of the time nothing is invented."""
     top = surface.speed_range[1] / RPM
-    for fast, key in ((5, 'left_out'), (250, 'beyond')):
+    for fast, key in ((5, 'ghost_left_out'), (250, 'ghost_not_known')):
         rows = rows_of(page_parts, [0.9 * top] * fast + [1000.0] * (1001 - fast), [-600.0] * 1001)
         motion = Motion.of(rows, limits)
         within, beyond = maps.ghosts_of(surface, limits, motion, WARMTH, [1.0, 1.2])[0]['ghosts']
         assert (within['unknown_share'], within['words']) == (0.0, '')
         assert beyond['unknown_share'] == pytest.approx(fast / 1000.0, rel=1e-3)
-        assert beyond['words'] == says(key)
+        said = {'share': {'share': beyond['unknown_share']}}
+        assert beyond['words'] == {'key': key, 'values': said}
         assert math.isnan(beyond['lost_J']) is (beyond['unknown_share'] > maps.MOST_UNKNOWN)
 
 

@@ -4,17 +4,18 @@
 
 import json
 import math
-from types import SimpleNamespace
 
 from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import Direction
-from ballscrew_monitor.core.estimate import PointSource
+from ballscrew_monitor.core.estimate import PointSource, PointValidity
 from ballscrew_monitor.core.memory import RESTARTED
 from ballscrew_monitor.core.state import Acknowledgement, NAMELESS
 from ballscrew_monitor.page import records
 from ballscrew_monitor.page.history import COLUMNS
+from ballscrew_monitor.page.phrases import advised
 from ballscrew_msgs import msg
 from ballscrew_msgs.msg import BallScrewState
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
@@ -22,7 +23,7 @@ from surrogate.files import to_json
 from surrogate.units import RPM
 
 TARGETS = Advice(target_speed=600.0 * RPM, target_load=-812.0)
-ADVICE = Advice(target_speed=600.0 * RPM, target_load=-812.0, carry='surely').text
+ADVICE = Advice(target_speed=600.0 * RPM, target_load=-812.0, carry='surely')
 
 
 def test_every_message_is_plain_json(filled):
@@ -67,38 +68,99 @@ def test_what_is_held_or_not_judged_is_no_number():
     assert math.isnan(row['rcs'] + row['film_ratio'] + row['torque_N_m'])
 
 
-def test_the_headline_is_the_worst_finding_else_the_zone(says):
+def test_the_headline_is_the_worst_finding_else_the_zone():
+    """A finding of another version of the interface keeps its words."""
+    low = {'code': msg.Finding.CODE_EFFICIENCY_LOW, 'value': 0.7, 'limit': 0.85}
     state = BallScrewState(zone=BallScrewState.ZONE_OUTSIDE)
     state.findings = [
-        msg.Finding(severity=msg.Finding.SEVERITY_WARN, text='a warning'),
-        msg.Finding(severity=msg.Finding.SEVERITY_ERROR, text='an error'),
+        msg.Finding(severity=msg.Finding.SEVERITY_WARN, **low),
+        msg.Finding(severity=msg.Finding.SEVERITY_ERROR, code=99, text='an error'),
     ]
-    assert records.headline(state) == 'an error'
+    assert records.headline(state) == {'free': 'an error'}
+    state.findings = state.findings[:1]
+    said = {'value': {'efficiency': 0.7}, 'limit': {'efficiency': 0.85}}
+    assert records.headline(state) == {'key': 'cause_efficiency', 'values': said}
+    state.inputs = [msg.InputHealth(name='load', state=msg.InputHealth.STATE_DERIVED)]
+    assert records.headline(state) == {'key': 'cause_efficiency_derived', 'values': said}
     state.findings, state.zone = [], BallScrewState.ZONE_OPTIMAL
-    assert records.headline(state) == says('optimal')
+    assert records.headline(state)['key'] == 'optimal'
     state.active_gates = [BallScrewState.GATE_LIGHT_LOAD]
-    assert records.headline(state) == says('light')
+    assert records.headline(state)['key'] == 'optimal_light'
     state.active_gates = [BallScrewState.GATE_STANDSTILL]
-    assert records.headline(state) == says('still')
+    assert records.headline(state)['key'] == 'reason_standstill'
     state.active_gates, state.zone = [], BallScrewState.ZONE_UNKNOWN
-    assert records.headline(state) == says('nothing')
+    assert records.headline(state)['key'] == 'nothing_judged'
+
+
+@given(
+    validity=st.sampled_from([one for one in PointValidity if one is not PointValidity.VALID]),
+    speed=st.floats(-500.0, 500.0),
+    load=st.floats(-1e5, 1e5),
+    derived=st.booleans(),
+)
+def test_why_nothing_is_judged_is_said_by_code_and_numbers(validity, speed, load, derived):
+    """A code that is not known, and what the torque does not tell, keep the words of the node."""
+    state = BallScrewState(findings=[msg.Finding(code=msg.Finding.CODE_OUT_OF_RANGE)])
+    state.result.validity, state.result.reason = int(validity), 'why'
+    state.point.speed, state.point.axial_load, state.point.temperature = speed, load, 40.0
+    state.point.direction = int(Direction.NEGATIVE if speed < 0.0 else Direction.POSITIVE)
+    kind = msg.InputHealth.STATE_DERIVED if derived else msg.InputHealth.STATE_OK
+    state.inputs = [msg.InputHealth(name='load', state=kind)]
+    said = records.headline(state)
+    if validity is PointValidity.NO_SURFACE:
+        assert said == {'free': 'why'}
+    elif validity is PointValidity.NO_INPUT:
+        assert said['key'] == 'reason_missing'
+    elif derived and validity in (PointValidity.UNKNOWN, PointValidity.LOAD_OUT_OF_RANGE):
+        assert said['values']['what']['key'] == 'reason_no_derived_load'
+        assert said['values']['why'] == {'free': 'why'}
+    else:
+        key = 'no_direction' if validity is PointValidity.UNKNOWN else validity.name.lower()
+        assert said['key'] == f'reason_{key}'
+        opposing = 0.0 - load if speed >= 0.0 else load
+        assert said['values']['load'] == {'load_N': opposing}
+        assert said['values']['speed'] == {'speed': abs(speed) / RPM}
 
 
 @pytest.mark.parametrize(
-    ('surface', 'words', 'key'),
+    ('derived', 'held', 'names'),
     [
-        (SimpleNamespace(lead=0.01), ADVICE, 'advice'),
-        (None, ADVICE, 'advice_without_lead'),
-        (SimpleNamespace(lead=0.01), 'the node was shut down', 'shut_down'),
+        (False, ('speed', 'axial_load'), ['speed', 'load']),
+        (False, ('motor_torque', 'temperature'), ['temperature']),
+        (True, ('motor_torque', 'axial_load'), ['torque']),
     ],
 )
-def test_advice_is_in_terms_of_the_axis(page_parts, says, surface, words, key):
-    """Without its lead, and where the node ends the event, the words of the node stay."""
-    view = page_parts.axis()
-    view.surface = surface
-    view.hear_event(records.event_record(msg.OutOfZone(event_id=3, active=True, advice=words)))
+def test_inputs_without_a_sample_are_named(derived, held, names):
+    """A derived load rests on the torque, and a torque that nothing rests on is not missed."""
+    state = BallScrewState(findings=[msg.Finding(code=msg.Finding.CODE_INPUT_LOST)])
+    state.result.validity = int(PointValidity.NO_INPUT)
+    kind = msg.InputHealth.STATE_DERIVED if derived else msg.InputHealth.STATE_OK
+    state.inputs = [msg.InputHealth(name='load', state=kind)]
+    for name in held:
+        setattr(state.point, f'{name}_source', int(PointSource.HELD))
+    inputs = records.headline(state)['values']['inputs']
+    assert [one['key'] for one in inputs] == [f'input_{name}' for name in names]
+
+
+@pytest.mark.parametrize(('words', 'key'), [(ADVICE.text, 'advice_surely'), ('the end', None)])
+def test_advice_is_said_by_its_numbers_and_why_an_event_ended_in_words(page_parts, words, key):
+    view, event = page_parts.axis(), msg.OutOfZone(event_id=3, active=True, advice=words)
+    event.cause.target_speed, event.cause.target_load = ADVICE.target_speed, ADVICE.target_load
+    view.hear_event(records.event_record(event))
     (told,) = page_parts.read(view.events_frame())[0]['events']
-    assert told['advice'] == says(key)
+    assert told['advice'].get('key') == key
+    assert key or told['advice'] == {'free': 'the end'}
+
+
+@pytest.mark.parametrize(
+    ('code', 'told'), [(0, []), (101, []), (215, [215]), (401, []), (999, [])]
+)
+def test_a_fault_is_told_by_its_code_unless_the_screen_says_it_already(page_parts, code, told):
+    view = page_parts.axis()
+    status = DiagnosticStatus(values=[KeyValue(key='Code', value=str(code))])
+    view.hear_code('Inputs', records.code_of(status))
+    assert page_parts.read(view.news(0.0, 0.0)[-1])[0]['faults'] == told
+    assert records.code_of(DiagnosticStatus()) == 0
 
 
 @given(name=st.text(min_size=1), reason=st.text(), advice=st.sampled_from([Advice(), TARGETS]))
@@ -109,14 +171,15 @@ def test_an_event_says_by_whom_it_was_acknowledged_and_keeps_its_advice(name, re
     record = records.event_record(event)
     assert record['acknowledged']
     assert record['acknowledged_by'] == (f'{name}: {reason}' if reason else name)
-    assert record['words'] == advice.text
+    assert record['advice'] == advised(advice.text, advice.target_speed, advice.target_load)
     event.advice = NAMELESS.ending
     record = records.event_record(event)
     assert (record['acknowledged'], record['acknowledged_by']) == (True, '')
-    for words in (advice.text, RESTARTED):
+    for words in filter(None, (advice.text, RESTARTED)):
         event.advice = words
         record = records.event_record(event)
-        assert (record['acknowledged'], record['words']) == (False, words)
+        assert not record['acknowledged']
+        assert (record['advice'] == {'free': words}) is (words == RESTARTED)
 
 
 def test_diagnostics_of_axes_are_told_from_others():

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 from ballscrew_monitor.core.conversions import kelvin
 from ballscrew_monitor.page.hub import Browser, Hub
+from ballscrew_monitor.page.phrases import english, phrase
 from ballscrew_monitor.page.what_if import WARMER, WhatIf
 import numpy as np
 import pytest
@@ -184,7 +185,7 @@ def test_without_motion_or_surface_there_are_sentences(page_parts, surface, refu
     asked.view.hear(page_parts.row(1e6, speed_rpm=0.0), {}, page_parts.limits, 0.0)
     asked.view.history._begin = asked.view.history.count
     refused('no_motion', asked.ask, 'ghosts', factors=[1.0])
-    asked.view.know({}, None, 'no map: for a reason')
+    asked.view.know({}, None, phrase('no_map_none'))
     refused('no_map', asked.ask, 'read', speed_rpm=1.0, load_N=0.0)
 
 
@@ -192,5 +193,5 @@ def test_a_defect_of_one_axis_is_said_and_stops_its_map(asked, monkeypatch, capl
     monkeypatch.setattr('ballscrew_monitor.page.maps.map_of', lambda *given: 1 / 0)
     asyncio.run(asked.what_if._try(asked.view, asked.view.surface))
     assert asked.view.surface is None
-    assert 'ZeroDivisionError' in asked.view.no_map
+    assert 'ZeroDivisionError' in english(asked.view.no_map)
     assert 'ZeroDivisionError' in caplog.text

@@ -299,6 +299,10 @@ def make_axis(name='x', **changes):
         'grades': ['ISO VG 46', 'ISO VG 100'],
         'temperature_low_degC': 20.0,
         'temperature_high_degC': 60.0,
+        'speed_low_rpm': 20.0,
+        'speed_high_rpm': 2100.0,
+        'load_low_N': -4000.0,
+        'load_high_N': 4000.0,
         'no_map': '',
     }
     return facts | changes

@@ -92,29 +92,70 @@ def test_a_warning_that_is_only_held_says_so(shown, greeted, frames):
     shown.reads('.reason', 'too slow')
 
 
+RCS = {'key': 'cause_rcs', 'values': {'value': {'rcs': 0.27}, 'limit': {'rcs': 0.01}}}
+ADVICE = {'key': 'advice_speed', 'values': {'speed': {'speed': 640.0}, 'load': {'load_N': None}}}
+
+
 @pytest.mark.parametrize(
-    ('values', 'said'),
+    ('said', 'english', 'german'),
     [
         (
-            {'rcs': 0.27, 'efficiency': 0.5},
+            RCS,
             'The oil film is too thin: 27 % of the load is carried where metal pierces it, '
             'the limit is 1 %.',
+            'Der Ölfilm ist zu dünn: 27 % der Last ruhen auf Metall, das ihn durchstößt, '
+            'die Grenze ist 1 %.',
         ),
         (
-            {'rcs': 0.001, 'efficiency': 0.727},
-            'Friction takes too much: the efficiency is 72.7 %, the limit is 85 %.',
+            {'key': 'reason_speed_below_range', 'values': {'speed': {'speed': 12.5}}},
+            'the speed of 0.125 m/min, 12.5 rev/min is below the surface, which begins at '
+            '0.2 m/min, 20 rev/min',
+            'Der Vorschub von 0,125 m/min, 12,5 U/min liegt unter dem Kennfeld, das bei '
+            '0,2 m/min, 20 U/min beginnt.',
         ),
-        ({'rcs': 0.001, 'efficiency': 0.9}, 'as the node says'),
-        ({'rcs': math.nan, 'efficiency': math.nan}, 'as the node says'),
+        (
+            {'key': 'reason_missing', 'values': {'inputs': [{'key': 'input_load'}] * 2}},
+            'no valid sample: Load, Load',
+            'Kein gültiger Messwert: Last, Last',
+        ),
+        (
+            {
+                'key': 'with_detail',
+                'values': {'what': {'key': 'reason_no_derived_load'}, 'why': {'free': 'A fault.'}},
+            },
+            'the motor torque does not tell the load: A fault.',
+            'Das Motormoment verrät hier die Last nicht. A fault.',
+        ),
+        ({'free': 'A fault.'}, 'A fault.', 'A fault.'),
     ],
 )
-def test_the_reason_is_the_limit_that_the_newest_row_is_beyond(
-    shown, greeted, frames, values, said
+def test_the_reason_is_said_in_the_language_of_the_reader(
+    tab, greeted, frames, said, english, german
 ):
-    rows = frames.rows(1, **values)
-    told = {'level': 'warn', 'zone': 'outside', 'headline': 'as the node says'}
-    greeted.send(*frames.state(rows=rows, **told))
-    shown.reads('.reason', said)
+    """A sentence of the node alone stays English, and is marked so."""
+    greeted.greeting[-1] = frames.state(level='warn', zone='outside', headline=said)
+    for language, text in (('en', english), ('de', german)):
+        tab.visit(greeted.url, language=language)
+        tab.reads('.reason', text)
+        marked = tab.texts('.reason [lang=en]')
+        assert marked == (['A fault.'] if 'A fault.' in text else [])
+
+
+def test_a_fault_is_said_with_its_code(shown, greeted, frames):
+    greeted.send(*frames.state(faults=[215, 301]))
+    shown.until("document.querySelectorAll('.fault').length === 2")
+    assert shown.texts('.fault') == [
+        'Code 215: an input is beyond the plausible range.',
+        'Code 301: kept the old surface, the reload is refused.',
+    ]
+
+
+def test_an_advice_without_the_lead_has_the_turns_alone(tab, greeted, frames):
+    for lead, speed in ((10.0, '6.4 m/min, 640 rev/min'), (None, '640 rev/min')):
+        greeted.greeting[0] = frames.hello(frames.axis(lead_mm=lead))
+        greeted.greeting[-1] = frames.state(level='warn', zone='outside', advice=ADVICE)
+        tab.visit(greeted.url)
+        tab.reads('.advice', f'What to do: at this load run at {speed}')
 
 
 def test_advice_condition_and_inputs_are_said(shown, greeted, frames):

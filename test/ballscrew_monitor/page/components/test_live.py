@@ -50,7 +50,7 @@ def test_a_lost_connection_is_said_and_comes_back_by_itself(shown, greeted, fram
     shown.until("document.querySelector('.link').textContent.startsWith('No connection to the')")
     assert not shown.ask("document.querySelector('.link').hidden")
     answer = shown.ask("page.live.ask({ do: 'read' })")
-    assert answer == {'ok': False, 'message': frames.words('en')['link_needed'], 'arrays': {}}
+    assert answer == {'ok': False, 'message': {'key': 'link_needed'}, 'arrays': {}}
     greeted.start()
     shown.until("document.querySelector('.link').hidden")
     greeted.send(*frames.state(level='warn'))

@@ -72,10 +72,10 @@ def test_a_pinned_place_is_read_solved_and_the_solve_cancelled(shown, greeted):
     })()""")
     shown.until('!page.whatIf.solve.disabled')
     greeted.answers['solve'] = lambda one: [
-        ({'kind': 'progress', 'share': 0.4, 'words': 'Film of the worst contact.'}, None)
+        ({'kind': 'progress', 'share': 0.4, 'words': 'rough contact'}, None)
     ]
     shown.button('.what-if', 'Solve the pinned place')
-    shown.reads('.results', 'Solving, 40 % done. Film of the worst contact.')
+    shown.reads('.results', 'Solving, 40 % done. rough contact')
     solve = greeted.requests[-1]
     pixel = 0.05  # of the map, in speed and load
     assert [solve[key] for key in PLACE] == pytest.approx([800.0, 1200.0, 35.0], rel=pixel)

@@ -1,0 +1,103 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Phrases of frames: a key of the table of words and its values, said in the language of a browser.
+
+A value is a text, a number of a quantity of `quantities.js`, a number with a unit, a phrase or a
+list of these. What a node says as a sentence alone is free: it stays as it is, in English.
+
+"""
+
+from collections.abc import Sequence
+import math
+from typing import Any
+
+from ballscrew_monitor.core.advice import Advice
+from ballscrew_monitor.core.judgement import Reason
+from ballscrew_monitor.page.components import ENGLISH, languages
+from surrogate.files import InputError
+from surrogate.units import RPM
+
+Phrase = dict[str, Any]
+Said = str | Phrase
+"""A phrase, or an empty text where nothing is said."""
+KEYS_OF_REASON = {int(reason): f'reason_{reason.name.lower()}' for reason in Reason}
+DOUBTS = '', 'surely', 'perhaps'
+"""How sure it is that asperities carry, as an advice says it."""
+
+
+def phrase(key: str, **values: Any) -> Phrase:
+    """Return what a key of the table of words says of some values."""
+    return {'key': key, 'values': values}
+
+
+def free(sentence: str) -> Phrase:
+    """Return a sentence that has no key."""
+    return {'free': sentence}
+
+
+class Refused(InputError):
+    """A refusal that has words in each language."""
+
+    def __init__(self, said: Said) -> None:
+        """Refuse by a phrase whose values are texts and free sentences."""
+        self.said = said
+        super().__init__(english(said))
+
+
+def english(said: Said) -> str:
+    """Return what is said in English; the values of a phrase are texts and free sentences."""
+    if isinstance(said, str):
+        return said
+    if 'free' in said:
+        return str(said['free'])
+    values = {name: english(value) for name, value in said['values'].items()}
+    return languages()[ENGLISH][said['key']].format(**values)
+
+
+def violated(quantity: str, value: float, limit: float, *, derived: bool = False) -> Phrase:
+    """Return that `rcs` or `efficiency` breaks its limit [-], the load maybe `derived`."""
+    key = f'cause_{quantity}_derived' if derived else f'cause_{quantity}'
+    return phrase(key, value={quantity: value}, limit={quantity: limit})
+
+
+def unjudged(reason: int, turns: float, load: float, temperature: float) -> Phrase:
+    """Return why a point is not judged: |speed| [rev/min], opposing load [N], oil [degC]."""
+    return phrase(
+        KEYS_OF_REASON[reason],
+        speed={'speed': turns},
+        load={'load_N': load},
+        temperature={'temperature_degC': temperature},
+    )
+
+
+def missing(names: Sequence[str]) -> Phrase:
+    """Return which inputs have no valid sample."""
+    return phrase('reason_missing', inputs=[phrase(f'input_{name}') for name in names])
+
+
+def detailed(what: Phrase, why: str) -> Phrase:
+    """Return a phrase with a free sentence that tells more, if there is one."""
+    return phrase('with_detail', what=what, why=free(why)) if why else what
+
+
+def advised(sentence: str, target_speed: float, target_load: float) -> Said:
+    """
+    Return the advice of an event by its speed [rad/s] and load [N], NaN for none.
+
+    A `sentence` that is no advice, such as why the node ended the event, stays free.
+
+    """
+    targets = {'target_speed': target_speed, 'target_load': target_load}
+    for doubt in DOUBTS:
+        if sentence and Advice(**targets, carry=doubt).text == sentence:
+            return _advice(target_speed / RPM, target_load, doubt)
+    return free(sentence) if sentence else ''
+
+
+def _advice(turns: float, load: float, doubt: str) -> Phrase:
+    """Return an advice by its screw speed [rev/min] and load [N], one of them known."""
+    values = {'speed': turns, 'load': load}
+    known = [name for name, value in values.items() if math.isfinite(value)]
+    made = phrase(f'advice_{"_or_".join(known)}', speed={'speed': turns}, load={'load_N': load})
+    return phrase(f'advice_{doubt}', advice=made) if doubt else made

@@ -1,0 +1,91 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Phrases of health follow from codes and numbers of its message as its sentences do."""
+
+from ballscrew_monitor.core.judgement import WarningPolicy
+from ballscrew_monitor.health.records import Cause, CauseCode, Condition, Health, Quantity
+from ballscrew_monitor.health.words import advice_of, Certainty, verdict_of
+from ballscrew_monitor.messages.health_messages import health_message
+from ballscrew_monitor.page.health_phrases import advice_phrase, verdict_phrase
+from ballscrew_monitor.page.phrases import english
+from ballscrew_msgs.msg import AxisHealth, HealthCause, HealthQuantity
+from hypothesis import given
+from hypothesis import strategies as st
+
+CODES = st.lists(st.sampled_from(CauseCode), unique=True, max_size=5)
+SIZE = Quantity(name='size', unit='K', value=4.0, low=3.0, high=5.0)
+
+
+def quantity(name, value):
+    return Quantity(name=name, value=value, low=value - 0.05, high=value + 0.05)
+
+
+def cause(code, excluded, weight=0.5):
+    return Cause(code=code, size=SIZE, weight=weight, excluded=excluded, text='T')
+
+
+def message_of(condition, causes, drag, preload):
+    """Return the message of a health, and its sentences."""
+    said = verdict_of('x', condition, drag, preload, causes), advice_of(condition, causes)
+    health = Health(
+        axis='x',
+        stamp=1,
+        condition=condition,
+        verdict=said[0],
+        advice=said[1],
+        quantities=(drag, preload),
+        causes=causes,
+    )
+    return health_message(health, surface_id='', policy=WarningPolicy.BOTH)
+
+
+@given(
+    condition=st.sampled_from(Condition),
+    codes=CODES,
+    unfit=st.sets(st.sampled_from(CauseCode)),
+    change=st.sampled_from((-0.2, 0.2)),
+    known=st.booleans(),
+)
+def test_phrases_say_what_the_sentences_say(condition, codes, unfit, change, known):
+    """Advice to the letter, a verdict by how sure its cause is, and by its numbers."""
+    preload = quantity('preload', 0.6) if known else Quantity(name='preload')
+    causes = [cause(code, code in unfit, 0.5**at) for at, code in enumerate(codes)]
+    message = message_of(condition, causes, quantity('drag change', change), preload)
+    advice, verdict = advice_phrase(message), verdict_phrase(message)
+    assert english(advice) == message.advice
+    kind = {Condition.UNKNOWN: 'unsure', Condition.NORMAL: 'normal', Condition.WORSE: 'worse'}
+    assert verdict['key'] == f'verdict_{kind[condition]}'
+    assert verdict['values']['value'] == {'value': change, 'unit': '-'}
+    if condition is Condition.WORSE:
+        why = verdict['values']['why']
+        begin = Certainty[why['key'].removeprefix('why_').upper()].value.partition('{}')[0]
+        assert f'; {begin}' in message.verdict
+        fitting = [one for one in causes if not one.excluded]
+        assert ('cause' in why['values']) is bool(fitting)
+        if fitting:
+            code, told = fitting[0].code, why['values']['cause']
+            assert told['key'] == f'change_{code.name.lower()}'
+            of_preload = code is CauseCode.PRELOAD_LOST and known
+            assert told['values']['value']['value'] == (0.6 if of_preload else SIZE.value)
+
+
+def test_what_is_not_known_has_the_reason_of_the_node():
+    drag = Quantity(name='drag change', reason='not known yet: no baseline')
+    message = message_of(Condition.UNKNOWN, (), drag, Quantity(name='preload'))
+    said = verdict_phrase(message)['values']
+    assert said['what']['key'] == 'verdict_unknown'
+    assert said['why'] == {'free': 'not known yet: no baseline'}
+
+
+def test_words_of_another_version_stay():
+    """So do an advice on oil and feed, and a verdict without its numbers."""
+    told = {'verdict': 'V', 'advice': 'A'}
+    assert verdict_phrase(AxisHealth(**told)) == {'free': 'V'}
+    assert advice_phrase(AxisHealth(**told)) == {'free': 'A'}
+    assert verdict_phrase(AxisHealth()) == advice_phrase(AxisHealth()) == ''
+    drag = HealthQuantity(name='drag change', value=0.2, low=0.1, high=0.3)
+    causes = [HealthCause(code=99, weight=1.0, text='T')]
+    worse = {'condition': AxisHealth.CONDITION_WORSE, 'quantities': [drag], 'causes': causes}
+    message = AxisHealth(**worse, **told)
+    assert verdict_phrase(message)['values']['why']['values']['cause'] == {'free': 'T'}
+    assert advice_phrase(message) == {'free': 'A'}

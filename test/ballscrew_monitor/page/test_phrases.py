@@ -1,0 +1,86 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Phrases say by codes and numbers what the node says in words, in every language."""
+
+from ballscrew_monitor.core.advice import Advice
+from ballscrew_monitor.core.fault_codes import Fault
+from ballscrew_monitor.core.inputs import InputState, Source
+from ballscrew_monitor.core.judgement import Level, Reason, Zone
+from ballscrew_monitor.health.assess import DRAG
+from ballscrew_monitor.health.energy import NAMES as ENERGIES
+from ballscrew_monitor.health.life import NAMES as LIVES
+from ballscrew_monitor.health.peers import NAME as PEERS
+from ballscrew_monitor.health.preload import NAME as PRELOAD
+from ballscrew_monitor.health.records import CauseCode, Condition
+from ballscrew_monitor.health.spectrum import CLASSES
+from ballscrew_monitor.health.words import Certainty
+from ballscrew_monitor.page import phrases
+from ballscrew_monitor.page.components import languages
+from ballscrew_monitor.page.phrases import advised, phrase
+from ballscrew_monitor.page.records import QUANTITIES
+from hypothesis import given
+from hypothesis import strategies as st
+import pytest
+from surrogate.units import RPM
+
+ENUMERATED = {
+    'change': CauseCode,
+    'condition': Condition,
+    'input': Source,
+    'level': Level,
+    'reason': Reason,
+    'remedy': CauseCode,
+    'state': InputState,
+    'why': Certainty,
+    'zone': Zone,
+}
+WAYS = (f'{DRAG} forward', f'{DRAG} backward', 'constant drag', 'drag per speed')
+LUBRICATION = ('lubrication part of the burn rate', 'severity shift')
+SEVERITIES = (f'severity class {place}' for place in range(CLASSES))
+QUANTITIES_OF_HEALTH = (DRAG, *WAYS, PRELOAD, *LUBRICATION, *SEVERITIES, *ENERGIES, *LIVES, PEERS)
+NUMBERS = st.one_of(st.just(float('nan')), st.floats(-1e5, 1e5))
+
+
+@pytest.mark.parametrize('language', languages())
+def test_every_code_has_words(language):
+    """One that is added has none at first, and fails here."""
+    wanted = {f'{group}_{one.name.lower()}' for group, kind in ENUMERATED.items() for one in kind}
+    wanted |= {f'fault_{int(one)}' for one in Fault}
+    wanted |= {f'cause_{name}{end}' for name in QUANTITIES.values() for end in ('', '_derived')}
+    wanted |= {f'quantity_{name.replace(" ", "_")}' for name in QUANTITIES_OF_HEALTH}
+    assert not wanted - {'cause_rcs_derived'} - languages()[language].keys()
+
+
+def test_faults_are_named_as_the_diagnostics_name_them():
+    words = languages()['en']
+    assert {int(one): one.text for one in Fault} == {
+        int(one): words[f'fault_{int(one)}'] for one in Fault
+    }
+
+
+@given(speed=NUMBERS, load=NUMBERS, doubt=st.sampled_from(phrases.DOUBTS))
+def test_an_advice_is_told_from_its_numbers(speed, load, doubt):
+    text = Advice(target_speed=speed, target_load=load, carry=doubt).text
+    said = advised(text, speed, load)
+    if not text:
+        assert said == ''
+        return
+    assert doubt == '' or said['key'] == f'advice_{doubt}'
+    inner = said['values']['advice'] if doubt else said
+    known = [name for name, one in (('speed', speed), ('load', load)) if one == one]
+    assert inner['key'] == f'advice_{"_or_".join(known)}'
+    assert inner['values']['load'] == pytest.approx({'load_N': load}, nan_ok=True)
+    assert inner['values']['speed'] == pytest.approx({'speed': speed / RPM}, nan_ok=True)
+    assert {said['key'], inner['key']} <= languages()['de'].keys()
+
+
+@given(st.text(min_size=1), NUMBERS, NUMBERS)
+def test_any_other_sentence_stays_as_it_is(text, speed, load):
+    assert advised(text, speed, load) == {'free': text}
+
+
+def test_a_refusal_is_raised_in_english_and_keeps_its_phrase(refused):
+    said = phrase('with_detail', what=phrase('no_limits'), why=phrases.free('no state yet'))
+    with refused('limits') as caught:
+        raise phrases.Refused(said)
+    assert caught.value.said == said
