@@ -85,8 +85,8 @@ def series(draw: int, cut: str, first: float, last: float, waves: int = 3) -> li
 
 CASES = (
     *series(1, '7', 2.0, 0.55, waves=2),
-    *series(2, '7', 2.0, 0.55, waves=2),
-    *series(3, '7', 2.0, 0.55, waves=2),
+    *series(2, '7', 2.0, 0.55),
+    *series(3, '7', 2.0, 0.55),
     *series(1, '7', 1.7, 0.65),
     *series(1, '', 2.8, 1.15),
     *series(1, '3', 0.8, 0.2, waves=2),
