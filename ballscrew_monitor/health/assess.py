@@ -33,6 +33,7 @@ from ballscrew_monitor.health.lubrication import (
     severity_quantities,
 )
 from ballscrew_monitor.health.model import Model
+from ballscrew_monitor.health.onset import onset_note, onset_of
 from ballscrew_monitor.health.preload import preload_of
 from ballscrew_monitor.health.records import (
     Baseline,
@@ -89,6 +90,7 @@ class Compared(NamedTuple):
     reason: str
     drag: Quantity
     preload: Quantity
+    onset: Quantity
     condition: Condition
     causes: Sequence[Cause]
 
@@ -113,15 +115,19 @@ def assess(
     today = day_of(now)
     known = baseline if isinstance(baseline, Baseline) else None
     compared = compare(baseline, points, today, surface, companions)
-    model, change, reason, drag, preload, condition, causes = compared
+    model, change, reason, drag, preload, onset, condition, causes = compared
     recent = recent_of(points, today)
     found = [
         *_drags(change, drag, reason),
         preload,
+        onset,
         *_others(points, spectrum, surface, known, today, settings),
     ]
-    notes = _notes(surface, known, points, recent, change, today)
-    on_runs = note_on_runs(points, motion_by_day(spectrum), model)
+    notes = [
+        *_notes(surface, known, points, recent, change, today),
+        onset_note(onset, TOLERANCE, SURE),
+        note_on_runs(points, motion_by_day(spectrum), model),
+    ]
     remedy = remedies_of(
         recent, surface, settings.limits, speed_allowed=settings.speed_allowed
     ).text
@@ -134,7 +140,7 @@ def assess(
         quantities=found,
         causes=causes,
         baseline=known,
-        notes=[*notes, on_runs] if on_runs else notes,
+        notes=[one for one in notes if one],
     )
 
 
@@ -152,14 +158,18 @@ def compare(
         companions if isinstance(companions, Companions) else None,
         None if known is None else calibrated(known.points, surface),
     )
-    days = None if known is None else Days(known.points, _since(known, points), model)
+    later = [] if known is None else _since(known, points)
+    lately = [one for one in later if one.first_day > today - RECENT]
+    days = None if known is None else Days(known.points, later, model)
     week, month = (_change(days, today - length) for length in (SHORT, RECENT))
     change = week or month
     reason = _reason(baseline, points, recent_of(points, today), change)
     causes = [] if month is None else causes_of(month, fits_of(month, model))
     preload = preload_of(change, model, reason, companions, causes)
     condition = _condition(days, change, month, model)
-    return Compared(model, change, reason, _drag(change, reason), preload, condition, causes)
+    drag = _drag(change, reason)
+    onset = onset_of(month, lately, model, reason)
+    return Compared(model, change, reason, drag, preload, onset, condition, causes)
 
 
 def _since(baseline: Baseline, points: Sequence[ComparablePoint]) -> list[ComparablePoint]:
@@ -293,7 +303,7 @@ def _notes(
         )
     speed = max((abs(one.speed) for one in recent), default=0.0)
     load = max((abs(opposed(one)) for one in recent), default=0.0)
-    return [one for one in (*notes, *shaft_notes(surface.header, speed, load)) if one]
+    return [*notes, *shaft_notes(surface.header, speed, load)]
 
 
 def _is_usual(notes: Sequence[str]) -> bool:

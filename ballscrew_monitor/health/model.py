@@ -78,14 +78,25 @@ class Model:
         slower[:, 0] = np.maximum(slower[:, 0], self.surface.speed_range[0])
         return self._change(places, self.calibration.contacts(self.surface, slower))
 
+    def onsets(self, points: Sequence[ComparablePoint]) -> Array:
+        """Return the speeds of the screw at which contact begins [rad/s], NaN outside."""
+        places = places_of(points)
+        heats = self.calibration.heats(self.surface, places).tolist()
+        loads = places[:, 1].tolist()
+        return np.array([self.surface.onset_speed(*one) for one in zip(loads, heats)])
+
+    def asperity_share(self, points: Sequence[ComparablePoint]) -> Array:
+        """Return the share of the load on asperities [-], NaN outside the surface."""
+        found = self.calibration.found(self.surface, places_of(points))
+        return np.array(found['asperity_share'])
+
     def relieved(self, points: Sequence[ComparablePoint], share: float) -> Array:
         """Return the change of friction [N m] at a `share` of the preload [-], NaN unknown."""
         if self.companions is None:
             return np.full(len(points), np.nan)
         places = places_of(points)
         here = self._here(places)
-        low, high = self.surface.temperature_range
-        heats = np.clip(places[:, 2] + self.calibration.values[3], low, high)
+        heats = self.calibration.heats(self.surface, places)
         ratios = [
             self.companions.friction_ratio(speed, load, heat, share)
             for (speed, load, _), heat in zip(places.tolist(), heats.tolist())
