@@ -81,16 +81,17 @@ class Compared(NamedTuple):
     """
     The recent days against the baseline, each quantity with its interval.
 
-    `change` is None where there is no comparison, and `reason` says why.
+    `change` is that of the last week, or of `month`, the last 28 days, where that has too little;
+    both are None where there is no comparison, and `reason` says why.
 
     """
 
     model: Model
     change: Change | None
+    month: Change | None
     reason: str
     drag: Quantity
     preload: Quantity
-    onset: Quantity
     condition: Condition
     causes: Sequence[Cause]
 
@@ -115,7 +116,8 @@ def assess(
     today = day_of(now)
     known = baseline if isinstance(baseline, Baseline) else None
     compared = compare(baseline, points, today, surface, companions)
-    model, change, reason, drag, preload, onset, condition, causes = compared
+    model, change, month, reason, drag, preload, condition, causes = compared
+    onset = onset_of(month, *_held(known, points, today), model, reason)
     recent = recent_of(points, today)
     found = [
         *_drags(change, drag, reason),
@@ -158,9 +160,7 @@ def compare(
         companions if isinstance(companions, Companions) else None,
         None if known is None else calibrated(known.points, surface),
     )
-    later = [] if known is None else _since(known, points)
-    lately = [one for one in later if one.first_day > today - RECENT]
-    days = None if known is None else Days(known.points, later, model)
+    days = None if known is None else Days(known.points, _since(known, points), model)
     week, month = (_change(days, today - length) for length in (SHORT, RECENT))
     change = week or month
     reason = _reason(baseline, points, recent_of(points, today), change)
@@ -168,8 +168,17 @@ def compare(
     preload = preload_of(change, model, reason, companions, causes)
     condition = _condition(days, change, month, model)
     drag = _drag(change, reason)
-    onset = onset_of(month, lately, model, reason)
-    return Compared(model, change, reason, drag, preload, onset, condition, causes)
+    return Compared(model, change, month, reason, drag, preload, condition, causes)
+
+
+def _held(
+    baseline: Baseline | None, points: Sequence[ComparablePoint], today: int
+) -> tuple[Sequence[ComparablePoint], Sequence[ComparablePoint]]:
+    """Return the points of the baseline, and those of the 28 days that are held against it."""
+    if baseline is None:
+        return (), ()
+    later = _since(baseline, points)
+    return baseline.points, [one for one in later if one.first_day > today - RECENT]
 
 
 def _since(baseline: Baseline, points: Sequence[ComparablePoint]) -> list[ComparablePoint]:

@@ -64,7 +64,7 @@ class Model:
         places = places_of(points)
         return self._change(places, self.calibration.contacts(self.surface, places, shift))
 
-    def starved(self, points: Sequence[ComparablePoint], factor: float) -> Array:
+    def starved(self, points: Sequence[ComparablePoint], factor: float | Array) -> Array:
         """
         Return the change of friction [N m] where the film is `factor` of the flooded one [-].
 
@@ -75,7 +75,7 @@ class Model:
         places = places_of(points)
         slower = places.copy()
         slower[:, 0] *= factor ** (1.0 / FILM_EXPONENT)
-        slower[:, 0] = np.maximum(slower[:, 0], self.surface.speed_range[0])
+        slower[:, 0] = np.clip(slower[:, 0], *self.surface.speed_range)
         return self._change(places, self.calibration.contacts(self.surface, slower))
 
     def onsets(self, points: Sequence[ComparablePoint]) -> Array:
