@@ -117,7 +117,7 @@ def assess(
     known = baseline if isinstance(baseline, Baseline) else None
     compared = compare(baseline, points, today, surface, companions)
     model, change, month, reason, drag, preload, condition, causes = compared
-    onset = onset_of(month, *_held(known, points, today), model, reason)
+    onset = onset_of(month, *held_points(known, points, today), model, reason)
     recent = recent_of(points, today)
     found = [
         *_drags(change, drag, reason),
@@ -171,7 +171,7 @@ def compare(
     return Compared(model, change, month, reason, drag, preload, condition, causes)
 
 
-def _held(
+def held_points(
     baseline: Baseline | None, points: Sequence[ComparablePoint], today: int
 ) -> tuple[Sequence[ComparablePoint], Sequence[ComparablePoint]]:
     """Return the points of the baseline, and those of the 28 days that are held against it."""
