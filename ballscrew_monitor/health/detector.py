@@ -33,7 +33,7 @@ FLOOR = 0.01
 DAILY_LIMIT, DAILY_FLOOR = 8.0, 0.03
 """Both of readings that come daily: what drifts by the season is no change."""
 DAILY = 2.0
-"""Mean distance of the readings of single days below which they come daily [days]."""
+"""Median distance of the readings of single days below which they come daily [days]."""
 
 
 @dataclasses.dataclass(slots=True)
@@ -123,7 +123,7 @@ def note_on_runs(points: Sequence[ComparablePoint], motion: Motion, model: Model
 def _come_daily(runs: Sequence[ComparablePoint]) -> bool:
     """Tell whether readings come daily, as those of an axis that is always free do."""
     days = sorted({one.first_day for one in runs if one.days == 1})
-    return len(days) > FEWEST and days[-1] - days[0] < DAILY * (len(days) - 1)
+    return len(days) > FEWEST and float(np.median(np.diff(days))) < DAILY
 
 
 def _reading(run: Sequence[ComparablePoint], model: Model) -> float:
