@@ -76,7 +76,8 @@ def _onsets(ground: Ground, year: Year) -> Iterator[tuple[float, Quantity]]:
 
 def _true_onset(year: Year, day: int) -> float:
     """Return the mean onset of 28 days over that without a change [-]."""
-    size, truth = float(year.size[day - 27 : day + 1].mean()), year.kind.truth
+    days, truth = np.arange(day - 27, day + 1), year.kind.truth
+    size = float(year.size[days].mean())
     if truth is Truth.FILM_STARVED:
         return float((1.0 - size) ** (-1.0 / FILM_EXPONENT))
     screw, oil = load_screw(SCREW), load_lubricant(OIL)
