@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What is told of years beside their condition: onset of contact, and notes on motion without force.
+Onset of contact of years of known truth, and notes on their motion as if without process force.
 
 For the notes all motion of a year counts as free of process force, as on an axis that always is;
 days are merged as in the store.
