@@ -63,7 +63,7 @@ def note_row(ground: Ground, truth: Truth, seeds: range) -> str:
 
 
 def _onsets(ground: Ground, year: Year) -> Iterator[tuple[float, Quantity]]:
-    """Yield the true onset over that of the baseline, and what is told of it."""
+    """Yield the true onset over that of the baseline, and the quantity that health tells."""
     baseline = learned(year.points)
     if isinstance(baseline, str):
         return
