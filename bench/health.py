@@ -3,11 +3,12 @@
 """
 Play axis-years of known truth and print how good the health is that is made of them.
 
-Usage: python bench/health.py [--runs N] [--clean N] [--seed S]. A year is a draw of programmes,
-seasons and of what the model does not know, with one change or none. It is given as comparable
-points, day by day, and assessed every four weeks. Two years of each kind are drawn unless more are
-asked for: they take minutes. `--logs` writes twenty short logs of two kinds instead, and checks
-the first sentence of `ballscrew health` on them.
+Usage: python bench/health.py [--runs N] [--clean N] [--seed S] [--told]. A year is a draw of
+programmes, seasons and of what the model does not know, with one change or none. It is given as
+comparable points, day by day, and assessed every four weeks. Two years of each kind are drawn
+unless more are asked for: they take minutes. `--told` prints instead how well the onset of contact
+is told, and the notes on an axis that is always free of process force. `--logs` writes twenty
+short logs of two kinds instead, and checks the first sentence of `ballscrew health` on them.
 
 """
 
@@ -19,6 +20,7 @@ from ballscrew_monitor.health.companions import Companions
 from health_parts.logs import verdicts
 from health_parts.machine import Ground, solve_ground
 from health_parts.score import Compare, Score, score
+from health_parts.told import note_row, onset_row
 from health_parts.years import draw_year, Kind, Truth
 import numpy as np
 from surrogate.progress import Progress
@@ -87,6 +89,25 @@ HEAD = (
 )
 
 
+ONSET_HEAD = (
+    '| change | onset known | holds the truth | lower end above 1 | noted | true, median | '
+    'upper over lower end, median |\n' + '|---' * 7 + '|'
+)
+NOTE_HEAD = (
+    '| change | years with a note | before the change | its size then, median |\n'
+    + '|---' * 4
+    + '|'
+)
+
+
+def print_told(ground: Ground, kinds: list[tuple[Kind, int]], first: int) -> None:
+    """Print the tables of the onset and of the notes."""
+    for head, row_of_kind in ((ONSET_HEAD, onset_row), (NOTE_HEAD, note_row)):
+        print(head)
+        for kind, number in kinds:
+            print(row_of_kind(ground, kind.truth, _seeds(first, number)), flush=True)
+
+
 def check_logs() -> int:
     """Print what is said of short logs; return the exit code."""
     found = list(verdicts())
@@ -101,6 +122,7 @@ def main() -> int:
     parser.add_argument('--runs', type=int, default=2, help='years of each change')
     parser.add_argument('--clean', type=int, default=2, help='years without a change')
     parser.add_argument('--seed', type=int, default=1000, help='the first one')
+    parser.add_argument('--told', action='store_true', help='tables of the onset and of notes')
     parser.add_argument('--logs', action='store_true', help='check the sentences on short logs')
     asked = parser.parse_args()
     if asked.logs:
@@ -108,6 +130,9 @@ def main() -> int:
     ground = solve_ground()
     kinds = [(Kind(truth=truth), asked.runs) for truth in Truth if truth.value]
     kinds = [(Kind(truth=Truth.NOTHING), asked.clean), *kinds]
+    if asked.told:
+        print_told(ground, kinds, asked.seed)
+        return 0
     progress = Progress(sum(number for _, number in kinds), 'years')
     print(HEAD)
     for kind, number in kinds:

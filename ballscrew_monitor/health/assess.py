@@ -33,6 +33,7 @@ from ballscrew_monitor.health.lubrication import (
     severity_quantities,
 )
 from ballscrew_monitor.health.model import Model
+from ballscrew_monitor.health.onset import onset_note, onset_of
 from ballscrew_monitor.health.preload import preload_of
 from ballscrew_monitor.health.records import (
     Baseline,
@@ -80,12 +81,14 @@ class Compared(NamedTuple):
     """
     The recent days against the baseline, each quantity with its interval.
 
-    `change` is None where there is no comparison, and `reason` says why.
+    `change` is that of the last week, or of `month`, the last 28 days, where that has too little;
+    both are None where there is no comparison, and `reason` says why.
 
     """
 
     model: Model
     change: Change | None
+    month: Change | None
     reason: str
     drag: Quantity
     preload: Quantity
@@ -113,15 +116,20 @@ def assess(
     today = day_of(now)
     known = baseline if isinstance(baseline, Baseline) else None
     compared = compare(baseline, points, today, surface, companions)
-    model, change, reason, drag, preload, condition, causes = compared
+    model, change, month, reason, drag, preload, condition, causes = compared
+    onset = onset_of(month, *held_points(known, points, today), model, reason)
     recent = recent_of(points, today)
     found = [
         *_drags(change, drag, reason),
         preload,
+        onset,
         *_others(points, spectrum, surface, known, today, settings),
     ]
-    notes = _notes(surface, known, points, recent, change, today)
-    on_runs = note_on_runs(points, motion_by_day(spectrum), model)
+    notes = [
+        *_notes(surface, known, points, recent, change, today),
+        onset_note(onset, TOLERANCE, SURE),
+        note_on_runs(points, motion_by_day(spectrum), model),
+    ]
     remedy = remedies_of(
         recent, surface, settings.limits, speed_allowed=settings.speed_allowed
     ).text
@@ -134,7 +142,7 @@ def assess(
         quantities=found,
         causes=causes,
         baseline=known,
-        notes=[*notes, on_runs] if on_runs else notes,
+        notes=[one for one in notes if one],
     )
 
 
@@ -159,7 +167,18 @@ def compare(
     causes = [] if month is None else causes_of(month, fits_of(month, model))
     preload = preload_of(change, model, reason, companions, causes)
     condition = _condition(days, change, month, model)
-    return Compared(model, change, reason, _drag(change, reason), preload, condition, causes)
+    drag = _drag(change, reason)
+    return Compared(model, change, month, reason, drag, preload, condition, causes)
+
+
+def held_points(
+    baseline: Baseline | None, points: Sequence[ComparablePoint], today: int
+) -> tuple[Sequence[ComparablePoint], Sequence[ComparablePoint]]:
+    """Return the points of the baseline, and those of the 28 days that are held against it."""
+    if baseline is None:
+        return (), ()
+    later = _since(baseline, points)
+    return baseline.points, [one for one in later if one.first_day > today - RECENT]
 
 
 def _since(baseline: Baseline, points: Sequence[ComparablePoint]) -> list[ComparablePoint]:
@@ -293,7 +312,7 @@ def _notes(
         )
     speed = max((abs(one.speed) for one in recent), default=0.0)
     load = max((abs(opposed(one)) for one in recent), default=0.0)
-    return [one for one in (*notes, *shaft_notes(surface.header, speed, load)) if one]
+    return [*notes, *shaft_notes(surface.header, speed, load)]
 
 
 def _is_usual(notes: Sequence[str]) -> bool:

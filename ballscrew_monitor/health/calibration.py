@@ -12,6 +12,7 @@ its covariance is the doubt that is left.
 
 from collections.abc import Sequence
 import dataclasses
+from typing import Any
 
 from ballscrew_monitor.health.lubrication import opposed
 from ballscrew_monitor.health.records import ComparablePoint
@@ -51,11 +52,16 @@ class Calibration:
 
     def contacts(self, surface: Surface, places: Array, warmer: float = 0.0) -> Array:
         """Return the friction of the surface [N m] with contacts `warmer` still [K], no factor."""
-        low, high = surface.temperature_range
-        heats = np.clip(places[:, 2] + self.values[3] + warmer, low, high)
-        return np.array(
-            look_up_many(surface, places[:, 0], places[:, 1], heats)['friction_torque']
-        )
+        return np.array(self.found(surface, places, warmer)['friction_torque'])
+
+    def found(self, surface: Surface, places: Array, warmer: float = 0.0) -> NDArray[Any]:
+        """Return what a surface says of contacts `warmer` still [K], see `look_up_many`."""
+        heats = self.heats(surface, places, warmer)
+        return look_up_many(surface, places[:, 0], places[:, 1], heats)
+
+    def heats(self, surface: Surface, places: Array, warmer: float = 0.0) -> Array:
+        """Return the temperatures of contacts `warmer` still [K], within the surface."""
+        return np.clip(places[:, 2] + self.values[3] + warmer, *surface.temperature_range)
 
     def drag(self, places: Array) -> Array:
         """Return what the wiper takes [N m]."""

@@ -30,12 +30,22 @@ FEWEST = 3
 """Readings from which on the next one is scored: two degrees of freedom and more."""
 FLOOR = 0.01
 """Least spread over the mean of the readings [-]."""
+DAILY_LIMIT, DAILY_FLOOR = 8.0, 0.03
+"""Both of readings that come daily: what drifts by the season is no change."""
+DAILY = 2.0
+"""Median distance of the readings of single days below which they come daily [days]."""
 
 
 @dataclasses.dataclass(slots=True)
 class SelfStarting:
-    """Mean and sum of squares of the readings so far, the two sums, and the number of readings."""
+    """
+    Mean and sum of squares of the readings so far, the two sums, and the number of readings.
 
+    `floor` [-] is the least spread over the mean.
+
+    """
+
+    floor: float = FLOOR
     count: int = 0
     mean: float = 0.0
     squares: float = 0.0
@@ -47,7 +57,7 @@ class SelfStarting:
         if self.count < FEWEST:
             return math.nan
         freedom = self.count - 1
-        spread = max(math.sqrt(self.squares / freedom), FLOOR * abs(self.mean))
+        spread = max(math.sqrt(self.squares / freedom), self.floor * abs(self.mean))
         if spread == 0.0:
             return math.copysign(math.inf, reading) if reading else 0.0
         ratio = (reading - self.mean) / spread * math.sqrt(self.count / (self.count + 1))
@@ -66,7 +76,9 @@ class SelfStarting:
         return max(self.high, self.low)
 
 
-def first_alarm(series: Iterable[tuple[float, float]]) -> float | None:
+def first_alarm(
+    series: Iterable[tuple[float, float]], *, limit: float = LIMIT, floor: float = FLOOR
+) -> float | None:
     """
     Return the time in motion [s] at which a change is told in a series; None for no change.
 
@@ -74,10 +86,10 @@ def first_alarm(series: Iterable[tuple[float, float]]) -> float | None:
     aside, as in a baseline; readings that are not finite are left out.
 
     """
-    state = SelfStarting()
+    state = SelfStarting(floor)
     for time, reading in series:
         usable = time >= RUNNING_IN and math.isfinite(reading)
-        if usable and state.take(reading) >= LIMIT:
+        if usable and state.take(reading) >= limit:
             return time
     return None
 
@@ -95,7 +107,8 @@ def note_on_runs(points: Sequence[ComparablePoint], motion: Motion, model: Model
     days = sorted({one.first_day for one in runs})
     readings = [_reading([one for one in runs if one.first_day == day], model) for day in days]
     times = [sum(time for one, time in motion.items() if one <= day) for day in days]
-    alarm = first_alarm(zip(times, readings))
+    daily = {'limit': DAILY_LIMIT, 'floor': DAILY_FLOOR} if _come_daily(runs) else {}
+    alarm = first_alarm(zip(times, readings), **daily)
     if alarm is None:
         return ''
     at = times.index(alarm)
@@ -105,6 +118,12 @@ def note_on_runs(points: Sequence[ComparablePoint], motion: Motion, model: Model
         f'the friction without process force of {clock_text(days[at] * DAY)[:10]} differs by '
         f'{100.0 * change:+.0f} % from the readings before, more than those scatter'
     )
+
+
+def _come_daily(runs: Sequence[ComparablePoint]) -> bool:
+    """Tell whether readings come daily, as those of an axis that is always free do."""
+    days = sorted({one.first_day for one in runs if one.days == 1})
+    return len(days) > FEWEST and float(np.median(np.diff(days))) < DAILY
 
 
 def _reading(run: Sequence[ComparablePoint], model: Model) -> float:

@@ -64,7 +64,7 @@ class Model:
         places = places_of(points)
         return self._change(places, self.calibration.contacts(self.surface, places, shift))
 
-    def starved(self, points: Sequence[ComparablePoint], factor: float) -> Array:
+    def starved(self, points: Sequence[ComparablePoint], factor: float | Array) -> Array:
         """
         Return the change of friction [N m] where the film is `factor` of the flooded one [-].
 
@@ -75,8 +75,20 @@ class Model:
         places = places_of(points)
         slower = places.copy()
         slower[:, 0] *= factor ** (1.0 / FILM_EXPONENT)
-        slower[:, 0] = np.maximum(slower[:, 0], self.surface.speed_range[0])
+        slower[:, 0] = np.clip(slower[:, 0], *self.surface.speed_range)
         return self._change(places, self.calibration.contacts(self.surface, slower))
+
+    def onsets(self, points: Sequence[ComparablePoint]) -> Array:
+        """Return the speeds of the screw at which contact begins [rad/s], NaN outside."""
+        places = places_of(points)
+        heats = self.calibration.heats(self.surface, places).tolist()
+        loads = places[:, 1].tolist()
+        return np.array([self.surface.onset_speed(*one) for one in zip(loads, heats)])
+
+    def asperity_share(self, points: Sequence[ComparablePoint]) -> Array:
+        """Return the share of the load on asperities [-], NaN outside the surface."""
+        found = self.calibration.found(self.surface, places_of(points))
+        return np.array(found['asperity_share'])
 
     def relieved(self, points: Sequence[ComparablePoint], share: float) -> Array:
         """Return the change of friction [N m] at a `share` of the preload [-], NaN unknown."""
@@ -84,8 +96,7 @@ class Model:
             return np.full(len(points), np.nan)
         places = places_of(points)
         here = self._here(places)
-        low, high = self.surface.temperature_range
-        heats = np.clip(places[:, 2] + self.calibration.values[3], low, high)
+        heats = self.calibration.heats(self.surface, places)
         ratios = [
             self.companions.friction_ratio(speed, load, heat, share)
             for (speed, load, _), heat in zip(places.tolist(), heats.tolist())

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from ballscrew_monitor.core.conversions import clock_text, seconds
 from ballscrew_monitor.health.assess import DRAG, TOLERANCE
+from ballscrew_monitor.health.onset import NAME as ONSET
 from ballscrew_monitor.health.peers import Peer
 from ballscrew_monitor.health.preload import NAME as PRELOAD
 from ballscrew_monitor.health.records import Condition, Health, Quantity
@@ -18,6 +19,7 @@ MARKS = {Condition.NORMAL: 'optimal', Condition.WORSE: 'outside', Condition.UNKN
 TRENDS = {
     DRAG: ('change of the drag', 0.0, TOLERANCE),
     PRELOAD: ('preload over that of the baseline', 1.0, TOLERANCE),
+    ONSET: ('speed of the onset of contact over that of the baseline', 1.0, TOLERANCE),
 }
 
 

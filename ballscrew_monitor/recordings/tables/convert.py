@@ -107,6 +107,8 @@ def _axis_parameters(axis: AxisMap) -> dict[str, Any]:
             'load.source': MOTOR_TORQUE,
             'torque.uncertainty': axis.torque_uncertainty,
             'inertia': axis.inertia,
+            'health.free_load': axis.free_load,
+            'health.always_free': axis.always_free,
         }
     else:
         values['load.topic'] = f'{axis.name}/axial_load'

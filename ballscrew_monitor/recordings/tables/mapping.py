@@ -28,7 +28,7 @@ from ballscrew_monitor.recordings.tables.quantities import (
     UNITS,
 )
 from ballscrew_monitor.recordings.words import short
-from ballscrew_monitor.settings.parameters import check_axes
+from ballscrew_monitor.settings.parameters import check_axes, MOTOR_TORQUE
 from surrogate.files import InputError
 from surrogate.limits import read_text
 from surrogate.plain_yaml import plain_values
@@ -44,6 +44,7 @@ NUMBERS = {
     'torque_uncertainty_Nm': (1e-9, 1e6),
     'inertia_kg_m2': (0.0, 1e3),
     'temperature_degC': (-50.0, 200.0),
+    'free_load_N': (-1e6, 1e6),
     'rate_Hz': (1e-3, 1e6),
 }
 """Numbers of an axis, and of the time, with the least and the most allowed."""
@@ -69,8 +70,9 @@ class AxisMap:
 
     Lead [m], constant [N m/A] and rated torque [N m] of the motor, and oil temperature [degC], NaN
     where not said; efficiency [-]; half width of the range of the torque [N m], NaN where not
-    said, and inertia [kg m2], for a load that the node works out; `load_from` says from what it
-    is; `unknown` says of an input why it is not known.
+    said, and inertia [kg m2], for a load that the node works out; load [N] of motion free of
+    process force, and whether all motion is; `load_from` says from what the load is; `unknown`
+    says of an input why it is not known.
 
     """
 
@@ -83,6 +85,8 @@ class AxisMap:
     torque_uncertainty: float
     inertia: float
     temperature: float
+    free_load: float
+    always_free: bool
     load_from: str
     unknown: Mapping[str, str]
     texts: Mapping[str, str]
@@ -229,6 +233,12 @@ class _Part:
             raise InputError(f'{self._prefix}.{name} is {value!r}, it must be a text')
         return value
 
+    def flag(self, name: str) -> bool:
+        value = self.take(name, False)
+        if not isinstance(value, bool):
+            raise InputError(f'{self._prefix}.{name} is {value!r}, it must be true or false')
+        return value
+
     def column(self, kind: str, *, at: str = '') -> Column | None:
         """Return the column of a kind of quantity, `at` its place unless that is its name."""
         part = self if at else _Part(f'{self._prefix}.{kind}', self._values)
@@ -262,6 +272,8 @@ def _axis(name: str, values: dict[str, Any]) -> AxisMap:
         torque_uncertainty=part.number('torque_uncertainty_Nm'),
         inertia=part.number('inertia_kg_m2', 0.0),
         temperature=part.number('temperature_degC'),
+        free_load=part.number('free_load_N', 0.0),
+        always_free=part.flag('always_free'),
         load_from=part.text('load.from'),
         unknown={kind: text for kind in INPUTS if (text := part.text(f'{kind}.unknown'))},
         texts={key: text for key in TEXTS if (text := part.text(key))},
@@ -279,6 +291,11 @@ def _check_axis(axis: AxisMap) -> None:
     if 'torque' in axis.columns and math.isnan(axis.motor_torque('torque')):
         raise InputError(f'{axis.name}.torque_rated_Nm is missing, a torque in % is part of it')
     source = axis.load_from
+    if (axis.always_free or axis.free_load) and source != MOTOR_TORQUE:
+        raise InputError(
+            f'{axis.name} states always_free or free_load_N, which replace a load from '
+            'motor_torque: load.from must be motor_torque'
+        )
     if not source:
         return
     if source not in DERIVED or 'load' in axis.columns:

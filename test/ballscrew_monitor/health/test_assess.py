@@ -25,6 +25,7 @@ import pytest
 from surrogate.surface import PRELOAD_SHARES
 
 SPEEDS = 3.0, 12.0, 40.0, 120.0
+MORE = 1.0, 3.0, 8.0, 14.0, 25.0, 50.0, 120.0
 FIRST = 20_000
 
 
@@ -55,13 +56,13 @@ class Axis:
         self.companions = Companions({share: OfShare(surface, share) for share in PRELOAD_SHARES})
         self.model = Model(surface, self.companions)
 
-    def days(self, motion, count, added, seed=1):
+    def days(self, motion, count, added, seed=1, speeds=SPEEDS):
         """Return the points of days that follow one another."""
         random = np.random.default_rng(seed)
         found = []
         for day in range(count):
             warm = 1.0 + random.normal(0.0, 0.015)
-            for band, speed in enumerate(SPEEDS):
+            for band, speed in enumerate(speeds):
                 for sign in (1, -1):
                     point = motion.point(
                         first_day=FIRST + day,
@@ -118,6 +119,20 @@ def test_a_preload_that_falls_is_named_with_its_size(axis, motion):
     assert health.causes[0].code is CauseCode.PRELOAD_LOST
     assert 'the preload is' in health.verdict
     assert health.advice == ADVICE[CauseCode.PRELOAD_LOST]
+
+
+def test_a_film_that_gets_thinner_is_an_onset_at_higher_speeds(axis, motion):
+    def added(point, day):
+        return axis.model.starved([point], 0.6)[0] if day > 12 else 0.0
+
+    health = axis.health(axis.days(motion, 42, added, speeds=MORE))
+    onset = health.quantity('onset of contact')
+    assert 1.0 < onset.low <= 0.6 ** (-1 / 0.67) <= onset.high
+    assert any(one.startswith('contact begins at ') for one in health.notes)
+    clean = axis.health(axis.days(motion, 42, lambda point, day: 0.0, speeds=MORE))
+    onset = clean.quantity('onset of contact')
+    assert onset.low <= 1.0 <= onset.high
+    assert not any(one.startswith('contact begins at ') for one in clean.notes)
 
 
 def test_what_is_missing_is_said(axis, motion):

@@ -13,6 +13,8 @@ import re
 from ballscrew_monitor.core.conversions import clock_text, TIME_UNITS
 from ballscrew_monitor.health.baseline import RUNNING_IN
 from ballscrew_monitor.health.detector import (
+    DAILY_FLOOR,
+    DAILY_LIMIT,
     first_alarm,
     FLOOR,
     LIMIT,
@@ -129,6 +131,18 @@ def test_false_alarms_come_as_often_as_stated():
     assert run_length_siegmund_1985(SLACK, LIMIT) / 2 == pytest.approx(124, abs=1)
 
 
+def test_daily_readings_that_drift_by_the_season_seldom_alarm():
+    """Of 500 years: days scatter by 2 %, a season moves all by 1 %, each axis at its own time."""
+    rng, year = np.random.default_rng(2), np.arange(250) / 250.0
+    phase = rng.uniform(0.0, 1.0, (500, 1))
+    series = 1.0 + 0.01 * np.sin(2 * np.pi * (year + phase)) + rng.normal(0.0, 0.02, (500, 250))
+    daily = {'limit': DAILY_LIMIT, 'floor': DAILY_FLOOR}
+    assert sum(first_alarm(hourly(one), **daily) is not None for one in series) < 0.05 * 500
+    assert sum(first_alarm(hourly(one)) is not None for one in series) > 0.8 * 500
+    fallen = series - 0.1 * np.clip((year - 0.5) / 0.2, 0.0, 1.0)
+    assert all(first_alarm(hourly(one), **daily) is not None for one in fallen)
+
+
 @pytest.fixture(name='runs', scope='module')
 def runs_of_a_screw(motion, surface):
     """Return what gives points and motion by day of runs, one each 35 h, and their model."""
@@ -158,6 +172,21 @@ def test_a_run_that_differs_is_named_with_its_day_and_its_change(runs, says):
     assert re.fullmatch(says('run', date=date, change='-10'), note_on_runs(points, spent, model))
     later, _, _ = runs([*steady, 0.09, 0.2])
     assert note_on_runs(later, spent, model) == note_on_runs(points, spent, model)
+
+
+def test_readings_of_each_day_need_a_larger_change(runs):
+    """Those of an axis that is always free; runs on every second day are rare."""
+    points, spent, model = runs([*[0.100, 0.101, 0.099] * 6, 0.096, 0.096, 0.096])
+    first = points[0].first_day
+    each = [dataclasses.replace(one, first_day=first + at) for at, one in enumerate(points)]
+    hours = dict.fromkeys((one.first_day for one in each), 35.0 * HOUR)
+    assert note_on_runs(points, spent, model) != ''
+    assert note_on_runs(each, hours, model) == ''
+    far = [
+        dataclasses.replace(one, motor_torque=(0.8 if at > 17 else 1.0) * one.motor_torque)
+        for at, one in enumerate(each)
+    ]
+    assert note_on_runs(far, hours, model) != ''
 
 
 def test_a_change_of_speed_or_load_source_is_no_change_of_the_runs(runs):

@@ -28,6 +28,7 @@ from ballscrew_monitor.recordings.tables.convert import convert, print_guess
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis import gathering_of
 from ballscrew_msgs.msg import InputHealth
 from geometry_msgs.msg import WrenchStamped
 from hypothesis import given, settings
@@ -178,8 +179,11 @@ def test_a_load_may_be_left_to_the_node(tmp_path, write_csv):
     content = guess(log).content
     content['assumed']['x.load.from']['value'] = 'motor_torque'
     content['axes']['x'] |= {'torque_uncertainty_Nm': 0.05, 'inertia_kg_m2': 1e-4}
+    content['axes']['x'] |= {'always_free': True, 'free_load_N': -200.0}
     convert(log, make_map(content), tmp_path / 'bag')
     bag = Bag(tmp_path / 'bag')
+    gathering = gathering_of('x', parameters_of(bag))
+    assert (gathering.always_free, gathering.free_load) == (True, -200.0)
     assert list(bag.topics) == ['/joint_states']
     last = [state for state, _ in replay(bag, parameters_of(bag))][-1]
     assert last.point.motor_torque == pytest.approx(2.0)
