@@ -7,8 +7,8 @@ It finds axes by the types of topics, turns messages into records, and hands the
 the hub. It reads best effort: a page never holds a node up. A node whose messages are of another
 version of ballscrew_msgs is named and not listened to: its bytes would be read as other numbers.
 
-A wake-up of the executor for each message costs more than to read it, so no message wakes it. A
-timer takes all that waits, as often as the hub sends frames, and hands it over as one.
+A wake-up of the executor costs more than to read a message. So the thread takes all that waits, as
+often as the hub sends frames, hands it over as one, and lets the executor wait only for answers.
 
 """
 
@@ -26,7 +26,6 @@ from ballscrew_monitor.page.surfaces import known_surface
 from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.srv import GetParameters
-from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile
@@ -45,7 +44,7 @@ Post = Callable[..., Any]
 
 
 class RosSide:
-    """Subscriptions of all axes, spun by a thread until closed."""
+    """Subscriptions of all axes, read by a thread until closed."""
 
     def __init__(self, node: Node, hub: Hub, post: Post, *, only: str = '') -> None:
         """Follow the node with the full name `only`, all if that is empty."""
@@ -60,8 +59,6 @@ class RosSide:
         self._diagnostics = open_topic(
             node, '/diagnostics', DiagnosticArray, Apart(), qos=DIAGNOSTICS_QOS
         )
-        for period, turn in ((PERIOD, self._drain), (LOOK, self._look)):
-            node.create_timer(period, turn, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def start(self) -> None:
         """Begin to listen."""
@@ -73,13 +70,24 @@ class RosSide:
         self._thread.join()
 
     def _spin(self) -> None:
-        assert self._node.executor is not None
         try:
-            self._look()
             while not self._stopped.is_set():
-                self._node.executor.spin_once()  # the timers wake it
+                self._look()
+                for _ in range(round(LOOK / PERIOD)):
+                    self._pause(PERIOD)
+                    self._drain()
         except Exception as error:  # told by the thread that waits for it
             self.failure = error
+
+    def _pause(self, duration: float) -> None:
+        """Wait some `duration` [s], in the executor where it has something to do."""
+        assert self._node.executor is not None
+        end = time.monotonic() + duration
+        while not self._stopped.is_set() and (left := end - time.monotonic()) > 0.0:
+            if self._hub.acting or any(link.is_asking for link in self._links.values()):
+                self._node.executor.spin_once(timeout_sec=left)
+            else:
+                self._stopped.wait(left)
 
     def _later(self, *act: Any) -> None:
         self._acts.append(act)
@@ -123,7 +131,7 @@ class RosSide:
         hashes = link.hashes()
         problem = version_problem(node, hashes)
         self._later(self._hub.notice, node, problem)
-        if problem:  # nothing is spun between subscribing and this
+        if problem:  # nothing is taken between subscribing and this
             self._refused[base] = hashes[0]
             link.close()
             return
@@ -225,9 +233,14 @@ class AxisLink:
         mine = {str(one.topic_type_hash) for one in read if one.node_name == self._node.get_name()}
         return sent_hashes(self._node, self.view.name), mine
 
+    @property
+    def is_asking(self) -> bool:
+        """Tell whether the parameters that go with the surface are not known yet."""
+        return self._info is not None and not self._is_told
+
     def ask(self) -> None:
         """Ask for the parameters until they are known; a first answer may be lost."""
-        if self._info is None or self._is_told or not self._parameters.service_is_ready():
+        if not self.is_asking or not self._parameters.service_is_ready():
             return
         names = [f'{self.view.axis}.{leaf}' for leaf in LEAVES]
         asked = self._parameters.call_async(GetParameters.Request(names=names))

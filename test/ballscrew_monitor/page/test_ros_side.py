@@ -4,6 +4,7 @@
 
 import contextlib
 from pathlib import Path
+import types
 import xml.etree.ElementTree as ElementTree
 
 from ballscrew_monitor.page import hub as hubs
@@ -17,6 +18,7 @@ from std_msgs.msg import Header
 from surrogate.units import RPM
 
 NAME = '/ballscrew_monitor/x'
+DEADLINE = 600.0  # [s] which only ends a hang
 POLICY = Path(__file__).resolve().parents[3] / 'config' / 'sros2_policy.xml'
 
 
@@ -50,10 +52,8 @@ class Turned:
 
 
 @pytest.fixture
-def turned(node, monkeypatch):
-    """No timer has a turn: the test takes them all."""
-    for period in ('LOOK', 'PERIOD'):
-        monkeypatch.setattr(f'ballscrew_monitor.page.ros_side.{period}', 1e6)
+def turned(node):
+    """Return a page whose thread is not begun."""
     with started_node('ballscrew_page', node.domain) as page:
         yield Turned(node, page)
 
@@ -151,6 +151,26 @@ def test_what_comes_in_one_turn_is_handed_over_at_once_and_all_of_it(node, turne
     turned.until(lambda: view.history.count == count + 2, 'two more')
     turned.ros._drain()
     assert turned.posts == []  # nothing has come, nothing is handed over
+
+
+def test_the_executor_is_woken_only_where_an_answer_may_come(turned, monkeypatch):
+    woken = []
+
+    def wake(timeout_sec):
+        woken.append(timeout_sec)
+        turned.ros._stopped.set()
+
+    monkeypatch.setattr(turned.page.executor, 'spin_once', wake)
+    turned.ros._pause(0.001)
+    assert woken == []
+    turned.ros._links['/fast/x'] = types.SimpleNamespace(is_asking=True)
+    turned.ros._pause(DEADLINE)
+    turned.ros._links.clear()
+    turned.ros._stopped.clear()
+    turned.hub.acting = True
+    turned.ros._pause(DEADLINE)
+    assert len(woken) == 2
+    assert 0.0 < max(woken) <= DEADLINE
 
 
 def test_a_message_that_is_lost_on_the_way_is_counted(node, turned):
