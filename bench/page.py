@@ -125,7 +125,8 @@ async def browse(url: str, seconds: float, latencies: list[float]) -> int:
     """Read for some `seconds` [s]; note latencies [s] of rows and return the frames of states."""
     frames = 0
     origin, address = url.rstrip('/'), f'{url.replace("http", "ws")}live'
-    async with connect(address, origin=origin, max_size=None, compression=None) as live:
+    options = {'max_size': None, 'compression': None, 'open_timeout': None}
+    async with connect(address, origin=origin, **options) as live:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             made = await live.recv()
