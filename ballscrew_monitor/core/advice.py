@@ -18,7 +18,7 @@ import functools
 import math
 from typing import Any, NamedTuple
 
-from ballscrew_monitor.core.conversions import opposing_load, signed
+from ballscrew_monitor.core.conversions import opposing_load, rounded, signed
 from ballscrew_monitor.core.estimate import MachinePoint, opposing_load_of
 from ballscrew_monitor.core.judgement import efficiency_to_clear, Limits, rcs_to_clear
 from surrogate.surface import Found, look_up, Surface, Validity
@@ -48,10 +48,8 @@ class Advice:
         """Return the advice as a sentence, empty if there is none."""
         parts = []
         if math.isfinite(self.target_speed):
-            turns = self.target_speed / RPM
-            parts.append(
-                f'at this load run at {self.target_speed:.4g} rad/s ({turns:.0f} rev/min)'
-            )
+            turns = rounded(self.target_speed / RPM)
+            parts.append(f'at this load run at {self.target_speed:.4g} rad/s ({turns} rev/min)')
         if math.isfinite(self.target_load):
             parts.append(f'at this speed load with {self.target_load:.4g} N')
         doubt = f'; asperities {self.carry} carry here' if parts and self.carry else ''

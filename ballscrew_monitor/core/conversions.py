@@ -179,6 +179,11 @@ def opposing_load(axial_load: float, direction: Direction) -> float:
     return 0.0 - axial_load if direction is Direction.POSITIVE else axial_load
 
 
+def rounded(value: float) -> str:
+    """Return a number as text within 0.5 %, without decimals from 100 on."""
+    return f'{value:.0f}' if abs(value) >= 100.0 else f'{value:.3g}'
+
+
 def signed(amount: float, direction: Direction) -> float:
     """Return a speed or torque, machine frame, of its amount along a motion."""
     return 0.0 - amount if direction is Direction.NEGATIVE else amount

@@ -15,13 +15,13 @@ from collections.abc import Iterable
 import dataclasses
 import math
 import types
-from typing import Any, Protocol
+from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.estimate import MachinePoint, opposing_load_of
 from ballscrew_monitor.core.judgement import Gate
 from ballscrew_monitor.core.state import State
-from surrogate.surface import Found, HasOperatingPoint, Surface
+from surrogate.surface import Correction, Found, Surface
 
 NAN = math.nan
 JUDGED = ('efficiency', 'rcs')
@@ -61,12 +61,8 @@ class KeptSolve(SolvedAt):
     solved: dict[str, float]
 
 
-class Solve(HasOperatingPoint, Protocol):
-    """A full solve that has corrected a surface, or did so in an earlier run of the node."""
-
-    @property
-    def solved(self) -> dict[str, float]:
-        """Return the fields that were solved [SI]."""
+Solve = Correction | KeptSolve
+"""A full solve that has corrected a surface, or did so in an earlier run of the node."""
 
 
 def solved_at(point: MachinePoint) -> SolvedAt:

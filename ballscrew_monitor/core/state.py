@@ -26,6 +26,8 @@ LONGEST_SHELVING = 86400 * SECOND
 """No warning is shelved longer than this [ns], however the clock is set."""
 LONGEST_REASON, LONGEST_NAME = 500, 200
 """Characters of a reason, which a state carries, and of a name."""
+ACKNOWLEDGED = 'acknowledged'
+"""Begin of the ending of an event that somebody has acknowledged."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -206,6 +208,13 @@ class Acknowledgement:
 
     name: str = ''
     reason: str = ''
+
+    @property
+    def ending(self) -> str:
+        """Return why an event ends by it."""
+        by = f' by {self.name}' if self.name else ''
+        why = f': {self.reason}' if self.reason else ''
+        return f'{ACKNOWLEDGED}{by}{why}'
 
 
 NAMELESS = Acknowledgement()

@@ -120,7 +120,7 @@ class Alarm:
 
     def acknowledge(self, by: Acknowledgement = NAMELESS) -> None:
         """Set the level back to UNKNOWN and end the event, because somebody has seen it."""
-        ended = self._axis.monitor.acknowledge(self._now)
+        ended = self._axis.monitor.acknowledge(self._now, by.ending)
         number = self._axis.monitor.event.number
         self._note(Kind.ACKNOWLEDGE, event=number, name=by.name, reason=by.reason)
         if ended is not None:

@@ -64,11 +64,8 @@ class Acting:
     async def _acknowledge(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
         view, name = self._hub.view(text_in(request, 'axis')), text_in(request, 'name')
         reason = text_in(request, 'reason') if request.get('reason') else ''
-        active = view.active_events
         asked = AcknowledgeAlarm.Request(axis=view.axis, name=name, reason=reason)
-        said = await self._call(view, AcknowledgeAlarm, 'acknowledge_as', asked)
-        view.acknowledge(active, name)
-        return {'message': said}, {}
+        return {'message': await self._call(view, AcknowledgeAlarm, 'acknowledge_as', asked)}, {}
 
     async def _shelve(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
         view, name = self._hub.view(text_in(request, 'axis')), text_in(request, 'name')

@@ -39,9 +39,9 @@ class AxisView:
         self.no_map = 'the surface of this axis is not known yet'
         self.health: Mapping[str, Any] | None = None
         self.events: dict[int, Mapping[str, Any]] = {}
-        self.acknowledged: dict[int, str] = {}  # by whom, of events by their numbers
         self.warmth = math.nan  # of the oil as it was last known [degC]
         self.surface: Surface | None = None
+        self.without = 0  # corrections of the node that the surface lacks
         self.map_frame: bytes | None = None
         self.grades: list[str] = []  # oils of which there are surfaces
         self.words: dict[str, str] = {}  # of the diagnostics by their parts
@@ -69,9 +69,11 @@ class AxisView:
         self.is_changed |= limits != self.limits
         self.limits = limits
 
-    def know(self, about: Mapping[str, Any], surface: Surface | None, no_map: str) -> None:
-        """Take what the axis is, and its surface, or why that is not here."""
-        self.about, self.surface, self.no_map = about, surface, no_map
+    def know(
+        self, about: Mapping[str, Any], surface: Surface | None, no_map: str, without: int = 0
+    ) -> None:
+        """Take what it is, and its surface `without` some corrections, or why that is missing."""
+        self.about, self.surface, self.no_map, self.without = about, surface, no_map, without
         self.map_frame, self.is_changed = None, True
 
     def hear_words(self, part: str, words: str) -> None:
@@ -95,7 +97,6 @@ class AxisView:
             self.events[record['id']] = record
             for old in sorted(self.events)[:-MOST_EVENTS]:
                 del self.events[old]
-                self.acknowledged.pop(old, None)
             self._events_are_news = True
 
     def show_events(self, records: Iterable[Mapping[str, Any]]) -> None:
@@ -108,16 +109,6 @@ class AxisView:
     def begin_again(self) -> None:
         """Forget the rows, as time has jumped."""
         self.history, self._sent, self.is_changed = History(), 0, True
-
-    @property
-    def active_events(self) -> list[int]:
-        """Return the numbers of the events that are active."""
-        return [number for number, event in self.events.items() if event['active']]
-
-    def acknowledge(self, numbers: Iterable[int], name: str) -> None:
-        """Remember who has acknowledged some events."""
-        self.acknowledged |= dict.fromkeys(numbers, name)
-        self._events_are_news = True
 
     def age(self, now: float) -> float:
         """Return the time since the last state [s], NaN before the first."""
@@ -177,11 +168,9 @@ class AxisView:
         return frame('events', {'axis': self.name, 'events': events})
 
     def _told(self, event: Mapping[str, Any]) -> dict[str, Any]:
-        by = self.acknowledged.get(event['id'], '')
         words = event['words']
         advice = feed_first(words, self.lead) if math.isfinite(self.lead) else words
-        told = {'advice': advice, 'since_s': event['duration_s']}
-        return {**event, **told, 'acknowledged': bool(by), 'acknowledged_by': by}
+        return {**event, 'advice': advice, 'since_s': event['duration_s']}
 
     def _state_frame(self, now: float, since: int, *, health: bool) -> bytes:
         told = self._told(self.events[max(self.events)]) if self.events else None

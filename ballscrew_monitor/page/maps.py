@@ -41,6 +41,7 @@ LONGEST_STEP = 1.0  # [s] between two rows; more is a gap
 MOST_POINTS = 2000  # of the path of a ghost
 MOST_UNKNOWN = 0.01  # of the time of a ghost, up to which its energy is that of the rest
 SPEEDS = 120  # at which the limit of RCS is looked for
+LEAST_RCS = 1e-9  # [-] which has a logarithm
 Answer = tuple[dict[str, Any], dict[str, Any]]
 
 
@@ -128,21 +129,27 @@ def _bands(field: Field, surface: Surface, limits: Limits) -> list[MapLine]:
     ]
 
 
-def limit_speed(surface: Surface, limits: Limits, load: float, temperature: float) -> float:
+def limit_speed(
+    surface: Surface, limits: Limits, load: float, temperature: float, *, speed: float
+) -> float:
     """
-    Return the fastest speed [rad/s] at which RCS is at its limit; NaN where there is none.
+    Return the speed [rad/s] at which RCS falls below its limit next to a `speed`, NaN for none.
 
-    At an opposing load [N] and a temperature [degC].
+    The next faster one for a speed in contact, to which advice leads, else the next slower one: a
+    corrected surface may have more than one. At an opposing load [N] and a temperature [degC].
 
     """
     speeds = np.geomspace(*judged_speeds(surface, limits.standstill_speed), SPEEDS)
     rcs = look_up_many(surface, speeds, *_everywhere(speeds, load, kelvin(temperature)))['rcs']
-    above = np.flatnonzero(rcs >= limits.rcs)
-    if not above.size or above[-1] == SPEEDS - 1 or math.isnan(rcs[above[-1] + 1]):
-        return math.nan
-    at = above[-1]
-    part = (rcs[at] - limits.rcs) / (rcs[at] - rcs[at + 1])
-    return float(speeds[at] * (speeds[at + 1] / speeds[at]) ** part)
+    excess = np.log(np.maximum(rcs, LEAST_RCS) / limits.rcs)
+    at = np.flatnonzero((excess[:-1] >= 0.0) & (excess[1:] < 0.0))
+    part = excess[at] / (excess[at] - excess[at + 1])
+    borders = speeds[at] * (speeds[at + 1] / speeds[at]) ** part
+    faster, slower = borders[borders >= speed], borders[borders < speed][::-1]
+    # Interpolated like the borders, so that a speed beside one is on its right side.
+    here = np.interp(math.log(max(speed, speeds[0])), np.log(speeds), excess)
+    found = faster if here >= 0.0 else slower
+    return float(found[0]) if found.size else math.nan
 
 
 def limit_record(
@@ -156,7 +163,8 @@ def limit_record(
     """
     speed, load, heat = (row[COLUMNS.index(name)] for name in COLUMNS[1:4])
     opposing = -load if speed > 0.0 else load
-    limit = limit_speed(surface, limits, opposing, warmth if math.isnan(heat) else heat) / RPM
+    degrees, turn = warmth if math.isnan(heat) else heat, abs(speed) * RPM
+    limit = limit_speed(surface, limits, opposing, degrees, speed=turn) / RPM
     if math.isnan(limit):
         return None
     return {'speed_rpm': limit, 'margin': float(abs(speed) / limit - 1.0)}

@@ -9,19 +9,21 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import celsius, SECOND, seconds
 from ballscrew_monitor.core.judgement import Reason, Zone
+from ballscrew_monitor.messages.state_messages import fill_totals
 from ballscrew_monitor.page import maps
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.history import SPAN
 from ballscrew_monitor.page.hub import Browser, Hub, PERIOD
 from ballscrew_monitor.page.questions import Answer, Handler, number_in
-from ballscrew_monitor.page.records import LEVELS, UNKNOWN, WORDS_OF_REGIME, ZONES
+from ballscrew_monitor.page.records import LEVELS, totals_record, UNKNOWN, WORDS_OF_REGIME, ZONES
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.columns import JudgedColumns, LIGHT_LOAD, STANDSTILL
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report.judging import AxisCase, judge_log, OnShare
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.time_series import fresh
+from ballscrew_msgs import msg
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
@@ -83,12 +85,13 @@ class RecordedAxis:
             'screw': surface.screw_name,
             'oil': surface.oil_name,
             'tier': surface.tier,
-            'surface_id': surface.sha256[:16],
-            'corrected': 0,
             'temperature_low_degC': low,
             'temperature_high_degC': high,
         }
         self.view.know(about, surface, '')
+        totals = msg.Totals()
+        fill_totals(totals, case.outcome.totals)
+        self._totals = totals_record(totals)
         self._limits = {
             'efficiency_limit': limits.efficiency,
             'rcs_limit': limits.rcs,
@@ -128,7 +131,7 @@ class RecordedAxis:
             'regime': WORDS_OF_REGIME.get(regime, UNKNOWN),
             'inputs': [],
             'shelved': None,
-            'totals': {},
+            'totals': self._totals,
         }
 
 
@@ -144,6 +147,8 @@ def _event_record(event: EventRecord, stamp: float) -> dict[str, Any]:
         'limit': event.limit,
         'active': stamp < begin + event.duration,
         'shelved': False,
+        'acknowledged': False,
+        'acknowledged_by': '',
         'words': event.advice,
     }
 

@@ -5,10 +5,12 @@
 import math
 from typing import Any
 
+from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import Direction, seconds, signed
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import InputState
 from ballscrew_monitor.core.judgement import Level, Zone
+from ballscrew_monitor.core.state import ACKNOWLEDGED
 from ballscrew_monitor.messages.health_messages import stamp_of
 from ballscrew_monitor.messages.state_messages import TIERS
 from ballscrew_msgs import msg
@@ -142,6 +144,10 @@ def health_record(health: msg.AxisHealth) -> dict[str, Any]:
 
 def event_record(event: msg.OutOfZone) -> dict[str, Any]:
     """Return an event, without the advice in terms of its axis."""
+    advice, ending = str(event.advice), ''
+    if advice.startswith(ACKNOWLEDGED):
+        targets = {name: getattr(event.cause, name) for name in ('target_speed', 'target_load')}
+        advice, ending = Advice(**targets).text, advice
     return {
         'id': event.event_id,
         'begin': seconds(stamp_of(event.start)),
@@ -151,7 +157,9 @@ def event_record(event: msg.OutOfZone) -> dict[str, Any]:
         'limit': event.cause.limit,
         'active': event.active,
         'shelved': event.shelved,
-        'words': event.advice,
+        'words': advice,
+        'acknowledged': bool(ending),
+        'acknowledged_by': ending.partition(' by ')[2],
     }
 
 
@@ -162,8 +170,6 @@ def surface_record(info: msg.SurfaceInfo, unit: str) -> dict[str, Any]:
         'screw': info.screw,
         'oil': info.oil,
         'tier': WORDS_OF_TIER.get(info.tier, UNKNOWN),
-        'surface_id': info.sha256[:16],
-        'corrected': len(info.corrected_speed),
         'temperature_low_degC': info.temperature_min,
         'temperature_high_degC': info.temperature_max,
     }

@@ -22,7 +22,7 @@ from ballscrew_monitor.node.topic import Apart, open_topic
 from ballscrew_monitor.page import records
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.hub import Hub, MOST_AXES, PERIOD
-from ballscrew_monitor.page.surfaces import known_surface
+from ballscrew_monitor.page.surfaces import SurfaceLink
 from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.srv import GetParameters
@@ -199,7 +199,7 @@ class AxisLink:
         self.view = view
         self._node, self._post = node, post
         self._info: SurfaceInfo | None = None
-        self._is_told = False
+        self._is_due = False  # to ask for the parameters
         kinds = {
             'state': (BallScrewState, self._on_state, None),
             'out_of_zone': (OutOfZone, self._on_event, LATE_QOS),
@@ -211,12 +211,14 @@ class AxisLink:
             for name, (kind, hear, qos) in kinds.items()
         ]
         self._parameters = node.create_client(GetParameters, f'{view.node}/get_parameters')
+        self._surface = SurfaceLink(node, view, post)
 
     def close(self) -> None:
         """Unsubscribe, and ask no more."""
         for topic, _ in self._topics:
             self._node.destroy_subscription(topic.subscription)
         self._node.destroy_client(self._parameters)
+        self._surface.close()
 
     def drain(self) -> int:
         """Take all that has come; return how many messages were lost before or among it."""
@@ -235,12 +237,13 @@ class AxisLink:
 
     @property
     def is_asking(self) -> bool:
-        """Tell whether the parameters that go with the surface are not known yet."""
-        return self._info is not None and not self._is_told
+        """Tell whether parameters or corrections that go with the surface are not known yet."""
+        return self._is_due or self._surface.is_asking
 
     def ask(self) -> None:
-        """Ask for the parameters until they are known; a first answer may be lost."""
-        if not self.is_asking or not self._parameters.service_is_ready():
+        """Ask for parameters and corrections until they are known; a first answer may be lost."""
+        self._surface.ask()
+        if not self._is_due or not self._parameters.service_is_ready():
             return
         names = [f'{self.view.axis}.{leaf}' for leaf in LEAVES]
         asked = self._parameters.call_async(GetParameters.Request(names=names))
@@ -252,8 +255,8 @@ class AxisLink:
         if info is self._info and answer is not None and len(answer.values) == len(LEAVES):
             path, unit = map(parameter_value_to_python, answer.values)
             about = records.surface_record(info, unit)
-            self._post(self.view.know, about, *known_surface(info, path))
-            self._is_told = True
+            self._surface.tell(about, info, path)
+            self._is_due = False
 
     def _on_state(self, state: BallScrewState) -> None:
         row, record = records.row_of(state), records.state_record(state)
@@ -268,5 +271,5 @@ class AxisLink:
 
     def _on_info(self, info: SurfaceInfo) -> None:
         """Take a surface; the node has been configured again, maybe with other parameters."""
-        self._info, self._is_told = info, False
+        self._info, self._is_due = info, True
         self.ask()

@@ -1,9 +1,35 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The surface file of an axis on this machine, if it is the one that the node judges with."""
+"""
+The surface of an axis as its node judges with it: the file on this machine, and the corrections.
 
-from ballscrew_msgs.msg import SurfaceInfo
-from surrogate.surface import find_surface, Surface, SurfaceError
+`SurfaceInfo` tells where full solves have corrected the surface, not what they found. A corrected
+surface agrees with the solve at its point, so the node is asked for its numbers there, and at a
+few places more, by which the file is known to be that of the node.
+
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+import dataclasses
+import functools
+import itertools
+import math
+from typing import Any
+
+from ballscrew_monitor.core.conversions import celsius, Direction, kelvin, opposing_load
+from ballscrew_monitor.core.full_point import corrected, JUDGED, KeptSolve, SolvedAt
+from ballscrew_monitor.page.axis_view import AxisView
+from ballscrew_msgs.msg import OperatingPoint, PointResult, SurfaceInfo
+from ballscrew_msgs.srv import EvaluateOperatingPoint
+import numpy as np
+from rclpy.node import Node
+from rclpy.task import Future
+from surrogate.surface import FIELDS, find_surface, Surface, SurfaceError
+
+PARTS = 4  # of each range of a surface, at whose inner borders it is held against the node
+SAME = 1e-6  # [-] by which equal numbers may differ
+Post = Callable[..., Any]
+"""Calls a function with arguments in the thread of the hub."""
 
 
 def known_surface(info: SurfaceInfo, wanted: str) -> tuple[Surface | None, str]:
@@ -22,8 +48,139 @@ def known_surface(info: SurfaceInfo, wanted: str) -> tuple[Surface | None, str]:
     except SurfaceError as error:
         return None, f'no map: the surface file of the node is not on this machine: {error}'
     if surface.sha256 != info.sha256 and not len(info.corrected_speed):
-        return None, (
-            f'no map: {path} is another surface than the one that the node judges with, copy '
-            f'that one here (SHA-256 {info.sha256[:16]})'
-        )
+        return None, _another(info, wanted)
     return surface, ''
+
+
+def _another(info: SurfaceInfo, wanted: str) -> str:
+    """Return that the file is another one; the hash of a corrected surface is not of its file."""
+    path = find_surface(wanted, info.screw, info.oil)
+    known = '' if len(info.corrected_speed) else f' (SHA-256 {info.sha256[:16]})'
+    return (
+        f'no map: {path} is another surface than the one that the node judges with, copy '
+        f'that one here{known}'
+    )
+
+
+def places_of(info: SurfaceInfo, surface: Surface) -> list[SolvedAt]:
+    """Return the places of the corrections, in their order, and then those of the comparison."""
+    heats = map(kelvin, info.corrected_temperature)
+    spans = surface.load_range, surface.temperature_range
+    inner = [np.geomspace(*surface.speed_range, PARTS + 1)[1:-1].tolist()]
+    inner += [np.linspace(*span, PARTS + 1)[1:-1].tolist() for span in spans]
+    places = [*zip(info.corrected_speed, info.corrected_load, heats), *itertools.product(*inner)]
+    return [
+        SolvedAt(speed=speed, opposing_load=load, temperature=heat) for speed, load, heat in places
+    ]
+
+
+def point_message(place: SolvedAt) -> OperatingPoint:
+    """Return a place as a point of a motion forward."""
+    return OperatingPoint(
+        speed=float(place.speed),
+        axial_load=float(opposing_load(place.opposing_load, Direction.POSITIVE)),
+        temperature=celsius(float(place.temperature)),
+    )
+
+
+def with_corrections(
+    surface: Surface, count: int, answers: Sequence[tuple[SolvedAt, PointResult]]
+) -> Surface | None:
+    """
+    Return a surface with the corrections of a node, by its answers; None for another surface.
+
+    The first `count` answers are those at the corrections. Raises SurfaceError for what corrects
+    nothing.
+
+    """
+    solves = [
+        KeptSolve(
+            **dataclasses.asdict(place), solved={name: getattr(said, name) for name in FIELDS}
+        )
+        for place, said in answers[:count]
+    ]
+    made = corrected(surface, solves)
+    return made if all(itertools.starmap(functools.partial(_agrees, made), answers)) else None
+
+
+def _agrees(surface: Surface, place: SolvedAt, said: PointResult) -> bool:
+    found = surface.lookup(place.speed, place.opposing_load, place.temperature)
+    pairs = [(getattr(found, name), getattr(said, name)) for name in JUDGED]
+    return all(
+        math.isclose(mine, theirs, rel_tol=SAME, abs_tol=SAME)
+        or (math.isnan(mine) and math.isnan(theirs))
+        for mine, theirs in pairs
+    )
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
+class Question:
+    """What a node is to be asked for: its answers at places, `count` of them corrections."""
+
+    about: Mapping[str, Any]
+    surface: Surface
+    places: list[SolvedAt]
+    count: int
+    another: str  # said where the answers are of another surface
+
+
+class SurfaceLink:
+    """Tells the view of an axis its surface, without the corrections until the node says them."""
+
+    def __init__(self, node: Node, view: AxisView, post: Post) -> None:
+        """Ask the node of a `view` through a `node`; `post` calls in the thread of the hub."""
+        self._node, self._view, self._post = node, view, post
+        self._client = node.create_client(EvaluateOperatingPoint, f'{view.node}/evaluate')
+        self._question: Question | None = None
+        self._asked: Future | None = None
+
+    @property
+    def is_asking(self) -> bool:
+        """Tell whether the node has corrections that are not known yet."""
+        return self._question is not None
+
+    def close(self) -> None:
+        """Ask no more."""
+        self._node.destroy_client(self._client)
+
+    def tell(self, about: Mapping[str, Any], info: SurfaceInfo, wanted: str) -> None:
+        """Tell what the axis is, and the surface of `info`; its file is the parameter `wanted`."""
+        surface, no_map = known_surface(info, wanted)
+        count = len(info.corrected_speed)
+        self._post(self._view.know, about, surface, no_map, count)
+        self._question = None
+        if surface is not None and count:
+            self._question = Question(
+                about=about,
+                surface=surface,
+                places=places_of(info, surface),
+                count=count,
+                another=_another(info, wanted),
+            )
+            self.ask()
+
+    def ask(self) -> None:
+        """Ask for the corrections, until they are known; a first answer may be lost."""
+        question = self._question
+        if question is None or not self._client.service_is_ready():
+            return
+        if self._asked is not None:
+            self._client.remove_pending_request(self._asked)
+        points = [point_message(one) for one in question.places]
+        request = EvaluateOperatingPoint.Request(axis=self._view.axis, points=points)
+        self._asked = self._client.call_async(request)
+        self._asked.add_done_callback(functools.partial(self._on_answer, question))
+
+    def _on_answer(self, question: Question, future: Future) -> None:
+        """Take an answer; one to a question of before, or a refusal, tells nothing."""
+        answer = future.result()
+        if question is not self._question or answer is None or not answer.success:
+            return
+        self._question = None
+        answers = list(zip(question.places, answer.results))
+        try:
+            surface = with_corrections(question.surface, question.count, answers)
+        except SurfaceError:  # the map stays without them, and says so
+            return
+        no_map = question.another if surface is None else ''
+        self._post(self._view.know, question.about, surface, no_map)

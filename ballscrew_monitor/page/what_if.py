@@ -105,7 +105,8 @@ class WhatIf:
         load = made[0]['load']
         loads = load['low'], load['high']
         self._followed[view.name] = dataclasses.replace(wanted, loads=loads)
-        view.map_frame = frame('map', {'axis': view.name, **made[0]}, made[1])
+        told = {'axis': view.name, 'without': view.without}
+        view.map_frame = frame('map', told | made[0], made[1])
         self._hub.tell(view.map_frame)
 
     async def _in_turn(self, compute: Callable[..., Any], *args: Any) -> Any:
@@ -139,7 +140,9 @@ class WhatIf:
         record, arrays = await self._in_turn(
             maps.map_of, surface, limits, warmth, motion, quantity
         )
-        return {'axis': view.name, 'oil': surface.oil_name, **record}, arrays
+        without = view.without if surface is view.surface else 0
+        told = {'axis': view.name, 'oil': surface.oil_name, 'without': without}
+        return told | record, arrays
 
     async def _read(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
         view, surface, limits = self._view(request)

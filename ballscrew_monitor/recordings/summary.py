@@ -7,7 +7,7 @@ import dataclasses
 import math
 from typing import Any
 
-from ballscrew_monitor.core.conversions import SECOND, seconds
+from ballscrew_monitor.core.conversions import rounded, SECOND, seconds
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.state import Event, TIMES
 from ballscrew_monitor.recordings.declared import plain, written
@@ -58,7 +58,7 @@ class EventRecord:
         """Return in words where the worst value was, empty where that is not known."""
         if not math.isfinite(self.speed + self.axial_load):
             return ''
-        return f'{_rounded(self.speed / RPM)} rev/min and {_rounded(self.axial_load)} N'
+        return f'{rounded(self.speed / RPM)} rev/min and {rounded(self.axial_load)} N'
 
     @property
     def what_to_do(self) -> str:
@@ -212,7 +212,3 @@ def _said(event: Any, cause: Any, advice: Any) -> dict[str, Any]:
     said = {'quantity': quantity, 'relation': relation, 'limit': cause.limit}
     targets = {name: getattr(advice, name) for name in ('target_speed', 'target_load')}
     return said | targets | {'active': event.active, 'worst_value': event.worst_value}
-
-
-def _rounded(value: float) -> str:
-    return f'{value:.0f}' if abs(value) >= 100.0 else f'{value:.3g}'

@@ -11,13 +11,14 @@ from ballscrew_monitor.core.conversions import celsius, seconds
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why, YEAR
 from ballscrew_monitor.core.links import Link
+from ballscrew_monitor.core.state import Extremes
 from ballscrew_monitor.messages.doctor import Heard, InputFacts, known_range, unit_doubts
 from ballscrew_monitor.messages.reasons import slow_reason
 from ballscrew_monitor.recordings.declared import unwritten, written
 from ballscrew_monitor.recordings.words import duration, number
 from ballscrew_monitor.report.judging import AxisCase, InputSetting
 from ballscrew_monitor.report.mends import contradictions
-from ballscrew_monitor.report.survey import Gaps, Span
+from ballscrew_monitor.report.survey import Gaps
 from surrogate.units import RPM, TURN
 
 MEASURED = 'measured'
@@ -225,7 +226,7 @@ def _without_topic(case: AxisCase, source: Source, sources: frozenset[PointSourc
     return InputSeen(source=source, origin='not recorded', measured=False)
 
 
-def _heard(setting: InputSetting, span: Span, status: InputStatus) -> Heard:
+def _heard(setting: InputSetting, span: Extremes, status: InputStatus) -> Heard:
     """Return the span of an input [SI] in its unit."""
     scaling = setting.scalings[setting.unit]
     ends = [(value - scaling.shift) / scaling.factor for value in (span.low, span.high)]

@@ -17,6 +17,7 @@ from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Reason, Zone
+from ballscrew_monitor.core.state import Extremes
 from ballscrew_monitor.recordings.columns import Flags, Floats, JudgedColumns, Times
 from ballscrew_monitor.recordings.declared import unwritten, written
 import numpy as np
@@ -32,15 +33,6 @@ COLUMN_OF = {
     Source.TEMPERATURE: 'temperature',
     Source.TORQUE: 'motor_torque',
 }
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Span:
-    """Lowest and highest value, and mean, NaN without any."""
-
-    low: float = math.nan
-    high: float = math.nan
-    mean: float = math.nan
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -87,10 +79,10 @@ class Survey:
     last: int
     by_stamp: bool
     shift: int
-    inputs: dict[Source, Span]
+    inputs: dict[Source, Extremes]
     sources: dict[Source, frozenset[PointSource]]
-    opposing: Span
-    oil: Span
+    opposing: Extremes
+    oil: Extremes
     reasons: dict[Reason, float]
     moving: dict[Reason, float]
     uncounted: float
@@ -141,8 +133,8 @@ class _Running:
     def rms(self) -> float:
         return math.sqrt(self.squares / self.count) if self.count else math.nan
 
-    def span(self) -> Span:
-        return Span(low=self.low, high=self.high, mean=self.mean)
+    def span(self) -> Extremes:
+        return Extremes(low=self.low, high=self.high, mean=self.mean)
 
 
 class _Stretches:

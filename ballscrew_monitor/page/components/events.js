@@ -17,7 +17,8 @@ class Events {
     this.message.setAttribute('role', 'status');
     this.totals = Format.element('dl', 'tiles');
     this.sums = Format.element('div');
-    this.sums.append(Words.element('h2', '', 'totals_title'), this.totals);
+    this.heading = Format.element('h2');
+    this.sums.append(this.heading, this.totals);
     this.element.append(
       Words.element('h2', '', 'events_title'), this.form(), this.message, this.list, this.sums,
     );
@@ -70,8 +71,10 @@ class Events {
     }
     const text = (name, value) => Quantities.text(name, value, this.axis.facts);
     this.sums.hidden = totals?.running_time === undefined;
+    this.heading.textContent = Words.say(this.axis.recorded ? 'totals_recorded' : 'totals_title');
     this.totals.replaceChildren(...(this.sums.hidden ? [] : [
-      Events.tile('hours', text('hours', totals.running_time)),
+      Events.tile('hours', totals.running_time < 3600 ? Format.time(totals.running_time)
+        : text('hours', totals.running_time)),
       Events.tile('outside', text('share', totals.outside_time / totals.running_time)),
       Events.tile('mixed', text('share', (totals.mixed_time + totals.boundary_time) / totals.running_time)),
       Events.tile('energy', text('energy', totals.energy_lost)),
@@ -106,7 +109,8 @@ class Events {
     const first = Format.element('td', 'short');
     first.append(when);
     const length = Format.time(event.duration_s) + (event.active ? ` ${Words.say('event_active')}` : '');
-    const who = event.acknowledged_by || (event.shelved ? Words.say('event_shelved') : '');
+    const how = ['acknowledged', 'shelved'].find((one) => event[one]);
+    const who = event.acknowledged_by || (how ? Words.say(`event_${how}`) : '');
     row.append(first, ...[length, this.worst(event), event.advice, who]
       .map((text) => Format.element('td', '', text)));
     return row;

@@ -119,7 +119,8 @@ class WhatIf {
     const temperature = Quantities.text('temperature_degC', shown, facts);
     this.title.textContent = record ? Words.say('map_title', { temperature }) : Words.say('map_none');
     const oil = this.oil ?? facts.oil;
-    this.assumed.textContent = this.changed ? Words.say('what_if_assumed', { temperature, oil }) : '';
+    this.assumed.textContent = [this.changed && Words.say('what_if_assumed', { temperature, oil }),
+      record?.without && Words.say('map_without', { count: record.without })].filter(Boolean).join(' ');
     if (this.back) {
       this.back.disabled = !this.changed;
     }

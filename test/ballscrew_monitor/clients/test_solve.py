@@ -19,6 +19,7 @@ from rclpy.task import Future
 
 SCRIPT = Path(sys.executable).with_name('ballscrew')
 DEADLINE = 600.0  # [s] which only ends a hang
+PATIENT = ('--wait', str(DEADLINE), '--timeout', str(DEADLINE))
 SIGNS = tuple(itertools.product((955.0, -955.0), (500.0, -500.0)))  # [rev/min], [N]
 # Hot oil and hardly any speed: seconds.
 LONG = ('--speed-rpm', '0.5', '--load-N', '2600', '--temperature-degC', '80')
@@ -37,7 +38,7 @@ POINTS = (
 def begin(node, *arguments):
     """Start the command in the domain of a node, for which it waits unless told otherwise."""
     return subprocess.Popen(
-        [SCRIPT, 'solve', '--wait', str(DEADLINE), *map(str, arguments)],
+        [SCRIPT, 'solve', *PATIENT, *map(str, arguments)],
         env=node.environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

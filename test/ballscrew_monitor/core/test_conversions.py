@@ -121,6 +121,13 @@ def test_nut_that_the_load_presses(nut, force, expected):
     assert conversions.machine_nut(nut, force) is expected
 
 
+@given(st.floats(min_value=1e-3, max_value=1e6))
+def test_a_rounded_number_is_read_within_half_a_percent(value):
+    """Whatever its size: the speed of an advice must still clear the warning."""
+    assert float(conversions.rounded(value)) == pytest.approx(value, rel=0.005)
+    assert conversions.rounded(-value) == f'-{conversions.rounded(value)}'
+
+
 def test_direction_of():
     assert conversions.direction_of(1e-300) is POSITIVE
     assert conversions.direction_of(-1e-300) is NEGATIVE

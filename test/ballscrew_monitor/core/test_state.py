@@ -6,9 +6,11 @@ import math
 
 from ballscrew_monitor.core.conversions import clock_text, SECOND
 from ballscrew_monitor.core.state import (
+    ACKNOWLEDGED,
     Acknowledgement,
     acknowledgement,
     LONGEST_SHELVING,
+    NAMELESS,
     NOT_SHELVED,
     shelve,
     Shelving,
@@ -62,6 +64,13 @@ def test_an_acknowledgement_is_one_line_each():
     assert by == Acknowledgement(name='Ada Byron', reason='nut is ordered')
     assert acknowledgement('A' * 200, ' \n') == Acknowledgement(name='A' * 200)
     assert acknowledgement('A', 'x' * 500).reason == 'x' * 500
+
+
+def test_an_event_ends_by_who_and_why(says):
+    by = Acknowledgement(name='Ada', reason='nut is ordered')
+    assert by.ending == says('by_name_and_reason')
+    assert Acknowledgement(name='Ada').ending == says('by_name')
+    assert NAMELESS.ending == ACKNOWLEDGED == says('by_nobody')
 
 
 @pytest.mark.parametrize(

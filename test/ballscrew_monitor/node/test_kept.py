@@ -4,6 +4,7 @@
 
 import contextlib
 import json
+import math
 import resource
 import signal
 import sqlite3
@@ -211,6 +212,8 @@ def test_an_acknowledgement_keeps_who_and_why(axis, capsys, says):
     answer = node.call(AcknowledgeAlarm, 'acknowledge_as', **ask)
     assert (answer.success, answer.message) == (True, says('acknowledged'))
     node.until(lambda: not axis.events[-1].active, 'the end of the event')
+    assert axis.events[-1].advice == says('acknowledged_by')
+    assert math.isfinite(axis.events[-1].cause.target_speed)
     seen = [one for one in axis.log() if one['kind'] == 'acknowledge'][0]
     assert (seen['event'], seen['name'], seen['reason']) == (1, 'Ada', 'nut is ordered')
     assert cli.main(['events', str(axis.folder)]) == 0

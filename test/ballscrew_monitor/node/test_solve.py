@@ -12,7 +12,7 @@ import time
 from action_msgs.msg import GoalStatus
 from ballscrew_monitor.core.full_point import request_of
 from ballscrew_monitor.messages.state_messages import read_point
-from ballscrew_monitor.node.solve_server import SERVICE_QOS
+from ballscrew_monitor.node.solve_server import LONGEST_TIMEOUT, SERVICE_QOS
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import OperatingPoint, PointResult
 from ballscrew_msgs.srv import EvaluateOperatingPoint
@@ -81,7 +81,8 @@ class Solves:
         node.until(lambda: node.lifecycle() == 'active', 'the active node')
 
     def ask(self, place=PLACE, **request):
-        request = {'axis': 'x', 'point': place} | request
+        # A busy machine takes long, which is no failure of a solve.
+        request = {'axis': 'x', 'point': place, 'timeout': LONGEST_TIMEOUT} | request
         return Goal(self._node, self._client, SolveOperatingPoint.Goal(**request))
 
 

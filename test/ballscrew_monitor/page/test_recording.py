@@ -71,6 +71,16 @@ def test_what_is_shown_is_what_the_state_said(playing, judged):
             assert shown.state['headline'] == record['headline']
 
 
+def test_the_totals_are_those_that_the_node_ends_with(playing, judged):
+    """Wherever the clock stands."""
+    ended = judged[-1][1]['totals']
+    assert ended['outside_time'] > 0.0 < ended['energy_lost']
+    for place in (0.0, 1.0):
+        ask(playing, 'seek', s=place)
+        playing.advance(0.0, 0.0)
+        assert axis_of(playing).state['totals'] == ended
+
+
 def test_it_plays_at_its_rate_and_stops_at_its_end(playing):
     span = playing.clock()['span_s']
     assert span == pytest.approx(3.0, abs=0.1)

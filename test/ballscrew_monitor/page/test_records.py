@@ -9,6 +9,8 @@ from types import SimpleNamespace
 from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.estimate import PointSource
+from ballscrew_monitor.core.memory import RESTARTED
+from ballscrew_monitor.core.state import Acknowledgement, NAMELESS
 from ballscrew_monitor.page import records
 from ballscrew_monitor.page.history import COLUMNS
 from ballscrew_msgs import msg
@@ -19,6 +21,7 @@ import pytest
 from surrogate.files import to_json
 from surrogate.units import RPM
 
+TARGETS = Advice(target_speed=600.0 * RPM, target_load=-812.0)
 ADVICE = Advice(target_speed=600.0 * RPM, target_load=-812.0, carry='surely').text
 
 
@@ -96,6 +99,24 @@ def test_advice_is_in_terms_of_the_axis(page_parts, says, surface, words, key):
     view.hear_event(records.event_record(msg.OutOfZone(event_id=3, active=True, advice=words)))
     (told,) = page_parts.read(view.events_frame())[0]['events']
     assert told['advice'] == says(key)
+
+
+@given(name=st.text(min_size=1), reason=st.text(), advice=st.sampled_from([Advice(), TARGETS]))
+def test_an_event_says_by_whom_it_was_acknowledged_and_keeps_its_advice(name, reason, advice):
+    """Whoever did it, on this page or elsewhere; one that ended by itself was not."""
+    event = msg.OutOfZone(event_id=3, advice=Acknowledgement(name=name, reason=reason).ending)
+    event.cause.target_speed, event.cause.target_load = advice.target_speed, advice.target_load
+    record = records.event_record(event)
+    assert record['acknowledged']
+    assert record['acknowledged_by'] == (f'{name}: {reason}' if reason else name)
+    assert record['words'] == advice.text
+    event.advice = NAMELESS.ending
+    record = records.event_record(event)
+    assert (record['acknowledged'], record['acknowledged_by']) == (True, '')
+    for words in (advice.text, RESTARTED):
+        event.advice = words
+        record = records.event_record(event)
+        assert (record['acknowledged'], record['words']) == (False, words)
 
 
 def test_diagnostics_of_axes_are_told_from_others():

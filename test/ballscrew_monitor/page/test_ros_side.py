@@ -4,9 +4,13 @@
 
 import contextlib
 from pathlib import Path
-import types
+from types import SimpleNamespace
 import xml.etree.ElementTree as ElementTree
 
+from ballscrew_monitor.core.conversions import kelvin
+from ballscrew_monitor.core.full_point import SolvedAt
+from ballscrew_monitor.node.restart_state import RestartState
+from ballscrew_monitor.node.state_records import Corrections
 from ballscrew_monitor.page import hub as hubs
 from ballscrew_monitor.page.hub import Browser, Hub
 from ballscrew_monitor.page.ros_side import LATE_QOS, RosSide, version_problem
@@ -15,6 +19,7 @@ from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from builtin_interfaces.msg import Time
 import pytest
 from std_msgs.msg import Header
+from surrogate.surface import shipped_surface, Surface
 from surrogate.units import RPM
 
 NAME = '/ballscrew_monitor/x'
@@ -163,7 +168,7 @@ def test_the_executor_is_woken_only_where_an_answer_may_come(turned, monkeypatch
     monkeypatch.setattr(turned.page.executor, 'spin_once', wake)
     turned.ros._pause(0.001)
     assert woken == []
-    turned.ros._links['/fast/x'] = types.SimpleNamespace(is_asking=True)
+    turned.ros._links['/fast/x'] = SimpleNamespace(is_asking=True)
     turned.ros._pause(DEADLINE)
     turned.ros._links.clear()
     turned.ros._stopped.clear()
@@ -239,6 +244,20 @@ def test_without_the_file_there_is_no_map_but_all_else(node, heard, quick_surfac
         later.until(lambda view: view.no_map.startswith('no map'), 'the sentence')
         assert later.view().no_map.startswith(says('no_file'))
         assert later.view().hello()['screw'] == 'nominal'
+
+
+def test_the_corrections_of_a_node_are_heard(node, heard, tmp_path):
+    """Those of a run before, which the node takes up."""
+    surface = Surface.load(shipped_surface())
+    place = SolvedAt(speed=100.0, opposing_load=500.0, temperature=kelvin(40.0))
+    corrected = surface.with_correction(place, SimpleNamespace(rcs=0.2))
+    state = RestartState(tmp_path / 'kept')
+    state.keep_corrections(Corrections.of('x', surface.sha256, corrected.corrections))
+    state.close()
+    node.start(state_dir=tmp_path / 'kept')
+    heard.until(lambda view: view.surface and view.surface.corrections, 'the corrections')
+    assert heard.view().without == 0
+    assert heard.view().surface.lookup(100.0, 500.0, kelvin(40.0)).rcs == pytest.approx(0.2)
 
 
 def test_other_nodes_are_left_out_if_one_is_named(node, heard):

@@ -4,10 +4,12 @@
 
 import asyncio
 import math
+from types import SimpleNamespace
 
 from ballscrew_monitor.core.conversions import kelvin
 from ballscrew_monitor.page.hub import Browser, Hub
 from ballscrew_monitor.page.what_if import WARMER, WhatIf
+import numpy as np
 import pytest
 from surrogate.surface import shipped_surface, Surface
 from surrogate.units import RPM
@@ -35,10 +37,10 @@ class Asked:
         self.hub.add(self.view)
         self.what_if = WhatIf(self.hub, oils)
 
-    def move(self, load=-500.0, warmth=40.0, **limits):
+    def move(self, load=-500.0, warmth=40.0, speed=300.0, **limits):
         for _ in range(3):
             self.stamp += 0.1
-            row = self.parts.row(self.stamp, speed_rpm=300.0, load_N=load, temperature_degC=warmth)
+            row = self.parts.row(self.stamp, speed_rpm=speed, load_N=load, temperature_degC=warmth)
             self.view.hear(row, {}, self.parts.limits | limits, 0.0)
 
     def keep(self):
@@ -95,6 +97,40 @@ def test_the_limit_is_that_of_the_newest_row(asked, surface):
         assert limit['margin'] == pytest.approx(300.0 / limit['speed_rpm'] - 1.0)
     asked.view.know({}, None, 'no map here')
     assert asked.view.limit is None
+
+
+def test_map_read_ghosts_and_limit_are_those_of_the_corrected_surface(page_parts, surface):
+    """A full solve has found contact where the axis moves and the file knows none."""
+    asked = Asked(page_parts, surface)
+    asked.move(speed=600.0, load=-1500.0)
+    place = SimpleNamespace(speed=600.0 * RPM, opposing_load=1500.0, temperature=kelvin(40.0))
+    said = []
+    for known in (surface, surface.with_correction(place, SimpleNamespace(rcs=0.3))):
+        asked.view.know({}, known, '')
+        assert asked.keep()
+        record, arrays = page_parts.read(asked.view.map_frame)
+        assert record['without'] == 0
+        ghost = asked.ask('ghosts', factors=[1])[0]['ghosts'][0]
+        point, _ = asked.ask('read', speed_rpm=600, load_N=1500.0)
+        said.append((point['rcs'], ghost['outside_share'], asked.view.limit, arrays['zone']))
+    (rcs, share, limit, zone), (solved, share_then, limit_then, zone_then) = said
+    assert (rcs < 0.001, share) == (True, 0.0)
+    assert (solved, share_then) == (pytest.approx(0.3), 1.0)
+    assert limit['speed_rpm'] < 600.0 < limit_then['speed_rpm']
+    assert np.any((zone == 1.0) & (zone_then == 0.0))
+    assert not np.any((zone == 0.0) & (zone_then == 1.0))
+
+
+def test_a_map_says_how_many_corrections_it_lacks(page_parts, surface):
+    asked = Asked(page_parts, surface, [Surface.load(shipped_surface(tier='closed_form'))])
+    asked.move()
+    asked.what_if._oils[0].header['inputs']['lubricant']['name'] = 'thick'
+    asked.view.know({}, surface, '', 2)
+    asked.keep()
+    assert page_parts.read(asked.view.map_frame)[0]['without'] == 2
+    assert asked.ask('map', quantity='rcs')[0]['without'] == 2
+    # Of another oil nothing has been corrected.
+    assert asked.ask('map', quantity='rcs', oil='thick')[0]['without'] == 0
 
 
 def test_without_a_load_there_is_no_limit(asked):

@@ -290,14 +290,12 @@ def make_axis(name='x', **changes):
         'screw': 'nominal',
         'oil': 'ISO VG 68',
         'tier': 'full',
-        'surface_id': '0123456789abcdef',
         'lead_mm': 10.0,
         'unit': 'm/min',
         'efficiency_limit': 0.85,
         'rcs_limit': 0.01,
         'light_load_N': 250.0,
         'standstill_rpm': 5.0,
-        'corrected': 0,
         'grades': ['ISO VG 46', 'ISO VG 100'],
         'temperature_low_degC': 20.0,
         'temperature_high_degC': 60.0,
@@ -434,6 +432,7 @@ def make_map(axis='x', **changes):
         'rows': rows,
         'lines': lines,
         'light_load_N': 250.0,
+        'without': 0,
     }
     return record | changes, arrays
 
@@ -448,6 +447,7 @@ def make_events(axis='x', *events):
         'limit': 0.01,
         'advice': 'At this load run at 6.4 m/min (640 rev/min) or faster.',
         'active': False,
+        'acknowledged': False,
         'acknowledged_by': '',
         'shelved': False,
     }

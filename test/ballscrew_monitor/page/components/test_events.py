@@ -27,9 +27,12 @@ def test_warnings_are_listed_and_lead_to_their_moment(acting, greeted, frames):
     acting.click('.events td button')
     begin, end = acting.ask('page.strips.range')
     assert (begin, end) == pytest.approx((frames.begin + 15.0, frames.begin + 33.4))
-    greeted.send(*frames.events('x', {'acknowledged_by': 'Ada'}, {'active': True}))
-    acting.until("document.querySelectorAll('.events tbody tr').length === 2")
-    assert 'Ada' in acting.texts('.events td')
+    seen = {'acknowledged': True, 'acknowledged_by': 'Ada: oil is ordered'}
+    nameless = {'acknowledged': True}
+    greeted.send(*frames.events('x', seen, {'active': True}, nameless, {'shelved': True}))
+    acting.until("document.querySelectorAll('.events tbody tr').length === 4")
+    who = acting.texts('.events td:last-child')
+    assert who == ['Ada: oil is ordered', '', 'without a name', 'shelved']
     assert acting.ask("document.querySelectorAll('.events tr.bad').length") == 1
     greeted.send(*frames.events('x'))
     acting.reads('.events .wide', 'No warning yet.')
@@ -77,3 +80,12 @@ def test_where_acting_is_off_the_page_says_so(tab, greeted, frames):
 def test_sums_are_in_the_units_of_an_operator(acting):
     tiles = acting.texts('.events .tile dd')
     assert tiles == ['46.2 h', '13 %', '80 %', '1260 kJ', '842800']
+    acting.reads('.events div h2', 'Totals')
+
+
+def test_sums_of_a_recording_are_those_of_its_end(acting, greeted, frames):
+    greeted.send({'kind': 'clock', 'at_s': 12.0, 'span_s': 60.0, 'rate': 1, 'playing': False})
+    record, _ = frames.state()
+    greeted.send(record | {'totals': record['totals'] | {'running_time': 312.0}})
+    acting.reads('.events .tile dd', '5:12')
+    acting.reads('.events div h2', 'Totals at the end of the recording')

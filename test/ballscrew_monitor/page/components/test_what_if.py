@@ -54,6 +54,14 @@ def test_another_state_is_asked_for_said_and_left(shown, greeted, frames, wait_f
     assert shown.text('.assumed') == ''
 
 
+def test_a_map_without_the_corrections_of_the_node_says_so(shown, greeted, frames):
+    greeted.send(*frames.map(without=2))
+    said = 'the node has not said yet what they are.'
+    shown.reads('.assumed', f'This map is without the corrections of the node (2): {said}')
+    greeted.send(*frames.map(without=0))
+    shown.reads('.assumed', '')
+
+
 def test_a_pinned_place_is_read_solved_and_the_solve_cancelled(shown, greeted):
     assert shown.ask('page.whatIf.solve.disabled')
     shown.ask("""(() => {
