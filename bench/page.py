@@ -4,10 +4,13 @@
 Measure the page beside a bare rclpy subscriber of the same states, in the same run.
 
 Usage: python bench/page.py [--axes 4] [--rate 50] [--browsers 1,20] [--seconds 10]
-[--minutes 0.5]. This process publishes states of a node that is not there, and reads as many
-browsers. Page and subscriber are one process each and hear the same messages, so that a busy
-machine harms both: the ratio of their shares of a core is what the page costs. The latency is from
-the publication of a state to the frame with its row at a browser.
+[--pairs 3] [--minutes 0.5]. This process publishes states of a node that is not there, and reads
+as many browsers. Page and subscriber are one process each and hear the same messages, so that a
+busy machine harms both: the ratio of their shares of a core is what the page costs. The latency is
+from the publication of a state to the frame with its row at a browser.
+
+A real node that sends a state for each sample then takes turns without a page and with one, which
+a browser reads in a process of its own.
 
 Then Chromium shows the page, which has no map here, for some minutes: how long a frame of the
 screen keeps its main thread, and how much memory its scripts hold before and after.
@@ -20,6 +23,7 @@ from collections.abc import Iterator
 import contextlib
 import json
 import os
+from pathlib import Path
 import struct
 import subprocess
 import sys
@@ -28,14 +32,24 @@ import time
 from typing import Any
 
 from ballscrew_monitor.cycle.domain import free_domain
-from ballscrew_monitor.cycle.node_process import child_environment
+from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
 from ballscrew_monitor.settings.qos import started_node
 from ballscrew_msgs.msg import BallScrewState, InputHealth
+from node import peers
+from node_parts.peer import Turn
+from node_parts.results import HEAD, line_of
 import numpy as np
 from page_parts import screen
 from websockets.asyncio.client import connect
 
 NODE = '/bench'
+READER = """
+import asyncio, sys
+sys.path.insert(0, sys.argv[1])
+import page
+print(flush=True)
+asyncio.run(page.browse(sys.argv[2], 1e9, []))
+"""
 BARE = """
 from ballscrew_monitor.settings.qos import started_node
 from ballscrew_msgs.msg import BallScrewState
@@ -48,6 +62,7 @@ with started_node('bare') as node:
     while True:
         node.executor.spin_once()
 """
+PAGE = ('-m', 'ballscrew_monitor', 'page', '--port', '0')
 TICK = os.sysconf('SC_CLK_TCK')
 
 
@@ -110,7 +125,8 @@ async def browse(url: str, seconds: float, latencies: list[float]) -> int:
     """Read for some `seconds` [s]; note latencies [s] of rows and return the frames of states."""
     frames = 0
     origin, address = url.rstrip('/'), f'{url.replace("http", "ws")}live'
-    async with connect(address, origin=origin, max_size=None, compression=None) as live:
+    options = {'max_size': None, 'compression': None, 'open_timeout': None}
+    async with connect(address, origin=origin, **options) as live:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             made = await live.recv()
@@ -140,9 +156,7 @@ def served(axes: int, rate: float) -> Iterator[tuple[str, int, int]]:
         node = stack.enter_context(started_node('bench', domain))
         stack.enter_context(contextlib.closing(Machine(node, axes, rate)))
         bare, _ = stack.enter_context(child(domain, '-c', BARE, str(axes), NODE))
-        page, line = stack.enter_context(
-            child(domain, '-m', 'ballscrew_monitor', 'page', '--port', '0')
-        )
+        page, line = stack.enter_context(child(domain, *PAGE))
         yield line.split()[1], bare, page
 
 
@@ -162,6 +176,31 @@ def measure(axes: int, rate: float, browsers: int, seconds: float) -> None:
             f'{middle:.0f} ms, p95 {most:.0f} ms, p99 {last:.0f} ms',
             flush=True,
         )
+
+
+@contextlib.contextmanager
+def watched(domain: int) -> Iterator[None]:
+    """Let a browser read a page of the nodes of a domain."""
+    with child(domain, *PAGE) as (_, line):
+        url, folder = line.split()[1], str(Path(__file__).parent)
+        with child(domain, '-c', READER, folder, url):
+            asyncio.run(browse_all(url, 1, 3.0))  # page and node have found each other
+            yield
+
+
+def measure_node(axes: int, rate: float, pairs: int, seconds: float) -> None:
+    """Print a line of the node without a page and with one, in turns."""
+    alone: list[Turn] = []
+    beside: list[Turn] = []
+    with free_domain() as domain:
+        os.environ.update(ros_environment(domain))
+        with peers(domain, axes, 0.0, 'off') as (_, node, _):
+            for _ in range(pairs):
+                alone.append(node.take_turn(rate, seconds))
+                with watched(domain):
+                    beside.append(node.take_turn(rate, seconds))
+    print(f'the node without a page and with one\n{HEAD}')
+    print(line_of(alone), line_of(beside), sep='\n', flush=True)
 
 
 def measure_screen(axes: int, rate: float, browser: str, minutes: float) -> None:
@@ -185,10 +224,12 @@ def main() -> int:
     parser.add_argument('--rate', type=float, default=50.0)
     parser.add_argument('--browsers', default='1,20')
     parser.add_argument('--seconds', type=float, default=10.0)
+    parser.add_argument('--pairs', type=int, default=3, help='turns of the node, each way')
     parser.add_argument('--minutes', type=float, default=0.5)
     args = parser.parse_args()
     for count in map(int, args.browsers.split(',')):
         measure(args.axes, args.rate, count, args.seconds)
+    measure_node(args.axes, args.rate, args.pairs, args.seconds)
     if browser := screen.found_browser():
         measure_screen(args.axes, args.rate, browser, args.minutes)
     else:

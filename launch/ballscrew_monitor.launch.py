@@ -8,7 +8,8 @@ does so. `params_file` may be left out: every parameter has a default. An argume
 goes before the parameter file, one that is not leaves it alone. A `params_file` that is not there
 is an error: the defaults must not pass for it. The launch ends when the node ends, with an error
 if the node does; with `respawn:=true` the node is started again instead. With `page:=true` a live
-page is served at http://127.0.0.1:8090/.
+page is served at http://127.0.0.1:8090/. If the page ends, the launch says so and the node
+goes on.
 
 """
 
@@ -18,7 +19,7 @@ from pathlib import Path
 import sys
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, ExecuteProcess, OpaqueFunction, Shutdown
+from launch.actions import DeclareLaunchArgument, ExecuteProcess, LogInfo, OpaqueFunction, Shutdown
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import LifecycleNode
 from launch_ros.parameter_descriptions import ParameterValue
@@ -54,12 +55,22 @@ def end(event, context):
     return Shutdown(reason=f'{event.process_name} has ended')
 
 
+def miss_page(event, context):
+    """Return what says that the page has ended before the launch; nothing else ends with it."""
+    if context.is_shutdown:
+        return None
+    return LogInfo(
+        msg=f'{event.process_name} has ended with exit code {event.returncode}: there is no live '
+        'page any more, the node goes on; `ballscrew page` serves it again'
+    )
+
+
 def make_page(context):
     """Return the process that serves the page, if it is asked for."""
     if LaunchConfiguration('page').perform(context).lower() != 'true':
         return []
     command = [sys.executable, '-m', 'ballscrew_monitor', 'page']
-    return [ExecuteProcess(cmd=command, output='screen')]
+    return [ExecuteProcess(cmd=command, output='screen', on_exit=miss_page)]
 
 
 def make_node(context):

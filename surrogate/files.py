@@ -60,11 +60,13 @@ def printable(text: str) -> str:
 
 def to_json(record: Any) -> Any:
     """Return `record` with every number that is not finite as None, which JSON calls null."""
-    if isinstance(record, Mapping):
-        return {key: to_json(value) for key, value in record.items()}
+    if isinstance(record, float):
+        return record if math.isfinite(record) else None
     if isinstance(record, list):
         return [to_json(value) for value in record]
-    return None if isinstance(record, float) and not math.isfinite(record) else record
+    if isinstance(record, Mapping):  # last: to tell an abstract class takes longest
+        return {key: to_json(value) for key, value in record.items()}
+    return record
 
 
 def json_text(record: Any) -> str:

@@ -100,7 +100,7 @@ class Intake(Waitable):
             self._open += [(axis, one) for one in axis.open_inputs]
         self._clock: Topic | None = None
         if node.get_parameter('use_sim_time').value:
-            self._clock = open_topic(node, CLOCK, Clock, self._apart, overridable=False, raw=False)
+            self._clock = open_topic(node, CLOCK, Clock, self._apart)
             self._simulated = node.get_clock().now().nanoseconds
             self._reading = Reading(MOST_AHEAD)  # until the steps are known
         node.add_waitable(self)

@@ -15,6 +15,7 @@ from ballscrew_monitor.settings.qos import DEPTH, input_qos, overriding_options,
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 
@@ -106,12 +107,20 @@ class Apart(CallbackGroup):
 
 
 def open_topic(
-    node: Node, name: str, kind: Any, group: CallbackGroup, *, overridable: bool, raw: bool
+    node: Node,
+    name: str,
+    kind: Any,
+    group: CallbackGroup,
+    *,
+    overridable: bool = False,
+    raw: bool = False,
+    qos: QoSProfile | None = None,
 ) -> Topic:
     """
     Subscribe to messages of a `kind`; where `overridable`, parameters may change the QoS.
 
-    Messages that are taken `raw` keep the bytes that they came as, for a recording.
+    The QoS is that of an input unless stated. Messages that are taken `raw` keep the bytes that
+    they came as, for a recording.
 
     """
     loss = LossCounter()
@@ -119,7 +128,7 @@ def open_topic(
         kind,
         name,
         _never_called,
-        input_qos(),
+        qos or input_qos(),
         callback_group=group,
         # Only some middlewares would name one of another type: the graph does.
         event_callbacks=SubscriptionEventCallbacks(

@@ -24,7 +24,7 @@ ALIGNED = 8  # [byte]
 
 def frame(kind: str, record: Mapping[str, Any], arrays: Mapping[str, ArrayLike] = {}) -> bytes:
     """Return a frame of a `kind`; `arrays` by name, in their order."""
-    parts = {name: np.ravel(np.asarray(values, dtype='<f8')) for name, values in arrays.items()}
+    parts = {name: np.asarray(values, dtype='<f8') for name, values in arrays.items()}
     named = [[name, values.size] for name, values in parts.items()]
     content = to_json({'kind': kind, **record, 'arrays': named})
     text = json.dumps(content, separators=(',', ':'), allow_nan=False).encode()

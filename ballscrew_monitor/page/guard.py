@@ -99,12 +99,18 @@ class Tokens:
         return admitted
 
     async def accept(self, token: str) -> bool | None:
-        """Tell whether a token is right; None where too many wrong ones are being answered."""
-        if self._waiting >= MOST_WRONG:
-            return None
+        """
+        Tell whether a token is right; None for one that is not while too many others wait.
+
+        The right one always opens: nobody shuts the reader out by wrong ones. The length of the
+        token guards against guesses; that they wait bounds how many are at work.
+
+        """
         if self._token is not None and _same(token, self._token):
             return True
         self.wrong += 1
+        if self._waiting >= MOST_WRONG:
+            return None
         self._waiting += 1
         try:
             await asyncio.sleep(self._slowness)

@@ -92,6 +92,7 @@ class Hub:
         self.browsers: set[Browser] = set()
         self.notices: dict[str, Said] = {}  # why a node is not shown
         self.clock: Callable[[], Mapping[str, Any]] | None = None  # of a recording
+        self.missed = 0  # messages of nodes that were lost on the way here
         self._is_changed = False
         self._dropped = 0  # of browsers that have left
 
@@ -118,11 +119,20 @@ class Hub:
         if name in self.axes:
             self.axes[name].stand(GONE)
 
+    def forget(self, name: str) -> None:
+        """Show an axis no more."""
+        self._is_changed |= self.axes.pop(name, None) is not None
+
+    def miss(self, count: int) -> None:
+        """Count messages that were lost on the way here."""
+        self.missed += count
+
     def notice(self, node: str, words: Said) -> None:
-        """Say why a node is not shown, or with empty words that it is."""
-        if self.notices.get(node, '') != words:
-            self.notices[node] = words
+        """Say why a node is not shown, or with empty words nothing of it."""
+        if self.notices.pop(node, '') != words:
             self._is_changed = True
+        if words:
+            self.notices[node] = words
 
     def tell(self, made: bytes) -> None:
         """Send a frame to every browser."""
@@ -174,7 +184,7 @@ class Hub:
             'language': language,
             'words': languages()[language],
             'waiting': '' if self.axes else self._waiting,
-            'notices': [words for _, words in sorted(self.notices.items()) if words],
+            'notices': [words for _, words in sorted(self.notices.items())],
             'nodes': [{'name': name, 'state': state} for name, state in sorted(nodes.items())],
             'axes': [self.axes[name].hello() for name in sorted(self.axes)],
         }

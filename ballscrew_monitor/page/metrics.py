@@ -115,6 +115,7 @@ class HubCollector(Collector):
         )
         for name, text, count in (
             ('dropped_frames', 'Frames that a slow browser did not get', self._hub.dropped),
+            ('lost_messages', 'Messages of nodes that were lost on the way', self._hub.missed),
             ('wrong_tokens', 'Tokens that were wrong', self._wrong_tokens()),
         ):
             yield CounterMetricFamily(f'ballscrew_page_{name}', text, value=count)

@@ -7,32 +7,37 @@ It finds axes by the types of topics, turns messages into records, and hands the
 the hub. It reads best effort: a page never holds a node up. A node whose messages are of another
 version of ballscrew_msgs is named and not listened to: its bytes would be read as other numbers.
 
+A wake-up of the executor costs more than to read a message. So the thread takes all that waits, as
+often as the hub sends frames, hands it over as one, and lets the executor wait only for answers.
+
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+import functools
 import threading
 import time
 from typing import Any
 
+from ballscrew_monitor.node.topic import Apart, open_topic
 from ballscrew_monitor.page import records
 from ballscrew_monitor.page.axis_view import AxisView
-from ballscrew_monitor.page.hub import Hub
+from ballscrew_monitor.page.hub import Hub, MOST_AXES, PERIOD
 from ballscrew_monitor.page.phrases import phrase, Said
 from ballscrew_monitor.page.surfaces import SurfaceLink
-from ballscrew_monitor.settings.qos import LATCHED_QOS
 from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.srv import GetParameters
-from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
-from rclpy.qos import QoSProfile, QoSReliabilityPolicy
+from rclpy.qos import QoSDurabilityPolicy, QoSProfile
 from rclpy.task import Future
 
 STATE_TYPE = 'ballscrew_msgs/msg/BallScrewState'
 LOOK = 1.0  # [s] between two looks at the graph
-POLL = 0.1  # [s] longest wait before the end is noticed
-STATE_QOS = QoSProfile(depth=50, reliability=QoSReliabilityPolicy.BEST_EFFORT)
+DEPTH = 100  # messages of a topic of which few come, that wait for their turn
+DIAGNOSTICS_QOS = QoSProfile(depth=DEPTH)
+LATE_QOS = QoSProfile(depth=DEPTH, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
+"""QoS of what is published for late joiners, of which several may come in one turn."""
 LEAVES = ('surface', 'speed.unit')
 """Parameters of an axis that the page asks for."""
 Post = Callable[..., Any]
@@ -40,19 +45,21 @@ Post = Callable[..., Any]
 
 
 class RosSide:
-    """Subscriptions of all axes, spun by a thread until closed."""
+    """Subscriptions of all axes, read by a thread until closed."""
 
     def __init__(self, node: Node, hub: Hub, post: Post, *, only: str = '') -> None:
         """Follow the node with the full name `only`, all if that is empty."""
         self._node, self._hub, self._post, self._only = node, hub, post, only
+        self._acts: list[tuple[Any, ...]] = []  # functions with arguments, for the hub
         self._links: dict[str, AxisLink] = {}
-        self._views: dict[str, AxisView] = {}
+        self._gone: dict[str, AxisView] = {}  # that have left, the last one last
         self._refused: dict[str, set[str]] = {}  # hashes of another version
         self.failure: Exception | None = None
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._spin, name='ros')
-        node.create_subscription(DiagnosticArray, '/diagnostics', self._on_diagnostics, 10)
-        node.create_timer(LOOK, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._diagnostics = open_topic(
+            node, '/diagnostics', DiagnosticArray, Apart(), qos=DIAGNOSTICS_QOS
+        )
 
     def start(self) -> None:
         """Begin to listen."""
@@ -64,13 +71,39 @@ class RosSide:
         self._thread.join()
 
     def _spin(self) -> None:
-        assert self._node.executor is not None
         try:
-            self._look()
             while not self._stopped.is_set():
-                self._node.executor.spin_once(timeout_sec=POLL)
+                self._look()
+                for _ in range(round(LOOK / PERIOD)):
+                    self._pause(PERIOD)
+                    self._drain()
         except Exception as error:  # told by the thread that waits for it
             self.failure = error
+
+    def _pause(self, duration: float) -> None:
+        """Wait some `duration` [s], in the executor where it has something to do."""
+        assert self._node.executor is not None
+        end = time.monotonic() + duration
+        while not self._stopped.is_set() and (left := end - time.monotonic()) > 0.0:
+            if self._hub.acting or any(link.is_asking for link in self._links.values()):
+                self._node.executor.spin_once(timeout_sec=left)
+            else:
+                self._stopped.wait(left)
+
+    def _later(self, *act: Any) -> None:
+        self._acts.append(act)
+
+    def _drain(self) -> None:
+        """Take all that has come, and let the hub show it at once."""
+        for link in self._links.values():
+            if lost := link.drain():
+                self._later(self._hub.miss, lost)
+        for arrival in self._diagnostics.waiting():
+            self._on_diagnostics(arrival.message)
+        if self._acts:
+            self._later(self._hub.tick, time.monotonic())
+            self._post(_act_all, self._acts)
+            self._acts = []
 
     def _look(self) -> None:
         """Take up the axes that have come, and let go of those that have left."""
@@ -81,35 +114,60 @@ class RosSide:
             if self._node.count_publishers(topic)
             if self._only in ('', node_of(topic.removesuffix('/state')))
         }
+        for base in sorted(self._links.keys() - found):
+            self._let_go(base)
+        for base in sorted(self._refused.keys() - found):
+            del self._refused[base]
+            self._later(self._hub.notice, node_of(base), '')
         for base in sorted(found - self._links.keys()):
             if self._refused.get(base) != sent_hashes(self._node, base):
                 self._take_up(base)
-        for base in sorted(self._links.keys() - found):
-            self._links.pop(base).close()
-            self._post(self._hub.lose, base)
         for link in self._links.values():
             link.ask()
 
     def _take_up(self, base: str) -> None:
         node = node_of(base)
-        view = self._views.setdefault(base, AxisView(node, base.rpartition('/')[2]))
-        link = AxisLink(self._node, view, self._post)
+        view = self._gone.pop(base, None) or AxisView(node, base.rpartition('/')[2])
+        link = AxisLink(self._node, view, self._later)
         hashes = link.hashes()
         problem = version_problem(node, hashes)
-        self._post(self._hub.notice, node, problem)
-        if problem:  # nothing is spun between subscribing and this
+        self._later(self._hub.notice, node, problem)
+        if problem:  # nothing is taken between subscribing and this
             self._refused[base] = hashes[0]
             link.close()
             return
         self._links[base] = link
-        self._post(self._hub.add, view)
+        self._make_room()
+        self._later(self._hub.add, view)
+
+    def _let_go(self, base: str) -> None:
+        link = self._links.pop(base)
+        link.close()
+        self._gone[base] = link.view
+        self._later(self._hub.lose, base)
+
+    def _make_room(self) -> None:
+        """Forget the axes that have been gone longest, where there are too many in all."""
+        while self._gone and len(self._links) + len(self._gone) > MOST_AXES:
+            oldest = next(iter(self._gone))
+            del self._gone[oldest]
+            self._later(self._hub.forget, oldest)
+            self._node.get_logger().info(
+                f'axis {oldest}, which is gone, is not shown any more: '
+                f'{MOST_AXES} axes are shown at most'
+            )
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
             found = records.place_of(status.name)
             link = self._links.get('/'.join(found[:2])) if found else None
             if found and link:
-                self._post(link.view.hear_code, found[2], records.code_of(status))
+                self._later(link.view.hear_code, found[2], records.code_of(status))
+
+
+def _act_all(acts: Iterable[tuple[Any, ...]]) -> None:
+    for function, *given in acts:
+        function(*given)
 
 
 def node_of(base: str) -> str:
@@ -139,16 +197,15 @@ class AxisLink:
         self.view = view
         self._node, self._post = node, post
         self._info: SurfaceInfo | None = None
-        self._values: dict[str, Any] = {}
-        self._asked: Future | None = None
+        self._is_due = False  # to ask for the parameters
         kinds = {
-            'state': (BallScrewState, self._on_state, STATE_QOS),
-            'out_of_zone': (OutOfZone, self._on_event, LATCHED_QOS),
-            'surface_info': (SurfaceInfo, self._on_info, LATCHED_QOS),
-            'health': (AxisHealth, self._on_health, LATCHED_QOS),
+            'state': (BallScrewState, self._on_state, None),
+            'out_of_zone': (OutOfZone, self._on_event, LATE_QOS),
+            'surface_info': (SurfaceInfo, self._on_info, LATE_QOS),
+            'health': (AxisHealth, self._on_health, LATE_QOS),
         }
-        self._subscriptions = [
-            node.create_subscription(kind, f'{view.name}/{name}', hear, qos)
+        self._topics = [
+            (open_topic(node, f'{view.name}/{name}', kind, Apart(), qos=qos), hear)
             for name, (kind, hear, qos) in kinds.items()
         ]
         self._parameters = node.create_client(GetParameters, f'{view.node}/get_parameters')
@@ -156,10 +213,19 @@ class AxisLink:
 
     def close(self) -> None:
         """Unsubscribe, and ask no more."""
-        for one in self._subscriptions:
-            self._node.destroy_subscription(one)
+        for topic, _ in self._topics:
+            self._node.destroy_subscription(topic.subscription)
         self._node.destroy_client(self._parameters)
         self._surface.close()
+
+    def drain(self) -> int:
+        """Take all that has come; return how many messages were lost before or among it."""
+        lost = 0
+        for topic, hear in self._topics:
+            for arrival in topic.waiting():
+                lost += topic.loss.take(arrival.number) or 0
+                hear(arrival.message)
+        return lost
 
     def hashes(self) -> tuple[set[str], set[str]]:
         """Return the hashes of the type of the state, as it is sent and as we read it."""
@@ -167,20 +233,28 @@ class AxisLink:
         mine = {str(one.topic_type_hash) for one in read if one.node_name == self._node.get_name()}
         return sent_hashes(self._node, self.view.name), mine
 
+    @property
+    def is_asking(self) -> bool:
+        """Tell whether parameters or corrections that go with the surface are not known yet."""
+        return self._is_due or self._surface.is_asking
+
     def ask(self) -> None:
         """Ask for parameters and corrections until they are known; a first answer may be lost."""
         self._surface.ask()
-        if self._values or not self._parameters.service_is_ready():
+        if not self._is_due or not self._parameters.service_is_ready():
             return
         names = [f'{self.view.axis}.{leaf}' for leaf in LEAVES]
-        self._asked = self._parameters.call_async(GetParameters.Request(names=names))
-        self._asked.add_done_callback(self._on_parameters)
+        asked = self._parameters.call_async(GetParameters.Request(names=names))
+        asked.add_done_callback(functools.partial(self._tell_surface, self._info))
 
-    def _on_parameters(self, future: Future) -> None:
+    def _tell_surface(self, info: SurfaceInfo, future: Future) -> None:
+        """Take the parameters that go with a surface, if no other has come since."""
         answer = future.result()
-        if answer is not None and len(answer.values) == len(LEAVES):
-            self._values = dict(zip(LEAVES, map(parameter_value_to_python, answer.values)))
-            self._tell_surface()
+        if info is self._info and answer is not None and len(answer.values) == len(LEAVES):
+            path, unit = map(parameter_value_to_python, answer.values)
+            about = records.surface_record(info, unit)
+            self._surface.tell(about, info, path)
+            self._is_due = False
 
     def _on_state(self, state: BallScrewState) -> None:
         row, record = records.row_of(state), records.state_record(state)
@@ -194,10 +268,6 @@ class AxisLink:
         self._post(self.view.hear_health, records.health_record(health))
 
     def _on_info(self, info: SurfaceInfo) -> None:
-        self._info = info
-        self._tell_surface()
-
-    def _tell_surface(self) -> None:
-        if self._info is not None and self._values:
-            about = records.surface_record(self._info, self._values['speed.unit'])
-            self._surface.tell(about, self._info, self._values['surface'])
+        """Take a surface; the node has been configured again, maybe with other parameters."""
+        self._info, self._is_due = info, True
+        self.ask()

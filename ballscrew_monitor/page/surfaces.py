@@ -133,6 +133,11 @@ class SurfaceLink:
         self._question: Question | None = None
         self._asked: Future | None = None
 
+    @property
+    def is_asking(self) -> bool:
+        """Tell whether the node has corrections that are not known yet."""
+        return self._question is not None
+
     def close(self) -> None:
         """Ask no more."""
         self._node.destroy_client(self._client)

@@ -37,6 +37,7 @@ def launched(monkeypatch):
     )
     recorder.LaunchDescription.side_effect = list
     recorder.Shutdown.side_effect = lambda *, reason: reason
+    recorder.LogInfo.side_effect = lambda *, msg: msg
     for name in NAMES:
         monkeypatch.setitem(sys.modules, name, recorder)
 
@@ -107,3 +108,15 @@ def test_the_page_is_a_process_beside_the_node(launched):
     launched(page='true')
     command = sys.modules['launch.actions'].ExecuteProcess.call_args.kwargs['cmd']
     assert command == [sys.executable, '-m', 'ballscrew_monitor', 'page']
+
+
+@pytest.mark.parametrize('code', [0, 1])
+def test_a_page_that_ends_is_said_and_ends_nothing(launched, says, code):
+    launched(page='true')
+    ended = types.SimpleNamespace(process_name='python3-2', returncode=code)
+    end = sys.modules['launch.actions'].ExecuteProcess.call_args.kwargs['on_exit']
+    context = types.SimpleNamespace(is_shutdown=False)
+    assert end(ended, context) == says('page_ended', code=code)
+    context.is_shutdown = True  # it ends with all others
+    assert end(ended, context) is None
+    sys.modules['launch.actions'].Shutdown.assert_not_called()

@@ -145,9 +145,24 @@ def test_axes_and_browsers_are_bounded(page_parts):
     assert not hub.join(Browser(), 0.0)
 
 
+def test_an_axis_that_is_forgotten_is_shown_no_more(page_parts):
+    hub, browser = Hub(), Browser()
+    hub.add(page_parts.axis())
+    hub.add(page_parts.axis(axis='y'))
+    hub.join(browser, 0.0)
+    hub.tick(0.0)
+    read_all(page_parts, browser)
+    hub.forget('/monitor/x')
+    hub.forget('/monitor/none')
+    hub.tick(0.1)
+    hello = next(one for one, _ in read_all(page_parts, browser) if one['kind'] == 'hello')
+    assert [axis['id'] for axis in hello['axes']] == ['/monitor/y']
+
+
 def test_a_notice_names_a_node_that_is_not_shown():
     hub = Hub()
     hub.notice('/old', 'it speaks another version')
     assert hub.hello()['notices'] == ['it speaks another version']
     hub.notice('/old', '')
     assert hub.hello()['notices'] == []
+    assert not hub.notices  # however many nodes come and go

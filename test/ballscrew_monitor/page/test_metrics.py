@@ -61,6 +61,10 @@ def test_numbers_are_those_of_the_state(hub):
     assert found['input_lost_total', 'speed'] == 3.0
     assert found['health', 'life used', '-'] == 0.25
     assert found['page_wrong_tokens_total',] == 7.0
+    assert found['page_lost_messages_total',] == 0.0
+    hub.miss(2)
+    hub.miss(3)
+    assert numbers(hub)['page_lost_messages_total',] == 5.0
 
 
 def test_what_is_not_known_is_left_out(hub):
@@ -82,6 +86,7 @@ def test_an_axis_of_which_nothing_was_heard_has_no_numbers(page_parts):
         'state_age_seconds',
         'page_browsers',
         'page_dropped_frames_total',
+        'page_lost_messages_total',
         'page_wrong_tokens_total',
     }
 

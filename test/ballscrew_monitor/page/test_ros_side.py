@@ -12,16 +12,56 @@ from ballscrew_monitor.core.full_point import SolvedAt
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_records import Corrections
 from ballscrew_monitor.page import hub as hubs
-from ballscrew_monitor.page.hub import Hub
+from ballscrew_monitor.page.hub import Browser, Hub
 from ballscrew_monitor.page.phrases import english
-from ballscrew_monitor.page.ros_side import RosSide, version_problem
+from ballscrew_monitor.page.ros_side import LATE_QOS, RosSide, version_problem
 from ballscrew_monitor.settings.qos import started_node
+from ballscrew_msgs.msg import BallScrewState, OutOfZone
+from builtin_interfaces.msg import Time
 import pytest
+from std_msgs.msg import Header
 from surrogate.surface import shipped_surface, Surface
 from surrogate.units import RPM
 
 NAME = '/ballscrew_monitor/x'
+DEADLINE = 600.0  # [s] which only ends a hang
 POLICY = Path(__file__).resolve().parents[3] / 'config' / 'sros2_policy.xml'
+
+
+class Turned:
+    """A hub that hears what is in the domain of a node, turn by turn as a test wants it."""
+
+    def __init__(self, node, page):
+        self.node, self.page, self.hub, self.posts = node, page, Hub(), []
+        self.ros = RosSide(page, self.hub, lambda *act: self.posts.append(act))
+
+    def turn(self):
+        """Take what has come, and hand it over."""
+        self.page.executor.spin_once(timeout_sec=0.0)
+        self.ros._drain()
+        for act, *given in self.posts:
+            act(*given)
+        self.posts.clear()
+
+    def until(self, condition, what):
+        return self.node.wait_for(condition, what, meanwhile=self.turn)
+
+    def until_axes(self, *names):
+        """Look until these axes are heard, and no other one."""
+
+        def look():
+            self.ros._look()
+            self.turn()
+
+        is_so = lambda: set(self.ros._links) == set(names)  # noqa: E731
+        self.node.wait_for(is_so, 'the axes', meanwhile=look)
+
+
+@pytest.fixture
+def turned(node):
+    """Return a page whose thread is not begun."""
+    with started_node('ballscrew_page', node.domain) as page:
+        yield Turned(node, page)
 
 
 class Heard:
@@ -95,6 +135,97 @@ def test_a_node_that_leaves_is_gone_and_one_that_returns_is_there(node, heard):
     heard.until(lambda view: view.limits['rcs_limit'], 'a state')
 
 
+def test_what_comes_in_one_turn_is_handed_over_at_once_and_all_of_it(node, turned):
+    """Each state and event; and the hub shows it in that turn, not in the next of its own."""
+    states = node.node.create_publisher(BallScrewState, '/fast/x/state', 10)
+    events = node.node.create_publisher(OutOfZone, '/fast/x/out_of_zone', LATE_QOS)
+    turned.until_axes('/fast/x')
+    topics = [topic.subscription for topic, _ in turned.ros._links['/fast/x']._topics]
+    turned.until(lambda: all(one.get_publisher_count() for one in topics[:2]), 'the publishers')
+    browser, count = Browser(), 20
+    turned.hub.join(browser, 0.0)
+    for number in range(count):
+        states.publish(BallScrewState(header=Header(stamp=Time(sec=number))))
+        events.publish(OutOfZone(event_id=number + 1))
+    view = turned.hub.axes['/fast/x']
+    turned.until(lambda: view.history.count == len(view.events) == count, 'all of them')
+    assert view.history.since(0)[:, 0].tolist() == list(range(count))
+    assert turned.hub.missed == 0
+    assert b'"kind":"state"' in browser._waiting[-1]
+    states.publish(BallScrewState(header=Header(stamp=Time(sec=count))))
+    states.publish(BallScrewState(header=Header(stamp=Time(sec=count + 1))))
+    turned.until(lambda: view.history.count == count + 2, 'two more')
+    turned.ros._drain()
+    assert turned.posts == []  # nothing has come, nothing is handed over
+
+
+def test_the_executor_is_woken_only_where_an_answer_may_come(turned, monkeypatch):
+    woken = []
+
+    def wake(timeout_sec):
+        woken.append(timeout_sec)
+        turned.ros._stopped.set()
+
+    monkeypatch.setattr(turned.page.executor, 'spin_once', wake)
+    turned.ros._pause(0.001)
+    assert woken == []
+    turned.ros._links['/fast/x'] = SimpleNamespace(is_asking=True)
+    turned.ros._pause(DEADLINE)
+    turned.ros._links.clear()
+    turned.ros._stopped.clear()
+    turned.hub.acting = True
+    turned.ros._pause(DEADLINE)
+    assert len(woken) == 2
+    assert 0.0 < max(woken) <= DEADLINE
+
+
+def test_a_message_that_is_lost_on_the_way_is_counted(node, turned):
+    states = node.node.create_publisher(BallScrewState, '/fast/x/state', 10)
+    turned.until_axes('/fast/x')
+    topic, _ = turned.ros._links['/fast/x']._topics[0]
+    turned.until(topic.subscription.get_publisher_count, 'the publisher')
+    view = turned.hub.axes['/fast/x']
+    states.publish(BallScrewState(header=Header(stamp=Time(sec=0))))
+    turned.until(lambda: view.history.count == 1, 'the first state')
+    for number in (1, 2):
+        states.publish(BallScrewState(header=Header(stamp=Time(sec=number))))
+        node.wait_for(topic.waiting, 'what the page does not get')
+    states.publish(BallScrewState(header=Header(stamp=Time(sec=3))))
+    turned.until(lambda: view.history.count == 2, 'the last state')
+    assert turned.hub.missed == 2
+
+
+def test_axes_that_come_and_go_are_bounded(node, turned, monkeypatch, says, capfd):
+    monkeypatch.setattr('ballscrew_monitor.page.ros_side.MOST_AXES', 2)
+    for at, name in enumerate(('/fast/c', '/fast/b', '/fast/a')):
+        states = node.node.create_publisher(BallScrewState, f'{name}/state', 10)
+        turned.until_axes(name)
+        assert name in turned.hub.axes
+        assert len(turned.hub.axes) == min(2, at + 1)
+        node.node.destroy_publisher(states)
+        turned.until_axes()
+    assert set(turned.ros._gone) == {'/fast/b', '/fast/a'} == set(turned.hub.axes)
+    assert says('forgotten') in capfd.readouterr().err
+    view = turned.hub.axes['/fast/b']
+    states = node.node.create_publisher(BallScrewState, '/fast/b/state', 10)
+    turned.until_axes('/fast/b')
+    assert turned.hub.axes['/fast/b'] is view  # with its history
+    assert list(turned.ros._gone) == ['/fast/a']
+
+
+def test_a_node_that_is_configured_again_between_two_looks_is_asked_again(node, turned):
+    node.start()
+    turned.until_axes(NAME)
+    about = lambda: turned.hub.axes[NAME].about.get('unit')  # noqa: E731
+    turned.until(lambda: about() == 'm/min', 'the surface')
+    for step in ('deactivate', 'cleanup'):
+        node.transition(step)
+    node.set_parameters(x__speed__unit='mm/min')
+    for step in ('configure', 'activate'):
+        node.transition(step)
+    turned.until(lambda: about() == 'mm/min', 'the surface again')
+
+
 def test_an_inactive_node_says_so(node, heard):
     node.start()
     heard.until(lambda view: view.surface, 'the surface')
@@ -149,6 +280,20 @@ def test_a_node_of_another_version_is_named_and_not_heard(node, heard, monkeypat
     heard.until(lambda view: view.surface, 'the surface')
     # It has been mended meanwhile: the notice is gone.
     assert heard.hub.hello()['notices'] == []
+
+
+def test_the_notice_of_a_node_leaves_with_it(node, turned, monkeypatch):
+    monkeypatch.setattr('ballscrew_monitor.page.ros_side.version_problem', lambda *given: 'old')
+    states = node.node.create_publisher(BallScrewState, '/old/x/state', 10)
+
+    def look():
+        turned.ros._look()
+        turned.turn()
+
+    node.wait_for(lambda: turned.hub.notices == {'/old': 'old'}, 'the notice', meanwhile=look)
+    node.node.destroy_publisher(states)
+    node.wait_for(lambda: not turned.hub.notices, 'its end', meanwhile=look)
+    assert not turned.ros._refused
 
 
 def test_versions_are_told_apart_by_the_hashes_of_their_types(says):
