@@ -48,8 +48,7 @@ class Advice:
         """Return the advice as a sentence, empty if there is none."""
         parts = []
         if math.isfinite(self.target_speed):
-            turns = rounded(self.target_speed / RPM)
-            parts.append(f'at this load run at {self.target_speed:.4g} rad/s ({turns} rev/min)')
+            parts.append(f'at this load run at {rounded(self.target_speed / RPM)} rev/min')
         if math.isfinite(self.target_load):
             parts.append(f'at this speed load with {self.target_load:.4g} N')
         doubt = f'; asperities {self.carry} carry here' if parts and self.carry else ''

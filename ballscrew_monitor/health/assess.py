@@ -214,6 +214,11 @@ def _reason(
         return f'not known yet: {baseline}'
     if not recent:
         return f'not known: no steady motion with a measured torque in the last {RECENT} days'
+    if not _since(baseline, points):
+        return (
+            'not known yet: no steady motion after the baseline, add later days or name a shorter '
+            'baseline'
+        )
     return (
         f'not known yet: fewer than {FEWEST_STRETCHES} stretches at speeds, loads and directions '
         'that the baseline has, too'

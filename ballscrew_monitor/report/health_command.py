@@ -58,7 +58,7 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
             print(printable('\n'.join(lines_of(last))))
         for peer in peers:
             print(printable(peer.text))
-        if args.out is not None:
+        if args.out is not None and found:
             _write(args.out, found)
     if args.json:
         print(json_text(_records(found)))

@@ -127,8 +127,9 @@ def _cut(tile: Tile, modulus: float, pressure: float, bound: float) -> Tile:
     lower, found = run_in(tile, modulus, pressure, bound)
     if not found.converged:
         raise InputError(
-            f'raceway: pressed by {GIGA * pressure:.3g} GPa its summits yield at '
-            f'{GIGA * bound:.3g} GPa nearly everywhere, allowed is a cutting pressure well above'
+            f'raceway: pressed by {GIGA * pressure:.3g} GPa, where its summits yield at '
+            f'{GIGA * bound:.3g} GPa was not found in {found.iterations} iterations, allowed is a '
+            'smaller working_load_N'
         )
     return lower
 

@@ -7,6 +7,7 @@ What no published number was found for is named as assumed.
 
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from surrogate.catalogue.noted import derived, Noted, stated, typical
@@ -14,7 +15,7 @@ from surrogate.catalogue.words import CatalogueScrew
 from surrogate.raceway.fractal import Lay
 from surrogate.raceway.standards import CUTOFF_SHORT, RA_OVER_RQ
 from surrogate.raceway.stated import HARDNESS
-from surrogate.units import RPM, TURN
+from surrogate.units import MICRO, RPM, TURN
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -59,6 +60,17 @@ ROLLED = ('7', '10')
 def process_of(given: CatalogueScrew) -> str:
     """Return the process, by the accuracy class where it is not given."""
     return given.process or ('rolled' if given.accuracy in ROLLED else 'ground')
+
+
+def typical_roughness(given: CatalogueScrew) -> Iterator[str]:
+    """Yield in a sentence that the Ra is a typical one, where none is given."""
+    process = process_of(given)
+    if given.ra is None:
+        yield (
+            f'roughness: Ra {MICRO * PROCESSES[process].ra:g} um is typical of {process} raceways '
+            'and not measured; the onset of contact follows it, and no band has its range: '
+            '--ra-um states it'
+        )
 
 
 def raceway_of(given: CatalogueScrew) -> dict[str, Noted]:

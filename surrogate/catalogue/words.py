@@ -64,7 +64,9 @@ class CatalogueScrew(Checked):
     )
     preload: float | None = _number('preload (default a share of C)', 'N', 1.0, 0.0, 1e6)
     preload_share: float | None = _number('preload over C (default 0.05)', '', 1.0, 0.0, 0.3)
-    accuracy: str | None = _asked('accuracy class; 7 and 10 are rolled', choice(*ACCURACY))
+    accuracy: str | None = _asked(
+        'accuracy class, 7 of C7 or T7; 7 and 10 are rolled', choice(*ACCURACY)
+    )
     process: str | None = _asked(
         'ground (default), rolled or whirled', choice('ground', 'rolled', 'whirled')
     )

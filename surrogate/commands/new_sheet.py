@@ -79,9 +79,10 @@ def _complete(name: str, texts: Mapping[Any, str]) -> tuple[Any, dict[str, str]]
         from surrogate.catalogue.oil import oil_of
 
         return oil_of(given)
+    from surrogate.catalogue.raceways import typical_roughness
     from surrogate.catalogue.screw import screw_of
     from surrogate.formulas.plausibility import doubts
 
     screw, notes = screw_of(given)
-    tell(doubts(screw))
+    tell([*doubts(screw), *typical_roughness(given)])
     return screw, notes

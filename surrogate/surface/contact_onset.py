@@ -9,7 +9,7 @@ slower: the speed of the onset goes with one over the viscosity and with a power
 
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 import math
 from typing import Any
@@ -197,12 +197,22 @@ def onset_of_surface(
         coldest=coldest,
         reach=reach,
         band=surface.limit_band,
+        doubt=_unknown(screw['roughness']),
         fastest=fastest,
         oil=surface.oil_name,
         viscosity=oil['kinematic_viscosity_40'],
         rms=screw['roughness']['rms'],
         lead=surface.lead,
     )
+
+
+def _unknown(raceway: Mapping[str, Any]) -> str:
+    """Return by what the band of a surface comes about, which the roughness of its sheet tells."""
+    if raceway['onset_band']:
+        return ' by its calibration'
+    cut = (raceway['state'], raceway['traced']) == ('run_in', 'new')
+    inputs = 'running in, oil and temperature' if cut else 'oil and temperature'
+    return f' by {inputs}, with the roughness of the sheet'
 
 
 def _has(

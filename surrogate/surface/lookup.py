@@ -66,10 +66,13 @@ class Surface:
 
         """
         data = surface_file.read(path)
-        for kind, wanted in (('screw', screw), ('lubricant', oil)):
+        for kind, named, wanted in (('screw', 'screw', screw), ('lubricant', 'oil', oil)):
             found = data.header['inputs'][kind]['name']
             if wanted is not None and found != wanted:
-                raise SurfaceError(f'{path}: built for {kind} {found!r}, configured is {wanted!r}')
+                raise SurfaceError(
+                    f'{path}: built for {named} {found!r}, configured is {wanted!r}: state '
+                    f'{named} {found}, or build the surface of {wanted}'
+                )
         return cls(data)
 
     @property

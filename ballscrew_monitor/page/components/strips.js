@@ -166,7 +166,7 @@ class Strips {
 
   /** Return a stamp [s] as the time of day here, or as a time where it has no calendar. */
   static clock(stamp) {
-    if (!(stamp > 1e9)) {
+    if (!(stamp > 9e8)) {
       return Format.time(stamp);
     }
     const date = new Date(1000 * stamp);

@@ -54,8 +54,8 @@ class Guess:
         """Return the map as YAML."""
         head = (
             '# A first map of a machine log. What it assumes is judged with as it stands; who\n'
-            '# knows a value writes it in its place, such as `axes: {x: {lead_mm: 5.0}}`, and\n'
-            '# takes it out of `assumed`.\n'
+            '# knows a value writes it in its place and takes it out of `assumed`, such as\n'
+            '# `axes: {x: {lead_mm: 5.0, screw: my_screw, oil: my_oil, surface: my_screw.npz}}`.\n'
         )
         return head + yaml.safe_dump(
             self.content, sort_keys=False, width=96, allow_unicode=True, default_flow_style=None

@@ -147,6 +147,8 @@ def test_what_is_missing_is_said(axis, motion):
     old = axis.health(axis.days(motion, 4, lambda point, day: 0.0), last=FIRST + 400)
     assert 'in the last 28 days' in old.verdict
     points = axis.days(motion, 40, lambda point, day: 0.0)
+    learning = axis.health(points, over=51_000.0)
+    assert 'no steady motion after the baseline, add later' in learning.verdict
     others = [
         dataclasses.replace(one, place=one.place._replace(speed=40))
         if one.first_day > FIRST + 9

@@ -103,7 +103,7 @@ def make_event(number, start, duration, **changes):
         'relation': '>=',
         'worst_value': 0.1,
         'limit': 0.01,
-        'advice': 'at this load run at 60 rad/s (573 rev/min)',
+        'advice': 'at this load run at 573 rev/min',
         'target_speed': 60.0,
         'speed': 45.0,
         'axial_load': -1200.0,

@@ -134,6 +134,12 @@ def test_the_command_tells_what_one_recording_lacks(capsys, tmp_path):
     assert json.loads((tmp_path / 'health.json').read_text())['x']['course']
 
 
+def test_where_no_log_can_be_read_nothing_is_written(capsys, tmp_path, says):
+    assert main(['health', 'none.mcap', '--out', str(tmp_path / 'out')]) == 1
+    assert capsys.readouterr().err.splitlines()[0] == says('no_log')
+    assert not (tmp_path / 'out').exists()
+
+
 def test_the_overview_draws_trends_and_ranks_axes_with_one_programme(months):
     entries = [entry(one) for one in months]
     entries += [entry(dataclasses.replace(months[0], axis=name)) for name in 'yz']

@@ -42,14 +42,16 @@ def test_the_sizes_that_are_shipped():
 
 
 @pytest.mark.parametrize('size', CATALOGUE)
-def test_from_the_page_of_a_catalogue_to_the_onset(run, tmp_path, capsys, size):
-    """The larger the screw, the slower contact begins; nothing is told beside the file."""
+def test_from_the_page_of_a_catalogue_to_the_onset(run, tmp_path, capsys, says, size):
+    """The larger the screw, the slower contact begins; what is assumed of Ra is told."""
     diameter, lead, ball, dynamic, static, expected = CATALOGUE[size]
     words = ('--nominal-diameter-mm', diameter, '--lead-mm', lead, '--ball-diameter-mm', ball)
     ratings = ('--dynamic-rating-kN', dynamic, '--static-rating-kN', static, '--turns', 4)
     path = tmp_path / 'my.yaml'
-    assert run('screw', 'new', *words, *ratings, '--out', path) == 0
+    assert run('screw', 'new', *words, *ratings, '--ra-um', 0.16, '--out', path) == 0
     assert capsys.readouterr() == (f'{path}\n', '')
+    assert run('screw', 'new', *words, *ratings, '--out', path, '--force') == 0
+    assert capsys.readouterr() == (f'{path}\n', says('ra_typical'))
     oil = load_lubricant('iso_vg_68')
     found = onset_point(load_screw(str(path)), oil, 0.0, oil.reference_temperature)
     assert found['speed_rad_s'] / RPM == pytest.approx(expected, rel=0.02)

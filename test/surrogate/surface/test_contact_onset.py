@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sentence about contact, limit and zone follows from what the surface holds."""
 
+import copy
 from dataclasses import replace
 import math
 
@@ -49,6 +50,7 @@ def changed(*, onset=1.0, friction=1.0):
         ('zone', {}),
         ('no_band', {'band': (math.nan, math.nan)}),
         ('doubt', {'doubt': ' by the law alone'}),
+        ('unknown', {'doubt': onset_of_surface(FULL).doubt}),
         ('smooth', {'speed': 0.0}),
         ('friction', {'zone': False}),
         ('remedies', {'zone': False, 'slower': 2.0, 'colder': 290.15}),
@@ -83,6 +85,26 @@ def test_speed_and_band_are_those_of_the_surface(kelvin):
     assert found.speed == FULL.onset_speed(0.0, kelvin)
     assert found.band == FULL.limit_band
     assert found.fastest == pytest.approx(FULL.speed_range[1])
+
+
+@pytest.mark.parametrize(
+    ('keys', 'doubt'),
+    [
+        (
+            {'state': 'run_in', 'traced': 'new'},
+            ' by running in, oil and temperature, with the roughness of the sheet',
+        ),
+        (
+            {'state': 'run_in', 'traced': 'run_in'},
+            ' by oil and temperature, with the roughness of the sheet',
+        ),
+        ({'onset_band': 1.5}, ' by its calibration'),
+    ],
+)
+def test_a_band_says_what_it_hangs_on(keys, doubt):
+    header = copy.deepcopy(DATA.header)
+    header['inputs']['screw']['roughness'] |= keys
+    assert onset_of_surface(Surface(replace(DATA, header=header))).doubt == doubt
 
 
 def test_the_temperature_is_that_of_the_oil_sheet_or_the_nearest_that_is_covered():

@@ -48,6 +48,13 @@ def test_a_panel_runs_on_stands_still_and_follows_again(shown, greeted, frames):
     shown.until(f'{ends}.every((end) => end === {frames.begin + 9.0})')
 
 
+def test_a_log_of_an_assumed_date_has_a_time_of_day_and_a_simulated_one_a_time(shown):
+    clock = 'page.strips.constructor.clock'
+    assert shown.ask(f'{clock}(946684803)').endswith(':03')  # 2000-01-01, as a map assumes it
+    assert len(shown.ask(f'{clock}(946684803)')) == 8
+    assert shown.ask(f'{clock}(63)') == '1:03'
+
+
 def test_zoom_keeps_the_middle_and_ends_at_its_limits(shown, frames):
     shown.ask('page.strips.show(page.strips.now - 40, page.strips.now - 20)')
     shown.ask('page.strips.zoom(0.5)')
