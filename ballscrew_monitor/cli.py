@@ -212,7 +212,7 @@ def _events(args: argparse.Namespace) -> int:
         told = next((str(record[name]) for name in TOLD if record.get(name)), '')
         by = f'by {record["name"]}' if record.get('name') else ''
         words = ': '.join(filter(None, (event, by, told)))
-        line = f'{entry.time}  {entry.axis or "-":<8}  {entry.kind:<14}  {words}'
+        line = f'{entry.time}  {entry.axis or "-":<8}  {entry.kind!s:<14}  {words}'
         print(printable(line.rstrip()))
     return 0
 

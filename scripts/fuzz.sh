@@ -16,7 +16,7 @@ while left=$((end - $(date +%s))) && [ "$left" -gt 0 ]; do
     round=$((round + 1))
     echo "== round $round: up to 1000 new examples of each property; $left s left"
     timeout --signal=INT --kill-after=30 "$left" \
-        .venv/bin/pytest -q -n 2 --dist worksteal -m hypothesis "$@"
+        .venv/bin/pytest -q -x -n 2 --dist worksteal -m hypothesis "$@"
     code=$?
     # The end of the time is no failure.
     case $code in 124 | 137) break ;; esac

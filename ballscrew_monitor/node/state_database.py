@@ -167,7 +167,12 @@ def read_entries(folder: Path) -> list[Entry]:
     with sqlite_file.opened_to_read(folder, FILE, VERSION) as database:
         # At once: somebody who reads on and on keeps the journal from being cleared.
         rows = database.execute('SELECT * FROM events ORDER BY number').fetchall()
-        return [Entry(*row[1:]) for row in rows]
+        return [Entry(*(_plain(one) for one in row[1:])) for row in rows]
+
+
+def _plain(value: Any) -> Any:
+    """Return what a damaged file may hold in place of a text or an integer as one."""
+    return value if value is None or isinstance(value, int | str) else str(value)
 
 
 def at_limit(folder: Path, limit: int) -> str:

@@ -14,7 +14,7 @@ from ballscrew_monitor.core.fault_codes import cause_code
 from ballscrew_monitor.core.full_point import KeptSolve, Solve
 from ballscrew_monitor.core.memory import AxisRecord, Memory, record_of
 from ballscrew_monitor.core.state import Event, TIMES, Totals
-from surrogate.files import to_json
+from surrogate.files import InputError, to_json
 from surrogate.limits import read_json
 
 EVENT = tuple('event start_ns worst_value cause severity value limit unit text ending'.split())
@@ -26,6 +26,9 @@ SOLVE = {
     'solved': 'solved',
 }
 """Names of a solve, and with their units as they are kept."""
+
+
+UNREADABLE = 'the facts of this entry are damaged and cannot be read'
 
 
 class Kind(enum.StrEnum):
@@ -59,9 +62,12 @@ class Entry(NamedTuple):
     facts: str
 
     def record(self) -> dict[str, Any]:
-        """Return the entry as one record."""
+        """Return the entry as one record; of a damaged one what is left, and that it is."""
         record = self._asdict()
-        return record | read_json(record.pop('facts'))
+        try:
+            return record | dict(read_json(str(record.pop('facts'))))
+        except (InputError, TypeError, ValueError):
+            return record | {'text': UNREADABLE}
 
 
 class Corrections(NamedTuple):

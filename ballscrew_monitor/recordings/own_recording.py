@@ -278,8 +278,8 @@ class OwnRecording:
 
     def _check(self, entry: Mapping[str, Any]) -> None:
         """Hold what is remembered of an axis against what the node says it remembered."""
-        run = self.runs[self._numbers[entry['axis']]]
-        if dump(run.axis.monitor)['records'] == entry['monitor']['records']:
+        run, told = self.runs[self._numbers[entry['axis']]], entry.get('monitor')
+        if isinstance(told, dict) and dump(run.axis.monitor)['records'] == told.get('records'):
             self._proven += 1
             return
         self._refuted += 1

@@ -91,7 +91,11 @@ def combined_damage(first: float, second: float) -> float:
     L.
 
     """
-    return float((first**SLOPE + second**SLOPE) ** (1 / SLOPE))
+    if not 0.0 < first + second < math.inf:
+        return float(first + second)
+    larger, smaller = max(first, second), min(first, second)
+    # By the ratio, since powers of a small damage underflow.
+    return float(larger * (1.0 + (smaller / larger) ** SLOPE) ** (1 / SLOPE))
 
 
 def combined_life_iso_3408_2006(first: float, second: float) -> float:

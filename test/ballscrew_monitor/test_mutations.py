@@ -283,7 +283,11 @@ def seeds(tmp_path_factory):
         path = make(folder)
         found[name] = path, path.read_bytes(), read
         read(path)
-    return found.__getitem__  # which is not printed with all files
+
+    def seed(name):  # which is not printed with all files
+        return found[name]
+
+    return seed
 
 
 NUMBER = itertools.count()

@@ -72,7 +72,7 @@ def test_an_event_begins_and_ends_with_its_facts(core):
     assert event.stamp == edge.stamp == begin + SECOND // 2
     assert (event.cause.code, event.worst_value) == (Code.RCS_HIGH, 1.0)
     assert event.advice.target_speed == pytest.approx(30.0, rel=1e-5)
-    assert event.advice.text.startswith('at this load run at 286.5 rev/min')
+    assert event.advice.text.startswith('at this load run at 286 rev/min')
     states = core.feed(monitor, core.motion(40.0, start=begin + SECOND, count=120))
     (over,) = [state.event for state in states if state.event is not None]
     assert (over.number, over.active, over.start) == (1, False, begin)

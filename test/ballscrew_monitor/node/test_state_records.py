@@ -8,7 +8,7 @@ import types
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.node.state_records import Corrections, entry_of, event_facts, Kind
+from ballscrew_monitor.node.state_records import Corrections, Entry, entry_of, event_facts, Kind
 import pytest
 
 SOLVE = types.SimpleNamespace(
@@ -25,6 +25,13 @@ def test_an_entry_says_what_when_where_and_why():
     assert (record['kind'], record['event'], record['duration_s']) == ('event_end', 4, 2.0)
     assert (record['cause'], record['code']) == ('UNKNOWN', Fault.CAUSE_UNKNOWN)
     assert (record['value'], record['limit']) == (None, None)
+
+
+@pytest.mark.parametrize('facts', [None, '{"event":', '[1]', '3'])
+def test_an_entry_with_damaged_facts_keeps_the_rest(facts, says):
+    record = Entry('now', 5, 'x', 'shelve', facts).record()
+    assert record.pop('text') == says('damaged')
+    assert record == {'time': 'now', 'stamp_ns': 5, 'axis': 'x', 'kind': 'shelve'}
 
 
 def test_corrections_come_back_bit_for_bit_and_say_their_units():

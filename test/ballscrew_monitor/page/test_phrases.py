@@ -9,6 +9,7 @@ from ballscrew_monitor.core.judgement import Level, Reason, Zone
 from ballscrew_monitor.health.assess import DRAG
 from ballscrew_monitor.health.energy import NAMES as ENERGIES
 from ballscrew_monitor.health.life import NAMES as LIVES
+from ballscrew_monitor.health.onset import NAME as ONSET
 from ballscrew_monitor.health.peers import NAME as PEERS
 from ballscrew_monitor.health.preload import NAME as PRELOAD
 from ballscrew_monitor.health.records import CauseCode, Condition
@@ -37,7 +38,17 @@ ENUMERATED = {
 WAYS = (f'{DRAG} forward', f'{DRAG} backward', 'constant drag', 'drag per speed')
 LUBRICATION = ('lubrication part of the burn rate', 'severity shift')
 SEVERITIES = (f'severity class {place}' for place in range(CLASSES))
-QUANTITIES_OF_HEALTH = (DRAG, *WAYS, PRELOAD, *LUBRICATION, *SEVERITIES, *ENERGIES, *LIVES, PEERS)
+QUANTITIES_OF_HEALTH = (
+    DRAG,
+    *WAYS,
+    PRELOAD,
+    ONSET,
+    *LUBRICATION,
+    *SEVERITIES,
+    *ENERGIES,
+    *LIVES,
+    PEERS,
+)
 NUMBERS = st.one_of(st.just(float('nan')), st.floats(-1e5, 1e5))
 
 

@@ -54,6 +54,8 @@ def test_two_equal_nuts():
     assert combined_life_iso_3408_2006(2e8, math.inf) == pytest.approx(2e8)
     assert combined_life_iso_3408_2006(math.inf, math.inf) == math.inf
     assert combined_damage(0.0, 0.0) == 0
+    assert combined_damage(1e-300, 1e-300) == pytest.approx(1e-300 * 2**0.9, rel=1e-12)
+    assert math.isnan(combined_damage(1.0, math.nan))
 
 
 @given(SHARES, SHARES)
