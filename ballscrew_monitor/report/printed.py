@@ -45,7 +45,7 @@ def axis_lines(case: AxisCase) -> Iterator[str]:
     yield _line('contact', verdict.contact)
     seen = inputs_seen(case)
     yield from (_line('check', hint) for one in seen for hint in one.hints)
-    yield from [] if summary is None else summary.lines()
+    yield from [] if summary is None else map(case.in_its_unit, summary.lines())
     yield from (_line('input', _input_text(one)) for one in seen)
     yield from (
         _line('not judged', f'{number(time, 4)} s: {reason.text}')

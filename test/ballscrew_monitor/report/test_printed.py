@@ -66,6 +66,13 @@ def test_lines_of_an_axis_that_is_well_has_gaps_warns_or_has_no_rows(judged, say
     assert list(log_lines(judged.log(empty=['y']))) == ['axis y: no usable sample']
 
 
+def test_warnings_speak_the_unit_of_the_log(judged):
+    values = judged.values(**{'x.speed.unit': 'm/min'})
+    case = judged.case([judged.columns()], [judged.event(1, 0.1, 0.2)], values=values)
+    (line,) = (line for line in axis_lines(case) if ' at 4.3 m/min, 430 rev/min ' in line)
+    assert 'run at 5.73 m/min, 573 rev/min' in line
+
+
 def test_inputs_tell_source_span_rate_and_troubles(judged, says):
     inputs = tuple(
         judged.status(source, lag=0.5, dropped=9 if source is Source.LOAD else 0)
