@@ -27,7 +27,7 @@ MESSAGE = 32 * MEGA
 CHUNK = 64 * MEGA
 """Most that the records of a chunk come to, unpacked [byte]."""
 RECORDS = 500_000
-"""Most records of a chunk; it holds no more than it has bytes in its file."""
+"""Most records of a chunk; of one with fewer bytes in its file as many as those."""
 SUMMARY = 32 * MEGA
 """Largest summary of an MCAP file [byte]."""
 WAITING = 64 * MEGA

@@ -68,13 +68,15 @@ class HealthSettings:
     """
     What health is told: limits of the zone, the user's CO2 factor [kg/kWh], NaN for none.
 
-    `speed_allowed`: advice may name another speed, which a process may not allow.
+    `speed_allowed`: advice may name another speed, which a process may not allow. Where an axis is
+    `always_free` of process force, its readings come daily.
 
     """
 
     limits: Limits
     co2_per_kwh: float = math.nan
     speed_allowed: bool = False
+    always_free: bool = False
 
 
 class Compared(NamedTuple):
@@ -128,7 +130,7 @@ def assess(
     notes = [
         *_notes(surface, known, points, recent, change, today),
         onset_note(onset, TOLERANCE, SURE),
-        note_on_runs(points, motion_by_day(spectrum), model),
+        note_on_runs(points, motion_by_day(spectrum), model, always_free=settings.always_free),
     ]
     remedy = remedies_of(
         recent, surface, settings.limits, speed_allowed=settings.speed_allowed

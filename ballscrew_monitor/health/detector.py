@@ -32,8 +32,6 @@ FLOOR = 0.01
 """Least spread over the mean of the readings [-]."""
 DAILY_LIMIT, DAILY_FLOOR = 8.0, 0.03
 """Both of readings that come daily: what drifts by the season is no change."""
-DAILY = 2.0
-"""Median distance of the readings of single days below which they come daily [days]."""
 
 
 @dataclasses.dataclass(slots=True)
@@ -94,12 +92,14 @@ def first_alarm(
     return None
 
 
-def note_on_runs(points: Sequence[ComparablePoint], motion: Motion, model: Model) -> str:
+def note_on_runs(
+    points: Sequence[ComparablePoint], motion: Motion, model: Model, *, always_free: bool = False
+) -> str:
     """
     Return in a sentence since when friction free of load differs from that before, or ''.
 
     The reading of a day is its measured friction over that of the model, at the places of its run,
-    or of all its motion where an axis is always free of process force;
+    or of all its motion where an axis is `always_free` of process force;
     `motion` [s] of each day tells how long the screw has run in.
 
     """
@@ -107,7 +107,7 @@ def note_on_runs(points: Sequence[ComparablePoint], motion: Motion, model: Model
     days = sorted({one.first_day for one in runs})
     readings = [_reading([one for one in runs if one.first_day == day], model) for day in days]
     times = [sum(time for one, time in motion.items() if one <= day) for day in days]
-    daily = {'limit': DAILY_LIMIT, 'floor': DAILY_FLOOR} if _come_daily(runs) else {}
+    daily = {'limit': DAILY_LIMIT, 'floor': DAILY_FLOOR} if always_free else {}
     alarm = first_alarm(zip(times, readings), **daily)
     if alarm is None:
         return ''
@@ -118,12 +118,6 @@ def note_on_runs(points: Sequence[ComparablePoint], motion: Motion, model: Model
         f'the friction without process force of {clock_text(days[at] * DAY)[:10]} differs by '
         f'{100.0 * change:+.0f} % from the readings before, more than those scatter'
     )
-
-
-def _come_daily(runs: Sequence[ComparablePoint]) -> bool:
-    """Tell whether readings come daily, as those of an axis that is always free do."""
-    days = sorted({one.first_day for one in runs if one.days == 1})
-    return len(days) > FEWEST and float(np.median(np.diff(days))) < DAILY
 
 
 def _reading(run: Sequence[ComparablePoint], model: Model) -> float:

@@ -142,6 +142,7 @@ class AxisHealths:
                 limits=publisher.settings.limits,
                 co2_per_kwh=values[f'{name}.health.co2_per_kwh'] or math.nan,
                 speed_allowed=values[f'{name}.advice.speed'],
+                always_free=values[f'{name}.health.always_free'],
             ),
             policy=self._policy(name),
             over=values[f'{name}.health.baseline_hours'] * HOUR,

@@ -66,12 +66,15 @@ def read_summary(stream: BinaryIO) -> Summary:
     summary = reader.get_summary()
     if summary is None or summary.statistics is None:
         raise McapError('it has no summary')
-    _check(summary)
+    _check(summary, whole)
     return summary
 
 
-def _check(summary: Summary) -> None:
-    """Raise McapError if the statistics of a summary contradict it, or themselves."""
+def _check(summary: Summary, size: int) -> None:
+    """Raise McapError if a summary contradicts itself, or the `size` of its file [bytes]."""
+    # Chunks within each other would be unpacked again and again.
+    if sum(one.chunk_length + one.message_index_length for one in summary.chunk_indexes) > size:
+        raise McapError('its chunks overlap')
     statistics = summary.statistics
     assert statistics is not None
     named = {one.chunk_start_offset for one in summary.chunk_indexes}
@@ -118,7 +121,7 @@ def walked(data: bytes, stored: int) -> list[tuple[int, int]]:
 
     A chunk of `stored` [bytes] in its file holds no more records: the times of a message alone
     take three bytes and more, while pictures of one grey take next to none. So the size of a file
-    bounds the work, and that of a chunk the memory.
+    bounds the work.
 
     """
     found, at, end, unpack = [], 0, len(data) - RECORD.size, RECORD.unpack_from

@@ -47,6 +47,7 @@ class AxisHistory:
     last: int
     points: Sequence[ComparablePoint]
     bins: Sequence[SpectrumBin]
+    always_free: bool = False
 
 
 class HistoryMaker:
@@ -55,6 +56,7 @@ class HistoryMaker:
     def __init__(self, surface: Surface, settings: GatherSettings | None = None) -> None:
         """Begin with nothing; `surface` is that of the judgement."""
         self._surface, self._collector = surface, Collector(surface, settings)
+        self._always_free = settings is not None and settings.always_free
         self._points: dict[Any, ComparablePoint] = {}
         self._bins: list[SpectrumBin] = []
         self._last = 0
@@ -74,6 +76,7 @@ class HistoryMaker:
             last=self._last,
             points=tuple(self._points.values()),
             bins=tuple(merged_bins(self._bins)),
+            always_free=self._always_free,
         )
 
     def _take(self, found: Collected) -> None:
@@ -125,7 +128,10 @@ def healths(
     surface = Surface.load(file)
     companions = companions_beside(file, surface)
     settings = HealthSettings(
-        limits=ordered[-1].limits, co2_per_kwh=co2_per_kwh, speed_allowed=speed_allowed
+        limits=ordered[-1].limits,
+        co2_per_kwh=co2_per_kwh,
+        speed_allowed=speed_allowed,
+        always_free=ordered[-1].always_free,
     )
     points: dict[Any, ComparablePoint] = {}
     bins: list[SpectrumBin] = []

@@ -68,6 +68,7 @@ def _course(
         limits=settings_of(axis, values, surface).limits,
         co2_per_kwh=co2_per_kwh,
         speed_allowed=speed_allowed,
+        always_free=values[f'{axis}.health.always_free'],
     )
     periods = [(one.first_day, one.days) for one in kept.points]
     periods += [(one.first_day, one.days) for one in kept.spectrum]

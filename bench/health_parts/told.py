@@ -105,7 +105,7 @@ def _first_note(ground: Ground, year: Year) -> float | None:
     motion = {FIRST_DAY + day: 8.0 * TIME_UNITS['h'] for day in range(DAYS)}
     for day in range(PERIOD, DAYS, PERIOD):
         kept = aged(_until(free, day), FIRST_DAY + day).points
-        if note_on_runs(kept, motion, model):
+        if note_on_runs(kept, motion, model, always_free=True):
             return float(year.size[day])
     return None
 

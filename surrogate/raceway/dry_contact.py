@@ -116,16 +116,18 @@ def press(
         if converged and count >= LEAST:
             break
     if not converged:
-        pressure, count, converged = _descend(
+        pressure, more, converged = _descend(
             lambda load: lift(load) - heights,
             float(compliance.max()),
             np.full(shape, mean_pressure),
             hardness=hardness,
             tolerance=0.1 * tolerance,  # its steps are shorter
         )
+        count += more
     free = (pressure > 0) & (pressure < hardness)
     gap = lift(pressure) - heights
-    gap -= gap[free if free.any() else pressure > 0].mean()
+    # Without a free node all that carries is at the hardness: the last of it just touches.
+    gap -= gap[free].mean() if free.any() else gap[pressure > 0].max()
     return DryContact(pressure=pressure, gap=gap, iterations=count, converged=converged)
 
 

@@ -8,7 +8,7 @@ what else stands there fill the chunk without a gap. Otherwise the records are w
 
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 import dataclasses
 import io
 import itertools
@@ -125,7 +125,7 @@ def read_chunk(stream: BinaryIO, place: ChunkIndex) -> Messages:
         raw = stream.read(length)
         chunk, indexes = raw[: place.chunk_length], raw[slice(place.chunk_length, None)]
         data = _records(chunk, place.uncompressed_size)
-        starts = _indexed(data, indexes)
+        starts = _indexed(data, indexes, length)
         return _messages(data, _walked(data, length) if starts is None else starts)
     except ChunkDamage:
         raise
@@ -144,8 +144,13 @@ def _records(raw: bytes, size: int) -> bytes:
     return chunk_data(chunk)
 
 
-def _indexed(data: bytes, indexes: bytes) -> Integers | None:
-    """Return where message records begin by the `indexes`, None if these do not tell of all."""
+def _indexed(data: bytes, indexes: bytes, stored: int) -> Integers | None:
+    """
+    Return where message records begin by the `indexes`, None if these do not tell of all.
+
+    Of records that are none at most as many are passed as the chunk has `stored` [bytes].
+
+    """
     parts, at = [], 0
     while at + RECORD.size <= len(indexes):
         code, length = RECORD.unpack_from(indexes, at)
@@ -159,10 +164,10 @@ def _indexed(data: bytes, indexes: bytes) -> Integers | None:
     starts = np.sort(np.concatenate(parts))
     if len(starts) > limits.RECORDS:
         raise ChunkDamage(f'it holds more than {limits.RECORDS} records')
-    return starts if _fill(data, starts) else None
+    return starts if _fill(data, starts, stored) else None
 
 
-def _fill(data: bytes, starts: Integers) -> bool:
+def _fill(data: bytes, starts: Integers, stored: int) -> bool:
     """Tell whether messages at `starts`, and records that are none, fill all of the data."""
     last = len(data) - RECORD.size - MESSAGE_HEAD
     if not len(starts) or starts[0] < 0 or starts[-1] > last:
@@ -172,17 +177,21 @@ def _fill(data: bytes, starts: Integers) -> bool:
     ends = starts + RECORD.size + unaligned(data, '<i8')[starts + 1]
     gaps = np.flatnonzero(ends[:-1] != starts[1:])
     holes = [(0, starts[0]), *((ends[gap], starts[gap + 1]) for gap in gaps)]
-    return all(_is_no_message(data, *hole) for hole in [*holes, (ends[-1], len(data))])
+    return _hold_no_message(data, [*holes, (ends[-1], len(data))], stored)
 
 
-def _is_no_message(data: bytes, begin: int, end: int) -> bool:
-    """Tell whether records that are no messages fill a hole of the data."""
-    while begin + RECORD.size <= end:
-        code, length = RECORD.unpack_from(data, begin)
-        if code == MESSAGE:
+def _hold_no_message(data: bytes, holes: Iterable[tuple[int, int]], most: int) -> bool:
+    """Tell whether at most so many records, none of them a message, fill holes of the data."""
+    for begin, end in holes:
+        while begin + RECORD.size <= end:
+            code, length = RECORD.unpack_from(data, begin)
+            most -= 1
+            if code == MESSAGE or most < 0:
+                return False
+            begin += RECORD.size + length
+        if begin != end:
             return False
-        begin += RECORD.size + length
-    return begin == end
+    return True
 
 
 def _walked(data: bytes, stored: int) -> Integers:

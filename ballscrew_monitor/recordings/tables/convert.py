@@ -44,6 +44,7 @@ SLOW = 0.5  # of the timeout: rows that far apart leave no room for a late one
 PASSES = 3  # over a table, at most, of which each is shown
 SAME = 1e-6  # part by which two leads may differ
 NAMES_NONE = 'the map names none'
+ROWS = 4096  # whose messages are made at once
 _STAMP = (1_234_567_891, 987_654_321)  # [s], [ns]
 
 
@@ -178,7 +179,10 @@ def _write(
                 writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.RELIABLE))
                 templates[name] = RowTemplate(message, len(numbers))
             rows[name] = templates[name].rows(block.stamps, numbers)
-        writer.write_rows(rows, block.stamps)
+        for at in range(0, len(block.stamps), ROWS):
+            part = slice(at, at + ROWS)
+            some = {name: content[part] for name, content in rows.items()}
+            writer.write_rows(some, block.stamps[part])
         done += len(block.stamps)
         show(done / series.count)
 

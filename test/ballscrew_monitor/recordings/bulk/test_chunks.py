@@ -6,9 +6,12 @@ import io
 import struct
 
 from ballscrew_monitor.recordings.bulk.chunks import chunk_indexes, read_chunk
+from mcap.data_stream import RecordBuilder
+from mcap.records import Chunk, ChunkIndex, MessageIndex
 from mcap.writer import CompressionType, Writer
 import numpy as np
 import pytest
+import zstandard
 
 COUNT = 20
 
@@ -70,3 +73,34 @@ def test_an_index_that_lies_is_not_believed(written, offset):
         struct.pack('<Q', offset),
     )
     assert contents(read_chunk(stream, place)) == EXPECTED
+
+
+def test_an_index_does_not_hide_how_many_records_a_chunk_holds(refused):
+    """One message is named; behind it stand records without content, which pack to nothing."""
+    data = struct.pack('<BQHIQQ', 5, 22, 1, 0, 0, 0) + bytes(9 * 40_000)
+    packed, size = zstandard.compress(data), len(data)
+    times = {'message_start_time': 0, 'message_end_time': 0, 'compression': 'zstd'}
+    builder = RecordBuilder()
+    Chunk(data=packed, uncompressed_crc=0, uncompressed_size=size, **times).write(builder)
+    length = builder.count
+    MessageIndex(channel_id=1, records=[(0, 0)]).write(builder)
+    place = ChunkIndex(
+        chunk_start_offset=0,
+        chunk_length=length,
+        message_index_offsets={1: length},
+        message_index_length=builder.count - length,
+        compressed_size=len(packed),
+        uncompressed_size=size,
+        **times,
+    )
+    refused('many', read_chunk, io.BytesIO(builder.end()), place)
+
+
+def test_chunks_within_each_other_are_refused(written, refused):
+    """Else a chunk would be unpacked once for each that holds it."""
+    stream, place = written
+    span = struct.pack('<QQ', place.chunk_start_offset, place.chunk_length)
+    at = stream.getvalue().index(span)
+    change(stream, at + 8, struct.pack('<Q', 2 * len(stream.getvalue())))
+    change(stream, len(stream.getvalue()) - 12, bytes(4))  # no checksum of the summary
+    refused('overlap', chunk_indexes, stream, ['/a'])
