@@ -5,6 +5,7 @@
 import asyncio
 from collections.abc import Iterable, Mapping
 import dataclasses
+import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import (
@@ -21,7 +22,7 @@ from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.history import SPAN
 from ballscrew_monitor.page.hub import Browser, Hub, PERIOD
-from ballscrew_monitor.page.phrases import advised, unjudged
+from ballscrew_monitor.page.phrases import advised, phrase, unjudged
 from ballscrew_monitor.page.questions import Answer, Handler, number_in
 from ballscrew_monitor.page.records import (
     LEVELS,
@@ -135,8 +136,11 @@ class RecordedAxis:
     def _state_record(self, row: Array, codes: NDArray[np.uint8]) -> dict[str, Any]:
         zone, regime, reason = codes.tolist()
         _, speed, load, warmth, efficiency, rcs, *_, level = row.tolist()
-        _, headline = maps.judged(rcs, efficiency, load, self._case.settings.limits)
-        if zone == Zone.UNKNOWN:
+        if zone == Zone.OUTSIDE:
+            _, headline = maps.judged(rcs, efficiency, load, self._case.settings.limits)
+        elif zone == Zone.OPTIMAL:
+            headline = phrase('optimal_light' if math.isnan(efficiency) else 'optimal')
+        else:
             opposing = opposing_load(load, direction_of(speed))
             headline = unjudged(reason, abs(speed), opposing, warmth)
         return {

@@ -45,6 +45,7 @@ Pair = tuple[float, float]
 OF_TORQUE = Reason.NO_DIRECTION, Reason.LOAD_OUT_OF_RANGE
 """What is said of a point in motion whose load the motor torque does not tell."""
 NAN = math.nan
+LONGEST_CODE = 10  # characters of a code; more are none
 
 
 def row_of(state: BallScrewState) -> list[float]:
@@ -253,11 +254,14 @@ def range_record(speed: Pair, load: Pair, temperature: Pair) -> dict[str, float]
 
 def code_of(status: DiagnosticStatus) -> int:
     """Return the code of the fault that a diagnostic status states, 0 for none."""
-    codes = [one.value for one in status.values if one.key == 'Code' and one.value.isdecimal()]
-    return int(codes[0]) if codes else 0
+    said = [one.value for one in status.values if one.key == 'Code']
+    codes = [int(one) for one in said if len(one) < LONGEST_CODE and one.isdecimal()]
+    return codes[0] if codes else 0
 
 
 def place_of(name: str) -> tuple[str, str, str] | None:
-    """Return node, axis and part that a diagnostic status is of, None if it is of no axis."""
+    """Return node, axis and part that a status is of; the axis is empty for a node as a whole."""
     parts = name.split(': ')
+    if len(parts) == 2:
+        parts.insert(1, '')
     return (f'/{parts[0]}', parts[1], parts[2]) if len(parts) == 3 else None
