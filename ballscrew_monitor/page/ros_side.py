@@ -4,8 +4,9 @@
 The ROS side of the page: a thread that follows every node of ballscrew_msgs in the graph.
 
 It finds axes by the types of topics, turns messages into records, and hands these to the thread of
-the hub. It reads best effort: a page never holds a node up. A node whose messages are of another
-version of ballscrew_msgs is named and not listened to: its bytes would be read as other numbers.
+the hub. It reads states best effort, and reliably what comes seldom: events, surface, health and
+diagnostics. A node whose messages are of another version of ballscrew_msgs is named and not
+listened to: its bytes would be read as other numbers.
 
 A wake-up of the executor costs more than to read a message. So the thread takes all that waits, as
 often as the hub sends frames, hands it over as one, and lets the executor wait only for answers.

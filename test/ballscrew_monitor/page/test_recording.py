@@ -65,7 +65,7 @@ def test_what_is_shown_is_what_the_state_said(playing, judged):
         playing.advance(0.0, 0.0)
         shown = axis_of(playing)
         assert -2.0 * STEP < shown.history.since(0)[-1, 0] - row[0] < 1e-4
-        for name in ('level', 'zone', 'regime'):
+        for name in ('level', 'zone'):
             assert shown.state[name] == record[name], name
         if record['zone'] in ('outside', 'optimal'):
             assert shown.state['headline'] == record['headline']
