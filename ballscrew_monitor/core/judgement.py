@@ -11,7 +11,7 @@ from ballscrew_monitor.core.estimate import PointEstimate, PointValidity
 from surrogate.files import InputError
 
 NAN = math.nan
-FROM_TORQUE = ', efficiency judged from a load derived of the motor torque'
+FROM_TORQUE = ', efficiency judged from a load derived from the motor torque'
 
 
 class Level(enum.IntEnum):

@@ -136,7 +136,7 @@ CANDIDATES = (
         2.5,
         lambda model, points, size: size * _ideal(model, points),
         'the residual follows the load ({value:+.2f} of it, {low:+.2f} to {high:+.2f}): its sign, '
-        'unit or zero is another one',
+        'unit or zero is wrong',
         'a wrong load gives a residual in proportion to the load',
     ),
     Candidate(
@@ -147,7 +147,7 @@ CANDIDATES = (
         0.6,
         lambda model, points, size: size * _opposing(points, [one.motor_torque for one in points]),
         'the residual follows the torque ({value:+.0%}, {low:+.0%} to {high:+.0%}): the torque '
-        'constant or the gear ratio is another one',
+        'constant or the gear ratio is wrong',
         'another torque constant changes all torques by one factor, that of the load as well',
     ),
     Candidate(

@@ -24,7 +24,6 @@ from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.hub import Browser, Hub
 from ballscrew_monitor.page.phrases import free, Phrase, phrase, Refused
 from ballscrew_monitor.page.questions import Answer, Handler, number_in, text_in
-from ballscrew_monitor.page.records import UNKNOWN, WORDS_OF_REGIME
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.srv import AcknowledgeAlarm, ShelveAlarm
 from rclpy.action import ActionClient
@@ -40,14 +39,13 @@ PATIENCE = 10.0  # [s] for an answer of the node
 STUCK = 60.0  # [s] for a turn in the thread of ROS
 REPEAT = 2.0  # [s] after which a service is asked again: a first answer may be lost
 MOST_SOLVES = 4
-REFUSED = 'acting is off: start the page with --allow-acting'
 
 
 def refusals() -> dict[str, Handler]:
     """Return what answers the acts where acting is off."""
 
     async def refuse(browser: Browser, request: Mapping[str, Any]) -> Answer:
-        raise InputError(REFUSED)
+        raise Refused(phrase('acting_off'))
 
     return dict.fromkeys(ACTS, refuse)
 
@@ -164,7 +162,7 @@ class Acting:
         if handle is None:
             raise InputError('there is no such solve under way')
         await self._in_ros(handle.cancel_goal_async)
-        return {'message': 'the solve is taken back'}, {}
+        return {}, {}
 
     async def _in_ros(self, call: Callable[..., Any], *args: Any) -> Any:
         """Return what a call gives in the thread of the executor, or raise what it raises."""
@@ -205,7 +203,7 @@ async def _waited(condition: Callable[[], Any], seconds: float) -> bool:
 def _tell_progress(browser: Browser, number: Any, message: Any) -> None:
     step = message.feedback
     record = {'id': number, 'share': step.fraction, 'words': step.stage}
-    browser.reply(frame('progress', record | {'left_s': step.seconds_left}))
+    browser.reply(frame('progress', record))
 
 
 def _solve_record(question: Question, result: Any, view: AxisView) -> dict[str, Any]:
@@ -220,7 +218,6 @@ def _solve_record(question: Question, result: Any, view: AxisView) -> dict[str, 
         'rcs': full.rcs,
         'film_ratio': full.film_ratio,
         'torque_N_m': full.driving_torque,
-        'regime': WORDS_OF_REGIME.get(full.regime, UNKNOWN),
         'zone': zone,
         'words': free('; '.join(filter(None, (result.status, result.correction)))),
     }

@@ -167,14 +167,11 @@ class AxisView:
 
     def events_frame(self) -> bytes:
         """Return the events, the newest first."""
-        events = [self._told(self.events[number]) for number in sorted(self.events, reverse=True)]
+        events = [self.events[number] for number in sorted(self.events, reverse=True)]
         return frame('events', {'axis': self.name, 'events': events})
 
-    def _told(self, event: Mapping[str, Any]) -> dict[str, Any]:
-        return {**event, 'since_s': event['duration_s']}
-
     def _state_frame(self, now: float, since: int, *, health: bool) -> bytes:
-        told = self._told(self.events[max(self.events)]) if self.events else None
+        told = self.events[max(self.events)] if self.events else None
         record = {
             'axis': self.name,
             **self.state,

@@ -8,7 +8,7 @@ from typing import Any
 
 from ballscrew_monitor.health.records import CauseCode
 from ballscrew_monitor.health.words import ADVICE, explained
-from ballscrew_monitor.page.phrases import detailed, free, Phrase, phrase, Said
+from ballscrew_monitor.page.phrases import free, Phrase, phrase, Said
 from ballscrew_msgs.msg import AxisHealth, HealthCause, HealthQuantity
 
 DRAG, PRELOAD = 'drag change', 'preload'
@@ -29,7 +29,7 @@ def verdict_phrase(health: AxisHealth) -> Said:
         return free(health.verdict) if health.verdict else ''
     known = {name: one for name, one in named.items() if math.isfinite(one.high - one.low)}
     if DRAG not in known:
-        return detailed(phrase('verdict_unknown', axis=health.axis), named[DRAG].reason)
+        return phrase('verdict_unknown', axis=health.axis, why=free(named[DRAG].reason))
     values = {'axis': health.axis, **_interval(known[DRAG])}
     if health.condition == AxisHealth.CONDITION_WORSE:
         values['why'] = _why(health, known)

@@ -13,13 +13,19 @@ import dataclasses
 import math
 from typing import Any
 
-from ballscrew_monitor.core.conversions import celsius, Direction, kelvin, opposing_load
+from ballscrew_monitor.core.conversions import (
+    celsius,
+    Direction,
+    direction_of,
+    kelvin,
+    opposing_load,
+)
 from ballscrew_monitor.core.estimate import estimate, MachinePoint
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.judge.zone import BY_VALIDITY
 from ballscrew_monitor.page.history import COLUMNS
 from ballscrew_monitor.page.phrases import phrase, Said, unjudged, violated
-from ballscrew_monitor.page.records import UNKNOWN, WORDS_OF_REGIME
+from ballscrew_monitor.page.records import UNKNOWN
 from ballscrew_monitor.report.map_record import map_line, map_lines, MapLine, NO_NUMBER, zone_cells
 from ballscrew_monitor.report.operating_field import (
     Field,
@@ -157,18 +163,16 @@ def limit_record(
     surface: Surface, limits: Limits, row: Array, warmth: float
 ) -> dict[str, float] | None:
     """
-    Return the speed of the limit of RCS at the load of a row, and how far above it the row is.
+    Return the speed of the limit of RCS [rev/min] at the load of a row.
 
     None where there is no limit. `warmth` [degC] is that of a row without its own.
 
     """
     speed, load, heat = (row[COLUMNS.index(name)] for name in COLUMNS[1:4])
-    opposing = -load if speed > 0.0 else load
+    opposing = opposing_load(load, direction_of(speed))
     degrees, turn = warmth if math.isnan(heat) else heat, abs(speed) * RPM
     limit = limit_speed(surface, limits, opposing, degrees, speed=turn) / RPM
-    if math.isnan(limit):
-        return None
-    return {'speed_rpm': limit, 'margin': float(abs(speed) / limit - 1.0)}
+    return None if math.isnan(limit) else {'speed_rpm': limit}
 
 
 def _everywhere(like: Array, *values: float) -> tuple[Array, ...]:
@@ -196,7 +200,6 @@ def point_of(
         'rcs': found.rcs,
         'film_ratio': found.film_ratio,
         'torque_N_m': found.machine_torque,
-        'regime': WORDS_OF_REGIME.get(found.regime, UNKNOWN),
         'zone': zone,
         'words': words or unjudged(reason, turns, load, temperature),
     }

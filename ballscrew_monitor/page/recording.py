@@ -5,6 +5,7 @@
 import asyncio
 from collections.abc import Iterable, Mapping
 import dataclasses
+import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import (
@@ -21,16 +22,9 @@ from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.history import SPAN
 from ballscrew_monitor.page.hub import Browser, Hub, PERIOD
-from ballscrew_monitor.page.phrases import advised, unjudged
+from ballscrew_monitor.page.phrases import advised, phrase, unjudged
 from ballscrew_monitor.page.questions import Answer, Handler, number_in
-from ballscrew_monitor.page.records import (
-    LEVELS,
-    range_record,
-    totals_record,
-    UNKNOWN,
-    WORDS_OF_REGIME,
-    ZONES,
-)
+from ballscrew_monitor.page.records import LEVELS, range_record, totals_record, UNKNOWN, ZONES
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.columns import JudgedColumns, LIGHT_LOAD, STANDSTILL
 from ballscrew_monitor.recordings.summary import EventRecord
@@ -46,13 +40,13 @@ from surrogate.units import RPM
 Array = NDArray[np.float64]
 RATES = (0.1, 100.0)
 CLOCK_PERIOD = 0.5  # [s] between two frames of the clock
-CODES = ('zone', 'regime', 'reason')
+CODES = ('zone', 'reason')
 QUANTITIES = {'RCS': 'rcs', 'efficiency': 'efficiency'}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Course:
-    """Rows of an axis as those of a history, and their codes of zone, regime and reason."""
+    """Rows of an axis as those of a history, and their codes of zone and reason."""
 
     rows: Array
     codes: NDArray[np.uint8]
@@ -97,7 +91,6 @@ class RecordedAxis:
             'unit': 'm/min',
             'screw': surface.screw_name,
             'oil': surface.oil_name,
-            'tier': surface.tier,
             **range_record(surface.speed_range, surface.load_range, (low, high)),
         }
         self.view.know(about, surface, '')
@@ -133,17 +126,19 @@ class RecordedAxis:
         )
 
     def _state_record(self, row: Array, codes: NDArray[np.uint8]) -> dict[str, Any]:
-        zone, regime, reason = codes.tolist()
+        zone, reason = codes.tolist()
         _, speed, load, warmth, efficiency, rcs, *_, level = row.tolist()
-        _, headline = maps.judged(rcs, efficiency, load, self._case.settings.limits)
-        if zone == Zone.UNKNOWN:
+        if zone == Zone.OUTSIDE:
+            _, headline = maps.judged(rcs, efficiency, load, self._case.settings.limits)
+        elif zone == Zone.OPTIMAL:
+            headline = phrase('optimal_light' if math.isnan(efficiency) else 'optimal')
+        else:
             opposing = opposing_load(load, direction_of(speed))
             headline = unjudged(reason, abs(speed), opposing, warmth)
         return {
             'level': LEVELS.get(int(level), UNKNOWN),
             'zone': ZONES.get(zone, UNKNOWN),
             'headline': headline,
-            'regime': WORDS_OF_REGIME.get(regime, UNKNOWN),
             'inputs': [],
             'shelved': None,
             'totals': self._totals,

@@ -13,7 +13,6 @@ from ballscrew_monitor.core.judgement import Level, Reason, Zone
 from ballscrew_monitor.core.state import ACKNOWLEDGED
 from ballscrew_monitor.judge.zone import BY_VALIDITY
 from ballscrew_monitor.messages.health_messages import stamp_of
-from ballscrew_monitor.messages.state_messages import TIERS
 from ballscrew_monitor.page.health_phrases import advice_phrase, verdict_phrase
 from ballscrew_monitor.page.phrases import (
     advised,
@@ -28,23 +27,21 @@ from ballscrew_monitor.page.phrases import (
 from ballscrew_msgs import msg
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticStatus
-from surrogate.surface import REGIMES
 from surrogate.units import RPM
 
 # A code of another version of the interface is unknown, like 0.
 LEVELS: dict[int, str] = {Level.OK: 'ok', Level.WARN: 'warn'}
 ZONES: dict[int, str] = {Zone.OPTIMAL: 'optimal', Zone.OUTSIDE: 'outside'}
-WORDS_OF_REGIME = {int(regime): regime.word for regime in REGIMES}
 STATES_OF_INPUT = {int(state): state.name.lower() for state in InputState}
 CONDITIONS = {msg.AxisHealth.CONDITION_NORMAL: 'normal', msg.AxisHealth.CONDITION_WORSE: 'worse'}
 UNKNOWN = 'unknown'
 QUANTITIES = {msg.Finding.CODE_RCS_HIGH: 'rcs', msg.Finding.CODE_EFFICIENCY_LOW: 'efficiency'}
 OF_UNJUDGED = msg.Finding.CODE_OUT_OF_RANGE, msg.Finding.CODE_INPUT_LOST
-WORDS_OF_TIER = {code: tier for tier, code in TIERS.items()}
 Pair = tuple[float, float]
 OF_TORQUE = Reason.NO_DIRECTION, Reason.LOAD_OUT_OF_RANGE
 """What is said of a point in motion whose load the motor torque does not tell."""
 NAN = math.nan
+LONGEST_CODE = 10  # characters of a code; more are none
 
 
 def row_of(state: BallScrewState) -> list[float]:
@@ -79,11 +76,9 @@ def state_record(state: BallScrewState) -> dict[str, Any]:
         'level': LEVELS.get(state.level, UNKNOWN),
         'zone': ZONES.get(state.zone, UNKNOWN),
         'headline': headline(state),
-        'regime': WORDS_OF_REGIME.get(state.result.regime, UNKNOWN),
         'inputs': [_input(one) for one in state.inputs],
         'shelved': shelving_record(state),
         'totals': totals_record(state.totals),
-        'judged': state.judged,
     }
 
 
@@ -184,10 +179,9 @@ def health_record(health: msg.AxisHealth) -> dict[str, Any]:
     """Return what is said of the health of an axis."""
     return {
         'condition': CONDITIONS.get(health.condition, UNKNOWN),
-        'warning': health.warning,
         'verdict': verdict_phrase(health),
         'advice': advice_phrase(health),
-        'notes': list(health.notes),
+        'notes': [free(note) for note in health.notes],
         'quantities': [
             {
                 'name': one.name,
@@ -196,7 +190,7 @@ def health_record(health: msg.AxisHealth) -> dict[str, Any]:
                 'high': one.high,
                 'unit': one.unit,
                 'known': math.isfinite(one.value),
-                'words': one.reason or one.evidence,
+                'words': free(one.reason) if one.reason else '',
             }
             for one in health.quantities
         ],
@@ -230,7 +224,6 @@ def surface_record(info: msg.SurfaceInfo, unit: str) -> dict[str, Any]:
         'unit': unit if unit == 'mm/min' else 'm/min',
         'screw': info.screw,
         'oil': info.oil,
-        'tier': WORDS_OF_TIER.get(info.tier, UNKNOWN),
         **range_record(
             (info.speed_min, info.speed_max),
             (info.axial_load_min, info.axial_load_max),
@@ -253,11 +246,14 @@ def range_record(speed: Pair, load: Pair, temperature: Pair) -> dict[str, float]
 
 def code_of(status: DiagnosticStatus) -> int:
     """Return the code of the fault that a diagnostic status states, 0 for none."""
-    codes = [one.value for one in status.values if one.key == 'Code' and one.value.isdecimal()]
-    return int(codes[0]) if codes else 0
+    said = [one.value for one in status.values if one.key == 'Code']
+    codes = [int(one) for one in said if len(one) < LONGEST_CODE and one.isdecimal()]
+    return codes[0] if codes else 0
 
 
 def place_of(name: str) -> tuple[str, str, str] | None:
-    """Return node, axis and part that a diagnostic status is of, None if it is of no axis."""
+    """Return node, axis and part that a status is of; the axis is empty for a node as a whole."""
     parts = name.split(': ')
+    if len(parts) == 2:
+        parts.insert(1, '')
     return (f'/{parts[0]}', parts[1], parts[2]) if len(parts) == 3 else None

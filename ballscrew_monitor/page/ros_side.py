@@ -4,8 +4,9 @@
 The ROS side of the page: a thread that follows every node of ballscrew_msgs in the graph.
 
 It finds axes by the types of topics, turns messages into records, and hands these to the thread of
-the hub. It reads best effort: a page never holds a node up. A node whose messages are of another
-version of ballscrew_msgs is named and not listened to: its bytes would be read as other numbers.
+the hub. It reads states best effort, and reliably what comes seldom: events, surface, health and
+diagnostics. A node whose messages are of another version of ballscrew_msgs is named and not
+listened to: its bytes would be read as other numbers.
 
 A wake-up of the executor costs more than to read a message. So the thread takes all that waits, as
 often as the hub sends frames, hands it over as one, and lets the executor wait only for answers.
@@ -14,6 +15,7 @@ often as the hub sends frames, hands it over as one, and lets the executor wait 
 
 from collections.abc import Callable, Iterable
 import functools
+import logging
 import threading
 import time
 from typing import Any
@@ -23,7 +25,7 @@ from ballscrew_monitor.page import records
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.hub import Hub, MOST_AXES, PERIOD
 from ballscrew_monitor.page.phrases import phrase, Said
-from ballscrew_monitor.page.surfaces import SurfaceLink
+from ballscrew_monitor.page.surfaces import PatientClient, SurfaceLink
 from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticArray
 from rcl_interfaces.srv import GetParameters
@@ -32,6 +34,7 @@ from rclpy.parameter import parameter_value_to_python
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile
 from rclpy.task import Future
 
+LOG = logging.getLogger(__name__)
 STATE_TYPE = 'ballscrew_msgs/msg/BallScrewState'
 LOOK = 1.0  # [s] between two looks at the graph
 DEPTH = 100  # messages of a topic of which few come, that wait for their turn
@@ -120,14 +123,15 @@ class RosSide:
             del self._refused[base]
             self._later(self._hub.notice, node_of(base), '')
         for base in sorted(found - self._links.keys()):
-            if self._refused.get(base) != sent_hashes(self._node, base):
+            has_room = len(self._links) < MOST_AXES
+            if has_room and self._refused.get(base) != sent_hashes(self._node, base):
                 self._take_up(base)
         for link in self._links.values():
             link.ask()
 
     def _take_up(self, base: str) -> None:
         node = node_of(base)
-        view = self._gone.pop(base, None) or AxisView(node, base.rpartition('/')[2])
+        view = self._gone.get(base) or AxisView(node, base.rpartition('/')[2])
         link = AxisLink(self._node, view, self._later)
         hashes = link.hashes()
         problem = version_problem(node, hashes)
@@ -136,6 +140,7 @@ class RosSide:
             self._refused[base] = hashes[0]
             link.close()
             return
+        self._gone.pop(base, None)
         self._links[base] = link
         self._make_room()
         self._later(self._hub.add, view)
@@ -159,15 +164,20 @@ class RosSide:
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
-            found = records.place_of(status.name)
-            link = self._links.get('/'.join(found[:2])) if found else None
-            if found and link:
-                self._later(link.view.hear_code, found[2], records.code_of(status))
+            if found := records.place_of(status.name):
+                node, axis, part = found
+                views = [one.view for one in self._links.values() if one.view.node == node]
+                for view in views:
+                    if axis in ('', view.axis):
+                        self._later(view.hear_code, part, records.code_of(status))
 
 
 def _act_all(acts: Iterable[tuple[Any, ...]]) -> None:
     for function, *given in acts:
-        function(*given)
+        try:
+            function(*given)
+        except Exception:  # the acts after it are of other axes
+            LOG.exception('the page lost something that it heard')
 
 
 def node_of(base: str) -> str:
@@ -208,14 +218,14 @@ class AxisLink:
             (open_topic(node, f'{view.name}/{name}', kind, Apart(), qos=qos), hear)
             for name, (kind, hear, qos) in kinds.items()
         ]
-        self._parameters = node.create_client(GetParameters, f'{view.node}/get_parameters')
+        self._parameters = PatientClient(node, GetParameters, f'{view.node}/get_parameters')
         self._surface = SurfaceLink(node, view, post)
 
     def close(self) -> None:
         """Unsubscribe, and ask no more."""
         for topic, _ in self._topics:
             self._node.destroy_subscription(topic.subscription)
-        self._node.destroy_client(self._parameters)
+        self._parameters.close()
         self._surface.close()
 
     def drain(self) -> int:
@@ -241,16 +251,17 @@ class AxisLink:
     def ask(self) -> None:
         """Ask for parameters and corrections until they are known; a first answer may be lost."""
         self._surface.ask()
-        if not self._is_due or not self._parameters.service_is_ready():
-            return
-        names = [f'{self.view.axis}.{leaf}' for leaf in LEAVES]
-        asked = self._parameters.call_async(GetParameters.Request(names=names))
-        asked.add_done_callback(functools.partial(self._tell_surface, self._info))
+        if self._is_due:
+            names = [f'{self.view.axis}.{leaf}' for leaf in LEAVES]
+            tell = functools.partial(self._tell_surface, self._info)
+            self._parameters.call(GetParameters.Request(names=names), tell)
 
     def _tell_surface(self, info: SurfaceInfo, future: Future) -> None:
         """Take the parameters that go with a surface, if no other has come since."""
+        if not self._is_due or info is not self._info:
+            return
         answer = future.result()
-        if info is self._info and answer is not None and len(answer.values) == len(LEAVES):
+        if answer is not None and len(answer.values) == len(LEAVES):
             path, unit = map(parameter_value_to_python, answer.values)
             about = records.surface_record(info, unit)
             self._surface.tell(about, info, path)
@@ -270,4 +281,5 @@ class AxisLink:
     def _on_info(self, info: SurfaceInfo) -> None:
         """Take a surface; the node has been configured again, maybe with other parameters."""
         self._info, self._is_due = info, True
+        self._parameters.drop()
         self.ask()

@@ -14,6 +14,7 @@ import dataclasses
 import functools
 import itertools
 import math
+import time
 from typing import Any
 
 from ballscrew_monitor.core.conversions import celsius, Direction, kelvin, opposing_load
@@ -29,6 +30,7 @@ from surrogate.surface import FIELDS, find_surface, Surface, SurfaceError
 
 PARTS = 4  # of each range of a surface, at whose inner borders it is held against the node
 SAME = 1e-6  # [-] by which equal numbers may differ
+PATIENCE = 10.0  # [s] for an answer, until it is asked for again
 Post = Callable[..., Any]
 """Calls a function with arguments in the thread of the hub."""
 
@@ -123,15 +125,45 @@ class Question:
     another: Phrase  # said where the answers are of another surface
 
 
+class PatientClient:
+    """A client of a service that is called again if no answer comes in time."""
+
+    def __init__(self, node: Node, kind: Any, name: str) -> None:
+        """Call a service of a `kind` by its full `name`."""
+        self._node, self._client = node, node.create_client(kind, name)
+        self._asked: Future | None = None
+        self._asked_at = -math.inf  # [s]
+
+    def close(self) -> None:
+        """Call no more."""
+        self._node.destroy_client(self._client)
+
+    def drop(self) -> None:
+        """Wait no more for an answer."""
+        if self._asked is not None:
+            self._client.remove_pending_request(self._asked)
+            self._asked = None
+
+    def call(self, request: Any, hear: Callable[[Future], None]) -> None:
+        """Call, unless the service is not there or may answer the last call yet."""
+        waits = self._asked is not None and not self._asked.done()
+        if waits and time.monotonic() - self._asked_at < PATIENCE:
+            return
+        if self._client.service_is_ready():
+            self.drop()
+            self._asked_at = time.monotonic()
+            self._asked = self._client.call_async(request)
+            self._asked.add_done_callback(hear)
+
+
 class SurfaceLink:
     """Tells the view of an axis its surface, without the corrections until the node says them."""
 
     def __init__(self, node: Node, view: AxisView, post: Post) -> None:
         """Ask the node of a `view` through a `node`; `post` calls in the thread of the hub."""
-        self._node, self._view, self._post = node, view, post
-        self._client = node.create_client(EvaluateOperatingPoint, f'{view.node}/evaluate')
+        self._view, self._post = view, post
+        self._client = PatientClient(node, EvaluateOperatingPoint, f'{view.node}/evaluate')
         self._question: Question | None = None
-        self._asked: Future | None = None
 
     @property
     def is_asking(self) -> bool:
@@ -140,7 +172,7 @@ class SurfaceLink:
 
     def close(self) -> None:
         """Ask no more."""
-        self._node.destroy_client(self._client)
+        self._client.close()
 
     def tell(self, about: Mapping[str, Any], info: SurfaceInfo, wanted: str) -> None:
         """Tell what the axis is, and the surface of `info`; its file is the parameter `wanted`."""
@@ -148,6 +180,7 @@ class SurfaceLink:
         count = len(info.corrected_speed)
         self._post(self._view.know, about, surface, no_map, count)
         self._question = None
+        self._client.drop()
         if surface is not None and count:
             self._question = Question(
                 about=about,
@@ -161,14 +194,10 @@ class SurfaceLink:
     def ask(self) -> None:
         """Ask for the corrections, until they are known; a first answer may be lost."""
         question = self._question
-        if question is None or not self._client.service_is_ready():
-            return
-        if self._asked is not None:
-            self._client.remove_pending_request(self._asked)
-        points = [point_message(one) for one in question.places]
-        request = EvaluateOperatingPoint.Request(axis=self._view.axis, points=points)
-        self._asked = self._client.call_async(request)
-        self._asked.add_done_callback(functools.partial(self._on_answer, question))
+        if question is not None:
+            points = [point_message(one) for one in question.places]
+            request = EvaluateOperatingPoint.Request(axis=self._view.axis, points=points)
+            self._client.call(request, functools.partial(self._on_answer, question))
 
     def _on_answer(self, question: Question, future: Future) -> None:
         """Take an answer; one to a question of before, or a refusal, tells nothing."""

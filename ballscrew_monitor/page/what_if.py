@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Mapping
 import dataclasses
 import logging
 from typing import Any
+import weakref
 
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.page import maps
@@ -55,7 +56,7 @@ class WhatIf:
     def __init__(self, hub: Hub, oils: Iterable[Surface] = ()) -> None:
         """Begin without a map."""
         self._hub, self._oils = hub, tuple(oils)
-        self._followed: dict[str, Followed] = {}
+        self._followed: weakref.WeakKeyDictionary[AxisView, Followed] = weakref.WeakKeyDictionary()
         self._turn = asyncio.Lock()
 
     @property
@@ -84,7 +85,8 @@ class WhatIf:
             await self.keep(view, surface)
         except Exception as error:
             LOG.exception('no map of %s', view.name)
-            view.know(view.about, None, phrase('no_map_fault', why=free(repr(error))))
+            if view.surface is surface:
+                view.know(view.about, None, phrase('no_map_fault', why=free(repr(error))))
 
     async def keep(self, view: AxisView, surface: Surface) -> None:
         """Make the map of an axis as its motion is now, if the last one does not suit."""
@@ -98,14 +100,16 @@ class WhatIf:
         wanted = Followed(
             sha256=surface.sha256, limits=limits, temperature=warmth, loads=motion.load_span()
         )
-        before = self._followed.get(view.name)
+        before = self._followed.get(view)
         if before is not None and view.map_frame is not None and before.suits(wanted):
             return
         warmth = round(warmth / WARMER) * WARMER
         made = await self._in_turn(maps.map_of, surface, limits, warmth, motion, QUANTITY)
+        if view.surface is not surface:  # another has come meanwhile
+            return
         load = made[0]['load']
         loads = load['low'], load['high']
-        self._followed[view.name] = dataclasses.replace(wanted, loads=loads)
+        self._followed[view] = dataclasses.replace(wanted, loads=loads)
         told = {'axis': view.name, 'without': view.without}
         view.map_frame = frame('map', told | made[0], made[1])
         self._hub.tell(view.map_frame)
@@ -138,10 +142,10 @@ class WhatIf:
         rows = view.history.since(0)
         warmth = number_in(request, 'temperature_degC', maps.oil_temperature(rows, surface))
         motion, quantity = maps.Motion.of(rows, limits), text_in(request, 'quantity')
+        without = view.without if surface is view.surface else 0
         record, arrays = await self._in_turn(
             maps.map_of, surface, limits, warmth, motion, quantity
         )
-        without = view.without if surface is view.surface else 0
         told = {'axis': view.name, 'oil': surface.oil_name, 'without': without}
         return told | record, arrays
 

@@ -121,11 +121,10 @@ class Events {
 
   /** Say the worst value of a warning beside the limit that it broke. */
   worst({ quantity, worst, limit }) {
-    const name = quantity.toLowerCase();
-    if (!['rcs', 'efficiency'].includes(name)) {
+    if (!['rcs', 'efficiency'].includes(quantity)) {
       return Words.say('not_known');
     }
-    const [value, bound] = [worst, limit].map((one) => Quantities.text(name, one, this.axis.facts));
-    return Words.say('event_worst_is', { quantity: Words.say(`short_${name}`), value, bound });
+    const [value, bound] = [worst, limit].map((one) => Quantities.text(quantity, one, this.axis.facts));
+    return Words.say('event_worst_is', { quantity: Words.say(`short_${quantity}`), value, bound });
   }
 }

@@ -28,7 +28,8 @@ class Health {
     const verdict = Format.element('div', `verdict ${kind}`);
     const sentence = Words.line('sentence', health.verdict, this.axis.facts);
     sentence.prepend(Words.element('strong', '', `condition_${health.condition}`), ' ');
-    verdict.append(sentence, Words.line('', health.advice, this.axis.facts));
+    const notes = health.notes.map((note) => Words.line('muted', note, this.axis.facts));
+    verdict.append(sentence, Words.line('', health.advice, this.axis.facts), ...notes);
     this.sentence.replaceChildren(verdict);
     this.table.replaceChildren(Health.rows(health.quantities));
   }
@@ -45,23 +46,34 @@ class Health {
     return table;
   }
 
-  static row({ name, value, low, high, unit, known }) {
-    const row = Format.element('tr', known ? '' : 'muted');
+  static row(one) {
+    const row = Format.element('tr', one.known ? '' : 'muted');
+    const name = Format.element('td', '', Words.named('quantity', one.name));
+    row.append(name, ...(one.known ? Health.measured(one) : Health.missing(one)));
+    return row;
+  }
+
+  /** Return cells with value, interval and its picture. */
+  static measured({ value, low, high, unit }) {
     const share = unit === '-';
     const number = (one) => Format.number(share ? 100 * one : one, 3);
     const shown = share ? '%' : unit;
-    const texts = known
-      ? [`${number(value)} ${shown}`, Words.say('health_from_to', { low: number(low), high: number(high) })]
-      : [Words.say('not_known'), ''];
+    const texts = [
+      `${number(value)} ${shown}`, Words.say('health_from_to', { low: number(low), high: number(high) }),
+    ];
     const picture = Format.element('td');
-    if (known && share && [value, low, high].every(Number.isFinite)) {
+    if (share && [value, low, high].every(Number.isFinite)) {
       picture.append(Health.bar(value, low, high));
     }
-    row.append(
-      Format.element('td', '', Words.named('quantity', name)),
-      ...texts.map((text) => Format.element('td', 'short', text)), picture,
-    );
-    return row;
+    return [...texts.map((text) => Format.element('td', 'short', text)), picture];
+  }
+
+  /** Return cells with why a quantity is not known. */
+  static missing({ words }) {
+    const why = Format.element('td');
+    why.colSpan = 2;
+    why.append(...Words.told(words));
+    return [Format.element('td', 'short', Words.say('not_known')), why];
   }
 
   /** Return a picture of an interval over 0 and 100 %, which are marked. */

@@ -6,10 +6,12 @@ import asyncio
 import math
 from types import SimpleNamespace
 
+from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.options import PARAMS
 from ballscrew_monitor.page import recording, records
-from ballscrew_monitor.page.history import STEP
+from ballscrew_monitor.page.history import COLUMNS, STEP
 from ballscrew_monitor.page.hub import Browser, Hub
+from ballscrew_monitor.page.phrases import phrase
 from ballscrew_monitor.page.recording import recorded_axes, Recording
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import ignore, replay
@@ -65,10 +67,20 @@ def test_what_is_shown_is_what_the_state_said(playing, judged):
         playing.advance(0.0, 0.0)
         shown = axis_of(playing)
         assert -2.0 * STEP < shown.history.since(0)[-1, 0] - row[0] < 1e-4
-        for name in ('level', 'zone', 'regime'):
+        for name in ('level', 'zone'):
             assert shown.state[name] == record[name], name
-        if record['zone'] == 'outside':
+        if record['zone'] in ('outside', 'optimal'):
             assert shown.state['headline'] == record['headline']
+
+
+def test_a_light_load_in_the_optimal_zone_is_said_as_the_state_says_it(axes_of):
+    """Also where the load is above its limit, and the gate of the light load is still shut."""
+    (axis,) = axes_of()
+    row = axis.course.rows[-1].copy()
+    row[[COLUMNS.index(name) for name in ('load_N', 'efficiency')]] = 1e3, math.nan
+    codes = np.array([Zone.OPTIMAL, 0], np.uint8)
+    row[COLUMNS.index('rcs')] = 0.0
+    assert axis._state_record(row, codes)['headline'] == phrase('optimal_light')
 
 
 def test_the_totals_are_those_that_the_node_ends_with(playing, judged):

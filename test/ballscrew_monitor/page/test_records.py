@@ -163,6 +163,11 @@ def test_a_fault_is_told_by_its_code_unless_the_screen_says_it_already(page_part
     assert records.code_of(DiagnosticStatus()) == 0
 
 
+@pytest.mark.parametrize('value', ['', '-1', 'x', '\u00b2', '9' * 5000])
+def test_a_code_that_is_no_number_of_a_fault_is_none(value):
+    assert records.code_of(DiagnosticStatus(values=[KeyValue(key='Code', value=value)])) == 0
+
+
 @given(name=st.text(min_size=1), reason=st.text(), advice=st.sampled_from([Advice(), TARGETS]))
 def test_an_event_says_by_whom_it_was_acknowledged_and_keeps_its_advice(name, reason, advice):
     """Whoever did it, on this page or elsewhere; one that ended by itself was not."""
@@ -184,7 +189,12 @@ def test_an_event_says_by_whom_it_was_acknowledged_and_keeps_its_advice(name, re
 
 def test_diagnostics_of_axes_are_told_from_others():
     assert records.place_of('ns/monitor: x: Inputs') == ('/ns/monitor', 'x', 'Inputs')
-    assert records.place_of('ballscrew_monitor: Recording') is None
+    assert records.place_of('ballscrew_monitor: Recording') == (
+        '/ballscrew_monitor',
+        '',
+        'Recording',
+    )
+    assert records.place_of('no_node') is None
     assert records.place_of('a: b: c: d') is None
 
 

@@ -9,15 +9,17 @@ import xml.etree.ElementTree as ElementTree
 
 from ballscrew_monitor.core.conversions import kelvin
 from ballscrew_monitor.core.full_point import SolvedAt
+from ballscrew_monitor.messages.diagnostics import recording
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_records import Corrections
 from ballscrew_monitor.page import hub as hubs
 from ballscrew_monitor.page.hub import Browser, Hub
 from ballscrew_monitor.page.phrases import english
-from ballscrew_monitor.page.ros_side import LATE_QOS, RosSide, version_problem
+from ballscrew_monitor.page.ros_side import _act_all, LATE_QOS, RosSide, version_problem
 from ballscrew_monitor.settings.qos import started_node
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray
 import pytest
 from std_msgs.msg import Header
 from surrogate.surface import shipped_surface, Surface
@@ -211,6 +213,46 @@ def test_axes_that_come_and_go_are_bounded(node, turned, monkeypatch, says, capf
     turned.until_axes('/fast/b')
     assert turned.hub.axes['/fast/b'] is view  # with its history
     assert list(turned.ros._gone) == ['/fast/a']
+
+
+def test_an_axis_for_which_there_is_no_room_is_not_followed(node, turned, monkeypatch):
+    made = [node.node.create_publisher(BallScrewState, f'/fast/{name}/state', 10) for name in 'ab']
+    monkeypatch.setattr('ballscrew_monitor.page.ros_side.MOST_AXES', 1)
+    topics = {one.topic_name for one in made}
+    known = lambda: topics <= dict(turned.page.get_topic_names_and_types()).keys()  # noqa: E731
+    node.wait_for(known, 'both axes')
+    turned.until_axes('/fast/a')
+    assert list(turned.hub.axes) == ['/fast/a']
+
+
+def test_an_axis_that_returns_in_another_version_is_not_forgotten(node, turned, monkeypatch):
+    states = node.node.create_publisher(BallScrewState, '/fast/x/state', 10)
+    turned.until_axes('/fast/x')
+    view = turned.hub.axes['/fast/x']
+    turned.ros._let_go('/fast/x')
+    monkeypatch.setattr('ballscrew_monitor.page.ros_side.version_problem', lambda *given: 'old')
+    turned.ros._take_up('/fast/x')
+    assert turned.ros._gone == {'/fast/x': view}
+    node.node.destroy_publisher(states)
+
+
+def test_a_warning_of_a_node_is_one_of_each_of_its_axes(node, turned, page_parts):
+    names = ('/monitor/x', '/monitor/y', '/other/x')
+    views = [page_parts.axis(*name.rsplit('/', 1)) for name in names]
+    turned.ros._links = {one.name: SimpleNamespace(view=one, drain=lambda: 0) for one in views}
+    warned_of = [recording('/monitor', 'the disk is full'), recording('/stranger', 'hole')]
+    turned.ros._on_diagnostics(DiagnosticArray(status=warned_of))
+    turned.turn()
+    turned.ros._links = {}
+    shown = [page_parts.read(one.news(0.0, 0.0)[-1])[0]['faults'] for one in views]
+    assert shown == [[601], [601], []]
+
+
+def test_what_fails_of_one_turn_does_not_take_the_rest_with_it(caplog):
+    done = []
+    _act_all([(lambda: 1 / 0,), (done.append, 1)])
+    assert done == [1]
+    assert 'ZeroDivisionError' in caplog.text
 
 
 def test_a_node_that_is_configured_again_between_two_looks_is_asked_again(node, turned):

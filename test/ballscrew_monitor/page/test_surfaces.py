@@ -184,6 +184,16 @@ def test_until_the_node_answers_the_surface_is_told_without_them(told, theirs):
     assert told.node.given_up == [told.node.asked[0][1]]
 
 
+def test_an_answer_has_its_time_before_it_is_asked_for_again(told, theirs, monkeypatch):
+    told.tell(theirs)
+    told.link.ask()
+    assert len(told.node.asked) == 1
+    monkeypatch.setattr(surfaces, 'PATIENCE', 0.0)
+    told.link.ask()
+    assert len(told.node.asked) == 2
+    assert told.node.given_up == [told.node.asked[0][1]]
+
+
 def test_an_answer_to_the_question_before_is_not_taken(told, theirs):
     told.tell(theirs)
     _, late = told.node.asked[0]

@@ -95,7 +95,6 @@ def test_the_limit_is_that_of_the_newest_row(asked, surface):
         limit, heat = asked.view.limit, asked.view.warmth if math.isnan(warmth) else warmth
         rcs = surface.lookup(limit['speed_rpm'] * RPM, opposing, kelvin(heat)).rcs
         assert rcs == pytest.approx(asked.view.limits['rcs_limit'], rel=0.02)
-        assert limit['margin'] == pytest.approx(300.0 / limit['speed_rpm'] - 1.0)
     asked.view.know({}, None, 'no map here')
     assert asked.view.limit is None
 
@@ -187,6 +186,25 @@ def test_without_motion_or_surface_there_are_sentences(page_parts, surface, refu
     refused('no_motion', asked.ask, 'ghosts', factors=[1.0])
     asked.view.know({}, None, phrase('no_map_none'))
     refused('no_map', asked.ask, 'read', speed_rpm=1.0, load_N=0.0)
+
+
+@pytest.mark.parametrize('come', [lambda *given: None, lambda *given: 1 / 0])
+def test_a_surface_that_comes_during_a_map_is_left_as_it_is(asked, monkeypatch, come):
+    def another(*given):
+        asked.view.know({}, None, 'x')
+        return come()
+
+    monkeypatch.setattr('ballscrew_monitor.page.maps.map_of', another)
+    asyncio.run(asked.what_if._try(asked.view, asked.view.surface))
+    assert (asked.view.map_frame, asked.view.no_map) == (None, 'x')
+
+
+def test_nothing_is_kept_of_an_axis_that_is_forgotten(asked):
+    asked.keep()
+    assert len(asked.what_if._followed) == 1
+    asked.hub.forget(NAME)
+    asked.view = None
+    assert len(asked.what_if._followed) == 0
 
 
 def test_a_defect_of_one_axis_is_said_and_stops_its_map(asked, monkeypatch, caplog):

@@ -289,7 +289,6 @@ def make_axis(name='x', **changes):
         'axis': name,
         'screw': 'nominal',
         'oil': 'ISO VG 68',
-        'tier': 'full',
         'lead_mm': 10.0,
         'unit': 'm/min',
         'efficiency_limit': 0.85,
@@ -350,8 +349,7 @@ def make_state(axis='x', rows=None, **changes):
         'shelved': None,
         'event': None,
         'totals': make_totals(),
-        'regime': 'mixed',
-        'limit': {'speed_rpm': 590.0, 'margin': 0.35},
+        'limit': {'speed_rpm': 590.0},
     }
     return record | changes, make_rows(1) if rows is None else rows
 
@@ -376,7 +374,7 @@ def make_health(condition='normal', **changes):
     known = {'low': 0.92, 'high': 1.04, 'unit': '-', 'known': True}
     health = {
         'condition': condition,
-        'warning': False,
+        'notes': [],
         'verdict': 'The friction is as it was in the reference run.',
         'advice': '',
         'quantities': [
@@ -385,7 +383,7 @@ def make_health(condition='normal', **changes):
             {'name': 'hours left at this programme', 'value': 8200.0, 'low': 6100.0}
             | {'high': 11000.0, 'unit': 'h', 'known': True},
             {'name': 'share of life used', 'value': None, 'low': None, 'high': None}
-            | {'unit': '-', 'known': False},
+            | {'unit': '-', 'known': False, 'words': {'free': 'not known yet: no whole day'}},
         ],
     }
     return health | changes
@@ -446,7 +444,7 @@ def make_events(axis='x', *events):
         'id': 3,
         'begin': BEGIN + 20.0,
         'duration_s': 8.4,
-        'quantity': 'RCS',
+        'quantity': 'rcs',
         'worst': 0.12,
         'limit': 0.01,
         'advice': 'At this load run at 6.4 m/min (640 rev/min) or faster.',

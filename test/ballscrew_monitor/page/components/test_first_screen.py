@@ -65,7 +65,7 @@ def test_values_on_screen_are_those_of_the_states(shown, greeted, frames):
 def test_numbers_that_are_not_known_are_dashes(shown, greeted, frames):
     nothing = dict.fromkeys(('speed_rpm', 'load_N', 'temperature_degC', 'efficiency'), math.nan)
     rows = frames.rows(1, **nothing)
-    greeted.send(*frames.state(rows=rows, limit={'speed_rpm': None, 'margin': None}))
+    greeted.send(*frames.state(rows=rows, limit={'speed_rpm': None}))
     shown.until("""[...document.querySelectorAll('.numbers .big')]
         .every((one) => one.textContent === '–')""")
 
@@ -124,7 +124,7 @@ ADVICE = {'key': 'advice_speed', 'values': {'speed': {'speed': 640.0}, 'load': {
                 'values': {'what': {'key': 'reason_no_derived_load'}, 'why': {'free': 'A fault.'}},
             },
             'the motor torque does not tell the load: A fault.',
-            'Das Motormoment verrät hier die Last nicht. A fault.',
+            'Aus dem Motormoment lässt sich die Last hier nicht ableiten. A fault.',
         ),
         ({'free': 'A fault.'}, 'A fault.', 'A fault.'),
     ],
@@ -196,7 +196,7 @@ def test_a_level_that_stays_is_not_read_out_again(shown, greeted, frames):
 def test_of_old_data_nothing_is_concluded(shown, greeted, frames):
     greeted.send(*frames.state(age_s=7.0, advice='Run faster.'))
     shown.reads('.sign.level .word', 'Not known')
-    assert 'nothing is known of now' in shown.text('.reason')
+    assert 'the present state is not known' in shown.text('.reason')
     assert shown.text('.advice') == ''
     greeted.send(*frames.state(age_s=7.0, standing='inactive'))
     inactive = frames.words('en')['node_inactive'].format(node='/ballscrew_monitor')

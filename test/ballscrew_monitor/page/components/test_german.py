@@ -18,7 +18,7 @@ from ballscrew_msgs.msg import AxisHealth
 import pytest
 from surrogate.files import to_json
 
-ADVICE = 'Was zu tun ist: bei dieser Last mit '
+ADVICE = 'Empfehlung: bei dieser Last mit '
 READ = """(place) => {
     const walk = document.createTreeWalker(document.querySelector(place), NodeFilter.SHOW_TEXT);
     const found = [document.title];

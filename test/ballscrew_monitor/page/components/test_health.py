@@ -12,9 +12,18 @@ def test_quantities_have_value_interval_and_picture(tab, greeted, frames):
         ['Preload', '98 %', '92 to 104', 'picture'],
         ['Friction change', '3 %', '-2 to 8', 'picture'],
         ['Hours left at this programme', '8200 h', '6100 to 11000', ''],
-        ['Share of life used', 'not known', '', ''],
+        ['Share of life used', 'not known', 'not known yet: no whole day'],
     ]
     assert tab.text('.health .sentence').startswith('Axis as usual The friction is as it was')
+
+
+def test_notes_of_the_node_are_read_below_the_advice(tab, greeted, frames):
+    note = {'free': 'The drag has no forward motion.'}
+    greeted.greeting[-1] = frames.state(health=frames.health(notes=[note], advice='Lubricate.'))
+    tab.visit(greeted.url)
+    tab.until("document.querySelector('.health td')")
+    assert tab.texts('.health .verdict p')[1:] == ['Lubricate.', note['free']]
+    assert tab.ask("document.querySelector('.health .verdict .muted span').lang") == 'en'
 
 
 def test_marks_of_an_interval_are_where_they_belong(tab, greeted):

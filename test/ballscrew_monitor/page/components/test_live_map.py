@@ -77,7 +77,7 @@ def test_keys_move_the_pinned_place_and_read_it(shown, greeted, wait_for):
     greeted.answers['read'] = lambda one: [
         (
             {'kind': 'answer', 'ok': True, 'zone': 'optimal', 'efficiency': 0.93, 'rcs': 0.002}
-            | {'film_ratio': 2.1, 'torque_N_m': 1.2, 'regime': 'mixed', 'words': ''}
+            | {'film_ratio': 2.1, 'torque_N_m': 1.2, 'words': ''}
             | {key: one[key] for key in ('speed_rpm', 'load_N', 'temperature_degC')},
             None,
         )

@@ -5,7 +5,7 @@
 import pytest
 
 POINT = {'zone': 'optimal', 'efficiency': 0.931, 'rcs': 0.002, 'film_ratio': 2.13}
-POINT |= {'torque_N_m': 1.25, 'regime': 'mixed', 'words': ''}
+POINT |= {'torque_N_m': 1.25, 'words': ''}
 PLACE = ('speed_rpm', 'load_N', 'temperature_degC')
 
 
@@ -56,8 +56,7 @@ def test_another_state_is_asked_for_said_and_left(shown, greeted, frames, wait_f
 
 def test_a_map_without_the_corrections_of_the_node_says_so(shown, greeted, frames):
     greeted.send(*frames.map(without=2))
-    said = 'the node has not said yet what they are.'
-    shown.reads('.assumed', f'This map is without the corrections of the node (2): {said}')
+    shown.reads('.assumed', 'This map still lacks corrections of the node: 2.')
     greeted.send(*frames.map(without=0))
     shown.reads('.assumed', '')
 
