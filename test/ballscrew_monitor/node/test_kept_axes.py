@@ -176,7 +176,8 @@ def test_nothing_is_lost_or_counted_twice(core, tmp_path):
     first, last = min(begun), max(begun)
     assert 1 < first < last - 50
     assert set(begun) == set(range(first, last + 1)) == set(ended) - {first - 1}
-    assert sum(one.get('ending') == RESTARTED for one in entries) > 3
+    # How many kills hit an event depends on how busy the machine is.
+    assert any(one.get('ending') == RESTARTED for one in entries)
 
 
 @pytest.fixture(name='machine')
