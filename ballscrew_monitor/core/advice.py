@@ -28,6 +28,8 @@ SCAN_POINTS = 64
 HALVINGS = 20
 NAN = math.nan
 VALID = int(Validity.VALID)
+SURELY, PERHAPS = 'surely', 'perhaps'
+"""How sure it is that asperities carry."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -105,7 +107,7 @@ class Advisor:
         if math.isnan(least) or not here >= self.limits.rcs:
             return ''
         sure = surface.lookup(abs(point.speed) / least, *place).rcs >= self.limits.rcs
-        return 'surely' if sure else 'perhaps'
+        return SURELY if sure else PERHAPS
 
     def _speed(self) -> float:
         """Return the nearest screw speed [rad/s] that clears at this load; NaN for none."""

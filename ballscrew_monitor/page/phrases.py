@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import math
 from typing import Any
 
-from ballscrew_monitor.core.advice import Advice
+from ballscrew_monitor.core.advice import Advice, PERHAPS, SURELY
 from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.page.components import ENGLISH, languages
 from surrogate.files import InputError
@@ -22,7 +22,7 @@ Phrase = dict[str, Any]
 Said = str | Phrase
 """A phrase, or an empty text where nothing is said."""
 KEYS_OF_REASON = {int(reason): f'reason_{reason.name.lower()}' for reason in Reason}
-DOUBTS = '', 'surely', 'perhaps'
+DOUBTS = '', SURELY, PERHAPS
 """How sure it is that asperities carry, as an advice says it."""
 
 

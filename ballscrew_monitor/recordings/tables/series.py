@@ -24,7 +24,7 @@ from ballscrew_monitor.recordings.tables.times import joined, line, Rows, Stamps
 from ballscrew_monitor.recordings.words import Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
-from surrogate.units import TURN, ZERO_CELSIUS
+from surrogate.units import TURN
 
 LONG = 3.0  # times the usual time between rows: across more the speed is not known
 ALIKE = 0.9  # squared correlation from which a speed and its position are of one motion
@@ -171,7 +171,7 @@ def _axis(axis: AxisMap, rows: Rows, part: slice, begin: int) -> AxisSeries:
         load=load,
         position=column('position', turned),
         torque=torque,
-        temperature=None if warmth is None else warmth + zero - ZERO_CELSIUS,
+        temperature=None if warmth is None else warmth + zero + conversions.celsius(0.0),
     )
 
 
