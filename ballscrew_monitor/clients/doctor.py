@@ -24,8 +24,9 @@ from ballscrew_monitor.core.inputs import Input, InputSample, OpenInput, Source
 from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
 from ballscrew_monitor.core.links import Link, types_of
 from ballscrew_monitor.judge.inputs import accept, take_refusal
-from ballscrew_monitor.judge.monitor import fill, InputWords
+from ballscrew_monitor.judge.monitor import fill, JointNames
 from ballscrew_monitor.judge.records import Event, Memory, Settings
+from ballscrew_monitor.judge.views import input_status_of
 from ballscrew_monitor.messages.doctor import (
     findings,
     Heard,
@@ -99,7 +100,7 @@ class Hearing:
     ) -> None:
         """Begin to listen on a clock; times [ns]."""
         self._source, self._clock, self._max_future = source, clock, max_future
-        self._memory, self._settings, self._words = Memory(), Settings(), InputWords()
+        self._memory, self._settings, self._joints = Memory(), Settings(), JointNames()
         self._settings.configured[source.source] = 1
         self._settings.timeout[source.source] = timeout
         self._settings.max_lag = max_lag
@@ -122,7 +123,7 @@ class Hearing:
             self._longest_gap = max(self._longest_gap, self._silence(now))
             self._last = now
         else:
-            self._words.hear(event, self._memory)
+            self._joints.hear(event, self._memory)
             take_refusal(self._memory, self._record)
 
     def _silence(self, now: int) -> int:
@@ -132,8 +133,11 @@ class Hearing:
     def heard(self) -> Heard:
         """Return what has come until now."""
         now = self._clock.now().nanoseconds
+        source, joints = self._source.source, self._joints.of(self._source.source)
         return Heard(
-            status=self._words.status(self._memory, self._settings, self._source.source, now),
+            status=input_status_of(
+                self._memory, self._settings, source, now, self._source.field, joints
+            ),
             low=min(self._numbers, default=math.nan),
             high=max(self._numbers, default=math.nan),
             longest_gap=seconds(max(self._longest_gap, self._silence(now))),

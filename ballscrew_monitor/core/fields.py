@@ -104,6 +104,12 @@ def check_path(path: str) -> None:
         _name_and_key(path, segment)
 
 
+def arrays_of(path: str) -> list[tuple[str, str]]:
+    """Return name and key of each array that a field path reads an element of."""
+    segments = map(_SEGMENT.fullmatch, _DOT.split(path))
+    return [(segment[1], segment[2]) for segment in segments if segment and segment[2]]
+
+
 def compile_field(path: str, message_type: MessageClass) -> FieldReader:
     """
     Return the function that reads the field `path` of a message of class `message_type`.
@@ -198,8 +204,7 @@ def _element(name: str, key: str) -> ReadStep:
         try:
             return array[place]
         except IndexError:
-            said = key if index is None else str(index)
-            raise _Absent(TooShort(name, said, len(array))) from None
+            raise _Absent(TooShort(name, key, len(array))) from None
 
     return step
 

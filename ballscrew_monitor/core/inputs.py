@@ -10,6 +10,7 @@ The status of an input tells what was received, what is wrong with it, and how f
 from collections.abc import Sequence
 import dataclasses
 import enum
+import functools
 import math
 from typing import Any, TypeVar
 
@@ -19,14 +20,8 @@ from ballscrew_monitor.core.fields import FieldReader, MessageClass, OtherJoints
 
 Axis = TypeVar('Axis')
 UNSTATED = -1
-UNDECODED = 'the message does not decode: it is truncated, or of another definition of its type'
 YEAR = 31_536_000 * SECOND
 """Stamps that far from the clock are those of another kind of clock [ns]."""
-NEGATIVE = 'the stamp is negative: mend the clock of the source'
-SEVERAL = (
-    'several publishers send this input, and one is allowed: stop all but one, or set one_source '
-    'to false'
-)
 
 
 class Source(enum.IntEnum):
@@ -62,6 +57,18 @@ class Why(enum.IntEnum):
     HOLE = 7  # no speed follows from a position and one long before it
     NEGATIVE = 8  # a stamp below zero, which no clock shows
     SEVERAL = 9  # several publishers send the input, and one is allowed
+
+
+_CURES = {
+    Why.NOT_DECODED: 'the message does not decode: it is truncated, or of another definition of '
+    'its type',
+    Why.NEGATIVE: 'the stamp is negative: mend the clock of the source',
+    Why.OTHER_CLOCK: 'the stamps are of the wall clock and the node runs on simulated time: '
+    'set use_sim_time to false, or stamp with /clock',
+    Why.SEVERAL: 'several publishers send this input, and one is allowed: stop all but one, or '
+    'set one_source to false',
+}
+"""What refusals without numbers say."""
 
 
 class InputState(enum.IntEnum):
@@ -103,15 +110,17 @@ class InputSample:
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Refusal:
     """
-    A message that gave no sample, and as `text` why and what mends it; see `InputSample`.
+    A message that gave no sample, and why; see `InputSample`.
 
-    `joints` are those that a message about other joints names.
+    `first` and `second` are the numbers of its sentence, see `refusal_text`; `joints` are those
+    that a message about other joints names.
 
     """
 
     source: Source
     why: Why
-    text: str = ''
+    first: float = math.nan
+    second: float = math.nan
     joints: OtherJoints | None = None
     arrival: int = 0
     lost: int | None = 0
@@ -165,6 +174,7 @@ class Input:
 
     source: Source
     topic: str
+    field: str
     type_name: str
     message_type: MessageClass
     read_field: FieldReader
@@ -184,24 +194,24 @@ class Input:
         negative one is refused.
 
         """
+        refused = functools.partial(Refusal, source=self.source, arrival=now, lost=lost)
         if message is None:
-            return self._refuse(Why.NOT_DECODED, UNDECODED, now, lost)
+            return refused(why=Why.NOT_DECODED)
         value = self.read_field(message)
         if isinstance(value, OtherJoints):
-            refusal = self._refuse(Why.OTHER_JOINTS, '', now, lost)
-            return dataclasses.replace(refusal, joints=value)
+            return refused(why=Why.OTHER_JOINTS, joints=value)
         if isinstance(value, TooShort):
-            return self._refuse(Why.TOO_SHORT, short_text(value), now, lost)
+            place = fields.arrays_of(self.field).index((value.array, value.key))
+            return refused(why=Why.TOO_SHORT, first=float(value.length), second=float(place))
         stamp = fields.stamp_of(message) if self.stamped else 0
         if stamp < 0:
-            return self._refuse(Why.NEGATIVE, NEGATIVE, now, lost)
+            return refused(why=Why.NEGATIVE)
         if now and stamp - now > max_future:
             why = Why.OTHER_CLOCK if stamp - now > YEAR else Why.FUTURE
-            return self._refuse(why, _future_text(stamp - now, max_future), now, lost)
+            return refused(why=why, first=seconds(stamp - now), second=seconds(max_future))
         si_value = self.scaling(value)
         if not math.isfinite(si_value):
-            text = f'the field holds {value}, it must be a finite number: mend the source'
-            return self._refuse(Why.NOT_A_NUMBER, text, now, lost)
+            return refused(why=Why.NOT_A_NUMBER, first=value)
         return InputSample(
             source=self.source,
             value=si_value,
@@ -211,9 +221,6 @@ class Input:
             arrival=now or stamp,
             lost=lost,
         )
-
-    def _refuse(self, why: Why, text: str, now: int, lost: int | None) -> Refusal:
-        return Refusal(source=self.source, why=why, text=text, arrival=now, lost=lost)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -232,6 +239,7 @@ class OpenInput:
         return Input(
             source=self.source,
             topic=self.topic,
+            field=self.field,
             type_name=type_name,
             message_type=message_type,
             read_field=fields.compile_field(self.field, message_type),
@@ -242,7 +250,33 @@ class OpenInput:
 
 def of_several(source: Source, arrival: int, lost: int | None = 0) -> Refusal:
     """Return the refusal of a sample that one of several publishers has sent; see `Refusal`."""
-    return Refusal(source=source, why=Why.SEVERAL, text=SEVERAL, arrival=arrival, lost=lost)
+    return Refusal(source=source, why=Why.SEVERAL, arrival=arrival, lost=lost)
+
+
+def refusal_text(
+    source: Source, why: Why, first: float, second: float, *, most: float, field: str
+) -> str:
+    """
+    Return why a message of an input was refused, and the cure; `most` [SI] is plausible.
+
+    The numbers are: the value, of a jump the change [rad] and the time [s] that it takes, of a
+    hole its length [s], of a stamp ahead of the clock by how much and what is allowed [s], of an
+    array in the path `field` its length and which of these arrays it is.
+
+    """
+    if why is Why.IMPLAUSIBLE and source in _UNITS:
+        jumps = not math.isnan(second)
+        return jump_text(first, second, most) if jumps else implausible_text(source, first, most)
+    if why is Why.HOLE:
+        return hole_text(first)
+    if why is Why.FUTURE:
+        return _future_text(first, second)
+    arrays = fields.arrays_of(field) if why is Why.TOO_SHORT else []
+    if second in range(len(arrays)) and first >= 0.0:
+        return short_text(TooShort(*arrays[int(second)], int(first)))
+    if why is Why.NOT_A_NUMBER:
+        return f'the field holds {first}, it must be a finite number: mend the source'
+    return _CURES.get(why, '')
 
 
 def implausible_text(source: Source, value: float, most: float) -> str:
@@ -275,16 +309,11 @@ def short_text(found: TooShort) -> str:
     return f'{found.array} {holds} in its messages: let the source fill it, or read another field'
 
 
-def _future_text(ahead: int, allowed: int) -> str:
-    """Return why a stamp so far ahead of the clock [ns] is refused, and the cure."""
-    if ahead > YEAR:
-        return (
-            'the stamps are of the wall clock and the node runs on simulated time: '
-            'set use_sim_time to false, or stamp with /clock'
-        )
+def _future_text(ahead: float, allowed: float) -> str:
+    """Return why a stamp so far ahead of the clock [s] is refused, and the cure."""
     return (
-        f'the stamp is {seconds(ahead):.3g} s ahead of the clock, allowed is max_future, '
-        f'{seconds(allowed):.3g} s: set the clocks of both machines alike, or raise max_future'
+        f'the stamp is {ahead:.3g} s ahead of the clock, allowed is max_future, '
+        f'{allowed:.3g} s: set the clocks of both machines alike, or raise max_future'
     )
 
 

@@ -62,13 +62,14 @@ class MonitorSettings:
     """
     What a monitor is told.
 
-    `timeouts` [ns] of the configured inputs only: an input without one has no topic.
-    `default_temperature` [K] is used without a temperature topic, `publish_period` [ns] thins out
-    the states, 0 keeps all; a stamp may be `max_future` [ns] ahead of the clock, and that is less
-    than `tick_period` [ns] ahead of the tick. Stamps more than `max_lag` [ns] behind their arrival
-    are warned of. Samples whose amount is above that in `plausible` [SI] are refused, and with
-    `one_source` those of an input that several publishers send. With a `derivation` the load is
-    derived from the motor torque, with `positions` the samples of the speed are positions.
+    `timeouts` [ns] of the configured inputs only: an input without one has no topic; `fields` are
+    the paths of their numbers. `default_temperature` [K] is used without a temperature topic,
+    `publish_period` [ns] thins out the states, 0 keeps all; a stamp may be `max_future` [ns] ahead
+    of the clock, and that is less than `tick_period` [ns] ahead of the tick. Stamps more than
+    `max_lag` [ns] behind their arrival are warned of. Samples whose amount is above that in
+    `plausible` [SI] are refused, and with `one_source` those of an input that several publishers
+    send. With a `derivation` the load is derived from the motor torque, with `positions` the
+    samples of the speed are positions.
 
     """
 
@@ -82,6 +83,7 @@ class MonitorSettings:
     one_source: bool = True
     tick_period: int = 0
     plausible: Mapping[Source, float] = dataclasses.field(default_factory=dict)
+    fields: Mapping[Source, str] = dataclasses.field(default_factory=dict)
     derivation: LoadDerivation | None = None
     positions: PositionSettings | None = None
 

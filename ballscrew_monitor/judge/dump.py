@@ -43,10 +43,9 @@ def dump(monitor: Monitor) -> dict[str, Any]:
             for name, part in parts.items()
             if not isinstance(part, SlopeRing) or part.count
         },
-        'texts': {source.name: text for source, text in monitor.words.texts.items() if text},
         'joints': {
             source.name: [[one.array, one.joint, *one.names] for one in heard]
-            for source, heard in monitor.words.joints.items()
+            for source, heard in monitor.joints.named.items()
             if heard
         },
         'shelve_reason': monitor.shelve_reason,
@@ -70,10 +69,9 @@ def restored(dumped: Mapping[str, Any], surface: Surface, settings: MonitorSetti
         monitor.memory = _record(Memory, records['memory'])
         for name in {'speeds', 'positions'} & {*records}:
             setattr(monitor, name, _record(SlopeRing, records[name]))
-        monitor.words.texts = {Source[name]: str(text) for name, text in dumped['texts'].items()}
         for name, heard in dumped['joints'].items():
             others = (OtherJoints(array, joint, tuple(names)) for array, joint, *names in heard)
-            monitor.words.joints[Source[name]] = dict.fromkeys(others)
+            monitor.joints.named[Source[name]] = dict.fromkeys(others)
         monitor.shelve_reason = str(dumped['shelve_reason'])
         monitor.ending = str(dumped['ending'])
         _check(monitor)

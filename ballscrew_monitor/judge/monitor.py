@@ -15,7 +15,7 @@ from typing import Any
 from ballscrew_monitor.core.advice import interpreted, Nearest
 from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source, Why
+from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.memory import Memory as Kept
 from ballscrew_monitor.core.state import Event, MonitorSettings, NOT_SHELVED, Shelving, State
@@ -69,38 +69,30 @@ def fill(record: EventRecord, event: InputSample | Refusal) -> None:
     record.lost = NOT_KNOWN if event.lost is None else event.lost
     if isinstance(event, Refusal):
         record.kind, record.why = REFUSAL, int(event.why)
+        record.first, record.second = event.first, event.second
         return
     record.kind, record.value = SAMPLE, float(event.value)
     record.stamp, record.stamp_source = within(event.stamp), int(event.stamp_source)
 
 
-class InputWords:
-    """The sentences of the last refusals, and the joints that messages about others name."""
+class JointNames:
+    """The joints that messages about others name, since the last good sample of each input."""
 
     def __init__(self) -> None:
-        """Begin with nothing heard."""
-        self.texts: dict[Source, str] = {}
-        self.joints: dict[Source, dict[OtherJoints, None]] = {source: {} for source in Source}
+        self.named: dict[Source, dict[OtherJoints, None]] = {source: {} for source in Source}
 
     def hear(self, refusal: Refusal, memory: Any) -> None:
-        """Keep the words of a refusal that the memory has not taken yet."""
-        if refusal.why is not Why.OTHER_JOINTS:
-            self.texts[refusal.source] = refusal.text
-        elif refusal.joints is not None:
-            heard = self.joints[refusal.source]
+        """Keep the joints of a refusal that the memory has not taken yet."""
+        if refusal.joints is not None:
+            heard = self.named[refusal.source]
             if not memory.others[refusal.source]:  # a good sample has come since
                 heard.clear()
             if len(heard) < MOST_OTHERS:
                 heard[refusal.joints] = None
 
-    def status(self, memory: Any, settings: Any, source: Source, now: int) -> InputStatus:
-        """Return how well an input does at `now` [ns]."""
-        joints = self._named(source)
-        return views.input_status_of(memory, settings, source, now, self.texts, joints)
-
-    def _named(self, source: Source) -> OtherJoints | None:
+    def of(self, source: Source) -> OtherJoints | None:
         """Return the joints of all messages about others, of however many publishers."""
-        heard = self.joints[source]
+        heard = self.named[source]
         if not heard:
             return None
         names = sorted({name for others in heard for name in others.names})
@@ -118,7 +110,7 @@ class Monitor:
         self.speeds, self.positions = SlopeRing(), SlopeRing()
         self.shelve_reason = ''
         self.ending = ''
-        self.words = InputWords()
+        self.joints = JointNames()
         self.nearest: Nearest = interpreted
         self._event = EventRecord()
         self._row = Row()
@@ -144,7 +136,7 @@ class Monitor:
     def update(self, event: InputSample | Refusal) -> State | None:
         """Take one sample or refusal; return the state when one is due."""
         if isinstance(event, Refusal):
-            self.words.hear(event, self.memory)
+            self.joints.hear(event, self.memory)
         fill(self._event, event)
         return self._step()
 
@@ -283,6 +275,10 @@ class Monitor:
 
     def input_status(self, now: int) -> tuple[InputStatus, ...]:
         """Return how well the inputs do at `now` [ns]."""
+        memory, numbers, fields = self.memory, self.numbers, self._settings.fields
         return tuple(
-            self.words.status(self.memory, self.numbers, source, now) for source in views.SOURCES
+            views.input_status_of(
+                memory, numbers, source, now, fields.get(source, ''), self.joints.of(source)
+            )
+            for source in views.SOURCES
         )

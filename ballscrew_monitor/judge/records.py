@@ -33,7 +33,13 @@ MEMORY_LAYOUT = 'df634f0de83e3629'
 SAMPLE, REFUSAL, TICK = 0, 1, 2
 """Kinds of an event."""
 NOT_KNOWN = -1
-"""Number of lost messages that is not known, and the why of an input without a refusal."""
+"""
+Number of lost messages that is not known, the why of an input without a refusal, and the note of
+an event without one.
+
+"""
+ALL_AXES = 255
+"""Axis of a tick of every axis."""
 
 
 @dataclasses.dataclass(slots=True)
@@ -81,7 +87,9 @@ class Event:
 
     `value` [SI, machine frame]; stamp and arrival [ns], of a tick its grid stamp; `stamp_source`
     is a StampSource; `lost` messages were sent just before and never arrived. A refusal has a
-    `why` and up to two numbers for its sentence.
+    `why` and up to two numbers for its sentence. In a recording, `axis` is the number of the axis,
+    `log_time` [ns] and `place` tell where the message lies, and `note` is the number of the words
+    that belong to it.
 
     """
 
@@ -95,6 +103,10 @@ class Event:
     value: float = NAN
     first: float = NAN
     second: float = NAN
+    axis: int = 0
+    log_time: int = 0
+    place: int = 0
+    note: int = NOT_KNOWN
 
 
 @dataclasses.dataclass(slots=True)

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows and memory as the typed values and sentences that messages and reports are made of."""
 
-from collections.abc import Mapping
 import dataclasses
 import math
 from typing import Any
@@ -30,7 +29,6 @@ NAN = math.nan
 
 SOURCES = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)
 """Inputs in the order of a state."""
-Texts = Mapping[Source, str]
 """Sentences of the last refused messages."""
 _POINT: dict[str, Any] = {field.name: field.type for field in dataclasses.fields(MachinePoint)}
 """Names and types of what a row and a point have in common."""
@@ -226,9 +224,14 @@ def input_state_of(memory: Any, settings: Any, source: Source, now: int) -> Inpu
 
 
 def input_status_of(
-    memory: Any, settings: Any, source: Source, now: int, texts: Texts, joints: Any = None
+    memory: Any, settings: Any, source: Source, now: int, field: str, joints: Any = None
 ) -> InputStatus:
-    """Return how well an input does at `now` [ns]; `joints` are those of other messages."""
+    """
+    Return how well an input does at `now` [ns].
+
+    `field` is the path of its number, `joints` are those that other messages name.
+
+    """
     why = int(memory.refusal[source])
     slow = bool(memory.long_gaps[source] >= SLOW_GAPS)
     lag_known = bool(memory.lags_taken[source])
@@ -253,24 +256,21 @@ def input_status_of(
         ),
         refused_share=_refused_share(memory, source),
         why=None if why == NOT_KNOWN else Why(why),
-        refusal='' if why == NOT_KNOWN else refusal_text(memory, settings, source, texts),
+        refusal='' if why == NOT_KNOWN else _refusal_text(memory, settings, source, field),
         joints=joints if memory.others[source] else None,
     )
 
 
-def refusal_text(memory: Any, settings: Any, source: Source, texts: Texts) -> str:
+def _refusal_text(memory: Any, settings: Any, source: Source, field: str) -> str:
     """Return why the last message of an input was refused."""
-    first, second = float(memory.refusal_first[source]), float(memory.refusal_second[source])
-    if math.isnan(first):  # refused before the judgement, which has no words
-        return texts.get(source, '')
-    if memory.refusal[source] == Why.HOLE:
-        return inputs.hole_text(first)
-    if memory.refusal[source] == Why.IMPLAUSIBLE:
-        most = float(settings.plausible[source])
-        if math.isnan(second):
-            return inputs.implausible_text(source, first, most)
-        return inputs.jump_text(first, second, most)
-    return ''
+    return inputs.refusal_text(
+        source,
+        Why(int(memory.refusal[source])),
+        float(memory.refusal_first[source]),
+        float(memory.refusal_second[source]),
+        most=float(settings.plausible[source]),
+        field=field,
+    )
 
 
 def _refused_share(memory: Any, source: Source) -> float:

@@ -2,17 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """One axis through a recording: rows, states and what they come to."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 import operator
 from typing import Any, NamedTuple
 
-from ballscrew_monitor.core.inputs import Refusal, Source, Why
+from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.state import Event, State
 from ballscrew_monitor.judge import records, views
-from ballscrew_monitor.judge.many import EVENT, Judged, ManyJudge
-from ballscrew_monitor.judge.monitor import EARLIEST, LATEST, MOST_OTHERS
-from ballscrew_monitor.recordings.bulk.entries import Entries, Kind
-from ballscrew_monitor.recordings.bulk.order import places_of_axis
+from ballscrew_monitor.judge.many import Judged, ManyJudge
+from ballscrew_monitor.judge.monitor import MOST_OTHERS
+from ballscrew_monitor.recordings.bulk.events import CHECK, Events, Notes, places_of_axis
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns
 from ballscrew_monitor.recordings.summary import event_record
 from ballscrew_monitor.settings.axis import Axis
@@ -37,29 +36,8 @@ class TimedState(NamedTuple):
 
 Part = JudgedColumns | TimedState | AxisOutcome
 """What comes out of judging: a block of rows, a state that was published, or all of an axis."""
-KINDS = np.array([records.SAMPLE, records.REFUSAL, records.REFUSAL, records.TICK])
-"""Kind of an event by that of an entry."""
-HEADER, RECEIVE = 1, 2
-"""Sources of a stamp."""
 Due = tuple[int, TimedState]
-"""The place of an entry, and the state that is due at it."""
-
-
-def events_of(entries: Entries) -> NDArray[Any]:
-    """Return entries as events of the judgement."""
-    events = np.empty(len(entries), dtype=EVENT)
-    events['kind'] = KINDS[entries.kind]
-    events['source'] = entries.source
-    events['why'] = int(Why.OTHER_JOINTS)
-    events['stamp_source'] = np.where(entries.header, HEADER, RECEIVE)
-    np.clip(entries.stamp, EARLIEST, LATEST, out=events['stamp'])
-    np.clip(entries.arrival, EARLIEST, LATEST, out=events['arrival'])
-    events['lost'] = entries.lost
-    events['value'] = entries.value
-    events['first'] = events['second'] = np.nan
-    for at in np.flatnonzero(entries.kind == Kind.REFUSED).tolist():
-        events['why'][at] = int(entries.note[at].why)
-    return events
+"""The place of an event, and the state that is due at it."""
 
 
 def columns_of(axis: str, rows: NDArray[Any]) -> JudgedColumns:
@@ -71,42 +49,48 @@ def columns_of(axis: str, rows: NDArray[Any]) -> JudgedColumns:
     )
 
 
-class AxisRun:
-    """Judges the ordered entries of one axis and collects what they come to."""
+OnCheck = Callable[[int], None]
+"""Told the place of an element of kind CHECK."""
 
-    def __init__(self, axis: Axis) -> None:
-        """Begin with what the monitor of `axis` remembers."""
+
+def unexpected(place: int) -> None:
+    """Refuse a check in a recording that has none."""
+    raise ValueError(f'no check is expected at {place}')
+
+
+class AxisRun:
+    """Judges the ordered events of one axis and collects what they come to."""
+
+    def __init__(self, axis: Axis, notes: Notes, on_check: OnCheck = unexpected) -> None:
+        """Begin with what the monitor of `axis` remembers; events refer to `notes`."""
         self.axis = axis
+        self._notes, self._on_check = notes, on_check
         self._judge = ManyJudge(axis.monitor)
         self._events: dict[int, tuple[Event, int]] = {}  # and until when it is known
         self._rows = self._states = self._first = self._last = 0
         self._last_row: Any = None
         self._ended: Event | None = None  # by something else than a sample, and not told yet
 
-    def take(self, entries: Entries, *, states: bool = True) -> Iterator[JudgedColumns | Due]:
-        """Judge entries; yield their rows as columns, and the states that are due."""
+    def take(self, events: Events, *, states: bool = True) -> Iterator[JudgedColumns | Due]:
+        """Judge events; yield their rows as columns, and the states that are due."""
         begin = 0
-        for end in [*np.flatnonzero(entries.kind == Kind.CHECK).tolist(), len(entries)]:
-            part = entries.take(slice(begin, end))
-            for made in self._take(part, states=states):
+        for end in [*np.flatnonzero(events['kind'] == CHECK).tolist(), len(events)]:
+            for made in self._take(events[begin:end], states=states):
                 yield made if isinstance(made, JudgedColumns) else (made[0] + begin, made[1])
-            if end < len(entries):
-                entries.note[end]()
+            if end < len(events):
+                self._on_check(int(events['place'][end]))
             begin = end + 1
 
-    def _take(self, entries: Entries, *, states: bool) -> Iterator[JudgedColumns | Due]:
-        refusals = np.flatnonzero(entries.kind == Kind.REFUSED).tolist()
-        for judged in self._judge.judge(events_of(entries), states=states):
+    def _take(self, events: Events, *, states: bool) -> Iterator[JudgedColumns | Due]:
+        for judged in self._judge.judge(events, states=states):
             for place, row in self._told(judged):
-                self._hear(refusals, entries, place)
-                log_time = int(entries.log_time[place])
+                log_time = int(events['log_time'][place])
                 yield from ((place, one) for one in self._state(log_time, row, states=states))
             if len(judged.rows):
                 self._count(judged.rows)
                 yield columns_of(self.axis.name, judged.rows)
-        self._hear(refusals, entries, len(entries))
         self._judge.give_back()
-        self._hear_others(entries)
+        self._hear_others(events)
 
     def _state(self, log_time: int, row: records.Row, *, states: bool) -> Iterator[TimedState]:
         """Yield the state of a row if states are wanted, and keep the event that it tells of."""
@@ -176,32 +160,26 @@ class AxisRun:
             self._states += len(published)
         self._last_row = from_array(records.Row, rows[-1])
 
-    def _hear(self, refusals: list[int], entries: Entries, end: int) -> None:
-        """Keep the words of the refusals before a place of the entries."""
-        while refusals and refusals[0] < end:
-            refusal: Refusal = entries.note[refusals.pop(0)]
-            self.axis.monitor.words.texts[refusal.source] = refusal.text
-
-    def _hear_others(self, entries: Entries) -> None:
+    def _hear_others(self, events: Events) -> None:
         """Keep the joints that messages have named since the last good sample of an input."""
-        words, others = self.axis.monitor.words, self.axis.monitor.memory.others
-        which = entries.kind == Kind.OTHER_JOINTS
+        named, others = self.axis.monitor.joints.named, self.axis.monitor.memory.others
+        about = (events['kind'] == records.REFUSAL) & (events['why'] == Why.OTHER_JOINTS)
         for source in Source:
-            at = np.flatnonzero(which & (entries.source == source))
+            at = np.flatnonzero(about & (events['source'] == source))
             first = max(len(at) - others[source], 0)
             if others[source] <= len(at):
-                words.joints[source].clear()
-            for joints in dict.fromkeys(entries.note[at[first:]].tolist()):
-                if len(words.joints[source]) < MOST_OTHERS:
-                    words.joints[source][joints] = None
+                named[source].clear()
+            for joints in self._notes.named(events['note'][at[first:]]):
+                if len(named[source]) < MOST_OTHERS:
+                    named[source][joints] = None
 
 
-def judged_parts(runs: Sequence[AxisRun], entries: Entries, *, states: bool) -> Iterator[Part]:
-    """Judge the entries of several axes; yield rows, and the states in the order of entries."""
+def judged_parts(runs: Sequence[AxisRun], events: Events, *, states: bool) -> Iterator[Part]:
+    """Judge the events of several axes; yield rows, and the states in the order of events."""
     found: list[tuple[int, int, TimedState]] = []
     for number, run in enumerate(runs):
-        places = places_of_axis(entries, number)
-        for part in run.take(entries.take(places), states=states):
+        places = places_of_axis(events, number)
+        for part in run.take(events[places], states=states):
             if isinstance(part, JudgedColumns):
                 yield part
                 continue

@@ -20,7 +20,7 @@ HEAD = struct.Struct('<BHqqII')  # kind, topic, log time, publish time, sequence
 MOST_BACKLOG = 16 * 2**20  # [B]
 LONGEST_BODY = 64 * 2**20  # [B]
 MOST_SEQUENCE = 2**32
-VERSION = 2  # of the entries in the journal
+VERSION = 3  # of the entries in the journal
 STRING = 'std_msgs/msg/String'  # type of its topic
 
 

@@ -116,7 +116,7 @@ def _read(bag: Bag, channels: Sequence[OpenInput]) -> tuple[dict[Source, Series]
     refused = 0
     for message in bag.messages({one.topic for one in inputs}):
         readers = [one for one in inputs if one.topic == message.topic]
-        decoded, _ = decode(bag, message, readers[0].message_type)
+        decoded = decode(bag, message, readers[0].message_type)
         refused += decoded is None
         for one in readers if decoded is not None else ():
             read = one.read(decoded, now=message.log_time, max_future=NO_FUTURE_LIMIT)

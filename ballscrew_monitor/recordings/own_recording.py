@@ -11,27 +11,19 @@ time the node wrote down what it remembered of an axis, the replay must remember
 
 from collections.abc import Iterable, Iterator, Mapping
 import dataclasses
-import functools
 from typing import Any
 
 from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.core.full_point import corrected, KeptSolve
-from ballscrew_monitor.core.inputs import of_several, Source
+from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.judge.dump import dump, restored
-from ballscrew_monitor.judge.records import MEMORY_VERSION
+from ballscrew_monitor.judge.records import MEMORY_VERSION, NOT_KNOWN, REFUSAL, SAMPLE, TICK
 from ballscrew_monitor.recordings.axis_run import AxisRun
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk.batches import batches, END
 from ballscrew_monitor.recordings.bulk.chunks import Integers, Messages
 from ballscrew_monitor.recordings.bulk.decode import Reader, TopicDecoder, UNDECODABLE
-from ballscrew_monitor.recordings.bulk.entries import (
-    Entries,
-    joined,
-    Kind,
-    made,
-    ticks,
-    UNKNOWN_LOSS,
-)
+from ballscrew_monitor.recordings.bulk.events import blank, CHECK, Events, joined, Notes, ticks
 from ballscrew_monitor.recordings.bulk.order import OnDone
 from ballscrew_monitor.recordings.frames import STRING, VERSION
 from ballscrew_monitor.settings import parameters
@@ -144,12 +136,13 @@ def _noted(messages: Messages, journal: str) -> Iterator[Noted]:
 
 
 class OwnRecording:
-    """The entries of a recording, and how often it proved the replay right and wrong."""
+    """The events of a recording, and how often it proved the replay right and wrong."""
 
-    def __init__(self, bag: Bag) -> None:
-        """Read a bag that has a journal."""
+    def __init__(self, bag: Bag, notes: Notes) -> None:
+        """Read a bag that has a journal; events refer to `notes`."""
         self.runs: list[AxisRun] = []
-        self._bag = bag
+        self._bag, self._notes = bag, notes
+        self._checks: dict[int, Mapping[str, Any]] = {}  # entries by their places
         self._journal = journal_of(bag)
         self._proven = self._refuted = 0
         self._numbers: dict[str, int] = {}  # of the axes that are described, among the runs
@@ -159,9 +152,9 @@ class OwnRecording:
         self._ahead = 0  # [ns] that stamps may be ahead beside max_future
         self._several: set[tuple[str, str]] = set()  # inputs that several publishers send
 
-    def entries(self, on_done: OnDone) -> Iterator[Entries]:
+    def events(self, on_done: OnDone) -> Iterator[Events]:
         """
-        Yield the entries in the order in which the node took them; each is judged before the next.
+        Yield the events in the order in which the node took them; each is judged before the next.
 
         Raises InputError for a recording that cannot be replayed here. `on_done` is told which
         share is done [-].
@@ -173,8 +166,8 @@ class OwnRecording:
         if self._proven + self._refuted:
             self._bag.remarks.append(self._proof())
 
-    def _segments(self, topics: dict[str, Messages]) -> Iterator[Entries]:
-        """Yield the entries of a batch, in parts between changes of what is read."""
+    def _segments(self, topics: dict[str, Messages]) -> Iterator[Events]:
+        """Yield the events of a batch, in parts between changes of what is read."""
         journal = topics.pop(self._journal, None)
         begin, waiting = -1, list[Noted]()
         for place, entry in [] if journal is None else _noted(journal, self._journal):
@@ -207,7 +200,7 @@ class OwnRecording:
             for one in axis.inputs:  # by the full names that the node stated
                 readers.setdefault(one.topic, []).append((number, axis, one))
         self._decoders = {
-            topic: TopicDecoder(self._bag, wanted, ahead=self._ahead)
+            topic: TopicDecoder(self._bag, wanted, self._notes, ahead=self._ahead)
             for topic, wanted in readers.items()
         }
 
@@ -218,9 +211,10 @@ class OwnRecording:
 
     def _ordered(
         self, topics: dict[str, Messages], begin: int, end: int, noted: list[Noted]
-    ) -> Entries:
-        """Return the entries between two places, in the order in which the node took them."""
+    ) -> Events:
+        """Return the events between two places, in the order in which the node took them."""
         parts = [self._of_journal(place, entry) for place, entry in noted]
+        bursts = [np.zeros(len(part), dtype=np.int64) for part in parts]
         for topic, decoder in self._decoders.items():
             messages = topics.get(topic)
             if messages is None:
@@ -228,56 +222,55 @@ class OwnRecording:
             some = np.flatnonzero((messages.place > begin) & (messages.place < end))
             some = some[np.argsort(messages.place[some])]
             messages = messages.some(some)
-            found = decoder.entries(messages)
-            at = np.searchsorted(messages.place, found.place)
-            found.lost[:] = self._losses(topic, messages.place, noted)[at]
-            found.burst[:] = messages.sequence[at]
-            self._refuse_several(found)
-            parts.append(found)
-        return as_taken(joined(parts))
+            events = decoder.events(messages)
+            at = np.searchsorted(messages.place, events['place'])
+            events['lost'] = self._losses(topic, messages.place, noted)[at]
+            self._refuse_several(events)
+            parts.append(events)
+            bursts.append(messages.sequence[at])
+        return as_taken(joined(parts), np.concatenate([np.zeros(0, np.int64), *bursts]))
 
-    def _refuse_several(self, found: Entries) -> None:
+    def _refuse_several(self, events: Events) -> None:
         """Refuse the samples of inputs that several publishers send, where one is allowed."""
         numbers = {run.axis.name: number for number, run in enumerate(self.runs)}
-        for name, one in self._several:
-            run, source = self.runs[numbers[name]], Source[one.upper()]
-            mine = (found.axis == numbers[name]) & (found.source == source)
-            at = np.flatnonzero(mine & (found.kind == Kind.SAMPLE)) if run.axis.one_source else ()
-            for place in at:
-                found.note[place] = of_several(source, int(found.arrival[place]))
-                found.kind[place], found.stamp[place] = Kind.REFUSED, found.log_time[place]
+        for name, source in self._several:
+            if self.runs[numbers[name]].axis.one_source:
+                mine = (events['axis'] == numbers[name]) & (events['kind'] == SAMPLE)
+                mine &= events['source'] == Source[source.upper()]
+                events['kind'][mine], events['why'][mine] = REFUSAL, int(Why.SEVERAL)
+                events['stamp'][mine] = events['log_time'][mine]
 
     def _losses(self, topic: str, places: Integers, noted: list[Noted]) -> Integers:
         """Return how many messages were lost before each; that it is not known holds on."""
         found = np.zeros(len(places), dtype=np.int64)
         changes = [(-1, self._lost.get(topic, 0))]
         changes += [
-            (place, UNKNOWN_LOSS if entry['count'] is None else entry['count'])
+            (place, NOT_KNOWN if entry['count'] is None else entry['count'])
             for place, entry in noted
             if entry['kind'] == 'lost' and entry['topic'] == topic
         ]
         for place, count in changes:
             first = int(np.searchsorted(places, place))
-            if count == UNKNOWN_LOSS:
-                found[first:] = UNKNOWN_LOSS
+            if count == NOT_KNOWN:
+                found[first:] = NOT_KNOWN
             elif first < len(places):
                 found[first:], found[first] = 0, count
-            self._lost[topic] = count if count == UNKNOWN_LOSS or first == len(places) else 0
+            self._lost[topic] = count if count == NOT_KNOWN or first == len(places) else 0
         return found
 
-    def _of_journal(self, place: int, entry: Mapping[str, Any]) -> Entries:
-        """Return an entry of the journal that changes nothing as an entry to be judged."""
+    def _of_journal(self, place: int, entry: Mapping[str, Any]) -> Events:
+        """Return an entry of the journal that changes nothing as events to be judged."""
         if entry['kind'] == 'tick':
             axes = list(self._numbers.values())
-            return ticks(len(axes), int(entry['stamp']), place=place, axis=axes)
+            return ticks(np.full(len(axes), int(entry['stamp'])), place=place, axis=axes)
         if entry['kind'] != 'axis':
-            return made(0)
-        found = made(1, place=place, axis=self._numbers[entry['axis']], kind=Kind.CHECK)
-        found.note[0] = functools.partial(self._check, entry)
-        return found
+            return joined([])
+        self._checks[place] = entry
+        return blank(1, place=place, axis=self._numbers[entry['axis']], kind=CHECK)
 
-    def _check(self, entry: Mapping[str, Any]) -> None:
+    def _check(self, place: int) -> None:
         """Hold what is remembered of an axis against what the node says it remembered."""
+        entry = self._checks.pop(place)
         run, told = self.runs[self._numbers[entry['axis']]], entry.get('monitor')
         if isinstance(told, dict) and dump(run.axis.monitor)['records'] == told.get('records'):
             self._proven += 1
@@ -289,7 +282,7 @@ class OwnRecording:
         """Make an axis as it is described, and go on with it."""
         try:
             name = entry['axis']
-            self._lost = dict.fromkeys(entry['loss_unknown'], UNKNOWN_LOSS)
+            self._lost = dict.fromkeys(entry['loss_unknown'], NOT_KNOWN)
             self._read(entry['reading'])
             axis = self._rebuilt(entry)
         except InputError:
@@ -301,7 +294,7 @@ class OwnRecording:
         if known:
             self.runs[known[0]].change(axis)
         else:
-            self.runs.append(AxisRun(axis))
+            self.runs.append(AxisRun(axis, self._notes, self._check))
         self._numbers[name] = known[0] if known else len(self.runs) - 1
 
     def _rebuilt(self, entry: Mapping[str, Any]) -> Axis:
@@ -329,25 +322,26 @@ class OwnRecording:
         return f'the replay is what the node judged: it agrees with all {held} notes of the node'
 
 
-def as_taken(entries: Entries) -> Entries:
+def as_taken(events: Events, bursts: Integers) -> Events:
     """
-    Return entries in the order in which a node takes them, see `core.inputs.ordered`.
+    Return events in the order in which a node takes them, see `core.inputs.ordered`.
 
     Messages of one burst come by the place at which their stamp came first, then by source.
 
     """
-    entries = entries.take(np.lexsort((entries.axis, entries.place)))
-    count = np.arange(len(entries))
-    other = entries.burst != np.roll(entries.burst, 1)
-    alone = (entries.kind == Kind.TICK) | (entries.kind == Kind.CHECK)
+    by_place = np.lexsort((events['axis'], events['place']))
+    events, bursts = events[by_place], bursts[by_place]
+    count = np.arange(len(events))
+    other = bursts != np.roll(bursts, 1)
+    alone = events['kind'] >= TICK
     burst = np.cumsum(other | alone | np.roll(alone, 1))
-    order = np.lexsort((count, entries.stamp, burst))
+    order = np.lexsort((count, events['stamp'], burst))
     new = np.ones(len(order), dtype=bool)
-    groups, stamps = burst[order], entries.stamp[order]
+    groups, stamps = burst[order], events['stamp'][order]
     new[1:] = (groups[1:] != groups[:-1]) | (stamps[1:] != stamps[:-1])
     first = np.empty(len(order), dtype=np.int64)
     first[order] = order[np.maximum.accumulate(np.where(new, count, 0))]
-    return entries.take(np.lexsort((count, entries.source, first, burst)))
+    return events[np.lexsort((count, events['source'], first, burst))]
 
 
 def _entry_of(data: bytes, topic: str) -> Mapping[str, Any]:

@@ -20,8 +20,8 @@ from ballscrew_monitor.messages.state_messages import out_of_zone_message, State
 from ballscrew_monitor.recordings.axis_run import AxisRun, judged_parts, Part, TimedState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk.decode import decode, named_instead, readers_by_topic
-from ballscrew_monitor.recordings.bulk.entries import Entries
-from ballscrew_monitor.recordings.bulk.order import OnDone, ordered_entries
+from ballscrew_monitor.recordings.bulk.events import Events, Notes
+from ballscrew_monitor.recordings.bulk.order import OnDone, ordered_events
 from ballscrew_monitor.recordings.own_recording import is_as_recorded, OwnRecording
 from ballscrew_monitor.settings.axis import Axis, build_axis
 from ballscrew_monitor.settings.parameters import absolute, input_topics, with_types
@@ -53,7 +53,7 @@ def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
     readers = readers_by_topic(axes)
     for message in bag.messages():
         wanted = readers.get(message.topic, [])
-        decoded = decode(bag, message, wanted[0][2].message_type)[0] if wanted else None
+        decoded = decode(bag, message, wanted[0][2].message_type) if wanted else None
         for _, axis, source in wanted if decoded is not None else ():
             if source is speed[axis.name]:
                 counts[axis.name] += not isinstance(source.read_field(decoded), OtherJoints)
@@ -96,14 +96,13 @@ def replay_parts(
     topics that they name and, unless its intact part is to be salvaged, for a damaged one.
 
     """
+    notes = Notes()
     if is_as_recorded(bag, values):
-        own = OwnRecording(bag)
-        batches, runs = own.entries(on_done), own.runs
-    else:
-        axes = axes_for(bag, values)
-        batches = ordered_entries(bag, axes, nanoseconds(values['tick_period']), on_done=on_done)
-        runs = [AxisRun(axis) for axis in axes]
-    return _parts(batches, runs, states=states)
+        own = OwnRecording(bag, notes)
+        return _parts(own.events(on_done), own.runs, states=states)
+    axes, period = axes_for(bag, values), nanoseconds(values['tick_period'])
+    batches = ordered_events(bag, axes, period, notes, on_done=on_done)
+    return _parts(batches, [AxisRun(axis, notes) for axis in axes], states=states)
 
 
 def axes_for(bag: Bag, values: Mapping[str, Any]) -> list[Axis]:
@@ -118,7 +117,7 @@ def axes_for(bag: Bag, values: Mapping[str, Any]) -> list[Axis]:
     return [build_axis(name, values) for name in values['axes']]
 
 
-def _parts(batches: Iterator[Entries], runs: list[AxisRun], *, states: bool) -> Iterator[Part]:
-    for entries in batches:
-        yield from judged_parts(runs, entries, states=states)
+def _parts(batches: Iterator[Events], runs: list[AxisRun], *, states: bool) -> Iterator[Part]:
+    for events in batches:
+        yield from judged_parts(runs, events, states=states)
     yield from (run.outcome() for run in runs)

@@ -208,6 +208,7 @@ def settings_of(name: str, values: Mapping[str, Any], surface: Surface) -> Monit
         one_source=values[f'{name}.one_source'],
         tick_period=nanoseconds(values['tick_period']),
         plausible=_plausible_of(name, values, surface),
+        fields={source: values[f'{name}.{source.name.lower()}.field'] for source in Source},
         derivation=derivation_of(name, values),
         positions=_positions_of(name, values, surface.lead),
     )

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Entries out of the serialised messages of a topic, those of equal layout at once.
+Events out of the serialised messages of a topic, those of equal layout at once.
 
 What has no layout, and whatever is to be refused, is decoded one by one as the node does it.
 One that does not decode is counted and named.
@@ -14,11 +14,13 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.core.fields import OtherJoints, TooShort
-from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, short_text, Why
+from ballscrew_monitor.core.inputs import Input, short_text, StampSource, Why
+from ballscrew_monitor.judge.monitor import EARLIEST, LATEST
+from ballscrew_monitor.judge.records import REFUSAL
 from ballscrew_monitor.messages.reasons import joint_reason, slow_reason
 from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_monitor.recordings.bulk.chunks import Messages
-from ballscrew_monitor.recordings.bulk.entries import Entries, entries_of, joined, Kind, made, Told
+from ballscrew_monitor.recordings.bulk.events import blank, event_of, Events, joined, Notes
 from ballscrew_monitor.recordings.bulk.layout import Layout, NoLayout, reads_alike
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.parameters import absolute
@@ -30,13 +32,13 @@ UNDECODABLE = (RuntimeError, ValueError, MemoryError, OverflowError)
 SEEN = 100  # messages of a topic that tell what it holds
 
 
-def decode(bag: Bag, message: Message, message_type: Any) -> tuple[Any, str]:
-    """Return a decoded message, or None and why there is none; `bag` counts those."""
+def decode(bag: Bag, message: Message, message_type: Any) -> Any:
+    """Return a decoded message, None for one that does not decode, which `bag` counts."""
     decoded = _decoded(message, message_type)
-    if decoded is not None:
-        return decoded, ''
-    reason = 'it is truncated, or of another type' if message.data else 'it is empty'
-    return None, bag.refuse(message, reason)
+    if decoded is None:
+        reason = 'it is truncated, or of another type' if message.data else 'it is empty'
+        bag.refuse(message, reason)
+    return decoded
 
 
 def _decoded(message: Message, message_type: Any) -> Any:
@@ -126,21 +128,21 @@ def readers_by_topic(axes: Iterable[Axis]) -> dict[str, list[Reader]]:
 class TopicDecoder:
     """Decodes the messages of one topic for all inputs that read it."""
 
-    def __init__(self, bag: Bag, readers: list[Reader], *, ahead: int = 0) -> None:
+    def __init__(self, bag: Bag, readers: list[Reader], notes: Notes, *, ahead: int = 0) -> None:
         """
-        Begin without a layout; `bag` counts what does not decode.
+        Begin without a layout; `bag` counts what does not decode, `notes` keep what is named.
 
         Stamps may be `ahead` [ns] of the clock beside what an axis allows.
 
         """
-        self._bag, self._readers = bag, readers
+        self._bag, self._readers, self._notes = bag, readers, notes
         self._topic = absolute(readers[0][2].topic)
         self._type, self._ahead = readers[0][2].message_type, ahead
         self._layouts: list[Layout] = []
 
-    def entries(self, messages: Messages) -> Entries:
+    def events(self, messages: Messages) -> Events:
         """Return what the messages say, in any order."""
-        parts: list[Entries] = []
+        parts: list[Events] = []
         rest, tried, most = messages, 0, len(self._layouts) + NEW_LAYOUTS
         while len(rest) and tried < most:
             if tried == len(self._layouts) and not self._learn(rest.content(0)):
@@ -167,7 +169,7 @@ class TopicDecoder:
         self._layouts.append(layout)
         return True
 
-    def _read(self, layout: Layout, messages: Messages) -> list[Entries]:
+    def _read(self, layout: Layout, messages: Messages) -> list[Events]:
         parts = []
         for number, axis, source in self._readers:
             found = layout.find(source)
@@ -175,17 +177,17 @@ class TopicDecoder:
                 parts += self._samples(layout, messages, found, (number, axis, source))
             elif isinstance(found, OtherJoints):
                 now = messages.log_time
-                times = {'log_time': now, 'stamp': now, 'arrival': now}
-                whose = {'place': messages.place, 'axis': number, 'source': source.source}
-                kind = Kind.OTHER_JOINTS
-                parts.append(made(len(messages), kind=kind, **times, **whose, note=found))
+                others = self._blank(messages, number, source, stamp=now, arrival=now)
+                others['kind'], others['why'] = REFUSAL, int(Why.OTHER_JOINTS)
+                others['note'] = self._notes.number(found)
+                parts.append(others)
             else:
                 parts.append(self._one_by_one(messages, [(number, axis, source)]))
         return parts
 
     def _samples(
         self, layout: Layout, messages: Messages, place: int, reader: Reader
-    ) -> list[Entries]:
+    ) -> list[Events]:
         """Return the samples of one input, and what is refused of them."""
         number, axis, source = reader
         now = messages.log_time
@@ -198,38 +200,42 @@ class TopicDecoder:
             stamp = layout.stamps(messages.data, messages.begin)
         limit = axis.max_future + self._ahead
         bad = ~np.isfinite(value) | (stamp < 0) | ((now != 0) & (stamp - now > limit))
-        samples = made(
-            len(messages),
-            log_time=now,
-            place=messages.place,
-            axis=number,
-            source=source.source,
-            kind=Kind.SAMPLE,
+        samples = self._blank(
+            messages,
+            number,
+            source,
             stamp=np.where(stamp == 0, now, stamp),
             arrival=np.where(now == 0, stamp, now),
             value=value,
-            header=stamp != 0,
+            stamp_source=np.where(stamp != 0, StampSource.HEADER, StampSource.RECEIVE),
         )
         if not bad.any():
             return [samples]
-        return [samples.take(~bad), self._one_by_one(messages.some(bad), [reader])]
+        return [samples[~bad], self._one_by_one(messages.some(bad), [reader])]
 
-    def _one_by_one(self, messages: Messages, readers: list[Reader] | None = None) -> Entries:
-        told: list[Told] = []
+    def _blank(self, messages: Messages, number: int, source: Input, **columns: Any) -> Events:
+        """Return an event for each message, with its place and these columns."""
+        for name in ('stamp', 'arrival'):
+            columns[name] = np.clip(columns[name], EARLIEST, LATEST)
+        return blank(
+            len(messages),
+            axis=number,
+            source=source.source,
+            log_time=messages.log_time,
+            place=messages.place,
+            **columns,
+        )
+
+    def _one_by_one(self, messages: Messages, readers: list[Reader] | None = None) -> Events:
+        events: list[Events] = []
         for at in range(len(messages)):
             now, place = int(messages.log_time[at]), int(messages.place[at])
             message = Message(
                 topic=self._topic, data=messages.content(at), log_time=now, publish_time=now
             )
-            decoded, why = decode(self._bag, message, self._type)
+            decoded = decode(self._bag, message, self._type)
             for number, axis, source in readers or self._readers:
-                event: InputSample | Refusal
-                if decoded is None:
-                    event = Refusal(
-                        source=source.source, why=Why.NOT_DECODED, text=why, arrival=now
-                    )
-                else:
-                    limit = axis.max_future + self._ahead
-                    event = source.read(decoded, now=now, max_future=limit)
-                told.append((event, now, place, number))
-        return entries_of(told)
+                limit = axis.max_future + self._ahead
+                read = source.read(decoded, now=now, max_future=limit)
+                events.append(event_of(read, self._notes, axis=number, log_time=now, place=place))
+        return joined(events)

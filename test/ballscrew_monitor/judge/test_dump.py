@@ -66,7 +66,9 @@ def streams(draw):
             joints = OtherJoints('velocity', 'x_axis', ('a', 'b'))
             why = Why.OTHER_JOINTS if kind == 'other' else Why.NOT_A_NUMBER
             made.append(
-                Refusal(source=source, why=why, text=f'{now}', joints=joints, arrival=now, lost=2)
+                Refusal(
+                    source=source, why=why, first=float(now), joints=joints, arrival=now, lost=2
+                )
             )
     return made
 
@@ -103,7 +105,7 @@ def test_the_monitor_goes_on_as_if_nothing_had_happened(core, stream, derived, d
         ({'records': {'memory': '~'}}, 'memory_damaged_2'),
         ({'records': {'memory': 1}}, 'memory_damaged_2'),
         ({'records': 1}, 'memory_damaged_2'),
-        ({'texts': {'HEIGHT': 'x'}}, 'memory_damaged_height'),
+        ({'joints': {'HEIGHT': []}}, 'memory_damaged_height'),
         ({'joints': {'LOAD': [['velocity']]}}, 'memory_damaged_enough'),
         ({'joints': None}, 'memory_damaged_2'),
     ],

@@ -39,16 +39,15 @@ class Input:
         event = Event(source=LOAD, stamp=stamp, arrival=arrival, stamp_source=stamp_source)
         inputs.accept(self.memory, self.settings, event, 1.0)
 
-    def refuse(self, why, first=math.nan, arrival=SECOND):
-        event = Event(source=LOAD, why=why, first=first, arrival=arrival)
+    def refuse(self, why, first=math.nan, second=math.nan, arrival=SECOND):
+        event = Event(source=LOAD, why=why, first=first, second=second, arrival=arrival)
         inputs.take_refusal(self.memory, event)
 
     def lose(self, count, arrival):
         inputs.lose(self.memory, LOAD, count, arrival)
 
     def status(self, now=0):
-        texts = {Source.LOAD: 'because'}
-        return input_status_of(self.memory, self.settings, Source.LOAD, now, texts)
+        return input_status_of(self.memory, self.settings, Source.LOAD, now, 'force[1]')
 
 
 @pytest.mark.parametrize('arrival', [100, 700])
@@ -66,16 +65,17 @@ def test_an_input_begins_missing_and_is_bad_until_the_next_good_sample():
     missing = load.status()
     assert missing.state is InputState.MISSING
     assert math.isnan(missing.age + missing.rate + missing.lag)
-    load.refuse(Why.NOT_A_NUMBER)
+    load.refuse(Why.TOO_SHORT, first=1.0, second=0.0)
     bad = load.status()
-    assert (bad.state, bad.why, bad.refusal) == (InputState.BAD, Why.NOT_A_NUMBER, 'because')
+    assert (bad.state, bad.why) == (InputState.BAD, Why.TOO_SHORT)
+    assert bad.refusal.startswith('force has 1 elements and no [1] in its messages')
     load.accept(1)
     good = load.status(1)
     assert (good.state, good.why, good.refusal) == (InputState.OK, None, '')
     assert (good.received, good.dropped) == (2, 1)
     load.accept(1)
     assert math.isnan(load.status(1).rate)  # two samples of one stamp
-    assert refused_of(load.memory)[Source.LOAD] == {Why.NOT_A_NUMBER: 1}
+    assert refused_of(load.memory)[Source.LOAD] == {Why.TOO_SHORT: 1}
 
 
 def test_messages_about_other_joints_and_inputs_without_a_topic_do_no_harm():

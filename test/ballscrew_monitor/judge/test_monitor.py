@@ -267,11 +267,11 @@ def test_joints_of_others_are_collected_until_a_sample_comes_up_to_a_number(core
     assert len(heard(monitor).names) == MOST_OTHERS
 
 
-def test_a_refusal_is_told_in_its_own_words(core):
+def test_a_refusal_is_told_with_its_number(core):
     monitor = core.monitor()
-    for text in ('one', 'two'):
-        monitor.update(Refusal(source=Source.LOAD, why=Why.NOT_A_NUMBER, text=text))
-        assert monitor.input_status(0)[1].refusal == text
+    for value in (math.inf, math.nan):
+        monitor.update(Refusal(source=Source.LOAD, why=Why.NOT_A_NUMBER, first=value))
+        assert f' {value}, ' in monitor.input_status(0)[1].refusal
 
 
 @given(st.integers(-(2**70), 2**70), st.integers(-(2**70), 2**70), st.none() | st.integers(0, 9))

@@ -18,7 +18,7 @@ ZERO = {
 }
 OTHERS = {
     Settings: {'plausible': math.inf},
-    Event: {},
+    Event: {'note': -1},
     Memory: {
         'lost_known': 1,
         'lost_last': LONG_AGO,

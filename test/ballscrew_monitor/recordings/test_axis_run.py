@@ -16,7 +16,7 @@ from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.recordings.axis_run import AxisRun
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
-from ballscrew_monitor.recordings.bulk.entries import entries_of
+from ballscrew_monitor.recordings.bulk.events import blank, event_of, Notes, ticks
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, joined
 from ballscrew_monitor.recordings.replay import replay, replay_parts
 from ballscrew_monitor.recordings.summary import summary_of
@@ -165,16 +165,22 @@ def alone():
     return dataclasses.replace(AXIS, monitor=monitor)
 
 
-def event_of(now, source, choice):
+def happening(now, source, choice):
     """Return a sample, now and then a refusal or a tick."""
     if choice == 7:
         return now
     if choice > 7:
         joints = OtherJoints('velocity', 'x', (f'joint{choice}',)) if choice > 8 else None
         why = Why.NOT_A_NUMBER if joints is None else Why.OTHER_JOINTS
-        return Refusal(source=source, why=why, text=f'at {now}', joints=joints, arrival=now)
+        return Refusal(source=source, why=why, first=float(now), joints=joints, arrival=now)
     value = (60.0, 3.0, 0.0, -1000.0, 900.0, 1e9, math.nan)[choice]
     return InputSample(source=source, value=value, stamp=now)
+
+
+def event_array(event, now, notes):
+    if isinstance(event, int):
+        return ticks(np.array([event]), place=0)
+    return event_of(event, notes, axis=0, log_time=now, place=0)
 
 
 @settings(max_examples=30)
@@ -194,14 +200,17 @@ def test_states_and_outcome_are_those_of_a_monitor_alone(happened, cut):
     now, told = 10**12, []
     for step, source, choice in happened:
         now += step * STEP
-        told.append((event_of(now, source, choice), now, 0, 0))
+        told.append((happening(now, source, choice), now))
     axis, other = alone(), alone().monitor
-    run, events, states, wanted = AxisRun(axis), [], [], []
+    notes = Notes()
+    run, events, states, wanted = AxisRun(axis, notes), [], [], []
     for part in (told[:cut], told[cut:]):
-        for event, *_ in part:
+        for event, _ in part:
             state = other.tick(event) if isinstance(event, int) else other.update(event)
             wanted += [] if state is None else [state]
-        found = [one[1] for one in run.take(entries_of(part)) if isinstance(one, tuple)]
+        arrays = [event_array(*timed, notes) for timed in part]
+        array = np.concatenate(arrays or [blank(0)])
+        found = [one[1] for one in run.take(array) if isinstance(one, tuple)]
         states += [one.state for one in found]
         events += [one.event for one in found if one.event is not None]
         assert repr(axis.monitor.input_status(now)) == repr(other.input_status(now))

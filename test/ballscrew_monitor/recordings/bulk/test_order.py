@@ -1,22 +1,30 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Entries put into order by arrays are what the messages of a bag say one by one."""
+"""Events put into order by arrays are what the messages of a bag say one by one."""
 
 import heapq
 import itertools
 import shutil
 
-from ballscrew_monitor.core.inputs import InputSample, Refusal, Why
+from ballscrew_monitor.core.inputs import InputSample
+from ballscrew_monitor.judge.records import TICK
 from ballscrew_monitor.judge.step import BACKWARD_JUMP
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk import batches as batches_module
 from ballscrew_monitor.recordings.bulk.decode import decode
-from ballscrew_monitor.recordings.bulk.entries import entries_of, joined, Kind, made, TICK_SOURCE
+from ballscrew_monitor.recordings.bulk.events import (
+    blank,
+    event_of,
+    joined,
+    Notes,
+    places_of_axis,
+    TICK_SOURCE,
+    ticks,
+)
 from ballscrew_monitor.recordings.bulk.order import (
     Arrivals,
     LONGEST_HOLE,
-    ordered_entries,
-    places_of_axis,
+    ordered_events,
     REORDER,
     StampOrder,
 )
@@ -158,12 +166,10 @@ def alone(bag, axes):
                 heapq.heappush(waiting, (tick, TICK_SOURCE, next(numbers), tick, None, None))
                 yield from late(tick)
         grid = max(grid or 0, -(-now // PERIOD) * PERIOD)
-        decoded, why = decode(bag, message, readers[message.topic][0][2].message_type)
+        decoded = decode(bag, message, readers[message.topic][0][2].message_type)
         for number, axis, source in readers[message.topic]:
             line = number, source.source
-            event = Refusal(source=source.source, why=Why.NOT_DECODED, text=why, arrival=now)
-            if decoded is not None:
-                event = source.read(decoded, now=now, max_future=axis.max_future)
+            event = source.read(decoded, now=now, max_future=axis.max_future)
             stamp = event.stamp if isinstance(event, InputSample) else now
             if isinstance(event, InputSample):
                 if last.get(line, stamp) - stamp > BACKWARD_JUMP:
@@ -178,24 +184,28 @@ def alone(bag, axes):
 
 
 def at_once(bag, axes):
-    return list(ordered_entries(bag, axes, PERIOD, on_done=lambda share: None))
+    return list(ordered_events(bag, axes, PERIOD, Notes(), on_done=lambda share: None))
 
 
 def assert_same(bag, axes):
-    """Compare the entries of each axis with those of the plain twin."""
+    """Compare the events of each axis with those of the plain twin."""
     expected = list(alone(bag, axes))
+    notes = Notes()
+    found = list(ordered_events(bag, axes, PERIOD, notes, on_done=lambda share: None))
     for number in range(len(axes)):
-        found = joined([part.take(places_of_axis(part, number)) for part in at_once(bag, axes)])
-        wanted = entries_of(
+        mine = joined([part[places_of_axis(part, number)] for part in found])
+        wanted = joined(
             [
-                (stamp if event is None else event, now, 0, 0)
+                ticks(np.array([stamp]), place=0)
+                if event is None
+                else event_of(event, notes, axis=number, log_time=now, place=0)
                 for stamp, _, _, now, axis, event in expected
                 if axis in (None, number)
             ]
         )
-        for name in ('kind', 'source', 'stamp', 'arrival', 'value', 'header', 'lost', 'note'):
-            pair = (getattr(one, name).tolist() for one in (found, wanted))
-            np.testing.assert_equal(*(list(map(repr, column)) for column in pair), err_msg=name)
+        for name in wanted.dtype.names:
+            if name != 'place':
+                np.testing.assert_array_equal(mine[name], wanted[name], err_msg=name)
 
 
 LAYOUTS = {
@@ -246,11 +256,11 @@ def test_a_damaged_chunk_is_named_and_the_rest_is_used(tmp_path, axes, layout):
     shutil.copy(tmp_path / 'bag.mcap', tmp_path / 'whole.mcap')
     damaged(tmp_path / 'bag.mcap', 3000)
     bag = Bag(tmp_path / 'bag.mcap', salvage=True)
-    entries = at_once(bag, axes)
+    parts = at_once(bag, axes)
     (note,) = bag.notes
     assert 's of data in the chunk at byte' in note
     assert '\n' not in note
-    found = sum(map(len, entries))
+    found = sum(map(len, parts))
     whole = sum(map(len, at_once(Bag(tmp_path / 'whole.mcap'), axes)))
     assert 0.6 * whole < found < whole
 
@@ -274,16 +284,16 @@ def test_the_share_that_is_done_rises_to_one(tmp_path, axes, monkeypatch):
     write(tmp_path / 'bag.mcap', steady(200), chunk_size=2000)
     shares = []
     bag = Bag(tmp_path / 'bag.mcap')
-    list(ordered_entries(bag, axes, PERIOD, on_done=shares.append))
+    list(ordered_events(bag, axes, PERIOD, Notes(), on_done=shares.append))
     assert shares == sorted(shares)
     assert len(shares) > 3
     assert shares[-1] == 1.0
 
 
-def entries(log_times, lags, sources):
-    """Return entries by log time, lag of the stamp [ms] and source; the value numbers them."""
+def samples(log_times, lags, sources):
+    """Return samples by log time, lag of the stamp [ms] and source; the value numbers them."""
     log_time = np.array(log_times, dtype=np.int64)
-    return made(
+    return blank(
         len(log_time),
         log_time=log_time,
         place=np.arange(len(log_time)),
@@ -299,14 +309,14 @@ def one_by_one(found):
     waiting, order = [], []
     last = {}
     for at in range(len(found)):
-        line, stamp = int(found.source[at]), int(found.stamp[at])
+        line, stamp = int(found['source'][at]), int(found['stamp'][at])
         if last.get(line, stamp) - stamp > BACKWARD_JUMP:
             order += [key[2] for key in sorted(waiting)]
             waiting.clear()
         last[line] = stamp
-        key = (int(found.stamp[at]), int(found.source[at]), at)
+        key = (int(found['stamp'][at]), int(found['source'][at]), at)
         heapq.heappush(waiting, key)
-        while found.log_time[at] - found.log_time[waiting[0][2]] > REORDER:
+        while found['log_time'][at] - found['log_time'][waiting[0][2]] > REORDER:
             order.append(heapq.heappop(waiting)[2])
     return [*order, *(key[2] for key in sorted(waiting))]
 
@@ -325,22 +335,22 @@ def one_by_one(found):
 )
 def test_batches_come_in_the_order_of_a_heap(steps, cuts):
     wait, lags, sources = zip(*steps)
-    found = entries(BEGIN + np.cumsum(wait) * MS, lags, sources)
+    found = samples(BEGIN + np.cumsum(wait) * MS, lags, sources)
     order, values = StampOrder(), []
     bounds = sorted({0, len(found), *(min(cut, len(found)) for cut in cuts)})
     for begin, end in zip(bounds, bounds[1:]):
-        values += order.push(found.take(slice(begin, end))).value.tolist()
-    values += order.finish().value.tolist()
+        values += order.push(found[begin:end])['value'].tolist()
+    values += order.finish()['value'].tolist()
     assert values == one_by_one(found)
 
 
 def test_stamps_decades_apart_are_ordered_and_arrivals_wait():
-    found = entries([BEGIN, BEGIN, BEGIN], [0, BEGIN // MS, 1], [0, 1, 0])
+    found = samples([BEGIN, BEGIN, BEGIN], [0, BEGIN // MS, 1], [0, 1, 0])
     order = StampOrder()
     parts = [order.push(found), order.finish()]
-    assert joined(parts).value.tolist() == [1.0, 2.0, 0.0]
-    found = entries([BEGIN + 3 * MS, BEGIN + MS, BEGIN + 2 * MS], [0, 0, 0], [0, 0, 0])
+    assert joined(parts)['value'].tolist() == [1.0, 2.0, 0.0]
+    found = samples([BEGIN + 3 * MS, BEGIN + MS, BEGIN + 2 * MS], [0, 0, 0], [0, 0, 0])
     arrivals = Arrivals(1000 * MS)
     first = arrivals.push(found, BEGIN + 3 * MS)
-    assert first.value[first.kind != Kind.TICK].tolist() == [1.0, 2.0]
-    assert arrivals.push(made(0), BEGIN + 4 * MS).value.tolist()[-1] == 0.0
+    assert first['value'][first['kind'] != TICK].tolist() == [1.0, 2.0]
+    assert arrivals.push(joined([]), BEGIN + 4 * MS)['value'].tolist()[-1] == 0.0

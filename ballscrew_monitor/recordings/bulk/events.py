@@ -1,0 +1,82 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""The events of all axes of a recording, as one array of `judge.records.Event`."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from ballscrew_monitor.core.fields import OtherJoints
+from ballscrew_monitor.core.inputs import InputSample, Refusal, Source
+from ballscrew_monitor.judge.many import EVENT
+from ballscrew_monitor.judge.monitor import fill
+from ballscrew_monitor.judge.records import ALL_AXES, Event, NOT_KNOWN, TICK
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.surface.records import as_array
+
+Events = NDArray[Any]
+"""An array of EVENT."""
+CHECK = TICK + 1
+"""Kind of an element that is no event: a place at which somebody is called."""
+TICK_SOURCE = max(Source) + 1
+"""Place of a tick among the sources: after the samples of equal stamp."""
+MOST_NAMED = 4096
+"""Kinds of messages about other joints that are told apart in a recording."""
+BLANK = as_array(Event())
+
+
+class Notes:
+    """The joints that messages about others name, which events refer to by number."""
+
+    def __init__(self) -> None:
+        self._numbers: dict[OtherJoints, int] = {}
+        self._joints: list[OtherJoints] = []
+
+    def number(self, joints: OtherJoints | None) -> int:
+        """Return the number of some joints, NOT_KNOWN for none or one kind too many."""
+        if joints is None or (joints not in self._numbers and len(self._joints) == MOST_NAMED):
+            return NOT_KNOWN
+        if joints not in self._numbers:
+            self._numbers[joints] = len(self._joints)
+            self._joints.append(joints)
+        return self._numbers[joints]
+
+    def named(self, numbers: NDArray[np.int64]) -> list[OtherJoints]:
+        """Return the joints of some numbers, each once, in the order in which they come first."""
+        return [self._joints[number] for number in dict.fromkeys(numbers.tolist()) if number >= 0]
+
+
+def blank(count: int, **columns: Any) -> Events:
+    """Return `count` events of these columns, arrays or one value for all; the rest is unset."""
+    events = np.repeat(BLANK, count)
+    for name, values in columns.items():
+        events[name] = values
+    return events
+
+
+def event_of(
+    read: InputSample | Refusal, notes: Notes, *, axis: int, log_time: int, place: int
+) -> Events:
+    """Return what an axis reads of a message at a place of its recording; times [ns]."""
+    event = Event(axis=axis, stamp=log_time, log_time=log_time, place=place)
+    fill(event, read)
+    if isinstance(read, Refusal):
+        event.note = notes.number(read.joints)
+    return as_array(event)
+
+
+def joined(parts: Sequence[Events]) -> Events:
+    """Return all events of `parts`, one part after the other."""
+    parts = [part for part in parts if len(part)]
+    return parts[0] if len(parts) == 1 else np.concatenate(parts or [np.empty(0, EVENT)])
+
+
+def ticks(stamps: Any, *, place: int, axis: Any = ALL_AXES) -> Events:
+    """Return ticks at some stamps [ns]."""
+    times = {'log_time': stamps, 'stamp': stamps, 'arrival': stamps}
+    return blank(len(stamps), kind=TICK, source=TICK_SOURCE, axis=axis, place=place, **times)
+
+
+def places_of_axis(events: Events, number: int) -> NDArray[np.intp]:
+    """Return the places of the events of an axis, ticks of all axes among them."""
+    return np.flatnonzero((events['axis'] == number) | (events['axis'] == ALL_AXES))
