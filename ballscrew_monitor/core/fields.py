@@ -104,10 +104,15 @@ def check_path(path: str) -> None:
         _name_and_key(path, segment)
 
 
+def segments_of(path: str) -> list[tuple[str, str | None]]:
+    """Return the names along a field path, each with its index or joint if it has one."""
+    segments = map(_SEGMENT.fullmatch, _DOT.split(path))
+    return [(segment[1], segment[2]) for segment in segments if segment]
+
+
 def arrays_of(path: str) -> list[tuple[str, str]]:
     """Return name and key of each array that a field path reads an element of."""
-    segments = map(_SEGMENT.fullmatch, _DOT.split(path))
-    return [(segment[1], segment[2]) for segment in segments if segment and segment[2]]
+    return [(name, key) for name, key in segments_of(path) if key is not None]
 
 
 def compile_field(path: str, message_type: MessageClass) -> FieldReader:

@@ -13,8 +13,9 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.inputs import Source, Why
+import numpy as np
 from surrogate.surface import Found
-from surrogate.surface.records import many
+from surrogate.surface.records import many, small
 
 NAN = math.nan
 INPUTS = len(Source)
@@ -93,20 +94,20 @@ class Event:
 
     """
 
-    kind: int = SAMPLE
-    source: int = 0
-    why: int = 0
-    stamp_source: int = 0
+    kind: int = small(np.uint8, SAMPLE)
+    source: int = small(np.uint8)
+    why: int = small(np.uint8)
+    stamp_source: int = small(np.uint8)
+    axis: int = small(np.uint8)
+    note: int = small(np.int16, NOT_KNOWN)
     stamp: int = 0
     arrival: int = 0
     lost: int = 0
     value: float = NAN
     first: float = NAN
     second: float = NAN
-    axis: int = 0
     log_time: int = 0
     place: int = 0
-    note: int = NOT_KNOWN
 
 
 @dataclasses.dataclass(slots=True)

@@ -11,7 +11,7 @@ from ballscrew_monitor.core.state import Event, State
 from ballscrew_monitor.judge import records, views
 from ballscrew_monitor.judge.many import Judged, ManyJudge
 from ballscrew_monitor.judge.monitor import MOST_OTHERS
-from ballscrew_monitor.recordings.bulk.events import CHECK, Events, Notes, places_of_axis
+from ballscrew_monitor.recordings.bulk.events import CHECK, Events, Notes, places_of_axis, some
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns
 from ballscrew_monitor.recordings.summary import event_record
 from ballscrew_monitor.settings.axis import Axis
@@ -179,7 +179,8 @@ def judged_parts(runs: Sequence[AxisRun], events: Events, *, states: bool) -> It
     found: list[tuple[int, int, TimedState]] = []
     for number, run in enumerate(runs):
         places = places_of_axis(events, number)
-        for part in run.take(events[places], states=states):
+        mine = events if len(places) == len(events) else some(events, places)
+        for part in run.take(mine, states=states):
             if isinstance(part, JudgedColumns):
                 yield part
                 continue

@@ -103,6 +103,11 @@ class Bag:
         known.count += 1
         return sentence
 
+    def remark(self, sentence: str) -> None:
+        """Keep what a reader says of the bag, once."""
+        if sentence not in self.remarks:
+            self.remarks.append(sentence)
+
     def require(self, topics: Mapping[str, str]) -> None:
         """Raise InputError unless the bag holds messages of all `topics`, given with type."""
         for name, type_name in topics.items():

@@ -23,7 +23,15 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk.batches import batches, END
 from ballscrew_monitor.recordings.bulk.chunks import Integers, Messages
 from ballscrew_monitor.recordings.bulk.decode import Reader, TopicDecoder, UNDECODABLE
-from ballscrew_monitor.recordings.bulk.events import blank, CHECK, Events, joined, Notes, ticks
+from ballscrew_monitor.recordings.bulk.events import (
+    blank,
+    CHECK,
+    Events,
+    joined,
+    Notes,
+    some,
+    ticks,
+)
 from ballscrew_monitor.recordings.bulk.order import OnDone
 from ballscrew_monitor.recordings.frames import STRING, VERSION
 from ballscrew_monitor.settings import parameters
@@ -94,8 +102,7 @@ def is_as_recorded(bag: Bag, values: Mapping[str, Any]) -> bool:
         return False
     described = _first_entries(bag)
     if not all(map(_is_known, described)):
-        if OTHER_VERSION not in bag.remarks:
-            bag.remarks.append(OTHER_VERSION)
+        bag.remark(OTHER_VERSION)
         return False
     return _values_of(bag, described) == dict(values)
 
@@ -164,7 +171,7 @@ class OwnRecording:
             yield from self._segments(batch.topics)
             on_done(min(max(batch.done, 0.0), 1.0))
         if self._proven + self._refuted:
-            self._bag.remarks.append(self._proof())
+            self._bag.remark(self._proof())
 
     def _segments(self, topics: dict[str, Messages]) -> Iterator[Events]:
         """Yield the events of a batch, in parts between changes of what is read."""
@@ -330,7 +337,7 @@ def as_taken(events: Events, bursts: Integers) -> Events:
 
     """
     by_place = np.lexsort((events['axis'], events['place']))
-    events, bursts = events[by_place], bursts[by_place]
+    events, bursts = some(events, by_place), bursts[by_place]
     count = np.arange(len(events))
     other = bursts != np.roll(bursts, 1)
     alone = events['kind'] >= TICK
@@ -341,7 +348,7 @@ def as_taken(events: Events, bursts: Integers) -> Events:
     new[1:] = (groups[1:] != groups[:-1]) | (stamps[1:] != stamps[:-1])
     first = np.empty(len(order), dtype=np.int64)
     first[order] = order[np.maximum.accumulate(np.where(new, count, 0))]
-    return events[np.lexsort((count, events['source'], first, burst))]
+    return some(events, np.lexsort((count, events['source'], first, burst)))
 
 
 def _entry_of(data: bytes, topic: str) -> Mapping[str, Any]:

@@ -4,7 +4,8 @@
 Records of numbers with one declaration for plain Python and for arrays.
 
 A record is a slotted dataclass whose fields are an int, a float, a bool, or a list of ints or
-floats of fixed length, declared by `many`. Plain Python works on the object, compiled code on an
+floats of fixed length, declared by `many`; an int that is small in arrays is declared by `small`.
+Plain Python works on the object, compiled code on an
 element of a structured array of the same fields: both read and write `record.field` alike.
 
 """
@@ -26,6 +27,11 @@ def many(count: int, start: float) -> Any:
     )
 
 
+def small(kind: type[np.integer[Any]], start: int = 0) -> Any:
+    """Return the declaration of an int that begins as `start`, and of its `kind` in arrays."""
+    return dataclasses.field(default=start, metadata={'kind': kind})
+
+
 def dtype_of(kind: type[Any]) -> np.dtype[Any]:
     """Return the type of an array of records."""
     parts: list[Any] = []
@@ -33,7 +39,7 @@ def dtype_of(kind: type[Any]) -> np.dtype[Any]:
         count = field.metadata.get('count')
         name = str(getattr(field.type, '__name__', field.type))
         if count is None:
-            parts.append((field.name, _KINDS[name]))
+            parts.append((field.name, field.metadata.get('kind', _KINDS[name])))
         else:
             parts.append((field.name, _KINDS[type(field.metadata['start']).__name__], (count,)))
     return np.dtype(parts, align=True)

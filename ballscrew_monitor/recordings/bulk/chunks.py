@@ -1,15 +1,15 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Finds the messages in the chunks of an MCAP file, many at once.
+Finds the messages in the chunks of an MCAP file by one compiled walk over their records.
 
-Where they begin is what the message indexes behind a chunk say; that is believed when they and
-what else stands there fill the chunk without a gap. Otherwise the records are walked one by one.
+What the message indexes behind a chunk say is not asked.
 
 """
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 import dataclasses
+import functools
 import io
 import itertools
 import struct
@@ -22,21 +22,29 @@ from ballscrew_monitor.recordings.mcap_records import (
     MESSAGE,
     read_summary,
     RECORD,
-    walked,
 )
 from mcap.data_stream import ReadDataStream
 from mcap.records import Chunk, ChunkIndex
 import numpy as np
 from numpy.typing import NDArray
 from surrogate import limits
+from surrogate.surface.compiled import compiled
 
 Integers = NDArray[np.int64]
 
 LATEST = 2**62  # [ns] later log times are taken for this one, which leaves room for differences
-MESSAGE_INDEX = 7  # operation code of a record
 LONGEST = limits.CHUNK + limits.SUMMARY  # [bytes] of a chunk as it stands and its indexes
 PUBLISHED = struct.Struct('<Q')  # the last of the head of a message
 MESSAGE_HEAD = 22  # [bytes] channel, number, log time and publish time
+RECORD_HEAD = RECORD.size
+SHORTEST = RECORD_HEAD + MESSAGE_HEAD  # [bytes] of a record with a message
+TOO_MANY, CUT_OFF, HEADLESS = -1, -2, -3
+DEFECTS = {
+    TOO_MANY: 'it holds more than {most} records',
+    CUT_OFF: 'its last record is cut off',
+    HEADLESS: 'a message has no head',
+}
+"""What is wrong with the records of a chunk."""
 CHANNEL_NUMBER, SEQUENCE, LOG_TIME = RECORD.size, RECORD.size + 2, RECORD.size + 6  # in a record
 
 
@@ -122,11 +130,8 @@ def read_chunk(stream: BinaryIO, place: ChunkIndex) -> Messages:
         length = place.chunk_length + place.message_index_length
         if length > LONGEST:
             raise ChunkDamage(f'it has {length} bytes, allowed are {LONGEST}')
-        raw = stream.read(length)
-        chunk, indexes = raw[: place.chunk_length], raw[slice(place.chunk_length, None)]
-        data = _records(chunk, place.uncompressed_size)
-        starts = _indexed(data, indexes, length)
-        return _messages(data, _walked(data, length) if starts is None else starts)
+        data = _records(stream.read(place.chunk_length), place.uncompressed_size)
+        return _messages(data, _starts(data, length))
     except ChunkDamage:
         raise
     except DAMAGE as error:
@@ -144,65 +149,50 @@ def _records(raw: bytes, size: int) -> bytes:
     return chunk_data(chunk)
 
 
-def _indexed(data: bytes, indexes: bytes, stored: int) -> Integers | None:
-    """
-    Return where message records begin by the `indexes`, None if these do not tell of all.
-
-    Of records that are none at most as many are passed as the chunk has `stored` [bytes].
-
-    """
-    parts, at = [], 0
-    while at + RECORD.size <= len(indexes):
-        code, length = RECORD.unpack_from(indexes, at)
-        at += RECORD.size
-        if code == MESSAGE_INDEX and length >= 6 and at + length <= len(indexes):
-            pairs = np.frombuffer(indexes, '<u8', (length - 6) // 16 * 2, at + 6)
-            parts.append(pairs[1::2].astype(np.int64))
-        at += length
-    if not parts:
-        return None
-    starts = np.sort(np.concatenate(parts))
-    if len(starts) > limits.RECORDS:
-        raise ChunkDamage(f'it holds more than {limits.RECORDS} records')
-    return starts if _fill(data, starts, stored) else None
+def _starts(data: bytes, stored: int) -> Integers:
+    """Return where message records begin in a chunk of `stored` [bytes]; raises ChunkDamage."""
+    most = min(limits.RECORDS, stored)  # the reason is that of `mcap_records.walked`
+    starts = np.empty(min(most, len(data) // SHORTEST) + 1, dtype=np.int64)
+    count = int(compiled_record_walk()(np.frombuffer(data, np.uint8), starts, most))
+    if count in DEFECTS:
+        raise ChunkDamage(DEFECTS[count].format(most=most))
+    return starts[:count]
 
 
-def _fill(data: bytes, starts: Integers, stored: int) -> bool:
-    """Tell whether messages at `starts`, and records that are none, fill all of the data."""
-    last = len(data) - RECORD.size - MESSAGE_HEAD
-    if not len(starts) or starts[0] < 0 or starts[-1] > last:
-        return False
-    if (np.frombuffer(data, np.uint8)[starts] != MESSAGE).any():
-        return False
-    ends = starts + RECORD.size + unaligned(data, '<i8')[starts + 1]
-    gaps = np.flatnonzero(ends[:-1] != starts[1:])
-    holes = [(0, starts[0]), *((ends[gap], starts[gap + 1]) for gap in gaps)]
-    return _hold_no_message(data, [*holes, (ends[-1], len(data))], stored)
+@functools.cache
+def compiled_record_walk() -> Any:
+    """Return `message_starts`, compiled where there is numba."""
+    try:
+        return compiled(message_starts)
+    except ImportError:
+        return message_starts
 
 
-def _hold_no_message(data: bytes, holes: Iterable[tuple[int, int]], most: int) -> bool:
-    """Tell whether at most so many records, none of them a message, fill holes of the data."""
-    for begin, end in holes:
-        while begin + RECORD.size <= end:
-            code, length = RECORD.unpack_from(data, begin)
-            most -= 1
-            if code == MESSAGE or most < 0:
-                return False
-            begin += RECORD.size + length
-        if begin != end:
-            return False
-    return True
-
-
-def _walked(data: bytes, stored: int) -> Integers:
-    """Return where message records begin, one after another, in a chunk of `stored` [bytes]."""
-    return np.array([at for code, at in walked(data, stored) if code == MESSAGE], dtype=np.int64)
+def message_starts(data: Any, starts: Any, most: int) -> int:
+    """Put where messages begin into `starts`; return how many, or one of `DEFECTS`."""
+    at, count, records = 0, 0, 0
+    while at + RECORD_HEAD <= len(data):
+        length = np.int64(0)
+        for place in range(7, -1, -1):
+            if length > len(data):
+                return CUT_OFF
+            length = length << 8 | np.int64(data[at + 1 + place])
+        records += 1
+        if records > most:
+            return TOO_MANY
+        if length > len(data) - at - RECORD_HEAD:
+            return CUT_OFF
+        if data[at] == MESSAGE:
+            if length < MESSAGE_HEAD:
+                return HEADLESS
+            starts[count] = at
+            count += 1
+        at += RECORD_HEAD + int(length)
+    return count if at == len(data) else CUT_OFF
 
 
 def _messages(data: bytes, starts: Integers) -> Messages:
     length = unaligned(data, '<i8')[starts + 1]
-    if (length < MESSAGE_HEAD).any():
-        raise ChunkDamage('a message has no head')
     begin = starts + RECORD.size + MESSAGE_HEAD
     return Messages(
         data=data,

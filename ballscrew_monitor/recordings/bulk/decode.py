@@ -1,30 +1,33 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Events out of the serialised messages of a topic, those of equal layout at once.
+Events out of the serialised messages of a topic, many at once.
 
-What has no layout, and whatever is to be refused, is decoded one by one as the node does it.
-One that does not decode is counted and named.
+What the layout of the type does not reach is decoded one by one, as the node does it. A message
+that does not decode is counted and named.
 
 """
 
 from collections.abc import Iterable, Sequence
+import contextlib
 import itertools
+import math
 from typing import Any
 
-from ballscrew_monitor.core.conversions import seconds
+from ballscrew_monitor.core.conversions import SECOND, seconds
 from ballscrew_monitor.core.fields import OtherJoints, TooShort
-from ballscrew_monitor.core.inputs import Input, short_text, StampSource, Why
+from ballscrew_monitor.core.inputs import Input, short_text, StampSource, Why, YEAR
 from ballscrew_monitor.judge.monitor import EARLIEST, LATEST
-from ballscrew_monitor.judge.records import REFUSAL
+from ballscrew_monitor.judge.records import NOT_KNOWN, REFUSAL
 from ballscrew_monitor.messages.reasons import joint_reason, slow_reason
 from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_monitor.recordings.bulk.chunks import Messages
-from ballscrew_monitor.recordings.bulk.events import blank, event_of, Events, joined, Notes
-from ballscrew_monitor.recordings.bulk.layout import Layout, NoLayout, reads_alike
+from ballscrew_monitor.recordings.bulk.events import BLANK, blank, event_of, Events, joined, Notes
+from ballscrew_monitor.recordings.bulk.layout import Layout, NoLayout, Outcome
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.parameters import absolute
 import numpy as np
+from numpy.typing import NDArray
 from rclpy.serialization import deserialize_message
 
 # What deserialising is known to raise; that of the middleware is a RuntimeError.
@@ -109,9 +112,6 @@ def _joined(readings: Sequence[OtherJoints | TooShort]) -> OtherJoints | TooShor
     return OtherJoints(first.array, first.joint, tuple(names))
 
 
-MOST_LAYOUTS = 32  # of a topic; what is still different then is decoded one by one
-NEW_LAYOUTS = 4  # that are looked for in a batch
-
 Reader = tuple[int, Axis, Input]
 """The number of an axis, the axis, and an input of it."""
 
@@ -130,7 +130,7 @@ class TopicDecoder:
 
     def __init__(self, bag: Bag, readers: list[Reader], notes: Notes, *, ahead: int = 0) -> None:
         """
-        Begin without a layout; `bag` counts what does not decode, `notes` keep what is named.
+        Lay out the messages; `bag` counts what does not decode, `notes` keep what is named.
 
         Stamps may be `ahead` [ns] of the clock beside what an axis allows.
 
@@ -138,93 +138,78 @@ class TopicDecoder:
         self._bag, self._readers, self._notes = bag, readers, notes
         self._topic = absolute(readers[0][2].topic)
         self._type, self._ahead = readers[0][2].message_type, ahead
-        self._layouts: list[Layout] = []
+        self._named: dict[Any, int] = {}
+        self._layouts: list[Layout] | None = None
+        with contextlib.suppress(NoLayout):
+            self._layouts = [Layout(source) for _, _, source in readers]
+        if self._layouts is None:
+            bag.remark(f'the messages of {self._topic} are decoded one by one, which is slow')
 
     def events(self, messages: Messages) -> Events:
         """Return what the messages say, in any order."""
-        parts: list[Events] = []
-        rest, tried, most = messages, 0, len(self._layouts) + NEW_LAYOUTS
-        while len(rest) and tried < most:
-            if tried == len(self._layouts) and not self._learn(rest.content(0)):
-                break
-            layout = self._layouts[tried]
-            tried += 1
-            fits = layout.fits(rest.data, rest.begin, rest.size)
-            if fits.any():
-                parts += self._read(layout, rest if fits.all() else rest.some(fits))
-                rest = rest.some(~fits)
-        return joined([*parts, self._one_by_one(rest)])
+        if self._layouts is None:
+            return self._one_by_one(messages)
+        begin, size = messages.begin, messages.size
+        walked = [layout.walk(messages.data, begin, size) for layout in self._layouts]
+        readable = np.ones(len(messages), dtype=bool)
+        for each in walked:
+            readable &= each['outcome'] != Outcome.UNREADABLE
+        if not readable.all():
+            parts = [self._one_by_one(messages.some(~readable))]
+            messages, walked = messages.some(readable), [each[readable] for each in walked]
+        else:
+            parts = []
+        for reader, layout, each in zip(self._readers, self._layouts, walked, strict=True):
+            parts.append(self._read(messages, reader, layout, each))
+        return joined(parts)
 
-    def _learn(self, example: bytes) -> bool:
-        """Take the layout of a message, if it has one that reads what the decoder reads."""
-        if len(self._layouts) == MOST_LAYOUTS:
-            return False
-        try:
-            layout = Layout(example, self._type)
-            message = deserialize_message(example, self._type)
-        except (NoLayout, *UNDECODABLE):
-            return False
-        if not all(reads_alike(layout, example, message, each) for _, _, each in self._readers):
-            return False
-        self._layouts.append(layout)
-        return True
-
-    def _read(self, layout: Layout, messages: Messages) -> list[Events]:
-        parts = []
-        for number, axis, source in self._readers:
-            found = layout.find(source)
-            if isinstance(found, int):
-                parts += self._samples(layout, messages, found, (number, axis, source))
-            elif isinstance(found, OtherJoints):
-                now = messages.log_time
-                others = self._blank(messages, number, source, stamp=now, arrival=now)
-                others['kind'], others['why'] = REFUSAL, int(Why.OTHER_JOINTS)
-                others['note'] = self._notes.number(found)
-                parts.append(others)
-            else:
-                parts.append(self._one_by_one(messages, [(number, axis, source)]))
-        return parts
-
-    def _samples(
-        self, layout: Layout, messages: Messages, place: int, reader: Reader
-    ) -> list[Events]:
-        """Return the samples of one input, and what is refused of them."""
+    def _read(self, messages: Messages, reader: Reader, layout: Layout, walked: Any) -> Events:
+        """Return what one input reads, refused for the same reasons as by `Input.read`."""
         number, axis, source = reader
-        now = messages.log_time
-        scaling = source.scaling
+        now, outcome = messages.log_time, walked['outcome']
         with np.errstate(invalid='ignore', over='ignore'):
-            value = layout.numbers(messages.data, messages.begin, place)
-            value = value * scaling.factor + scaling.shift
-        stamp = np.zeros_like(now)
-        if source.stamped:
-            stamp = layout.stamps(messages.data, messages.begin)
-        limit = axis.max_future + self._ahead
-        bad = ~np.isfinite(value) | (stamp < 0) | ((now != 0) & (stamp - now > limit))
-        samples = self._blank(
-            messages,
-            number,
-            source,
-            stamp=np.where(stamp == 0, now, stamp),
-            arrival=np.where(now == 0, stamp, now),
-            value=value,
-            stamp_source=np.where(stamp != 0, StampSource.HEADER, StampSource.RECEIVE),
-        )
-        if not bad.any():
-            return [samples]
-        return [samples[~bad], self._one_by_one(messages.some(bad), [reader])]
-
-    def _blank(self, messages: Messages, number: int, source: Input, **columns: Any) -> Events:
-        """Return an event for each message, with its place and these columns."""
-        for name in ('stamp', 'arrival'):
-            columns[name] = np.clip(columns[name], EARLIEST, LATEST)
-        return blank(
+            raw = layout.numbers(walked)
+            value = raw * source.scaling.factor + source.scaling.shift
+        stamp = walked['seconds'] * SECOND + walked['nanoseconds']
+        events = blank(
             len(messages),
             axis=number,
             source=source.source,
-            log_time=messages.log_time,
+            log_time=now,
             place=messages.place,
-            **columns,
+            stamp=np.clip(np.where(stamp == 0, now, stamp), EARLIEST, LATEST),
+            arrival=np.clip(np.where(now == 0, stamp, now), EARLIEST, LATEST),
+            value=value,
+            stamp_source=np.where(stamp != 0, StampSource.HEADER, StampSource.RECEIVE),
         )
+        limit = axis.max_future + self._ahead
+        early = (now != 0) & (stamp - now > limit)
+        others = outcome == Outcome.OTHER_JOINTS
+        for which, why, first, second in (
+            (~np.isfinite(value), Why.NOT_A_NUMBER, raw, math.nan),
+            (early, Why.FUTURE, seconds(stamp - now), seconds(limit)),
+            (early & (stamp - now > YEAR), Why.OTHER_CLOCK, seconds(stamp - now), seconds(limit)),
+            (stamp < 0, Why.NEGATIVE, math.nan, math.nan),
+            (outcome == Outcome.TOO_SHORT, Why.TOO_SHORT, walked['bits'], layout.array),
+            (others, Why.OTHER_JOINTS, math.nan, math.nan),
+        ):
+            _refuse(events, which, why, first, second)
+        for at in np.flatnonzero(others).tolist():
+            names = slice(int(walked['names_begin'][at]), int(walked['names_end'][at]))
+            events['note'][at] = self._note(messages, at, messages.data[names], source)
+        return events
+
+    def _note(self, messages: Messages, at: int, names: bytes, source: Input) -> int:
+        """Return the number of the joints that a message names, decoded when they first come."""
+        key = source.source, source.field, names
+        if key not in self._named:
+            absent = source.read_field(deserialize_message(messages.content(at), self._type))
+            assert isinstance(absent, OtherJoints)
+            number = self._notes.number(absent)
+            if number == NOT_KNOWN:
+                return number
+            self._named[key] = number
+        return self._named[key]
 
     def _one_by_one(self, messages: Messages, readers: list[Reader] | None = None) -> Events:
         events: list[Events] = []
@@ -239,3 +224,17 @@ class TopicDecoder:
                 read = source.read(decoded, now=now, max_future=limit)
                 events.append(event_of(read, self._notes, axis=number, log_time=now, place=place))
         return joined(events)
+
+
+def _refuse(events: Events, which: NDArray[np.bool_], why: Why, first: Any, second: Any) -> None:
+    """Turn some events into refusals with two numbers, each an array or one for all."""
+    if not which.any():
+        return
+    blank_of = BLANK[0]
+    for name in ('value', 'stamp_source'):
+        events[name][which] = blank_of[name]
+    events['kind'][which], events['why'][which] = REFUSAL, int(why)
+    events['stamp'][which] = np.clip(events['log_time'][which], EARLIEST, LATEST)
+    events['arrival'][which] = events['stamp'][which]
+    events['first'][which] = np.broadcast_to(first, which.shape)[which]
+    events['second'][which] = second

@@ -67,8 +67,20 @@ def event_of(
 
 def joined(parts: Sequence[Events]) -> Events:
     """Return all events of `parts`, one part after the other."""
-    parts = [part for part in parts if len(part)]
-    return parts[0] if len(parts) == 1 else np.concatenate(parts or [np.empty(0, EVENT)])
+    parts = [part for part in parts if len(part)] or [np.empty(0, EVENT)]
+    return (
+        parts[0] if len(parts) == 1 else np.concatenate([_raw(part) for part in parts]).view(EVENT)
+    )
+
+
+def some(events: Events, which: NDArray[Any]) -> Events:
+    """Return some of the events by their places, or by what is true of them."""
+    return _raw(events)[which].view(EVENT)
+
+
+def _raw(events: Events) -> NDArray[Any]:
+    """Return events as bytes, which numpy copies at once, and fields one after the other."""
+    return events.view(np.dtype((np.void, EVENT.itemsize)))
 
 
 def ticks(stamps: Any, *, place: int, axis: Any = ALL_AXES) -> Events:

@@ -11,17 +11,25 @@ time, after the samples of equal stamp.
 
 from collections.abc import Callable, Iterator
 import heapq
+from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.judge.records import SAMPLE
 from ballscrew_monitor.judge.step import BACKWARD_JUMP
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk.batches import batches
+from ballscrew_monitor.recordings.bulk.chunks import Integers
 from ballscrew_monitor.recordings.bulk.decode import readers_by_topic, TopicDecoder
-from ballscrew_monitor.recordings.bulk.events import Events, joined, Notes, TICK_SOURCE, ticks
+from ballscrew_monitor.recordings.bulk.events import (
+    Events,
+    joined,
+    Notes,
+    some,
+    TICK_SOURCE,
+    ticks,
+)
 from ballscrew_monitor.settings.axis import Axis
 import numpy as np
-from numpy.typing import NDArray
 
 REORDER = nanoseconds(1.0)  # [ns] log time over which samples are put into the order of stamps
 LONGEST_HOLE = nanoseconds(60.0)  # [ns] between two messages that is filled with ticks
@@ -44,38 +52,130 @@ def ordered_events(
     """
     readers = readers_by_topic(axes)
     decoders = {topic: TopicDecoder(bag, wanted, notes) for topic, wanted in readers.items()}
-    arrivals, order = Arrivals(period), StampOrder()
+    order = EventOrder(period)
     for batch in batches(bag, decoders.keys()):
         decoded = [decoders[topic].events(found) for topic, found in batch.topics.items()]
-        yield order.push(arrivals.push(joined(decoded), batch.until))
+        yield order.push(joined(decoded), batch.until)
         on_done(batch.done)
     yield order.finish()
 
 
-class Arrivals:
-    """Puts events into the order of their log times, with the ticks between them."""
+class _Keys(NamedTuple):
+    """By what events are ordered: stamp and log time [ns], source, and axis with source."""
+
+    stamp: Integers
+    log_time: Integers
+    source: Integers
+    line: Integers  # -1 for what is no sample
+
+    def some(self, which: Any) -> '_Keys':
+        return _Keys(*(column[which] for column in self))
+
+
+def _keys_of(events: Events) -> _Keys:
+    line = events['axis'].astype(np.int64) * (TICK_SOURCE + 1) + events['source']
+    line[events['kind'] != SAMPLE] = -1
+    source = events['source'].astype(np.int64)
+    return _Keys(events['stamp'].copy(), events['log_time'].copy(), source, line)
+
+
+class EventOrder:
+    """
+    Puts events into the order of judging, with the ticks between them.
+
+    They arrive in the order of their log times, and leave in that of their stamps.
+
+    """
 
     def __init__(self, period: int) -> None:
         """Begin with nothing; a tick is due at every multiple of `period` [ns]."""
         self._period = period
-        self._waiting = joined([])
-        self._last: int | None = None  # log time that has been passed
+        self._later = self._waiting = joined([])  # not arrived yet; arrived
+        self._passed: int | None = None  # the last log time
+        self._past = LOWEST, 0  # largest stamp that has been handed on, and its source
+        self._last: dict[int, int] = {}  # stamps [ns] by axis and source
 
     def push(self, events: Events, until: int) -> Events:
-        """Return what was logged before `until` [ns], of these events and of those before."""
-        everything = joined([self._waiting, events])
-        ready = everything['log_time'] < until
-        self._waiting = everything[~ready]
-        arrived = everything[ready]
-        if not len(arrived):
-            return arrived
-        arrived = joined([arrived, self._ticks(np.sort(arrived['log_time']))])
-        return arrived.take(np.lexsort((arrived['place'], arrived['log_time'])))
+        """Return what is judged next when all has arrived that was logged before `until` [ns]."""
+        events = joined([self._later, events])
+        ready = events['log_time'] < until
+        self._later = some(events, ~ready)
+        events = events if ready.all() else some(events, ready)
+        if not len(events):
+            return events
+        arrival = np.lexsort((events['place'], events['log_time']))
+        times = events['log_time'][arrival]
+        due, before = self._ticks(times), len(self._waiting)
+        everything = joined([self._waiting, events, due])
+        at = np.searchsorted(times, due['stamp'], 'right')
+        arrived = np.insert(arrival, at, len(events) + np.arange(len(due)))
+        return self._take(
+            everything, np.concatenate([np.arange(before), before + arrived]), before
+        )
 
-    def _ticks(self, times: NDArray[np.int64]) -> Events:
+    def _take(self, events: Events, arrival: Integers, before: int) -> Events:
+        """Return what leaves of the events, which have arrived so; some of them waited before."""
+        keys = _keys_of(events).some(arrival)
+        leaving: list[Integers] = []
+        waiting, begin = np.arange(before), before
+        for cut in [*(before + cut for cut in self._cuts(keys.some(slice(before, None)))), None]:
+            end = len(arrival) if cut is None else cut
+            present = np.concatenate([waiting, np.arange(begin, end)])
+            order, ready = self._order(keys.some(present), len(waiting))
+            leaving.append(present[order[:ready]])
+            waiting, begin = present[np.sort(order[ready:])], end
+            self._pass(keys.some(leaving[-1]))
+            if cut is not None:
+                leaving.append(waiting[_by_stamp(keys.some(waiting))])
+                waiting, self._past = waiting[:0], (LOWEST, 0)
+        self._waiting = some(events, arrival[waiting])
+        return some(events, arrival[np.concatenate(leaving)])
+
+    def finish(self) -> Events:
+        """Return the rest."""
+        rest, self._waiting = self._waiting, joined([])
+        self._past = LOWEST, 0
+        return some(rest, _by_stamp(_keys_of(rest)))
+
+    def _pass(self, leaving: _Keys) -> None:
+        """Remember the largest stamp that has left."""
+        if len(leaving.stamp):
+            last = int(leaving.stamp.max())
+            self._past = max(self._past, (last, int(leaving.source[leaving.stamp == last].max())))
+
+    def _cuts(self, arrived: _Keys) -> list[int]:
+        """Return where a clock is set back: what comes before the new time line comes before."""
+        cuts = []
+        for line in set(np.unique(arrived.line).tolist()) - {-1}:
+            at = np.flatnonzero(arrived.line == line)
+            stamp = arrived.stamp[at]
+            before = np.concatenate([[self._last.get(line, stamp[0])], stamp[:-1]])
+            cuts += at[before - stamp > BACKWARD_JUMP].tolist()
+            self._last[line] = int(stamp[-1])
+        return sorted(set(cuts))
+
+    def _order(self, keys: _Keys, before: int) -> tuple[Integers, int]:
+        """Return the places of the events by stamp, and how many of them are ready."""
+        if not len(keys.stamp):
+            return np.arange(0), 0
+        if not self._is_plain(keys):
+            return _one_by_one(keys, before)
+        order = _by_stamp(keys)
+        young = keys.log_time[-1] - keys.log_time[order] <= REORDER
+        return order, int(young.argmax())
+
+    def _is_plain(self, keys: _Keys) -> bool:
+        """Return True if nothing comes before what may have been handed on when it arrived."""
+        stamp, (past, source) = keys.stamp, self._past
+        largest = np.maximum.accumulate(stamp)
+        gone = np.searchsorted(keys.log_time, keys.log_time - REORDER)
+        later = (stamp > past) | ((stamp == past) & (keys.source >= source))
+        return bool((later & ((gone == 0) | (stamp > largest[gone - 1]))).all())
+
+    def _ticks(self, times: Integers) -> Events:
         """Return the ticks up to the last of some log times, but few in a long hole."""
-        first = int(times[0]) if self._last is None else self._last
-        self._last = int(times[-1])
+        first = int(times[0]) if self._passed is None else self._passed
+        self._passed = int(times[-1])
         times = np.concatenate([[first], times])
         holes = np.flatnonzero(np.diff(times) > LONGEST_HOLE)
         begins = [first, *times[holes + 1].tolist()]
@@ -84,102 +184,34 @@ class Arrivals:
         for hole in holes:
             begin, end = int(times[hole]), int(times[hole + 1])
             grids.append(self._grid(begin, min(end, self._ceiling(begin) + LONGEST_HOLE)))
-        stamps = np.concatenate(grids)
-        return ticks(stamps, place=LAST)
+        return ticks(np.sort(np.concatenate(grids)), place=LAST)
 
-    def _grid(self, begin: int, end: int) -> NDArray[np.int64]:
+    def _grid(self, begin: int, end: int) -> Integers:
         return np.arange(self._ceiling(begin), end, self._period, dtype=np.int64)
 
     def _ceiling(self, time: int) -> int:
         return -(-time // self._period) * self._period
 
 
-class StampOrder:
-    """Puts events that arrive into the order of their stamps."""
-
-    def __init__(self) -> None:
-        """Begin with nothing."""
-        self._waiting = joined([])
-        self._past = LOWEST, 0  # largest stamp that has been handed on, and its source
-        self._last: dict[int, int] = {}  # stamps [ns] by axis and source
-
-    def push(self, arrived: Events) -> Events:
-        """Return what is to be judged next, of what has arrived now and before."""
-        parts, begin = [], 0
-        for cut in self._cuts(arrived):
-            parts += [self._push(arrived[begin:cut]), self.finish()]
-            begin = cut
-        return joined([*parts, self._push(arrived[begin:])])
-
-    def _cuts(self, arrived: Events) -> list[int]:
-        """Return where a clock is set back: what comes before the new time line comes before."""
-        cuts = []
-        lines = arrived['axis'] * (TICK_SOURCE + 1) + arrived['source']
-        samples = arrived['kind'] == SAMPLE
-        for line in np.unique(lines[samples]).tolist():
-            at = np.flatnonzero(samples & (lines == line))
-            stamp = arrived['stamp'][at]
-            before = np.concatenate([[self._last.get(line, stamp[0])], stamp[:-1]])
-            cuts += at[before - stamp > BACKWARD_JUMP].tolist()
-            self._last[line] = int(stamp[-1])
-        return sorted(set(cuts))
-
-    def _push(self, arrived: Events) -> Events:
-        everything = joined([self._waiting, arrived])
-        if not len(everything):
-            return everything
-        order, ready = self._order(everything, len(self._waiting))
-        ordered = everything[order[:ready]]
-        self._waiting = everything[np.sort(order[ready:])]
-        if ready:
-            last = int(ordered['stamp'].max())
-            of_last = int(ordered['source'][ordered['stamp'] == last].max())
-            self._past = max(self._past, (last, of_last))
-        return ordered
-
-    def finish(self) -> Events:
-        """Return the rest."""
-        rest, self._waiting = self._waiting, joined([])
-        self._past = LOWEST, 0
-        return rest[_by_stamp(rest)]
-
-    def _order(self, events: Events, before: int) -> tuple[NDArray[np.intp], int]:
-        """Return the places of the events by stamp, and how many of them are ready."""
-        if not self._is_plain(events):
-            return _one_by_one(events, before)
-        order = _by_stamp(events)
-        young = events['log_time'][-1] - events['log_time'][order] <= REORDER
-        return order, int(young.argmax())
-
-    def _is_plain(self, events: Events) -> bool:
-        """Tell whether nothing comes before what may have been handed on when it arrived."""
-        stamp, (past, source) = events['stamp'], self._past
-        largest = np.maximum.accumulate(stamp)
-        gone = np.searchsorted(events['log_time'], events['log_time'] - REORDER)
-        later = (stamp > past) | ((stamp == past) & (events['source'] >= source))
-        return bool((later & ((gone == 0) | (stamp > largest[gone - 1]))).all())
-
-
-def _by_stamp(events: Events) -> NDArray[np.intp]:
+def _by_stamp(keys: _Keys) -> Integers:
     """Return the places of events that have arrived in this order by stamp and source."""
-    if not len(events):
-        return np.empty(0, dtype=np.intp)
-    first = int(events['stamp'].min())
-    if int(events['stamp'].max()) - first >= RANGE:
-        return np.lexsort((events['source'], events['stamp']))
-    return np.argsort((events['stamp'] - first) * 8 + events['source'], kind='stable')
+    if not len(keys.stamp):
+        return np.arange(0)
+    first = int(keys.stamp.min())
+    if int(keys.stamp.max()) - first >= RANGE:
+        return np.lexsort((keys.source, keys.stamp))
+    return np.argsort((keys.stamp - first) * 8 + keys.source, kind='stable')
 
 
-def _one_by_one(events: Events, before: int) -> tuple[NDArray[np.intp], int]:
+def _one_by_one(keys: _Keys, before: int) -> tuple[Integers, int]:
     """Return the same where some come too late to be put into order; `before` waited already."""
-    stamps, sources = events['stamp'].tolist(), events['source'].tolist()
-    log_times = events['log_time'].tolist()
-    keys = list(zip(stamps, sources, range(len(events))))
-    waiting, ready = keys[:before], []
+    log_times = keys.log_time.tolist()
+    places = list(zip(keys.stamp.tolist(), keys.source.tolist(), range(len(log_times))))
+    waiting, ready = places[:before], []
     heapq.heapify(waiting)
-    for key, log_time in zip(keys[before:], log_times[before:]):
-        heapq.heappush(waiting, key)
+    for place, log_time in zip(places[before:], log_times[before:]):
+        heapq.heappush(waiting, place)
         while log_time - log_times[waiting[0][2]] > REORDER:
             ready.append(heapq.heappop(waiting)[2])
-    rest = [key[2] for key in sorted(waiting)]
-    return np.array(ready + rest, dtype=np.intp), len(ready)
+    rest = [place[2] for place in sorted(waiting)]
+    return np.array(ready + rest, dtype=np.int64), len(ready)

@@ -2,17 +2,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """Numbers are read at their places in serialised messages, whatever stands before them."""
 
+from ballscrew_monitor.core.cdr import HEADER
 from ballscrew_monitor.core.conversions import Scaling
-from ballscrew_monitor.core.fields import OtherJoints, TooShort
 from ballscrew_monitor.core.inputs import OpenInput, Source
-from ballscrew_monitor.recordings.bulk.layout import Layout, NoLayout, reads_alike
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from ballscrew_monitor.recordings.bulk.layout import Layout, NoLayout, Outcome, walk_many, WALKED
 from geometry_msgs.msg import PoseWithCovarianceStamped, WrenchStamped
+from hypothesis import given
+from hypothesis import strategies as st
 import numpy as np
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import BatteryState, Imu, JointState, Temperature
-from std_msgs.msg import Byte, Empty, Float32, Float64, Int64, UInt64
+from std_msgs.msg import (
+    Byte,
+    Float32,
+    Float64,
+    Float64MultiArray,
+    Int64,
+    MultiArrayDimension,
+    UInt64,
+)
 
 JOINT = 'sensor_msgs/msg/JointState'
 
@@ -56,66 +65,101 @@ def name_of(message):
     return f'{type(message).__module__.split(".")[0]}/msg/{type(message).__name__}'
 
 
+def walk(source, *messages):
+    """Return the layout of an input, and what it finds in messages one behind the other."""
+    parts = [each if isinstance(each, bytes) else serialize_message(each) for each in messages]
+    size = np.array([len(part) for part in parts])
+    layout = Layout(source)
+    return layout, layout.walk(b''.join(parts), np.cumsum(size) - size, size)
+
+
 @pytest.mark.parametrize(('field', 'message'), CASES)
 def test_a_number_is_read_as_from_the_message(field, message):
-    data = serialize_message(message)
     source = reader(name_of(message), field)
-    layout = Layout(data, type(message))
-    assert isinstance(layout.find(source), int)
-    assert reads_alike(layout, data, deserialize_message(data, type(message)), source)
+    layout, walked = walk(source, message)
+    assert walked['outcome'] == Outcome.NUMBER
+    (found,) = layout.numbers(walked)
+    decoded = deserialize_message(serialize_message(message), type(message))
+    np.testing.assert_equal(found, source.read_field(decoded))
 
 
 def test_what_is_not_there_is_said_as_from_the_message():
-    message = JointState(name=['a'], velocity=[])
-    layout = Layout(serialize_message(message), JointState)
-    assert layout.find(reader(JOINT, 'velocity[x]')) == OtherJoints('velocity', 'x', ('a',))
-    assert layout.find(reader(JOINT, 'velocity[a]')) == TooShort('velocity', 'a', 0)
+    message = JointState(name=['a', 'bc'], velocity=[])
+    _, (other,) = walk(reader(JOINT, 'velocity[x]'), message)
+    assert other['outcome'] == Outcome.OTHER_JOINTS
+    names = serialize_message(message)[other['names_begin'] : other['names_end']]
+    assert names.replace(b'\0', b'') == b'\x02a\x03bc'
+    for field, array in (('velocity[a]', 0), ('velocity[2]', 0)):
+        layout, (short,) = walk(reader(JOINT, field), message)
+        assert (short['outcome'], short['bits']) == (Outcome.TOO_SHORT, 0)
+        assert layout.array == array
+    _, (short,) = walk(reader(JOINT, 'velocity[bc]'), JointState(name=['bc'] * 3, velocity=[1.0]))
+    assert short['outcome'] == Outcome.NUMBER
+    _, (short,) = walk(reader(JOINT, 'effort[2]'), JointState(effort=[1.0, 2.0]))
+    assert (short['outcome'], short['bits']) == (Outcome.TOO_SHORT, 2)
 
 
-def fits(layout, *messages):
-    """Return which messages that stand one behind the other fit."""
-    parts = [each if isinstance(each, bytes) else serialize_message(each) for each in messages]
-    size = np.array([len(part) for part in parts])
-    return layout.fits(b''.join(parts), np.cumsum(size) - size, size).tolist()
-
-
-def test_only_messages_with_equal_lengths_and_texts_fit():
-    first = JointState(name=['a', 'b'], velocity=[3.0, 4.0])
-    layout = Layout(serialize_message(first), JointState)
-    others = JointState(name=['a', 'b'], velocity=[-1.0, 5.0])
-    others.header.stamp.sec = 7
-    renamed = JointState(name=['a', 'c'], velocity=[3.0, 4.0])
-    moved = JointState(name=['a', 'b'], position=[3.0, 4.0])
-    longer = JointState(name=['a', 'b'], velocity=[3.0, 4.0, 5.0])
-    big_endian = b'\0\0' + serialize_message(first)[2:]
-    different = (renamed, moved, longer, big_endian, b'')
-    assert fits(layout, first, others, *different) == [True] * 2 + [False] * 5
-
-
-def test_stamps_are_in_the_header_and_nested_messages_have_places():
+def test_stamps_are_in_the_header():
     message = wrench(1.0)
     message.header.stamp.sec, message.header.stamp.nanosec = -5, 999_999_999
-    data = serialize_message(message)
-    layout = Layout(data, WrenchStamped)
-    stamps = layout.stamps(data, np.zeros(1, dtype=np.int64))
-    assert stamps.tolist() == [-5 * 10**9 + 999_999_999]
-    status = DiagnosticStatus(name='n', values=[KeyValue(key='k', value='v')])
-    message = DiagnosticArray(status=[status, status])
-    layout = Layout(serialize_message(message), DiagnosticArray)
-    assert fits(layout, message) == [True]
+    _, (walked,) = walk(reader('geometry_msgs/msg/WrenchStamped', 'wrench.force.x'), message)
+    assert (walked['seconds'], walked['nanoseconds']) == (-5, 999_999_999)
+
+
+@pytest.mark.parametrize('dimensions', [0, 1, 3])
+def test_a_number_behind_a_list_of_messages_is_found(dimensions):
+    message = Float64MultiArray(data=[1.0, 2.5])
+    message.layout.dim = [
+        MultiArrayDimension(label='abc'[:at], size=at) for at in range(dimensions)
+    ]
+    source = reader('std_msgs/msg/Float64MultiArray', 'data[1]')
+    whole = serialize_message(message)
+    layout, walked = walk(source, message, whole[:-9])
+    assert layout.numbers(walked)[0] == 2.5
+    assert walked['outcome'].tolist() == [Outcome.NUMBER, Outcome.UNREADABLE]
 
 
 @pytest.mark.parametrize(
-    ('kind', 'data'),
+    ('kind', 'field'),
     [
-        (WrenchStamped, serialize_message(WrenchStamped())[:-4]),
-        (WrenchStamped, b''),
-        (Float64, b'\0\0\0\0' + bytes(8)),
-        (JointState, serialize_message(JointState())[:16] + b'\xff' * 12),
-        (Empty, serialize_message(Empty())),
+        ('sensor_msgs/msg/MultiDOFJointState', 'wrench[0].force.x'),
+        ('visualization_msgs/msg/InteractiveMarkerControl', 'interaction_mode'),
     ],
-    ids=['cut off', 'empty', 'another form', 'absurd length', 'no field'],
+    ids=['a number within a list of messages', 'lists within lists'],
 )
-def test_a_message_without_places_has_no_layout(kind, data):
+def test_a_type_that_the_steps_do_not_reach_has_no_layout(kind, field):
     with pytest.raises(NoLayout):
-        Layout(data, kind)
+        Layout(reader(kind, field))
+
+
+UNREADABLE = {
+    'cut off': serialize_message(JointState(velocity=[1.0], effort=[2.0]))[:-5],
+    'empty': b'',
+    'another form': b'\0\0' + serialize_message(JointState(velocity=[1.0]))[2:],
+    'absurd length': serialize_message(JointState())[:16] + b'\xff' * 12,
+    'no ASCII': serialize_message(JointState(name=['\u00e9'], velocity=[1.0])),
+}
+
+
+@pytest.mark.parametrize('data', UNREADABLE.values(), ids=UNREADABLE)
+def test_what_a_walk_does_not_understand_is_left_to_the_decoder(data):
+    _, walked = walk(reader(JOINT, 'velocity[0]'), JointState(velocity=[3.0]), data)
+    assert walked['outcome'].tolist() == [Outcome.NUMBER, Outcome.UNREADABLE]
+
+
+@given(st.binary(max_size=120), st.sampled_from(['velocity[0]', 'velocity[a]', 'effort[3]']))
+def test_any_bytes_are_walked_within_their_bounds(data, field):
+    """Interpreted, so that a place out of bounds is an error; the compiled walk says the same."""
+    data = HEADER + data
+    layout = Layout(reader(JOINT, field))
+    told = np.zeros(1, dtype=WALKED)
+    walk_many(
+        np.frombuffer(data, np.uint8),
+        np.zeros(1, np.int64),
+        np.array([len(data)]),
+        layout.steps,
+        layout.joint,
+        told.view(np.recarray),
+    )
+    compiled = layout.walk(data, np.zeros(1, np.int64), np.array([len(data)]))
+    assert told.tobytes() == compiled.tobytes()

@@ -22,11 +22,10 @@ from ballscrew_monitor.recordings.bulk.events import (
     ticks,
 )
 from ballscrew_monitor.recordings.bulk.order import (
-    Arrivals,
+    EventOrder,
     LONGEST_HOLE,
     ordered_events,
     REORDER,
-    StampOrder,
 )
 from ballscrew_monitor.recordings.mcap_file import message_definition
 from ballscrew_monitor.settings import parameters
@@ -45,6 +44,7 @@ from std_msgs.msg import Float32, Float64
 MS = 1_000_000
 BEGIN = 1_700_000_000_000 * MS
 PERIOD = 100 * MS
+NEVER, END = 2**62, 2**63 - 1  # no tick is due, all has arrived
 TYPES = {
     '/joint_states': 'sensor_msgs/msg/JointState',
     '/axial_load': 'geometry_msgs/msg/WrenchStamped',
@@ -336,21 +336,21 @@ def one_by_one(found):
 def test_batches_come_in_the_order_of_a_heap(steps, cuts):
     wait, lags, sources = zip(*steps)
     found = samples(BEGIN + np.cumsum(wait) * MS, lags, sources)
-    order, values = StampOrder(), []
+    order, values = EventOrder(NEVER), []
     bounds = sorted({0, len(found), *(min(cut, len(found)) for cut in cuts)})
     for begin, end in zip(bounds, bounds[1:]):
-        values += order.push(found[begin:end])['value'].tolist()
+        values += order.push(found[begin:end], END)['value'].tolist()
     values += order.finish()['value'].tolist()
     assert values == one_by_one(found)
 
 
 def test_stamps_decades_apart_are_ordered_and_arrivals_wait():
     found = samples([BEGIN, BEGIN, BEGIN], [0, BEGIN // MS, 1], [0, 1, 0])
-    order = StampOrder()
-    parts = [order.push(found), order.finish()]
+    order = EventOrder(NEVER)
+    parts = [order.push(found, END), order.finish()]
     assert joined(parts)['value'].tolist() == [1.0, 2.0, 0.0]
     found = samples([BEGIN + 3 * MS, BEGIN + MS, BEGIN + 2 * MS], [0, 0, 0], [0, 0, 0])
-    arrivals = Arrivals(1000 * MS)
-    first = arrivals.push(found, BEGIN + 3 * MS)
-    assert first['value'][first['kind'] != TICK].tolist() == [1.0, 2.0]
-    assert arrivals.push(joined([]), BEGIN + 4 * MS)['value'].tolist()[-1] == 0.0
+    order = EventOrder(1000 * MS)
+    parts = [order.push(found, BEGIN + 3 * MS), order.push(joined([]), BEGIN + 4 * MS)]
+    everything = joined([*parts, order.finish()])
+    assert everything['value'][everything['kind'] != TICK].tolist() == [1.0, 2.0, 0.0]
