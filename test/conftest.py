@@ -3,6 +3,8 @@
 """The sentences that tests ask for by a key, and the nominal cycle as a bag, whole and in part."""
 
 from contextlib import contextmanager
+from functools import cache
+import gc
 import importlib
 from importlib.abc import MetaPathFinder
 import os
@@ -116,6 +118,10 @@ class Skipper(MetaPathFinder):
             pytest.skip(f'{name} is not installed', allow_module_level=True)
 
 
+# Thousands of tests are a million objects that live on, among which garbage is rarely looked for:
+# that took a quarter of the time until the first test began.
+gc.set_threshold(50_000, 20, 20)
+
 sys.meta_path.append(Skipper())
 sys.path.append(str(ROOT / 'bags'))  # the generators are scripts beside each other
 
@@ -124,10 +130,14 @@ def pytest_collection_modifyitems(items):
     """Mark what is fast, all but what is named as slow; linters come first, so long are they."""
     items.sort(key=lambda item: item.get_closest_marker('linter') is None)
     for item in items:
-        path = item.path.relative_to(ROOT / 'test')
-        slow = any(path.is_relative_to(name) for name in SLOW)
-        if not slow and not SLOW_FIXTURES & set(item.fixturenames):
+        if not is_slow(item.path) and SLOW_FIXTURES.isdisjoint(item.fixturenames):
             item.add_marker('fast')
+
+
+@cache
+def is_slow(path):
+    """Return True if a file of tests, or a folder above it, is named as slow."""
+    return any(path.is_relative_to(ROOT / 'test' / name) for name in SLOW)
 
 
 def _pause():

@@ -54,6 +54,18 @@ def turns(intake):
         intake.execute(None).send(None)
 
 
+def rest(intake, monkeypatch):
+    """
+    Let a turn without messages pass on a watch: the next one may last as long as any.
+
+    On a busy machine a turn before it may have lasted for all of `STAY`.
+
+    """
+    with monkeypatch.context() as patch:
+        patch.setattr(intake, 'drain', lambda: False)
+        turns(intake)
+
+
 class Bench:
     """A node with an intake, publishers beside it, and what was taken."""
 
@@ -248,6 +260,7 @@ def test_closed_and_opened_again_while_another_thread_waits(bench):
 
 def test_without_messages_a_turn_is_short_and_with_them_as_long_as_allowed(bench, monkeypatch):
     watch, looks = Watch(monkeypatch), []
+    rest(bench.intake, monkeypatch)
     for comes, length in ((False, QUIET), (True, STAY)):
         monkeypatch.setattr(bench.intake, 'drain', lambda comes=comes: looks.append(0) or comes)
         begin = watch.now
@@ -258,6 +271,7 @@ def test_without_messages_a_turn_is_short_and_with_them_as_long_as_allowed(bench
 
 def test_after_a_turn_of_full_length_the_next_one_is_a_single_look(bench, monkeypatch):
     Watch(monkeypatch)
+    rest(bench.intake, monkeypatch)
     looks, counts = [], []
     monkeypatch.setattr(bench.intake, 'drain', lambda: looks.append(0) or True)
     for _ in range(4):
@@ -277,8 +291,9 @@ def test_a_message_that_comes_within_a_turn_is_taken_within_it(bench, monkeypatc
             bench.publish('speed', 2)
 
     bench.begin_anew(take)
-    bench.publish('speed', 1)
     Watch(monkeypatch, may_go_on=lambda: len(taken) != 1)
+    rest(bench.intake, monkeypatch)
+    bench.publish('speed', 1)
     bench.until(lambda: taken)
     assert taken == [1.0, 2.0]
 
@@ -297,8 +312,10 @@ def test_messages_without_end_leave_the_others_their_turn(bench, monkeypatch):
         return come
 
     bench.begin_anew(take)
+    watch = Watch(monkeypatch)
+    rest(bench.intake, monkeypatch)
+    watch.now, watch.may_go_on = 0.0, has_come
     bench.publish('speed', 0)
-    watch = Watch(monkeypatch, has_come)
     bench.until(lambda: taken)
     assert watch.now >= STAY
     steady = Clock(clock_type=ClockType.STEADY_TIME)
