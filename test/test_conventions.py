@@ -180,7 +180,7 @@ def misspelt_units(text):
 
 
 def missing_header(text):
-    """A line with the interpreter may stand before it."""
+    # A line with the interpreter may stand before it.
     if not text.startswith(HEADER) and not text.partition('\n')[2].startswith(HEADER):
         yield 1, 'no copyright and licence'
 
@@ -200,7 +200,7 @@ def functions_of_tests(text):
 
 
 def hidden_tests(text):
-    """A second test of a name hides the first."""
+    """Yield each test whose name hides another one."""
     first = {}
     for node in functions_of_tests(text):
         if first.setdefault(node.name, node) is not node:

@@ -153,7 +153,7 @@ def beyond_the_lookup(path, named):
 
 
 def upward(path, named):
-    """A folder imports itself and the floors below it; no folder imports the command line."""
+    # A folder imports itself and the floors below it; no folder imports the command line.
     own = room(name_of(path))
     floor = next((at for at, rooms in enumerate(FLOORS) if own in rooms), len(FLOORS))
     above = {other for rooms in FLOORS[floor:] for other in rooms if other != own}
@@ -164,7 +164,7 @@ def upward(path, named):
 
 
 def upward_offline(path, named):
-    """A folder imports itself and the floors below it; two import a few modules alone."""
+    # A folder imports itself and the floors below it; two import a few modules alone.
     own = room(name_of(path))
     offline = [(line, name) for line, name in named if name.startswith('surrogate.')]
     others = [(line, name) for line, name in offline if room(name) != own]
