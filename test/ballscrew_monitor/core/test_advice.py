@@ -92,7 +92,9 @@ def test_no_advice_names_a_load_or_a_sign(core, speed, load, temperature, effici
     point = core.point(speed=speed, axial_load=load, temperature=temperature)
     limits = core.limits(efficiency=efficiency)
     advisor = Advisor(point=point, surface=SURFACE, limits=limits, speed_allowed=free)
-    message = out_of_zone_message('x', Event(number=1, active=True, advisor=advisor), shelved=False)
+    message = out_of_zone_message(
+        'x', Event(number=1, active=True, advisor=advisor), shelved=False
+    )
     assert math.isnan(message.cause.target_load)
     said = r'(at this load run at [\d.e+]+ rev/min(; asperities (surely|perhaps) carry here)?)?'
     assert re.fullmatch(said, message.advice)
