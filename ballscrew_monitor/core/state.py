@@ -68,7 +68,8 @@ class MonitorSettings:
     than `tick_period` [ns] ahead of the tick. Stamps more than `max_lag` [ns] behind their arrival
     are warned of. Samples whose amount is above that in `plausible` [SI] are refused, and with
     `one_source` those of an input that several publishers send. With a `derivation` the load is
-    derived from the motor torque, with `positions` the samples of the speed are positions.
+    derived from the motor torque, with `positions` the samples of the speed are positions. Advice
+    names another speed only if `speed_allowed`: the process leaves it free.
 
     """
 
@@ -80,6 +81,7 @@ class MonitorSettings:
     max_future: int = 0
     max_lag: int = YEAR
     one_source: bool = True
+    speed_allowed: bool = False
     tick_period: int = 0
     plausible: Mapping[Source, float] = dataclasses.field(default_factory=dict)
     derivation: LoadDerivation | None = None

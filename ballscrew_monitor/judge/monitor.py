@@ -203,9 +203,7 @@ class Monitor:
     @property
     def event(self) -> Event:
         """Return the event that is active, or the last one."""
-        made = views.event_of(
-            self.memory, self.surface, self._settings.limits, self.ending, self.nearest
-        )
+        made = views.event_of(self.memory, self.surface, self._settings, self.ending, self.nearest)
         if made != self._told:  # the advice of one event is worked out once
             self._told = made
         return self._told

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.health.assess import assess, HealthSettings, recent_of
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import learned, LEAST_MOTION, named_or_why
@@ -37,7 +38,8 @@ class AxisHistory:
     """
     What one recording holds of one axis: comparable points and the spectrum of its loads.
 
-    `surface` is the file it was judged with; `last` [ns] is the stamp of its last row.
+    `surface` is the file it was judged with; `last` [ns] is the stamp of its last row. Advice may
+    name another speed if `speed_allowed`.
 
     """
 
@@ -48,6 +50,7 @@ class AxisHistory:
     points: Sequence[ComparablePoint]
     bins: Sequence[SpectrumBin]
     always_free: bool = False
+    speed_allowed: bool = False
 
 
 class HistoryMaker:
@@ -66,17 +69,18 @@ class HistoryMaker:
         self._last = int(block.stamp[-1])
         self._take(self._collector.take_many(block))
 
-    def history(self, axis: str, surface: Path, limits: Limits) -> AxisHistory:
+    def history(self, axis: str, surface: Path, settings: MonitorSettings) -> AxisHistory:
         """Return what came of all blocks."""
         self._take(self._collector.finish())
         return AxisHistory(
             axis=axis,
             surface=str(surface),
-            limits=limits,
+            limits=settings.limits,
             last=self._last,
             points=tuple(self._points.values()),
             bins=tuple(merged_bins(self._bins)),
             always_free=self._always_free,
+            speed_allowed=settings.speed_allowed,
         )
 
     def _take(self, found: Collected) -> None:
@@ -120,7 +124,8 @@ def healths(
     Yield the health of one axis after each of its recordings, in the order of their stamps.
 
     The baseline is that of `days`, begin and end [ns], or learned over the first `over` [s] in
-    motion. All are held against the surface of the last recording.
+    motion. All are held against the surface of the last recording. Its parameters let the advice
+    name another speed, or `speed_allowed` does.
 
     """
     ordered = sorted(histories, key=lambda one: one.last)
@@ -130,7 +135,7 @@ def healths(
     settings = HealthSettings(
         limits=ordered[-1].limits,
         co2_per_kwh=co2_per_kwh,
-        speed_allowed=speed_allowed,
+        speed_allowed=speed_allowed or ordered[-1].speed_allowed,
         always_free=ordered[-1].always_free,
     )
     points: dict[Any, ComparablePoint] = {}

@@ -64,10 +64,11 @@ def _course(
             f'{folder}: axis {axis} was gathered with another surface than {surface.screw_name}, '
             f'{surface.oil_name}: name the parameters of the node with --params'
         )
+    judged = settings_of(axis, values, surface)
     settings = HealthSettings(
-        limits=settings_of(axis, values, surface).limits,
+        limits=judged.limits,
         co2_per_kwh=co2_per_kwh,
-        speed_allowed=speed_allowed,
+        speed_allowed=speed_allowed or judged.speed_allowed,
         always_free=values[f'{axis}.health.always_free'],
     )
     periods = [(one.first_day, one.days) for one in kept.points]

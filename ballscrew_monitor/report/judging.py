@@ -279,7 +279,7 @@ class CaseMaker:
         if self._history is None:
             return None
         file = surface_file(self._axis, self._values)
-        return self._history.history(self._axis, file, self._settings.limits)
+        return self._history.history(self._axis, file, self._settings)
 
     def _setting(self, source: Source) -> InputSetting:
         prefix, values = f'{self._axis}.{source.name.lower()}', self._values

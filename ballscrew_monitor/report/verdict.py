@@ -5,7 +5,6 @@
 from collections.abc import Mapping, Sequence
 import dataclasses
 import enum
-import math
 
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Reason
@@ -177,18 +176,12 @@ def _why(events: tuple[EventRecord, ...]) -> str:
 
 
 def _advice(case: AxisCase) -> str:
-    """Return the strictest advice for each cause, and what there is none for."""
-    events = case.worst_first
+    """Return the strictest advice for each cause, empty where there is none."""
+    events = [event for event in case.worst_first if event.advice]
     parts = []
     for quantity in dict.fromkeys(event.quantity for event in events):
-        advised = [event for event in events if event.quantity == quantity and event.advice]
-        by_speed = [event for event in advised if math.isfinite(event.target_speed)]
-        parts += [f'as {_of(group, "strictest")}' for group in _by_strictness(by_speed) if group]
-        by_load = [event for event in advised if event not in by_speed]
-        parts += [f'as {_of(by_load, "worst")}'] if by_load else []
-    helpless = [event for event in events if not event.advice and event.place]
-    if helpless:
-        parts.append(f'{_of(helpless, "worst")}: change both, or look at oil and temperature')
+        advised = [event for event in events if event.quantity == quantity]
+        parts += [_strictest_of(group) for group in _by_strictness(advised) if group]
     return f'{list_of(parts)}.' if parts else ''
 
 
@@ -200,12 +193,12 @@ def _by_strictness(events: Sequence[EventRecord]) -> tuple[list[EventRecord], li
     return [event for event in fastest_first if event not in slower], slower
 
 
-def _of(events: Sequence[EventRecord], rank: str) -> str:
-    """Return what to do about the first of some events, and what it is among them."""
+def _strictest_of(events: Sequence[EventRecord]) -> str:
+    """Return the advice on the first of some events, and what it is among them."""
     first = events[0]
-    others = f', the {rank} of {len(events)}' if len(events) > 1 else ''
+    others = f', the strictest of {len(events)}' if len(events) > 1 else ''
     place = f' (at {first.place})' if first.place else ''
-    return f'in warning {first.event_id}{others}{place}, {first.what_to_do}'
+    return f'as in warning {first.event_id}{others}{place}, {first.advice}'
 
 
 def _unjudged_part(case: AxisCase, summary: Summary) -> str:

@@ -5,12 +5,16 @@
 from functools import cache
 import math
 from pathlib import Path
+import re
 
 from ballscrew_monitor.core.conversions import kelvin, SECOND
+from ballscrew_monitor.core.judgement import Code
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.report.balance import Balance
-from ballscrew_monitor.report.judging import judge_log
-from ballscrew_monitor.report.parameters import parameters_for
+from ballscrew_monitor.report.judging import judge_log, RCS
+from ballscrew_monitor.report.parameters import LogParameters, parameters_for
+from ballscrew_monitor.report.printed import log_lines
 from ballscrew_monitor.settings.axis import load_surface
 from ballscrew_monitor.settings.parameters import read_file
 import pytest
@@ -21,6 +25,8 @@ from surrogate.units import RPM
 
 ROOT = Path(__file__).resolve().parents[2]
 TINY = 1e-9
+NOMINAL = 'nominal_cycle'
+ADVICE = r'at this load run at [\d.]+ rev/min(; asperities (surely|perhaps) carry here)?'
 
 
 @cache
@@ -159,3 +165,33 @@ def test_no_input_of_a_scenario_is_accused_of_contradicting_the_others(judged, n
     bag = Bag(judged.folder / name)
     log = judge_log(bag, parameters_for(bag, bag.path / PARAMETERS, ROOT / 'config' / 'none.yaml'))
     assert {case.axis: case.balance for case in log.axes} == {'x': Balance()}
+
+
+@pytest.fixture(params=[NOMINAL, *MADE])
+def bag_and_values(request, judged, nominal_bag):
+    """Return the bag of each scenario and the parameters that it is judged with."""
+    if request.param == NOMINAL:
+        return Bag(nominal_bag), read_file(ROOT / 'config' / 'nominal_cycle.yaml')
+    judged(request.param)
+    bag = Bag(judged.folder / request.param)
+    return bag, read_file(bag.path / PARAMETERS)
+
+
+@pytest.mark.parametrize('free', [False, True])
+def test_no_load_is_advised_and_a_speed_only_where_the_process_leaves_it_free(
+    bag_and_values, free
+):
+    """Neither in a message nor in a report; contact ends at some speed in each scenario."""
+    bag, values = bag_and_values
+    values = values | {'x.advice.speed': free}
+    told = [event for _, event in replay(bag, values) if event is not None]
+    log = judge_log(bag, LogParameters(values=values, origin='mine'))
+    (case,) = log.axes
+    said = [(one.cause.code == Code.RCS_HIGH, one.cause.target_speed, one.advice) for one in told]
+    said += [(one.quantity == RCS, one.target_speed, one.advice) for one in case.outcome.events]
+    for in_contact, speed, advice in said:
+        assert bool(advice) is math.isfinite(speed)
+        assert re.fullmatch(ADVICE, advice) if advice else not (free and in_contact)
+        assert free or not advice
+    assert all(math.isnan(one.cause.target_load) for one in told)
+    assert 'load with' not in '\n'.join(log_lines(log))

@@ -5,6 +5,7 @@
 import dataclasses
 import math
 
+from ballscrew_monitor.core.advice import SCAN_POINTS
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
@@ -36,7 +37,7 @@ KEPT = Memory(
 def slow_is_bad(core, memory=None, **limits):
     """Return a monitor that warns below 30 rad/s."""
     surface = core.surface(rcs=lambda speed, load: 1.0 if speed < 30.0 else 0.0)
-    made = core.monitor(surface, core.limits(**limits))
+    made = core.monitor(surface, core.limits(**limits), speed_allowed=True)
     if memory is not None:
         made.take_up(memory)
     return made
@@ -82,15 +83,30 @@ def test_an_event_begins_and_ends_with_its_facts(core):
 
 def test_the_state_that_raises_does_not_wait_for_the_advice(core):
     """One lookup for a sample, as ever; the scan of the surface comes when it is asked for."""
-    monitor = core.monitor(core.surface(rcs=1.0), core.limits(raise_delay=0))
+    surface, limits = core.surface(rcs=1.0), core.limits(raise_delay=0)
+    monitor = core.monitor(surface, limits, speed_allowed=True)
     (state,) = core.feed(monitor, core.motion(10.0))
     assert state.event.active
     assert len(monitor.surface.asked) == 1
     assert math.isnan(state.event.advice.target_speed)  # bad everywhere
     asked = len(monitor.surface.asked)
-    assert asked > 100
+    assert asked > SCAN_POINTS
     assert monitor.event.advice is state.event.advice
     assert len(monitor.surface.asked) == asked
+
+
+def test_advice_comes_and_goes_with_the_parameter(core):
+    """On the event that stands, too: its place and cause stay."""
+    monitor = slow_is_bad(core, raise_delay=0)
+    core.feed(monitor, core.motion(10.0))
+    before = monitor.event
+    assert before.advice.target_speed == pytest.approx(30.0, rel=1e-5)
+    monitor.settings = dataclasses.replace(monitor.settings, speed_allowed=False)
+    assert monitor.event.advice.text == ''
+    assert math.isnan(monitor.event.advice.target_speed)
+    assert (monitor.event.cause, monitor.event.start) == (before.cause, before.start)
+    monitor.settings = dataclasses.replace(monitor.settings, speed_allowed=True)
+    assert monitor.event == before
 
 
 @pytest.mark.parametrize(

@@ -177,6 +177,17 @@ def test_a_chapter_tells_the_known_and_why_the_rest_is_not(months):
     assert '<td>excluded</td>' in worse
 
 
+def test_a_feed_is_advised_only_where_the_parameters_leave_it_free(months):
+    """Beside the oil, which is advised in any case: a programme of one feed in warm oil."""
+    warm = [dataclasses.replace(one, temperature=320.0) for one in months[0].points[4:6]]
+    bound = dataclasses.replace(months[0], points=warm)
+    free = dataclasses.replace(bound, speed_allowed=True)
+    said = [health_after(one).advice for one in (bound, free)]
+    assert ['oil temperature of 42 degC' in one for one in said] == [True, True]
+    assert ['feeds of' in one for one in said] == [False, True]
+    assert [one.advice for one in healths([bound], speed_allowed=True)] == said[1:]
+
+
 def test_the_baseline_may_be_named_by_its_days(months):
     later = days_of('2024-11-01', '2024-11-30')  # of the second month, after a little wear
     *_, last = healths(months, days=later)

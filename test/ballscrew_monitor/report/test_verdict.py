@@ -75,7 +75,7 @@ def test_outside_says_how_long_why_and_what_to_do(judged, says):
             relation='<',
             worst_value=0.6,
             limit=0.85,
-            advice='at this speed load with -1500 N',
+            advice='',
             target_speed=math.nan,
         ),
     ]
@@ -84,8 +84,7 @@ def test_outside_says_how_long_why_and_what_to_do(judged, says):
     assert verdict.sentence == says('ran_outside_optimal')
     assert says('up_42_load') in verdict.why
     assert says('efficiency_fell_60') in verdict.why
-    assert says('as_warning_1') in verdict.remedy
-    assert 'at this speed load with -1500 N' in verdict.remedy
+    assert verdict.remedy == says('as_warning_1')
 
 
 def remedy(judged, *events):
@@ -114,9 +113,9 @@ def test_the_strictest_advice_stands_for_all_of_its_direction(judged, says):
     assert slower.endswith('run at 50 rad/s.')
 
 
-def test_without_advice_no_more_is_said_than_was_looked_for(judged, says):
+def test_without_advice_nothing_is_advised(judged):
     helpless = {'advice': '', 'target_speed': math.nan}
-    assert remedy(judged, judged.event(1, 0.1, 0.2, **helpless)) == says('warning_1_430')
+    assert remedy(judged, judged.event(1, 0.1, 0.2, **helpless)) == ''
     assert remedy(judged, judged.event(1, 0.1, 0.2, speed=math.nan, **helpless)) == ''
 
 

@@ -3,7 +3,6 @@
 """A page in German holds no English: on a recording with a warning, and of what a node sends."""
 
 import json
-import math
 import re
 import subprocess
 import sys
@@ -98,10 +97,8 @@ def phrases_of_a_node():
         yield phrases.violated('efficiency', 0.7, 0.85, derived=derived)
     for reason in Reason:
         yield phrases.unjudged(reason, 640.0, -900.0, 41.5)
-    for speed, load in ((67.0, 900.0), (-67.0, math.nan), (math.nan, -900.0)):
-        for doubt in phrases.DOUBTS:
-            advice = Advice(target_speed=speed, target_load=load, carry=doubt)
-            yield phrases.advised(advice.text, speed, load)
+    for doubt in phrases.DOUBTS:
+        yield phrases.advised(Advice(target_speed=-67.0, carry=doubt).text, -67.0)
     for health in healths():
         record = records.health_record(health)
         yield from filter(None, (record['verdict'], record['advice']))
