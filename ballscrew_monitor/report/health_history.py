@@ -27,6 +27,7 @@ from ballscrew_monitor.health.records import (
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.recordings.columns import JudgedColumns
+from ballscrew_monitor.report.machines import MachineAxis
 from surrogate.surface import Surface
 
 NAN = math.nan
@@ -37,7 +38,8 @@ class AxisHistory:
     """
     What one recording holds of one axis: comparable points and the spectrum of its loads.
 
-    `surface` is the file it was judged with; `last` [ns] is the stamp of its last row.
+    `surface` is the file it was judged with; `last` [ns] is the stamp of its last row; `machine`
+    is the one that the axis is of.
 
     """
 
@@ -48,6 +50,7 @@ class AxisHistory:
     points: Sequence[ComparablePoint]
     bins: Sequence[SpectrumBin]
     always_free: bool = False
+    machine: str = ''
 
 
 class HistoryMaker:
@@ -66,7 +69,9 @@ class HistoryMaker:
         self._last = int(block.stamp[-1])
         self._take(self._collector.take_many(block))
 
-    def history(self, axis: str, surface: Path, limits: Limits) -> AxisHistory:
+    def history(
+        self, axis: str, surface: Path, limits: Limits, *, machine: str = ''
+    ) -> AxisHistory:
         """Return what came of all blocks."""
         self._take(self._collector.finish())
         return AxisHistory(
@@ -77,6 +82,7 @@ class HistoryMaker:
             points=tuple(self._points.values()),
             bins=tuple(merged_bins(self._bins)),
             always_free=self._always_free,
+            machine=machine,
         )
 
     def _take(self, found: Collected) -> None:
@@ -115,10 +121,12 @@ def healths(
     days: tuple[int, int] | None = None,
     co2_per_kwh: float = NAN,
     speed_allowed: bool = False,
+    title: str = '',
 ) -> Iterator[Health]:
     """
     Yield the health of one axis after each of its recordings, in the order of their stamps.
 
+    `title` names the axis in sentences if its own name does not tell it apart from others.
     The baseline is that of `days`, begin and end [ns], or learned over the first `over` [s] in
     motion. All are held against the surface of the last recording.
 
@@ -147,7 +155,8 @@ def healths(
             else named_or_why(kept, days, screw=screw)
         )
         now = (day_of(one.last) + 1) * DAY - 1
-        yield assess(one.axis, now, baseline, kept, bins, surface, companions, settings)
+        name = title or one.axis
+        yield assess(name, now, baseline, kept, bins, surface, companions, settings)
 
 
 def health_after(history: AxisHistory) -> Health:
@@ -155,15 +164,15 @@ def health_after(history: AxisHistory) -> Health:
     return next(healths([history]))
 
 
-def by_axis(histories: Sequence[AxisHistory]) -> dict[str, list[AxisHistory]]:
-    """Return histories by the name of their axis."""
-    found: dict[str, list[AxisHistory]] = {}
+def by_axis(histories: Sequence[AxisHistory]) -> dict[MachineAxis, list[AxisHistory]]:
+    """Return histories by machine and axis."""
+    found: dict[MachineAxis, list[AxisHistory]] = {}
     for one in histories:
-        found.setdefault(one.axis, []).append(one)
+        found.setdefault(MachineAxis(one.machine, one.axis), []).append(one)
     return found
 
 
-def peers_among(histories: Sequence[AxisHistory]) -> list[Peer]:
+def peers_among(histories: Sequence[AxisHistory], titles: Mapping[MachineAxis, str]) -> list[Peer]:
     """Return how axes with one surface rank over the latest weeks of all of them."""
     found: list[Peer] = []
     for file in dict.fromkeys(one.surface for one in histories):
@@ -171,7 +180,7 @@ def peers_among(histories: Sequence[AxisHistory]) -> list[Peer]:
         if len(axes := by_axis(own)) > FEWEST_PEERS:
             today = day_of(max(one.last for one in own)) + 1
             points = {
-                axis: recent_of([point for one in kept for point in one.points], today)
+                titles[axis]: recent_of([point for one in kept for point in one.points], today)
                 for axis, kept in axes.items()
             }
             found += ranked(points, Surface.load(Path(file)))

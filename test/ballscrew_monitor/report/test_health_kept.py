@@ -4,6 +4,7 @@
 
 import contextlib
 import json
+import shutil
 
 from ballscrew_monitor.cli import main
 from ballscrew_monitor.health.points import add, model_torque
@@ -60,6 +61,19 @@ def test_the_command_follows_what_a_node_gathered(folder, capsys, tmp_path):
     days = [one['stamp_ns'] // DAY - FIRST for one in record['course']]
     assert days == [27, 55, 83]
     assert (out / 'health.png').stat().st_size > 0
+
+
+def test_two_nodes_with_one_axis_x_each_are_told_apart(folder, capsys, tmp_path):
+    other = tmp_path / 'lathe' / 'state'
+    shutil.copytree(folder, other)
+    assert main(['health', str(folder), str(other), '--json']) == 0
+    records = json.loads(capsys.readouterr().out)
+    here = f'{tmp_path.name}/state'
+    assert {key: one['machine'] for key, one in records.items()} == {
+        f'x of {here}': here,
+        'x of lathe/state': 'lathe/state',
+    }
+    assert records['x of lathe/state']['verdict'].startswith('Axis x of lathe/state is worse: ')
 
 
 @pytest.mark.parametrize('name', ['health.json', 'health.png'])
