@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Machines of recordings: an axis of one machine is none of another, even under the same name.
+Machines of recordings, which tell axes of one name apart.
 
 A machine is the name that the map of a log states, else the folder that holds the recording.
 
