@@ -168,8 +168,10 @@ def _read(path: Path) -> TableMap:
 
 def make_map(content: Any) -> TableMap:
     """Return a map made of its content; raises InputError when that is not right."""
-    known = ('log', 'time', 'axes', 'assumed', 'parameters', *LINES)
+    known = ('log', 'time', 'axes', 'assumed', 'parameters', 'machine', *LINES)
     _check_keys('the map', content, known)
+    if 'machine' in content:
+        _check_machine(content['machine'])
     axes = content.get('axes')
     if not isinstance(axes, dict) or not axes:
         raise InputError('axes is missing, it must name at least one axis with its columns')
@@ -197,6 +199,11 @@ def make_map(content: Any) -> TableMap:
     if values:
         raise InputError(f'{next(iter(values))} is unknown')
     return made
+
+
+def _check_machine(name: Any) -> None:
+    if not isinstance(name, str) or not name.strip():
+        raise InputError(f'machine is {name!r}, it must be a text, the name of the machine')
 
 
 def _layout(content: Mapping[str, Any]) -> Layout:

@@ -5,6 +5,7 @@
 import contextlib
 import json
 import math
+import shutil
 
 from ballscrew_monitor.cli import main
 from ballscrew_monitor.health.points import add, model_torque
@@ -75,6 +76,19 @@ def test_another_speed_is_advised_where_the_parameters_or_the_command_let_it(
     options = {'over': 600.0, 'days': None, 'co2_per_kwh': math.nan, 'speed_allowed': option}
     health_kept.kept_healths(folder, values, options)
     assert {one.speed_allowed for one in asked} == {parameter or option}
+
+
+def test_two_nodes_with_one_axis_x_each_are_told_apart(folder, capsys, tmp_path):
+    other = tmp_path / 'lathe' / 'state'
+    shutil.copytree(folder, other)
+    assert main(['health', str(folder), str(other), '--json']) == 0
+    records = json.loads(capsys.readouterr().out)
+    here = f'{tmp_path.name}/state'
+    assert {key: one['machine'] for key, one in records.items()} == {
+        f'x of {here}': here,
+        'x of lathe/state': 'lathe/state',
+    }
+    assert records['x of lathe/state']['verdict'].startswith('Axis x of lathe/state is worse: ')
 
 
 @pytest.mark.parametrize('name', ['health.json', 'health.png'])

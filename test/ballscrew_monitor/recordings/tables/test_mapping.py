@@ -80,6 +80,8 @@ def test_a_map_says_what_is_stated_and_what_is_assumed():
         (changed(axes__x__always_free=True), 'free_load_replaces'),
         (changed(axes__x__free_load_N=-200.0), 'free_load_replaces'),
         (changed(axes__x__free_load_N=True), 'free_load_true'),
+        (changed(machine=3), 'machine_3'),
+        (changed(machine=' '), 'machine_blank'),
         (changed(skip=-1), 'skip_1'),
         (changed(header_rows=True), 'header_rows_true'),
         (changed(axes__x__lead_mm=5.0), 'lead_mm_both_stated'),
