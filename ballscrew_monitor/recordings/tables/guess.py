@@ -207,8 +207,8 @@ class _Guesser:
             )
         unit, *_ = self._unit_of_time(one, values)
         gate = TimeGate()
-        if unit:
-            gate.add(values * conversions.TIME_UNITS[unit], rows)
+        if unit or estimates.has_decimals(values):
+            gate.add(values * conversions.TIME_UNITS[unit or 's'], rows)
         return gate.fault()[0]
 
     def _unit_of_time(self, one: Named, values: Array) -> tuple[str, bool, bool]:

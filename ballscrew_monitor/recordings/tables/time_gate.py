@@ -31,7 +31,9 @@ class TimeGate:
         self._first_fast: tuple[Moment, Moment] | None = None
         self._again: tuple[Moment, Moment] | None = None
         self._streak = 0  # rows that rise up to the last one, all late
-        self._fall = (self._least, self._most)  # that the streak began with
+        self._fall: tuple[Moment, Moment] | None = None  # that the streak began with
+        self._first_fall: tuple[Moment, Moment] | None = None
+        self._rising, self._caught_up = 0, False
 
     def add(self, times: Array, rows: RowNumbers) -> None:
         """Take further times [s], all known, with their rows in the file."""
@@ -64,6 +66,7 @@ class TimeGate:
         """Follow rows that rise though they are late; `times` may begin with the row before."""
         carried = len(times) - len(late)
         rising = times[1:] >= times[:-1]
+        self._rising += int(rising.sum())
         rising = rising if carried else np.append(False, rising)
         follows = late & np.append(self._streak > 0, late[:-1]) & rising
         places = np.arange(len(late))
@@ -75,6 +78,11 @@ class TimeGate:
             if self._again is None and lengths[at] >= AGAIN:
                 self._again = self._fall
         self._streak = int(lengths[-1])
+        first = 0
+        if self._first_fall is None and late.any():
+            first = int(late.argmax())
+            self._first_fall = _pair(times, rows, first + carried - 1)
+        self._caught_up |= self._first_fall is not None and not late[first:].all()
 
     def fault(self) -> tuple[str, str]:
         """Return what no recording does, and the key that decides; empty if all is well."""
@@ -85,8 +93,9 @@ class TimeGate:
                 f'{time:.12g} s',
                 f'name a finer time, or {INSTEAD}',
             )
-        if self._again:
-            (time, row), (earlier, later) = self._again
+        never = not self._caught_up and 2 * self._rising > self._steps
+        if again := self._again or (self._first_fall if never else None):
+            (time, row), (earlier, later) = again
             return (
                 f'time begins again in row {later}, with {earlier:.12g} s after {time:.12g} s in '
                 f'row {row}',
