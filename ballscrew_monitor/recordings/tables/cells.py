@@ -17,6 +17,7 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables import signs
+from ballscrew_monitor.recordings.tables.quantities import OTHER_SIGN
 from ballscrew_monitor.recordings.words import short
 import numpy as np
 from numpy.typing import NDArray
@@ -192,7 +193,7 @@ class Cells:
             return self._counts[0]
         points, commas, *times = self._counts
         if self._decimal:
-            other = self.signs.shows(signs.OTHER[self._decimal])
+            other = self.signs.shows(OTHER_SIGN[self._decimal])
             points = commas = points if (self._decimal == '.') != other else commas
         elif self._separator == ',' and points.good:
             commas = points
@@ -241,7 +242,7 @@ def _holds(texts: pl.Series, mark: str) -> NDArray[np.bool_]:
 
 def _grouped(sign: str, plain: Form) -> Form:
     """Return a form of numbers with a decimal sign, whose thousands the other one may part."""
-    part = signs.OTHER[sign]
+    part = OTHER_SIGN[sign]
     pattern = rf'{signs.thousands(part, "+")}(?:{re.escape(sign)}\d*)?'
 
     def form(texts: pl.Series) -> pl.Series:

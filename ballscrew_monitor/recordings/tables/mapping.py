@@ -24,10 +24,10 @@ from ballscrew_monitor.recordings.tables.quantities import (
     INPUTS,
     Layout,
     MOTION,
+    OTHER_SIGN,
     RATED,
     UNITS,
 )
-from ballscrew_monitor.recordings.tables.signs import OTHER as SIGNS
 from ballscrew_monitor.recordings.words import short
 from ballscrew_monitor.settings.parameters import check_axes, MOTOR_TORQUE
 from surrogate.files import InputError
@@ -218,7 +218,7 @@ def _layout(content: Mapping[str, Any]) -> Layout:
 def _decimal(content: Mapping[str, Any]) -> str:
     """Return the decimal sign that a map states, empty if it leaves that to the cells."""
     sign = content.get('decimal', '')
-    if 'decimal' in content and sign not in tuple(SIGNS):
+    if 'decimal' in content and sign not in tuple(OTHER_SIGN):
         raise InputError(f"decimal is {_said(sign)}, it must be '.' or ','")
     return str(sign)
 

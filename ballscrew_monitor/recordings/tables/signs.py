@@ -11,13 +11,12 @@ from collections.abc import Mapping
 import dataclasses
 import re
 
+from ballscrew_monitor.recordings.tables.quantities import OTHER_SIGN
 from ballscrew_monitor.recordings.words import short
 import numpy as np
 from numpy.typing import NDArray
 import polars as pl
 
-OTHER = {'.': ',', ',': '.'}
-"""Decimal signs, each with the other one."""
 NAMES = {'.': 'point', ',': 'comma'}
 
 
@@ -34,12 +33,12 @@ def are(texts: pl.Series, pattern: str) -> NDArray[np.bool_]:
 
 def _decimal(sign: str) -> str:
     """Return the pattern of numbers with a decimal sign, some of which may be without."""
-    mark, groups = re.escape(sign), thousands(OTHER[sign], '+')
+    mark, groups = re.escape(sign), thousands(OTHER_SIGN[sign], '+')
     plain = rf'(?:\d+{mark}\d*|{mark}\d+)(?:[eE][-+]?\d+)?'
-    return rf'{plain}|{groups}{mark}\d*|{thousands(OTHER[sign], "{2,}")}'
+    return rf'{plain}|{groups}{mark}\d*|{thousands(OTHER_SIGN[sign], "{2,}")}'
 
 
-_DECIMAL = {sign: _decimal(sign) for sign in OTHER}
+_DECIMAL = {sign: _decimal(sign) for sign in OTHER_SIGN}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -79,7 +78,7 @@ class Signs:
         `holding` tells which of them hold each sign; `unread` are no numbers with either one.
 
         """
-        for sign, other in OTHER.items():
+        for sign, other in OTHER_SIGN.items():
             places = np.flatnonzero(holding[sign] | (holding[other] & unread))
             if sign in self._sure or not len(places):
                 continue
@@ -112,10 +111,13 @@ class Signs:
         It is clear unless the numbers of the log hold that one too: `elsewhere` says where.
 
         """
-        return {
-            OTHER[sign]: f'holds {cell.words}, which is {cell.readings(sign)}, for numbers of the '
-            f'log have a decimal {NAMES[OTHER[sign]]}, too, such as {elsewhere[OTHER[sign]]}: '
-            f"state `decimal: '{OTHER[sign]}'` or `decimal: '{sign}'` in the map"
-            for sign, cell in self.doubtful.items()
-            if OTHER[sign] in elsewhere
-        }
+        found = {}
+        for sign, cell in self.doubtful.items():
+            other = OTHER_SIGN[sign]
+            if other in elsewhere:
+                found[other] = (
+                    f'holds {cell.words}, which is {cell.readings(sign)}, for numbers of the log '
+                    f'have a decimal {NAMES[other]}, too, such as {elsewhere[other]}: state '
+                    f"`decimal: '{other}'` or `decimal: '{sign}'` in the map"
+                )
+        return found

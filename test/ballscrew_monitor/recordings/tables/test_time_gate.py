@@ -157,25 +157,25 @@ def test_only_the_rows_of_the_motion_count(read, refused):
 
 
 @pytest.mark.parametrize(
-    ('cells', 'key'),
+    ('form', 'guessed', 'refused'),
     [
-        (lambda at: f'{at:%m/%d/%Y %H:%M:%S.%f}', 'month_first'),
-        (lambda at: f'{at:%Y-%m-%d %I:%M:%S.%f %p}', 'half_days'),
+        ('%m/%d/%Y %H:%M:%S.%f', 'guess_month_first', 'month_first'),
+        ('%Y-%m-%d %I:%M:%S.%f %p', 'guess_half_days', 'half_days'),
     ],
 )
 def test_a_time_that_is_not_read_is_refused_by_each_command(
-    cells, key, tmp_path, write_csv, capsys, says
+    form, guessed, refused, tmp_path, write_csv, capsys, says
 ):
     begin = dt.datetime(2025, 7, 14, 11, 59, 50)
-    times = [cells(begin + dt.timedelta(seconds=row / 20)) for row in range(800)]
+    times = [f'{begin + dt.timedelta(seconds=row / 20):{form}}' for row in range(800)]
     columns = {'Time': times, 'X Feed (mm/min)': [78.5] * 800, 'X Force (N)': [-900.0] * 800}
     log = write_csv(tmp_path / 'log.csv', columns)
     assert cli.main(['import', str(log), '--guess']) == 0
     captured = capsys.readouterr()
-    assert captured.err.splitlines()[-1] == says(f'guess_{key}', log=log)
+    assert captured.err.splitlines()[-1] == says(guessed, log=log)
     mapping, out = tmp_path / 'map.yaml', tmp_path / 'out'
     stated = captured.out.replace('rate_Hz: null', 'column: Time, unit: s')
-    for content, said in ((captured.out, 'blank_rate'), (stated, key)):
+    for content, said in ((captured.out, 'blank_rate'), (stated, refused)):
         mapping.write_text(content)
         for command in (
             ['import', str(log), '--config', str(mapping), '--out', str(out)],
