@@ -67,7 +67,7 @@ class Guess:
         )
         if self.unstated:
             head += '# The log cannot be judged before a value stands where this map says null:\n'
-        head += ''.join(f'#   {why}\n' for why in self.unstated)
+        head += ''.join(f'#   {" ".join(why.split())}\n' for why in self.unstated)
         return head + yaml.safe_dump(
             self.content, sort_keys=False, width=96, allow_unicode=True, default_flow_style=None
         )
@@ -268,8 +268,11 @@ class _Guesser:
                 cells.add(head[one.column])
                 values = cells.reading().numbers(head[one.column])
                 if len(values) > 1 and (np.diff(values) > 0.0).all():
-                    where = f'{head[one.column][0]} in row {self.first_row}'
-                    yield f'column {short(repr(one.column))} rises from {where} on'
+                    cell = short(repr(head[one.column][0]))
+                    yield (
+                        f'column {short(repr(one.column))} rises from {cell} in row '
+                        f'{self.first_row} on'
+                    )
 
     def _motion(self, name: str) -> tuple[Array, Array]:
         """Return positions [m] and speeds [m/s] of an axis."""

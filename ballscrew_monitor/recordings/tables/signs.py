@@ -79,8 +79,10 @@ class Signs:
 
         """
         for sign, other in OTHER_SIGN.items():
+            if sign in self._sure:
+                continue
             places = np.flatnonzero(holding[sign] | (holding[other] & unread))
-            if sign in self._sure or not len(places):
+            if not len(places):
                 continue
             some = texts.gather(places)
             doubtful = are(some, thousands(sign))

@@ -191,6 +191,32 @@ def test_a_time_by_name_comes_before_one_by_unit_and_one_that_does_not_rise_is_s
     assert made.unstated == (says('still_time'),)
 
 
+def test_whole_numbers_may_be_a_time_of_any_unit_and_one_without_a_name_is_told(guessed, says):
+    ticks = [f'{134_000_000_000_000_000 + 200_000 * row}' for row in range(200)]
+    made = guessed({'Time': ticks, 'x_vel': SPEED, 'x_force': SPEED})
+    assert made.content['time'] == {'column': 'Time', 'unit': None}
+    assert made.unstated == (says('ticks_by_name'),)
+    made = guessed({'Name': ticks, 'x_vel': SPEED, 'x_force': SPEED})
+    assert made.content['time'] == {'rate_Hz': None}
+    assert made.unstated == (says('ticks_without_name'),)
+
+
+def test_a_column_of_another_time_is_left_out_where_one_is_read(guessed):
+    columns = {'Time': ['07/14/2025'] * 200, 'time_s': TIME, 'x_vel': SPEED, 'x_force': SPEED}
+    made = guessed(columns)
+    assert made.content['time'] == {'column': 'time_s', 'unit': 's'}
+    assert not made.unstated
+    assert any("'07/14/2025' in row 2; it is left out" in note for note in made.notes)
+
+
+def test_what_a_map_says_first_stays_in_comments(guessed):
+    columns = {'Time': ['1\n: 2'] * 200, 'x_vel': SPEED, 'x_force': SPEED}
+    columns = {name: [f'"{one}"' for one in column] for name, column in columns.items()}
+    made = guessed(columns)
+    assert len(made.unstated) == 1
+    assert yaml.safe_load(made.text) == made.content
+
+
 def test_a_speed_without_a_number_is_none_and_the_position_is_used(guessed, says):
     made = guessed({'time_s': TIME, 'x_speed_mm_s': ['NaN'] * 200, 'x_position_mm': SPEED})
     assert made.content['axes']['x']['position'] == {'column': 'x_position_mm', 'unit': 'mm'}
