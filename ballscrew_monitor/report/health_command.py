@@ -19,6 +19,7 @@ from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import FILE, read_health
 from ballscrew_monitor.health.words import health_record
 from ballscrew_monitor.recordings.opener import opened_log
+from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.report.health_history import (
     AxisHistory,
@@ -49,6 +50,8 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
     """Do what the command line asks for; return the exit code."""
     if args.out is not None:
         check_output(args.out)
+    if args.map is not None:
+        read_map(args.map)
     folders = [path for path in args.logs if (path / FILE).is_file()]
     named = [path for path in args.logs if path not in folders]
     logs = find_logs(named, tables=args.map is not None, out=args.out)
@@ -93,7 +96,12 @@ def check_output(out: Path) -> None:
 def _histories(
     logs: Sequence[Path], args: argparse.Namespace, nominal: Path
 ) -> Iterator[AxisHistory]:
-    """Yield what each recording holds of each axis; one that cannot be read stops no other."""
+    """
+    Yield what each recording holds of each axis; one that cannot be read stops no other.
+
+    Raises InputError when the only one cannot be read.
+
+    """
     bar = Progress(len(logs), 'recordings')
     try:
         for number, log in enumerate(logs):
@@ -110,6 +118,8 @@ def _histories(
                 say(*(f'{log}: check {hint}' for hint in hints_on(case.axes)))
                 yield from (axis.history for axis in case.axes if axis.history is not None)
             except (InputError, SurfaceError) as error:
+                if len(logs) == 1:
+                    raise
                 say(f'{log}: {error}')
         bar.show(len(logs), len(logs))
     finally:

@@ -103,8 +103,8 @@ def _verdict(entries: Sequence[LogEntry], listed: Sequence[Listed]) -> Markup:
         counts[line.standing] += 1
     lost = sum(one.result is None for one in entries)
     sentence = (
-        f'{counts["bad"]} of {len(listed)} axis recordings ran outside the optimal zone with '
-        f'warnings, {counts["good"]} were good, {counts["unknown"]} could not be judged'
+        f'{counts["bad"]} of {len(listed)} axis recordings ran outside the optimal zone, '
+        f'{counts["good"]} were good, {counts["unknown"]} could not be judged'
     )
     sentence += f'; {counted(lost, "recording")} could not be read.' if lost else '.'
     kind = 'bad' if counts['bad'] else 'unknown' if counts['unknown'] or lost else 'good'

@@ -11,8 +11,10 @@ from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 from ballscrew_monitor.recordings.words import counted, duration, list_of, percent, share
 from ballscrew_monitor.report.judging import AxisCase, LogCase, RCS
+from ballscrew_monitor.report.survey import REST
 
 UNKNOWN_PART = 0.5  # of the motion that is not judged, from which on there is no verdict
+OUTSIDE_PART = 0.5  # of the judged motion that is outside, from which on nothing is good
 TOLD_PART = 0.01  # of the motion that is not judged, from which on the verdict says so
 REMEDIES = {
     Reason.NO_DIRECTION: 'record a motion of the axis',
@@ -89,6 +91,10 @@ def _verdict(case: AxisCase) -> AxisVerdict:
     unjudged = summary.unjudged_time / summary.running_time
     if unjudged > UNKNOWN_PART and not summary.events:
         return _unjudged(case, summary, unjudged)
+    judged = summary.optimal_time + summary.outside_time
+    whole = max(summary.running_time, case.survey.possible_motion)
+    if whole - judged > UNKNOWN_PART * whole and not summary.events:
+        return _hardly_judged(case, judged, whole)
     more = _unjudged_part(case, summary) if unjudged > TOLD_PART else ''
     if not summary.outside_time:
         return AxisVerdict(
@@ -136,9 +142,30 @@ def _unjudged(case: AxisCase, summary: Summary, part: float) -> AxisVerdict:
     )
 
 
+def _hardly_judged(case: AxisCase, judged: float, whole: float) -> AxisVerdict:
+    """Return how much [s] was judged of the possible motion, and why no more."""
+    reasons = case.survey.reasons
+    reason = _longest({key: reasons[key] for key in reasons if key is not Reason.STANDSTILL})
+    why = reason.text if reason else 'the reason is not known'
+    if case.survey.rest > (reasons[reason] if reason else 0.0):
+        reason, why = Reason.NO_SPEED, REST
+    return AxisVerdict(
+        sentence=f'axis {case.axis} was judged for {duration(judged)} ({percent(judged / whole)}) '
+        f'of the {duration(whole)} in which it moved or may have moved: {why}.',
+        remedy=_remedy(reason),
+    )
+
+
 def _outside(case: AxisCase, summary: Summary, more: str) -> AxisVerdict:
     part = share(summary.outside_time, summary.running_time)
     time = f'{duration(summary.outside_time)} ({part} of its motion)'
+    judged = summary.optimal_time + summary.outside_time
+    if not summary.events and summary.outside_time > OUTSIDE_PART * judged:
+        return AxisVerdict(
+            standing=VerdictKind.BAD,
+            sentence=f'axis {case.axis} was outside its optimal zone for {time}, each time too '
+            f'briefly for a warning{more}.',
+        )
     if not summary.events:
         return AxisVerdict(
             standing=VerdictKind.GOOD,

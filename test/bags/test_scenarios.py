@@ -167,7 +167,7 @@ def test_no_input_of_a_scenario_is_accused_of_contradicting_the_others(judged, n
     assert {case.axis: case.balance for case in log.axes} == {'x': Balance()}
 
 
-@pytest.fixture(params=[NOMINAL, *MADE])
+@pytest.fixture(params=[NOMINAL, *SCENARIOS])
 def bag_and_values(request, judged, nominal_bag):
     """Return the bag of each scenario and the parameters that it is judged with."""
     if request.param == NOMINAL:

@@ -20,6 +20,7 @@ from ballscrew_monitor.recordings.tables.estimates import FACTOR, NEAR
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import open_table
+from ballscrew_monitor.recordings.tables.time_gate import INSTEAD
 from ballscrew_monitor.recordings.tables.times import joined, line, Rows, Stamps, Times
 from ballscrew_monitor.recordings.words import Shown, shown_progress
 import numpy as np
@@ -87,10 +88,18 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     Raises InputError when it cannot be read by the map.
 
     """
-    optional = [name for name in mapping.columns if name not in mapping.time_columns]
+    columns = mapping.columns
     table = open_table(
-        path, mapping.columns, layout=mapping.layout, optional=optional, shown=shown
+        path,
+        columns,
+        layout=mapping.layout,
+        decimal=mapping.decimal,
+        optional=columns,
+        shown=shown,
     )
+    for name in mapping.time_columns:
+        if name in table.left_out:
+            raise InputError(f'{table.left_out[name]}: name a time that is read, or {INSTEAD}')
     axes = tuple(_readable(axis, table.left_out) for axis in mapping.axes)
     held = dataclasses.replace(mapping, axes=axes)
     times = Times(table, held, shown)

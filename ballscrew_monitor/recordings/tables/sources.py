@@ -51,6 +51,7 @@ class Source:
     """
     A table as it stands in a file: the separator of its cells if it has one, rows about.
 
+    Its first cells stand in the row `first` of the file; lines that begin with # do not count.
     The columns that are read may come to `most` [bytes]: those at rest take next to no room in a
     file of Parquet, so that all of them together tell nothing.
 
@@ -60,12 +61,18 @@ class Source:
     frame: pl.LazyFrame
     separator: str
     rows: int
+    first: int = 1
     most: float = math.inf
 
     def names(self) -> list[str]:
         """Return the names of all columns."""
         with _readable(self.path):
             return self.frame.collect_schema().names()
+
+    def head(self) -> pl.DataFrame:
+        """Return the first rows of all columns; raises InputError."""
+        with _readable(self.path):
+            return self.frame.head(LINES).collect()
 
     def blocks(self, names: Collection[str]) -> Iterator[pl.DataFrame]:
         """Yield the columns `names` in blocks of rows; none is empty. Raises InputError."""
@@ -133,7 +140,9 @@ def _sheet(path: Path, layout: Layout | None) -> Source:
         raise InputError(f'log {path} has {cells.height} rows, none of them names its columns')
     names = heads.names_of(_rows_of(cells[begin:end]))
     frame = cells[end:].rename(dict(zip(cells.columns, names)))
-    return Source(path=path, frame=frame.lazy(), separator='', rows=max(frame.height, 1))
+    return Source(
+        path=path, frame=frame.lazy(), separator='', rows=max(frame.height, 1), first=end + 1
+    )
 
 
 def _cells_of_sheet(path: Path) -> pl.DataFrame:
@@ -245,7 +254,9 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
         truncate_ragged_lines=True,
         eol_char=text.line_end,
     )
-    return Source(path=path, frame=frame, separator=head.separator, rows=text.lines_about)
+    return Source(
+        path=path, frame=frame, separator=head.separator, rows=text.lines_about, first=head.first
+    )
 
 
 def _renamed(names: Sequence[str], held: Sequence[str]) -> list[str]:

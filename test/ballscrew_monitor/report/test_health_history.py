@@ -138,7 +138,7 @@ def test_the_command_tells_what_one_recording_lacks(capsys, tmp_path):
 
 
 def test_where_no_log_can_be_read_nothing_is_written(capsys, tmp_path, says):
-    assert main(['health', 'none.mcap', '--out', str(tmp_path / 'out')]) == 1
+    assert main(['health', 'none.mcap', '--out', str(tmp_path / 'out')]) == 2
     assert capsys.readouterr().err.splitlines()[0] == says('no_log')
     assert not (tmp_path / 'out').exists()
 

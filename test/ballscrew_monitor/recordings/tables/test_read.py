@@ -186,3 +186,22 @@ def test_an_optional_column_without_a_number_is_left_out_with_the_reason(tmp_pat
     assert list(table.head(9)) == ['a']
     assert table.left_out['b'].endswith(says('left_out'))
     assert not table.notes
+
+
+@pytest.mark.parametrize(
+    ('text', 'layout'),
+    [
+        ('a,b\n1,2\n1,oops\n', Layout()),
+        ('# of axis x\n\na,b\n1,2\n1,oops\n', Layout()),
+        ('Maschine;3\nZeit;b\ns;\n0;1\n1;oops\n', Layout(skip=1, header_rows=2)),
+        ('"a\nof two lines",b\r\n1,2\r\n1,oops\r\n', Layout()),
+        ('a,b\n\n1,2\n1,oops\n', Layout()),
+    ],
+    ids=['names', 'comment', 'units', 'name of two lines', 'empty line'],
+)
+def test_rows_are_the_lines_of_the_file(text, layout, tmp_path):
+    table = open_table(text_log(tmp_path, text), ['b'], layout=layout)
+    unknown = table.first_row + np.flatnonzero(np.isnan(table.head(99)['b']))
+    lines = text.splitlines()
+    assert lines[unknown[-1] - 1].endswith('oops')
+    assert f'in row {unknown[0]};' in table.notes[0]
