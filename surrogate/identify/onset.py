@@ -108,7 +108,7 @@ def _crossing(over: Array, factors: Array, none: float) -> float:
 
 def refusal_of(problem: DragProblem, scan: OnsetScan, values: Array) -> str:
     """
-    Return why the onset among the `values` of a fit is none of this screw, empty where it may be.
+    Return why the onset among the `values` of a fit cannot be that of the screw, else nothing.
 
     Drag beside the contacts that fades with the speed takes the friction to its bound, or the
     onset to speeds that were not measured. An upper bound of the onset asks for neither.
