@@ -12,7 +12,7 @@ from dataclasses import field, fields, MISSING, replace
 import math
 from pathlib import Path
 import re
-from typing import Any, ClassVar, TypeVar
+from typing import Any, TypeVar
 
 from surrogate.files import InputError
 from surrogate.limits import read_text
@@ -94,16 +94,9 @@ def key_of(spec: Any) -> str:
 
 
 class Checked:
-    """
-    Base of all datasheets: every declared quantity is finite and inside its range.
-
-    `RETIRED` are keys on file that are not read, `INSTEAD` what to write in their place.
-
-    """
+    """Base of all datasheets: every declared quantity is finite and inside its range."""
 
     __slots__ = ()
-    RETIRED: ClassVar[tuple[str, ...]] = ()
-    INSTEAD: ClassVar[str] = ''
 
     def __post_init__(self) -> None:
         """Raise InputError for a number outside its declared range; None is absent."""
@@ -135,7 +128,6 @@ def read_sheet(cls: type[Sheet], path: Path) -> Sheet:
 def changed_sheet(sheet: Sheet, content: dict[str, Any], where: str) -> Sheet:
     """Return a sheet with some values changed, by their keys on file; raises InputError."""
     specs = {key_of(spec): spec for spec in fields(sheet)}  # type: ignore[arg-type]
-    _check_retired(type(sheet), content, where)
     for key in content:
         if key not in specs:
             raise InputError(f'{where}: {_unknown_key(str(key), specs)}')
@@ -164,7 +156,6 @@ def sheet_of(cls: type[Sheet], content: Any, where: str) -> Sheet:
             f'{where}: must be a mapping of keys to values, got {type(content).__name__}'
         )
     specs = {key_of(spec): spec for spec in fields(cls)}  # type: ignore[arg-type]
-    _check_retired(cls, content, where)
     _check_keys(specs, content, where)
     values = {specs[key].name: _value(specs[key], raw, where) for key, raw in content.items()}
     try:
@@ -173,16 +164,6 @@ def sheet_of(cls: type[Sheet], content: Any, where: str) -> Sheet:
         # A block is named by both the place and the sentence.
         name = f'{where.rpartition(": ")[2]}: '
         raise InputError(f'{where}: {str(error).removeprefix(name)}') from None
-
-
-def _check_retired(cls: type, content: dict[Any, Any], where: str) -> None:
-    """Raise one InputError that names all retired keys and what to write instead."""
-    old = [key for key in content if key in getattr(cls, 'RETIRED', ())]
-    if old:
-        raise InputError(
-            f'{where}: {", ".join(old)} {"is" if len(old) == 1 else "are"} not read, '
-            f'allowed is instead {cls.INSTEAD}'  # type: ignore[attr-defined]
-        )
 
 
 def _check_keys(specs: dict[str, Any], content: dict[Any, Any], where: str) -> None:

@@ -119,9 +119,7 @@ class KeptAxes:
             self.remember_all()
 
     def _log(self) -> None:
-        """Log what is wrong, when that has changed, and what was taken over."""
-        while self.state.notices:
-            self._node.get_logger().info(f'state_dir: {self.state.notices.pop()}')
+        """Log what is wrong when that has changed."""
         problem, before = self.state.problem, self._said
         self._said = problem
         if problem and problem != before:

@@ -54,10 +54,9 @@ class RestartState:
         self.folder = folder
         self.limit = limit
         self.damage: list[str] = []  # sentences on what was set aside
-        self.notices: list[str] = []  # and on what was taken over
         self._database: StateDatabase | None = None
         if folder is not None:
-            self._database = StateDatabase(folder, limit, damage=self.damage, notices=self.notices)
+            self._database = StateDatabase(folder, limit, damage=self.damage)
         self._problem = ''
         self._refused: dict[str, str] = {}  # why the corrections of an axis are not kept
         self._lock = threading.Lock()  # of what waits

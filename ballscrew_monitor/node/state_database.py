@@ -20,7 +20,6 @@ from typing import Any
 
 from ballscrew_monitor.core import sqlite_file
 from ballscrew_monitor.core.memory import AxisRecord, read_record, TYPES
-from ballscrew_monitor.node.former_files import read_former, set_aside
 from ballscrew_monitor.node.state_records import by_key, Corrections, Entry, Record, Records
 from surrogate.files import InputError
 
@@ -45,10 +44,10 @@ TABLE_OF = {AxisRecord: 'axes', Corrections: 'corrections'}
 class StateDatabase:
     """The database in a `folder`, with its journal smaller than a `limit` [B]."""
 
-    def __init__(self, folder: Path, limit: int, *, damage: list[str], notices: list[str]) -> None:
-        """Open nothing yet; sentences on what was found go to `damage` and `notices`."""
+    def __init__(self, folder: Path, limit: int, *, damage: list[str]) -> None:
+        """Open nothing yet; sentences on damage that is found go to `damage`."""
         self.folder, self.limit = folder, limit
-        self._damage, self._notices = damage, notices
+        self._damage = damage
         self._file = folder / FILE
         self._lock = -1
         self._database: Any = None
@@ -124,8 +123,10 @@ class StateDatabase:
         """Return what the file holds; raises ValueError or KeyError for what no node has left."""
         database = self._database = sqlite_file.connected(self._file, self.limit)
         if sqlite_file.is_empty(database, VERSION):
-            self._create()
-        self._notices += set_aside(self.folder)
+            with database:
+                database.execute('BEGIN IMMEDIATE')
+                for statement in TABLES.split(';'):
+                    database.execute(statement)
         if (
             sqlite_file.size_of(self._file) > sqlite_file.SHARE * self.limit
         ):  # a limit of before was larger
@@ -136,16 +137,6 @@ class StateDatabase:
             for table, read in READ.items()
             for row in database.execute(f'SELECT * FROM {table}')
         )
-
-    def _create(self) -> None:
-        """Make the tables, and take over what a node of a former version has left."""
-        entries, records, damage = read_former(self.folder)
-        with self._database as database:
-            database.execute('BEGIN IMMEDIATE')
-            for statement in TABLES.split(';'):
-                database.execute(statement)
-            _write(database, entries, records.values(), sqlite_file.SHARE * self.limit)
-        self._damage += damage
 
     def _last_numbers(self) -> list[Record]:
         """Return records with the numbers of the last events, as far as they can be read."""

@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 from surrogate.asperities.law import VERSION
-from surrogate.files import InputError
 from surrogate.paper.cases import StudyTask
 from surrogate.paper.rows import (
     ContactFields,
@@ -32,7 +31,7 @@ from surrogate.paper.rows import (
 from surrogate.paper.solve import solve_task
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
-from surrogate.tasks.store import store_path, TaskStore
+from surrogate.tasks.store import TaskStore
 
 SCREW, OIL = 'nominal', 'iso_vg_68'
 """Datasheets of the published screw."""
@@ -63,18 +62,8 @@ class Study:
 def run_study(
     folder: Path, wanted: list[StudyTask], pool: Pool, report: Report | None = None
 ) -> Study:
-    """
-    Solve the tasks whose results `folder` does not keep yet; return all that were wanted.
-
-    Raises InputError for a table without a store, which an earlier version left.
-
-    """
+    """Solve the tasks whose results `folder` does not keep yet; return all that were wanted."""
     table, known = folder / TABLE, known_inputs()
-    if table.exists() and not store_path(table).exists():
-        raise InputError(
-            f'{table}: rows without the kept results they come from, allowed is a folder of this '
-            'version or an empty one'
-        )
     before = read_rows(table, known.values())
     tasks = {task.key: asdict(task) | {'inputs': known[task.rolls]} for task in wanted}
     with TaskStore(table, WORK) as store:

@@ -10,7 +10,7 @@ solved is refused with its file.
 
 from dataclasses import dataclass
 import math
-from typing import ClassVar, Literal
+from typing import Literal
 
 from surrogate.datasheet import Checked, choice, count, quantity, text
 from surrogate.files import InputError
@@ -45,17 +45,6 @@ class Roughness(Checked):
     lie, `onset_band` [-].
 
     """
-
-    RETIRED: ClassVar[tuple[str, ...]] = (
-        'fractal_roughness_nm',
-        'sample_length_mm',
-        'shortest_wavelength_um',
-        'film_floor_nm',
-    )
-    INSTEAD: ClassVar[str] = (
-        'cutoff_long_mm, cutoff_short_um, and fractal_dimension or rms_slope_deg, by which Rq is '
-        'that of a profile; film_floor_nm belongs to the lubricant'
-    )
 
     rms: float = quantity('um', 1e-6, 0.0, 10.0)
     cutoff_long: float | None = quantity('mm', 1e-3, 0.001, 100.0, default=None)

@@ -4,8 +4,7 @@
 The surface file: one self-describing .npz with a JSON header, never a pickle.
 
 The hash covers the header without its provenance and every array in name order, little-endian, C
-order. A file that does not verify is refused with one sentence. Version 4 is version 3 with what
-strips of the raceway differ by; both are read.
+order. A file that does not verify is refused with one sentence.
 
 """
 
@@ -30,10 +29,7 @@ Array = NDArray[np.float64]
 Arrays = dict[str, NDArray[Any]]
 
 FORMAT = 'ballscrew_surface'
-FORMAT_VERSION, ENSEMBLE_VERSION = 3, 4
-"""Versions without and with arrays about what strips of the raceway differ by."""
-OLD_VERSIONS = (1, 2)
-"""Versions whose inputs state a roughness of another model."""
+FORMAT_VERSION = 4
 TIERS = ('closed_form', 'full')
 DAMAGE = (
     OSError,
@@ -67,8 +63,7 @@ class SurfaceData:
     per cell. `deviations` and `standard_errors`, of any of the fields in its unit, hold the
     standard deviation between strips of the raceway and the standard error of the mean on the
     nodes, NaN where not known; a tier without strips has none. `header` has the keys format,
-    format_version, tier, inputs, settings and load_breaks; `provenance` is
-    not hashed.
+    format_version, tier, inputs, settings and load_breaks; `provenance` is not hashed.
 
     """
 
@@ -93,11 +88,6 @@ class SurfaceData:
             shape = f'{name} {array.dtype.str} {array.shape}'
             digest.update(shape.encode() + np.ascontiguousarray(array).tobytes())
         return digest.hexdigest()
-
-
-def format_version(ensemble: bool) -> int:
-    """Return the version that a header must state, with or without spreads."""
-    return ENSEMBLE_VERSION if ensemble else FORMAT_VERSION
 
 
 def write(path: str | Path, data: SurfaceData) -> None:
@@ -146,8 +136,6 @@ def from_bytes(path: str | Path, content: bytes) -> SurfaceData:
             f'{path}: damaged surface, content hash {data.sha256[:16]} differs '
             f'from the stated {str(stated)[:16]}'
         )
-    if 'law' in header:
-        raise SurfaceError(f'{path}: built with an earlier law of contact, build it again')
     _check(path, data)
     return data
 
@@ -176,22 +164,13 @@ def _read_arrays(path: str | Path, content: bytes) -> tuple[dict[str, Any], Arra
         raise SurfaceError(f'{path}: not a surface file (.npz with a header)') from None
     if not isinstance(header, dict) or header.get('format') != FORMAT:
         raise SurfaceError(f'{path}: not a surface file, its header is of another format')
-    _check_version(path, header.get('format_version'))
+    version = header.get('format_version')
+    if version != FORMAT_VERSION:
+        raise SurfaceError(
+            f'{path}: surface format version {version}, this program reads version '
+            f'{FORMAT_VERSION}: build it again (ballscrew surface build)'
+        )
     return header, arrays
-
-
-def _check_version(path: str | Path, version: Any) -> None:
-    if version in OLD_VERSIONS:
-        raise SurfaceError(
-            f'{path}: surface format version {version}, the roughness model has changed since: '
-            'build the surface again (ballscrew surface build --screw SCREW --oil OIL --tier TIER '
-            '--out FILE)'
-        )
-    if version not in (FORMAT_VERSION, ENSEMBLE_VERSION):
-        raise SurfaceError(
-            f'{path}: surface format version {version}, '
-            f'this program reads versions {FORMAT_VERSION} and {ENSEMBLE_VERSION}'
-        )
 
 
 def _assemble(header: dict[str, Any], provenance: Any, arrays: Arrays) -> SurfaceData:
@@ -250,14 +229,13 @@ def _has_sound_arrays(data: SurfaceData) -> bool:
 
 
 def _has_sound_ensemble(data: SurfaceData) -> bool:
-    """Tell whether spreads are of known fields, at least 0 or NaN, and the version has them."""
+    """Return True if spreads are of known fields and at least 0 or NaN."""
     spreads = [*data.deviations.values(), *data.standard_errors.values()]
     return (
         set(data.deviations) | set(data.standard_errors) <= set(FIELDS)
         and all(values.shape == data.mask.shape for values in spreads)
         and all(values.dtype == np.float64 for values in spreads)
         and not any(np.any((values < 0) | np.isinf(values)) for values in spreads)
-        and data.header['format_version'] == format_version(bool(spreads))
     )
 
 

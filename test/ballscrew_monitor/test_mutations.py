@@ -224,13 +224,6 @@ def state(folder):
     return folder / 'state.sqlite3'
 
 
-def former_state(folder):
-    path = folder / 'events.jsonl'
-    facts = '{"time": "a", "stamp_ns": 1, "axis": "x", "kind": "shelve", "until": 3}'
-    path.write_text(f'{facts}\n{facts}\n')
-    return path
-
-
 def read_state(path):
     with contextlib.suppress(InputError):
         for entry in read_entries(path.parent):
@@ -268,7 +261,6 @@ SEEDS = {
     'case': (copy_of('surrogate/data/cases/nominal_smooth.yaml'), load_case),
     'surface': (copy_of('test/data/golden_surface.npz'), read_surface_file),
     'state': (state, read_state),
-    'former state': (former_state, read_state),
     'drag': (drag_log, read_drag_csv),
     'profile': (profile, read_surface),
 }

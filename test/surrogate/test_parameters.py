@@ -163,29 +163,6 @@ def test_a_mistake_in_a_datasheet_is_one_sentence(tmp_path, old, new, sentence, 
     assert '\n' not in str(caught.value)
 
 
-OLD = (
-    'fractal_roughness_nm: 0.97',
-    'sample_length_mm: 4.0',
-    'shortest_wavelength_um: 8.0',
-    'film_floor_nm: 3.0',
-)
-
-
-@pytest.mark.parametrize('old', [OLD, OLD[1:3], *((one,) for one in OLD)])
-def test_keys_of_an_old_datasheet_are_named_with_what_to_write_instead(tmp_path, old, refused):
-    """One sentence: the file, every old key that it has, and the keys that took their place."""
-    path = tmp_path / 'screw.yaml'
-    lines = ''.join(f'  {line}\n' for line in old)
-    path.write_text(SCREW.replace('roughness:\n', f'roughness:\n{lines}', 1), encoding='utf-8')
-    names = ', '.join(line.split(':')[0] for line in old) + (' is' if len(old) == 1 else ' are')
-    with refused('old_keys_read', path=path, names=names) as caught:
-        load_screw(str(path))
-    instead = str(caught.value).split('instead', 1)[1]
-    for key in ('cutoff_long_mm', 'cutoff_short_um', 'fractal_dimension', 'rms_slope_deg'):
-        assert key in instead
-    assert '\n' not in str(caught.value)
-
-
 def test_a_rough_ball_beside_a_smooth_raceway_needs_a_dimension(screw, refused):
     """The ball shares that of the raceway, which a smooth one need not state."""
     smooth = replace(screw.roughness, rms=0.0, fractal_dimension=None)

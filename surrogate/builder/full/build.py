@@ -23,7 +23,7 @@ from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.sensitivity import surface_bands
 from surrogate.screw.solve import TIER
 from surrogate.surface import FIELDS, Surface
-from surrogate.surface.file import format_version, SurfaceData
+from surrogate.surface.file import SurfaceData
 
 Array = NDArray[np.float64]
 
@@ -70,7 +70,6 @@ def _surface(
     for values in (*fields.values(), deviation):
         values[mask] = np.nan
     header = surface_header(screw, lubricant, settings, nodes.breaks, TIER)
-    header |= {'format_version': format_version(True)}
     return SurfaceData(
         header=header,
         speed_coordinate=nodes.s,

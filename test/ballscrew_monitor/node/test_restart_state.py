@@ -161,7 +161,7 @@ def test_what_was_left_is_read_before_anything_is_written(state, monkeypatch, sa
     state.keep(record(41))
     state.close()
     with monkeypatch.context() as broken:
-        broken.setattr(state_database, 'set_aside', fail)
+        broken.setattr(state_database.sqlite_file, 'is_empty', fail)
         again = RestartState(state.folder)
         again.keep(record(1))
         assert again.flush() == says('cannot_written_runtimeerror', folder=state.folder)

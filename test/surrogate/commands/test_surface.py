@@ -11,7 +11,7 @@ from surrogate.builder.tiers import screw_and_oil
 from surrogate.screw import closed_form
 from surrogate.screw.closed_form_record import formula_warnings
 from surrogate.surface import shipped_surface
-from surrogate.surface.file import ENSEMBLE_VERSION, read, write
+from surrogate.surface.file import read, write
 from surrogate.tasks.store import store_path, TaskStore
 
 COMMAND = ('surface',)
@@ -112,7 +112,7 @@ def test_info_is_a_page_a_person_reads(run, capsys):
         'Contact begins at 313 rev/min at 40 degC; this screw',
         'nominal, iso_vg_68; lead 10 mm, preload 990 N, Rq 0.12 um, film floor 3 nm',
         'raceway (new): Rq 0.12 um between 2.5 um and 0.25 mm',
-        'tier         closed_form, format version 3',
+        'tier         closed_form, format version 4',
         'kinks at     -2800, 0, 2800 N',
         'temperature  10 to 80 degC, nodes at 10, ',
         'nodes        40 x 27 x 9, 0 without a number',
@@ -141,8 +141,7 @@ def test_formulas_beyond_what_they_were_fitted_over_are_named_once(run, capsys):
 def test_info_tells_what_draws_leave_uncertain(run, tmp_path, capsys, says):
     """Median and largest deviation, in the page and in the record."""
     spread = np.linspace(0.0, 0.02, DATA.mask.size).reshape(DATA.mask.shape)
-    header = {**DATA.header, 'format_version': ENSEMBLE_VERSION}
-    path = written(tmp_path, header=header, deviations={'rcs': spread})
+    path = written(tmp_path, deviations={'rcs': spread})
     assert run('info', path) == 0
     text = capsys.readouterr().out
     assert 'deviation: median, max    of the mean' in text

@@ -51,9 +51,6 @@ def test_rows_come_back_by_their_key_and_broken_tables_are_refused(tmp_path, ref
     (tmp_path / 'paper.csv').write_text('inputs,kind,rpm\na,contact,fast\n')
     refused('paper_cannot_read', read_rows, tmp_path / 'paper.csv')
     assert read_rows(tmp_path / 'none.csv') == {}
-    write_rows(tmp_path / 'paper.csv', [BASE])
-    with open_pool(1) as pool:
-        refused('rows_without_results', run_study, tmp_path, tasks(('7',), 1), pool)
 
 
 def test_another_screw_is_another_study():

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from surrogate.surface import batch, shipped_surface, Surface, Validity
 from surrogate.surface.compiled import compiled
-from surrogate.surface.file import ENSEMBLE_VERSION, read
+from surrogate.surface.file import read
 from surrogate.surface.found import Found, look_up
 from surrogate.surface.load_scan import scan
 from surrogate.surface.records import as_array
@@ -31,10 +31,7 @@ def surfaces():
     mask = data.mask.copy()
     mask[10, 20, 2] = True
     holed = replace(
-        data,
-        mask=mask,
-        header={**data.header, 'format_version': ENSEMBLE_VERSION},
-        deviations={'friction_torque': 0.1 * data.fields['friction_torque']},
+        data, mask=mask, deviations={'friction_torque': 0.1 * data.fields['friction_torque']}
     )
     return [*shipped, shipped[1].with_correction(PULL, SOLVED), Surface(holed)]
 

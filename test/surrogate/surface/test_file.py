@@ -154,20 +154,9 @@ def test_a_range_of_speeds_may_reach_to_the_nodes(surface_data, end, beyond, sou
 @pytest.mark.parametrize(('value', 'sound'), [(0.0, True), (0.5, True), (-5e-324, False)])
 def test_a_spread_is_nothing_or_more(surface_data, value, sound):
     data = eight_nodes(surface_data)
-    header = {**data.header, 'format_version': file.ENSEMBLE_VERSION}
     spreads = {name: np.full((2, 2, 2), value) for name in data.fields}
     for group in ('deviations', 'standard_errors'):
-        assert file._has_sound_ensemble(replace(data, header=header, **{group: spreads})) is sound
-
-
-@pytest.mark.parametrize('version', [1, 2])
-def test_a_surface_of_another_roughness_model_must_be_built_again(tmp_path, version, refused):
-    path = tmp_path / 'old.npz'
-    rewrite(path, format_version=version)
-    with refused('roughness_model_changed', version=version) as caught:
-        file.read(path)
-    assert 'ballscrew surface build --screw SCREW' in str(caught.value)
-    assert '\n' not in str(caught.value)
+        assert file._has_sound_ensemble(replace(data, **{group: spreads})) is sound
 
 
 @pytest.mark.parametrize(
@@ -176,7 +165,7 @@ def test_a_surface_of_another_roughness_model_must_be_built_again(tmp_path, vers
         ({'tier': 'full'}, 'content_hash_differs'),
         ({'sha256': '0' * 64}, 'content_hash'),
         ({'format': 'map'}, 'surface_file_header'),
-        ({'format_version': file.ENSEMBLE_VERSION + 1}, 'surface_format_version'),
+        ({'format_version': file.FORMAT_VERSION + 1}, 'surface_format_version'),
     ],
 )
 def test_a_changed_header_is_refused(tmp_path, changes, sentence, refused):
@@ -311,8 +300,7 @@ def with_draws(data, **changes):
     """Return the surface with an ensemble of draws."""
     spread = np.full(data.mask.shape, 0.01)
     parts = {'deviations': {'rcs': spread}, 'standard_errors': {'rcs': 0.5 * spread}}
-    header = {**data.header, 'format_version': file.ENSEMBLE_VERSION}
-    return replace(data, **{'header': header, **parts, **changes})
+    return replace(data, **{**parts, **changes})
 
 
 def test_what_draws_leave_uncertain_is_written_read_and_hashed(tmp_path, surface_data):
@@ -330,19 +318,9 @@ def test_what_draws_leave_uncertain_is_written_read_and_hashed(tmp_path, surface
     assert len({data.sha256, other.sha256, surface_data.sha256}) == 3
 
 
-def test_a_surface_of_an_earlier_law_must_be_built_again(tmp_path, surface_data):
-    """Such a one carried its law."""
-    old = replace(surface_data, header={**surface_data.header, 'law': {'onset_ratio': 1.6}})
-    file.write(tmp_path / 'old.npz', old)
-    with pytest.raises(file.SurfaceError, match='an earlier law of contact, build it again'):
-        file.read(tmp_path / 'old.npz')
-
-
 @pytest.mark.parametrize(
     'change',
     [
-        lambda data: {'header': data.header},
-        lambda data: {'deviations': {}, 'standard_errors': {}},
         lambda data: {'deviations': {'heat': np.zeros(data.mask.shape)}},
         lambda data: {'deviations': {'rcs': np.zeros(3)}},
         lambda data: {'deviations': {'rcs': np.full(data.mask.shape, -0.1)}},
@@ -351,7 +329,7 @@ def test_a_surface_of_an_earlier_law_must_be_built_again(tmp_path, surface_data)
     ],
 )
 def test_impossible_spreads_are_refused(tmp_path, surface_data, change, refused):
-    """Of no field, of another shape, below zero, without the version that has them."""
+    """Of no field, of another shape, below zero, of another type."""
     path = tmp_path / 'broken.npz'
     file.write(path, with_draws(surface_data, **change(surface_data)))
     refused('header_axes_fields', file.read, path)

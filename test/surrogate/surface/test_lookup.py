@@ -15,7 +15,7 @@ from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.screw import closed_form
 from surrogate.surface import FIELDS, shipped_surface, Surface, Validity
 from surrogate.surface.aims import EFFICIENCY_TOLERANCE, RCS_TOLERANCE
-from surrogate.surface.file import ENSEMBLE_VERSION, read, write
+from surrogate.surface.file import read, write
 
 SPEEDS = st.floats(0.06, 229.0)
 LOADS = st.floats(-3960.0, 3960.0)
@@ -258,7 +258,6 @@ def with_draws(data):
     deviation = np.exp(0.1 * data.speed_coordinate)[:, None, None] * np.ones_like(data.mask)
     return replace(
         data,
-        header={**data.header, 'format_version': ENSEMBLE_VERSION},
         deviations={'rcs': 0.01 * deviation, 'friction_torque': 0.001 * deviation},
         standard_errors={'rcs': 0.01 * deviation / 3},
     )

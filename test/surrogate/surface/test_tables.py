@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from surrogate.surface import shipped_surface, Surface
 from surrogate.surface.fields import MEASURED
-from surrogate.surface.file import ENSEMBLE_VERSION, read
+from surrogate.surface.file import read
 from surrogate.surface.hermite import hermite_weights
 from surrogate.surface.tables import (
     _largest,
@@ -122,8 +122,7 @@ def test_errors_of_a_cell_and_spreads_of_its_corners_are_its_own():
         for name, factors in (('deviations', (1.0, 2.0)), ('standard_errors', (3.0, 4.0)))
     }
     errors = {**DATA.errors, MEASURED[0]: number, MEASURED[1]: 0.5 * number}
-    header = {**DATA.header, 'format_version': ENSEMBLE_VERSION}
-    surface = Surface(replace(DATA, header=header, errors=errors, **groups))
+    surface = Surface(replace(DATA, errors=errors, **groups))
     assert surface.tables.torque_error == number.max() + 3.0 * node.max()
     assert Surface(replace(DATA, errors=errors)).tables.torque_error == number.max()
     part, checked = (0.25, 0.625, 0.375), 0

@@ -11,7 +11,7 @@ import sys
 import numpy as np
 import pytest
 from surrogate.surface import FIELDS, shipped_surface
-from surrogate.surface.file import ENSEMBLE_VERSION, read, write
+from surrogate.surface.file import read, write
 from surrogate.surface_tools.fields import FIELD_TEXTS
 
 COMMAND = ('surface', 'export')
@@ -19,10 +19,7 @@ COMMAND = ('surface', 'export')
 DATA = read(shipped_surface(tier='closed_form'))
 SPREAD = np.linspace(0.0, 0.1, DATA.mask.size).reshape(DATA.mask.shape)
 DRAWN = replace(
-    DATA,
-    header={**DATA.header, 'format_version': ENSEMBLE_VERSION},
-    deviations={'friction_torque': SPREAD},
-    standard_errors={'rcs': 0.5 * SPREAD},
+    DATA, deviations={'friction_torque': SPREAD}, standard_errors={'rcs': 0.5 * SPREAD}
 )
 
 

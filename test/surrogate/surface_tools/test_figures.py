@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 from surrogate.surface import onset_of_surface, shipped_surface, Surface
-from surrogate.surface.file import ENSEMBLE_VERSION, read
+from surrogate.surface.file import read
 
 COMMAND = ('surface', 'plot')
 
@@ -78,8 +78,7 @@ def test_what_is_good_is_bright_in_every_map(coarse):
 
 def test_what_strips_differ_by_is_shown_when_it_is_known(coarse):
     """In place of the regime, which the lines of the film ratio tell; the limit gets its band."""
-    header = {**DATA.header, 'format_version': ENSEMBLE_VERSION, 'limit_band': [0.5, 1.4]}
-    header['numerical_band'] = [0.8, 1.25]
+    header = {**DATA.header, 'limit_band': [0.5, 1.4], 'numerical_band': [0.8, 1.25]}
     drawn = replace(DATA, header=header, deviations={'rcs': 0.1 * DATA.fields['rcs']})
     shown = titles(figures.figure_surface(Surface(drawn), 313.15))
     assert 'RCS over strips' in shown

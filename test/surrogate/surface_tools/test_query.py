@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from surrogate.files import to_json
 from surrogate.surface import shipped_surface, Surface
-from surrogate.surface.file import ENSEMBLE_VERSION, read, write
+from surrogate.surface.file import read, write
 from surrogate.surface_tools.fields import FIELD_TEXTS
 
 COMMAND = ('surface', 'query')
@@ -87,10 +87,7 @@ def test_draws_are_told(run, tmp_path, capsys, query):
     data = read(CLOSED_FORM)
     spread = np.full(data.mask.shape, 0.01)
     parts = {'deviations': {'rcs': spread}, 'standard_errors': {'rcs': 0.5 * spread}}
-    write(
-        tmp_path / 'a.npz',
-        replace(data, header={**data.header, 'format_version': ENSEMBLE_VERSION}, **parts),
-    )
+    write(tmp_path / 'a.npz', replace(data, **parts))
     found = query(tmp_path / 'a.npz', '--speed-rpm', 600, '--load-N', 1000)
     assert found['rcs_std'] == pytest.approx(0.01)
     assert found['rcs_stderr'] == pytest.approx(0.005)
