@@ -33,6 +33,7 @@ SLOW = (
     'ballscrew_monitor/cycle/test_node_process.py',
     'ballscrew_monitor/cycle/test_run.py',
     'ballscrew_monitor/clients/test_solve.py',
+    'ballscrew_monitor/core/test_prerequisites.py',
     'ballscrew_monitor/judge/test_many.py',
     'ballscrew_monitor/page/test_acting.py',
     'ballscrew_monitor/page/test_command.py',

@@ -254,10 +254,8 @@ def _write(
 
 def _plot(folder: Path, run: Any, found: Any, title: str, onset: Any) -> None:
     """Draw the picture; only this needs matplotlib."""
-    try:
-        from surrogate.identify.figures import draw_identification
-    except ImportError:
-        raise InputError('--plot needs matplotlib: install the extra `plot`') from None
+    from surrogate.identify.figures import draw_identification
+
     try:
         folder.mkdir(parents=True, exist_ok=True)
         print(draw_identification(folder, run, found, title, onset), file=sys.stderr)

@@ -5,7 +5,6 @@
 from datetime import date
 import json
 import math
-import sys
 
 import numpy as np
 import pytest
@@ -175,12 +174,10 @@ def test_a_bag_is_read_by_who_can(run, tmp_path, capsys):
     assert 'note: half of it was steady' in capsys.readouterr().out
 
 
-def test_a_picture(run, data, tmp_path, monkeypatch, refused):
-    """One file, nothing half-written; without matplotlib or a place for it one sentence."""
+def test_a_picture(run, data, tmp_path, refused):
+    """One file, nothing half-written; without a place for it one sentence."""
     pytest.importorskip('matplotlib')
     folder = tmp_path / 'deep' / 'plots'
     assert run(data, '--plot', folder) == 0
     assert [path.name for path in folder.iterdir()] == ['identify.png']
     refused('plot_drag_cannot', run, data, '--plot', data)
-    monkeypatch.setitem(sys.modules, 'surrogate.identify.figures', None)
-    refused('plot_needs_matplotlib', run, data, '--plot', folder)

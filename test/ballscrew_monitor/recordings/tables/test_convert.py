@@ -406,7 +406,7 @@ def test_a_workbook_without_its_reader_is_a_sentence(tmp_path, capsys, monkeypat
     log = tmp_path / 'book.xlsx'
     log.write_bytes(b'PK\3\4')
     monkeypatch.setitem(sys.modules, 'fastexcel', None)
-    assert cli.main(['import', str(log), '--guess']) == 1
+    assert cli.main(['import', str(log), '--guess']) == 2
     assert capsys.readouterr().err == says('no_fastexcel')
 
 
