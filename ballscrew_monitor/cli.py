@@ -37,8 +37,6 @@ WEB = 'pip install starlette uvicorn websockets prometheus-client'
 NEEDED = {
     'mcap': 'pip install mcap zstandard',
     'zstandard': 'pip install mcap zstandard',
-    'rosbags': 'pip install rosbags',
-    'apsw': 'pip install rosbags',
     'polars': 'pip install polars contourpy',
     'contourpy': 'pip install polars contourpy',
     'fastexcel': 'pip install fastexcel, or save the sheet as CSV',
