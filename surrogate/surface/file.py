@@ -41,6 +41,7 @@ DAMAGE = (
     ValueError,
     KeyError,
     TypeError,
+    OverflowError,
     EOFError,
     SyntaxError,
     tokenize.TokenError,
