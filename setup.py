@@ -90,7 +90,7 @@ setup(
     extras_require={
         'wheels': ROS_WHEELS,
         'plot': ['matplotlib>=3.6'],
-        'bags': ['lz4>=4.0', 'mcap>=1.1', 'rosbags>=0.10', 'zstandard>=0.20'],
+        'bags': ['lz4>=4.0', 'mcap>=1.1', 'zstandard>=0.20'],
         'report': ['contourpy>=1.0', 'polars>=1.0'],
         'page': [
             'contourpy>=1.0',
@@ -113,6 +113,7 @@ setup(
             'pytest>=7.4',
             'pytest-timeout>=2.2',
             'pytest-xdist>=3.5',
+            'rosbags>=0.10',
             'xarray>=2024.1',
             *LINTERS,
         ],

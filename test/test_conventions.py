@@ -91,8 +91,8 @@ THEMES = {
 }
 # By the extras `bags`, `report`, `xlsx`, `page`, `areal`, `dask` and `netcdf`.
 OPTIONAL = {
-    *'SurfaceTopography apsw contourpy distributed fastexcel h11 lz4 mcap polars'.split(),
-    *'prometheus_client rosbags starlette uvicorn websockets xarray zstandard'.split(),
+    *'SurfaceTopography contourpy distributed fastexcel h11 lz4 mcap polars'.split(),
+    *'prometheus_client starlette uvicorn websockets xarray zstandard'.split(),
 }
 
 

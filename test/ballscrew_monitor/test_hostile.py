@@ -17,6 +17,7 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.mcap_file import message_definition
 import lz4.frame
 from mcap.writer import CompressionType, Writer
+import openpyxl
 import pytest
 from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as RosbagWriter
@@ -281,6 +282,11 @@ class Hostile:
                 for _ in range(300):
                     part.write(bytes(1_000_000))
         self.guess('packed_sheet', packed.getvalue())
+        book, content = openpyxl.Workbook(), io.BytesIO()
+        book.active.append(['t', 'v'])
+        book.active['Z1048576'] = 1
+        book.save(content)
+        self.guess('far_cell', content.getvalue())
 
     def guess(self, name, content):
         path = self.folder / f'{name}.csv'
@@ -313,7 +319,7 @@ REFUSED = (
     *('large', 'laughing_bag', 'deep_bag', 'dated_bag', 'laughing_parameters', 'deep_parameters'),
     *('dated_parameters', 'laughing_metadata', 'deep_metadata', 'dated_sheet', 'twice'),
     *('laughing_map', 'deep_map', 'dated_map', 'wide', 'wide_returns', 'long', 'long_return'),
-    *('long_name', 'longer_name', 'long_cell', 'wide_letters', 'packed_sheet'),
+    *('long_name', 'longer_name', 'long_cell', 'wide_letters', 'packed_sheet', 'far_cell'),
 )
 NOTED = (
     *('huge_message', 'endless_message', 'zstd_frame', 'zstd_both', 'zstd_endless', 'lz4_chunk'),

@@ -8,7 +8,8 @@ point, numbers with a decimal comma, times of ISO 8601 or of the German form, or
 
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+import contextlib
 import dataclasses
 import math
 from pathlib import Path
@@ -28,7 +29,7 @@ from surrogate.files import InputError
 Array = NDArray[np.float64]
 Form = Callable[[pl.Series], pl.Series]
 """Makes cells numbers, null where one is not a number."""
-UNREADABLE = (PolarsError, pl.exceptions.PanicException)
+ENDS = (KeyboardInterrupt, SystemExit, GeneratorExit)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -112,12 +113,8 @@ class Cells:
         if self._row == self._first_row:
             self._first, self._type = cells[0], cells.dtype
             self._counts = [_Count(form=form) for form in self._forms()]
-        try:
+        with readable(f'{self.where} of {self._type} cannot be read as numbers'):
             self._count(cells)
-        except UNREADABLE as error:
-            raise InputError(
-                f'{self.where} of {self._type} cannot be read as numbers: {first_line(error)}'
-            ) from None
         self._row += len(cells)
 
     def reading(self) -> Reading:
@@ -287,6 +284,24 @@ _TIMES = (
     _made(lambda texts: texts.str.to_time(_OF_DAY, strict=False)),
     *map(_day, ('%Y-%m-%d', '%d.%m.%Y', '%Y/%m/%d')),
 )
+
+
+@contextlib.contextmanager
+def readable(failure: str, *kinds: type[Exception]) -> Iterator[None]:
+    """
+    Raise InputError, `failure` and why, for what the readers of tables raise: errors and panics.
+
+    A panic of a reader is no Exception, and each package has its own kind. `kinds` are errors that
+    count besides those of polars.
+
+    """
+    try:
+        yield
+    except BaseException as error:
+        is_panic = not isinstance(error, (Exception, *ENDS))
+        if not is_panic and not isinstance(error, (PolarsError, *kinds)):
+            raise
+        raise InputError(f'{failure}: {first_line(error)}') from None
 
 
 def first_line(error: BaseException) -> str:

@@ -110,6 +110,8 @@ def look_through(
     with shown(source.rows, 'rows looked through') as show:
         for block in source.blocks(list(found)):
             for name, cells in found.items():
+                if name in left_out:
+                    continue
                 with _left_out(name, left_out, optional):
                     cells.add(block[name])
             rows += block.height
@@ -118,11 +120,13 @@ def look_through(
         raise InputError(f'log {source.path} holds no row, at least two are needed')
     readings: dict[str, Reading] = {}
     for name, cells in found.items():
+        if name in left_out:
+            continue
         with _left_out(name, left_out, optional):
             readings[name] = cells.reading()
     return Table(
         path=source.path,
-        readings={name: one for name, one in readings.items() if name not in left_out},
+        readings=readings,
         rows=rows,
         notes=tuple(one.note for one in readings.values() if one.note),
         left_out=left_out,
