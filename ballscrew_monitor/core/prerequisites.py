@@ -19,7 +19,6 @@ BAGS, REPORTS = _pip('mcap zstandard'), _pip('polars contourpy')
 WEB = _pip("starlette 'uvicorn>=0.40' 'websockets>=14.0' prometheus-client")
 CURES = {
     'SurfaceTopography': _pip('SurfaceTopography'),
-    'apsw': _pip('rosbags'),
     'contourpy': REPORTS,
     'distributed': _pip('distributed'),
     'fastexcel': f'{_pip("fastexcel")}, or save the sheet as CSV',
@@ -27,7 +26,6 @@ CURES = {
     'mcap': BAGS,
     'numba': _pip('numba'),
     'polars': REPORTS,
-    'rosbags': _pip('rosbags'),
     'xarray': _pip('xarray'),
     'zstandard': BAGS,
     **dict.fromkeys(('h11', 'prometheus_client', 'starlette', 'uvicorn', 'websockets'), WEB),

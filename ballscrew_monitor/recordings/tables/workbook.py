@@ -84,7 +84,7 @@ def _sheets(path: Path, archive: zipfile.ZipFile) -> list[tuple[zipfile.ZipInfo,
                     )
                 text = tail + block
                 is_sheet |= SHEET in text
-                tail = text[-len(SHEET) :]
+                tail = text[slice(-len(SHEET), None)]
         if is_sheet:
             sheets.append((part, unpacked - begin))
     return sheets

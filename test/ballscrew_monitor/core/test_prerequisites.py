@@ -96,7 +96,7 @@ from ballscrew_monitor.node.__main__ import main
 sys.exit(main([]))
 """
 # All that rosdep does not bring, and what no command of the node is for.
-OPTIONAL = 'numba matplotlib scipy mcap zstandard lz4 rosbags polars contourpy fastexcel starlette'
+OPTIONAL = 'numba matplotlib scipy mcap zstandard lz4 polars contourpy fastexcel starlette'
 
 
 def python(script, *arguments):
