@@ -64,8 +64,8 @@ def test_a_page_of_a_single_nut_does_not_become_two_nuts(run, tmp_path, capsys, 
     page = ('--nominal-diameter-mm', 40, '--lead-mm', 10, '--ball-diameter-mm', 6.35)
     page += ('--turns', 5, '--dynamic-rating-kN', 21.3, '--ra-um', 0.16, '--out', path)
     refused('nut_missing', run, 'screw', 'new', *page)
-    for nut in ('oversize', 'plain'):
-        refused(f'nut_{nut}', run, 'screw', 'new', '--nut', nut, *page)
+    for nut, key in (('oversize', 'nut_oversize'), ('plain', 'nut_plain')):
+        refused(key, run, 'screw', 'new', '--nut', nut, *page)
     assert not path.exists()
     assert run('screw', 'new', '--nut', 'offset', *page) == 0
     assert capsys.readouterr() == (f'{path}\n', says('five_turns'))
