@@ -15,8 +15,8 @@ ACCURACY = ('0', '1', '2', '3', '4', '5', '7', '10')
 NUTS = ('double', 'offset', 'oversize', 'plain')
 """Nuts of catalogues, by what preloads them; the first two are modelled."""
 NOT_MODELLED = {
-    'oversize': 'an oversize ball touches at four places, which is not modelled, and as a double '
-    'nut it would have a tenth of its spin: choose another nut for the same screw',
+    'oversize': 'an oversize ball touches at four places, which is not modelled, and a double nut '
+    'has a tenth of its spin: choose another nut for the same screw',
     'plain': 'a nut without preload has axial play, which is not modelled: under a load that '
     'never changes its sign it is --nut double with --preload-N 0 and the balls of this nut',
 }
