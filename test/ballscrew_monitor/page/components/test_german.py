@@ -42,10 +42,13 @@ def english(frames):
 
 
 @pytest.fixture
-def played(short_bag):
-    """Return the address of the page of a recording that begins with a warning."""
+def played(request, short_bag, tmp_path):
+    """Return the address of the page of a recording that begins with a warning, with advice."""
+    nominal = request.config.rootpath / 'config' / 'nominal_cycle.yaml'
+    params = tmp_path / 'params.yaml'
+    params.write_text(nominal.read_text() + '      advice: {speed: true}\n')
     command = [sys.executable, '-m', 'ballscrew_monitor', 'page', short_bag]
-    options = ['--language', 'de', '--port', '0']
+    options = ['--language', 'de', '--port', '0', '--params', params]
     process = subprocess.Popen([*command, *options], stdout=subprocess.PIPE, text=True)
     try:
         yield process.stdout.readline().split()[1]
