@@ -4,7 +4,7 @@
 
 import functools
 
-from golden import doors, inputs, tables
+from golden import bags, doors, inputs, tables
 
 
 def scenario(name, folder):
@@ -45,7 +45,67 @@ def refused_tables(folder):
     return {'said': ''.join(said)}
 
 
+def foreign_bag(write, folder):
+    """Return what is said of a bag of another program, also where the parameters do not suit."""
+    bag, parameters = write(folder)
+    given = (bag, '--params', parameters)
+    nominal = folder / 'nominal.yaml'
+    nominal.write_text(inputs.changed(inputs.NOMINAL_PARAMETERS.read_text()))
+    outputs = doors.report(folder, folder / 'report', *given)
+    other = doors.command(folder, 'replay', bag, '--params', nominal)
+    return outputs | {'json': doors.command(folder, 'replay', *given, '--json'), 'other': other}
+
+
+def damaged_bag(folder):
+    """Return what is said of a bag whose writer was killed, before and after it is mended."""
+    part, parameters = bags.truncated_mcap(folder)
+    before = doors.command(folder, 'replay', part, '--params', parameters)
+    mended = doors.command(folder, 'recover', part)
+    after = doors.command(folder, 'replay', part.with_suffix(''), '--params', parameters)
+    again = doors.command(folder, 'recover', part)
+    empty = folder / 'empty.mcap'
+    empty.write_bytes(b'')
+    other = [
+        doors.command(folder, 'replay', path, '--params', parameters)
+        for path in (empty, folder / 'none', folder)
+    ]
+    return {'said': ''.join([before, mended, after, again, *other])}
+
+
+def health(folder):
+    """Return what is said of the health of an axis over months, and of many logs at once."""
+    logs = inputs.months(folder / 'logs')
+    out, reports = folder / 'health', folder / 'reports'
+    given = ('--baseline', '2026-01-05', '2026-02-16', '--co2-kg-per-kWh', '0.4')
+    kept = doors.command(folder, 'health', logs, *given, '--out', out, '--json')
+    many = doors.command(folder, 'replay', logs, '--out', reports, '--workers', '1')
+    return {
+        'words': doors.command(folder, 'health', logs),
+        'json': kept,
+        'file': doors.json_text(folder, out / 'health.json'),
+        'many_said': many + doors.command(folder, 'replay', logs),
+        'many_page': doors.page_of(folder, reports / 'index.html'),
+        'one_page': doors.page_of(folder, reports / 'month_9' / 'report.html'),
+    }
+
+
+def page(folder):
+    """Return what browsers are sent of recordings."""
+    bag, parameters = inputs.scenario(folder, 'vertical_axis')
+    press, both = bags.sqlite_bag(folder)
+    return {
+        'one_axis': doors.frames_text(bag, parameters),
+        'two_axes': doors.frames_text(press, both),
+    }
+
+
 CASES = {name: functools.partial(scenario, name) for name in inputs.RECORDINGS}
 CASES |= {name: functools.partial(table, write) for name, write in tables.TABLES.items()}
-CASES |= {'refused_tables': refused_tables}
+CASES |= {name: functools.partial(foreign_bag, write) for name, write in bags.FOREIGN.items()}
+CASES |= {
+    'refused_tables': refused_tables,
+    'damaged_bag': damaged_bag,
+    'health': health,
+    'page': page,
+}
 """What makes the outputs of each case in a folder."""

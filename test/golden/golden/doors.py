@@ -3,11 +3,12 @@
 """
 Golden outputs by the doors that others use: commands, files, messages, pages.
 
-Two functions know more of the program than that, `rows` and `page_frames`: each is the one place
-to change where what it calls moves.
+Three functions know more of the program than that, `rows`, `page_frames` and `page_records`: each
+is the one place to change where what it calls moves.
 
 """
 
+import asyncio
 import contextlib
 import functools
 from html.parser import HTMLParser
@@ -15,9 +16,15 @@ import importlib
 import io
 import json
 import math
+import struct
 import zlib
 
 from ballscrew_monitor import cli
+from ballscrew_monitor.page import records
+from ballscrew_monitor.page.hub import Browser, Hub
+from ballscrew_monitor.page.recording import recorded_axes, Recording
+from ballscrew_monitor.recordings.opener import opened_log
+from ballscrew_monitor.report.parameters import parameters_for
 from golden.compare import masked, ROUNDING
 from mcap.reader import make_reader
 import numpy as np
@@ -26,7 +33,8 @@ from rclpy.serialization import deserialize_message
 import yaml
 
 EVERY = 100  # states of which one is shown
-LONGEST = 64  # numbers of an array that are shown one by one
+LONGEST = 64  # letters of a word that is shown, and no array that is packed
+SHOWN = 8  # numbers of an array for a browser
 EDGES = (
     *('level', 'message', 'zone', 'event_id', 'active_gates', 'shelved', 'point.direction'),
     *('result.validity', 'result.reason', 'result.regime', 'result.corrected'),
@@ -90,9 +98,9 @@ def report(folder, out, *arguments):
     outputs = {'words': command(folder, 'replay', *arguments), 'report_said': said}
     if (out / 'report.html').is_file():
         outputs |= {
-            'summary': masked(plain_lines(json.loads((out / 'summary.json').read_text())), folder),
+            'summary': json_text(folder, out / 'summary.json'),
             'events': masked((out / 'events.csv').read_text(), folder),
-            'page': masked(page_text((out / 'report.html').read_text()), folder),
+            'page': page_of(folder, out / 'report.html'),
             'rows': rows(out),
             'messages': bag_text(folder, out / 'judged'),
         }
@@ -140,15 +148,20 @@ class PageReader(HTMLParser):
             self._line = []
 
 
-def page_text(html):
+def json_text(folder, path):
+    """Return a file of JSON as lines."""
+    return masked(plain_lines(json.loads(path.read_text('utf-8'))), folder)
+
+
+def page_of(folder, path):
     """Return the words of a page line by line, and the data that it draws."""
     reader = PageReader()
-    reader.feed(html)
+    reader.feed(path.read_text('utf-8'))
     lines = [f'{line}\n' for line in reader.lines]
     for text in reader.data:
         lines.append('--- data\n')
         lines += [f'{place} = {packed(one)}\n' for place, one in leaves(json.loads(text))]
-    return ''.join(lines)
+    return masked(''.join(lines), folder)
 
 
 def packed(value):
@@ -156,6 +169,76 @@ def packed(value):
     if isinstance(value, str) and len(value) > LONGEST and ' ' not in value:
         return f'{len(value)} letters, checksum {zlib.crc32(value.encode())}'
     return json.dumps(value, ensure_ascii=False)
+
+
+def page_frames(log, parameters, shares):
+    """Yield what browsers are sent of a recording at some shares of it [-]: records and arrays."""
+    with opened_log(log) as bag:
+        axes = recorded_axes(bag, parameters_for(bag, parameters, parameters), lambda share: None)
+
+    async def frames():
+        found, hub = [], Hub()
+        playing = Recording(hub, axes)
+        span = playing.clock()['span_s']
+        browser = Browser()
+        hub.join(browser, 0.0)
+        for number, share in enumerate(shares):
+            await playing.handlers['seek'](browser, {'s': share * span})
+            playing.advance(0.0, float(number))
+            hub.tick(float(number))
+            while True:
+                taking = asyncio.ensure_future(browser.take())
+                await asyncio.sleep(0)
+                if not taking.done():
+                    taking.cancel()
+                    break
+                found.append(taking.result())
+        return found
+
+    for made in asyncio.run(frames()):
+        yield read_frame(made)
+
+
+def page_records(message):
+    """Yield what the page makes of a message of a node: records by their names."""
+    kind = type(message).__name__
+    if kind == 'BallScrewState':
+        yield 'row', list(records.row_of(message))
+        yield 'state', records.state_record(message)
+        yield 'limits', records.limits_record(message)
+    elif kind == 'OutOfZone':
+        yield 'event', records.event_record(message)
+    elif kind == 'AxisHealth':
+        yield 'health', records.health_record(message)
+    elif kind == 'SurfaceInfo':
+        yield 'surface', records.surface_record(message, 'm/min')
+    elif kind == 'DiagnosticArray':
+        for status in message.status:
+            place = records.place_of(status.name)
+            yield 'code', [*(place or ()), records.code_of(status)]
+
+
+def read_frame(made):
+    """Return the record and the arrays of a frame to a browser."""
+    (size,) = struct.unpack_from('<I', made)
+    record, at = json.loads(made[4 : 4 + size]), 4 + size
+    arrays = {}
+    for name, count in record.pop('arrays'):
+        arrays[name] = np.frombuffer(made, '<f8', count, at)
+        at += 8 * count
+    return record, arrays
+
+
+def frames_text(log, parameters, shares=(0.0, 0.2, 0.6, 1.0, 0.1)):
+    """Return what browsers are sent of a recording as text, of long arrays some numbers."""
+    lines = []
+    for record, arrays in page_frames(log, parameters, shares):
+        record.pop('words', None)  # those of a language
+        lines.append(f'--- {record.pop("kind")}\n{plain_lines(record)}')
+        for name, values in arrays.items():
+            some = values[:: len(values) // SHOWN + 1]
+            lines.append(f'{name}: {len(values)} numbers {some.tolist()}\n')
+    return ''.join(lines)
 
 
 def fields_of(message, place=''):

@@ -32,7 +32,7 @@ def samples():
 
 
 def english(folder):
-    """Write a CSV of an English control: load from the current, cells and rows that are damaged."""
+    """Write a CSV of an English control: load from the current, damaged cells and rows."""
     lines = ['# exported by a control', 't_s,X1_ActualVelocity [mm/s],X1_Current [A],Oil [degC]']
     for number, (time, speed, _, _, torque, oil) in enumerate(samples()):
         current = f'{torque / 0.8:.4f}' if number % 97 else ''
@@ -66,7 +66,7 @@ assumed:
 
 
 def german(folder):
-    """Write a CSV of a German control: decimal comma, units in a row, a gap, load by the torque."""
+    """Write a CSV of a German control: decimal comma, units in a row, load by the torque."""
     lines = ['Maschine: Fräse 3', 'Datum;Uhrzeit;Vorschub X;Motormoment X;Öltemperatur']
     lines.append(';;mm/min;Nm;°C')
     for time, speed, _, _, torque, oil in samples():
