@@ -4,7 +4,7 @@
 
 import functools
 
-from golden import bags, doors, inputs, tables
+from golden import bags, doors, graph, inputs, live, tables
 
 
 def scenario(name, folder):
@@ -99,13 +99,35 @@ def page(folder):
     }
 
 
+def live_node(folder):
+    """Return what the node says in two runs, and what is left of them: kept and recorded."""
+    outputs = {f'{name}_first': one for name, one in live.first_run(folder).items()}
+    outputs |= {f'{name}_second': one for name, one in live.second_run(folder).items()}
+    state, given = folder / 'state', ('--params', folder / 'node.yaml')
+    recordings = sorted((state / 'recordings').iterdir())
+    long, short = recordings[-2:]  # with and after all that happens; one before it is cut off
+    reported = doors.report(folder, folder / 'report', long, words=False)
+    outputs |= {f'recording_{name}': one for name, one in reported.items()}
+    other = doors.command(folder, 'replay', short) + doors.command(folder, 'replay', long, *given)
+    health = doors.command(folder, 'health', state, *given)
+    return outputs | {
+        'events': doors.command(folder, 'events', state),
+        'events_json': doors.command(folder, 'events', state, '--json'),
+        'health': health + doors.command(folder, 'health', state, *given, '--json'),
+        'kept': live.kept(folder),
+        'recording_other': other,
+    }
+
+
 CASES = {name: functools.partial(scenario, name) for name in inputs.RECORDINGS}
 CASES |= {name: functools.partial(table, write) for name, write in tables.TABLES.items()}
 CASES |= {name: functools.partial(foreign_bag, write) for name, write in bags.FOREIGN.items()}
 CASES |= {
-    'refused_tables': refused_tables,
     'damaged_bag': damaged_bag,
+    'doctor': graph.doctor,
     'health': health,
+    'live': live_node,
     'page': page,
+    'refused_tables': refused_tables,
 }
 """What makes the outputs of each case in a folder."""

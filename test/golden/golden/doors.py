@@ -34,9 +34,18 @@ import yaml
 
 EVERY = 100  # states of which one is shown
 LONGEST = 64  # letters of a word that is shown, and no array that is packed
-SHOWN = 8  # numbers of an array for a browser
+MANY, SHOWN = 24, 8  # numbers of an array that are shown one by one, and of a longer one
 EDGES = (
-    *('level', 'message', 'zone', 'event_id', 'active_gates', 'shelved', 'point.direction'),
+    *(
+        'level',
+        'message',
+        'Code',
+        'zone',
+        'event_id',
+        'active_gates',
+        'shelved',
+        'point.direction',
+    ),
     *('result.validity', 'result.reason', 'result.regime', 'result.corrected'),
 )
 """Parts of a state or status of which each change is shown."""
@@ -57,11 +66,19 @@ def command(folder, *arguments):
             code = end.code
     text, words = out.getvalue(), errors.getvalue()
     if '--json' in arguments and text.startswith('{'):
-        text = plain_lines(json.loads(text))
+        text = '\n'.join(plain_lines(one) for one in documents(text))
     said = ' '.join(map(str, arguments))
     return masked(
         f'$ ballscrew {said}\n{text}--- standard error\n{words}--- code {code}\n', folder
     )
+
+
+def documents(text):
+    """Yield all that a text holds of JSON."""
+    while text:
+        one, end = json.JSONDecoder().raw_decode(text)
+        yield one
+        text = text[end:].lstrip()
 
 
 def plain_lines(value, place=''):
@@ -70,15 +87,26 @@ def plain_lines(value, place=''):
 
 
 def leaves(value, place=''):
-    """Yield place and value of all that plain data hold."""
+    """Yield place and value of all that plain data hold; of many numbers some and their sums."""
     if isinstance(value, dict) and value:
         for key, one in value.items():
             yield from leaves(one, f'{place}.{key}' if place else str(key))
+    elif isinstance(value, list) and len(value) > MANY and is_numbers(value):
+        yield f'{place}, {len(value)} numbers', value[:: len(value) // SHOWN + 1]
+        sums = Sums()
+        for one in value:
+            sums.add({'': one})
+        yield from sums.totals(place)
     elif isinstance(value, list) and value:
         for number, one in enumerate(value):
             yield from leaves(one, f'{place}[{number}]')
     else:
         yield place, None if isinstance(value, float) and math.isnan(value) else value
+
+
+def is_numbers(values):
+    """Return True if all values are numbers, or not known."""
+    return all(one is None or isinstance(one, int | float) for one in values)
 
 
 def rows(report):
@@ -92,10 +120,11 @@ def rows(report):
     return table
 
 
-def report(folder, out, *arguments):
-    """Return the outputs of `ballscrew replay --out` and its words, by name."""
-    said = command(folder, 'replay', *arguments, '--out', out)
-    outputs = {'words': command(folder, 'replay', *arguments), 'report_said': said}
+def report(folder, out, *arguments, words=True):
+    """Return the outputs of `ballscrew replay --out` and, if asked for, its words, by name."""
+    outputs = {'report_said': command(folder, 'replay', *arguments, '--out', out)}
+    if words:
+        outputs['words'] = command(folder, 'replay', *arguments)
     if (out / 'report.html').is_file():
         outputs |= {
             'summary': json_text(folder, out / 'summary.json'),
@@ -307,7 +336,7 @@ class SaidByNode:
             for status in message.status:
                 name = f'{topic} {status.name}'
                 self._take(name, log_time, self._masked(status_fields(status)))
-        elif kind == 'BallScrewState':
+        elif kind == 'BallScrewState' or 'data' in message.get_fields_and_field_types():
             self._take(topic, log_time, self._masked(dict(fields_of(message))))
         else:
             self.show(topic, log_time, self._masked(dict(fields_of(message))))
@@ -388,7 +417,12 @@ class Sums:
     def lines(self, name):
         """Yield them as lines."""
         yield f'all {self._count} of {name}: checksum {self._checksum}\n'
+        for place, (counts, sums) in self.totals():
+            yield f'    {place}: {counts}, sums {sums}\n'
+
+    def totals(self, name=''):
+        """Yield place, counts and sums of the numbers above and below zero."""
         for place, parts in self._numbers.items():
-            above, below = map(math.fsum, parts)
             counts = ' and '.join(str(len(part)) for part in parts)
-            yield f'    {place}: {counts}, sums {above!r} and {below!r}\n'
+            sums = ' and '.join(repr(math.fsum(part)) for part in parts)
+            yield name + place, (counts, sums)
