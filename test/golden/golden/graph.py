@@ -6,7 +6,7 @@ from builtin_interfaces.msg import Time
 from geometry_msgs.msg import WrenchStamped
 from golden import doors
 from golden.inputs import NOMINAL
-from golden.world import BEST_EFFORT, SECOND, World
+from golden.world import SECOND, World
 from recording import BEGIN
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, Temperature
@@ -69,7 +69,7 @@ class Graph:
         names = ('axial', 'slow', 'future', 'late', 'silent')
         self.loads = {name: make(f'/{name}_load', WrenchStamped) for name in names}
         for kind in (Float64, JointState):
-            make('/mixed', kind, node=f'one of {kind.__name__}', qos=BEST_EFFORT)
+            make('/mixed', kind, node=f'one of {kind.__name__}')
         make('/clock_of_others', Clock)
         world.others = ['machine', 'recorder']
         world.every(0.02, self.publish)

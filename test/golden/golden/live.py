@@ -24,6 +24,7 @@ from golden.world import SECOND, World
 from lifecycle_msgs.srv import ChangeState, GetState
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.parameter import Parameter
+from rclpy.serialization import deserialize_message
 from recording import BEGIN
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, Temperature
@@ -35,6 +36,7 @@ import yaml
 PERIOD = 0.05  # [s] of the samples
 START = BEGIN + 3600 * SECOND  # [ns] of simulated time
 YEAR = 365 * 86_400 * SECOND
+SURFACE = 'x.npz'
 GOOD, CREEP, FAST = 90.0, 12.0, 300.0  # [rad/s] optimal, outside, beyond the surface
 
 
@@ -46,9 +48,9 @@ def parameters(folder, *, simulated):
         'state_dir': str(folder / 'state'),
         'record': 'always' if simulated else 'off',
         'x': {
-            'surface': str(NOMINAL),
+            'surface': str(folder / SURFACE),
             'limits': {'raise_delay': 0.3, 'clear_delay': 0.5},
-            'temperature': {'topic': 'oil_temperature', 'timeout': 4.0},
+            'temperature': {'topic': 'oil_temperature', 'timeout': 4.0 if simulated else 0.8},
             'torque': {'topic': 'x/torque'},
             'plain_topics': True,
             'solve_on_dwell': True,
@@ -96,7 +98,8 @@ class Run:
     def __init__(self, folder, world, *, simulated):
         """Begin without a message; `simulated` tells by which clock."""
         self.world, self.simulated, self.answers = world, simulated, []
-        self.path = folder / 'node.yaml'
+        self.path, self.surface = folder / 'node.yaml', folder / SURFACE
+        self.surface.write_bytes(NOMINAL.read_bytes())
         values = {'/**': {'ros__parameters': parameters(folder, simulated=simulated)}}
         self.path.write_text(yaml.safe_dump(values, sort_keys=False))
         self.clock = world.publisher('/clock', Clock) if simulated else None
@@ -146,7 +149,7 @@ class Run:
             self.torque.publish(Float64(data=torque + 0.01 * (self.count % 3)))
             self.joints.publish(self.stamped(JointState(name=[joint], velocity=[speed])))
             if self.count % 20 == 1:
-                oil = Temperature(temperature=40.0 + 0.0005 * self.count)
+                oil = Temperature(temperature=42.0 + 0.03 * (self.count % 7))
                 self.oil.publish(self.stamped(oil))
         if p is not None:
             self.angle = (self.angle + math.degrees(p) * PERIOD) % 360.0
@@ -184,14 +187,15 @@ class Run:
     def text(self, folder):
         """Return what was said, asked and logged in the run, and the page's records of it."""
         said, page, counts = SaidByNode(folder), [], {}
-        for time, topic, message in self.world.said:
+        for time, topic, kind, data in self.world.said:
             if not topic.startswith(('/ballscrew_monitor/', '/diagnostics')):
                 continue
+            message = deserialize_message(data, kind)
             said.take(topic, time, message)
             counts[topic] = counts.get(topic, -1) + 1
             if counts[topic] % 100 == 0:
-                for kind, record in page_records(message):
-                    page.append(f'{time} {topic} {kind}\n{plain_lines(record)}')
+                for name, record in page_records(message):
+                    page.append(f'{time} {topic} {name}\n{plain_lines(record)}')
         answers = ''.join(
             f'{time} {service} {_shown(request)}\n{_lines(answer)}'
             for time, service, request, answer in self.answers
@@ -314,6 +318,8 @@ def refusals(run):
     run.go(1.0)
     run.ahead = -SECOND
     run.go(1.0)
+    run.ahead = -run.time - SECOND
+    run.go(1.0)
     run.ahead = 0
     run.go(0.5)
     run.only(run.joints, run.stamped(JointState(name=['x_axis'], velocity=[1e7])))
@@ -334,6 +340,11 @@ def several_and_lost(run):
     for _ in range(3):
         run.only(run.forces, Float64MultiArray(data=[1.0]))
     run.only(run.forces, Float64MultiArray())
+    for _ in range(20):
+        run.go(PERIOD, s=None)
+        run.rpm.publish(Float64(data=700.0))
+        run.forces.publish(Float64MultiArray(data=[1.0]))
+    run.go(0.5)
     for number in range(20):
         message = run.stamped(JointState(name=['x_axis'], velocity=[GOOD]))
         run.joints.publish(message, lost=number % 4 != 0)
@@ -394,6 +405,7 @@ def evaluations(run):
         (0.0, 0.0, 40.0),
         (CREEP, 500.0, 60.0),
     ]
+    places += [(0.01, 0.0, 40.0), (0.8, 3300.0, 10.5), (1.2, 3300.0, 10.5), (2.0, 3300.0, 10.5)]
     places += [(FAST, 0.0, 40.0), (GOOD, 9000.0, 40.0), (GOOD, 0.0, 150.0), (GOOD, -1.0, math.nan)]
     points = [
         OperatingPoint(speed=speed, axial_load=load, temperature=oil)
@@ -411,7 +423,7 @@ def dwelling(run):
     run.go(1.0)
 
 
-DWELL = 33.5  # [rad/s] where asperities perhaps carry
+DWELL = 35.5  # [rad/s] where asperities perhaps carry
 
 
 def upkeep(run):
@@ -423,6 +435,10 @@ def upkeep(run):
     run.ask('~/s/set_baseline', SetBaseline, begin=Time(**day), end=Time(**end), reason='new')
     run.go(2.0)
     run.ask('~/reload_surface', Trigger)
+    run.surface.write_bytes(b'no surface')
+    run.ask('~/x/reload_surface', Trigger)
+    run.go(1.0)
+    run.surface.write_bytes(NOMINAL.read_bytes())
     run.ask('~/x/reload_surface', Trigger)
     run.ask('~/reset_totals', Trigger)
     run.go(1.0)
@@ -472,8 +488,11 @@ def start(run):
     """Start again; what was kept is there."""
     run.node.start()
     run.world.wait(0.5)
-    run.rpm = run.world.publisher('/s/rpm', Float64)
-    run.go(3.0)
+    run.go(1.0, x=(0.0, -1000.0))
+    run.rpm = run.world.publisher('/s/rpm', Float64, is_numbered=False)
+    run.go(2.0)
+    run.world.publisher('/s/rpm', Float64, node='somebody', is_numbered=False)
+    run.go(2.0)
 
 
 def lag(run):

@@ -11,7 +11,6 @@ machine is, and nothing here knows the node.
 
 import collections
 import contextlib
-import copy
 import json
 import os
 import queue
@@ -96,9 +95,9 @@ class World:
             node.destroy_node()
             rclpy.shutdown(context=context)
 
-    def publisher(self, topic, kind, *, node='machine', qos=BEST_EFFORT):
+    def publisher(self, topic, kind, *, node='machine', is_numbered=True):
         """Return a publisher of a node that is not here."""
-        made = ScriptedPublisher(self, topic, kind, node, qos)
+        made = ScriptedPublisher(self, topic, kind, node, is_numbered)
         self.publishers[topic].append(made)
         self._match(topic)
         return made
@@ -196,18 +195,18 @@ class Machine:
 
 
 class ScriptedPublisher:
-    """A publisher elsewhere, which numbers what it sends."""
+    """A publisher elsewhere, which numbers what it sends where the middleware does."""
 
-    def __init__(self, world, topic, kind, node, qos):
+    def __init__(self, world, topic, kind, node, is_numbered):
         """Begin with nothing sent."""
-        self.topic, self.kind, self.qos, self.name = topic, kind, qos, node
-        self._world, self.number = world, 0
+        self.topic, self.kind, self.name = topic, kind, node
+        self._world, self._step, self.number = world, int(is_numbered), 0
         package, _, _ = kind.__module__.partition('.')
         self.type_name = f'{package}/msg/{kind.__name__}'
 
     def publish(self, message, *, lost=False):
         """Send a message, or bytes in its place; what is `lost` has only its number."""
-        self.number += 1
+        self.number += self._step
         data = message if isinstance(message, bytes) else serialize_message(message)
         for one in () if lost else self._world.subscriptions:
             if one.topic_name == self.topic and one.msg_type is self.kind:
@@ -217,7 +216,7 @@ class ScriptedPublisher:
         """Return what the graph shows of it."""
         return SimpleNamespace(
             topic_type=self.type_name,
-            qos_profile=self.qos,
+            qos_profile=BEST_EFFORT,
             node_namespace='/',
             node_name=self.name,
             topic_type_hash='',
@@ -537,7 +536,8 @@ def _log(world):
 
 def _publish(world):
     def publish(publisher, message):
-        world.said.append((world.now, publisher.topic_name, copy.deepcopy(message)))
+        data = serialize_message(message)
+        world.said.append((world.now, publisher.topic_name, type(message), data))
 
     return publish
 
