@@ -62,6 +62,7 @@ SLOW = (
     'ballscrew_monitor/test_hostile.py',
     'ballscrew_monitor/test_mutations.py',
     'ballscrew_monitor/test_signals.py',
+    'golden',
     'launch',
     'scripts',
     'surrogate/asperities/test_law.py',
@@ -125,6 +126,7 @@ gc.set_threshold(50_000, 20, 20)
 
 sys.meta_path.append(Skipper())
 sys.path.append(str(ROOT / 'bags'))  # the generators are scripts beside each other
+sys.path.append(str(ROOT / 'test' / 'golden'))  # what makes the golden outputs
 
 
 def pytest_collection_modifyitems(items):

@@ -84,6 +84,7 @@ THEMES = {
     'ballscrew_monitor/test_signals.py',
     'config/test_deployment.py',
     'config/test_parameter_files.py',
+    'golden/test_golden.py',
     'surrogate/builder/full/test_shipped.py',
     'surrogate/ehl/test_identities.py',
     'surrogate/ehl/test_mixed.py',
@@ -326,8 +327,11 @@ def test_manifest_names_what_is_imported():
 
 
 def test_every_file_of_tests_is_collected():
+    """All but what makes the golden outputs, and records them."""
+    golden = TREE / 'test' / 'golden'
+    makers = {golden / 'record.py', *golden.glob('golden/*.py')}
     report(offenders(hidden_tests, TESTS))
-    files = [path for path in TESTS if path.name != 'conftest.py']
+    files = [path for path in TESTS if path.name != 'conftest.py' and path not in makers]
     assert not [name_of(path) for path in files if not path.name.startswith('test_')]
     assert not [name_of(path) for path in files if not functions_of_tests(text_of(path))]
 
