@@ -27,8 +27,8 @@ EXCLUDED = 9.21
 """Chi squared above that of the best cause from which one does not fit: 99 %, two of freedom."""
 FEWEST_GROUPS = 3
 """Groups of places without which no pattern tells causes apart."""
-MOST_MISSED = 0.5
-"""Part of the reported change that a cause may leave unexplained, or exceed it by [-]."""
+LEAST_CARRIED, MOST_CARRIED = 0.5, 2.0
+"""Change that a cause alone predicts over the one that is reported, at least and at most [-]."""
 PATTERN_DOUBT = 0.1
 """
 What a change may differ from the pattern of its cause by at each place, over the change [-].
@@ -230,14 +230,15 @@ def carries(alone: float, reported: float) -> bool:
     """
     Return True if a cause carries the reported change of the mean friction.
 
-    `alone` [-] is the change of the mean friction that the cause alone predicts: it must have the
-    sign of the `reported` change [-] and differ from it by half of it at most. A reported change
-    within 3 % counts as normal; then that of the cause must, too.
+    `alone` [-] is the change of the mean friction that the cause alone predicts. It must have the
+    sign of the `reported` change [-] and lie between half of it and twice it, or both must lie
+    within 3 %, which counts as normal.
 
     """
-    if abs(reported) <= TOLERANCE:
-        return abs(alone) <= TOLERANCE
-    return abs(alone - reported) <= MOST_MISSED * abs(reported)
+    if max(abs(alone), abs(reported)) <= TOLERANCE:
+        return True
+    part = alone / reported if reported else math.nan
+    return LEAST_CARRIED <= part <= MOST_CARRIED
 
 
 def birge(chi: float, groups: int) -> float:

@@ -70,7 +70,7 @@ def told(code, size, seen, model):
         (CauseCode.SENSOR_OFFSET, -0.17),
         (CauseCode.WIPER, 0.17),  # the wrong sign
         (CauseCode.WIPER, -0.05),  # too little
-        (CauseCode.WIPER, -0.30),  # too much
+        (CauseCode.WIPER, -0.40),  # too much
         (CauseCode.LOAD_SIGN_OR_UNIT, -0.3),  # there is no load
         (CauseCode.CHURNING, 0.17 / 30.0),
         (CauseCode.TORQUE_CONSTANT, 0.17),
@@ -109,14 +109,16 @@ def test_an_offset_of_a_mean_that_did_not_change_stays_told(change, model):
     [
         (-0.25, -0.25, True),
         (-0.125, -0.25, True),
-        (-0.375, -0.25, True),
+        (-0.5, -0.25, True),
         (-0.124, -0.25, False),
-        (-0.376, -0.25, False),
+        (-0.501, -0.25, False),
         (0.25, -0.25, False),
         (0.0, 0.25, False),
         (0.03, -0.03, True),  # both count as normal
-        (0.031, 0.03, False),
+        (0.031, -0.03, False),
+        (-0.04, -0.03, True),
         (0.0, 0.031, False),
+        (0.1, 0.0, False),
         (math.nan, 0.25, False),
         (math.nan, 0.0, False),
     ],
