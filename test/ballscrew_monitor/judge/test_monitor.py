@@ -152,6 +152,58 @@ def test_the_limit_of_the_worst_sample_stays_with_it(core):
     assert monitor.event.advisor.point.speed == 12.0
 
 
+def stamped(event, lag=0, header=True):
+    """Return a sample whose stamp lies behind its arrival by a lag [ns]."""
+    kind = StampSource.HEADER if header else StampSource.RECEIVE
+    return dataclasses.replace(
+        event, stamp=event.stamp - lag, arrival=event.stamp, stamp_source=kind
+    )
+
+
+@pytest.mark.parametrize(
+    ('header', 'before', 'after', 'follows'),
+    [
+        (True, 0, 0, True),
+        (True, 50 * SECOND, 50 * SECOND, True),
+        (True, 0, 3600 * SECOND, False),
+        (False, 0, 0, True),
+    ],
+    ids=['same machine', 'lags as before', 'another machine', 'no header'],
+)
+def test_a_step_of_the_nodes_clock_is_left_out_if_the_stamps_follow_it(
+    core, header, before, after, follows
+):
+    monitor, step = slow_is_bad(core, clear_delay=SECOND), 3600 * SECOND
+    core.feed(monitor, [stamped(one, before, header) for one in core.motion(10.0, count=100)])
+    begin = monitor.event.start
+    next_ones = core.motion(10.0, start=START + SECOND + step, count=50)
+    first = stamped(next_ones[1], after, header)
+    assert monitor.leave_out(step, first) is follows
+    assert monitor.event.start == begin + follows * step
+    for one in next_ones:
+        assert monitor.update(stamped(one, after, header)) is None or not monitor.moved
+    good = core.motion(40.0, start=START + 3 * SECOND // 2 + step, count=101)
+    core.feed(monitor, [stamped(one, after, header) for one in good])
+    assert not monitor.event.active
+    assert monitor.event.stamp - monitor.event.start == 5 * SECOND // 2
+
+
+def test_what_moves_the_begin_of_an_excursion_is_told_with_the_sample(core):
+    monitor, lag = slow_is_bad(core), 600 * SECOND
+    moved = []
+    for one in core.motion(10.0, count=100):
+        monitor.update(stamped(one, lag))
+        moved.append(monitor.moved)
+    for one in core.motion(10.0, start=START + SECOND, count=2):
+        monitor.update(stamped(one))
+        moved.append(monitor.moved)
+    back = core.motion(10.0, start=START + SECOND + 2 * STEP - lag)
+    for one in back:
+        monitor.update(stamped(one))
+        moved.append(monitor.moved)
+    assert moved == [0] * 201 + [lag] + [0] * 3 + [STEP - lag]
+
+
 def test_a_stay_too_short_is_no_event(core):
     monitor = slow_is_bad(core)
     core.feed(monitor, core.motion(10.0, count=50))

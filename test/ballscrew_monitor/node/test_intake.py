@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """All that waits is taken at once, in the order of arrival, and what was lost is counted."""
 
+import dataclasses
 import functools
 import threading
 import time
 import types
 
-from ballscrew_monitor.core.conversions import Scaling
+from ballscrew_monitor.core.conversions import Scaling, SECOND
 from ballscrew_monitor.core.inputs import OpenInput, Source
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.node import intake as intake_module
@@ -166,6 +167,66 @@ def test_what_a_full_queue_drops_is_counted(bench):
     lost = sum(event.lost for event in bench.taken)
     assert len(bench.taken) + lost == 1000
     assert lost > 0
+
+
+class SteppedMonitor:
+    """Takes the steps that are to be left out, each with the value of the sample after it."""
+
+    def __init__(self):
+        self.steps = []
+
+    def leave_out(self, step, sample):
+        self.steps.append((step // SECOND, sample.value))
+        return True
+
+
+@pytest.mark.parametrize('hours', [1, -1])
+def test_a_step_of_the_system_clock_is_told_and_left_out_before_the_next_speed(
+    bench, monkeypatch, hours
+):
+    """It is one of the steady clock the other way round."""
+    said, left_out, steady = [], [], intake_module.monotonic_ns
+    bench.axis.monitor = SteppedMonitor()
+    monkeypatch.setattr(bench.intake, '_stepped', lambda step, now: said.append(step))
+    monkeypatch.setattr(bench.intake, '_left_out', lambda axis, step: left_out.append(axis))
+    bench.publish('speed', 1)
+    bench.until(lambda: bench.taken, meanwhile=bench.intake.drain)
+    step = hours * 3600 * SECOND
+    monkeypatch.setattr(intake_module, 'monotonic_ns', lambda: steady() - step)
+    bench.intake.drain()
+    bench.intake.drain()
+    assert [round(one / SECOND) for one in said] == [hours * 3600]
+    bench.publish('load', 2)
+    bench.until(lambda: len(bench.taken) == 2, meanwhile=bench.intake.drain)
+    assert not bench.axis.monitor.steps
+    for value in (3, 4):
+        bench.publish('speed', value)
+        bench.until(lambda value=value: len(bench.taken) == value, meanwhile=bench.intake.drain)
+    told = [(round(seconds, -1), value) for seconds, value in bench.axis.monitor.steps]
+    assert told == ([(3600, 3.0)] if hours > 0 else [])
+    assert left_out == [bench.axis] * len(told)
+
+
+def test_messages_before_and_after_a_step_are_two_bursts(bench, monkeypatch):
+    heard, steady = [], intake_module.monotonic_ns
+    bench.axis.monitor = SteppedMonitor()
+    bench.intake.drain()
+    bench.publish('speed', 1)
+    bench.publish('speed', 2)
+    waiting = bench.intake._waiting
+    found = bench.wait_for(
+        lambda: heard.extend(waiting()) or (heard if len(heard) == 2 else None), meanwhile=nothing
+    )
+    step = 3600 * SECOND
+    old = dataclasses.replace(found[0], received=found[0].received - step)
+    monkeypatch.setattr(bench.intake, '_waiting', lambda: [old, found[1]])
+    monkeypatch.setattr(intake_module, 'monotonic_ns', lambda: steady() - step)
+    bursts = []
+    monkeypatch.setattr(bench.intake._journal, 'hear', lambda batch: bursts.append(len(batch)))
+    bench.intake.drain()
+    assert [event.value for event in bench.taken] == [1.0, 2.0]
+    assert bursts == [1, 1]
+    assert [value for _, value in bench.axis.monitor.steps] == [2.0]
 
 
 def test_with_a_second_publisher_loss_is_not_known(bench):
