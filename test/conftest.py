@@ -60,6 +60,7 @@ SLOW = (
     'ballscrew_monitor/test_hostile.py',
     'ballscrew_monitor/test_mutations.py',
     'ballscrew_monitor/test_signals.py',
+    'config/test_workspace.py',
     'launch',
     'scripts',
     'surrogate/asperities/test_law.py',

@@ -46,7 +46,6 @@ MISSPELT = re.compile(r'\[(?:Nm|N\.m|N\*m|rpm|RPM|sec|C|°C|deg C|Pas|Pa\.s|Cels
 # Python packages by the names that a ROS machine knows them by.
 ROSDEP = {
     'matplotlib': 'python3-matplotlib',
-    'numba': 'python3-numba',
     'numpy': 'python3-numpy',
     'scipy': 'python3-scipy',
     'yaml': 'python3-yaml',
@@ -84,8 +83,8 @@ THEMES = {
 }
 # By the extras `bags`, `report`, `xlsx`, `page`, `areal`, `dask` and `netcdf`.
 OPTIONAL = {
-    *'SurfaceTopography apsw contourpy distributed fastexcel h11 lz4 mcap polars'.split(),
-    *'prometheus_client rosbags starlette uvicorn websockets xarray zstandard'.split(),
+    *'SurfaceTopography apsw contourpy distributed fastexcel h11 lz4 mcap numba'.split(),
+    *'polars prometheus_client rosbags starlette uvicorn websockets xarray zstandard'.split(),
 }
 
 

@@ -52,6 +52,7 @@ OPENING = re.compile(
     r'(What|From|Which|Just|How|Where|When|Why|Who|Whose|Whether|Whatever|Takes|Makes|Says)\b'
 )
 COMMAND = re.compile(r'ballscrew ((?:(?:surface|screw|oil) )?[a-z]+)((?: [^`\n#]*)?)')
+LINK = 'ln -s ballscrew_monitor/msg_defs'  # in a workspace, which holds the repository
 MOST_PAGES, MOST_WORDS = 11, 900
 
 
@@ -95,7 +96,8 @@ def test_links_lead_somewhere(page):
 
 @pytest.mark.parametrize('page', PAGES, ids=name_of)
 def test_paths_named_exist(page):
-    for named in CODE_PATH.findall(page.read_text(encoding='utf-8')):
+    text = page.read_text(encoding='utf-8')
+    for named in CODE_PATH.findall(text.replace(LINK, LINK.replace('ballscrew_monitor/', ''))):
         assert (ROOT / named.rstrip('.')).exists(), named
 
 
