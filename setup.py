@@ -107,6 +107,9 @@ setup(
         'netcdf': ['xarray>=2024.1'],
         'test': [
             'ContactMechanics>=1.8',
+            'colcon-defaults>=0.2.9',
+            'colcon-package-information>=0.4',
+            'colcon-ros>=0.5',
             'distributed>=2024.1',
             'hypothesis>=6.90',
             'mcap-ros2-support>=0.5',

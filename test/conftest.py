@@ -62,6 +62,7 @@ SLOW = (
     'ballscrew_monitor/test_hostile.py',
     'ballscrew_monitor/test_mutations.py',
     'ballscrew_monitor/test_signals.py',
+    'config/test_workspace.py',
     'golden',
     'launch',
     'scripts',

@@ -52,7 +52,6 @@ FIXED_TIMEOUT = re.compile(r'^ +timeout=\d|\.(?:run|communicate|wait|join|result
 # Python packages by the names that a ROS machine knows them by.
 ROSDEP = {
     'matplotlib': 'python3-matplotlib',
-    'numba': 'python3-numba',
     'numpy': 'python3-numpy',
     'scipy': 'python3-scipy',
     'yaml': 'python3-yaml',
@@ -92,7 +91,7 @@ THEMES = {
 }
 # By the extras `bags`, `report`, `xlsx`, `page`, `areal`, `dask` and `netcdf`.
 OPTIONAL = {
-    *'SurfaceTopography contourpy distributed fastexcel h11 lz4 mcap polars'.split(),
+    *'SurfaceTopography contourpy distributed fastexcel h11 lz4 mcap numba polars'.split(),
     *'prometheus_client starlette uvicorn websockets xarray zstandard'.split(),
 }
 
