@@ -90,7 +90,7 @@ setup(
     extras_require={
         'wheels': ROS_WHEELS,
         'plot': ['matplotlib>=3.6'],
-        'bags': ['lz4>=4.0', 'mcap>=1.1', 'rosbags>=0.10', 'zstandard>=0.20'],
+        'bags': ['lz4>=4.0', 'mcap>=1.1', 'zstandard>=0.20'],
         'report': ['contourpy>=1.0', 'polars>=1.0'],
         'page': [
             'contourpy>=1.0',
@@ -107,12 +107,16 @@ setup(
         'netcdf': ['xarray>=2024.1'],
         'test': [
             'ContactMechanics>=1.8',
+            'colcon-defaults>=0.2.9',
+            'colcon-package-information>=0.4',
+            'colcon-ros>=0.5',
             'distributed>=2024.1',
             'hypothesis>=6.90',
             'mcap-ros2-support>=0.5',
             'pytest>=7.4',
             'pytest-timeout>=2.2',
             'pytest-xdist>=3.5',
+            'rosbags>=0.10',
             'xarray>=2024.1',
             *LINTERS,
         ],

@@ -7,6 +7,7 @@ import signal
 import sys
 
 from ballscrew_monitor.core.interrupts import end_at_once
+from ballscrew_monitor.core.prerequisites import refuse
 
 
 def main() -> int:
@@ -15,7 +16,10 @@ def main() -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # not every terminal has all characters
             stream.reconfigure(errors='replace')
-    from ballscrew_monitor import cli
+    try:
+        from ballscrew_monitor import cli
+    except ImportError as error:
+        return refuse('ballscrew', error)
 
     code = cli.main()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # it has ended; Python clears up

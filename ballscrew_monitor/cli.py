@@ -20,7 +20,14 @@ import traceback
 from typing import Any
 
 from ballscrew_monitor import options
-from ballscrew_monitor.core.interrupts import FAILED, leave_to_python, raise_signals, SIGNALLED
+from ballscrew_monitor.core.interrupts import (
+    BAD_INPUT,
+    FAILED,
+    leave_to_python,
+    raise_signals,
+    SIGNALLED,
+)
+from ballscrew_monitor.core.prerequisites import refuse
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.settings.middleware import check_middleware
 from surrogate.cli import add_commands, Parser
@@ -28,25 +35,10 @@ from surrogate.files import InputError, printable
 from surrogate.surface import SurfaceError
 from surrogate.units import RPM
 
-BAD_INPUT, BUG, INTERRUPTED = 2, 70, SIGNALLED + signal.SIGINT
+BUG, INTERRUPTED = 70, SIGNALLED + signal.SIGINT
 NODE = 'ballscrew_monitor'  # the default name of the node
 # Facts of the event log that are sentences or words: the first that is not empty is printed.
 TOLD = ('text', 'ending', 'advice', 'reason', 'until', 'result', 'sha256')
-WEB = 'pip install starlette uvicorn websockets prometheus-client'
-# What some commands need beyond the rest, and how to get it.
-NEEDED = {
-    'mcap': 'pip install mcap zstandard',
-    'zstandard': 'pip install mcap zstandard',
-    'rosbags': 'pip install rosbags',
-    'apsw': 'pip install rosbags',
-    'polars': 'pip install polars contourpy',
-    'contourpy': 'pip install polars contourpy',
-    'fastexcel': 'pip install fastexcel, or save the sheet as CSV',
-    'matplotlib': 'pip install matplotlib',
-    **dict.fromkeys(('starlette', 'uvicorn', 'h11', 'websockets', 'prometheus_client'), WEB),
-    'rclpy': 'source the set-up file of ROS 2',
-    'ballscrew_msgs': 'source the set-up file of the workspace in which it was built',
-}
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -82,11 +74,7 @@ def _ended(args: argparse.Namespace) -> int:
         say(str(error))
         return BAD_INPUT
     except ImportError as error:
-        package = (error.name or '').split('.')[0]
-        if package not in NEEDED:
-            raise
-        say(f'{package} is not installed, this command needs it: {NEEDED[package]}')
-        return FAILED
+        return refuse('ballscrew', error)
     except BrokenPipeError:
         # The reader, such as `head`, has seen enough; nothing may be written at exit either.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -77,7 +77,8 @@ def add_health(parser: Parser) -> None:
     parser.add_argument('--baseline', nargs=2, metavar=('FROM', 'TO'), help=text)
     text = 'emission of the electricity [kg/kWh] (default none, no CO2 is told)'
     _add_number(parser, '--co2-kg-per-kWh', 'X', text, default=math.nan)
-    _add_switch(parser, '--speed-advice', 'let the advice name other speeds: the process is free')
+    text = 'let the advice name other speeds, as advice.speed does: the process is free'
+    _add_switch(parser, '--speed-advice', text)
     _add_file(parser, '--out', 'DIR', 'directory for health.json and health.png')
     _add_switch(parser, '--json', 'print JSON')
 

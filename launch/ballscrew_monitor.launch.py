@@ -6,10 +6,10 @@ Start the monitor as a lifecycle node.
 With `autostart:=true` the node configures and activates itself; with `false` a lifecycle manager
 does so. `params_file` may be left out: every parameter has a default. An argument that is given
 goes before the parameter file, one that is not leaves it alone. A `params_file` that is not there
-is an error: the defaults must not pass for it. The launch ends when the node ends, with an error
-if the node does; with `respawn:=true` the node is started again instead. With `page:=true` a live
-page is served at http://127.0.0.1:8090/. If the page ends, the launch says so and the node
-goes on.
+is an error: the defaults must not pass for it. The launch ends on Ctrl-C and when the node ends,
+with an error if the node does; with `respawn:=true` the node is started again instead. With
+`page:=true` a live page is served at http://127.0.0.1:8090/. If the page ends, the launch says so
+and the node goes on.
 
 """
 
@@ -49,9 +49,11 @@ def find_file(context):
 
 
 def end(event, context):
-    """Return what ends the launch after its node; raises RuntimeError where that has failed."""
+    """Return what ends the launch, if it is not ending; raises RuntimeError if the node failed."""
     if event.returncode:
         raise RuntimeError(f'{event.process_name} has ended with exit code {event.returncode}')
+    if context.is_shutdown:  # by Ctrl-C: launch fails at a second end
+        return None
     return Shutdown(reason=f'{event.process_name} has ended')
 
 

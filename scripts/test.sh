@@ -8,6 +8,8 @@
 set -u
 cd "$(dirname "$0")/.."
 export ROS_PYTHON_CHECK_FIELDS=1
+# Compiled modules are kept: hundreds of processes of the tests would each compile them again.
+unset PYTHONDONTWRITEBYTECODE
 # Seconds for one test, so that a middleware that hangs is a failure and not an endless run; more
 # than the deadlines of the tests, which tell what did not come.
 export PYTEST_TIMEOUT="${PYTEST_TIMEOUT:-900}"

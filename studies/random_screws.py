@@ -72,6 +72,7 @@ def draw(seed: int) -> tuple[CatalogueScrew, str, float, float]:
     given = CatalogueScrew(
         nominal_diameter=1e-3 * diameter,
         lead=1e-3 * lead,
+        nut='double',
         turns=turns,
         dynamic_rating=float(rating),
         preload_share=float(random.uniform(0.02, 0.1)),

@@ -3,6 +3,7 @@
 """Plain values of a YAML text: depth and number are bounded before a value is made."""
 
 from collections.abc import Callable
+import sys
 from typing import Any
 
 from surrogate.files import InputError
@@ -33,6 +34,17 @@ class _Loader(yaml.SafeLoader):
         if self._count > VALUES:
             raise yaml.YAMLError(f'it holds more than {VALUES} values')
         return node
+
+    def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
+        """Return a whole number; raises YAMLError for one that no float is as large as."""
+        number = int(super().construct_yaml_int(node))
+        if abs(number) > sys.float_info.max:
+            line = node.start_mark.line + 1
+            raise yaml.YAMLError(f'the whole number in line {line} is beyond 1.8e308')
+        return number
+
+
+_Loader.add_constructor('tag:yaml.org,2002:int', _Loader.construct_yaml_int)
 
 
 class _StrictLoader(_Loader):

@@ -3,6 +3,8 @@
 """The sentences that tests ask for by a key, and the nominal cycle as a bag, whole and in part."""
 
 from contextlib import contextmanager
+from functools import cache
+import gc
 import importlib
 from importlib.abc import MetaPathFinder
 import os
@@ -20,7 +22,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 DEADLINE = 600.0  # [s] which only ends a hang, in this file as in all others
 # No package of a machine with ROS 2.
-OPTIONAL = 'apsw contourpy fastexcel mcap mcap_ros2 polars rosbags zstandard'.split()
+OPTIONAL = 'contourpy fastexcel mcap mcap_ros2 polars rosbags zstandard'.split()
 OPTIONAL += 'h11 prometheus_client starlette uvicorn websockets'.split()
 # Tests that solve contacts, talk over DDS, start processes, draw many pictures, repeat thousands
 # of fits or run linters over the whole tree: folders and files, and fixtures that make any test
@@ -31,6 +33,7 @@ SLOW = (
     'ballscrew_monitor/cycle/test_node_process.py',
     'ballscrew_monitor/cycle/test_run.py',
     'ballscrew_monitor/clients/test_solve.py',
+    'ballscrew_monitor/core/test_prerequisites.py',
     'ballscrew_monitor/judge/test_many.py',
     'ballscrew_monitor/page/test_acting.py',
     'ballscrew_monitor/page/test_command.py',
@@ -59,6 +62,8 @@ SLOW = (
     'ballscrew_monitor/test_hostile.py',
     'ballscrew_monitor/test_mutations.py',
     'ballscrew_monitor/test_signals.py',
+    'config/test_workspace.py',
+    'golden',
     'launch',
     'scripts',
     'surrogate/asperities/test_law.py',
@@ -116,18 +121,27 @@ class Skipper(MetaPathFinder):
             pytest.skip(f'{name} is not installed', allow_module_level=True)
 
 
+# Thousands of tests are a million objects that live on, among which garbage is rarely looked for:
+# that took a quarter of the time until the first test began.
+gc.set_threshold(50_000, 20, 20)
+
 sys.meta_path.append(Skipper())
 sys.path.append(str(ROOT / 'bags'))  # the generators are scripts beside each other
+sys.path.append(str(ROOT / 'test' / 'golden'))  # what makes the golden outputs
 
 
 def pytest_collection_modifyitems(items):
     """Mark what is fast, all but what is named as slow; linters come first, so long are they."""
     items.sort(key=lambda item: item.get_closest_marker('linter') is None)
     for item in items:
-        path = item.path.relative_to(ROOT / 'test')
-        slow = any(path.is_relative_to(name) for name in SLOW)
-        if not slow and not SLOW_FIXTURES & set(item.fixturenames):
+        if not is_slow(item.path) and SLOW_FIXTURES.isdisjoint(item.fixturenames):
             item.add_marker('fast')
+
+
+@cache
+def is_slow(path):
+    """Return True if a file of tests, or a folder above it, is named as slow."""
+    return any(path.is_relative_to(ROOT / 'test' / name) for name in SLOW)
 
 
 def _pause():

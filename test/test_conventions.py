@@ -3,6 +3,7 @@
 """Conventions that no linter knows: units, headers, versions, manifests and what is collected."""
 
 import ast
+from functools import cache
 from importlib.metadata import requires
 from pathlib import Path
 import re
@@ -24,6 +25,7 @@ PACKAGES = [
     for path in SOURCES
     if path.is_relative_to(TREE / 'ballscrew_monitor') or path.is_relative_to(TREE / 'surrogate')
 ]
+TESTS = [path for path in SOURCES if path.is_relative_to(TREE / 'test')]
 TEXTS = SOURCES + sorted(
     path
     for pattern in ('*', '.ci/*', 'config/*', 'docs/**/*.md', 'msg_defs/*/*', 'scripts/*')
@@ -43,10 +45,13 @@ QUANTITIES = {
 UNIT = re.compile(r'\[[^\]]+\]|[Dd]imensionless')
 UNIT_BESIDE = re.compile(r'#.*\[[^\]]+\]')
 MISSPELT = re.compile(r'\[(?:Nm|N\.m|N\*m|rpm|RPM|sec|C|°C|deg C|Pas|Pa\.s|Celsius|Kelvin)\]')
+HOMES = 'home root tmp work Users'.split()
+MACHINE = re.compile(rf'(?<![\w.])/(?:{"|".join(HOMES)})/\w+')
+HANG = 'DEADLINE = 600.0  # [s] which only ends a hang'
+FIXED_TIMEOUT = re.compile(r'^ +timeout=\d|\.(?:run|communicate|wait|join|result)\(.*timeout=\d')
 # Python packages by the names that a ROS machine knows them by.
 ROSDEP = {
     'matplotlib': 'python3-matplotlib',
-    'numba': 'python3-numba',
     'numpy': 'python3-numpy',
     'scipy': 'python3-scipy',
     'yaml': 'python3-yaml',
@@ -54,6 +59,7 @@ ROSDEP = {
 # Tests of a whole folder instead of one of its files, by what they hold it against.
 THEMES = {
     'bags/test_identity.py',
+    'ballscrew_monitor/health/test_foreign.py',
     'ballscrew_monitor/judge/test_edge_floats.py',
     'ballscrew_monitor/judge/test_golden.py',
     'ballscrew_monitor/node/test_clocks.py',
@@ -77,6 +83,7 @@ THEMES = {
     'ballscrew_monitor/test_signals.py',
     'config/test_deployment.py',
     'config/test_parameter_files.py',
+    'golden/test_golden.py',
     'surrogate/builder/full/test_shipped.py',
     'surrogate/ehl/test_identities.py',
     'surrogate/ehl/test_mixed.py',
@@ -84,13 +91,43 @@ THEMES = {
 }
 # By the extras `bags`, `report`, `xlsx`, `page`, `areal`, `dask` and `netcdf`.
 OPTIONAL = {
-    *'SurfaceTopography apsw contourpy distributed fastexcel h11 lz4 mcap polars'.split(),
-    *'prometheus_client rosbags starlette uvicorn websockets xarray zstandard'.split(),
+    *'SurfaceTopography contourpy distributed fastexcel h11 lz4 mcap numba polars'.split(),
+    *'prometheus_client starlette uvicorn websockets xarray zstandard'.split(),
 }
 
 
 def name_of(path):
     return str(path.relative_to(TREE))
+
+
+@cache
+def text_of(path):
+    return path.read_text(encoding='utf-8')
+
+
+@cache
+def syntax(text):
+    """Return the syntax tree of a source, which several checks read."""
+    return ast.parse(text)
+
+
+@pytest.fixture(scope='module', autouse=True)
+def _trees_are_of_these_tests_alone():
+    yield
+    syntax.cache_clear()
+    text_of.cache_clear()
+
+
+def offenders(check, paths):
+    """Return `file:line: why` of all that a check of a text finds in files."""
+    return [
+        f'{name_of(path)}:{line}: {why}' for path in paths for line, why in check(text_of(path))
+    ]
+
+
+def report(lines):
+    """Hold that there is no offender; the failure has each on a line of its own."""
+    assert not lines, '\n'.join(lines)
 
 
 def public(body):
@@ -129,31 +166,107 @@ def says_unit(node, text):
     return isinstance(node, ast.ClassDef) and bool(UNIT_BESIDE.search(segment))
 
 
-@pytest.mark.parametrize('path', PACKAGES, ids=name_of)
-def test_docstrings_say_units(path):
-    text = path.read_text()
-    for node in public(ast.parse(text).body):
+def quantities_without_unit(text):
+    for node in public(syntax(text).body):
         named = quantities(node)
-        assert not named or says_unit(node, text), f'{node.name}: no [unit] for {named}'
+        if named and not says_unit(node, text):
+            yield node.lineno, f'{node.name}: no [unit] for {named}'
 
 
-@pytest.mark.parametrize('path', PACKAGES, ids=name_of)
-def test_units_are_spelt_as_everywhere(path):
-    """One spelling for one unit: N m, rev/min, s, degC, Pa s."""
-    tree = ast.parse(path.read_text())
+def misspelt_units(text):
+    tree = syntax(text)
     for node in (tree, *public(tree.body)):
-        assert not MISSPELT.findall(ast.get_docstring(node) or '')
+        for unit in MISSPELT.findall(ast.get_docstring(node) or ''):
+            yield getattr(node, 'lineno', 1), unit
 
 
-@pytest.mark.parametrize('path', [*SOURCES, TREE / 'setup.py'], ids=name_of)
-def test_sources_carry_copyright_and_licence(path):
-    text = path.read_text()
-    assert text.startswith(HEADER) or text.split('\n', 1)[1].startswith(HEADER)
+def missing_header(text):
+    # A line with the interpreter may stand before it.
+    if not text.startswith(HEADER) and not text.partition('\n')[2].startswith(HEADER):
+        yield 1, 'no copyright and licence'
 
 
-@pytest.mark.parametrize('path', TEXTS, ids=name_of)
-def test_no_file_knows_the_machine_it_was_written_on(path):
-    assert not re.findall(r'(?<![\w.])/(?:home|root|tmp|work|Users)/\w+', path.read_text())
+def paths_of_a_machine(text):
+    for number, line in enumerate(text.split('\n'), 1):
+        for path in MACHINE.findall(line):
+            yield number, path
+
+
+def functions_of_tests(text):
+    return [
+        node
+        for node in ast.walk(syntax(text))
+        if isinstance(node, ast.FunctionDef) and node.name.startswith('test')
+    ]
+
+
+def hidden_tests(text):
+    """Yield each test whose name hides another one."""
+    first = {}
+    for node in functions_of_tests(text):
+        if first.setdefault(node.name, node) is not node:
+            yield node.lineno, f'{node.name} hides another of its name'
+
+
+def other_deadlines(text):
+    """Every deadline is the same, long enough for a machine that is busy elsewhere."""
+    for number, line in enumerate(text.split('\n'), 1):
+        deadline = re.match(r'DEADLINE = .*?(?=,|$)', line)
+        if deadline and deadline[0] != HANG:
+            yield number, deadline[0]
+        if FIXED_TIMEOUT.search(line):
+            yield number, line.strip()
+
+
+def test_docstrings_say_units():
+    report(offenders(quantities_without_unit, PACKAGES))
+
+
+def test_units_are_spelt_as_everywhere():
+    """One spelling for one unit: N m, rev/min, s, degC, Pa s."""
+    report(offenders(misspelt_units, PACKAGES))
+
+
+def test_sources_carry_copyright_and_licence():
+    report(offenders(missing_header, [*SOURCES, TREE / 'setup.py']))
+
+
+def test_no_file_knows_the_machine_it_was_written_on():
+    report(offenders(paths_of_a_machine, TEXTS))
+
+
+SILENT = 'def carry(load: float) -> None:\n    """Carry it."""\n'
+NUT = 'class Nut:\n    lead: float\n\n    def turn(self, end_speed: Array): ...\n'
+
+
+@pytest.mark.parametrize(
+    ('check', 'text', 'lines'),
+    [
+        (quantities_without_unit, SILENT, [1]),
+        (quantities_without_unit, SILENT.replace('it', 'it [N]'), []),
+        (quantities_without_unit, NUT, [1, 4]),
+        (quantities_without_unit, NUT.replace('float', 'float  # [m]'), [4]),
+        (
+            misspelt_units,
+            f'"""Loads [sec]."""\n{SILENT}'.replace('it.', '[Nm] or [rpm].'),
+            [1, 2, 2],
+        ),
+        (misspelt_units, SILENT.replace('it.', '[N m].'), []),
+        (missing_header, '', [1]),
+        (missing_header, f'\n\n{HEADER}', [1]),
+        (missing_header, HEADER, []),
+        (missing_header, f'#!/bin/sh\n{HEADER}', []),
+        *((paths_of_a_machine, f'a\nb = "/{home}/me/b"', [2]) for home in HOMES),
+        (paths_of_a_machine, '../tmp/a docs/work/b', []),
+        (hidden_tests, 'def test_a(): ...\n\n\ndef test_a(): ...', [4]),
+        (hidden_tests, 'def test_a(): ...\n\n\ndef a(): ...\n\n\ndef a(): ...', []),
+        (other_deadlines, 'DEADLINE = 60.0  # [s]\nrun(\n    timeout=9.0)\n', [1, 3]),
+        (other_deadlines, f'task.join(timeout={5.0})', [1]),
+        (other_deadlines, f'{HANG}, in this file\ntask.join(timeout=DEADLINE)', []),
+    ],
+)
+def test_each_check_finds_what_offends(check, text, lines):
+    assert [line for line, _ in check(text)] == lines
 
 
 def version_in(name, pattern):
@@ -195,7 +308,7 @@ def test_manifest_names_what_is_imported():
     imported = {
         name.split('.')[0]
         for path in shipped
-        for node in ast.walk(ast.parse(path.read_text()))
+        for node in ast.walk(syntax(text_of(path)))
         for name in (
             [alias.name for alias in node.names]
             if isinstance(node, ast.Import)
@@ -208,19 +321,18 @@ def test_manifest_names_what_is_imported():
     needed = {ROSDEP.get(name, name) for name in imported - own}
     assert needed <= declared
     # A message type may be used by its name only.
-    text = ''.join(path.read_text() for path in [*shipped, *TREE.glob('config/*.yaml')])
+    text = ''.join(text_of(path) for path in [*shipped, *TREE.glob('config/*.yaml')])
     assert not {name for name in declared - needed if f'{name}/' not in text}
 
 
 def test_every_file_of_tests_is_collected():
-    for path in sorted((TREE / 'test').rglob('*.py')):
-        names = [
-            node.name
-            for node in ast.walk(ast.parse(path.read_text()))
-            if isinstance(node, ast.FunctionDef) and node.name.startswith('test')
-        ]
-        assert len(names) == len(set(names)), f'{path.name}: a test hides another of its name'
-        assert path.name == 'conftest.py' or (path.name.startswith('test_') and names), path.name
+    """All but what makes the golden outputs, and records them."""
+    golden = TREE / 'test' / 'golden'
+    makers = {golden / 'record.py', *golden.glob('golden/*.py')}
+    report(offenders(hidden_tests, TESTS))
+    files = [path for path in TESTS if path.name != 'conftest.py' and path not in makers]
+    assert not [name_of(path) for path in files if not path.name.startswith('test_')]
+    assert not [name_of(path) for path in files if not functions_of_tests(text_of(path))]
 
 
 def test_every_golden_sentence_is_asked_for():
@@ -228,7 +340,7 @@ def test_every_golden_sentence_is_asked_for():
     folder = TREE / 'test'
     golden = tomllib.loads((folder / 'data' / 'sentences.toml').read_text(encoding='utf-8'))
     for name, sentences in golden.items():
-        nodes = ast.walk(ast.parse((folder / name).read_text(encoding='utf-8')))
+        nodes = ast.walk(syntax(text_of(folder / name)))
         unasked = sentences.keys() - {
             node.value for node in nodes if isinstance(node, ast.Constant)
         }
@@ -250,12 +362,7 @@ def test_tests_mirror_the_sources():
 
 
 def test_a_deadline_only_ends_a_hang():
-    """Every file that has one has the same, long enough for a machine that is busy elsewhere."""
-    texts = [path.read_text() for path in (TREE / 'test').rglob('*.py')]
-    found = {one for text in texts for one in re.findall(r'^DEADLINE = .*?(?=,|$)', text, re.M)}
-    assert found == {'DEADLINE = 600.0  # [s] which only ends a hang'}
-    calls = re.compile(r'^ +timeout=\d|\.(?:run|communicate|wait|join|result)\(.*timeout=\d', re.M)
-    assert not [one for text in texts for one in calls.findall(text)]
+    report(offenders(other_deadlines, TESTS))
 
 
 def test_slow_tests_are_there():

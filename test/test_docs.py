@@ -3,6 +3,8 @@
 """Documentation that would rot: links, paths, commands, the parameter table, short pages."""
 
 import ast
+from contextlib import redirect_stdout
+from functools import cache
 import io
 from pathlib import Path
 import re
@@ -52,6 +54,10 @@ OPENING = re.compile(
     r'(What|From|Which|Just|How|Where|When|Why|Who|Whose|Whether|Whatever|Takes|Makes|Says)\b'
 )
 COMMAND = re.compile(r'ballscrew ((?:(?:surface|screw|oil) )?[a-z]+)((?: [^`\n#]*)?)')
+LINK = re.compile(r'\]\(([^)#]*)(?:#([^)]+))?\)')
+FUNCTION = re.compile(r'`([\w/]+/\w+\.py): (\w+)`')
+DOCUMENT = re.compile(r'\b(docs/[\w/]+\.md)')
+IN_WORKSPACE = 'ln -s ballscrew_monitor/msg_defs'  # a path beside the repository
 MOST_PAGES, MOST_WORDS = 11, 900
 
 
@@ -59,74 +65,162 @@ def name_of(page):
     return str(page.relative_to(ROOT))
 
 
+@cache
+def text_of(path):
+    return path.read_text(encoding='utf-8')
+
+
+def offenders(check, paths):
+    """Return `file:line: why` of all that a check of a file and its text finds."""
+    return [
+        f'{name_of(path)}:{line}: {why}'
+        for path in paths
+        for line, why in check(path, text_of(path))
+    ]
+
+
+def report(lines):
+    """Hold that there is no offender; the failure has each on a line of its own."""
+    assert not lines, '\n'.join(lines)
+
+
+def found(pattern, text):
+    """Yield the line of each match of a pattern, and its groups."""
+    for match in pattern.finditer(text):
+        yield text.count('\n', 0, match.start()) + 1, *match.groups()
+
+
+def phrases(pattern, text):
+    """Yield the line of each phrase, which may go over the end of a line, and its words."""
+    words = [
+        (word, number) for number, line in enumerate(text.split('\n'), 1) for word in line.split()
+    ]
+    joined = ' '.join(word for word, _ in words)
+    for match in pattern.finditer(joined):
+        yield words[joined.count(' ', 0, match.start())][1], match[0]
+
+
+def without_table(text):
+    """Return the text of a page, at its lines, without the table that code makes."""
+    return text.replace(TABLE, '\n' * TABLE.count('\n'))
+
+
 def anchors(page):
     """Return the anchors that the headings of a page make."""
-    headings = re.findall(r'^#+ (.*)$', page.read_text(encoding='utf-8'), flags=re.MULTILINE)
+    headings = re.findall(r'^#+ (.*)$', text_of(page), flags=re.MULTILINE)
     return {re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-') for heading in headings}
 
 
 def defines(file, name):
     """Tell whether a module defines a function or class of that name."""
-    return bool(re.search(rf'^(?:def|class) {name}\b', file.read_text(encoding='utf-8'), re.M))
+    return file.is_file() and bool(re.search(rf'^(?:def|class) {name}\b', text_of(file), re.M))
 
 
-def words_of(page):
-    """Return the text of a page without line breaks and without the table that code makes."""
-    text = page.read_text(encoding='utf-8').replace(TABLE, '')
-    return ' '.join(text.split())
-
-
-def help_of(capsys, *words):
+@cache
+def help_of(*words):
     """Return what `--help` prints for a command."""
-    with pytest.raises(SystemExit):
+    with redirect_stdout(io.StringIO()) as printed, pytest.raises(SystemExit):
         main([*words, '--help'])
-    return str(capsys.readouterr().out)
+    return printed.getvalue()
 
 
-@pytest.mark.parametrize('page', PAGES, ids=name_of)
-def test_links_lead_somewhere(page):
-    links = re.findall(r'\]\(([^)#]*)(?:#([^)]+))?\)', page.read_text(encoding='utf-8'))
-    for target, anchor in links:
+def broken_links(page, text):
+    for line, target, anchor in found(LINK, text):
         if not target.startswith('http'):
             file = page.parent / target if target else page
-            assert file.exists(), target
-            assert not anchor or anchor in anchors(file), f'{target}#{anchor}'
+            if not file.exists() or (anchor and anchor not in anchors(file)):
+                yield line, f'{target}#{anchor}' if anchor else target
 
 
-@pytest.mark.parametrize('page', PAGES, ids=name_of)
-def test_paths_named_exist(page):
-    for named in CODE_PATH.findall(page.read_text(encoding='utf-8')):
-        assert (ROOT / named.rstrip('.')).exists(), named
+def missing_paths(page, text):
+    inside = text.replace(IN_WORKSPACE, IN_WORKSPACE.replace('ballscrew_monitor/', ''))
+    for line, named in found(CODE_PATH, inside):
+        if not (ROOT / named.rstrip('.')).exists():
+            yield line, named
 
 
-@pytest.mark.parametrize('page', PAGES, ids=name_of)
-def test_functions_named_exist(page):
-    text = page.read_text(encoding='utf-8')
-    for file, name in re.findall(r'`([\w/]+/\w+\.py): (\w+)`', text):
-        assert defines(ROOT / file, name), f'{file}: {name}'
+def missing_functions(page, text):
+    for line, file, name in found(FUNCTION, text):
+        if not defines(ROOT / file, name):
+            yield line, f'{file}: {name}'
+
+
+def missing_documents(path, text):
+    for line, named in found(DOCUMENT, text):
+        if not (ROOT / named).exists():
+            yield line, named
+
+
+def unknown_options(page, text):
+    for line, command, rest in found(COMMAND, text):
+        known = help_of(*command.split())
+        for option in re.findall(r'--[a-zA-Z][\w-]*', rest):
+            if option not in known:
+                yield line, f'{command} {option}'
+
+
+def history(page, text):
+    yield from phrases(HISTORY, without_table(text))
+
+
+def foreign_words(page, text):
+    """No page has phrases that a native speaker would not write."""
+    yield from phrases(FOREIGN, without_table(text))
+
+
+def foreign_in(text):
+    words = ' '.join(text.split()).replace('there is none', '')
+    return set(FOREIGN.findall(words)) - {'is None'}
+
+
+def foreign_words_of_a_source(path, text):
+    """No comment or docstring has those phrases, and a module opens with a noun."""
+    docstring = ast.get_docstring(ast.parse(text)) or ''
+    if OPENING.match(docstring):
+        yield 1, docstring.split()[0]
+    if not foreign_in(text):  # which is quicker than its tokens
+        return
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type == tokenize.COMMENT or token.string.startswith('"""'):
+            for phrase in foreign_in(token.string):
+                yield token.start[0], phrase
+
+
+def folders_without_a_row(page, text):
+    """Each folder of both packages has its row, and its entry is a function or class there."""
+    for folder in FOLDERS:
+        rows = [line for line in text.splitlines() if line.startswith(f'| `{folder}` |')]
+        if len(rows) != 1:
+            yield 1, f'{folder} has {len(rows)} rows'
+        for module, name in re.findall(r'`(\w+\.py): (\w+)`', ''.join(rows[:1])):
+            if not defines(ROOT / folder / module, name):
+                yield 1, f'{folder}: no {name} in {module}'
+
+
+def test_links_lead_somewhere():
+    report(offenders(broken_links, PAGES))
+
+
+def test_paths_named_exist():
+    report(offenders(missing_paths, PAGES))
+
+
+def test_functions_named_exist():
+    report(offenders(missing_functions, PAGES))
 
 
 def test_documents_named_in_code_exist():
-    for path in SOURCES:
-        for named in re.findall(r'\bdocs/[\w/]+\.md', path.read_text(encoding='utf-8')):
-            assert (ROOT / named).exists(), f'{name_of(path)}: {named}'
+    report(offenders(missing_documents, SOURCES))
 
 
-def test_commands_of_the_readme_exist(capsys):
-    readme = (ROOT / 'README.md').read_text(encoding='utf-8')
-    help_text = help_of(capsys)
-    shown = set(re.findall(r'^\| `ballscrew (\w+)', readme, flags=re.MULTILINE))
+def test_commands_of_the_readme_exist():
+    shown = set(re.findall(r'^\| `ballscrew (\w+)', text_of(ROOT / 'README.md'), re.MULTILINE))
     assert shown >= {'point', 'surface', 'run'}
-    for command in shown:
-        assert command in help_text
+    assert not [command for command in shown if command not in help_of()]
 
 
-@pytest.mark.parametrize('page', [ROOT / 'README.md', *GUIDE, *REFERENCE], ids=name_of)
-def test_commands_of_a_page_have_their_options(page, capsys):
-    for command, rest in COMMAND.findall(page.read_text(encoding='utf-8')):
-        known = help_of(capsys, *command.split())
-        for option in re.findall(r'--[a-zA-Z][\w-]*', rest):
-            assert option in known, f'{command} {option}'
+def test_commands_of_a_page_have_their_options():
+    report(offenders(unknown_options, [ROOT / 'README.md', *GUIDE, *REFERENCE]))
 
 
 def test_guide_is_of_few_pages():
@@ -134,57 +228,85 @@ def test_guide_is_of_few_pages():
     assert len(GUIDE) <= MOST_PAGES
 
 
-@pytest.mark.parametrize('page', GUIDE, ids=name_of)
-def test_guide_is_short(page):
-    assert len(page.read_text(encoding='utf-8').split()) <= MOST_WORDS
+def test_guide_is_short():
+    words = {name_of(page): len(text_of(page).split()) for page in GUIDE}
+    assert not {name: count for name, count in words.items() if count > MOST_WORDS}
 
 
-@pytest.mark.parametrize('page', [*GUIDE, *REFERENCE], ids=name_of)
-def test_pages_are_without_history(page):
-    assert not HISTORY.findall(words_of(page))
+def test_pages_are_without_history():
+    report(offenders(history, [*GUIDE, *REFERENCE]))
 
 
-@pytest.mark.parametrize('page', PAGES, ids=name_of)
-def test_pages_are_in_plain_words(page):
-    """No page has phrases that a native speaker would not write."""
-    assert not FOREIGN.findall(words_of(page))
+def test_pages_are_in_plain_words():
+    report(offenders(foreign_words, PAGES))
 
 
-@pytest.mark.parametrize('path', SOURCES, ids=name_of)
-def test_sources_are_in_plain_words(path):
-    """No comment or docstring has those phrases, and a module opens with a noun."""
-    text = path.read_text(encoding='utf-8')
-    assert not OPENING.match(ast.get_docstring(ast.parse(text)) or '')
-    for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        if token.type == tokenize.COMMENT or token.string.startswith('"""'):
-            words = ' '.join(token.string.split()).replace('there is none', '')
-            assert not set(FOREIGN.findall(words)) - {'is None'}, f'line {token.start[0]}'
+def test_sources_are_in_plain_words():
+    report(offenders(foreign_words_of_a_source, SOURCES))
+
+
+def test_architecture_names_every_folder():
+    report(offenders(folders_without_a_row, [DOCS / 'architecture.md']))
 
 
 def test_front_page_leads_to_every_page():
-    front = (DOCS / 'README.md').read_text(encoding='utf-8')
-    for page in (*GUIDE, *REFERENCE, *sorted((DOCS / 'theory').glob('*.md'))):
-        assert f'({page.relative_to(DOCS)})' in front
+    front = text_of(DOCS / 'README.md')
+    pages = (*GUIDE, *REFERENCE, *sorted((DOCS / 'theory').glob('*.md')))
+    assert not [name_of(page) for page in pages if f'({page.relative_to(DOCS)})' not in front]
 
 
 @pytest.mark.parametrize('index', ['decisions', 'notes'])
 def test_index_lists_its_pages(index):
-    text = (DOCS / index / 'README.md').read_text(encoding='utf-8')
-    for page in (DOCS / index).glob('*.md'):
-        assert page.name == 'README.md' or f'({page.name})' in text
+    pages = {page.name for page in (DOCS / index).glob('*.md')} - {'README.md'}
+    text = text_of(DOCS / index / 'README.md')
+    assert not [name for name in pages if f'({name})' not in text]
 
 
 def test_every_picture_is_on_a_page():
-    text = ''.join(page.read_text(encoding='utf-8') for page in PAGES)
-    for picture in DOCS.rglob('*.png'):
-        assert f'/{picture.name})' in text, picture.name
+    text = ''.join(map(text_of, PAGES))
+    assert not [path.name for path in DOCS.rglob('*.png') if f'/{path.name})' not in text]
 
 
-@pytest.mark.parametrize('folder', FOLDERS)
-def test_architecture_names_every_folder(folder):
-    """Each folder of both packages has its row, and its entry is a function or class there."""
-    page = (DOCS / 'architecture.md').read_text(encoding='utf-8')
-    rows = [line for line in page.splitlines() if line.startswith(f'| `{folder}` |')]
-    assert len(rows) == 1
-    for module, name in re.findall(r'`(\w+\.py): (\w+)`', rows[0]):
-        assert defines(ROOT / folder / module, name)
+README = ROOT / 'README.md'
+FOREIGN_SOURCE = '''"""What a row is."""
+# A call of it, told
+# anew.
+TEXT = 'told anew'
+
+
+def law():
+    """
+    Return none, as there is none, and is None.
+
+    Told
+    of it.
+
+    """
+'''
+
+
+@pytest.mark.parametrize(
+    ('check', 'text', 'lines'),
+    [
+        (broken_links, '[a](docs/README.md)\n[b](nowhere.md) and [c](http://x)', [2]),
+        (broken_links, '[a](CONTRIBUTING.md#rules)\n[b](CONTRIBUTING.md#laws)', [2]),
+        (broken_links, '\n[a](#nothing)', [2]),
+        (missing_paths, 'See `test/conftest.py`.\nSee surrogate/nothing.py', [2]),
+        (missing_functions, '`surrogate/files.py: InputError`\n`surrogate/files.py: Law`', [2]),
+        (missing_functions, '`surrogate/nothing.py: law`', [1]),
+        (missing_documents, f'# docs/README.md\n# docs/{"nothing"}.md', [2]),
+        (unknown_options, 'ballscrew point --json\n`ballscrew point --xml`', [2]),
+        (history, 'It is\nno\nlonger there.', [2]),
+        (history, f'{TABLE}\nIt is no longer there.', [TABLE.count('\n') + 2]),
+        (foreign_words, 'a\nb The\nwhole  of\nit', [3]),
+        (foreign_words_of_a_source, FOREIGN_SOURCE, [1, 3, 8]),
+        (folders_without_a_row, '', [1] * len(FOLDERS)),
+        (
+            folders_without_a_row,
+            text_of(DOCS / 'architecture.md').replace(': State`', ': X`'),
+            [1],
+        ),
+    ],
+)
+def test_each_check_finds_what_offends(check, text, lines):
+    assert [line for line, _ in check(README, text)] == lines

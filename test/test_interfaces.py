@@ -15,6 +15,7 @@ TREE = Path(__file__).resolve().parent.parent
 SOURCES = sorted(TREE.glob('msg_defs/*/*.*'))
 RECORD = json.loads((TREE / 'test' / 'data' / 'type_hashes.json').read_text())
 CONSTANT = re.compile(r'(?P<type>\w+) (?P<name>[A-Z][A-Z0-9_]*) *= *(?P<value>\S+)')
+UNIT = re.compile(r'\[[^\]]+\]|`unit`')
 # Kinds of things, told apart by a number; the first word names the kind.
 ENUMERATIONS = {
     *'CODE CONTACT DIRECTION GATE LEVEL NUT REGIME SEVERITY SIDE SOURCE STAMP STATE'.split(),
@@ -22,10 +23,10 @@ ENUMERATIONS = {
 }
 
 
-def fields(source):
-    """Yield type, name and comment of each field; a comment holds up to the next empty line."""
+def unexplained_fields(text):
+    """Yield line and name of a field that lacks a comment; one holds up to the next empty line."""
     comment = ''
-    for line in map(str.strip, source.read_text().splitlines()):
+    for number, line in enumerate(map(str.strip, text.splitlines()), 1):
         if line in ('', '---'):
             comment = ''
         elif line.startswith('#'):
@@ -33,7 +34,10 @@ def fields(source):
         elif not CONSTANT.match(line):
             declaration, _, beside = line.partition('#')
             kind, name = declaration.split()
-            yield kind, name, comment + beside
+            if not comment + beside:
+                yield number, f'{name} has no comment'
+            elif kind.startswith('float') and not UNIT.search(comment + beside):
+                yield number, f'{name} has no [unit]'
 
 
 def constants():
@@ -47,12 +51,27 @@ def type_of(source):
     return getattr(module, source.stem)
 
 
-@pytest.mark.parametrize('source', SOURCES, ids=lambda path: path.name)
-def test_every_field_is_explained(source):
-    for kind, name, comment in fields(source):
-        assert comment, f'{name} has no comment'
-        if kind.startswith('float'):
-            assert re.search(r'\[[^\]]+\]|`unit`', comment), f'{name} has no [unit]'
+def test_every_field_is_explained():
+    offenders = [
+        f'{source.name}:{line}: {why}'
+        for source in SOURCES
+        for line, why in unexplained_fields(source.read_text())
+    ]
+    assert not offenders, '\n'.join(offenders)
+
+
+@pytest.mark.parametrize(
+    ('text', 'lines'),
+    [
+        ('uint8 A=1\nuint8 kind', [2]),
+        ('# Of both.\nuint8 kind\nuint8 other\n\nuint8 last', [5]),
+        ('uint8 a  # text\n---\nuint8 b', [3]),
+        ('float64 speed  # of the nut', [1]),
+        ('# [rad/s]\nfloat64[] speeds\nfloat64 value  # in `unit`', []),
+    ],
+)
+def test_a_field_without_comment_or_unit_is_named(text, lines):
+    assert [line for line, _ in unexplained_fields(text)] == lines
 
 
 def test_zero_is_unknown_in_every_enumeration():
@@ -63,10 +82,13 @@ def test_zero_is_unknown_in_every_enumeration():
     assert {f'{kind}_UNKNOWN' for kind in kinds} == expected
 
 
-@pytest.mark.parametrize('kind', sorted(ENUMERATIONS))
-def test_values_of_an_enumeration_are_consecutive(kind):
-    values = [value for name, value in constants().items() if name.startswith(f'{kind}_')]
-    assert values == list(range(len(values)))
+def test_values_of_an_enumeration_are_consecutive():
+    numbers = constants()
+    values = {
+        kind: [value for name, value in numbers.items() if name.startswith(f'{kind}_')]
+        for kind in ENUMERATIONS
+    }
+    assert values == {kind: list(range(len(found))) for kind, found in values.items()}
 
 
 def test_all_interfaces_are_generated():
@@ -76,16 +98,15 @@ def test_all_interfaces_are_generated():
     assert list(RECORD['hashes']) == expected
 
 
-@pytest.mark.parametrize('source', SOURCES, ids=lambda path: path.name)
-def test_type_hash_is_the_recorded_one(source):
+def test_type_hashes_are_the_recorded_ones():
     """
     Two sides with different hashes do not understand each other.
 
     Fields are only appended; the recorded hash is then renewed in the same change.
 
     """
-    kind = f'ballscrew_msgs/{source.parent.name}/{source.stem}'
-    assert type_hash(kind) == RECORD['hashes'][kind]
+    kinds = [f'ballscrew_msgs/{source.parent.name}/{source.stem}' for source in SOURCES]
+    assert {kind: type_hash(kind) for kind in kinds} == RECORD['hashes']
 
 
 def type_hash(kind):

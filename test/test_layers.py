@@ -3,6 +3,7 @@
 """Imports downward, as sources say and as a fresh process does it; `surrogate` never ROS."""
 
 import ast
+from functools import cache
 from pathlib import Path
 import subprocess
 import sys
@@ -81,18 +82,38 @@ def room(name):
     return f'{name}.'.split('.')[1]
 
 
-def imports(path):
-    """Yield every absolute import of a module, wherever it stands."""
-    for node in ast.walk(ast.parse(path.read_text())):
+def imported_by(text):
+    """Return line and module of every absolute import of a source, wherever it stands."""
+    found = []
+    for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            found += [(node.lineno, alias.name) for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
-            assert not node.level, f'{path.name} imports relatively'
             # A name may be a module: `from surrogate import surface`.
-            assert node.module
             deeper = [f'{node.module}.{alias.name}' for alias in node.names]
             known = [name for name in deeper if (TREE / f'{name.replace(".", "/")}.py').exists()]
-            yield from known or [node.module]
+            names = known or [node.module or '']
+            found += [(node.lineno, '.' * node.level + name) for name in names]
+    return found
+
+
+@cache
+def imports(path):
+    return imported_by(path.read_text(encoding='utf-8'))
+
+
+def offenders(check, half):
+    """Return `file:line: module` of the imports of a half that a check of a module refuses."""
+    return [
+        f'{path.relative_to(TREE)}:{line}: {name}'
+        for path in MODULES[half]
+        for line, name in check(path, imports(path))
+    ]
+
+
+def report(lines):
+    """Hold that there is no offender; the failure has each on a line of its own."""
+    assert not lines, '\n'.join(lines)
 
 
 def loaded_by(statement):
@@ -107,15 +128,13 @@ def loaded_by(statement):
     return set(done.stdout.split())
 
 
-@pytest.mark.parametrize('path', MODULES['surrogate'], ids=name_of)
-def test_surrogate_imports_numerical_libraries_and_itself(path):
+def beyond_the_numerical_libraries(path, named):
     """No ROS, nothing of the online half."""
     allowed = NUMERICAL | {'surrogate'} | set(sys.stdlib_module_names)
-    assert {name.split('.')[0] for name in imports(path)} <= allowed
+    return [(line, name) for line, name in named if name.split('.')[0] not in allowed]
 
 
-@pytest.mark.parametrize('path', MODULES['ballscrew_monitor'], ids=name_of)
-def test_online_half_imports_the_lookup_alone(path):
+def beyond_the_lookup(path, named):
     """Only the command line, which is both halves, hands over to the offline one."""
     more = {
         'cli.py': {'surrogate.cli', 'surrogate.parameters'},
@@ -129,19 +148,97 @@ def test_online_half_imports_the_lookup_alone(path):
         'report': {'surrogate.progress'} | PLOTTING | TASKS,
     }
     allowed = LOOKUP | more.get(path.name, set()) | more.get(path.parent.name, set())
-    assert {name for name in imports(path) if name.split('.')[0] == 'surrogate'} <= allowed
+    offline = [(line, name) for line, name in named if name.split('.')[0] == 'surrogate']
+    return [(line, name) for line, name in offline if name not in allowed]
 
 
-@pytest.mark.parametrize('path', MODULES['ballscrew_monitor'], ids=name_of)
-def test_online_half_imports_downward(path):
-    """A folder imports itself and the floors below it; no folder imports the command line."""
+def upward(path, named):
+    # A folder imports itself and the floors below it; no folder imports the command line.
     own = room(name_of(path))
     floor = next((at for at, rooms in enumerate(FLOORS) if own in rooms), len(FLOORS))
     above = {other for rooms in FLOORS[floor:] for other in rooms if other != own}
-    named = {room(name) for name in imports(path) if name.startswith('ballscrew_monitor.')}
     # The command line is for the executable alone, and its options for the command line.
     upper = {'__main__.py': set(), 'cli.py': {'cli'}}.get(path.name, {'cli', 'options'})
-    assert not named & {*above, *upper}
+    online = [(line, name) for line, name in named if name.startswith('ballscrew_monitor.')]
+    return [(line, name) for line, name in online if room(name) in {*above, *upper}]
+
+
+def upward_offline(path, named):
+    # A folder imports itself and the floors below it; two import a few modules alone.
+    own = room(name_of(path))
+    offline = [(line, name) for line, name in named if name.startswith('surrogate.')]
+    others = [(line, name) for line, name in offline if room(name) != own]
+    if own in STANDS_ON:
+        return [(line, name) for line, name in others if name not in STANDS_ON[own]]
+    floor = next((at for at, rooms in enumerate(OFFLINE_FLOORS) if own in rooms), 0)
+    below = {room for rooms in OFFLINE_FLOORS[:floor] for room in rooms}
+    return [(line, name) for line, name in others if room(name) not in below]
+
+
+def relative(path, named):
+    return [(line, name) for line, name in named if name.startswith('.')]
+
+
+def test_surrogate_imports_numerical_libraries_and_itself():
+    report(offenders(beyond_the_numerical_libraries, 'surrogate'))
+
+
+def test_online_half_imports_the_lookup_alone():
+    report(offenders(beyond_the_lookup, 'ballscrew_monitor'))
+
+
+def test_online_half_imports_downward():
+    report(offenders(upward, 'ballscrew_monitor'))
+
+
+def test_offline_half_imports_downward():
+    report(offenders(upward_offline, 'surrogate'))
+
+
+def test_no_import_is_relative():
+    report(offenders(relative, 'surrogate') + offenders(relative, 'ballscrew_monitor'))
+
+
+@pytest.mark.parametrize(
+    ('check', 'module', 'text', 'lines'),
+    [
+        (beyond_the_numerical_libraries, 'surrogate/cli.py', 'import rclpy', [1]),
+        (
+            beyond_the_numerical_libraries,
+            'surrogate/ehl/case.py',
+            'import os\ndef f():\n    from ballscrew_monitor import cli',
+            [3],
+        ),
+        (beyond_the_numerical_libraries, 'surrogate/cli.py', 'from surrogate import files', []),
+        (beyond_the_lookup, 'ballscrew_monitor/core/a.py', 'import surrogate.cli', [1]),
+        (beyond_the_lookup, 'ballscrew_monitor/cli.py', 'import surrogate.cli', []),
+        (
+            beyond_the_lookup,
+            'ballscrew_monitor/node/a.py',
+            'from surrogate import units\nfrom surrogate import progress',
+            [2],
+        ),
+        (beyond_the_lookup, 'ballscrew_monitor/cycle/a.py', 'import surrogate.progress', []),
+        (upward, 'ballscrew_monitor/core/a.py', 'import ballscrew_monitor.judge.step', [1]),
+        (upward, 'ballscrew_monitor/judge/a.py', 'import ballscrew_monitor.core.state', []),
+        (upward, 'ballscrew_monitor/node/a.py', 'import ballscrew_monitor.report.page', [1]),
+        (upward, 'ballscrew_monitor/page/a.py', 'from ballscrew_monitor import cli', [1]),
+        (upward, 'ballscrew_monitor/__main__.py', 'from ballscrew_monitor import cli', []),
+        (upward, 'ballscrew_monitor/cli.py', 'from ballscrew_monitor import options', []),
+        (upward_offline, 'surrogate/ehl/a.py', 'import surrogate.screw.solve', [1]),
+        (upward_offline, 'surrogate/screw/a.py', 'import surrogate.ehl.solver', []),
+        (upward_offline, 'surrogate/surface/a.py', 'import surrogate.raceway.fractal', [1]),
+        (upward_offline, 'surrogate/surface/a.py', 'import surrogate.formulas.torque', []),
+        (
+            relative,
+            'surrogate/ehl/a.py',
+            'import os\nfrom . import case\nfrom ..a import b',
+            [2, 3],
+        ),
+    ],
+)
+def test_each_check_finds_what_offends(check, module, text, lines):
+    assert [line for line, _ in check(TREE / module, imported_by(text))] == lines
 
 
 @pytest.mark.parametrize(
@@ -155,20 +252,6 @@ def test_every_room_has_a_floor(half, floors):
     """No folder and no single module is forgotten, and none is named that is gone."""
     rooms = {room(name_of(path)) for path in MODULES[half]} - {''}
     assert rooms == {one for floor in floors for one in floor}
-
-
-@pytest.mark.parametrize('path', MODULES['surrogate'], ids=name_of)
-def test_offline_half_imports_downward(path):
-    """A folder imports itself and the floors below it; two import a few modules alone."""
-    own = room(name_of(path))
-    named = {name for name in imports(path) if name.startswith('surrogate.')}
-    others = {name for name in named if room(name) != own}
-    if own in STANDS_ON:
-        assert others <= STANDS_ON[own]
-        return
-    floor = next((at for at, rooms in enumerate(OFFLINE_FLOORS) if own in rooms), 0)
-    below = {room for rooms in OFFLINE_FLOORS[:floor] for room in rooms}
-    assert {room(name) for name in others} <= below
 
 
 def test_surrogate_loads_no_ros():

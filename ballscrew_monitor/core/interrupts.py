@@ -10,7 +10,7 @@ import sys
 import threading
 from typing import Any
 
-DONE, FAILED, SIGNALLED = 0, 1, 128  # exit codes; a signal adds its number
+DONE, FAILED, BAD_INPUT, SIGNALLED = 0, 1, 2, 128  # exit codes; a signal adds its number
 
 
 @contextlib.contextmanager

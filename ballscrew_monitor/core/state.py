@@ -69,7 +69,8 @@ class MonitorSettings:
     `max_lag` [ns] behind their arrival are warned of. Samples whose amount is above that in
     `plausible` [SI] are refused, and with `one_source` those of an input that several publishers
     send. With a `derivation` the load is derived from the motor torque, with `positions` the
-    samples of the speed are positions.
+    samples of the speed are positions. Advice names another speed only if `speed_allowed`: the
+    process leaves it free.
 
     """
 
@@ -81,6 +82,7 @@ class MonitorSettings:
     max_future: int = 0
     max_lag: int = YEAR
     one_source: bool = True
+    speed_allowed: bool = False
     tick_period: int = 0
     plausible: Mapping[Source, float] = dataclasses.field(default_factory=dict)
     fields: Mapping[Source, str] = dataclasses.field(default_factory=dict)

@@ -10,10 +10,10 @@ The words for what was lost, the summary, and the report.
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 import dataclasses
-import importlib.util
 from pathlib import Path
 from typing import Any
 
+from ballscrew_monitor.core.prerequisites import require
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import LogFacts, parameters_text, PREFIX
 from ballscrew_monitor.recordings.replay import speed_messages
@@ -58,9 +58,7 @@ def plan(bag: Path, params: Path, out: Path, rate: float) -> Plan:
     InputError before anything is started or written.
 
     """
-    for name in ('matplotlib', 'polars', 'contourpy'):  # asked early, imported late: they are slow
-        if importlib.util.find_spec(name) is None:
-            raise ModuleNotFoundError(f'no report without {name}', name=name)
+    require('numba', 'matplotlib', 'polars', 'contourpy')  # for the report, at the end
     if not 0.0 < rate <= 1000.0:
         raise InputError(f'rate is {rate:g}, allowed is above 0 to 1000')
     check_output(out)

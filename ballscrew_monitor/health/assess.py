@@ -17,7 +17,7 @@ from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import changed_screw, motion_by_day
 from ballscrew_monitor.health.calibration import calibrated
-from ballscrew_monitor.health.causes import causes_of, FEWEST_GROUPS, fits_of
+from ballscrew_monitor.health.causes import carrying, causes_of, FEWEST_GROUPS, fits_of
 from ballscrew_monitor.health.change import Change, Days, parts_of, select
 from ballscrew_monitor.health.companions import Companions
 from ballscrew_monitor.health.damage import rated_of
@@ -31,6 +31,7 @@ from ballscrew_monitor.health.lubrication import (
     lubrication_rate,
     opposed,
     severity_quantities,
+    usual_boundary,
 )
 from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.onset import onset_note, onset_of
@@ -43,16 +44,15 @@ from ballscrew_monitor.health.records import (
     Health,
     Quantity,
     SpectrumBin,
+    TOLERANCE,
 )
 from ballscrew_monitor.health.remedies import remedies_of
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.words import advice_of, verdict_of
 from surrogate.surface import Surface
 
-TOLERANCE = 0.03
-"""Change of the drag, or loss of preload, that counts as normal [-]."""
 NARROW = 0.1
-"""Half width of the interval of the drag up to which an axis is called normal [-]."""
+"""Half width of an interval of the drag that holds 0, up to which an axis is normal [-]."""
 SURE = 1.9
 """Half width of the 99.9 % interval over that of 95 %."""
 RECENT = 28
@@ -127,10 +127,17 @@ def assess(
         onset,
         *_others(points, spectrum, surface, known, today, settings),
     ]
-    notes = [
-        *_notes(surface, known, points, recent, change, today),
+    alarms = [
         onset_note(onset, TOLERANCE, SURE),
         note_on_runs(points, motion_by_day(spectrum), model, always_free=settings.always_free),
+    ]
+    usual = usual_boundary(points, known, surface, today)
+    if condition is Condition.WORSE or any(alarms):
+        usual = None
+    notes = [
+        '' if usual is None else boundary_note(usual),
+        *_notes(surface, known, recent, change),
+        *alarms,
     ]
     remedy = remedies_of(
         recent, surface, settings.limits, speed_allowed=settings.speed_allowed
@@ -140,7 +147,7 @@ def assess(
         stamp=now,
         condition=condition,
         verdict=verdict_of(axis, condition, drag, preload, causes),
-        advice=advice_of(condition, causes) or ('' if _is_usual(notes) else remedy),
+        advice=advice_of(condition, causes) or (remedy if usual is None else ''),
         quantities=found,
         causes=causes,
         baseline=known,
@@ -166,8 +173,11 @@ def compare(
     week, month = (_change(days, today - length) for length in (SHORT, RECENT))
     change = week or month
     reason = _reason(baseline, points, recent_of(points, today), change)
-    causes = [] if month is None else causes_of(month, fits_of(month, model))
+    fits = [] if month is None else fits_of(month, model)
+    causes = [] if month is None else causes_of(month, fits)
     preload = preload_of(change, model, reason, companions, causes)
+    if change is not None:
+        causes = carrying(causes, fits, change, model)
     condition = _condition(days, change, month, model)
     drag = _drag(change, reason)
     return Compared(model, change, month, reason, drag, preload, condition, causes)
@@ -255,7 +265,7 @@ def _condition(
     certain = is_certain(days, month, model, TOLERANCE)
     if certain or abs(change.common) - SURE * reach > TOLERANCE:
         return Condition.WORSE
-    return Condition.NORMAL if reach <= NARROW else Condition.UNKNOWN
+    return Condition.NORMAL if abs(change.common) <= reach <= NARROW else Condition.UNKNOWN
 
 
 def _drags(change: Change | None, drag: Quantity, reason: str) -> list[Quantity]:
@@ -303,12 +313,10 @@ def _others(
 def _notes(
     surface: Surface,
     baseline: Baseline | None,
-    points: Sequence[ComparablePoint],
     recent: Sequence[ComparablePoint],
     change: Change | None,
-    today: int,
 ) -> list[str]:
-    notes = [boundary_note(points, baseline, surface, today)]
+    notes = []
     if baseline is not None:
         changes = [] if change is None else change.relative.tolist()
         notes.append(input_fault(baseline.points, surface))
@@ -320,8 +328,3 @@ def _notes(
     speed = max((abs(one.speed) for one in recent), default=0.0)
     load = max((abs(opposed(one)) for one in recent), default=0.0)
     return [*notes, *shaft_notes(surface.header, speed, load)]
-
-
-def _is_usual(notes: Sequence[str]) -> bool:
-    """Tell whether boundary running is this axis's normal, so that no remedy is advised."""
-    return any('is normal for this axis' in one for one in notes)

@@ -4,7 +4,7 @@
 Causes of a change: each has a pattern over speed, load and direction, and one size.
 
 The size is that of the least chi squared over a grid; a cause whose least one lies too far above
-that of the best does not fit.
+that of the best does not fit. Nor does one that does not carry the reported change of the drag.
 
 """
 
@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from ballscrew_monitor.health.change import Change
 from ballscrew_monitor.health.model import Model
-from ballscrew_monitor.health.records import Cause, CauseCode, ComparablePoint, Quantity
+from ballscrew_monitor.health.records import Cause, CauseCode, ComparablePoint, Quantity, TOLERANCE
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,6 +27,8 @@ EXCLUDED = 9.21
 """Chi squared above that of the best cause from which one does not fit: 99 %, two of freedom."""
 FEWEST_GROUPS = 3
 """Groups of places without which no pattern tells causes apart."""
+LEAST_CARRIED, MOST_CARRIED = 0.5, 2.0
+"""Change that a cause alone predicts over the one that is reported, at least and at most [-]."""
 PATTERN_DOUBT = 0.1
 """
 What a change may differ from the pattern of its cause by at each place, over the change [-].
@@ -199,6 +201,44 @@ def causes_of(change: Change, fits: Sequence[Fit]) -> list[Cause]:
         _cause(fit, weight / sum(likely), (fit.chi - best) / scale > EXCLUDED, fits[0])
         for fit, weight in zip(fits, likely)
     ]
+
+
+def carrying(
+    causes: Sequence[Cause], fits: Sequence[Fit], change: Change, model: Model
+) -> list[Cause]:
+    """
+    Return causes of which those that do not carry a reported change are excluded, and last.
+
+    `fits` are theirs, in the same order.
+
+    """
+    told = []
+    for cause, fit in zip(causes, fits):
+        pattern = fit.candidate.pattern(model, change.points, fit.size)
+        alone = float(pattern.sum() / change.friction.sum())
+        if not cause.excluded and not carries(alone, change.common):
+            text = (
+                f'{cause.text}, which alone changes the drag by {100.0 * alone:+.0f} %, not by '
+                f'{100.0 * change.common:+.0f} %'
+            )
+            cause = dataclasses.replace(cause, excluded=True, text=text)
+        told.append(cause)
+    return sorted(told, key=lambda one: one.excluded)
+
+
+def carries(alone: float, reported: float) -> bool:
+    """
+    Return True if a cause carries the reported change of the mean friction.
+
+    `alone` [-] is the change of the mean friction that the cause alone predicts. It must have the
+    sign of the `reported` change [-] and lie between half of it and twice it, or both must lie
+    within 3 %, which counts as normal.
+
+    """
+    if max(abs(alone), abs(reported)) <= TOLERANCE:
+        return True
+    part = alone / reported if reported else math.nan
+    return LEAST_CARRIED <= part <= MOST_CARRIED
 
 
 def birge(chi: float, groups: int) -> float:

@@ -29,6 +29,17 @@ LOAD_ERROR = 0.03
 """Error of the torque of the load [-]."""
 CERTAIN, LEFT = 30.0, 0.3
 """Fall of chi squared from which a fault is told, and the part of it that may be left [-]."""
+MOST_FACTOR = 1000.0
+"""Largest factor on the torque that is told, that of mN m for N m [-]."""
+NOT_IDENTIFIED = (
+    'the measured torque lies far from that of the surface, which has no parasitic torque: '
+    'identify it by a run without load (ballscrew identify); torque constant and gear ratio are '
+    'not judged before'
+)
+NOT_TOLD = (
+    'the measured torque lies far from that of the surface, and the motion so far does not tell '
+    'why: check sign and unit of the load, torque constant, gear ratio and offset'
+)
 
 
 def input_fault(points: Sequence[ComparablePoint], surface: Surface) -> str:
@@ -49,11 +60,16 @@ def input_fault(points: Sequence[ComparablePoint], surface: Surface) -> str:
     if nothing - chi < CERTAIN or chi > LEFT * nothing:
         return ''
     if second - chi < EXCLUDED * birge(chi, len(means)):
-        return (
-            'the measured torque lies far from that of the surface, and the motion so far does '
-            'not tell why: check sign and unit of the load, torque constant, gear ratio and offset'
-        )
+        return NOT_TOLD
+    if best.code is CauseCode.TORQUE_CONSTANT and not is_identified(surface):
+        return NOT_IDENTIFIED
     return _sentence(best, size)
+
+
+def is_identified(surface: Surface) -> bool:
+    """Return True if a surface has the drag of wipers, bearings and ball returns of its screw."""
+    screw = surface.header['inputs']['screw']
+    return any(screw[name] > 0.0 for name in ('parasitic_torque', 'parasitic_torque_rate'))
 
 
 def _fit(pattern: Array, residual: Array, inverse: Array) -> tuple[float, float]:
@@ -79,6 +95,8 @@ def _sentence(fault: Candidate, size: float) -> str:
             f'the measured torque is shifted by {size:+.3g} N m in both directions since the '
             'baseline began: set the zero of the torque sensor'
         )
+    if fault.code is CauseCode.TORQUE_CONSTANT and abs(1.0 - size) * MOST_FACTOR < 1.0:
+        return NOT_TOLD
     if fault.code is CauseCode.TORQUE_CONSTANT:
         return (
             f'the measured torque is {1.0 / (1.0 - size):.3g} times that of the surface, with and '

@@ -11,6 +11,7 @@ ratio of rates and never as hours.
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 import itertools
 import math
+from typing import NamedTuple
 
 from ballscrew_monitor.core.conversions import Direction, opposing_load
 from ballscrew_monitor.health.damage import Rated, recent
@@ -157,24 +158,36 @@ def severity_quantities(
     return [*shares, _shift(latest, bins, baseline)]
 
 
-def boundary_note(
+class BoundaryShares(NamedTuple):
+    """Shares of the motion in the boundary regime in the baseline and now [-]."""
+
+    before: float
+    now: float
+
+
+def usual_boundary(
     points: Sequence[ComparablePoint], baseline: Baseline | None, surface: Surface, today: int
-) -> str:
+) -> BoundaryShares | None:
     """
-    Return a sentence where running in the boundary regime is normal for an axis, else nothing.
+    Return the boundary running of an axis for which it is normal, None where it is not.
 
     `today` counts days since 1970.
 
     """
     latest = recent(points, today, RECENT)
     if baseline is None or not latest or not baseline.points:
-        return ''
+        return None
     before, now = (_boundary_share(some, surface) for some in (baseline.points, latest))
     if not before >= NORMAL_BOUNDARY or not now <= before + BOUNDARY_SLACK:
-        return ''
+        return None
+    return BoundaryShares(before, now)
+
+
+def boundary_note(usual: BoundaryShares) -> str:
+    """Return in a sentence that running in the boundary regime is normal for an axis."""
     return (
-        f'boundary running is normal for this axis: {100 * before:.0f} % of its motion in the '
-        f'baseline and {100 * now:.0f} % now; nothing has to be done'
+        f'boundary running is normal for this axis: {100 * usual.before:.0f} % of its motion in '
+        f'the baseline and {100 * usual.now:.0f} % now'
     )
 
 

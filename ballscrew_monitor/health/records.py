@@ -16,6 +16,8 @@ import math
 from typing import NamedTuple
 
 NAN = math.nan
+TOLERANCE = 0.03
+"""Change of the drag, or loss of preload, that counts as normal [-]."""
 
 
 class LoadSource(enum.IntEnum):

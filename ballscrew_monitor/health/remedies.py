@@ -202,7 +202,12 @@ def _film(programme: Programme) -> Remedy:
 def _feed(programme: Programme) -> Remedy:
     """Return the slowest feed at which the programme lies inside, slower points raised to it."""
     advisors = (
-        Advisor(point=_machine_point(one), surface=programme.surface, limits=programme.limits)
+        Advisor(
+            point=_machine_point(one),
+            surface=programme.surface,
+            limits=programme.limits,
+            speed_allowed=True,
+        )
         for one in programme.points
     )
     nearest = {abs(one.advice.target_speed) for one in advisors}

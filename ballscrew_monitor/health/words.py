@@ -8,7 +8,14 @@ import enum
 import math
 from typing import Any
 
-from ballscrew_monitor.health.records import Cause, CauseCode, Condition, Health, Quantity
+from ballscrew_monitor.health.records import (
+    Cause,
+    CauseCode,
+    Condition,
+    Health,
+    Quantity,
+    TOLERANCE,
+)
 
 ADVICE = {
     CauseCode.PRELOAD_LOST: 'measure the backlash, and have the preload set or the nut replaced',
@@ -60,14 +67,15 @@ def explained(change: float, causes: Sequence[Any]) -> tuple[Certainty, Sequence
     """
     Return how sure the cause of a change of the drag [-] is, and the likely ones, the best first.
 
-    `causes` are those of health or of its message.
+    `causes` are those of health or of its message. Likely is one that fits, and about as well as
+    any, be it excluded or not.
 
     """
-    fitting = [one for one in causes if not one.excluded]
-    likely = [one for one in fitting if one.weight > 0.25 * fitting[0].weight]
+    most = max((one.weight for one in causes), default=0.0)
+    likely = [one for one in causes if not one.excluded and one.weight > 0.25 * most]
     if not likely:
         return Certainty.NONE, likely
-    if change < 0.0 and all(one.code != CauseCode.PRELOAD_LOST for one in causes):
+    if change < -TOLERANCE and all(one.code != CauseCode.PRELOAD_LOST for one in causes):
         return Certainty.PERHAPS, likely
     return Certainty.LIKELY if len(likely) > 1 else Certainty.SURE, likely
 

@@ -49,9 +49,9 @@ def compiled_nearest() -> Nearest:
     """Return the scan for advice compiled; raises ImportError without numba."""
     entry, room = compiled(nearest), np.zeros(1, dtype=dtype_of(Found))
 
-    def scan(surface: Surface, criterion: Criterion, here: float, places: list[float]) -> float:
+    def scan(surface: Surface, criterion: Criterion, here: float, speeds: list[float]) -> float:
         tables = surface.array_tables
-        return float(entry(tables, criterion, float(here), np.array(places), room))
+        return float(entry(tables, criterion, float(here), np.array(speeds), room))
 
     return scan
 

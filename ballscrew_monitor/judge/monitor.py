@@ -15,17 +15,18 @@ from typing import Any
 from ballscrew_monitor.core.advice import interpreted, Nearest
 from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source
+from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source, StampSource
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.memory import Memory as Kept
 from ballscrew_monitor.core.state import Event, MonitorSettings, NOT_SHELVED, Shelving, State
 from ballscrew_monitor.judge import views
+from ballscrew_monitor.judge.inputs import least_lag, SPEED
 from ballscrew_monitor.judge.point import set_answer, set_point
 from ballscrew_monitor.judge.records import Event as EventRecord
 from ballscrew_monitor.judge.records import Memory, NOT_KNOWN, REFUSAL, Row, SAMPLE, Settings, TICK
 from ballscrew_monitor.judge.slopes import SlopeRing
-from ballscrew_monitor.judge.step import NOTHING, STATE, step
-from ballscrew_monitor.judge.zone import end_excursion
+from ballscrew_monitor.judge.step import leave_out, NOTHING, STATE, step
+from ballscrew_monitor.judge.zone import ACTIVE, end_excursion
 from surrogate.surface import Surface
 
 NAN = math.nan
@@ -116,6 +117,7 @@ class Monitor:
         self._row = Row()
         self.row: Row | None = None  # of the last event, until the next; None if it gave none
         self._told = Event()
+        self.moved = 0  # by how much the last step has moved the begin of an excursion [ns]
 
     @property
     def settings(self) -> MonitorSettings:
@@ -146,16 +148,33 @@ class Monitor:
         return self._step()
 
     def _step(self) -> State | None:
-        number = self.memory.event_number
+        number, start = self.memory.event_number, self.memory.event_start[ACTIVE]
+        active = self.memory.event_active
         slopes = self.speeds, self.positions
         found = step(self._tables, self.numbers, self.memory, *slopes, self._event, self._row)
         if self.memory.event_number != number:
             self.ending = ''
+        self.moved = self.memory.event_start[ACTIVE] - start if active else 0
         self.row = None if found == NOTHING else self._row
         if found != STATE:
             return None
         row, self._row = self._row, Row()
         return self.state(row)
+
+    def leave_out(self, step: int, sample: InputSample) -> bool:
+        """
+        Leave a step [ns] of the node's clock forward out of an excursion; tell whether it was.
+
+        It is if the stamps follow that clock, as the first `sample` of the speed after it shows.
+
+        """
+        memory = self.memory
+        if sample.stamp_source is StampSource.HEADER and memory.lags_taken[SPEED]:
+            lag = within(sample.arrival) - within(sample.stamp)
+            if 2 * (lag - least_lag(memory, SPEED)) > step:
+                return False
+        leave_out(memory, step)
+        return True
 
     def state(self, row: Row) -> State:
         """Return the state that a row is published as, the memory being that after the row."""
@@ -195,9 +214,7 @@ class Monitor:
     @property
     def event(self) -> Event:
         """Return the event that is active, or the last one."""
-        made = views.event_of(
-            self.memory, self.surface, self._settings.limits, self.ending, self.nearest
-        )
+        made = views.event_of(self.memory, self.surface, self._settings, self.ending, self.nearest)
         if made != self._told:  # the advice of one event is worked out once
             self._told = made
         return self._told

@@ -138,10 +138,44 @@ def _take(settings: Any, memory: Any, positions: Any, event: Any) -> bool:
         if source == SPEED:
             _jump_back(memory, event.stamp)
         forget(memory, source)
-    if source != SPEED or not settings.positions:
+    if source != SPEED:
         accept(memory, settings, event, event.value)
-        return source == SPEED
-    return _take_position(settings, memory, positions, event)
+        return False
+    if settings.positions:
+        return _take_position(settings, memory, positions, event)
+    _accept_speed(settings, memory, event, event.value)
+    return True
+
+
+def _leap(memory: Any, event: Any) -> int:
+    """
+    Return by how much a stamp of the speed leaps ahead of the time that passed [ns], else 0.
+
+    The source has set its clock forward: it lags less behind the arrivals than it did for long.
+
+    """
+    gap = event.stamp - memory.sample_stamp[SPEED]
+    if memory.known[SPEED] == 0 or gap <= BACKWARD_JUMP or event.stamp_source != HEADER:
+        return 0
+    if memory.lags_taken[SPEED] == 0:
+        return 0
+    leap = least_lag(memory, SPEED) - (event.arrival - event.stamp)
+    return min(leap, gap) if leap > BACKWARD_JUMP else 0
+
+
+def _accept_speed(settings: Any, memory: Any, event: Any, speed: float) -> None:
+    """Take a good speed [rad/s]; a leap of its stamp is no time that has passed."""
+    leap = _leap(memory, event)
+    if leap > 0:
+        leave_out(memory, leap)
+    accept(memory, settings, event, speed)
+
+
+def leave_out(memory: Any, step: int) -> None:
+    """Leave a `step` [ns] of the clock forward out of what has begun and still goes on."""
+    if memory.event_active:
+        memory.event_start[ACTIVE] += step
+    memory.raising = memory.clearing = memory.moment = False
 
 
 def _is_usable(settings: Any, memory: Any, event: Any) -> bool:
@@ -185,7 +219,7 @@ def _take_position(settings: Any, memory: Any, positions: Any, event: Any) -> bo
         return False
     if not _is_plausible(settings, memory, event, speed):
         return False
-    accept(memory, settings, event, speed)
+    _accept_speed(settings, memory, event, speed)
     return True
 
 

@@ -18,7 +18,14 @@ from ballscrew_monitor.core.estimate import (
 )
 from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource, Why
 from ballscrew_monitor.core.judgement import Code, Gate, Limits, Verdict, Zone
-from ballscrew_monitor.core.state import Event, Extremes, Totals, WINDOW, WindowStatistics
+from ballscrew_monitor.core.state import (
+    Event,
+    Extremes,
+    MonitorSettings,
+    Totals,
+    WINDOW,
+    WindowStatistics,
+)
 from ballscrew_monitor.judge import derived_load
 from ballscrew_monitor.judge.inputs import is_fresh, is_lagging, least_lag, SLOW_GAPS
 from ballscrew_monitor.judge.records import NOT_KNOWN, RATE_SAMPLES, SHOWN, WHYS
@@ -116,7 +123,11 @@ def verdict_of(row: Any, estimate: PointEstimate, limits: Limits) -> Verdict:
 
 
 def event_of(
-    memory: Any, surface: Surface, limits: Limits, ending: str = '', nearest: Nearest = interpreted
+    memory: Any,
+    surface: Surface,
+    settings: MonitorSettings,
+    ending: str = '',
+    nearest: Nearest = interpreted,
 ) -> Event:
     """
     Return the excursion that is active or was the last; `ending` is why the node ended it.
@@ -136,7 +147,13 @@ def event_of(
         direction=Direction(int(memory.event_direction[ACTIVE])),
     )
     known = math.isfinite(point.speed + point.axial_load + point.temperature)
-    advisor = Advisor(point=point, surface=surface, limits=limits, nearest=nearest)
+    advisor = Advisor(
+        point=point,
+        surface=surface,
+        limits=settings.limits,
+        speed_allowed=settings.speed_allowed,
+        nearest=nearest,
+    )
     return Event(
         number=int(memory.event_number),
         active=bool(memory.event_active),

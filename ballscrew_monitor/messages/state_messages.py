@@ -101,7 +101,7 @@ def finding_message(finding: judgement.Finding, advice: Advice = NO_ADVICE) -> m
         unit=finding.unit,
         text=finding.text,
         target_speed=float(advice.target_speed),
-        target_load=float(advice.target_load),
+        target_load=NAN,  # no load is ever advised
     )
 
 

@@ -7,11 +7,12 @@ import sys
 
 
 def main(args: list[str] | None = None) -> int:
-    """Run the node until SIGINT or SIGTERM; return 0, or 2 after bad input."""
+    """Run the node until SIGINT or SIGTERM; return 0, or 2 if it cannot start."""
     # First of all: what follows takes a second to import, and a signal may come meanwhile.
     stop: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda received, frame: stop.append(received))
+    from ballscrew_monitor.core.prerequisites import refuse
     from ballscrew_monitor.settings.middleware import check_middleware
     from surrogate.files import InputError
 
@@ -20,7 +21,10 @@ def main(args: list[str] | None = None) -> int:
     except InputError as error:
         print(f'ballscrew_monitor: {error}', file=sys.stderr)
         return 2
-    from ballscrew_monitor.node.run import run
+    try:
+        from ballscrew_monitor.node.run import run
+    except ImportError as error:
+        return refuse('ballscrew_monitor', error)
 
     return run(args, stop)
 

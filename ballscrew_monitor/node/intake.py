@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable
 import contextlib
 import operator
 import time
+from time import monotonic_ns
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
@@ -30,6 +31,7 @@ from ballscrew_monitor.core.inputs import (
     Why,
 )
 from ballscrew_monitor.core.links import Link
+from ballscrew_monitor.core.tick_grid import ClockSteps, LEAST_STEP
 from ballscrew_monitor.node.journal import Heard, Journal, SILENT
 from ballscrew_monitor.node.sources import READING, Reading
 from ballscrew_monitor.node.topic import Apart, Arrival, link_of, open_topic, Topic
@@ -48,14 +50,15 @@ QUIET = 1.5e-3  # [s] without a message after which the executor waits for the n
 STAY = 0.02  # [s] longest turn; what becomes ready in one may wait for the next one too
 STEPS = 9  # of `/clock`, of which the middle one counts
 MOST_AHEAD = SECOND  # [ns] by which the steps of `/clock` let stamps be ahead
+LONG_STEP = 10  # usual steps of `/clock` in one that is a leap
 MOST_LOOKS = 10  # at all topics, while messages come faster than they are looked at
 
 AxisEvent = tuple[Axis, InputSample | Refusal]
 Take = Callable[[Axis, InputSample | Refusal], None]
 
 
-def _forget(duration: float, messages: int) -> None:
-    """Take no note of work."""
+def _forget(*what: Any) -> None:
+    """Take no note of work, nor of a step of the clock."""
 
 
 def _call(axis: Axis, place: str, call: Callable[..., Any], *args: Any, **named: Any) -> Any:
@@ -73,17 +76,23 @@ class Intake(Waitable):
         journal: Journal = SILENT,
         guard: Callable[..., Any] = _call,
         worked: Callable[[float, int], None] = _forget,
+        stepped: Callable[[int, int], None] = _forget,
+        left_out: Callable[[Axis, int], None] = _forget,
     ) -> None:
         """
         Subscribe once to each topic, however many inputs read it; the journal hears all.
 
         `guard` calls what reads for an axis, and returns None if the program fails in it; `worked`
-        takes for how long [s] messages were at work, and how many.
+        takes for how long [s] messages were at work, and how many. `stepped` takes by how much
+        [ns] the clock was set, and the time of that; `left_out` of which axis it was left out.
 
         """
         super().__init__(node.default_callback_group)
         self._node, self._take, self._journal, self._guard = node, take, journal, guard
         self._worked, self._apart = worked, Apart()
+        self._stepped, self._left_out = stepped, left_out
+        self._system_steps = ClockSteps()
+        self._clock_steps: dict[str, int] = {}  # [ns] by axis, since its last speed sample
         self._simulated = 0  # the last `/clock` [ns]
         self._steps: deque[int] = deque(maxlen=STEPS)  # of `/clock` [ns]
         self._reading = READING
@@ -94,7 +103,8 @@ class Intake(Waitable):
         self._waited_for = contextlib.ExitStack()
         self._stayed = False  # for all of STAY, the last time
         self.topics: dict[str, Topic] = {}
-        for axis in axes:
+        self._axes = list(axes)
+        for axis in self._axes:
             for source in axis.inputs:
                 self._read(axis, source)
             self._open += [(axis, one) for one in axis.open_inputs]
@@ -256,34 +266,77 @@ class Intake(Waitable):
 
     def drain(self) -> bool:
         """Hand over all that waits, oldest first; return whether that was anything."""
-        begin = time.monotonic()
+        begin, step = time.monotonic(), self._system_step()
         arrivals = self._waiting()
         if not arrivals:
+            self._hand_over([], step)
             return False
         now, wall = self.now, time.time_ns()
         self._learn(now)
         heard: list[Heard] = []
         for arrival in arrivals:
             if arrival.topic is self._clock:
-                self._show(arrival.message.clock)
+                if leap := self._show(arrival.message.clock):
+                    self._hand_over(heard, leap)
                 continue
             waited = max(wall - arrival.received, 0) if arrival.received else 0
             lost = arrival.topic.loss.take(arrival.number)
             at = max(now - waited, 0) if self._clock is None else self._simulated
+            if 2 * (now - at) < abs(step):  # the first one that arrived after the step
+                self._hand_over(heard, step)
+                step = 0
             heard.append((arrival, at, lost))
-        self._journal.hear(heard)
-        events = [event for one in heard for event in self._judged(one)]
-        for axis, event in ordered(events):
-            self._take(axis, event)
-        self._journal.flush()
+        self._hand_over(heard, step)
         self._worked(time.monotonic() - begin, len(arrivals))
         return True
 
-    def _show(self, shown: Any) -> None:
-        """Take a time of `/clock`, and how far it is from the one before."""
+    def _system_step(self) -> int:
+        """Return by how much [ns] the clock of the system was set since the last look, 0: not."""
+        if self._clock is not None:
+            return 0
+        before = monotonic_ns()
+        return self._system_steps.take(time.time_ns(), before, monotonic_ns())
+
+    def _hand_over(self, heard: list[Heard], step: int) -> None:
+        """Hand over what was heard as one burst, and begin the next one; note a step after it."""
+        if heard:
+            if self._clock_steps:  # first, so that the journal says it before these messages
+                events = [event for one in heard for event in self._judged(one)]
+                self._leave_out_steps(events)
+                self._journal.hear(heard)
+            else:
+                self._journal.hear(heard)
+                events = [event for one in heard for event in self._judged(one)]
+            for axis, event in ordered(events):
+                self._take(axis, event)
+            self._journal.flush()
+            heard.clear()
+        if step:
+            for axis in self._axes:
+                self._clock_steps[axis.name] = self._clock_steps.get(axis.name, 0) + step
+            self._stepped(step, self.now)
+
+    def _leave_out_steps(self, events: list[AxisEvent]) -> None:
+        """Leave steps of the clock out of what has begun, where the speed has come again."""
+        for axis, event in ordered(events):
+            if isinstance(event, InputSample) and event.source is Source.SPEED:
+                step = self._clock_steps.pop(axis.name, 0)
+                # Back: the stamps alone tell the judgement.
+                if step > 0 and axis.monitor.leave_out(step, event):
+                    self._left_out(axis, step)
+
+    def _show(self, shown: Any) -> int:
+        """Take a time of `/clock`; return by how much it leaps [ns], 0 if it goes on as before."""
         before, self._simulated = self._simulated, shown.sec * SECOND + shown.nanosec
-        if 0 < before < self._simulated:
-            self._steps.append(self._simulated - before)
+        step = self._simulated - before
+        if before <= 0:
+            return 0
+        usual = sorted(self._steps)[len(self._steps) // 2] if self._steps else max(step, 0)
+        if step < -LEAST_STEP or step - LONG_STEP * usual > LEAST_STEP:
+            return step - usual
+        if step > 0:
+            self._steps.append(step)
+        return 0
 
     def _learn(self, now: int) -> None:
         """

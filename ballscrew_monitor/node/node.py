@@ -7,7 +7,7 @@ import functools
 import traceback
 from typing import Any
 
-from ballscrew_monitor.core.conversions import nanoseconds
+from ballscrew_monitor.core.conversions import nanoseconds, seconds
 from ballscrew_monitor.core.inputs import InputSample, Refusal
 from ballscrew_monitor.core.state import State
 from ballscrew_monitor.core.tick_grid import TickGrid
@@ -23,6 +23,7 @@ from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.parameter_store import is_kept, ParameterStore
 from ballscrew_monitor.node.restart_state import RestartState, state_directory
 from ballscrew_monitor.node.solve_server import SolveServer
+from ballscrew_monitor.node.state_records import Kind, step_text
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import Axis, build_axes, named_topics, start_text
 from ballscrew_monitor.settings.qos import check_overrides, longest_period
@@ -191,6 +192,8 @@ class BallscrewMonitor(LifecycleNode):
             self._recording.journal,
             self._guard,
             self._heartbeat.vitals.work,
+            self._on_step,
+            self._on_left_out,
         )
         self._tick_timer = self.create_timer(
             self._values['tick_period'], self._on_tick, clock=self._tick_clock()
@@ -277,6 +280,16 @@ class BallscrewMonitor(LifecycleNode):
     def _on_event(self, axis: Axis, event: InputSample | Refusal) -> None:
         self._judge(self._axis_publishers[axis.name], axis.monitor.update, event)
 
+    def _on_step(self, step: int, now: int) -> None:
+        """Note by how much [ns] the clock of the node was set to `now` [ns]."""
+        text = f'the clock was set {step_text(step)}'
+        self.get_logger().warning(text)
+        self._kept.note(Kind.CLOCK_STEP, stamp=now, by_s=seconds(step), text=text)
+
+    def _on_left_out(self, axis: Axis, step: int) -> None:
+        """Let a recording know that a step [ns] was left out of what has begun."""
+        self._recording.describe([axis.name], 'clock')
+
     def _guard(
         self, axis: Axis, place: str, call: Callable[..., Any], *args: Any, **named: Any
     ) -> Any:
@@ -296,6 +309,9 @@ class BallscrewMonitor(LifecycleNode):
         self, publisher: AxisPublisher, judge: Callable[[Any], State | None], event: Any
     ) -> None:
         state = judge(event)
+        if moved := publisher.axis.monitor.moved:
+            text = f'the stamps of the speed leap {step_text(moved)} in a warning'
+            self._kept.note(Kind.CLOCK_STEP, publisher.name, by_s=seconds(moved), text=text)
         publisher.frame.take(publisher.axis.monitor.row)
         self._publish(publisher, state)
 

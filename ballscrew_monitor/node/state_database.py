@@ -156,9 +156,15 @@ def read_entries(folder: Path) -> list[Entry]:
 
     """
     with sqlite_file.opened_to_read(folder, FILE, VERSION) as database:
+        database.text_factory = _text
         # At once: somebody who reads on and on keeps the journal from being cleared.
         rows = database.execute('SELECT * FROM events ORDER BY number').fetchall()
         return [Entry(*(_plain(one) for one in row[1:])) for row in rows]
+
+
+def _text(raw: bytes) -> str:
+    """Return a text; of a damaged one every byte that is no letter is shown as its number."""
+    return raw.decode('utf-8', 'backslashreplace')
 
 
 def _plain(value: Any) -> Any:

@@ -45,6 +45,7 @@ class Kind(enum.StrEnum):
     UNSHELVE = 'unshelve'
     CORRECTION = 'correction'
     SET_BASELINE = 'set_baseline'
+    CLOCK_STEP = 'clock_step'
 
 
 class Entry(NamedTuple):
@@ -129,6 +130,11 @@ def event_facts(event: Event) -> dict[str, Any]:
         'duration_s': seconds(event.stamp - event.start),
         'advice': event.advice.text,
     }
+
+
+def step_text(step: int) -> str:
+    """Return how far a clock was set, a step [ns]."""
+    return f'{"forward" if step > 0 else "back"} by {abs(seconds(step)):.6g} s'
 
 
 def point_facts(point: MachinePoint) -> dict[str, float]:

@@ -9,7 +9,6 @@ list of these. What a node says as a sentence alone is free: it stays as it is, 
 """
 
 from collections.abc import Sequence
-import math
 from typing import Any
 
 from ballscrew_monitor.core.advice import Advice, PERHAPS, SURELY
@@ -81,23 +80,15 @@ def detailed(what: Phrase, why: str) -> Phrase:
     return phrase('with_detail', what=what, why=free(why)) if why else what
 
 
-def advised(sentence: str, target_speed: float, target_load: float) -> Said:
+def advised(sentence: str, target_speed: float) -> Said:
     """
-    Return the advice of an event by its speed [rad/s] and load [N], NaN for none.
+    Return the advice of an event by the amount of its speed [rad/s], NaN for none.
 
     A `sentence` that is no advice, such as why the node ended the event, stays free.
 
     """
-    targets = {'target_speed': target_speed, 'target_load': target_load}
     for doubt in DOUBTS:
-        if sentence and Advice(**targets, carry=doubt).text == sentence:
-            return _advice(target_speed / RPM, target_load, doubt)
+        if sentence and Advice(target_speed=target_speed, carry=doubt).text == sentence:
+            advice = phrase('advice_speed', speed={'speed': abs(target_speed) / RPM})
+            return phrase(f'advice_{doubt}', advice=advice) if doubt else advice
     return free(sentence) if sentence else ''
-
-
-def _advice(turns: float, load: float, doubt: str) -> Phrase:
-    """Return an advice by its screw speed [rev/min] and load [N], one of them known."""
-    values = {'speed': turns, 'load': load}
-    known = [name for name, value in values.items() if math.isfinite(value)]
-    made = phrase(f'advice_{"_or_".join(known)}', speed={'speed': turns}, load={'load_N': load})
-    return phrase(f'advice_{doubt}', advice=made) if doubt else made

@@ -199,10 +199,12 @@ def health_record(health: msg.AxisHealth) -> dict[str, Any]:
 
 def event_record(event: msg.OutOfZone) -> dict[str, Any]:
     """Return an event."""
-    targets = event.cause.target_speed, event.cause.target_load
+    speed = event.cause.target_speed
     advice, ending = str(event.advice), ''
     if advice.startswith(ACKNOWLEDGED):
-        advice, ending = Advice(target_speed=targets[0], target_load=targets[1]).text, advice
+        advice, ending = Advice(target_speed=speed).text, advice
+    elif math.isfinite(event.cause.target_load):
+        advice = ''  # a node of another version advises a load
     return {
         'id': event.event_id,
         'begin': seconds(stamp_of(event.start)),
@@ -212,7 +214,7 @@ def event_record(event: msg.OutOfZone) -> dict[str, Any]:
         'limit': event.cause.limit,
         'active': event.active,
         'shelved': event.shelved,
-        'advice': advised(advice, *targets),
+        'advice': advised(advice, speed),
         'acknowledged': bool(ending),
         'acknowledged_by': ending.partition(' by ')[2],
     }

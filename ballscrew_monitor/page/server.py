@@ -10,7 +10,6 @@ from pathlib import Path
 import socket
 from typing import Any
 
-import h11
 from surrogate.files import InputError
 from surrogate.surface import Surface
 import uvicorn
@@ -20,6 +19,7 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 LARGEST_MESSAGE = 65_536  # [byte] from a browser; beyond, its socket is closed unread
 MOST_CONNECTIONS = 300
 FIRST_WORDS = 10.0  # [s] for a connection to ask for something
+LONGEST_WAIT = 30.0  # [s] for an answer, and then for all of the next request
 LAST_WORDS = 2  # [s] for connections to end
 
 
@@ -70,17 +70,43 @@ def bound_socket(options: PageOptions) -> Iterator[socket.socket]:
 
 
 class PatientProtocol(H11Protocol):
-    """A connection that is closed if it asks for nothing in time."""
+    """
+    A connection that is ended if no request comes in time, or no answer is given and taken.
+
+    What comes besides a whole head, such as a part of a body that nobody waits for, is no request.
+    A live socket stays.
+
+    """
 
     def connection_made(self, transport: Any) -> None:
         """Begin to wait for the head of the first request."""
         super().connection_made(transport)
-        self.loop.call_later(FIRST_WORDS, self._end_if_silent)
+        self._timer = self.loop.call_later(FIRST_WORDS, self._end)
 
-    def _end_if_silent(self) -> None:
-        is_live_socket = self.transport.get_protocol() is not self
-        if self.conn.their_state is h11.IDLE and not is_live_socket:
-            self.transport.close()
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Wait no more."""
+        self._timer.cancel()
+        super().connection_lost(exc)
+
+    def handle_events(self) -> None:
+        """Take what came; a request that is among it is to be answered in time."""
+        before = self.cycle
+        super().handle_events()
+        if self.cycle is not before:
+            self._wait()
+
+    def on_response_complete(self) -> None:
+        """Begin to wait for the next request, and for this answer to be taken."""
+        self._wait()
+        super().on_response_complete()
+
+    def _wait(self) -> None:
+        self._timer.cancel()
+        self._timer = self.loop.call_later(LONGEST_WAIT, self._end)
+
+    def _end(self) -> None:
+        if self.transport.get_protocol() is self:
+            self.transport.abort()  # it would wait for what is not taken to be taken
 
 
 class QuietServer(uvicorn.Server):

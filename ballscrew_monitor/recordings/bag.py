@@ -14,9 +14,6 @@ import contextlib
 import dataclasses
 import heapq
 from pathlib import Path
-import shutil
-import tempfile
-import weakref
 
 from ballscrew_monitor.recordings.bag_files import kind_of, manifest, OWN, ZSTD
 from ballscrew_monitor.recordings.mcap_records import read_metadata
@@ -28,8 +25,15 @@ from ballscrew_monitor.recordings.storages import (
     Storage,
     TopicInfo,
 )
-from ballscrew_monitor.recordings.unpacking import unpack_file, Unpackable, unpacked
+from ballscrew_monitor.recordings.unpacking import (
+    scratch_folder,
+    unpack_file,
+    Unpackable,
+    unpacked,
+)
 from surrogate.files import InputError
+
+MOST_NAMED = 5  # topics in a sentence
 
 
 @dataclasses.dataclass(kw_only=True, slots=True)
@@ -68,6 +72,7 @@ class Bag:
         if not self.topics or not spans:
             what = '; '.join(self._missing) or 'at least one is needed'
             raise InputError(f'bag {self.path} holds no message, {what}')
+        self._compare(found.counts)
         self.metadata = self._own_metadata() | found.custom
         self.start_time = min(span[0] for span in spans)
         self.end_time = max(span[1] for span in spans)
@@ -154,19 +159,13 @@ class Bag:
         with damage_is_input(file):
             kind = kind_of(file)
             if kind == 'zstd':
-                file = unpack_file(file, self._scratch(), salvage=self._salvage)
+                file = unpack_file(file, scratch_folder(self), salvage=self._salvage)
                 kind = kind_of(file)
         if kind == 'rosbag1':
             raise InputError(f'bag {file} is of ROS 1, it must be converted to rosbag2')
         if kind == 'sqlite3':
             return SqliteStorage(file, salvage=self._salvage)
         return McapStorage(file, salvage=self._salvage)
-
-    def _scratch(self) -> Path:
-        """Return a new folder for an unpacked file, which goes with the bag."""
-        folder = tempfile.mkdtemp(prefix='ballscrew_bag_')
-        weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
-        return Path(folder)
 
     def _all_topics(self) -> dict[str, TopicInfo]:
         topics: dict[str, TopicInfo] = {}
@@ -176,6 +175,28 @@ class Bag:
                 count = info.count + (known.count if known else 0)
                 topics[name] = dataclasses.replace(info, count=count)
         return topics
+
+    def _compare(self, stated: Mapping[str, int]) -> None:
+        """Note of which topics the files hold another number of messages than is stated."""
+        held = {name: info.count for name, info in self.topics.items()}
+        names = [
+            name
+            for name in sorted(stated.keys() | held.keys())
+            if stated.get(name, 0) != held.get(name, 0)
+        ]
+        if not stated or not names:
+            return
+        pairs = ', '.join(
+            f'{stated.get(name, 0)} and {held.get(name, 0)} of {name}'
+            for name in names[:MOST_NAMED]
+        )
+        more = (
+            f', and others of {len(names) - MOST_NAMED} more topics' if names[MOST_NAMED:] else ''
+        )
+        self.remarks.append(
+            f'bag {self.path}: its metadata.yaml counts other messages than its files hold: '
+            f'{pairs}{more}'
+        )
 
     def _own_metadata(self) -> dict[str, str]:
         """Return the record of this program in the first MCAP file, if it is whole."""

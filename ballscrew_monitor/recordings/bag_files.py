@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files of a bag and their kinds, by metadata.yaml and by their first bytes."""
 
+import contextlib
 import dataclasses
 from pathlib import Path, PurePath
 import re
+from typing import Any
 
 from surrogate.files import InputError
 from surrogate.limits import read_text
@@ -30,10 +32,11 @@ OWN = 'ballscrew_monitor'
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Manifest:
-    """Files of a bag in order, and the custom data of its metadata."""
+    """Files of a bag in order, and of its metadata the custom data and the messages by topic."""
 
     files: tuple[Path, ...]
     custom: dict[str, str]
+    counts: dict[str, int]
 
 
 def kind_of(file: Path) -> str:
@@ -60,7 +63,7 @@ def is_table(path: Path) -> bool:
 def manifest(path: Path, *, salvage: bool) -> Manifest:
     """Return the files of the bag at `path`; raises InputError when there is none."""
     if path.is_file():
-        return Manifest(files=(path,), custom={})
+        return Manifest(files=(path,), custom={}, counts={})
     if not path.is_dir():
         raise InputError(f'bag {path} does not exist, it must be a bag directory or an MCAP file')
     metadata = path / 'metadata.yaml'
@@ -73,7 +76,7 @@ def manifest(path: Path, *, salvage: bool) -> Manifest:
         names = ', '.join(file.name for file in unfinished)
         hint = f', only the unfinished {names}' if names else ''
         raise InputError(f'bag {path} holds no MCAP file and no sqlite3 file{hint}')
-    return Manifest(files=files, custom=found.custom if found else {})
+    return found or Manifest(files=files, custom={}, counts={})
 
 
 def _bag_files(path: Path) -> list[Path]:
@@ -105,7 +108,16 @@ def _read_metadata(metadata: Path) -> Manifest:
     return Manifest(
         files=tuple(_place(bag, str(name)) for name in names),
         custom={str(key): str(value) for key, value in custom.items()},
+        counts=_stated_counts(content),
     )
+
+
+def _stated_counts(content: Any) -> dict[str, int]:
+    """Return the messages by topic as metadata count them, nothing unless they do so well."""
+    with contextlib.suppress(*NO_METADATA):
+        topics = content['topics_with_message_count']
+        return {str(one['topic_metadata']['name']): int(one['message_count']) for one in topics}
+    return {}
 
 
 def _place(bag: Path, name: str) -> Path:

@@ -11,6 +11,7 @@ import contextlib
 from pathlib import Path
 from typing import Any
 
+from ballscrew_monitor.recordings.bag_files import kind_of
 from ballscrew_monitor.recordings.bag_writer import ACTIVE, BagWriter, whole_bag
 from ballscrew_monitor.recordings.mcap_records import whole_records
 from mcap.records import Channel, Metadata, Schema
@@ -33,6 +34,11 @@ def recover(path: Path) -> tuple[Path, int, float]:
     file = _unfinished(path) if path.is_dir() else path
     if not file.is_file():
         raise InputError(f'{file} does not exist, it must be an MCAP file or the folder of one')
+    if kind_of(file) == 'sqlite3':
+        raise InputError(
+            f'{file} is a sqlite3 file of a bag, only MCAP files are recovered: ballscrew replay '
+            'reads it as it is, and of a damaged one the intact part'
+        )
     target = _target(file)
     if target.exists():
         raise InputError(f'{target} is there already, it would be written over: move it away')

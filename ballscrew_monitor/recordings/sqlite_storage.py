@@ -8,16 +8,23 @@ page is looked at by itself; one that is a leaf of the table `messages` holds ro
 time and data, and data that are long go on in further pages. The format of pages and rows is that
 of https://www.sqlite.org/fileformat.html, sections 1.6 and 2.1.
 
+A recorder that was killed, or one that still runs, leaves a journal beside its file. SQLite works
+it into a copy of both: nothing is written beside a bag.
+
 """
 
 from collections.abc import Collection, Iterator
 import contextlib
 from pathlib import Path
+import shutil
+import sqlite3
 import struct
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
+from ballscrew_monitor.core.sqlite_file import size_of
 from ballscrew_monitor.recordings import storages
 from ballscrew_monitor.recordings.storages import Message, Storage, TopicInfo
+from ballscrew_monitor.recordings.unpacking import scratch_folder
 import numpy as np
 from numpy.typing import NDArray
 from surrogate import limits
@@ -47,6 +54,10 @@ TABLES = (
     "SELECT name, sql FROM sqlite_master WHERE type = 'table' AND name IN ('topics', 'messages')"
 )
 NO_ROW = (IndexError, ValueError, struct.error, EOFError)
+DAMAGE = (sqlite3.Error, OSError, UnicodeDecodeError, MemoryError)
+LOG, ROLLBACK = '-wal', '-journal'  # endings of the journals of SQLite
+LOG_HEADER, FRAME_HEADER = 32, 24  # [bytes] of a write-ahead log, and before each page in it
+ROLLBACK_MAGIC = bytes.fromhex('d9d505f920a163d7')
 
 
 class SqliteStorage(Storage):
@@ -54,24 +65,37 @@ class SqliteStorage(Storage):
 
     _strays: frozenset[int] = frozenset()  # places of rows with a garbled time
 
+    def __init__(self, file: Path, *, salvage: bool = False) -> None:
+        """Read the topics; raises InputError when nothing can be had of the file."""
+        self._source, remarks = file, list[str]()
+        if journals := _journals(file):
+            try:
+                self._source, remarks = _merged(file, journals, scratch_folder(self))
+            except InputError as error:
+                if not salvage:
+                    raise
+                names = ' and '.join(path.name for path in journals)
+                remarks = [f'{error}; {names} is left out']
+        super().__init__(file, salvage=salvage)
+        for remark in remarks:
+            self._remark(remark)
+
     def messages(self, wanted: Collection[str], *, as_written: bool = False) -> storages.Stream:
         """Yield the messages, see `Storage`; they were written by log time, too."""
         found = self._indexed(wanted) if self.is_indexed else storages.by_log_time(self._whole())
         yield from (one for one in found if one.topic in wanted)
 
     def _read_topics(self) -> None:
-        import apsw
-
         with self._opened() as database:
             if self.salvage:  # rows and index must agree: damage may look like a message
                 ((fault,),) = database.execute('PRAGMA integrity_check(1)')
                 if fault != 'ok':
-                    raise apsw.CorruptError(fault)
+                    raise sqlite3.DatabaseError(fault)
             names = dict.fromkeys(('topics', 'messages'), 0)
             for name, text in database.execute(TABLES):
                 names[name] += text.upper().startswith('CREATE TABLE')
             if not all(names.values()):
-                raise apsw.CorruptError(f'no table of {", ".join(names)}')
+                raise sqlite3.DatabaseError(f'no table of {", ".join(names)}')
             found = {number: rest for number, *rest in database.execute(COUNTS)}
             ((total,),) = database.execute('SELECT count(*) FROM messages')
         known = {number: row for number, row in self._topic_rows().items() if number in found}
@@ -105,7 +129,7 @@ class SqliteStorage(Storage):
                 yield Message(topic=topics[number], data=data, log_time=time, publish_time=time)
 
     def _read_whole(self) -> None:
-        rows = [row[:2] for row in whole_messages(self.file)]
+        rows = [row[:2] for row in whole_messages(self._source)]
         self._strays = strays(np.array(rows, dtype=np.float64).reshape(-1, 2))
         counts = self._counted(self._whole())
         self.topics = {
@@ -117,14 +141,14 @@ class SqliteStorage(Storage):
     def _whole(self) -> Iterator[Message]:
         """Yield the messages that are whole, as written."""
         topics = self._topic_rows()
-        for place, (number, time, data) in enumerate(whole_messages(self.file) if topics else ()):
+        for place, (number, time, data) in enumerate(
+            whole_messages(self._source) if topics else ()
+        ):
             if number in topics and place not in self._strays:
                 yield Message(topic=topics[number][0], data=data, log_time=time, publish_time=time)
 
     def _topic_rows(self) -> dict[int, tuple[str, str, str]]:
         """Return name, type and encoding of the topics by number, none of a file without."""
-        import apsw
-
         try:
             with self._database() as database:
                 # Or a file that is shorter than it says is not opened at all.
@@ -133,32 +157,117 @@ class SqliteStorage(Storage):
                     number: (name, kind, form)
                     for number, name, kind, form in database.execute(TOPICS)
                 }
-        except (apsw.Error, UnicodeDecodeError):
+        except DAMAGE:
             return {}
 
-    def _database(self) -> contextlib.closing[Any]:
-        import apsw
-
-        flags = apsw.SQLITE_OPEN_READONLY | apsw.SQLITE_OPEN_URI
-        name = f'{self.file.resolve().as_uri()}?immutable=1'
-        return contextlib.closing(apsw.Connection(name, flags=flags))
+    def _database(self) -> contextlib.closing[sqlite3.Connection]:
+        name = f'{self._source.resolve().as_uri()}?mode=ro&immutable=1'
+        return contextlib.closing(sqlite3.connect(name, uri=True, check_same_thread=False))
 
     @contextlib.contextmanager
-    def _opened(self) -> Iterator[Any]:
-        import apsw
-
+    def _opened(self) -> Iterator[sqlite3.Connection]:
         try:
             # A page that the file ends in would be read as zeros.
-            if not ends_with_a_page(self.file):
-                raise apsw.CorruptError('it ends within a page')
+            if not ends_with_a_page(self._source):
+                raise sqlite3.DatabaseError('it ends within a page')
             with self._database() as database:
                 yield database
-        except (apsw.Error, OSError, UnicodeDecodeError) as error:
-            reason = ' '.join(str(error).split())
-            raise InputError(
-                f'bag {self.file} is truncated or damaged, it must be a complete sqlite3 file of '
-                f'rosbag2 ({reason})'
-            ) from None
+        except DAMAGE as error:
+            raise _damaged(self.file, error) from None
+
+
+def _damaged(file: Path, error: BaseException) -> InputError:
+    reason = ' '.join(str(error).split()) or type(error).__name__
+    return InputError(
+        f'bag {file} is truncated or damaged, it must be a complete sqlite3 file of rosbag2 '
+        f'({reason})'
+    )
+
+
+def _journals(file: Path) -> list[Path]:
+    """Return the journals beside a file that are not empty."""
+    place = file.resolve()  # where SQLite puts them
+    beside = [place.with_name(place.name + ending) for ending in (LOG, ROLLBACK)]
+    return [path for path in beside if size_of(path)]
+
+
+def _merged(file: Path, journals: list[Path], folder: Path) -> tuple[Path, list[str]]:
+    """
+    Return a copy of a file in `folder` with its journals worked in, and what they leave out.
+
+    Raises InputError if they cannot be copied, or if SQLite cannot read them.
+
+    """
+    copy = _copied(file, journals, folder)
+    log, rollback = (copy.with_name(copy.name + ending) for ending in (LOG, ROLLBACK))
+    written, remarks = _written_pages(log), _rolled_back(file, rollback)
+    try:
+        with contextlib.closing(sqlite3.connect(copy, isolation_level=None)) as database:
+            database.execute('SELECT count(*) FROM sqlite_master').fetchall()  # rolls back
+            ((_, used, done),) = database.execute('PRAGMA wal_checkpoint')
+        if used != done:
+            raise sqlite3.DatabaseError(f'{used - done} of {used} pages of {log.name} are lost')
+    except DAMAGE as error:
+        raise _damaged(file, error) from None
+    if written > max(used, 0):
+        remarks.append(
+            f'bag {file}: pages of {log.name} are damaged or of a transaction that was not '
+            'finished: they are left out, and the messages in them'
+        )
+    return copy, remarks
+
+
+def _copied(file: Path, journals: list[Path], folder: Path) -> Path:
+    parts, before = [file.resolve(), *journals], file.stat().st_mtime_ns
+    size, free = sum(map(size_of, parts)), shutil.disk_usage(folder).free
+    if 2 * size > free:
+        raise InputError(
+            f'bag {file} is read from a copy with its journal of {size / limits.MEGA:.0f} MB, '
+            f'allowed is half of the free disk, {free / 2 / limits.MEGA:.0f} MB'
+        )
+    copies = [folder / path.name for path in parts]
+    with storages.damage_is_input(file):
+        for path, copy in zip(parts, copies, strict=True):
+            shutil.copyfile(path, copy)
+        if file.stat().st_mtime_ns != before:  # the log is of another state of the file
+            raise InputError(f'bag {file} is being written, it can be read once that has ended')
+    return copies[0]
+
+
+def _written_pages(log: Path) -> int:
+    """Return how many pages a write-ahead log holds since it was begun, those not in use too."""
+    size = size_of(log)
+    if size <= LOG_HEADER:
+        return 0
+    with log.open('rb') as stream:
+        header = stream.read(LOG_HEADER)
+        step = FRAME_HEADER + int.from_bytes(header[8:12], 'big')
+        count, place = 0, LOG_HEADER
+        while place < size:
+            stream.seek(place)
+            if stream.read(FRAME_HEADER)[8:16] != header[16:24]:  # the numbers of its begin
+                break
+            count, place = count + 1, place + step
+    return max(count, 1)  # one without any is damaged
+
+
+def _rolled_back(file: Path, rollback: Path) -> list[str]:
+    """Return what is to be said of a rollback journal, nothing unless its transaction is open."""
+    if not size_of(rollback):
+        return []
+    with rollback.open('rb') as stream:
+        head = stream.read(len(ROLLBACK_MAGIC))
+    if head == ROLLBACK_MAGIC:
+        return [
+            f'bag {file}: {rollback.name} holds a transaction that was not finished: it is rolled '
+            'back, its messages are left out'
+        ]
+    if not head[0]:  # a transaction that was finished
+        return []
+    return [
+        f'bag {file}: {rollback.name} is damaged: messages of a transaction that was not finished '
+        'may be among the others'
+    ]
 
 
 def strays(rows: NDArray[np.float64]) -> frozenset[int]:

@@ -16,10 +16,6 @@ from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
 from surrogate.surface import REGIMES
 from surrogate.units import RPM
 
-NO_ADVICE = (
-    'neither another speed at this load nor another load at this speed within the surface would '
-    'clear it'
-)
 RELATIONS = {
     Finding.CODE_RCS_HIGH: ('RCS', '>='),
     Finding.CODE_EFFICIENCY_LOW: ('efficiency', '<'),
@@ -34,8 +30,7 @@ class EventRecord:
     One stay outside the optimal zone; start [ns], duration [s], worst value and limit [-].
 
     `speed` [rad/s] and `axial_load` [N] are those of the worst value, NaN where only the message
-    of the warning is known; `target_speed` and `target_load` are those of the advice,
-    NaN if there is none.
+    of the warning is known; `target_speed` is that of the advice, NaN if there is none.
 
     """
 
@@ -50,7 +45,6 @@ class EventRecord:
     speed: float = written('rad_s', default=math.nan, compare=False)
     axial_load: float = written('N', default=math.nan, compare=False)
     target_speed: float = written('rad_s', default=math.nan, compare=False)
-    target_load: float = written('N', default=math.nan, compare=False)
     advice: str
 
     @property
@@ -59,11 +53,6 @@ class EventRecord:
         if not math.isfinite(self.speed + self.axial_load):
             return ''
         return f'{rounded(self.speed / RPM)} rev/min and {rounded(self.axial_load)} N'
-
-    @property
-    def what_to_do(self) -> str:
-        """Return the advice, or that there is none; empty where that is not known."""
-        return self.advice or (NO_ADVICE if self.place else '')
 
     @property
     def end(self) -> int:
@@ -152,7 +141,7 @@ class Summary:
     def _event_line(self, event: EventRecord) -> str:
         end = 'still on' if event.active else f'{self.since_first(event.end):5.1f} s'
         place = f' at {event.place}' if event.place else ''
-        advice = f': {event.what_to_do}' if place else f'; {event.advice}' if event.advice else ''
+        advice = f'{":" if place else ";"} {event.advice}' if event.advice else ''
         return (
             f'  {event.event_id:2d}  {self.since_first(event.start):5.1f} s to {end}  '
             f'{event.quantity} {event.relation} {event.shown(event.limit)}, '
@@ -210,5 +199,5 @@ def _said(event: Any, cause: Any, advice: Any) -> dict[str, Any]:
     """Return what an event and the message of one name alike."""
     quantity, relation = RELATIONS.get(cause.code, ('other', 'beyond'))
     said = {'quantity': quantity, 'relation': relation, 'limit': cause.limit}
-    targets = {name: getattr(advice, name) for name in ('target_speed', 'target_load')}
-    return said | targets | {'active': event.active, 'worst_value': event.worst_value}
+    said['target_speed'] = advice.target_speed
+    return said | {'active': event.active, 'worst_value': event.worst_value}

@@ -5,6 +5,8 @@
 import io
 from pathlib import Path
 import shutil
+import tempfile
+import weakref
 
 from surrogate import limits
 from surrogate.files import InputError
@@ -15,6 +17,13 @@ BLOCK = 1 << 20  # [bytes] that are unpacked at a time
 
 class Unpackable(ValueError):
     """Packed bytes that are damaged or come to too much, and why."""
+
+
+def scratch_folder(owner: object) -> Path:
+    """Return a new folder for a file that is not as it is to be read; it goes with its owner."""
+    folder = tempfile.mkdtemp(prefix='ballscrew_bag_')
+    weakref.finalize(owner, shutil.rmtree, folder, ignore_errors=True)
+    return Path(folder)
 
 
 def unpacked(packed: bytes, most: int = limits.MESSAGE, *, compression: str = 'zstd') -> bytes:

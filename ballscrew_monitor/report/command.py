@@ -11,6 +11,7 @@ import sys
 from typing import Any, TYPE_CHECKING
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED
+from ballscrew_monitor.core.prerequisites import require
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_files import is_table
 from ballscrew_monitor.recordings.bulk.decode import silence
@@ -38,6 +39,7 @@ def replay_command(args: argparse.Namespace, nominal: Path) -> int:
     """Do what the command line asks for; return the exit code."""
     logs = find_logs(args.logs, tables=args.map is not None, out=args.out)
     _check(logs, args)
+    require('numba')  # before workers meet its absence, each for itself
     say(*left_out(args.logs, logs, args.out))
     # With --json, standard output is JSON alone.
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):

@@ -16,9 +16,10 @@ from ballscrew_monitor.core.interrupts import DONE, FAILED
 from ballscrew_monitor.health.baseline import HOUR
 from ballscrew_monitor.health.records import Health, Quantity
 from ballscrew_monitor.health.rows import DAY
-from ballscrew_monitor.health.store import FILE
+from ballscrew_monitor.health.store import FILE, read_health
 from ballscrew_monitor.health.words import health_record
 from ballscrew_monitor.recordings.opener import opened_log
+from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.report.health_history import (
     AxisHistory,
@@ -27,10 +28,11 @@ from ballscrew_monitor.report.health_history import (
     HistoryMaker,
     peers_among,
 )
-from ballscrew_monitor.report.health_kept import kept_healths
+from ballscrew_monitor.report.health_kept import kept_healths, stored_axis
 from ballscrew_monitor.report.inputs_seen import hints_on
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.logs import find_logs, map_for
+from ballscrew_monitor.report.machines import axis_titles, folders_note, machine_names, MachineAxis
 from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.settings.parameters import read_file
 from surrogate.files import InputError, json_text, printable, replace_file
@@ -38,7 +40,9 @@ from surrogate.progress import Progress
 from surrogate.surface import SurfaceError
 
 RECORD, PICTURE = 'health.json', 'health.png'
-_OURS = re.compile(rb'\{(\}|\s*"[^"]*": \{\s*"axis": )')  # how a record of this command begins
+_OURS = re.compile(
+    rb'\{(\}|\s*"([^"\\]|\\.)*": \{\s*"axis": )'
+)  # how a record of this command begins
 MOST_BEGIN = 1000  # [bytes] of that
 
 
@@ -46,22 +50,31 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
     """Do what the command line asks for; return the exit code."""
     if args.out is not None:
         check_output(args.out)
+    if args.map is not None:
+        read_map(args.map)
     folders = [path for path in args.logs if (path / FILE).is_file()]
     named = [path for path in args.logs if path not in folders]
     logs = find_logs(named, tables=args.map is not None, out=args.out)
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
         histories = list(_histories(logs, args, nominal)) if logs else []
-        found, peers = _healths(histories, args), peers_among(histories)
-        for folder in folders:
-            found |= kept_healths(folder, read_file(args.params or nominal), _options(args))
+        stores = {folder: read_health(folder) for folder in folders}
+        of_logs = list(by_axis(histories))
+        of_nodes = [stored_axis(folder, axis) for folder in stores for axis in stores[folder]]
+        titles = axis_titles([*of_logs, *of_nodes])
+        found = _healths(histories, titles, args)
+        for folder, stored in stores.items():
+            values = read_file(args.params or nominal)
+            found |= kept_healths(folder, stored, titles, values, _options(args))
         for last in (courses[-1] for courses in found.values()):
             print(printable('\n'.join(lines_of(last))))
-        for peer in peers:
+        for peer in peers_among(histories, titles):
             print(printable(peer.text))
+        say(*filter(None, [folders_note(of_logs)]))
+        records = _records(found, titles)
         if args.out is not None and found:
-            _write(args.out, found)
+            _write(args.out, records, {titles[axis]: one for axis, one in found.items()})
     if args.json:
-        print(json_text(_records(found)))
+        print(json_text(records))
     return DONE if found else FAILED
 
 
@@ -83,7 +96,12 @@ def check_output(out: Path) -> None:
 def _histories(
     logs: Sequence[Path], args: argparse.Namespace, nominal: Path
 ) -> Iterator[AxisHistory]:
-    """Yield what each recording holds of each axis; one that cannot be read stops no other."""
+    """
+    Yield what each recording holds of each axis; one that cannot be read stops no other.
+
+    Raises InputError when the only one cannot be read.
+
+    """
     bar = Progress(len(logs), 'recordings')
     try:
         for number, log in enumerate(logs):
@@ -100,6 +118,8 @@ def _histories(
                 say(*(f'{log}: check {hint}' for hint in hints_on(case.axes)))
                 yield from (axis.history for axis in case.axes if axis.history is not None)
             except (InputError, SurfaceError) as error:
+                if len(logs) == 1:
+                    raise
                 say(f'{log}: {error}')
         bar.show(len(logs), len(logs))
     finally:
@@ -112,10 +132,14 @@ def _show(bar: Progress, number: int, count: int, share: float) -> None:
 
 
 def _healths(
-    histories: Sequence[AxisHistory], args: argparse.Namespace
-) -> dict[str, list[Health]]:
+    histories: Sequence[AxisHistory], titles: Mapping[MachineAxis, str], args: argparse.Namespace
+) -> dict[MachineAxis, list[Health]]:
     """Return the course of each axis."""
-    return {axis: list(healths(own, **_options(args))) for axis, own in by_axis(histories).items()}
+    options = _options(args)
+    return {
+        axis: list(healths(own, title=titles[axis], **options))
+        for axis, own in by_axis(histories).items()
+    }
 
 
 def _options(args: argparse.Namespace) -> dict[str, Any]:
@@ -162,18 +186,24 @@ def _shown(one: Quantity) -> str:
     return f'{one.value:.4g}{unit} ({one.low:.4g} to {one.high:.4g}); {one.evidence}'
 
 
-def _records(found: Mapping[str, Sequence[Health]]) -> dict[str, Any]:
+def _records(
+    found: Mapping[MachineAxis, Sequence[Health]], titles: Mapping[MachineAxis, str]
+) -> dict[str, Any]:
     """Return the last health of each axis, and its course, for JSON."""
-    return {
-        axis: health_record(courses[-1]) | {'course': [health_record(one) for one in courses]}
-        for axis, courses in found.items()
-    }
+    names, records = machine_names(found), {}
+    for key, courses in found.items():
+        whose = {'axis': key.axis, 'machine': names[key.machine]}
+        course = [health_record(one) | whose for one in courses]
+        records[titles[key]] = course[-1] | {'course': course}
+    return records
 
 
-def _write(out: Path, found: Mapping[str, Sequence[Health]]) -> None:
-    from ballscrew_monitor.report.health_picture import draw_health  # slow to load
+def _write(out: Path, records: Mapping[str, Any], courses: Mapping[str, Sequence[Health]]) -> None:
+    from ballscrew_monitor.report.health_picture import draw_health, MOST_DRAWN  # slow to load
 
     out.mkdir(parents=True, exist_ok=True)
-    replace_file(out / RECORD, json_text(_records(found)).encode())
-    draw_health(found, out / PICTURE)
+    replace_file(out / RECORD, json_text(records).encode())
+    draw_health(dict(list(courses.items())[:MOST_DRAWN]), out / PICTURE)
     print(f'{out / RECORD} and {out / PICTURE}')
+    if len(courses) > MOST_DRAWN:
+        say(f'{out / PICTURE} shows the first {MOST_DRAWN} of {len(courses)} axes')

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.health.assess import assess, HealthSettings, recent_of
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import learned, LEAST_MOTION, named_or_why
@@ -27,6 +28,7 @@ from ballscrew_monitor.health.records import (
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.recordings.columns import JudgedColumns
+from ballscrew_monitor.report.machines import MachineAxis
 from surrogate.surface import Surface
 
 NAN = math.nan
@@ -37,7 +39,8 @@ class AxisHistory:
     """
     What one recording holds of one axis: comparable points and the spectrum of its loads.
 
-    `surface` is the file it was judged with; `last` [ns] is the stamp of its last row.
+    `surface` is the file it was judged with; `last` [ns] is the stamp of its last row; `machine`
+    is the one that the axis is of. Advice may name another speed if `speed_allowed`.
 
     """
 
@@ -48,6 +51,8 @@ class AxisHistory:
     points: Sequence[ComparablePoint]
     bins: Sequence[SpectrumBin]
     always_free: bool = False
+    speed_allowed: bool = False
+    machine: str = ''
 
 
 class HistoryMaker:
@@ -66,17 +71,21 @@ class HistoryMaker:
         self._last = int(block.stamp[-1])
         self._take(self._collector.take_many(block))
 
-    def history(self, axis: str, surface: Path, limits: Limits) -> AxisHistory:
+    def history(
+        self, axis: str, surface: Path, settings: MonitorSettings, *, machine: str = ''
+    ) -> AxisHistory:
         """Return what came of all blocks."""
         self._take(self._collector.finish())
         return AxisHistory(
             axis=axis,
             surface=str(surface),
-            limits=limits,
+            limits=settings.limits,
             last=self._last,
             points=tuple(self._points.values()),
             bins=tuple(merged_bins(self._bins)),
             always_free=self._always_free,
+            speed_allowed=settings.speed_allowed,
+            machine=machine,
         )
 
     def _take(self, found: Collected) -> None:
@@ -115,12 +124,15 @@ def healths(
     days: tuple[int, int] | None = None,
     co2_per_kwh: float = NAN,
     speed_allowed: bool = False,
+    title: str = '',
 ) -> Iterator[Health]:
     """
     Yield the health of one axis after each of its recordings, in the order of their stamps.
 
+    `title` names the axis in sentences if its own name does not tell it apart from others.
     The baseline is that of `days`, begin and end [ns], or learned over the first `over` [s] in
-    motion. All are held against the surface of the last recording.
+    motion. All are held against the surface of the last recording. Its parameters let the advice
+    name another speed, or `speed_allowed` does.
 
     """
     ordered = sorted(histories, key=lambda one: one.last)
@@ -130,7 +142,7 @@ def healths(
     settings = HealthSettings(
         limits=ordered[-1].limits,
         co2_per_kwh=co2_per_kwh,
-        speed_allowed=speed_allowed,
+        speed_allowed=speed_allowed or ordered[-1].speed_allowed,
         always_free=ordered[-1].always_free,
     )
     points: dict[Any, ComparablePoint] = {}
@@ -147,7 +159,8 @@ def healths(
             else named_or_why(kept, days, screw=screw)
         )
         now = (day_of(one.last) + 1) * DAY - 1
-        yield assess(one.axis, now, baseline, kept, bins, surface, companions, settings)
+        name = title or one.axis
+        yield assess(name, now, baseline, kept, bins, surface, companions, settings)
 
 
 def health_after(history: AxisHistory) -> Health:
@@ -155,15 +168,15 @@ def health_after(history: AxisHistory) -> Health:
     return next(healths([history]))
 
 
-def by_axis(histories: Sequence[AxisHistory]) -> dict[str, list[AxisHistory]]:
-    """Return histories by the name of their axis."""
-    found: dict[str, list[AxisHistory]] = {}
+def by_axis(histories: Sequence[AxisHistory]) -> dict[MachineAxis, list[AxisHistory]]:
+    """Return histories by machine and axis."""
+    found: dict[MachineAxis, list[AxisHistory]] = {}
     for one in histories:
-        found.setdefault(one.axis, []).append(one)
+        found.setdefault(MachineAxis(one.machine, one.axis), []).append(one)
     return found
 
 
-def peers_among(histories: Sequence[AxisHistory]) -> list[Peer]:
+def peers_among(histories: Sequence[AxisHistory], titles: Mapping[MachineAxis, str]) -> list[Peer]:
     """Return how axes with one surface rank over the latest weeks of all of them."""
     found: list[Peer] = []
     for file in dict.fromkeys(one.surface for one in histories):
@@ -171,7 +184,7 @@ def peers_among(histories: Sequence[AxisHistory]) -> list[Peer]:
         if len(axes := by_axis(own)) > FEWEST_PEERS:
             today = day_of(max(one.last for one in own)) + 1
             points = {
-                axis: recent_of([point for one in kept for point in one.points], today)
+                titles[axis]: recent_of([point for one in kept for point in one.points], today)
                 for axis, kept in axes.items()
             }
             found += ranked(points, Surface.load(Path(file)))

@@ -14,9 +14,9 @@ from ballscrew_monitor.health.keeper import assess_kept
 from ballscrew_monitor.health.points import surface_id
 from ballscrew_monitor.health.records import Health
 from ballscrew_monitor.health.rows import DAY
-from ballscrew_monitor.health.store import read_health
 from ballscrew_monitor.health.store_rows import KeptHealth
 from ballscrew_monitor.recordings.words import say
+from ballscrew_monitor.report.machines import MachineAxis
 from ballscrew_monitor.settings.axis import load_surface, settings_of, surface_file
 from surrogate.files import InputError
 
@@ -25,29 +25,40 @@ MOST_MONTHS = 24
 
 
 def kept_healths(
-    folder: Path, values: Mapping[str, Any], options: Mapping[str, Any]
-) -> dict[str, list[Health]]:
+    folder: Path,
+    stored: Mapping[str, KeptHealth],
+    titles: Mapping[MachineAxis, str],
+    values: Mapping[str, Any],
+    options: Mapping[str, Any],
+) -> dict[MachineAxis, list[Health]]:
     """
-    Return the health of each axis that a folder keeps, every four weeks until its last day.
+    Return the health of each axis that is `stored` in a folder, each four weeks of its days.
 
-    `values` are the parameters of the node, `options` those of `health_history.healths`. Raises
-    InputError for an axis without parameters.
+    `titles` name the axes in sentences, `values` are the parameters of the node, `options` those
+    of `health_history.healths`. Raises InputError for an axis without parameters.
 
     """
     found = {}
-    for axis, kept in read_health(folder).items():
+    for axis, kept in stored.items():
         if axis not in values['axes']:
             raise InputError(
                 f'{folder} keeps axis {axis}, the parameters are of {", ".join(values["axes"])}: '
                 'name those of the node with --params'
             )
-        found[axis] = list(_course(folder, axis, kept, values, **options))
+        key = stored_axis(folder, axis)
+        found[key] = list(_course(folder, axis, titles[key], kept, values, **options))
     return found
+
+
+def stored_axis(folder: Path, axis: str) -> MachineAxis:
+    """Return the key of an axis of the node that stores its health in a folder."""
+    return MachineAxis(str(folder.resolve()), axis)
 
 
 def _course(
     folder: Path,
     axis: str,
+    title: str,
     kept: KeptHealth,
     values: Mapping[str, Any],
     *,
@@ -64,10 +75,11 @@ def _course(
             f'{folder}: axis {axis} was gathered with another surface than {surface.screw_name}, '
             f'{surface.oil_name}: name the parameters of the node with --params'
         )
+    judged = settings_of(axis, values, surface)
     settings = HealthSettings(
-        limits=settings_of(axis, values, surface).limits,
+        limits=judged.limits,
         co2_per_kwh=co2_per_kwh,
-        speed_allowed=speed_allowed,
+        speed_allowed=speed_allowed or judged.speed_allowed,
         always_free=values[f'{axis}.health.always_free'],
     )
     periods = [(one.first_day, one.days) for one in kept.points]
@@ -82,4 +94,4 @@ def _course(
     say(*kept.notes)
     for day in range(last, max(first, last - MOST_MONTHS * MONTH) - 1, -MONTH)[::-1]:
         now = (day + 1) * DAY - 1
-        yield assess_kept(axis, now, kept, baseline, surface, companions, settings)
+        yield assess_kept(title, now, kept, baseline, surface, companions, settings)

@@ -21,6 +21,8 @@ SHOWN = {
     PRELOAD: ('preload over that of the baseline [%]', 100.0, 'preload left'),
 }
 WIDTH, HEIGHT = 8.0, 3.0  # [inch] of one quantity of one axis
+MOST_DRAWN = 40
+"""Axes in one picture, which may be 65536 pixels high."""
 
 
 def draw_health(found: Mapping[str, Sequence[Health]], path: Path) -> None:

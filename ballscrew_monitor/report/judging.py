@@ -25,6 +25,7 @@ from ballscrew_monitor.recordings.replay import ignore, replay_parts
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.recordings.words import feed_first
 from ballscrew_monitor.report.balance import Balance, Balancer
+from ballscrew_monitor.report.machines import folder_of
 from ballscrew_monitor.report.parameters import Assumed, AxisFacts, LogParameters
 from ballscrew_monitor.report.survey import Survey, Surveyor
 from ballscrew_monitor.settings.axis import (
@@ -178,7 +179,7 @@ class LogCase:
 
     `name` as its reader knows it, `parameters` where they came from; axes with rows, and the names
     of those without any; assumptions by what they are about, with value and reason; notes on the
-    recording itself.
+    recording itself; the machine that it is of.
 
     """
 
@@ -188,6 +189,7 @@ class LogCase:
     empty: Sequence[str] = ()
     assumptions: Assumed = dataclasses.field(default_factory=dict)
     notes: Sequence[str] = ()
+    machine: str = ''
 
     @property
     def unjudged(self) -> list[str]:
@@ -218,15 +220,19 @@ class CaseMaker:
     """Takes the blocks of one axis in order, and makes its case of them."""
 
     def __init__(
-        self, axis: str, values: Mapping[str, Any], make: 'type[HistoryMaker] | None' = None
+        self,
+        axis: str,
+        values: Mapping[str, Any],
+        make: 'type[HistoryMaker] | None' = None,
+        machine: str = '',
     ) -> None:
         """
-        Begin an axis of the parameters `values`; raises InputError without its surface.
+        Begin an axis of a machine with the parameters `values`; InputError without its surface.
 
         `make` makes what gathers its health, None for nothing.
 
         """
-        self._axis, self._values = axis, values
+        self._axis, self._values, self._machine = axis, values, machine
         self._surface = load_surface(axis, values)
         self._settings = settings_of(axis, values, self._surface)
         self._surveyor = Surveyor(
@@ -279,7 +285,7 @@ class CaseMaker:
         if self._history is None:
             return None
         file = surface_file(self._axis, self._values)
-        return self._history.history(self._axis, file, self._settings.limits)
+        return self._history.history(self._axis, file, self._settings, machine=self._machine)
 
     def _setting(self, source: Source) -> InputSetting:
         prefix, values = f'{self._axis}.{source.name.lower()}', self._values
@@ -312,6 +318,7 @@ def judge_log(
     read with the parameters.
 
     """
+    machine = parameters.machine or str(folder_of(bag.path))
     makers: dict[str, CaseMaker] = {}
     outcomes = []
     for part in _parts(bag, parameters.values, on_share, on_state):
@@ -319,7 +326,7 @@ def judge_log(
             outcomes.append(part)
         elif len(part):
             if part.axis not in makers:
-                makers[part.axis] = CaseMaker(part.axis, parameters.values, health)
+                makers[part.axis] = CaseMaker(part.axis, parameters.values, health, machine)
             makers[part.axis].add(part)
             if rows is not None:
                 rows.add(part)
@@ -341,6 +348,7 @@ def judge_log(
         empty=[one.axis for one in outcomes if one.axis not in makers],
         assumptions=parameters.assumptions,
         notes=[*parameters.notes, *bag.notes],
+        machine=machine,
     )
 
 

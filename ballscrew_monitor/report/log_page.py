@@ -146,7 +146,9 @@ def events_part(case: AxisCase, most: int) -> Markup:
     cut = f' The worst {most} of {count} are shown.' if count > most else ''
     worst = events[0].event_id
     in_order = sorted(events, key=lambda event: event.event_id)
-    rows = (_event_row(case, event, event.event_id == worst) for event in in_order)
+    advised = any(event.advice for event in events)
+    rows = (_event_row(case, event, event.event_id == worst, advised) for event in in_order)
+    heads = 'No.', 'Begins at [s]', 'Lasts [s]', 'Cause', 'Worst', 'Limit', 'Worst at'
     return joined(
         element('h3', f'Warnings: {count}'),
         element(
@@ -156,19 +158,15 @@ def events_part(case: AxisCase, most: int) -> Markup:
             + LASTING,
             class_='muted',
         ),
-        table(
-            ('No.', 'Begins at [s]', 'Lasts [s]', 'Cause', 'Worst', 'Limit', 'What to do'),
-            rows,
-            kind='leading sortable',
-        ),
+        table((*heads, 'What to do') if advised else heads, rows, kind='leading sortable'),
     )
 
 
-def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
+def _event_row(case: AxisCase, event: EventRecord, worst: bool, advised: bool) -> TableRow:
+    """Return the row of an event, with its advice if any event of the table is `advised` on."""
     begin, shown = case.since_first(event.start), case.shown(event)
     metal = event.quantity == RCS
     cause = 'oil film too thin (RCS)' if metal else f'too much friction ({event.quantity})'
-    todo = event.what_to_do
     lasts = number(event.duration, 4) + (' and still on' if event.active else '')
     return TableRow(
         (
@@ -181,7 +179,8 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool) -> TableRow:
                 text=f'{SIGNS.get(event.relation, event.relation)} {event.shown(event.limit)}',
                 kind='short',
             ),
-            case.in_its_unit(f'at {event.place}: {todo}' if event.place else todo or NONE),
+            case.in_its_unit(event.place) or NONE,
+            *([case.in_its_unit(event.advice) or NONE] if advised else []),
         ),
         begin=shown[0],
         end=shown[1],

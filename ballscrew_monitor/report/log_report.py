@@ -34,6 +34,7 @@ from ballscrew_monitor.report.inputs_seen import hints_on
 from ballscrew_monitor.report.judged_bag import judged_bag
 from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare
 from ballscrew_monitor.report.log_page import maps_of, report_page
+from ballscrew_monitor.report.machines import MachineAxis
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.printed import summary_record
 from ballscrew_monitor.report.verdict import AxisVerdict, verdicts_of
@@ -142,7 +143,7 @@ MADE = 'made'
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class AxisLine:
     """
-    What an overview says of an axis of a recording.
+    What an overview says of an axis of a recording, and its machine.
 
     `begins` [s] since 1970, time recorded, in motion and outside [s], NaN where not known; the
     worst event in words, and its depth [-].
@@ -159,6 +160,12 @@ class AxisLine:
     warnings: int = 0
     worst: str = ''
     depth: float = math.nan
+    machine: str = ''
+
+    @property
+    def key(self) -> MachineAxis:
+        """Return what it is told apart by."""
+        return MachineAxis(self.machine, self.axis)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -245,7 +252,7 @@ def write_events(path: Path, log: LogCase) -> None:
 def _result(log: LogCase) -> LogResult:
     cases = {case.axis: case for case in log.axes}
     lines = [
-        _axis_line(axis, verdict, cases.get(axis))
+        _axis_line(MachineAxis(log.machine, axis), verdict, cases.get(axis))
         for axis, verdict in zip([*cases, *log.empty], verdicts_of(log), strict=True)
     ]
     return LogResult(
@@ -258,8 +265,10 @@ def _result(log: LogCase) -> LogResult:
     )
 
 
-def _axis_line(axis: str, verdict: AxisVerdict, case: AxisCase | None) -> AxisLine:
-    said = AxisLine(axis=axis, standing=verdict.standing.value, verdict=verdict.whole)
+def _axis_line(key: MachineAxis, verdict: AxisVerdict, case: AxisCase | None) -> AxisLine:
+    machine, axis = key
+    standing = verdict.standing.value
+    said = AxisLine(axis=axis, standing=standing, verdict=verdict.whole, machine=machine)
     if case is None:
         return said
     summary, worst = case.outcome.summary(), next(iter(case.worst_first), None)

@@ -5,6 +5,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
+import os.path
 from pathlib import Path
 import threading
 from typing import Any
@@ -101,7 +102,7 @@ def report_logs(
     """
     inputs = {
         name: {
-            'log': str(log.resolve()),
+            'log': os.path.abspath(log),  # a link belongs to the machine where it lies
             'out': str((out / name).resolve()),
             'params': _text(params),
             # It is for tables; one recording has it for certain, and is refused if it is a bag.

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page over many recordings: a row for each axis of each, and how an axis does over dates."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 import dataclasses
 import datetime
 import math
@@ -13,6 +13,7 @@ from ballscrew_monitor.report.health_history import by_axis, healths, peers_amon
 from ballscrew_monitor.report.health_part import health_trends, peers_table, verdict_box
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
 from ballscrew_monitor.report.logs import PAGE
+from ballscrew_monitor.report.machines import axis_titles, folders_note, MachineAxis
 from ballscrew_monitor.report.page import element, joined, Markup, page, table, TableCell, TableRow
 from ballscrew_monitor.report.trend import Mark, trend
 
@@ -36,14 +37,19 @@ class LogEntry:
 
 
 Listed = tuple[LogEntry, AxisLine]
+Titles = Mapping[MachineAxis, str]
+"""Names of axes, with their machine where several have one of that name."""
 
 
 def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str:
     """Return the page over recordings, with sentences about what is not among them."""
     listed = [(one, line) for one in entries if one.result for line in one.result.lines]
     listed.sort(key=lambda pair: -math.inf if math.isnan(pair[1].begins) else pair[1].begins)
+    axes = [line.key for _, line in listed]
+    titles = axis_titles(axes)
     bad = [one for one in entries if one.result is None]
-    first, trends = _health(entries)
+    first, trends = _health(entries, titles)
+    notes = [*notes, *filter(None, [folders_note(axes)])]
     body = element(
         'main',
         element('h1', f'Ball screw reports: {counted(len(entries), "recording")}'),
@@ -53,7 +59,7 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
         *_failures(bad),
         *([element('h2', 'Normal or worse, over dates')] if trends else []),
         *trends,
-        *_trends(listed),
+        *_trends(listed, titles),
         element('h2', 'Recordings'),
         table(
             (
@@ -67,20 +73,24 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
                 'Warnings',
                 'Worst warning',
             ),
-            (_row(one, line) for one, line in listed),
+            (_row(one, line, titles[line.key]) for one, line in listed),
             kind='sortable verdicts',
         ),
     )
     return page('Ball screw reports', body, scripts=SCRIPTS)
 
 
-def _health(entries: Sequence[LogEntry]) -> tuple[list[Markup], list[Markup]]:
+def _health(entries: Sequence[LogEntry], titles: Titles) -> tuple[list[Markup], list[Markup]]:
     """Return what is said first of axes with several recordings, and their trends and peers."""
     found = [
         read_history(one) for entry in entries if entry.result for one in entry.result.histories
     ]
-    courses = [list(healths(own)) for own in by_axis(found).values() if len(own) > 1]
-    peers = peers_among(found)
+    courses = [
+        list(healths(own, title=titles[axis]))
+        for axis, own in by_axis(found).items()
+        if len(own) > 1
+    ]
+    peers = peers_among(found, titles)
     first = [verdict_box(course[-1]) for course in courses]
     first += [element('p', one.text, class_='hint') for one in peers if one.is_apart]
     trends = [drawn for course in courses for drawn in health_trends(course)]
@@ -93,8 +103,8 @@ def _verdict(entries: Sequence[LogEntry], listed: Sequence[Listed]) -> Markup:
         counts[line.standing] += 1
     lost = sum(one.result is None for one in entries)
     sentence = (
-        f'{counts["bad"]} of {len(listed)} axis recordings ran outside the optimal zone with '
-        f'warnings, {counts["good"]} were good, {counts["unknown"]} could not be judged'
+        f'{counts["bad"]} of {len(listed)} axis recordings ran outside the optimal zone, '
+        f'{counts["good"]} were good, {counts["unknown"]} could not be judged'
     )
     sentence += f'; {counted(lost, "recording")} could not be read.' if lost else '.'
     kind = 'bad' if counts['bad'] else 'unknown' if counts['unknown'] or lost else 'good'
@@ -108,7 +118,7 @@ def _failures(bad: Sequence[LogEntry]) -> Iterable[Markup]:
         yield element('ul', *items)
 
 
-def _row(one: LogEntry, line: AxisLine) -> TableRow:
+def _row(one: LogEntry, line: AxisLine, title: str) -> TableRow:
     part = line.outside_time / line.running_time if line.running_time else math.nan
     link = element('a', one.name, href=f'{quote(one.folder)}/{PAGE}')
     return TableRow(
@@ -120,7 +130,7 @@ def _row(one: LogEntry, line: AxisLine) -> TableRow:
                 kind='short',
             ),
             TableCell(link, kind='place'),
-            line.axis,
+            title,
             TableCell(_date(line.begins), kind='short'),
             _time(line.recorded),
             _time(line.running_time),
@@ -143,10 +153,12 @@ def _date(begins: float) -> str:
     return f'{moment:%Y-%m-%d %H:%M}'
 
 
-def _trends(listed: Sequence[Listed]) -> Iterable[Markup]:
+def _trends(listed: Sequence[Listed], titles: Titles) -> Iterable[Markup]:
     """Yield how each axis with a date in at least two recordings did over them."""
-    axes = dict.fromkeys(line.axis for _, line in listed)
-    pictures = [_trend(axis, [pair for pair in listed if pair[1].axis == axis]) for axis in axes]
+    axes = dict.fromkeys(line.key for _, line in listed)
+    pictures = [
+        _trend(titles[axis], [pair for pair in listed if pair[1].key == axis]) for axis in axes
+    ]
     if any(pictures):
         yield element('h2', 'Share of the motion outside the optimal zone, over dates')
         yield from filter(None, pictures)

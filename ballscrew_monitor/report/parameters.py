@@ -78,7 +78,8 @@ class LogParameters:
 
     `notes` are about the log, `sentences` all that is to be said of it in a terminal; `axes` is
     what is known of each axis but for a recording. `nominal`: nobody said with what to judge.
-    `metadata` are those of a bag that is to be judged alike.
+    `metadata` are those of a bag that is to be judged alike. `machine` is the one that the map of
+    the log states, or ''.
 
     """
 
@@ -90,6 +91,7 @@ class LogParameters:
     axes: Mapping[str, AxisFacts] = dataclasses.field(default_factory=dict)
     nominal: bool = False
     metadata: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    machine: str = ''
 
     @property
     def short_origin(self) -> str:
@@ -122,6 +124,7 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
         },
         nominal=chosen.is_nominal,
         metadata=_metadata(bag, facts, chosen),
+        machine='' if facts is None else str(facts.mapping.get('machine', '')).strip(),
     )
 
 

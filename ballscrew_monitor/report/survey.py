@@ -97,6 +97,12 @@ class Survey:
         return self.uncounted if self.by_stamp else 0.0
 
     @property
+    def possible_motion(self) -> float:
+        """Return the time of motion, and of what may be motion as the speed is not known [s]."""
+        still = self.reasons.get(Reason.STANDSTILL, 0.0)
+        return math.fsum(self.reasons.values()) - still + self.rest
+
+    @property
     def span(self) -> float:
         """Return the length of the time line [s]."""
         return (self.last - self.first) / SECOND

@@ -5,15 +5,16 @@
 from collections.abc import Mapping, Sequence
 import dataclasses
 import enum
-import math
 
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 from ballscrew_monitor.recordings.words import counted, duration, list_of, percent, share
 from ballscrew_monitor.report.judging import AxisCase, LogCase, RCS
+from ballscrew_monitor.report.survey import REST
 
 UNKNOWN_PART = 0.5  # of the motion that is not judged, from which on there is no verdict
+OUTSIDE_PART = 0.5  # of the judged motion that is outside, from which on nothing is good
 TOLD_PART = 0.01  # of the motion that is not judged, from which on the verdict says so
 REMEDIES = {
     Reason.NO_DIRECTION: 'record a motion of the axis',
@@ -90,6 +91,10 @@ def _verdict(case: AxisCase) -> AxisVerdict:
     unjudged = summary.unjudged_time / summary.running_time
     if unjudged > UNKNOWN_PART and not summary.events:
         return _unjudged(case, summary, unjudged)
+    judged = summary.optimal_time + summary.outside_time
+    whole = max(summary.running_time, case.survey.possible_motion)
+    if whole - judged > UNKNOWN_PART * whole and not summary.events:
+        return _hardly_judged(case, judged, whole)
     more = _unjudged_part(case, summary) if unjudged > TOLD_PART else ''
     if not summary.outside_time:
         return AxisVerdict(
@@ -137,9 +142,30 @@ def _unjudged(case: AxisCase, summary: Summary, part: float) -> AxisVerdict:
     )
 
 
+def _hardly_judged(case: AxisCase, judged: float, whole: float) -> AxisVerdict:
+    """Return how much [s] was judged of the possible motion, and why no more."""
+    reasons = case.survey.reasons
+    reason = _longest({key: reasons[key] for key in reasons if key is not Reason.STANDSTILL})
+    why = reason.text if reason else 'the reason is not known'
+    if case.survey.rest > (reasons[reason] if reason else 0.0):
+        reason, why = Reason.NO_SPEED, REST
+    return AxisVerdict(
+        sentence=f'axis {case.axis} was judged for {duration(judged)} ({percent(judged / whole)}) '
+        f'of the {duration(whole)} in which it moved or may have moved: {why}.',
+        remedy=_remedy(reason),
+    )
+
+
 def _outside(case: AxisCase, summary: Summary, more: str) -> AxisVerdict:
     part = share(summary.outside_time, summary.running_time)
     time = f'{duration(summary.outside_time)} ({part} of its motion)'
+    judged = summary.optimal_time + summary.outside_time
+    if not summary.events and summary.outside_time > OUTSIDE_PART * judged:
+        return AxisVerdict(
+            standing=VerdictKind.BAD,
+            sentence=f'axis {case.axis} was outside its optimal zone for {time}, each time too '
+            f'briefly for a warning{more}.',
+        )
     if not summary.events:
         return AxisVerdict(
             standing=VerdictKind.GOOD,
@@ -177,18 +203,12 @@ def _why(events: tuple[EventRecord, ...]) -> str:
 
 
 def _advice(case: AxisCase) -> str:
-    """Return the strictest advice for each cause, and what there is none for."""
-    events = case.worst_first
+    """Return the strictest advice for each cause, empty where there is none."""
+    events = [event for event in case.worst_first if event.advice]
     parts = []
     for quantity in dict.fromkeys(event.quantity for event in events):
-        advised = [event for event in events if event.quantity == quantity and event.advice]
-        by_speed = [event for event in advised if math.isfinite(event.target_speed)]
-        parts += [f'as {_of(group, "strictest")}' for group in _by_strictness(by_speed) if group]
-        by_load = [event for event in advised if event not in by_speed]
-        parts += [f'as {_of(by_load, "worst")}'] if by_load else []
-    helpless = [event for event in events if not event.advice and event.place]
-    if helpless:
-        parts.append(f'{_of(helpless, "worst")}: change both, or look at oil and temperature')
+        advised = [event for event in events if event.quantity == quantity]
+        parts += [_strictest_of(group) for group in _by_strictness(advised) if group]
     return f'{list_of(parts)}.' if parts else ''
 
 
@@ -200,12 +220,12 @@ def _by_strictness(events: Sequence[EventRecord]) -> tuple[list[EventRecord], li
     return [event for event in fastest_first if event not in slower], slower
 
 
-def _of(events: Sequence[EventRecord], rank: str) -> str:
-    """Return what to do about the first of some events, and what it is among them."""
+def _strictest_of(events: Sequence[EventRecord]) -> str:
+    """Return the advice on the first of some events, and what it is among them."""
     first = events[0]
-    others = f', the {rank} of {len(events)}' if len(events) > 1 else ''
+    others = f', the strictest of {len(events)}' if len(events) > 1 else ''
     place = f' (at {first.place})' if first.place else ''
-    return f'in warning {first.event_id}{others}{place}, {first.what_to_do}'
+    return f'as in warning {first.event_id}{others}{place}, {first.advice}'
 
 
 def _unjudged_part(case: AxisCase, summary: Summary) -> str:

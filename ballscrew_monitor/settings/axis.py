@@ -206,6 +206,7 @@ def settings_of(name: str, values: Mapping[str, Any], surface: Surface) -> Monit
         max_future=nanoseconds(values[f'{name}.max_future']),
         max_lag=nanoseconds(values[f'{name}.max_lag']),
         one_source=values[f'{name}.one_source'],
+        speed_allowed=values[f'{name}.advice.speed'],
         tick_period=nanoseconds(values['tick_period']),
         plausible=_plausible_of(name, values, surface),
         fields={source: values[f'{name}.{source.name.lower()}.field'] for source in Source},

@@ -235,7 +235,8 @@ AXIS_ROWS = (
         'baseline, or both.'
     ),
     ParameterRow('advice.speed', False, change=LIVE).says(
-        'Let the advice of health name another speed: the process leaves it free.'
+        'Let all advice, on warnings and of health, name another speed: the process leaves it '
+        'free.'
     ),
     ParameterRow('health.enabled', True).says(
         'Gather in state_dir what tells whether the axis is normal or worse, and publish it.'

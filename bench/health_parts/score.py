@@ -22,13 +22,12 @@ from ballscrew_monitor.health.records import (
     Quantity,
 )
 from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.health.words import explained
 from health_parts.programmes import DAYS
 from health_parts.years import FIRST_DAY, Truth, Year
 import numpy as np
 
 NAN = math.nan
-NAMED = 0.25
-"""Weight over that of the likeliest from which a cause is named [-]."""
 WEEK, PERIOD = 7, 28
 """Days that count as now, and days between two assessments."""
 
@@ -127,8 +126,8 @@ def _first_alarm(is_worse: Callable[[int], bool], low: int, high: int) -> int:
 
 def named_causes(found: Compared) -> tuple[CauseCode, ...]:
     """Return the causes that the verdict names, as `words` does, the likeliest first."""
-    left = [cause for cause in found.causes if not cause.excluded]
-    return tuple(one.code for one in left if one.weight > NAMED * left[0].weight)
+    _, likely = explained(NAN, found.causes)
+    return tuple(one.code for one in likely)
 
 
 def held_by(year: Year, begin: int, found: Compared, day: int) -> dict[str, bool]:

@@ -111,12 +111,23 @@ def solve_point(
 
 
 def screw_and_oil(inputs: Mapping[str, Any]) -> tuple[Screw, Lubricant]:
-    """Rebuild the datasheets from the `inputs` of a header, so that a file needs no other."""
-    screw, lubricant = (dict(inputs[kind]) for kind in ('screw', 'lubricant'))
-    for name, cls in BLOCKS.items():
-        if screw[name] is not None:
-            screw[name] = cls(**screw[name])
-    return Screw(**screw), Lubricant(**lubricant)
+    """
+    Rebuild the datasheets from the `inputs` of a header, so that a file needs no other.
+
+    Raises InputError if these are not all values of both.
+
+    """
+    try:
+        screw, lubricant = (dict(inputs[kind]) for kind in ('screw', 'lubricant'))
+        for name, cls in BLOCKS.items():
+            if screw[name] is not None:
+                screw[name] = cls(**screw[name])
+        return Screw(**screw), Lubricant(**lubricant)
+    except (KeyError, TypeError, AttributeError, OverflowError) as error:
+        raise InputError(
+            f'the header of the surface states no whole screw and oil ({error}): build the '
+            'surface again'
+        ) from None
 
 
 def load_function(name: str) -> Callable[..., Any]:

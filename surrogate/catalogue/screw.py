@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sheet of a ball screw out of a catalogue."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 import math
 from typing import Any
@@ -49,7 +50,10 @@ def screw_of(given: CatalogueScrew) -> tuple[Screw, dict[str, str]]:
     notes['static_rating_kN'] += (
         f'; {GIGA * rated_pressure(screw):.2f} GPa on a ball, usual 4.0 to 4.5'
     )
-    load = derived(working_load(screw), '2.83 preloads, which unload the relieved nut')
+    words = '2.83 preloads, which unload the relieved nut'
+    if not screw.preload:
+        words = '2.83 % of C0, without preload: state the largest axial load'
+    load = derived(working_load(screw), words)
     return replace(screw, working_load=load.value), notes | {'working_load_N': load.note}
 
 
@@ -93,12 +97,32 @@ def _diameters(given: CatalogueScrew) -> tuple[Noted, Noted]:
 
 
 def _balls(given: CatalogueScrew, diameter: float, ball: float) -> Noted:
-    """Return the balls that fill the turns on a ball circle [m] with balls of a diameter [m]."""
+    """
+    Return the balls that fill the turns on a ball circle [m] with balls of a diameter [m].
+
+    Those of one nut; of an offset nut its halves stand for both nuts.
+
+    """
+    halved = given.nut == 'offset'
     if given.balls is not None:
+        if halved:
+            return Noted(given.balls // 2, f'derived (half of the {given.balls} balls of the nut)')
         return Noted(given.balls, 'given')
     circle = math.hypot(math.pi * diameter, given.lead)
-    turns = given.turns or math.nan
-    return Noted(int(turns * circle / ball), f'derived ({turns:g} turns)')
+    turns = (given.turns or math.nan) / (2 if halved else 1)
+    half = f', half of the {given.turns:g} of the nut' if halved else ''
+    return Noted(int(turns * circle / ball), f'derived ({turns:g} turns{half})')
+
+
+def equal_halves(given: CatalogueScrew) -> Iterator[str]:
+    """Yield in a sentence that an offset nut that need not have equal halves is given them."""
+    whole = given.turns if given.balls is None else given.balls
+    if given.nut == 'offset' and whole is not None and whole % 2:
+        what = 'turns' if given.balls is None else 'balls'
+        yield (
+            f'nut: {whole:g} {what} of an offset nut are taken as two equal halves, and unequal '
+            'halves are not modelled'
+        )
 
 
 def _preload(given: CatalogueScrew) -> Noted:

@@ -12,6 +12,15 @@ from surrogate.units import MILLI
 
 ACCURACY = ('0', '1', '2', '3', '4', '5', '7', '10')
 """Classes of ISO 3408-3 and JIS B 1192."""
+NUTS = ('double', 'offset', 'oversize', 'plain')
+"""Nuts of catalogues, by what preloads them; the first two are modelled."""
+NOT_MODELLED = {
+    'oversize': 'an oversize ball touches at four places, which is not modelled, and a double nut '
+    'has a tenth of its spin: choose another nut for the same screw',
+    'plain': 'a nut without preload has axial play, which is not modelled: under a load that '
+    'never changes its sign it is --nut double with --preload-N 0 and the balls of this nut',
+}
+"""Why no sheet is made of a nut, and what can be done."""
 PITCH_OVER_NOMINAL = (0.9, 1.15)
 """Ball circle over nominal diameter [-] beyond which one of them is another number."""
 
@@ -42,6 +51,7 @@ class CatalogueScrew(Checked):
     NEEDED: ClassVar[tuple[tuple[str, ...], ...]] = (
         ('nominal_diameter', 'pitch_diameter'),
         ('lead',),
+        ('nut',),
         ('turns', 'balls'),
         ('preload', 'dynamic_rating'),
     )
@@ -56,11 +66,17 @@ class CatalogueScrew(Checked):
     ball_diameter: float | None = _number(
         'ball diameter (default 0.635 leads, 0.2 diameters at most)', 'mm', 1e-3, 0.3, 100.0
     )
+    nut: str = _asked(
+        'nut: double (two nuts), offset (one nut, its halves shifted), oversize (balls) or plain',
+        choice(*NUTS),
+    )
     turns: float | None = _number('loaded turns of one nut, all circuits', '', 1.0, 0.5, 100.0)
     balls: int | None = _asked('loaded balls of one nut (default by turns)', count(1, 10000))
-    dynamic_rating: float | None = _number('dynamic load rating C', 'kN', 1e3, 0.1, 1e5)
+    dynamic_rating: float | None = _number(
+        'dynamic load rating C of one nut, of half an offset one', 'kN', 1e3, 0.1, 1e5
+    )
     static_rating: float | None = _number(
-        'static load rating C0 (default presses a ball by 4.2 GPa)', 'kN', 1e3, 0.1, 1e5
+        'static load rating C0, likewise (default presses a ball by 4.2 GPa)', 'kN', 1e3, 0.1, 1e5
     )
     preload: float | None = _number('preload (default a share of C)', 'N', 1.0, 0.0, 1e6)
     preload_share: float | None = _number('preload over C (default 0.05)', '', 1.0, 0.0, 0.3)
@@ -76,9 +92,13 @@ class CatalogueScrew(Checked):
     )
 
     def __post_init__(self) -> None:
-        """Check every range, that enough is given, and that no diameter is a radius."""
+        """Check ranges, that enough is given, that the nut is modelled, no diameter a radius."""
         Checked.__post_init__(self)
         _check_needed(self)
+        if self.nut in NOT_MODELLED:
+            raise InputError(
+                f'nut is {self.nut}, allowed is double or offset: {NOT_MODELLED[self.nut]}'
+            )
         if self.nominal_diameter is None or self.pitch_diameter is None:
             return
         low, high = (share * MILLI * self.nominal_diameter for share in PITCH_OVER_NOMINAL)
@@ -126,8 +146,11 @@ class CatalogueOil(Checked):
 
 
 def _check_needed(values: CatalogueScrew | CatalogueOil) -> None:
-    """Raise InputError for what cannot be derived."""
-    flags = {spec.name: flag_of(spec) for spec in fields(values)}
+    """Raise InputError for what cannot be derived, with the words among which to choose."""
+    specs = {spec.name: spec for spec in fields(values)}
     for names in values.NEEDED:
         if all(getattr(values, name) is None for name in names):
-            raise InputError(f'{" or ".join(flags[name] for name in names)} is missing')
+            words = [word for name in names for word in specs[name].metadata.get('choice', ())]
+            allowed = f': {" or ".join(words)}' * bool(words)
+            flags = ' or '.join(flag_of(specs[name]) for name in names)
+            raise InputError(f'{flags} is missing{allowed}')

@@ -70,10 +70,7 @@ def _rolling(case: Any, args: argparse.Namespace) -> int:
 
 def _plot(folder: Path, module: str, function: str, *results: Any) -> None:
     """Draw the pictures of a contact; only this needs matplotlib."""
-    try:
-        draw = getattr(import_module(f'surrogate.contact.{module}'), function)
-    except ImportError:
-        raise InputError('--plot needs matplotlib: install the extra `plot`') from None
+    draw = getattr(import_module(f'surrogate.contact.{module}'), function)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for path in draw(folder, *results):

@@ -49,11 +49,8 @@ def _figures(args: argparse.Namespace) -> int:
     """Solve what is missing, draw, print the numbers; exit code 1 when a solve failed."""
     figures = tuple(args.only or NEEDS)
     wanted = tasks(figures, args.draws)
-    try:
-        from surrogate.paper import figures_set
-    except ImportError:
-        raise InputError('figures needs matplotlib: install the extra `plot`') from None
     from surrogate.asperities.law import law_of
+    from surrogate.paper import figures_set
     from surrogate.paper.report import report, write_report
     from surrogate.paper.study import run_study
     from surrogate.parameters import load_screw

@@ -111,7 +111,7 @@ def _add_topics(group: Any) -> None:
 
 
 def _identify(args: argparse.Namespace) -> int:
-    """Identify, write and draw; exit code 1 when the fit did not converge."""
+    """Identify, write and draw; exit code 1 when nothing was found that a sheet may have."""
     from surrogate.identify.fit import identify
     from surrogate.identify.record import identification_record, page
 
@@ -123,12 +123,13 @@ def _identify(args: argparse.Namespace) -> int:
     found = identify(screw, run, contacts, fitted, loss=args.loss)
     record = identification_record(screw, run, contacts, found)
     show(record, page, json=args.json)
-    if args.out and found.converged:
+    usable = found.converged and not found.onset_refused
+    if args.out and usable:
         _write(args.out, screw, lubricant, run, contacts, found)
     if args.plot:
         title = f'{screw.name}, {lubricant.name}, tier {contacts.tier}'
         _plot(args.plot, run, found, title, record['onset'])
-    return 0 if found.converged else 1
+    return 0 if usable else 1
 
 
 def _fitted(args: argparse.Namespace) -> tuple[str, ...]:
@@ -253,10 +254,8 @@ def _write(
 
 def _plot(folder: Path, run: Any, found: Any, title: str, onset: Any) -> None:
     """Draw the picture; only this needs matplotlib."""
-    try:
-        from surrogate.identify.figures import draw_identification
-    except ImportError:
-        raise InputError('--plot needs matplotlib: install the extra `plot`') from None
+    from surrogate.identify.figures import draw_identification
+
     try:
         folder.mkdir(parents=True, exist_ok=True)
         print(draw_identification(folder, run, found, title, onset), file=sys.stderr)

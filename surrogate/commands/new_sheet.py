@@ -80,9 +80,9 @@ def _complete(name: str, texts: Mapping[Any, str]) -> tuple[Any, dict[str, str]]
 
         return oil_of(given)
     from surrogate.catalogue.raceways import typical_roughness
-    from surrogate.catalogue.screw import screw_of
+    from surrogate.catalogue.screw import equal_halves, screw_of
     from surrogate.formulas.plausibility import doubts
 
     screw, notes = screw_of(given)
-    tell([*doubts(screw), *typical_roughness(given)])
+    tell([*doubts(screw), *equal_halves(given), *typical_roughness(given)])
     return screw, notes

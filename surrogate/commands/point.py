@@ -203,10 +203,7 @@ def picture(folder: Path, module: str, function: str, *results: Any) -> None:
     """Draw by a function of a module of `surrogate.screw`; only this needs matplotlib."""
     from surrogate.builder.tiers import load_function
 
-    try:
-        draw = load_function(f'surrogate.screw.{module}:{function}')
-    except ImportError:
-        raise InputError('--plot needs matplotlib: install the extra `plot`') from None
+    draw = load_function(f'surrogate.screw.{module}:{function}')
     try:
         print(draw(folder, *results), file=sys.stderr)
     except OSError as error:

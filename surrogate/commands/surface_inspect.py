@@ -191,11 +191,9 @@ def _query_table(args: argparse.Namespace, surface: Surface) -> int:
 
 
 def _plot(args: argparse.Namespace) -> int:
+    from surrogate.surface_tools.figures import draw_surface
+
     surface = Surface.load(find_surface(args.file))
-    try:
-        from surrogate.surface_tools.figures import draw_surface
-    except ImportError:
-        raise InputError('surface plot needs matplotlib: install the extra `plot`') from None
     try:
         for path in draw_surface(args.out, surface, _temperatures(args.temperatures, surface)):
             print(path)

@@ -93,7 +93,7 @@ def _draw_onset(axes: Axes, onset: Mapping[str, Any]) -> None:
     names = ('speed_rad_s', 'speed_low_rad_s', 'speed_high_rad_s')
     speed, low, high = (onset[name] / RPM for name in names)
     if onset['reason']:
-        label = 'onset taken, no upturn'
+        label = 'onset taken, not fitted'
     else:
         axes.axvspan(low, high, color=ORANGE, alpha=0.2, linewidth=0)
         label = 'onset, extrapolated'

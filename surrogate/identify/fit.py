@@ -20,7 +20,7 @@ from scipy.optimize import least_squares
 from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.intervals import correlation, covariance, student_factor, undetermined
 from surrogate.identify.model import ContactModel
-from surrogate.identify.onset import OnsetScan, scan_onset
+from surrogate.identify.onset import OnsetScan, refusal_of, scan_onset
 from surrogate.identify.problem import drag_problem, DragProblem
 from surrogate.parameters import Screw
 
@@ -59,7 +59,8 @@ class Identification:
     torque on the screw by the model before and after [N m]; half width of the 95 % band of a
     measured point about it [N m]; friction torque of the contacts after [N m]; root mean square of
     the residual before and after [N m]; degrees of freedom; mean square of the residual over the
-    standard deviation [-], NaN where none was given.
+    standard deviation [-], NaN where none was given; whether the onset that the points ask for is
+    refused, so that no sheet may have what was found.
 
     """
 
@@ -75,6 +76,7 @@ class Identification:
     rms: float
     degrees_of_freedom: int
     reduced_chi_square: float
+    onset_refused: bool = False
 
     def value(self, name: str) -> float:
         """Return the value of a parameter in SI units, NaN when it was not identified."""
@@ -118,8 +120,8 @@ def identify(
 
     `fitted` may name viscosity_factor and asperity_friction, and the three of the onset together.
     A parameter at the end of its range, or on which no point depends, gets no interval; the onset
-    factor has that of its profile or a bound. With the loss soft_l1 a point counts less the
-    further it is off. Raises InputError for a run that cannot tell.
+    factor has that of its profile, a bound, or is refused. With the loss soft_l1 a point counts
+    less the further it is off. Raises InputError for a run that cannot tell.
 
     """
     problem = drag_problem(screw, run, contacts, fitted)
@@ -148,23 +150,28 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
         values = _fit(problem, at(factor), {'onset_factor': ''}, sigma).values
         return float(np.sum((problem.residual(values) / sigma) ** 2))
 
-    def along(scan: OnsetScan) -> Identification:
-        start, held = at(scan.best), {}
-        if not scan.closed:
-            factor, reason = scan.bound(float(problem.start[place]))
-            kept = 'not told without the onset: kept as in the datasheet'
-            start, held = at(factor), {'onset_factor': reason, 'asperity_friction': kept}
+    def fitted(start: Array, held: dict[str, str]) -> Identification:
         held = problem.without_effect(start) | held
         fit = _fit(problem, start, held, sigma)
         return _result(problem, fit, _scatter(problem, fit, held, sigma), sigma)
 
-    freedom = len(sigma) - len(problem.names)
+    def without_onset(factor: float, reason: str) -> Identification:
+        kept = 'not told without the onset: kept as in the datasheet'
+        return fitted(at(factor), {'onset_factor': reason, 'asperity_friction': kept})
+
+    def along(scan: OnsetScan) -> Identification:
+        return fitted(at(scan.best), {}) if scan.closed else without_onset(*scan.bound(stated))
+
+    freedom, stated = len(sigma) - len(problem.names), float(problem.start[place])
     scan = scan_onset(cost, freedom)
     found = along(scan)
     if scan.closed and not _turns_up(problem.run, found):
         # The curvature of the rolling loss alone is no sign of contact.
         scan = replace(scan, low=0.0)
         found = along(scan)
+    refusal = refusal_of(problem, scan, np.array([one.value for one in found.estimates]))
+    if refusal:
+        return replace(without_onset(stated, refusal), onset_refused=True)
     estimates = tuple(
         _profiled(one, scan, freedom) if one.name == 'onset_factor' else one
         for one in found.estimates

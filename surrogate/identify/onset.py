@@ -20,7 +20,9 @@ from surrogate.asperities.law import NINE_OF_TEN
 from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.intervals import CONFIDENCE, student_factor
 from surrogate.identify.model import ContactModel, ONSET_BOUNDS
+from surrogate.identify.problem import DragProblem
 from surrogate.screw.onset import onset_point, with_raceway
+from surrogate.units import RPM
 
 FITTED = ('asperity_friction', 'onset_factor', 'seal_torque')
 """What is fitted beside the parasitic torque where the onset is."""
@@ -102,6 +104,31 @@ def _crossing(over: Array, factors: Array, none: float) -> float:
     share = over[last] / (over[last] - over[last + 1])
     low, high = np.log(factors[[last, last + 1]])
     return float(np.exp(low + share * (high - low)))
+
+
+def refusal_of(problem: DragProblem, scan: OnsetScan, values: Array) -> str:
+    """
+    Return why the onset among the `values` of a fit cannot be that of the screw, else nothing.
+
+    Drag beside the contacts that fades with the speed takes the friction to its bound, or the
+    onset to speeds that were not measured. An upper bound of the onset asks for neither.
+
+    """
+    if not scan.low:
+        return ''
+    slowest, *_, fastest = np.sort(np.abs(problem.run.speed)) / RPM
+    factor, bounds = float(values[problem.names.index('onset_factor')]), problem.at_bounds(values)
+    onset = onset_speeds(problem.contacts, problem.run, (factor, math.nan, math.nan))[0] / RPM
+    causes = []
+    if scan.closed and 'asperity_friction' in bounds:
+        causes.append(f'asperity_friction is {bounds["asperity_friction"]}')
+    if not slowest <= onset <= fastest:
+        causes.append(
+            f'contact would begin at {float(f"{onset:.3g}"):g} rev/min, measured are '
+            f'{slowest:.4g} to {fastest:.4g} rev/min'
+        )
+    odd = 'asperities alone do not turn the torque up like this'
+    return f'not told: {" and ".join(causes)}: {odd}' if causes else ''
 
 
 def onset_speeds(

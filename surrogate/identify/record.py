@@ -47,7 +47,7 @@ def identification_record(
     speed, share = np.abs(run.speed), _contact_share(run, found)
     return {
         'tier': contacts.tier,
-        'status': 'fitted' if found.converged else 'the fit ended before it converged',
+        'status': _status(found),
         'converged': found.converged,
         'warnings': _warnings(screw, run, contacts, found),
         'screw': screw.name,
@@ -70,6 +70,12 @@ def identification_record(
             screw.preload, screw.lead, helix_angle(screw)
         ),
     }
+
+
+def _status(found: Identification) -> str:
+    if not found.converged:
+        return 'the fit ended before it converged'
+    return 'the onset is refused, and no sheet is written' if found.onset_refused else 'fitted'
 
 
 def _estimate_record(one: ParameterEstimate) -> dict[str, Any]:
@@ -100,6 +106,7 @@ def _onset_record(
         'turns_up_rad_s': abs(float(run.speed[np.argmin(torque)])),
         'band': calibrated_band(onset.low, onset.high),
         'reason': onset.reason,
+        'refused': found.onset_refused,
     }
 
 
@@ -260,6 +267,8 @@ def _onset_rows(onset: Mapping[str, Any] | None) -> list[str]:
         onset[name] / RPM
         for name in ('speed_rad_s', 'speed_low_rad_s', 'speed_high_rad_s', 'turns_up_rad_s')
     )
+    if onset['refused']:
+        return [f'  {"contact begins":22} {onset["reason"]}']
     if onset['reason']:
         return [f'  {"contact begins":22} {speed:.3g} rev/min are taken: {onset["reason"]}']
     return [

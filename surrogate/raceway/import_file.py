@@ -178,7 +178,7 @@ def _read_areal(path: Path) -> tuple[Array, float, float]:
         from SurfaceTopography import read_topography
     except ImportError:
         raise InputError(
-            f'{path}: reading this kind of file needs SurfaceTopography: install the extra `areal`'
+            f'{path}: this kind of file needs SurfaceTopography: pip install SurfaceTopography'
         ) from None
     try:
         topography = read_topography(str(path))

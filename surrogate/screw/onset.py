@@ -4,6 +4,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+import math
 from typing import Any
 
 import numpy as np
@@ -19,15 +20,18 @@ from surrogate.formulas.load_sharing import normal_force, nut_forces, working_pr
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.ball import roughness_sentence
 from surrogate.screw.contacts import oil_at
+from surrogate.surface.contact_onset import law_doubt
 from surrogate.units import GIGA, MICRO, RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
-MARCHED_RMS, MARCHED_WAVES = (0.06e-6, 0.24e-6), (1.25e-6, 10e-6)
-"""Rq and short cut-offs within a factor of 2 of, and among, those of the marched strips [m]."""
+MARCHED_WAVES = 1.25e-6, 10e-6
+"""Short cut-offs among those of the marched strips [m]."""
 SMOOTH_ONSET = 1e-3
 """Entrainment speed that stands for the onset of smooth raceways [m/s]."""
 ABOVE = 1.1
 """Least pressure at which summits are cut over that of the contact [-]."""
+LOAD_FACTORS = 0.5, 2.0
+"""Other working loads under which an onset is told, over the stated one [-]."""
 WORDS = {'new': 'new, after its first pass', 'run_in': 'run in'}
 
 
@@ -128,6 +132,9 @@ def onset_record(
         states['run_in']['speed_range_rad_s'] = onset_over_pressure(
             screw, *place, run_in_range(screw)
         )
+    # The lower the pressure at which summits are cut, the more the load matters.
+    raceway = with_raceway(screw, state=[*states][-1])
+    loads = [factor * working_load(screw) for factor in LOAD_FACTORS]
     return {
         'screw': screw.name,
         'oil': lubricant.name,
@@ -135,6 +142,8 @@ def onset_record(
         'temperature_K': temperature,
         'working_load_N': working_load(screw),
         'working_load_stated': stated,
+        'other_working_loads_N': loads,
+        'other_working_load_speeds_rad_s': onset_over_working_load(raceway, *place, loads),
         'working_pressure_Pa': max(working_pressure(screw, side) for side in SIDES),
         'roughness': roughness_sentence(screw.roughness, screw.ball_roughness),
         'extrapolated': extrapolated(screw),
@@ -155,18 +164,14 @@ def _check_place(lubricant: Lubricant, load: float, temperature: float) -> None:
 
 def extrapolated(screw: Screw) -> list[str]:
     """Return where a screw lies outside the strips that were marched, in words."""
-    sheet = screw.roughness
-    words = {
-        f'Rq {MICRO * sheet.rms:g} um (marched: 0.12 um)': MARCHED_RMS,
-        f'short cut-off {MICRO * sheet.cutoff_short:g} um (marched: 1.3 to 9.8 um)': MARCHED_WAVES,
-    }
-    values = sheet.rms, sheet.cutoff_short
-    found = [
-        text
-        for value, (text, (low, high)) in zip(values, words.items(), strict=True)
-        if value and not low <= value <= high
-    ]
-    return found + ['rough balls (marched: smooth ones)'] * (screw.ball_roughness is not None)
+    sheet, (shortest, longest) = screw.roughness, MARCHED_WAVES
+    calibrated = sheet.onset_band is not None
+    found = [law_doubt(rms=sheet.rms, lay=sheet.lay, calibrated=calibrated)]
+    if not shortest <= sheet.cutoff_short <= longest:
+        found.append(f'short cut-off {MICRO * sheet.cutoff_short:g} um (marched: 1.3 to 9.8 um)')
+    if screw.ball_roughness is not None:
+        found.append('rough balls (marched: smooth ones)')
+    return [text for text in found if text]
 
 
 def onset_page(record: Mapping[str, Any]) -> str:
@@ -194,9 +199,11 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
         )
     assumed = '' if record['working_load_stated'] else ', assumed: it unloads the relieved nut'
     yield (
-        f'  summits are cut under {record["working_load_N"]:.4g} N{assumed}, '
+        f'  summits are cut under {_newtons(record["working_load_N"])}{assumed}, '
         f'{GIGA * record["working_pressure_Pa"]:.3g} GPa'
     )
+    if fastest:
+        yield f'  {_over_load(record)}'
     for words in record['extrapolated']:
         yield f'  extrapolated: {words}'
     yield f'  roughness: {record["roughness"]}'
@@ -216,6 +223,41 @@ def _told(found: Mapping[str, Any]) -> str:
         low, high = (speed / RPM for speed in found['speed_range_rad_s'])
         text += f'; {low:.3g} to {high:.3g} rev/min over the range of that pressure'
     return text
+
+
+def _over_load(record: Mapping[str, Any]) -> str:
+    """Say where contact begins in the last state if other loads had cut its summits."""
+    loads, speeds = record['other_working_loads_N'], record['other_working_load_speeds_rad_s']
+    low, high = (
+        f'at {speed / RPM:.3g} rev/min if it was {_newtons(load)}'
+        if math.isfinite(speed)
+        else f'at an unknown speed if it was {_newtons(load)}, more than the summits bear'
+        for load, speed in zip(loads, speeds, strict=True)
+    )
+    return f'that load matters: {WORDS[[*record["states"]][-1]]}, contact begins {low}, {high}'
+
+
+def _newtons(load: float) -> str:
+    return f'{float(f"{load:.4g}"):g} N'
+
+
+def onset_over_working_load(
+    screw: Screw, lubricant: Lubricant, load: float, temperature: float, loads: Sequence[float]
+) -> list[float]:
+    """
+    Return the onset speeds [rad/s] of a screw whose summits were cut under some loads [N].
+
+    NaN where a load presses the contact by more than the pressure at which summits are cut.
+
+    """
+    found = []
+    for largest in loads:
+        try:
+            point = onset_point(replace(screw, working_load=largest), lubricant, load, temperature)
+        except InputError:
+            point = {'speed_rad_s': math.nan}
+        found.append(point['speed_rad_s'])
+    return found
 
 
 def onset_over_pressure(

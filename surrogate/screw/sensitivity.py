@@ -22,6 +22,7 @@ from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
 from surrogate.screw.uncertain_inputs import INPUTS, LEFT_OUT, ScrewCase, Varied
 from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT, RCS_RELATIVE_TOLERANCE
+from surrogate.surface.contact_onset import law_doubt
 from surrogate.units import RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
@@ -71,6 +72,11 @@ def sensitivity_record(
         'inputs': rows,
         'unknown_band': _without(rows),
         'numerical_band': numerical_band(screw),
+        'law_doubt': law_doubt(
+            rms=screw.roughness.rms,
+            lay=screw.roughness.lay,
+            calibrated=screw.roughness.onset_band is not None,
+        ),
         'measure': _narrowed(rows),
     }
 
@@ -222,7 +228,7 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
     yield _line('', ('',) * 3, ('rev/min', 'N m', 'rev/min', 'rev/min'))
     yield _line('as stated', ('',) * 3, _cells(record['stated']))
     for row in record['inputs']:
-        values = ['-' if row[end] is None else f'{row[end]:.4g}' for end in ENDS]
+        values = ['-' if row[end] is None else shown(row[end]) for end in ENDS]
         found = _cells(row['at_low'], row['at_high'])
         yield _line(row['key'], values, found) + f'  {row["refused"] or row["reason"]}'
     for words, name in (('not known', 'unknown_band'), ('numerics', 'numerical_band')):
@@ -231,9 +237,16 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
             f'  {words:10} contact begins at {low:.2g} to {high:.2g} times the stated speed: '
             f'{low * onset / RPM:.3g} to {high * onset / RPM:.3g} rev/min'
         )
+    if record['law_doubt']:
+        yield f'  {"law":10} {record["law_doubt"]}'
     for word, one in zip(('measure', 'then'), record['measure'], strict=True):
         low, high = one['unknown_band']
         yield f'  {word:10} {one["measurement"]}: {low:.2g} to {high:.2g} times is left'
+
+
+def shown(value: float) -> str:
+    """Return a value of an input with four digits, as a whole number rather than by powers."""
+    return f'{float(f"{value:.4g}"):g}'
 
 
 def _line(key: str, values: Sequence[str], found: Sequence[str]) -> str:

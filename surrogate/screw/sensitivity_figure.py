@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, ORANGE, SKY
-from surrogate.screw.sensitivity import EFFICIENCY_SPEED, ONSET, TORQUE
+from surrogate.screw.sensitivity import EFFICIENCY_SPEED, ONSET, shown, TORQUE
 from surrogate.units import RPM, ZERO_CELSIUS
 
 PANELS = {
@@ -74,4 +74,4 @@ def _draw_bands(axes: Axes, record: Mapping[str, Any]) -> None:
 
 
 def _label(row: Mapping[str, Any]) -> str:
-    return f'{row["key"]}  {row["low"]:.4g} to {row["high"]:.4g}'
+    return f'{row["key"]}  {shown(row["low"])} to {shown(row["high"])}'

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 import math
 from typing import Any, Literal
 
-from surrogate.asperities.running_in import working_pressure
+from surrogate.asperities.running_in import working_load, working_pressure
 from surrogate.formulas.geometry import SIDES
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.standards import long_cutoff_iso_21920, RA_OVER_RQ
@@ -124,6 +124,12 @@ def _hardness(case: ScrewCase) -> Ends | None:
     return min(max(hardness / 1.15, borne), hardness), 1.15 * hardness
 
 
+def _working_loads(case: ScrewCase) -> Ends:
+    """Return half and double of the largest working load, stated or assumed."""
+    load = working_load(case.screw)
+    return 0.5 * load, 2.0 * load
+
+
 SENSOR, SAMPLE = 'oil temperature at the nut', 'viscosity of a sample of the oil'
 TRACE, RUN = 'trace of the raceway as it runs', 'torque at slow speeds'
 """Measurements; the last finds what no gauge tells, boundary film and supply of oil."""
@@ -142,8 +148,9 @@ INPUTS = (
     Varied(
         'screw', 'conformity_screw', 'grinding', 'contour', plus=0.01, also=('conformity_nut',)
     ),
+    Varied('screw', 'working_load', 'half and double, in no band', ends=_working_loads),
     Varied('roughness', 'cutoff_short', 'scatter of tiles, in no band', times=2.0),
 )
 """Inputs with their ranges: those of the sheets if they state any, else a usual spread."""
-LEFT_OUT = ('hardness', 'preload', 'conformity_screw', 'cutoff_short')
-"""Inputs that take seconds and hardly move the band: a surface leaves them out."""
+LEFT_OUT = ('hardness', 'preload', 'conformity_screw', 'working_load', 'cutoff_short')
+"""Inputs that take seconds and are in no band or hardly move it: a surface leaves them out."""

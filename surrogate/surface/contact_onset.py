@@ -31,6 +31,10 @@ WORST = 1.2
 """Speed at which the worst contact begins over that of the loaded nut, at most [-]."""
 RMS_POWER = 0.6
 """Exponent of the speed of the onset in the Rq that has it [-]."""
+MARCHED_RMS, MARCHED_LAY = (0.1e-6, 0.3e-6), 'isotropic'
+"""Rq [m] and lay of raceways on which marches bear out the law of the onset."""
+OFF_BY = 2, 3
+"""Factors by which marches of other raceways were off at most, by lay and by Rq [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -65,7 +69,8 @@ class ContactOnset:
     `band`: between which factors of it that lies, NaN where not known, by what `doubt` says;
     `fastest`, the speed that the screw allows, and up to which a zone is looked for, `reach`
     [rad/s]. Without a zone contact must begin `slower`, a factor [-], as it does at `colder` [K],
-    NaN if at no temperature in question. Viscosity at 40 degC [m2/s], Rq [m] and lead [m].
+    NaN if at no temperature in question. Viscosity at 40 degC [m2/s], lead [m], Rq [m] and lay of
+    the raceway, and whether its onset is `calibrated`.
 
     """
 
@@ -81,6 +86,8 @@ class ContactOnset:
     colder: float = NAN
     viscosity: float
     rms: float
+    lay: str
+    calibrated: bool = False
     lead: float
 
     def sentence(self, *, as_feed: bool = False) -> str:
@@ -91,6 +98,8 @@ class ContactOnset:
                 f'Contact begins at {self._speed(self.speed, as_feed)}{self._range()} '
                 f'at {self.temperature - ZERO_CELSIUS:.3g} degC'
             )
+            law = law_doubt(rms=self.rms, lay=self.lay, calibrated=self.calibrated)
+            begins += f'; {law}' * bool(law)
         limit = self._speed(self.fastest, as_feed)
         return f"{begins}; this screw's limit is {limit}; {self._zone(as_feed)}"
 
@@ -138,6 +147,25 @@ class ContactOnset:
         if self.rms:
             ways.append(f'with Rq {smoother:.2g} um (now {self.rms * MICRO:.2g})')
         return f'{", ".join(ways[:-1])} or {ways[-1]}' if ways[1:] else ways[0]
+
+
+def law_doubt(*, rms: float, lay: str, calibrated: bool = False) -> str:
+    """
+    Return how far the law of the onset is off on a raceway; empty where marches bear it out.
+
+    Rq [m], 0 if smooth, and lay as its sheet has them; a calibration takes the place of marches.
+
+    """
+    low, high = MARCHED_RMS
+    reasons = [f'the lay is {lay}'] * (lay != MARCHED_LAY)
+    reasons += [f'Rq is {MICRO * rms:.3g} um'] * (not low <= rms <= high)
+    if calibrated or not rms or not reasons:
+        return ''
+    return (
+        f'here the law is off by up to a factor of {OFF_BY[0]} to {OFF_BY[1]}, for '
+        f'{" and ".join(reasons)} (it holds on {MARCHED_LAY} raceways with Rq '
+        f'{MICRO * low:g} to {MICRO * high:g} um)'
+    )
 
 
 def contact_onset(
@@ -202,6 +230,8 @@ def onset_of_surface(
         oil=surface.oil_name,
         viscosity=oil['kinematic_viscosity_40'],
         rms=screw['roughness']['rms'],
+        lay=screw['roughness']['lay'],
+        calibrated=screw['roughness']['onset_band'] is not None,
         lead=surface.lead,
     )
 

@@ -37,6 +37,7 @@ DAMAGE = (
     ValueError,
     KeyError,
     TypeError,
+    OverflowError,
     EOFError,
     SyntaxError,
     tokenize.TokenError,

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from surrogate.builder.tiers import screw_and_oil
+from surrogate.files import InputError
 from surrogate.raceway.ball import roughness_sentence
 from surrogate.surface import onset_of_surface, Surface
 from surrogate.surface.file import SurfaceData
@@ -19,7 +20,10 @@ from surrogate.units import RPM, ZERO_CELSIUS
 def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
     """Return what a surface file is and states, as plain numbers in SI, NaN where unknown."""
     surface = Surface(data)
-    screw, oil = screw_and_oil(data.header['inputs'])
+    try:
+        screw, oil = screw_and_oil(data.header['inputs'])
+    except InputError as error:
+        raise InputError(f'{path}: {error}') from None
     return {
         'file': str(path),
         'bytes': path.stat().st_size,

@@ -8,7 +8,6 @@ import json
 from typing import Any
 
 import numpy as np
-from surrogate.files import InputError
 from surrogate.surface.file import SurfaceData
 from surrogate.surface_tools.fields import derived_key, FIELD_TEXTS, WORST_CONTACTS
 
@@ -18,16 +17,9 @@ Variables = dict[str, tuple[tuple[str, ...], Any, dict[str, Any]]]
 
 
 def to_netcdf(data: SurfaceData) -> bytes:
-    """
-    Return a surface as NetCDF 3, which every reader knows, with 64-bit offsets.
+    """Return a surface as NetCDF 3, which every reader knows, with 64-bit offsets."""
+    import xarray
 
-    Raises InputError when xarray is not installed.
-
-    """
-    try:
-        import xarray
-    except ImportError:
-        raise InputError('--netcdf needs xarray: install the extra `netcdf`') from None
     dataset = xarray.Dataset(
         data_vars={**_node_fields(data), **_cell_fields(data)},
         coords=_coordinates(data),

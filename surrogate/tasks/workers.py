@@ -7,7 +7,6 @@ from collections import deque
 from collections.abc import Mapping
 from concurrent.futures import Future
 import os
-from types import ModuleType
 from typing import Any, Self
 import uuid
 
@@ -94,7 +93,8 @@ class DaskPool:
 
     def __init__(self, address: str, workers: int, on_share: OnShare) -> None:
         """Connect to a scheduler, or start `workers` processes of this machine."""
-        distributed = _distributed()
+        import distributed
+
         self._on_share = on_share
         self._events: deque[tuple[str, str]] = deque()
         with apart():
@@ -133,7 +133,8 @@ class DaskPool:
 
 def run_told(topic: str, task: Task, name: str, inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Run a task in a worker of a Dask cluster; tell a topic that it is begun, and how far."""
-    distributed = _distributed()
+    import distributed
+
     worker = distributed.get_worker()
     note = {'task': name, 'process': worker_name()}
     # Waits until the scheduler has it: a worker that is killed at once has said what it began.
@@ -142,14 +143,6 @@ def run_told(topic: str, task: Task, name: str, inputs: Mapping[str, Any]) -> di
         ShareTeller(lambda share: worker.log_event(topic, {'task': name, 'share': float(share)}))
     )
     return run_task(task, name, inputs)
-
-
-def _distributed() -> ModuleType:
-    try:
-        import distributed
-    except ImportError:
-        raise InputError('--dask needs dask.distributed: install the extra `dask`') from None
-    return distributed
 
 
 def _local_cluster(distributed: Any, workers: int) -> Any:

@@ -97,34 +97,6 @@ def test_a_fault_of_the_program_is_a_sentence_and_a_file_to_send(
     assert text.endswith('RuntimeError: no\x1b[2J\n')
 
 
-@pytest.mark.parametrize(
-    ('module', 'command'),
-    [
-        *(('mcap', 'replay'), ('zstandard', 'play'), ('matplotlib', 'run')),
-        *(('ballscrew_msgs', 'run'), ('starlette', 'page'), ('websockets', 'page')),
-    ],
-)
-def test_what_is_not_installed_is_named_with_its_cure(module, command, short_bag):
-    arguments = ['--bag', str(short_bag)] if command == 'run' else [str(short_bag)]
-    script = (
-        'import sys\n'
-        'from importlib.machinery import PathFinder\n'
-        'class Blind(PathFinder):\n'
-        '    @classmethod\n'
-        '    def find_spec(cls, name, path=None, target=None):\n'
-        f'        if name.split(".")[0] != {module!r}:\n'
-        '            return PathFinder.find_spec(name, path, target)\n'
-        'sys.meta_path[sys.meta_path.index(PathFinder)] = Blind\n'
-        'from ballscrew_monitor.cli import main\n'
-        f'sys.exit(main({[command, *arguments]!r}))\n'
-    )
-    done = python('-c', script)
-    assert (done.returncode, done.stdout) == (1, '')
-    assert done.stderr == (
-        f'ballscrew: {module} is not installed, this command needs it: {cli.NEEDED[module]}\n'
-    )
-
-
 def test_what_does_not_exist_is_refused(capsys, says, tmp_path):
     assert cli.main(['replay', '/nowhere', '--params', str(PARAMS)]) == 2
     assert capsys.readouterr().err == says('log_nowhere_does')

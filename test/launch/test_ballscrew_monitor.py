@@ -89,14 +89,31 @@ def test_a_parameter_file_that_is_not_there_is_an_error(launched, mine, name):
         launched(params_file=name)
 
 
-def test_the_launch_ends_as_its_node_ends(launched):
+@pytest.fixture
+def ended():
+    """Return the event of launch at the end of a process."""
+    return types.SimpleNamespace(process_name='ballscrew_monitor-1', returncode=0)
+
+
+def test_the_launch_ends_as_its_node_ends(launched, ended):
     _, node = launched()
     assert node['respawn'] is False
-    ended = types.SimpleNamespace(process_name='ballscrew_monitor-1', returncode=0)
-    assert node['on_exit'](ended, None) == 'ballscrew_monitor-1 has ended'
+    running = types.SimpleNamespace(is_shutdown=False)
+    assert node['on_exit'](ended, running) == 'ballscrew_monitor-1 has ended'
     ended.returncode = 2
     with pytest.raises(RuntimeError, match='^ballscrew_monitor-1 has ended with exit code 2$'):
-        node['on_exit'](ended, None)
+        node['on_exit'](ended, running)
+
+
+def test_a_launch_that_is_ending_is_not_ended_again(launched, ended):
+    """After Ctrl-C the node ends with 0, and launch fails if it is asked to shut down again."""
+    _, node = launched()
+    ending = types.SimpleNamespace(is_shutdown=True)
+    assert node['on_exit'](ended, ending) is None
+    sys.modules['launch.actions'].Shutdown.assert_not_called()
+    ended.returncode = -9  # the node did not heed it
+    with pytest.raises(RuntimeError, match='^ballscrew_monitor-1 has ended with exit code -9$'):
+        node['on_exit'](ended, ending)
 
 
 def test_a_node_that_is_to_be_started_again_does_not_end_the_launch(launched):
@@ -111,9 +128,9 @@ def test_the_page_is_a_process_beside_the_node(launched):
 
 
 @pytest.mark.parametrize('code', [0, 1])
-def test_a_page_that_ends_is_said_and_ends_nothing(launched, says, code):
+def test_a_page_that_ends_is_said_and_ends_nothing(launched, ended, says, code):
     launched(page='true')
-    ended = types.SimpleNamespace(process_name='python3-2', returncode=code)
+    ended.process_name, ended.returncode = 'python3-2', code
     end = sys.modules['launch.actions'].ExecuteProcess.call_args.kwargs['on_exit']
     context = types.SimpleNamespace(is_shutdown=False)
     assert end(ended, context) == says('page_ended', code=code)

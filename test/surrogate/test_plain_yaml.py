@@ -50,6 +50,13 @@ def test_what_is_no_value_is_refused_or_a_text(text, refused):
         refused('any', plain_values, text)
 
 
+@pytest.mark.parametrize('sign', ['', '-'])
+def test_a_whole_number_that_no_float_is_as_large_as_is_refused(sign, refused):
+    assert plain_values(f'a: {sign}1{"0" * 308}') == {'a': int(f'{sign}1{"0" * 308}')}
+    refused('large_number', plain_values, f'a:\n  - 1\n  - {sign}1{"0" * 309}')
+    refused('large_number', plain_values, f'a:\n  - 1\n  - {sign}0x{"f" * 5000}')
+
+
 def test_a_key_twice_is_refused_where_that_is_asked_for(refused):
     assert plain_values('1: a\n01: b') == {1: 'b'}
     refused('twice', plain_values, '1: a\n01: b', strict=True)

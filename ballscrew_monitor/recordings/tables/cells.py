@@ -8,13 +8,17 @@ point, numbers with a decimal comma, times of ISO 8601 or of the German form, or
 
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+import contextlib
 import dataclasses
 import math
 from pathlib import Path
+import re
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.tables import signs
+from ballscrew_monitor.recordings.tables.quantities import OTHER_SIGN
 from ballscrew_monitor.recordings.words import short
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +29,7 @@ from surrogate.files import InputError
 Array = NDArray[np.float64]
 Form = Callable[[pl.Series], pl.Series]
 """Makes cells numbers, null where one is not a number."""
-UNREADABLE = (PolarsError, pl.exceptions.PanicException)
+ENDS = (KeyboardInterrupt, SystemExit, GeneratorExit)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -79,42 +83,50 @@ class _Count:
     def _miss(self, cells: pl.Series, at: int, missing: int, row: int) -> None:
         if not self.bad:
             what = 'nothing' if cells[at] is None else short(repr(cells[at]))
-            self.first = f'{what} in row {row + at + 1}'
+            self.first = f'{what} in row {row + at}'
         self.bad += missing
 
 
 class Cells:
     """The cells of one column, looked through in the order of their rows."""
 
-    def __init__(self, path: Path, name: str, separator: str) -> None:
-        """Begin with the column `name` of the log at `path`, whose cells have a separator."""
-        self._separator = separator
-        self._where = f'log {path}: column {short(repr(name))}'
-        self._rows = 0
+    def __init__(
+        self, path: Path, name: str, separator: str, *, first_row: int = 1, decimal: str = ''
+    ) -> None:
+        """
+        Begin with the column `name` of the log at `path`, whose cells have a separator.
+
+        The first of them stands in the row `first_row` of the file; `decimal` is the sign that the
+        map states, for a column in which no cell shows the other one.
+
+        """
+        self._separator, self._decimal = separator, decimal
+        self.where = f'log {path}: column {short(repr(name))}'
+        self._row = self._first_row = first_row
         self._first: Any = None
+        self.signs = signs.Signs()
         self._type: pl.DataType = pl.Null()
         self._counts: list[_Count] = []
 
     def add(self, cells: pl.Series) -> None:
         """Look through the next cells; raises InputError when their type is that of no number."""
-        if not self._rows:
+        if self._row == self._first_row:
             self._first, self._type = cells[0], cells.dtype
             self._counts = [_Count(form=form) for form in self._forms()]
-        try:
+        with readable(f'{self.where} of {self._type} cannot be read as numbers'):
             self._count(cells)
-        except UNREADABLE as error:
-            raise InputError(
-                f'{self._where} of {self._type} cannot be read as numbers: {first_line(error)}'
-            ) from None
-        self._rows += len(cells)
+        self._row += len(cells)
 
     def reading(self) -> Reading:
         """Return how the column is read; raises InputError when it holds no number."""
         chosen = self._chosen()
         if not chosen.good:
-            raise InputError(f'{self._where} holds no number, but {short(repr(self._first))}')
+            raise InputError(
+                f'{self.where} holds no number, but {short(repr(self._first))} in row '
+                f'{self._first_row}'
+            )
         note = (
-            f'{self._where} holds {chosen.bad} cells without a number, the first is '
+            f'{self.where} holds {chosen.bad} cells without a number, the first is '
             f'{chosen.first}; they count as unknown'
         )
         extremes = np.array([chosen.least, chosen.most])
@@ -126,17 +138,17 @@ class Cells:
 
     def _forms(self) -> tuple[Form, ...]:
         if self._type == pl.String:
-            return (_points, _commas, *_TIMES)
+            return (*_NUMBERS[self._decimal], *_TIMES)
         if self._type.is_temporal():
             return (_seconds,)
         if self._type.is_numeric():
             return (_plain,)
-        raise InputError(f'{self._where} holds {self._type}, it must hold numbers')
+        raise InputError(f'{self.where} holds {self._type}, it must hold numbers')
 
     def _count(self, cells: pl.Series) -> None:
         """Count what each form makes of cells; what reads all of them leaves none to others."""
         if len(self._counts) == 1:
-            self._counts[0].add(cells, self._rows)
+            self._counts[0].add(cells, self._row)
             return
         points, commas, *times = self._counts
         # A text is a number or a time of one form: the kind of most cells so far is tried first.
@@ -145,20 +157,24 @@ class Cells:
         for kind in sorted(kinds, key=lambda kind: -max(one.good for one in kind)):
             if read:
                 for one in kind:
-                    one.pass_over(cells, self._rows)
+                    one.pass_over(cells, self._row)
             elif len(kind) > 1:
                 read = self._count_numbers(cells, points, commas)
             else:
-                read = kind[0].add(cells, self._rows)
+                read = kind[0].add(cells, self._row)
 
     def _count_numbers(self, cells: pl.Series, points: _Count, commas: _Count) -> bool:
         """Count cells as numbers with a point and with a comma; tell if one of both reads all."""
         commaed, pointed = (_holds(cells, mark) for mark in ',.')
         numbers = _finite(_points, _with_points(cells) if commaed.any() else cells)
-        read = points.take(np.where(commaed, math.nan, numbers), cells, self._rows)
+        self.signs.look(cells, {'.': pointed, ',': commaed}, np.isnan(numbers), self._row)
+        if self._decimal:
+            read = points.add(cells, self._row)
+            return commas.add(cells, self._row) or read
+        read = points.take(np.where(commaed, math.nan, numbers), cells, self._row)
         thousands = self._separator == ',' and points.good  # which a comma may part there
         if not thousands:
-            read |= commas.take(np.where(pointed, math.nan, numbers), cells, self._rows)
+            read |= commas.take(np.where(pointed, math.nan, numbers), cells, self._row)
         return read
 
     def _chosen(self) -> _Count:
@@ -166,13 +182,17 @@ class Cells:
         Return the form in which a column is read: the one that leaves the fewest without a number.
 
         Where commas separate the cells, one within a cell may part thousands too: it is a decimal
-        mark only if no cell is a number as is.
+        mark only if no cell is a number as is. A sign that the map states counts unless a cell
+        shows the other one.
 
         """
         if len(self._counts) == 1:
             return self._counts[0]
         points, commas, *times = self._counts
-        if self._separator == ',' and points.good:
+        if self._decimal:
+            other = self.signs.shows(OTHER_SIGN[self._decimal])
+            points = commas = points if (self._decimal == '.') != other else commas
+        elif self._separator == ',' and points.good:
             commas = points
         return max(points, commas, *times, key=lambda one: one.good)
 
@@ -217,6 +237,26 @@ def _holds(texts: pl.Series, mark: str) -> NDArray[np.bool_]:
     return texts.str.contains(mark, literal=True).fill_null(False).to_numpy()
 
 
+def _grouped(sign: str, plain: Form) -> Form:
+    """Return a form of numbers with a decimal sign, whose thousands the other one may part."""
+    part = OTHER_SIGN[sign]
+    pattern = rf'{signs.thousands(part, "+")}(?:{re.escape(sign)}\d*)?'
+
+    def form(texts: pl.Series) -> pl.Series:
+        without = texts.str.replace_all(part, '', literal=True)
+        return plain(without.zip_with(pl.Series(signs.are(texts, pattern)), texts))
+
+    return form
+
+
+_NUMBERS = {
+    '': (_points, _commas),
+    '.': (_grouped('.', _points), _commas),
+    ',': (_points, _grouped(',', _commas)),
+}
+"""Forms with a decimal point and with a comma, by the sign that the map states."""
+
+
 def _made(parsed: Callable[[pl.Series], pl.Series]) -> Form:
     """Return what makes texts times [s] by what parses them with a decimal point."""
 
@@ -244,6 +284,24 @@ _TIMES = (
     _made(lambda texts: texts.str.to_time(_OF_DAY, strict=False)),
     *map(_day, ('%Y-%m-%d', '%d.%m.%Y', '%Y/%m/%d')),
 )
+
+
+@contextlib.contextmanager
+def readable(failure: str, *kinds: type[Exception]) -> Iterator[None]:
+    """
+    Raise InputError, `failure` and why, for what the readers of tables raise: errors and panics.
+
+    A panic of a reader is no Exception, and each package has its own kind. `kinds` are errors that
+    count besides those of polars.
+
+    """
+    try:
+        yield
+    except BaseException as error:
+        is_panic = not isinstance(error, (Exception, *ENDS))
+        if not is_panic and not isinstance(error, (PolarsError, *kinds)):
+            raise
+        raise InputError(f'{failure}: {first_line(error)}') from None
 
 
 def first_line(error: BaseException) -> str:

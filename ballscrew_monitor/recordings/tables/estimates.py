@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 8.0, 10.0)  # leading digits of a usual rate
-NEAR = 0.05  # part by which an estimated rate may miss a usual one
+NEAR = 0.05  # part by which a speed may miss what its position says
 FAST = 2.0  # [m/s] no feed axis moves faster
 FASTEST = 2000.0  # in mm/s, the same
-EARLIEST = 3e8  # [s] of the universal clock: no log is older, and no run lasts as long
+UNIVERSAL = (946_684_800.0, 4_102_444_800.0)  # [s] of the universal clock: 2000 to 2100
 DAY = 86400.0  # [s]
-RATES = (0.5, 50e3)  # [Hz] of plausible logs
+RATES = (0.5, 5e3)  # [Hz] of plausible logs
 FACTOR = 1.5  # by which a place and its speed may disagree
 
 
@@ -41,14 +40,6 @@ def period(motions: Sequence[tuple[Array, Array]]) -> float:
         across += float(moved[good] @ mean[good])
         along += float(mean[good] @ mean[good])
     return across / along if across > 0.0 and along > 0.0 else math.nan
-
-
-def usual_rate(time: float) -> float:
-    """Return the rate [Hz] of rows a `time` [s] apart, a usual one if that is near."""
-    rate = 1.0 / time
-    decade = 10.0 ** math.floor(math.log10(rate))
-    near = min((digit * decade for digit in ROUND), key=lambda usual: abs(usual / rate - 1.0))
-    return float(f'{near if abs(near / rate - 1.0) <= NEAR else rate:.3g}')
 
 
 def speed_unit(speeds: Array, motion: tuple[Array, Array] | None, step: float) -> tuple[str, str]:
@@ -81,21 +72,34 @@ def position_unit(position: Array) -> tuple[str, str]:
     return 'mm', f'its largest amount is {largest:.3g}, more than a feed axis has in m'
 
 
-def time_unit(values: Array) -> tuple[str, bool, str]:
-    """Return the unit of times, whether they are those of the universal clock, and why."""
-    first, step = float(values[0]), float(np.nanmedian(np.diff(values)))
+def time_unit(values: Array) -> str:
+    """
+    Return the unit of times that none is stated for, empty where they may be of any.
+
+    It is known of the universal clock. Times with decimals count in seconds if that makes a
+    plausible rate.
+
+    """
+    step = float(np.median(np.diff(values)))
     for unit in ('s', 'ms', 'us', 'ns'):
-        if EARLIEST <= first * TIME_UNITS[unit] < 20 * EARLIEST:
-            return unit, True, f'its first value, {first:.10g}, is a time of the universal clock'
-    for unit in ('s', 'ms', 'us', 'ns'):
-        if step > 0 and RATES[0] <= 1.0 / (step * TIME_UNITS[unit]) <= RATES[1]:
-            return unit, False, f'its rows are {step:.3g} apart'
-    return 's', False, f'its rows are {step:.3g} apart'
+        if is_universal(values, unit) and step * TIME_UNITS[unit] <= 1.0 / RATES[0]:
+            return unit
+    return 's' if has_decimals(values) and 1.0 / RATES[1] <= step <= 1.0 / RATES[0] else ''
+
+
+def has_decimals(values: Array) -> bool:
+    """Return True if not all values are whole numbers."""
+    return bool((values % 1.0).any())
+
+
+def is_universal(values: Array, unit: str) -> bool:
+    """Return True if the first of times in a unit may be one of the universal clock."""
+    return UNIVERSAL[0] <= float(values[0]) * TIME_UNITS[unit] < UNIVERSAL[1]
 
 
 def is_of_days(extremes: Array) -> bool:
     """Tell whether the least and the most of times [s] are begins of days by the calendar."""
-    return bool((extremes > EARLIEST).all() and not (extremes % DAY).any())
+    return bool((extremes > UNIVERSAL[0]).all() and not (extremes % DAY).any())
 
 
 def is_of_a_day(extremes: Array) -> bool:

@@ -3,11 +3,13 @@
 """
 A first map of a log, by names, ranges and rates of its columns.
 
-What nothing in the log tells stands under `assumed` with a value and a reason.
+What nothing in the log tells stands under `assumed` with a value and a reason. The rate, the unit
+of a time and the decimal sign are not assumed: they stand without a value, to be stated.
 
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+import contextlib
 import dataclasses
 import math
 from pathlib import Path
@@ -16,12 +18,13 @@ from typing import Any
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
-from ballscrew_monitor.recordings.tables.cells import Array
+from ballscrew_monitor.recordings.tables.cells import Array, Cells
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, Layout, RATED, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
 from ballscrew_monitor.recordings.tables.sources import layout_of, source_of
-from ballscrew_monitor.recordings.words import listed, Shown, shown_progress
+from ballscrew_monitor.recordings.tables.time_gate import TimeGate
+from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface
@@ -33,7 +36,6 @@ TORQUE_CONSTANT = 0.1  # [N m/A]
 RATED_TORQUE = 5.0  # [N m]
 EFFICIENCY = 0.9
 TEMPERATURE = 40.0  # [degC]
-RATE = 100.0  # [Hz]
 NUMBERS = 4_000_000  # of the first rows that are in memory
 EPOCH = '2000-01-01T00:00:00Z'
 FORCE = (
@@ -44,9 +46,15 @@ FORCE = (
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Guess:
-    """A map as its content, and what is to be said about it."""
+    """
+    A map as its content, and what is to be said about it.
+
+    `unstated` says of each place of the map that is null why nothing is assumed there.
+
+    """
 
     content: dict[str, Any]
+    unstated: tuple[str, ...]
     notes: tuple[str, ...]
 
     @property
@@ -57,6 +65,9 @@ class Guess:
             '# knows a value writes it in its place and takes it out of `assumed`, such as\n'
             '# `axes: {x: {lead_mm: 5.0, screw: my_screw, oil: my_oil, surface: my_screw.npz}}`.\n'
         )
+        if self.unstated:
+            head += '# The log cannot be judged before a value stands where this map says null:\n'
+        head += ''.join(f'#   {" ".join(why.split())}\n' for why in self.unstated)
         return head + yaml.safe_dump(
             self.content, sort_keys=False, width=96, allow_unicode=True, default_flow_style=None
         )
@@ -84,7 +95,7 @@ class _Guesser:
     def __init__(self, path: Path, shown: Shown) -> None:
         self.path = path
         self.layout = layout_of(path)
-        source = source_of(path, self.layout)
+        self.source = source = source_of(path, self.layout)
         self.named = [read_name(name) for name in source.names()]
         self.assumed: dict[str, dict[str, Any]] = {}
         self.notes: list[str] = []
@@ -104,30 +115,40 @@ class _Guesser:
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
         used = [one.column for one in [*columns, *self.times]]
         table = look_through(source, used, optional=used, shown=shown)
+        self.unstated = list(table.doubts.values())[:1]
+        for sign in list(table.doubts)[:1]:
+            table = look_through(source, used, decimal=sign, optional=used, shown=shown)
+        self.first_row = table.first_row
         rows = NUMBERS // len(used)
         # The first rows tell how the speeds go with the positions, all of them the ranges.
         self.data = table.head(rows)
         self.extremes = {name: one.extremes for name, one in table.readings.items()}
         self.timed = {name for name, one in table.readings.items() if one.is_time}
-        self.notes += [f'{why}; it is left out' for why in table.left_out.values()]
+        times = {one.column for one in self.times}
+        # Why a column is not taken for the time.
+        self.not_times = [why for name, why in table.left_out.items() if name in times]
+        self.notes += [
+            f'{why}; it is left out' for name, why in table.left_out.items() if name not in times
+        ]
         self.notes += [*table.notes, *names.told_by_words(self.named)]
         if rows < table.rows:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
         self._forget_texts()
 
     def result(self) -> Guess:
+        doubtful = bool(self.unstated)
         time = self._time_column()
         for name in self.axes:
             self._fill(name)
         if not time:
-            self._assume_rate()
+            time = self._time_without_column()
         self._say_what_is_left_out(time)
         usual, found = (dataclasses.asdict(one) for one in (Layout(), self.layout))
         content: dict[str, Any] = {'log': self.path.name}
         content |= {key: value for key, value in found.items() if value != usual[key]}
-        content |= {'time': time} if time else {}
-        content |= {'axes': self.used, 'assumed': self.assumed}
-        return Guess(content=content, notes=tuple(self.notes))
+        content |= {'decimal': None} if doubtful else {}
+        content |= {'time': time, 'axes': self.used, 'assumed': self.assumed}
+        return Guess(content=content, unstated=tuple(self.unstated), notes=tuple(self.notes))
 
     def _assume(self, key: str, value: Any, reason: str) -> None:
         self.assumed[key] = {'value': value, 'reason': reason}
@@ -150,39 +171,74 @@ class _Guesser:
     def _time_column(self) -> dict[str, Any]:
         """Return what the map says of the time; take the step between rows if it is known."""
         days = next((one for one in self.times if self._is(estimates.is_of_days, one)), None)
-        for one in sorted(self.times, key=lambda one: -one.rank):  # by name, then by unit
-            values = self.data[one.column]
-            clock = one.column in self.timed and self._is(estimates.is_of_a_day, one)
-            if days is not None and clock:
-                dated = self._time_of(one, self.data[days.column] + values)
-                return dated | {'date': days.column}
-            values = estimates.Midnights().passed(values) if clock else values
-            if one is not days and estimates.is_rising(values):
-                return self._time_of(one, values)
+        others = [one for one in self.times if one is not days]
+        for one in sorted(others, key=lambda one: -one.rank):  # by name, then by unit
+            values, dated = self.data[one.column], {}
+            if one.column in self.timed and self._is(estimates.is_of_a_day, one):
+                if days is None:
+                    values = estimates.Midnights().passed(values)
+                else:
+                    values, dated = self.data[days.column] + values, {'date': days.column}
+            if fault := self._fault(one, values):
+                self.not_times.append(f'column {short(repr(one.column))}: {fault}')
+                continue
+            self.notes += [f'{why}; it is left out' for why in self.not_times]
+            return self._time_of(one, values) | dated
         return {}
 
     def _is(self, kind: Callable[[Array], bool], one: Named) -> bool:
         return kind(self.extremes[one.column])
 
-    def _time_of(self, one: Named, values: Array) -> dict[str, Any]:
-        unit, absolute, why = estimates.time_unit(values[np.isfinite(values)])
-        stated = 's' if one.column in self.timed else one.unit
-        if stated and not absolute:
-            unit = stated
-        elif not absolute:
-            self._assume(
-                'time.unit', unit, f'column {one.column} states none that is known; {why}'
+    def _fault(self, one: Named, values: Array) -> str:
+        """Return why values are no time of the motion, empty if they are."""
+        motion = [
+            np.isfinite(self.data[(chosen.get('speed') or chosen['position']).column])
+            for chosen in self.axes.values()
+        ]
+        rows = np.flatnonzero(np.isfinite(values) & np.any(motion, axis=0))
+        values, rows = values[rows], rows + self.first_row
+        if len(rows) < 2:
+            return 'it holds fewer than two numbers beside those of the motion'
+        if not estimates.is_rising(values):
+            at = int((np.diff(values) <= 0.0).argmax())
+            return (
+                f'it does not rise, such as from {values[at]:.12g} in row {rows[at]} to '
+                f'{values[at + 1]:.12g} in row {rows[at + 1]}'
             )
+        unit, *_ = self._unit_of_time(one, values)
+        gate = TimeGate()
+        if unit or estimates.has_decimals(values):
+            gate.add(values * conversions.TIME_UNITS[unit or 's'], rows)
+        return gate.fault()[0]
+
+    def _unit_of_time(self, one: Named, values: Array) -> tuple[str, bool, bool]:
+        """Return the unit of times, empty if unknown; if it is stated; if they are since 1970."""
+        if stated := 's' if one.column in self.timed else one.unit:
+            return stated, True, estimates.is_universal(values, stated)
+        unit = estimates.time_unit(values)
+        absolute = bool(unit) and estimates.is_universal(values, unit)
+        return unit, absolute, absolute
+
+    def _time_of(self, one: Named, values: Array) -> dict[str, Any]:
+        unit, known, absolute = self._unit_of_time(one, values[np.isfinite(values)])
+        step = float(np.nanmedian(np.diff(values)))
+        why = f'column {one.column} states none that is known; its rows are {step:.3g} apart'
+        if not unit:
+            self.unstated.append(f'state time.unit in the map: {why}, which may be of any')
+        elif not known:
+            self._assume('time.unit', unit, why)
         if not absolute:
             self._assume_epoch(f'column {one.column} does not count from a known time')
-        self.step = float(np.nanmedian(np.diff(values))) * conversions.TIME_UNITS[unit]
-        place = {'column': one.column}
-        return place if 'time.unit' in self.assumed else place | {'unit': unit}
+        if unit:
+            self.step = step * conversions.TIME_UNITS[unit]
+        place: dict[str, Any] = {'column': one.column}
+        return place if 'time.unit' in self.assumed else place | {'unit': unit or None}
 
     def _assume_epoch(self, why: str) -> None:
         self._assume('time.epoch', EPOCH, f'{why}, and a stamp of 0 means that there is none')
 
-    def _assume_rate(self) -> None:
+    def _time_without_column(self) -> dict[str, Any]:
+        """Return what the map says of the time of a log whose time is not read."""
         motions = {
             name: self._motion(name)
             for name, chosen in self.axes.items()
@@ -191,21 +247,32 @@ class _Guesser:
             <= set(conversions.LINEAR_SPEED_UNITS | LINEAR_POSITION_UNITS)
         }
         found = estimates.period(list(motions.values()))
+        why = '; '.join(self.not_times or ['no column is named as a time', *self._rising()])
         if math.isfinite(found):
-            rate = estimates.usual_rate(found)
-            why = (
-                f'{self._no_time()}; at {1.0 / found:.3g} Hz the speeds of axes '
-                f'{", ".join(motions)} make their positions best'
+            why += (
+                f'; at {1.0 / found:.3g} Hz the speeds of axes {", ".join(motions)} make their '
+                'positions best'
             )
-        else:
-            rate, why = RATE, f'{self._no_time()}, and nothing in it tells the rate'
-        self._assume('time.rate_Hz', rate, why)
-        self._assume_epoch(self._no_time())
+        self.unstated.append(f'state time.rate_Hz in the map, the rows in a second: {why}')
+        self._assume_epoch('the log has no time that is read')
+        return {'rate_Hz': None}
 
-    def _no_time(self) -> str:
-        """Say why the log has no time: no column is one, or those that are do not rise."""
-        times = ', '.join(one.column for one in self.named if one.kind == 'time')
-        return f'the log has no time that rises ({times})' if times else 'the log has no time'
+    def _rising(self) -> Iterator[str]:
+        """Yield which columns may be a time by their first cells, though not by their names."""
+        head = self.source.head()
+        for one in self.named:
+            if one.column in self.data:
+                continue
+            cells = Cells(self.path, one.column, self.source.separator)
+            with contextlib.suppress(InputError):
+                cells.add(head[one.column])
+                values = cells.reading().numbers(head[one.column])
+                if len(values) > 1 and (np.diff(values) > 0.0).all():
+                    cell = short(repr(head[one.column][0]))
+                    yield (
+                        f'column {short(repr(one.column))} rises from {cell} in row '
+                        f'{self.first_row} on'
+                    )
 
     def _motion(self, name: str) -> tuple[Array, Array]:
         """Return positions [m] and speeds [m/s] of an axis."""

@@ -22,11 +22,17 @@ FULL = 0.5  # of the cells of the fullest row: emptier ones belong to no table
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Head:
-    """Names of the columns, how the cells are parted, and the lines before the names."""
+    """
+    Names of the columns, how the cells are parted, and the lines before the names.
+
+    The first cells stand in the row `first` of the file.
+
+    """
 
     names: tuple[str, ...]
     separator: str
     lines: int
+    first: int
 
 
 def read_head(lines: Iterator[str], layout: Layout) -> Head:
@@ -38,7 +44,8 @@ def read_head(lines: Iterator[str], layout: Layout) -> Head:
             separator = _separator(line)
             rows = csv.reader(itertools.chain(line.splitlines(True), lines), delimiter=separator)
             names = names_of(list(itertools.islice(rows, layout.header_rows)))
-            return Head(names=names, separator=separator, lines=number)
+            first = number + rows.line_num + 1
+            return Head(names=names, separator=separator, lines=number, first=first)
     raise ValueError('no line names its columns')
 
 

@@ -24,6 +24,7 @@ from ballscrew_monitor.recordings.tables.quantities import (
     INPUTS,
     Layout,
     MOTION,
+    OTHER_SIGN,
     RATED,
     UNITS,
 )
@@ -45,7 +46,7 @@ NUMBERS = {
     'inertia_kg_m2': (0.0, 1e3),
     'temperature_degC': (-50.0, 200.0),
     'free_load_N': (-1e6, 1e6),
-    'rate_Hz': (1e-3, 1e6),
+    'rate_Hz': (1e-3, 1e5),
 }
 """Numbers of an axis, and of the time, with the least and the most allowed."""
 LINES = {'skip': (0, 1000), 'header_rows': (1, 2)}
@@ -116,11 +117,13 @@ class TableMap:
 
     Column of the time, or the rate [Hz] of a log without one; `date` names the column of the days
     whose times the other says, if there is one; epoch [ns] of the first row, None when the log
-    tells it; `content` is the map as it was written.
+    tells it; `decimal` sign of numbers that may be read with either one, empty where not said;
+    `content` is the map as it was written.
 
     """
 
     layout: Layout
+    decimal: str
     time: Column | None
     date: str
     rate: float
@@ -168,8 +171,10 @@ def _read(path: Path) -> TableMap:
 
 def make_map(content: Any) -> TableMap:
     """Return a map made of its content; raises InputError when that is not right."""
-    known = ('log', 'time', 'axes', 'assumed', 'parameters', *LINES)
+    known = ('log', 'time', 'axes', 'assumed', 'parameters', 'machine', *LINES, 'decimal')
     _check_keys('the map', content, known)
+    if 'machine' in content:
+        _check_machine(content['machine'])
     axes = content.get('axes')
     if not isinstance(axes, dict) or not axes:
         raise InputError('axes is missing, it must name at least one axis with its columns')
@@ -183,6 +188,7 @@ def make_map(content: Any) -> TableMap:
     time = _Part('time', values)
     made = TableMap(
         layout=_layout(content),
+        decimal=_decimal(content),
         time=time.column('time', at='time'),
         date=column_name(time.text('date')),
         rate=time.number('rate_Hz'),
@@ -194,9 +200,16 @@ def make_map(content: Any) -> TableMap:
     )
     if made.time is None and math.isnan(made.rate):
         raise InputError('time is missing, it must name a column or a rate_Hz')
+    if made.time is not None and not math.isnan(made.rate):
+        raise InputError('time states both column and rate_Hz, one must go')
     if values:
         raise InputError(f'{next(iter(values))} is unknown')
     return made
+
+
+def _check_machine(name: Any) -> None:
+    if not isinstance(name, str) or not name.strip():
+        raise InputError(f'machine is {name!r}, it must be a text, the name of the machine')
 
 
 def _layout(content: Mapping[str, Any]) -> Layout:
@@ -207,6 +220,14 @@ def _layout(content: Mapping[str, Any]) -> Layout:
         if not (isinstance(value, int) and low <= value <= high) or isinstance(value, bool):
             raise InputError(f'{key} is {value!r}, it must be a whole number, {low} to {high}')
     return Layout(**found)
+
+
+def _decimal(content: Mapping[str, Any]) -> str:
+    """Return the decimal sign that a map states, empty if it leaves that to the cells."""
+    sign = content.get('decimal', '')
+    if 'decimal' in content and sign not in tuple(OTHER_SIGN):
+        raise InputError(f"decimal is {_said(sign)}, it must be '.' or ','")
+    return str(sign)
 
 
 class _Part:
@@ -223,7 +244,8 @@ class _Part:
         low, high = NUMBERS[name]
         if value is not default and not (_is_number(value) and low <= value <= high):
             raise InputError(
-                f'{self._prefix}.{name} is {value!r}, it must be a number from {low:g} to {high:g}'
+                f'{self._prefix}.{name} is {_said(value)}, it must be a number from {low:g} to '
+                f'{high:g}'
             )
         return float(value)
 
@@ -349,6 +371,10 @@ def _check_keys(what: str, section: Any, known: tuple[str, ...] | None) -> None:
     for key in section:
         if known is not None and key not in known:
             raise InputError(f'{what} holds {key!r}, allowed are {", ".join(known)}')
+
+
+def _said(value: Any) -> str:
+    return 'blank' if value is None else repr(value)
 
 
 def _is_number(value: Any) -> bool:

@@ -20,6 +20,8 @@ UNITS: dict[str, Mapping[str, float]] = {
 }
 """Units of each kind of column; some need what a map states, as the lead or the rated torque."""
 MOTION = ('speed', 'position')
+OTHER_SIGN = {'.': ',', ',': '.'}
+"""Decimal signs, each with the one that then parts thousands."""
 INPUTS = tuple(kind for kind in UNITS if kind != 'time')
 
 

@@ -19,6 +19,7 @@ from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.sources import layout_of, Source, source_of
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
+import polars as pl
 from surrogate.files import InputError
 
 
@@ -27,7 +28,8 @@ class Table:
     """
     Chosen columns of a log that was looked through: how each is read, by name.
 
-    `notes` says in a sentence each what could not be read; `left_out` says why of columns.
+    `notes` says in a sentence each what could not be read; `left_out` says why of columns;
+    `doubts` says of numbers what else they may be, by the decimal sign that they would have then.
 
     """
 
@@ -36,7 +38,13 @@ class Table:
     rows: int
     notes: tuple[str, ...]
     left_out: Mapping[str, str]
+    doubts: Mapping[str, str]
     _source: Source
+
+    @property
+    def first_row(self) -> int:
+        """Return the row of the file in which the first cells stand."""
+        return self._source.first
 
     def blocks(self, names: Collection[str] | None = None) -> Iterator[dict[str, Array]]:
         """Yield columns (None: all) in blocks of rows, NaN where there is no number, times [s]."""
@@ -68,35 +76,42 @@ def open_table(
     names: Collection[str],
     *,
     layout: Layout | None = None,
+    decimal: str = '',
     optional: Collection[str] = (),
     shown: Shown = shown_progress,
 ) -> Table:
     """
     Look through the columns `names` of a log, and show how far that is.
 
-    Raises InputError when one is missing, or holds no number; an `optional` one without a number
-    is left out.
+    Raises InputError when one is missing, holds no number, or holds numbers that may be others
+    unless the `decimal` sign is stated; an `optional` one without a number is left out.
 
     """
     source = source_of(path, layout)
     _check_names(source, names, layout or Layout())
-    return look_through(source, names, optional=optional, shown=shown)
+    table = look_through(source, names, decimal=decimal, optional=optional, shown=shown)
+    for doubt in table.doubts.values():
+        raise InputError(doubt)
+    return table
 
 
 def look_through(
     source: Source,
     names: Collection[str],
     *,
+    decimal: str = '',
     optional: Collection[str] = (),
     shown: Shown = shown_progress,
 ) -> Table:
-    """Look through columns that a table holds, as `open_table` does."""
+    """Look through columns that a table holds, as `open_table` does, but keep the doubts."""
     left_out: dict[str, str] = {}
-    found = {name: Cells(source.path, name, source.separator) for name in names}
+    found = {name: _cells(source, name, decimal) for name in names}
     rows = 0
     with shown(source.rows, 'rows looked through') as show:
         for block in source.blocks(list(found)):
             for name, cells in found.items():
+                if name in left_out:
+                    continue
                 with _left_out(name, left_out, optional):
                     cells.add(block[name])
             rows += block.height
@@ -105,16 +120,44 @@ def look_through(
         raise InputError(f'log {source.path} holds no row, at least two are needed')
     readings: dict[str, Reading] = {}
     for name, cells in found.items():
+        if name in left_out:
+            continue
         with _left_out(name, left_out, optional):
             readings[name] = cells.reading()
     return Table(
         path=source.path,
-        readings={name: one for name, one in readings.items() if name not in left_out},
+        readings=readings,
         rows=rows,
         notes=tuple(one.note for one in readings.values() if one.note),
         left_out=left_out,
+        doubts={} if decimal else _doubts(source, found),
         _source=source,
     )
+
+
+def _cells(source: Source, name: str, decimal: str = '') -> Cells:
+    return Cells(source.path, name, source.separator, first_row=source.first, decimal=decimal)
+
+
+def _doubts(source: Source, found: Mapping[str, Cells]) -> dict[str, str]:
+    """Return what numbers may be others, as columns of the log differ in their decimal sign."""
+    if not any(cells.signs.doubtful for cells in found.values()):
+        return {}
+    others = {name: _cells(source, name) for name in source.names() if name not in found}
+    head = source.head()
+    for name, cells in others.items():
+        if head[name].dtype == pl.String:
+            cells.add(head[name])
+    elsewhere = {
+        sign: f'{cell} of column {short(repr(name))}'
+        for name, cells in (others | dict(found)).items()
+        for sign, cell in cells.signs.seen.items()
+    }
+    doubts: dict[str, str] = {}
+    for cells in found.values():
+        for sign, doubt in cells.signs.doubts(elsewhere).items():
+            doubts.setdefault(sign, f'{cells.where} {doubt}')
+    return doubts
 
 
 def _check_names(source: Source, names: Collection[str], layout: Layout) -> None:

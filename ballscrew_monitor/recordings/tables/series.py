@@ -19,14 +19,16 @@ from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.estimates import FACTOR, NEAR
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.quantities import MOTION
-from ballscrew_monitor.recordings.tables.read import open_table
+from ballscrew_monitor.recordings.tables.read import open_table, Table
+from ballscrew_monitor.recordings.tables.time_gate import INSTEAD
 from ballscrew_monitor.recordings.tables.times import joined, line, Rows, Stamps, Times
-from ballscrew_monitor.recordings.words import Shown, shown_progress
+from ballscrew_monitor.recordings.words import short, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
 from surrogate.units import TURN
 
 LONG = 3.0  # times the usual time between rows: across more the speed is not known
+FARTHEST = 1e100  # position in whatever unit, so that squares of what is moved have a sum
 ALIKE = 0.9  # squared correlation from which a speed and its position are of one motion
 
 
@@ -87,10 +89,19 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     Raises InputError when it cannot be read by the map.
 
     """
-    optional = [name for name in mapping.columns if name not in mapping.time_columns]
+    columns = mapping.columns
     table = open_table(
-        path, mapping.columns, layout=mapping.layout, optional=optional, shown=shown
+        path,
+        columns,
+        layout=mapping.layout,
+        decimal=mapping.decimal,
+        optional=columns,
+        shown=shown,
     )
+    for name in mapping.time_columns:
+        if name in table.left_out:
+            raise InputError(f'{table.left_out[name]}: name a time that is read, or {INSTEAD}')
+    _check_positions(path, mapping, table)
     axes = tuple(_readable(axis, table.left_out) for axis in mapping.axes)
     held = dataclasses.replace(mapping, axes=axes)
     times = Times(table, held, shown)
@@ -101,6 +112,23 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
         mapping=held,
         _times=times,
     )
+
+
+def _check_positions(path: Path, mapping: TableMap, table: Table) -> None:
+    """Raise InputError for a position where no axis is."""
+    for axis in mapping.axes:
+        column = axis.columns.get('position')
+        reading = table.readings.get(column.name) if column else None
+        if column is None or reading is None:
+            continue
+        for position in reading.extremes.tolist():
+            if abs(position) > FARTHEST:
+                raise InputError(
+                    f'log {path}: column {short(repr(column.name))} holds a position of '
+                    f'{position:g} {column.unit}, allowed is up to {FARTHEST:g} {column.unit} in '
+                    f'both directions: name another column for axes.{axis.name}.position in the '
+                    'map, or none'
+                )
 
 
 def _readable(axis: AxisMap, left_out: Mapping[str, str]) -> AxisMap:
@@ -244,14 +272,16 @@ class Fit:
         expected = (axis.speed[1:] + axis.speed[:-1]) / 2 * steps
         moved = np.diff(axis.position)
         good = np.isfinite(expected) & np.isfinite(moved) & (steps <= self._longest)
-        self._across += float(moved[good] @ expected[good])
-        self._by_speed += float(expected[good] @ expected[good])
-        self._by_position += float(moved[good] @ moved[good])
+        moved, expected = moved[good], expected[good]
+        with np.errstate(over='ignore', invalid='ignore'):
+            self._across += float(moved @ expected)
+            self._by_speed += float(expected @ expected)
+            self._by_position += float(moved @ moved)
 
     def note(self) -> str:
         """Return a sentence if both are of one motion but differ in size or sign, else nothing."""
-        both = self._by_speed * self._by_position
-        if not both or self._across**2 < ALIKE * both:
+        both = math.sqrt(self._by_speed) * math.sqrt(self._by_position)
+        if not 0.0 < both < math.inf or abs(self._across) < math.sqrt(ALIKE) * both:
             return ''
         factor = self._across / self._by_speed
         if 1.0 / FACTOR < factor < FACTOR:

@@ -13,18 +13,15 @@ import contextlib
 import csv
 import dataclasses
 import functools
-import importlib
 import io
 import math
 from pathlib import Path
-import sys
 from typing import BinaryIO
-import zipfile
-import zlib
 
 from ballscrew_monitor.recordings.tables import heads
-from ballscrew_monitor.recordings.tables.cells import first_line, UNREADABLE
+from ballscrew_monitor.recordings.tables.cells import first_line, readable
 from ballscrew_monitor.recordings.tables.quantities import Layout
+from ballscrew_monitor.recordings.tables.workbook import first_sheet, NUMBER
 import numpy as np
 from numpy.typing import NDArray
 import polars as pl
@@ -35,15 +32,11 @@ HEAD = 65536  # [bytes] of a file that tell what it is
 LINES = 200  # of a table that tell where its names stand
 SHORT = 4096  # [bytes] of a block, in which a line usually ends
 BLOCK = 32768  # rows that are read at a time
-NUMBER = 8  # [bytes] of a cell
 ZIP, PARQUET = b'PK\3\4', b'PAR1'
 WIDE_MARKS = (b'\xff\xfe', b'\xfe\xff')
 NARROW_MARK = b'\xef\xbb\xbf'
 CODINGS = ('utf-8', 'cp1252', 'latin-1')
 """Codings of a line, the first that fits; the last fits always."""
-UNPACKABLE = (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError)
-NO_DAY = '1899-12-31 '
-"""Day that a sheet adds to a time of day."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -51,6 +44,7 @@ class Source:
     """
     A table as it stands in a file: the separator of its cells if it has one, rows about.
 
+    Its first cells stand in the row `first` of the file; lines that begin with # do not count.
     The columns that are read may come to `most` [bytes]: those at rest take next to no room in a
     file of Parquet, so that all of them together tell nothing.
 
@@ -60,12 +54,18 @@ class Source:
     frame: pl.LazyFrame
     separator: str
     rows: int
+    first: int = 1
     most: float = math.inf
 
     def names(self) -> list[str]:
         """Return the names of all columns."""
-        with _readable(self.path):
+        with readable(f'log {self.path} cannot be read'):
             return self.frame.collect_schema().names()
+
+    def head(self) -> pl.DataFrame:
+        """Return the first rows of all columns; raises InputError."""
+        with readable(f'log {self.path} cannot be read'):
+            return self.frame.head(LINES).collect()
 
     def blocks(self, names: Collection[str]) -> Iterator[pl.DataFrame]:
         """Yield the columns `names` in blocks of rows; none is empty. Raises InputError."""
@@ -76,7 +76,7 @@ class Source:
                 f'{come_to / limits.MEGA:.0f} MB, allowed are {limits.PACKING} times the size of '
                 'the file'
             )
-        with _readable(self.path):
+        with readable(f'log {self.path} cannot be read'):
             batches = self.frame.select(list(names)).collect_batches(chunk_size=BLOCK, lazy=True)
             for batch in batches:
                 yield from batch.iter_slices(BLOCK) if batch.height else ()
@@ -115,7 +115,7 @@ def _head_of(path: Path) -> bytes:
 
 def _parquet(path: Path) -> Source:
     frame, size = pl.scan_parquet(path), path.stat().st_size
-    with _readable(path):
+    with readable(f'log {path} cannot be read'):
         rows = int(frame.select(pl.len()).collect().item())
         names = frame.collect_schema().names()
     _check_columns(path, len(names))
@@ -133,45 +133,19 @@ def _sheet(path: Path, layout: Layout | None) -> Source:
         raise InputError(f'log {path} has {cells.height} rows, none of them names its columns')
     names = heads.names_of(_rows_of(cells[begin:end]))
     frame = cells[end:].rename(dict(zip(cells.columns, names)))
-    return Source(path=path, frame=frame.lazy(), separator='', rows=max(frame.height, 1))
+    return Source(
+        path=path, frame=frame.lazy(), separator='', rows=max(frame.height, 1), first=end + 1
+    )
 
 
 def _cells_of_sheet(path: Path) -> pl.DataFrame:
-    """Return the cells of the first sheet of a workbook as texts."""
-    fastexcel = importlib.import_module('fastexcel')  # it is optional
-    _check_packed(path)
-    with _readable(path, fastexcel.FastExcelError):
-        cells = pl.read_excel(
-            path,
-            engine='calamine',
-            has_header=False,
-            infer_schema_length=0,
-            drop_empty_rows=False,
-            drop_empty_cols=False,
-        )
+    cells = first_sheet(path)
     _check_columns(path, cells.width)
-    return cells.select(pl.all().cast(pl.String).str.strip_prefix(NO_DAY))
+    return cells
 
 
 def _rows_of(cells: pl.DataFrame) -> list[list[str]]:
     return [[cell or '' for cell in row] for row in cells.head(LINES).iter_rows()]
-
-
-def _check_packed(path: Path) -> None:
-    """Raise InputError if a workbook comes to more than is allowed, whatever it says of itself."""
-    most = min(limits.most_unpacked(path.stat().st_size), limits.WORKBOOK)
-    unpacked = 0
-    with _readable(path, *UNPACKABLE), zipfile.ZipFile(path) as archive:
-        for part in archive.infolist():
-            part.file_size = sys.maxsize  # it is read to its end, whatever it says
-            with archive.open(part) as stream:
-                while block := stream.read(limits.MEGA):
-                    unpacked += len(block)
-                    if unpacked > most:
-                        raise InputError(
-                            f'log {path} comes to more than {most // limits.MEGA} MB when it is '
-                            'unpacked: save its sheet as CSV'
-                        )
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -245,7 +219,9 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
         truncate_ragged_lines=True,
         eol_char=text.line_end,
     )
-    return Source(path=path, frame=frame, separator=head.separator, rows=text.lines_about)
+    return Source(
+        path=path, frame=frame, separator=head.separator, rows=text.lines_about, first=head.first
+    )
 
 
 def _renamed(names: Sequence[str], held: Sequence[str]) -> list[str]:
@@ -308,12 +284,3 @@ def _outside(block: bytes, line_end: bytes, quoted: bool) -> NDArray[np.intp]:
     letters = np.frombuffer(block, np.uint8)
     inside = (np.cumsum(letters == ord('"')) + quoted) % 2
     return np.flatnonzero((letters == ord(line_end)) & (inside == 0))
-
-
-@contextlib.contextmanager
-def _readable(path: Path, *more: type[Exception]) -> Iterator[None]:
-    """Raise InputError for whatever the readers of tables raise."""
-    try:
-        yield
-    except UNREADABLE + more as error:
-        raise InputError(f'log {path} cannot be read: {first_line(error)}') from None

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rows of a table in the order of their times, with stamps, in blocks."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 import dataclasses
 import math
 
@@ -12,7 +12,8 @@ from ballscrew_monitor.recordings.tables.estimates import is_of_a_day, Midnights
 from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
 from ballscrew_monitor.recordings.tables.read import Table
 from ballscrew_monitor.recordings.tables.sources import BLOCK
-from ballscrew_monitor.recordings.words import Shown, shown_progress
+from ballscrew_monitor.recordings.tables.time_gate import TimeGate
+from ballscrew_monitor.recordings.words import short, Shown, shown_progress
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
@@ -97,12 +98,14 @@ class Times:
         self._begin, self._end, self._late = math.inf, -math.inf, 0.0
         self._last = np.zeros(0)
         self._steps = Steps()
-        self._look(shown)
+        gate = self._look(shown)
         if self.count < 2:
             raise InputError(
                 f'log {table.path} holds {self.count} rows with a time, at least two are needed'
             )
         self._check()
+        if time := mapping.time:
+            self._check_gate(gate, time.name)
         if self._back:
             self._steps = Steps()
             with shown(table.rows, 'rows put in order') as show:
@@ -132,8 +135,8 @@ class Times:
             which = 'gap is' if gaps == 1 else 'gaps are'
             found.append(
                 f'{log} {gaps} {which} longer than {HUGE_GAP} rows, the longest is '
-                f'{self._steps.longest / SECOND:.4g} s, after row {self._steps.longest_row}; '
-                'nothing is judged in them'
+                f'{self._steps.longest / SECOND:.4g} s, after row '
+                f'{self._steps.longest_row + self._table.first_row - 1}; nothing is judged in them'
             )
         return found
 
@@ -157,15 +160,42 @@ class Times:
                     columns={name: values[known] for name, values in columns.items()},
                 )
 
-    def _look(self, shown: Shown) -> None:
+    def _look(self, shown: Shown) -> TimeGate:
         """Look through the times of all rows."""
-        row, names, midnights = 0, self._mapping.time_columns, self._midnights()
+        names, gate = self._mapping.time_columns, TimeGate()
         with shown(self._table.rows, 'times looked through') as show:
-            for block in self._table.blocks(names or list(self._table.readings)[:1]):
-                times = self._times(block, row, midnights)
-                row += len(times)
-                self._count(times[np.isfinite(times)])
-                show(row / self._table.rows)
+            for row, times, _ in self._told(names or list(self._table.readings)[:1]):
+                known = np.isfinite(times)
+                self._count(times[known])
+                gate.add(times[known], row + np.flatnonzero(known))
+                show((row + len(times) - self._table.first_row) / self._table.rows)
+        return gate
+
+    def _told(self, names: Collection[str]) -> Iterator[tuple[int, Array, dict[str, Array]]]:
+        """Yield the row in the file of the first of a block, its times [s], and its columns."""
+        row, midnights = 0, self._midnights()
+        for block in self._table.blocks(names):
+            times = self._times(block, row, midnights)
+            yield row + self._table.first_row, times, block
+            row += len(times)
+
+    def _check_gate(self, gate: TimeGate, name: str) -> None:
+        """Raise InputError if the rows of the motion have times that no recording has."""
+        if not any(gate.fault()):
+            return
+        motion = [
+            (axis.columns.get('speed') or axis.columns['position']).name
+            for axis in self._mapping.axes
+        ]
+        of_motion = TimeGate()  # a slower signal may have rows of its own
+        for row, times, block in self._told([*self._mapping.time_columns, *motion]):
+            moves = np.any([np.isfinite(block[name]) for name in motion], axis=0)
+            known = np.isfinite(times) & moves
+            of_motion.add(times[known], row + np.flatnonzero(known))
+        fault, mend = of_motion.fault()
+        if fault:
+            where = f'log {self._table.path}: column {short(repr(name))}'
+            raise InputError(f'{where}: {fault}: {mend}')
 
     def _count(self, times: Array) -> None:
         """Count further times, all known."""

@@ -105,6 +105,16 @@ def test_an_axis_that_does_not_change_is_normal(axis, motion):
     assert advice_of(health.condition, health.causes) == ''
 
 
+@pytest.mark.parametrize('rise', [0.008, 0.010])  # [N m], about a tenth of the friction
+def test_a_narrow_interval_without_zero_is_not_normal(rise, axis, motion):
+    health = axis.health(axis.days(motion, 40, lambda point, day: rise if day > 12 else 0.0))
+    drag = health.quantity(DRAG)
+    assert drag.low > 0.0
+    assert drag.high - drag.low < 0.2
+    assert health.condition is Condition.UNKNOWN
+    assert health.verdict.endswith(', which does not tell yet.')
+
+
 def test_a_preload_that_falls_is_named_with_its_size(axis, motion):
     """It falls over 40 days to 60 % of what it was; the last week has 62 % in the mean."""
 
@@ -218,6 +228,22 @@ def test_a_loss_of_drag_may_be_the_preload_where_that_cannot_be_tried():
     said = verdict_of('x', Condition.WORSE, less, preload, causes)
     assert said.endswith('; perhaps T, or the preload is lost, which could not be tried.')
     assert verdict_of('x', Condition.WORSE, more, preload, causes).endswith('the cause is that T.')
+
+
+def test_what_fits_far_worse_than_an_excluded_cause_is_not_likely():
+    """The pattern is that of an offset, which cannot carry the change: no other cause steps in."""
+    offset = cause(CauseCode.SENSOR_OFFSET, 0.9, excluded=True)
+    drag, preload = quantity(-0.17, -0.2, -0.14), Quantity(name='preload')
+    for weight, end in ((0.1, 'the cause is not known.'), (0.4, 'perhaps T, or the preload is')):
+        causes = cause(CauseCode.WIPER, weight), offset
+        said = verdict_of('x', Condition.WORSE, drag, preload, causes)
+        assert end in said
+
+
+def test_a_drag_that_stayed_is_no_lost_preload():
+    causes, preload = (cause(CauseCode.SENSOR_OFFSET, 1.0),), Quantity(name='preload')
+    said = verdict_of('x', Condition.WORSE, quantity(-0.02, -0.1, 0.06), preload, causes)
+    assert said.endswith('; the cause is that T.')
 
 
 def test_advice_is_that_of_every_likely_cause_and_every_cause_has_one():

@@ -5,20 +5,31 @@
 import dataclasses
 import math
 
-from ballscrew_monitor.health.faults import input_fault
+from ballscrew_monitor.health.faults import input_fault, NOT_IDENTIFIED, NOT_TOLD
 from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.records import Place
 import pytest
+from surrogate.surface import shipped_surface, Surface
 
 SPEEDS, LOADS = (2.0, 8.0, 30.0, 100.0), (-1200.0, -400.0, 0.0, 800.0)
 
 
 @pytest.fixture
+def identified():
+    """Return a surface whose screw has a parasitic torque."""
+    found = Surface.load(shipped_surface())
+    inputs = found.header['inputs']
+    screw = {**inputs['screw'], 'parasitic_torque': 0.05}
+    found.header = {**found.header, 'inputs': {**inputs, 'screw': screw}}
+    return found
+
+
+@pytest.fixture
 def told(motion, surface):
     """Return what tells the fault of points that a change of torque and load was made to."""
-    model = Model(surface)
+    model, shipped = Model(surface), surface
 
-    def tell(changed, factor=1.2, constant=0.03):
+    def tell(changed, factor=1.2, constant=0.03, surface=shipped):
         found = []
         for band, speed in enumerate(SPEEDS):
             for load_band, load in enumerate(LOADS):
@@ -64,10 +75,21 @@ def test_a_load_of_another_unit_is_told_with_its_factor(told):
     assert 'does not tell why' in told(replaced(axial_load=0.05))
 
 
-def test_another_torque_constant_is_told_with_its_factor(told):
-    found = told(replaced(motor_torque=3.0), 1.0, 0.0)
+def test_another_torque_constant_is_told_with_its_factor(told, identified):
+    found = told(replaced(motor_torque=3.0), 1.0, 0.0, identified)
     assert found.endswith('check torque constant and gear ratio')
     assert float(found.split()[4]) == pytest.approx(3.0, rel=0.1)
+
+
+def test_a_drag_that_was_never_identified_says_nothing_of_the_torque_constant(told):
+    assert told(replaced(motor_torque=3.0), 1.0, 0.0) == NOT_IDENTIFIED
+
+
+def test_a_factor_beyond_any_unit_is_not_told(told, identified):
+    assert told(replaced(motor_torque=1e4), 1.0, 0.0, identified) == NOT_TOLD
+    assert told(replaced(motor_torque=-1e4), 1.0, 0.0, identified) == NOT_TOLD
+    found = told(replaced(motor_torque=-1.0), 1.0, 0.0, identified)
+    assert float(found.split()[4]) == pytest.approx(-1.0, rel=0.1)
 
 
 def test_an_offset_is_told(told):

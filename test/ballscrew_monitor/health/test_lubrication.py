@@ -10,6 +10,7 @@ from ballscrew_monitor.health.lubrication import (
     lubrication_rate,
     opposed,
     severity_quantities,
+    usual_boundary,
 )
 from ballscrew_monitor.health.records import Baseline, ComparablePoint, Place, SpectrumBin
 from hypothesis import given
@@ -135,13 +136,15 @@ def test_a_shift_that_is_not_known(bins, known, key, says):
 
 
 def test_boundary_running_that_is_normal(says):
-    """Said where the baseline has it already, and not where it grows."""
+    """It is where the baseline has it already, and not where it grows."""
     slow, fast = point(0.2, hours=6.0), point(200.0, hours=4.0)
     normal = baseline(slow, fast)
-    assert boundary_note([slow, fast], normal, SURFACE, TODAY) == says('normal')
-    assert boundary_note([slow], normal, SURFACE, TODAY) == ''
-    assert boundary_note([slow], baseline(fast), SURFACE, TODAY) == ''
-    assert boundary_note([slow], None, SURFACE, TODAY) == ''
-    assert boundary_note([], normal, SURFACE, TODAY) == ''
+    usual = usual_boundary([slow, fast], normal, SURFACE, TODAY)
+    assert usual == pytest.approx((0.6, 0.6))
+    assert boundary_note(usual) == says('normal')
+    assert usual_boundary([slow], normal, SURFACE, TODAY) is None
+    assert usual_boundary([slow], baseline(fast), SURFACE, TODAY) is None
+    assert usual_boundary([slow], None, SURFACE, TODAY) is None
+    assert usual_boundary([], normal, SURFACE, TODAY) is None
     unknown = baseline(point(1e6))
-    assert boundary_note([slow], unknown, SURFACE, TODAY) == ''
+    assert usual_boundary([slow], unknown, SURFACE, TODAY) is None

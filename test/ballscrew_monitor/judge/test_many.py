@@ -252,6 +252,6 @@ def test_advice_comes_out_the_same(speed, load, temperature, efficiency):
     point = MachinePoint(
         speed=speed, axial_load=load, temperature=temperature, direction=direction_of(speed)
     )
-    asked = Advisor(point=point, surface=SURFACE, limits=limits)
+    asked = Advisor(point=point, surface=SURFACE, limits=limits, speed_allowed=True)
     compiled = dataclasses.replace(asked, nearest=compiled_nearest())
     assert repr(compiled.advice) == repr(asked.advice)

@@ -5,6 +5,7 @@
 import dataclasses
 import math
 
+from ballscrew_monitor.core.advice import SCAN_POINTS
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
@@ -36,7 +37,7 @@ KEPT = Memory(
 def slow_is_bad(core, memory=None, **limits):
     """Return a monitor that warns below 30 rad/s."""
     surface = core.surface(rcs=lambda speed, load: 1.0 if speed < 30.0 else 0.0)
-    made = core.monitor(surface, core.limits(**limits))
+    made = core.monitor(surface, core.limits(**limits), speed_allowed=True)
     if memory is not None:
         made.take_up(memory)
     return made
@@ -82,15 +83,30 @@ def test_an_event_begins_and_ends_with_its_facts(core):
 
 def test_the_state_that_raises_does_not_wait_for_the_advice(core):
     """One lookup for a sample, as ever; the scan of the surface comes when it is asked for."""
-    monitor = core.monitor(core.surface(rcs=1.0), core.limits(raise_delay=0))
+    surface, limits = core.surface(rcs=1.0), core.limits(raise_delay=0)
+    monitor = core.monitor(surface, limits, speed_allowed=True)
     (state,) = core.feed(monitor, core.motion(10.0))
     assert state.event.active
     assert len(monitor.surface.asked) == 1
     assert math.isnan(state.event.advice.target_speed)  # bad everywhere
     asked = len(monitor.surface.asked)
-    assert asked > 100
+    assert asked > SCAN_POINTS
     assert monitor.event.advice is state.event.advice
     assert len(monitor.surface.asked) == asked
+
+
+def test_advice_comes_and_goes_with_the_parameter(core):
+    """On the event that stands, too: its place and cause stay."""
+    monitor = slow_is_bad(core, raise_delay=0)
+    core.feed(monitor, core.motion(10.0))
+    before = monitor.event
+    assert before.advice.target_speed == pytest.approx(30.0, rel=1e-5)
+    monitor.settings = dataclasses.replace(monitor.settings, speed_allowed=False)
+    assert monitor.event.advice.text == ''
+    assert math.isnan(monitor.event.advice.target_speed)
+    assert (monitor.event.cause, monitor.event.start) == (before.cause, before.start)
+    monitor.settings = dataclasses.replace(monitor.settings, speed_allowed=True)
+    assert monitor.event == before
 
 
 @pytest.mark.parametrize(
@@ -134,6 +150,58 @@ def test_the_limit_of_the_worst_sample_stays_with_it(core):
     core.feed(monitor, core.motion(12.0, start=START + 2 * STEP))
     assert (monitor.event.worst_value, monitor.event.cause.limit) == (0.75, 0.375)
     assert monitor.event.advisor.point.speed == 12.0
+
+
+def stamped(event, lag=0, header=True):
+    """Return a sample whose stamp lies behind its arrival by a lag [ns]."""
+    kind = StampSource.HEADER if header else StampSource.RECEIVE
+    return dataclasses.replace(
+        event, stamp=event.stamp - lag, arrival=event.stamp, stamp_source=kind
+    )
+
+
+@pytest.mark.parametrize(
+    ('header', 'before', 'after', 'follows'),
+    [
+        (True, 0, 0, True),
+        (True, 50 * SECOND, 50 * SECOND, True),
+        (True, 0, 3600 * SECOND, False),
+        (False, 0, 0, True),
+    ],
+    ids=['same machine', 'lags as before', 'another machine', 'no header'],
+)
+def test_a_step_of_the_nodes_clock_is_left_out_if_the_stamps_follow_it(
+    core, header, before, after, follows
+):
+    monitor, step = slow_is_bad(core, clear_delay=SECOND), 3600 * SECOND
+    core.feed(monitor, [stamped(one, before, header) for one in core.motion(10.0, count=100)])
+    begin = monitor.event.start
+    next_ones = core.motion(10.0, start=START + SECOND + step, count=50)
+    first = stamped(next_ones[1], after, header)
+    assert monitor.leave_out(step, first) is follows
+    assert monitor.event.start == begin + follows * step
+    for one in next_ones:
+        assert monitor.update(stamped(one, after, header)) is None or not monitor.moved
+    good = core.motion(40.0, start=START + 3 * SECOND // 2 + step, count=101)
+    core.feed(monitor, [stamped(one, after, header) for one in good])
+    assert not monitor.event.active
+    assert monitor.event.stamp - monitor.event.start == 5 * SECOND // 2
+
+
+def test_what_moves_the_begin_of_an_excursion_is_told_with_the_sample(core):
+    monitor, lag = slow_is_bad(core), 600 * SECOND
+    moved = []
+    for one in core.motion(10.0, count=100):
+        monitor.update(stamped(one, lag))
+        moved.append(monitor.moved)
+    for one in core.motion(10.0, start=START + SECOND, count=2):
+        monitor.update(stamped(one))
+        moved.append(monitor.moved)
+    back = core.motion(10.0, start=START + SECOND + 2 * STEP - lag)
+    for one in back:
+        monitor.update(stamped(one))
+        moved.append(monitor.moved)
+    assert moved == [0] * 201 + [lag] + [0] * 3 + [STEP - lag]
 
 
 def test_a_stay_too_short_is_no_event(core):

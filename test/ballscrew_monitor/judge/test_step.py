@@ -384,6 +384,77 @@ def test_a_clock_that_is_set_back_does_not_hide_a_dead_speed(core):
     assert monitor.tick(back + TIMEOUT + 1).estimate.validity is PointValidity.NO_INPUT
 
 
+def length_of_event(monitor):
+    return (monitor.event.stamp - monitor.event.start) / SECOND
+
+
+@pytest.mark.parametrize('lag', [3600 * SECOND, 31_536_000 * SECOND, 2 * SECOND])
+def test_a_source_whose_clock_is_set_forward_in_a_warning_makes_it_no_longer(core, lag):
+    monitor = slow_is_bad(core, limits=core.limits(raise_delay=SECOND, clear_delay=SECOND))
+    core.feed(monitor, lagging(core.motion(10.0, count=200), lag))
+    assert monitor.level is Level.WARN
+    begin = monitor.event.start
+    core.feed(monitor, core.motion(10.0, start=START + 200 * STEP, count=100))
+    assert monitor.event.start == begin + lag
+    assert monitor.level is Level.WARN
+    core.feed(monitor, core.motion(40.0, start=START + 300 * STEP, count=101))
+    assert monitor.level is Level.OK
+    assert (monitor.event.number, length_of_event(monitor)) == (1, 4.0)
+
+
+def test_a_leap_within_a_long_timeout_raises_and_clears_nothing(core):
+    long = dict.fromkeys((Source.SPEED, Source.LOAD), 60 * SECOND)
+    limits = core.limits(raise_delay=3 * SECOND, clear_delay=3 * SECOND)
+    monitor, lag = slow_is_bad(core, timeouts=long, limits=limits), 10 * SECOND
+    core.feed(monitor, lagging(core.motion(10.0, count=50), lag))
+    core.feed(monitor, core.motion(10.0, start=START + 50 * STEP, count=50))
+    assert monitor.level is Level.UNKNOWN
+    running = monitor.memory.running_time
+    assert running == 98 * STEP
+
+
+def test_a_message_that_comes_late_and_a_hole_are_no_leap(core):
+    """After a stall of 5 s one sample comes late, and those behind it are lost."""
+    monitor = slow_is_bad(core)
+    core.feed(monitor, core.motion(10.0, count=100))
+    begin = monitor.event.start
+    late = core.motion(10.0, start=START + 105 * STEP + 5 * SECOND)
+    core.feed(monitor, lagging(late, 5 * SECOND))
+    core.feed(monitor, core.motion(10.0, start=START + 106 * STEP + 5 * SECOND))
+    core.feed(monitor, core.motion(10.0, start=START + 3600 * SECOND))
+    assert monitor.event.active
+    assert monitor.event.start == begin
+
+
+def test_positions_leave_a_leap_out_once(core):
+    """The first position after it gives no speed."""
+    settings = PositionSettings(window=5 * STEP)
+    monitor, lag = slow_is_bad(core, positions=settings), 3600 * SECOND
+
+    def moves(first, count):
+        return [
+            one
+            for i in range(first, first + count)
+            for one in (load(-1000.0, START + i * STEP), speed(0.1 * i, START + i * STEP))
+        ]
+
+    core.feed(monitor, lagging(moves(0, 200), lag))
+    begin = monitor.event.start
+    assert monitor.level is Level.WARN
+    core.feed(monitor, moves(200, 50))
+    assert monitor.event.start == begin + lag
+
+
+@pytest.mark.parametrize('step', [3600 * SECOND, 31_536_000 * SECOND])
+def test_a_clock_that_is_set_back_in_a_warning_makes_it_no_shorter(core, step):
+    monitor = slow_is_bad(core, limits=core.limits(raise_delay=SECOND, clear_delay=SECOND))
+    first = START + step
+    core.feed(monitor, core.motion(10.0, start=first, count=200))
+    core.feed(monitor, core.motion(10.0, start=START + 200 * STEP, count=100))
+    core.feed(monitor, core.motion(40.0, start=START + 300 * STEP, count=101))
+    assert (monitor.event.number, length_of_event(monitor)) == (1, 3.99)
+
+
 def test_what_was_lost_is_told_with_the_next_state(core):
     monitor = core.monitor()
     force, fast = core.motion(10.0)

@@ -219,7 +219,7 @@ rows = st.builds(
 def test_an_excursion_keeps_one_sample_as_its_worst(core, rows, raise_delay, clear_delay):
     """Value, limit and place are of one row outside between begin and end, and none is worse."""
     settings, memory = numbers(core, raise_delay=raise_delay, clear_delay=clear_delay), Memory()
-    limits, surface, begun = core.limits(), core.surface(), []
+    asked, surface, begun = core.monitor().settings, core.surface(), []
     for stamp, row in enumerate(rows, 1):
         row.stamp, before = stamp, memory.level
         shut_gates(settings, memory, row)
@@ -229,7 +229,7 @@ def test_an_excursion_keeps_one_sample_as_its_worst(core, rows, raise_delay, cle
         changed = memory.level != before
         assert (row.edge == records.EVENT_BEGINS) == (changed and memory.level == Level.WARN)
         assert (row.edge == records.EVENT_ENDS) == (changed and before == Level.WARN)
-        event = event_of(memory, surface, limits)
+        event = event_of(memory, surface, asked)
         assert event.active == (memory.level == Level.WARN)
         if row.edge == records.EVENT_BEGINS:
             assert event.start == memory.raising_start
@@ -248,7 +248,7 @@ def test_an_excursion_keeps_one_sample_as_its_worst(core, rows, raise_delay, cle
         value = (lambda one: one.rcs) if high else (lambda one: one.efficiency)
         worst = (max if high else min)(outside, key=value)
         assert event.worst_value == event.cause.value == value(worst)
-        assert event.cause.limit == (limits.rcs if high else limits.efficiency)
+        assert event.cause.limit == (asked.limits.rcs if high else asked.limits.efficiency)
         assert ('derived' in event.cause.text) == (not high and worst.derived != 0)
         point = event.advisor.point
         for name in ('speed', 'axial_load', 'temperature', 'direction'):

@@ -429,13 +429,13 @@ BEGINNINGS = [
 ]
 
 
-@pytest.mark.parametrize(
-    'words', [*SENTENCES, *sorted({first_words(text) for text in BEGINNINGS})]
-)
-def test_the_reference_says_what_to_do_about_each_message(words):
+def test_the_reference_says_what_to_do_about_each_message():
     docs = Path(__file__).parents[3] / 'docs'
     pages = [docs / 'reference' / 'diagnostics.md', docs / 'guide' / 'kept.md']
-    assert any(words in page.read_text(encoding='utf-8') for page in pages)
+    text = '\n'.join(page.read_text(encoding='utf-8') for page in pages)
+    messages = [*SENTENCES, *sorted({first_words(text) for text in BEGINNINGS})]
+    assert len(messages) > 30
+    assert not [words for words in messages if words not in text]
 
 
 DERIVED = {

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """All that waits is taken at once, in the order of arrival, and what was lost is counted."""
 
+import dataclasses
 import functools
 import threading
 import time
 import types
 
-from ballscrew_monitor.core.conversions import Scaling
+from ballscrew_monitor.core.conversions import Scaling, SECOND
 from ballscrew_monitor.core.inputs import OpenInput, Source
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.node import intake as intake_module
@@ -52,6 +53,18 @@ def nothing():
 def turns(intake):
     with pytest.raises(StopIteration):
         intake.execute(None).send(None)
+
+
+def rest(intake, monkeypatch):
+    """
+    Let a turn without messages pass on a watch: the next one may last as long as any.
+
+    On a busy machine a turn before it may have lasted for all of `STAY`.
+
+    """
+    with monkeypatch.context() as patch:
+        patch.setattr(intake, 'drain', lambda: False)
+        turns(intake)
 
 
 class Bench:
@@ -156,6 +169,66 @@ def test_what_a_full_queue_drops_is_counted(bench):
     assert lost > 0
 
 
+class SteppedMonitor:
+    """Takes the steps that are to be left out, each with the value of the sample after it."""
+
+    def __init__(self):
+        self.steps = []
+
+    def leave_out(self, step, sample):
+        self.steps.append((step // SECOND, sample.value))
+        return True
+
+
+@pytest.mark.parametrize('hours', [1, -1])
+def test_a_step_of_the_system_clock_is_told_and_left_out_before_the_next_speed(
+    bench, monkeypatch, hours
+):
+    """It is one of the steady clock the other way round."""
+    said, left_out, steady = [], [], intake_module.monotonic_ns
+    bench.axis.monitor = SteppedMonitor()
+    monkeypatch.setattr(bench.intake, '_stepped', lambda step, now: said.append(step))
+    monkeypatch.setattr(bench.intake, '_left_out', lambda axis, step: left_out.append(axis))
+    bench.publish('speed', 1)
+    bench.until(lambda: bench.taken, meanwhile=bench.intake.drain)
+    step = hours * 3600 * SECOND
+    monkeypatch.setattr(intake_module, 'monotonic_ns', lambda: steady() - step)
+    bench.intake.drain()
+    bench.intake.drain()
+    assert [round(one / SECOND) for one in said] == [hours * 3600]
+    bench.publish('load', 2)
+    bench.until(lambda: len(bench.taken) == 2, meanwhile=bench.intake.drain)
+    assert not bench.axis.monitor.steps
+    for value in (3, 4):
+        bench.publish('speed', value)
+        bench.until(lambda value=value: len(bench.taken) == value, meanwhile=bench.intake.drain)
+    told = [(round(seconds, -1), value) for seconds, value in bench.axis.monitor.steps]
+    assert told == ([(3600, 3.0)] if hours > 0 else [])
+    assert left_out == [bench.axis] * len(told)
+
+
+def test_messages_before_and_after_a_step_are_two_bursts(bench, monkeypatch):
+    heard, steady = [], intake_module.monotonic_ns
+    bench.axis.monitor = SteppedMonitor()
+    bench.intake.drain()
+    bench.publish('speed', 1)
+    bench.publish('speed', 2)
+    waiting = bench.intake._waiting
+    found = bench.wait_for(
+        lambda: heard.extend(waiting()) or (heard if len(heard) == 2 else None), meanwhile=nothing
+    )
+    step = 3600 * SECOND
+    old = dataclasses.replace(found[0], received=found[0].received - step)
+    monkeypatch.setattr(bench.intake, '_waiting', lambda: [old, found[1]])
+    monkeypatch.setattr(intake_module, 'monotonic_ns', lambda: steady() - step)
+    bursts = []
+    monkeypatch.setattr(bench.intake._journal, 'hear', lambda batch: bursts.append(len(batch)))
+    bench.intake.drain()
+    assert [event.value for event in bench.taken] == [1.0, 2.0]
+    assert bursts == [1, 1]
+    assert [value for _, value in bench.axis.monitor.steps] == [2.0]
+
+
 def test_with_a_second_publisher_loss_is_not_known(bench):
     bench.publish('speed', 1)
     bench.until(lambda: bench.taken)
@@ -248,6 +321,7 @@ def test_closed_and_opened_again_while_another_thread_waits(bench):
 
 def test_without_messages_a_turn_is_short_and_with_them_as_long_as_allowed(bench, monkeypatch):
     watch, looks = Watch(monkeypatch), []
+    rest(bench.intake, monkeypatch)
     for comes, length in ((False, QUIET), (True, STAY)):
         monkeypatch.setattr(bench.intake, 'drain', lambda comes=comes: looks.append(0) or comes)
         begin = watch.now
@@ -258,6 +332,7 @@ def test_without_messages_a_turn_is_short_and_with_them_as_long_as_allowed(bench
 
 def test_after_a_turn_of_full_length_the_next_one_is_a_single_look(bench, monkeypatch):
     Watch(monkeypatch)
+    rest(bench.intake, monkeypatch)
     looks, counts = [], []
     monkeypatch.setattr(bench.intake, 'drain', lambda: looks.append(0) or True)
     for _ in range(4):
@@ -277,8 +352,9 @@ def test_a_message_that_comes_within_a_turn_is_taken_within_it(bench, monkeypatc
             bench.publish('speed', 2)
 
     bench.begin_anew(take)
-    bench.publish('speed', 1)
     Watch(monkeypatch, may_go_on=lambda: len(taken) != 1)
+    rest(bench.intake, monkeypatch)
+    bench.publish('speed', 1)
     bench.until(lambda: taken)
     assert taken == [1.0, 2.0]
 
@@ -297,8 +373,10 @@ def test_messages_without_end_leave_the_others_their_turn(bench, monkeypatch):
         return come
 
     bench.begin_anew(take)
+    watch = Watch(monkeypatch)
+    rest(bench.intake, monkeypatch)
+    watch.now, watch.may_go_on = 0.0, has_come
     bench.publish('speed', 0)
-    watch = Watch(monkeypatch, has_come)
     bench.until(lambda: taken)
     assert watch.now >= STAY
     steady = Clock(clock_type=ClockType.STEADY_TIME)

@@ -196,7 +196,7 @@ def test_a_damaged_file_is_one_sentence_and_begins_anew(axis):
 
 
 def test_an_acknowledgement_keeps_who_and_why(axis, capsys, says):
-    axis.start(x__limits__raise_delay=0.2)
+    axis.start(x__limits__raise_delay=0.2, x__advice__speed='true')
     node, ask = axis.node, {'axis': 'x', 'name': ' Ada\n', 'reason': 'nut is  ordered'}
     axis.begin(1)
     for change, key in (

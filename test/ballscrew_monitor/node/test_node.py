@@ -73,7 +73,7 @@ def test_each_sample_becomes_a_state_of_its_own_stamp(node):
 
 
 def test_a_stay_outside_is_warned_of_and_latched_for_late_joiners(node):
-    node.start(**AHEAD)
+    node.start(x__advice__speed='true', **AHEAD)
     states, publish = node.watched()
     early = node.events()
     none_yet = node.until(lambda: early and early[0], 'the first event message')
@@ -85,10 +85,14 @@ def test_a_stay_outside_is_warned_of_and_latched_for_late_joiners(node):
     assert (begun.event_id, begun.active, begun.duration) == (1, True, 0.5)
     assert begun.cause.target_speed > SLOW
     assert begun.advice.startswith('at this load run at')
+    assert math.isnan(begun.cause.target_load)
+    node.set_parameters(x__advice__speed=False)
     feed(node, publish, states, FAST, 101)
     over = node.until(lambda: late[1:], 'the end of the event')[0]
     assert (over.event_id, over.active) == (1, False)
     assert over.worst_value == begun.worst_value
+    assert over.advice == ''  # what the process allows may change at any time
+    assert math.isnan(over.cause.target_speed)
     assert states[-1].level == BallScrewState.LEVEL_OK
     assert node.stop() == 0
     assert 'event 1: ' in node.output.read_text()

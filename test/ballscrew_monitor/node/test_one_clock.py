@@ -9,6 +9,7 @@ from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.node.node import BallscrewMonitor
+from ballscrew_monitor.node.state_database import read_entries
 from ballscrew_monitor.settings.qos import started_node
 from geometry_msgs.msg import WrenchStamped
 import pytest
@@ -69,12 +70,13 @@ class Bench:
 
 
 @pytest.fixture(name='bench')
-def make_bench(wait_for):
+def make_bench(wait_for, tmp_path):
     with free_domain() as domain, contextlib.ExitStack() as stack:
         context = rclpy.Context()
         rclpy.init(context=context, domain_id=domain)
         stack.callback(rclpy.shutdown, context=context)
-        values = {'use_sim_time': True, 'state_dir': ''}
+        values = {'use_sim_time': True, 'state_dir': str(tmp_path)}
+        values |= {'x.limits.raise_delay': 0.0, 'x.limits.clear_delay': 0.2}
         overrides = [Parameter(name, value=value) for name, value in values.items()]
         node = BallscrewMonitor(context=context, parameter_overrides=overrides)
         stack.callback(node.destroy_node)
@@ -84,14 +86,14 @@ def make_bench(wait_for):
         yield Bench(node, machine, wait_for)
 
 
-def play(bench, rate, begin, seconds):
+def play(bench, rate, begin, seconds, speed=100.0):
     """Play at a rate: stamps go on between two times of the clock."""
     step = round(rate / DISPLAY * SECOND)
     for number in range(round(seconds * SECOND / step)):
         now = begin + number * step
         bench.show(now)
         for stamp in range(now, now + step, round(SECOND / RATE)):
-            bench.send(stamp)
+            bench.send(stamp, speed)
     return now + step
 
 
@@ -109,6 +111,26 @@ def test_on_a_slow_clock_again_a_lead_is_refused_again(bench):
     assert bench.status().dropped == 0
     bench.send(now + SECOND // 4)
     assert bench.status().dropped == 1
+
+
+@pytest.mark.parametrize('leap', [3600.0, -900.0])
+def test_a_leap_of_the_clock_in_a_warning_is_logged_and_left_out_of_it(bench, tmp_path, leap):
+    """Slow motion is outside, for 1 s before the leap and for 1 s after it."""
+    now = play(bench, 1.0, BEGIN, 1.0, speed=0.8)
+    assert bench.monitor.event.active
+    now = play(bench, 1.0, now + round(leap * SECOND), 1.0, speed=0.8)
+    play(bench, 1.0, now, 1.0)
+    assert not bench.monitor.event.active
+    assert not bench.node._kept.state.flush()
+    entries = [entry.record() for entry in read_entries(tmp_path)]
+    (end,) = [one for one in entries if one['kind'] == 'event_end']
+    assert end['duration_s'] == pytest.approx(2.2, abs=0.1)
+    steps = [one for one in entries if one['kind'] == 'clock_step' and one['axis'] is None]
+    (step,) = steps
+    assert step['by_s'] == pytest.approx(leap, abs=0.1)
+    word = 'forward' if leap > 0 else 'back'
+    assert step['text'].startswith(f'the clock was set {word} by ')
+    assert abs(step['stamp_ns'] - now) < 2 * SECOND
 
 
 def test_a_tick_is_by_the_clock_by_which_messages_arrive(bench, monkeypatch):

@@ -235,6 +235,22 @@ def test_somebody_who_reads_without_an_end_does_not_let_the_journal_grow(make, t
     assert database.size() < LIMIT
 
 
+@pytest.mark.parametrize('column', ['time', 'axis', 'kind', 'facts'])
+def test_a_damaged_text_hides_no_other_entry(make, tmp_path, column):
+    database = make()
+    database.fill(*range(5))
+    database.close()
+    before = read_entries(tmp_path)
+    spoil(
+        tmp_path,
+        f"UPDATE events SET {column} = CAST(x'65e5' || {column} AS TEXT) WHERE number = 3",
+    )
+    after = read_entries(tmp_path)
+    assert getattr(after[2], column) == f'e\\xe5{getattr(before[2], column)}'
+    assert (after[:2], after[3:]) == (before[:2], before[3:])
+    assert after[2].record().keys() >= {'time', 'stamp_ns', 'axis', 'kind'}
+
+
 def test_who_reads_is_told_why_there_is_nothing_to_read(make, tmp_path, refused):
     with pytest.raises(InputError, match=f'{tmp_path} has no {FILE}: name the state_dir'):
         read_entries(tmp_path)

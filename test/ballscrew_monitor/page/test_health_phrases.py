@@ -4,7 +4,7 @@
 
 from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.health.records import Cause, CauseCode, Condition, Health, Quantity
-from ballscrew_monitor.health.words import advice_of, Certainty, verdict_of
+from ballscrew_monitor.health.words import advice_of, Certainty, explained, verdict_of
 from ballscrew_monitor.messages.health_messages import health_message
 from ballscrew_monitor.page.health_phrases import advice_phrase, verdict_phrase
 from ballscrew_monitor.page.phrases import english
@@ -60,10 +60,10 @@ def test_phrases_say_what_the_sentences_say(condition, codes, unfit, change, kno
         why = verdict['values']['why']
         begin = Certainty[why['key'].removeprefix('why_').upper()].value.partition('{}')[0]
         assert f'; {begin}' in message.verdict
-        fitting = [one for one in causes if not one.excluded]
-        assert ('cause' in why['values']) is bool(fitting)
-        if fitting:
-            code, told = fitting[0].code, why['values']['cause']
+        _, likely = explained(change, causes)
+        assert ('cause' in why['values']) is bool(likely)
+        if likely:
+            code, told = likely[0].code, why['values']['cause']
             assert told['key'] == f'change_{code.name.lower()}'
             of_preload = code is CauseCode.PRELOAD_LOST and known
             assert told['values']['value']['value'] == (0.6 if of_preload else SIZE.value)

@@ -108,7 +108,8 @@ def warned(node, heard):
 
 
 def test_an_axis_is_heard_from_its_surface_to_its_warning(node, heard):
-    node.start(x__limits__raise_delay=0.0, x__max_future=3600.0)
+    advises = {'x__advice__speed': 'true'}
+    node.start(x__limits__raise_delay=0.0, x__max_future=3600.0, **advises)
     heard.until(lambda view: view.surface, 'the surface')
     assert heard.view().hello()['lead_mm'] == pytest.approx(10.0)
     assert heard.view().hello()['unit'] == 'm/min'

@@ -116,6 +116,41 @@ def test_bad_metadata_is_one_sentence(copy, content, expected):
     assert expected in sentence(lambda: Bag(copy))
 
 
+def stated(copy, counts):
+    """State other counts of messages, by topic, in the metadata of a bag."""
+    topics = [
+        {'topic_metadata': {'name': name}, 'message_count': count}
+        for name, count in counts.items()
+    ]
+    content = OF_MCAP | {'relative_file_paths': ['short.mcap']}
+    content['topics_with_message_count'] = topics
+    text = yaml.safe_dump({'rosbag2_bagfile_information': content})
+    (copy / 'metadata.yaml').write_text(text)
+
+
+def test_metadata_that_count_other_messages_than_the_files_are_told(copy, says):
+    counts = {name: info.count for name, info in Bag(copy).topics.items()}
+    stated(copy, counts)
+    assert not Bag(copy).notes
+    stated(copy, counts | {'/axial_load': 1000, '/gone': 7})
+    held = counts['/axial_load']
+    for salvage in (False, True):
+        bag = Bag(copy, salvage=salvage)
+        assert bag.notes == [says('counts_other', bag=copy, held=held)]
+        assert len(list(bag.messages(['/axial_load']))) == held
+    stated(copy, counts | {f'/{number}': 1 for number in range(7)})
+    assert says('counts_of_more') in Bag(copy).notes[0]
+
+
+@pytest.mark.parametrize('topics', [None, 'a', 5, ['a'], [{'message_count': 5}], [None]])
+def test_metadata_may_count_nothing(copy, topics):
+    content = OF_MCAP | {'relative_file_paths': ['short.mcap']}
+    content['topics_with_message_count'] = topics
+    text = yaml.safe_dump({'rosbag2_bagfile_information': content})
+    (copy / 'metadata.yaml').write_text(text)
+    assert not Bag(copy).notes
+
+
 def test_a_topic_whose_schema_is_missing_is_named(tmp_path, says):
     path = tmp_path / 'bag.mcap'
     with path.open('wb') as stream:

@@ -14,7 +14,7 @@ import types
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.full_point import SolvedAt
-from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.judge import dump
 from ballscrew_monitor.judge.records import MEMORY_VERSION
 from ballscrew_monitor.node import journal
@@ -191,6 +191,25 @@ def assert_given_again(node, folder):
     states, said = again(bag_in(folder))
     assert masked(states) == masked(node.said)
     assert 'agrees with all' in said
+
+
+def test_a_step_of_the_clock_comes_again(tmp_path):
+    """It is left out of an event before the next messages are heard."""
+    node, step = SmallNode(tmp_path), 3600 * SECOND
+    live(node, seconds=12, seed=3)
+    for number in range(100):
+        node.now = BEGIN + 12 * SECOND + number * SECOND // 50
+        node.hear(force(node.now, 900), joints(node.now, 3.0, 3.0))
+    events = {name: axis.monitor.event for name, axis in node.axes.items()}
+    assert all(event.active for event in events.values())
+    for name, axis in node.axes.items():
+        first = InputSample(source=Source.SPEED, value=0.0, stamp=node.now + step)
+        assert axis.monitor.leave_out(step, first)
+        node.describe('clock', [name])
+    live(node, seconds=12, seed=4, begin=node.now + step + SECOND // 50)
+    for name, axis in node.axes.items():
+        assert axis.monitor.event.number >= events[name].number
+    assert_given_again(node, tmp_path)
 
 
 def test_every_state_comes_again_bit_for_bit_and_is_proven(tmp_path):

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The intact part of a recording whose writer was killed becomes a complete bag."""
 
+import contextlib
 import os
 from pathlib import Path
 import signal
+import sqlite3
 import subprocess
 import sys
 
@@ -105,6 +107,15 @@ def test_where_nothing_is_whole_a_sentence_says_so(tmp_path, content, refused):
     file = tmp_path / 'a.mcap.active'
     file.write_bytes(content)
     refused('holds_message_whole', recover, file)
+    assert [*tmp_path.iterdir()] == [file]
+
+
+def test_a_sqlite3_file_is_not_said_to_hold_no_message(tmp_path, refused):
+    file = tmp_path / 'a_0.db3'
+    with contextlib.closing(sqlite3.connect(file)) as base, base:
+        base.execute('CREATE TABLE messages(id INTEGER PRIMARY KEY)')
+    with refused('of_sqlite', file=file):
+        recover(file)
     assert [*tmp_path.iterdir()] == [file]
 
 

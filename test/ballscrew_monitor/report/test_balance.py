@@ -153,6 +153,7 @@ def test_rows_that_are_not_judged_do_not_thin_out_the_friction_of_the_model(bala
 def test_the_currents_of_a_real_machine_tell_their_sign(scale, turned, tmp_path):
     log = Path(os.environ['BALLSCREW_RECORDINGS']) / 'cnc_mill' / 'experiment_01.csv'
     content = guess(log).content
+    content['time']['rate_Hz'] = 10.0
     for axis in 'xy':
         content['axes'][axis]['current']['scale'] = scale
     convert(log, make_map(content), tmp_path / 'bag')

@@ -152,7 +152,8 @@ def test_a_map_without_a_table_is_bad_input(logs, tmp_path, capsys, says):
 def test_the_real_log_ends_in_a_page_that_says_what_was_assumed(tmp_path, capsys, says):
     log = Path(os.environ['BALLSCREW_RECORDINGS']) / 'cnc_mill' / 'experiment_01.csv'
     assert cli.main(['import', str(log), '--guess']) == 0
-    (tmp_path / 'map.yaml').write_text(capsys.readouterr().out)
+    stated = capsys.readouterr().out.replace('rate_Hz: null', 'rate_Hz: 10')
+    (tmp_path / 'map.yaml').write_text(stated)
     out = tmp_path / 'out'
     arguments = ['replay', str(log), '--map', str(tmp_path / 'map.yaml'), '--out', str(out)]
     assert cli.main(arguments) == 0

@@ -20,13 +20,16 @@ from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.report.health_command import days_of
 from ballscrew_monitor.report.health_history import (
     AxisHistory,
+    by_axis,
     health_after,
     healths,
+    peers_among,
     read_history,
 )
 from ballscrew_monitor.report.health_part import health_chapter
 from ballscrew_monitor.report.health_picture import figure_health
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
+from ballscrew_monitor.report.machines import axis_titles
 from ballscrew_monitor.report.overview import LogEntry, overview_page
 import pytest
 from surrogate.files import to_json
@@ -135,7 +138,7 @@ def test_the_command_tells_what_one_recording_lacks(capsys, tmp_path):
 
 
 def test_where_no_log_can_be_read_nothing_is_written(capsys, tmp_path, says):
-    assert main(['health', 'none.mcap', '--out', str(tmp_path / 'out')]) == 1
+    assert main(['health', 'none.mcap', '--out', str(tmp_path / 'out')]) == 2
     assert capsys.readouterr().err.splitlines()[0] == says('no_log')
     assert not (tmp_path / 'out').exists()
 
@@ -153,8 +156,31 @@ def test_the_overview_draws_trends_and_ranks_axes_with_one_programme(months):
     assert 'Axis x: its friction torque differs by +' in page
 
 
+def test_an_axis_of_another_machine_has_a_history_of_its_own(months):
+    """The wiper of one axis x grows, that of the other does not; together both would be lost."""
+    worn = [dataclasses.replace(one, machine='/hall/a') for one in months]
+    sound = [dataclasses.replace(aged(months[0], at), machine='/hall/b') for at in range(12)]
+    page = overview_page([entry(one) for one in (*worn, *sound)])
+    assert 'Axis x of a is worse' in page
+    assert 'Axis x of b: its drag has changed by +0 % (' in page
+    assert 'Axis x of b: change of the drag, with 95 % intervals' in page
+    kept = by_axis([*sound, *worn])
+    drags = {axis: [*healths(own)][-1].quantity('drag change') for axis, own in kept.items()}
+    assert drags['/hall/b', 'x'].value == pytest.approx(0.0, abs=1e-6)
+    assert drags['/hall/a', 'x'].low > 0.1
+
+
+def test_axes_of_one_name_on_three_machines_are_peers(months):
+    sound = aged(months[0], 11)
+    made = [dataclasses.replace(sound, machine=f'/hall/{name}') for name in 'bcd']
+    worn = [dataclasses.replace(one, machine='/hall/a') for one in months]
+    titles = axis_titles(by_axis([*worn, *made]))
+    apart = [one.axis for one in peers_among([*worn, *made], titles) if one.is_apart]
+    assert apart == ['x of a']
+
+
 def entry(one):
-    line = AxisLine(axis=one.axis, standing='bad', verdict='Outside: always')
+    line = AxisLine(axis=one.axis, standing='bad', verdict='Outside: always', machine=one.machine)
     record = to_json(dataclasses.asdict(one))
     result = LogResult(name='m', lines=[line], unjudged=[], histories=[record])
     return LogEntry(name='month', folder='month', result=result)
@@ -175,6 +201,17 @@ def test_a_chapter_tells_the_known_and_why_the_rest_is_not(months):
     worse = health_chapter([*healths(months)][-1])
     assert 'a constant drag of +0.110 N m' in worse
     assert '<td>excluded</td>' in worse
+
+
+def test_a_feed_is_advised_only_where_the_parameters_leave_it_free(months):
+    """Beside the oil, which is advised in any case: a programme of one feed in warm oil."""
+    warm = [dataclasses.replace(one, temperature=320.0) for one in months[0].points[4:6]]
+    bound = dataclasses.replace(months[0], points=warm)
+    free = dataclasses.replace(bound, speed_allowed=True)
+    said = [health_after(one).advice for one in (bound, free)]
+    assert ['oil temperature of 42 degC' in one for one in said] == [True, True]
+    assert ['feeds of' in one for one in said] == [False, True]
+    assert [one.advice for one in healths([bound], speed_allowed=True)] == said[1:]
 
 
 def test_the_baseline_may_be_named_by_its_days(months):

@@ -4,12 +4,16 @@
 
 import contextlib
 import json
+import math
+import shutil
 
 from ballscrew_monitor.cli import main
 from ballscrew_monitor.health.points import add, model_torque
 from ballscrew_monitor.health.records import Baseline, SpectrumBin, Stretch
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import HealthStore
+from ballscrew_monitor.report import health_kept
+from ballscrew_monitor.settings.parameters import defaults
 import pytest
 from surrogate.surface import shipped_surface, Surface
 
@@ -60,6 +64,31 @@ def test_the_command_follows_what_a_node_gathered(folder, capsys, tmp_path):
     days = [one['stamp_ns'] // DAY - FIRST for one in record['course']]
     assert days == [27, 55, 83]
     assert (out / 'health.png').stat().st_size > 0
+
+
+@pytest.mark.parametrize(('parameter', 'option'), [(True, False), (False, True), (False, False)])
+def test_another_speed_is_advised_where_the_parameters_or_the_command_let_it(
+    folder, monkeypatch, parameter, option
+):
+    asked = []
+    monkeypatch.setattr(health_kept, 'assess_kept', lambda *parts: asked.append(parts[-1]))
+    values = defaults(['x']) | {'x.advice.speed': parameter}
+    options = {'over': 600.0, 'days': None, 'co2_per_kwh': math.nan, 'speed_allowed': option}
+    health_kept.kept_healths(folder, values, options)
+    assert {one.speed_allowed for one in asked} == {parameter or option}
+
+
+def test_two_nodes_with_one_axis_x_each_are_told_apart(folder, capsys, tmp_path):
+    other = tmp_path / 'lathe' / 'state'
+    shutil.copytree(folder, other)
+    assert main(['health', str(folder), str(other), '--json']) == 0
+    records = json.loads(capsys.readouterr().out)
+    here = f'{tmp_path.name}/state'
+    assert {key: one['machine'] for key, one in records.items()} == {
+        f'x of {here}': here,
+        'x of lathe/state': 'lathe/state',
+    }
+    assert records['x of lathe/state']['verdict'].startswith('Axis x of lathe/state is worse: ')
 
 
 @pytest.mark.parametrize('name', ['health.json', 'health.png'])

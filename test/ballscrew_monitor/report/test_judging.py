@@ -35,6 +35,15 @@ def test_a_recording_that_no_node_made_numbers_no_messages(short_bag, parameters
     assert not judge_log(Bag(short_bag), parameters).axes[0].numbered
 
 
+@pytest.mark.parametrize('free', [False, True])
+def test_what_is_advised_follows_the_parameters_of_the_axis(judged, free):
+    """On warnings and in the health of a report alike."""
+    values = judged.values(**{'x.advice.speed': free})
+    case = judged.case([judged.columns()], values=values, health=HistoryMaker)
+    assert case.settings.speed_allowed is free
+    assert case.history.speed_allowed is free
+
+
 def test_a_log_of_an_axis_without_process_force_tells_of_its_friction(judged):
     derived = judged.columns(
         count=300, motor_torque_source=1, axial_load_source=PointSource.DERIVED

@@ -66,6 +66,16 @@ def test_where_all_is_known_there_is_no_caution_and_long_tables_are_cut(judged):
     assert text.count('<tr data-begin') + text.count('<tr class="bad" data-begin') == 1000
 
 
+@pytest.mark.parametrize('advice', ['', 'at this load run at 573 rev/min'])
+def test_a_warning_says_where_it_was_worst_and_what_to_do_if_that_is_advised(judged, advice):
+    case = judged.case([judged.columns()], [judged.event(1, 0.1, 0.2, advice=advice)])
+    text = report_page(judged.log(case))
+    table = text.partition('Warnings: 1')[2].partition('</table>')[0]
+    assert '<td>430 rev/min and -1200 N</td>' in table
+    assert ('What to do' in table) == (f'<td>{advice}</td>' in table) == bool(advice)
+    assert ('What to do: as in warning 1' in text) == bool(advice)
+
+
 def test_charts_are_drawn_without_an_error(written, browse):
     dom = browse(written[0], '--dump-dom')
     body = re.search(r'<body[^>]*>', dom)[0]
@@ -88,7 +98,8 @@ def test_a_page_of_a_feed_axis_speaks_of_feeds(judged, tmp_path, browse):
     assert case.contact in html.unescape(verdict)
     assert ' m/min, ' in case.contact
     assert 'travelled, 99.95 revolutions' in dom
-    assert 'at 4.3 m/min, 430 rev/min and -1200 N: ' in dom
+    assert '<td>4.3 m/min, 430 rev/min and -1200 N</td>' in dom
+    assert '<td>at this load run at 5.73 m/min, 573 rev/min</td>' in dom
     assert 'Feed [m/min]' in dom
 
 

@@ -63,6 +63,10 @@ def test_lines_of_an_axis_that_is_well_has_gaps_warns_or_has_no_rows(judged, say
     assert lines_of(case, 'why')[0].startswith('The oil film was too thin')
     assert 'at this load run at 573 rev/min' in lines_of(case, 'what to do')[0]
     assert any(' at 430 rev/min and -1200 N: at this' in line for line in axis_lines(case))
+    silent = judged.event(1, 0.1, 0.2, advice='', target_speed=math.nan)
+    case = judged.case([judged.columns()], [silent])
+    assert not lines_of(case, 'what to do')
+    assert any(line.endswith(' at 430 rev/min and -1200 N') for line in axis_lines(case))
     assert list(log_lines(judged.log(empty=['y']))) == ['axis y: no usable sample']
 
 

@@ -32,6 +32,24 @@ def test_a_header_gives_back_its_datasheets(surface_data, screw, oil):
     assert tiers.screw_and_oil(inputs) == (rough, oil)
 
 
+@pytest.mark.parametrize(
+    'change',
+    [
+        lambda inputs: inputs.pop('screw'),
+        lambda inputs: inputs['screw'].pop('ball'),
+        lambda inputs: inputs['screw']['ball'].pop('density'),
+        lambda inputs: inputs['lubricant'].pop('minimum_temperature'),
+        lambda inputs: inputs['lubricant'].update(film_floor='thin'),
+        lambda inputs: inputs['lubricant'].update(density=10**400),
+        lambda inputs: inputs.update(lubricant=5),
+    ],
+)
+def test_inputs_that_are_not_whole_are_a_sentence(surface_data, change, refused):
+    inputs = json.loads(json.dumps(surface_data.header['inputs']))
+    change(inputs)
+    refused('not_whole', tiers.screw_and_oil, inputs)
+
+
 def test_a_point_is_solved_as_the_surface_was(surface_data, screw, oil):
     """All fields of the closed-form tier, as its solver gives them."""
     found = tiers.solve_point(surface_data.header, 62.8, 1000.0, 313.0)

@@ -6,7 +6,7 @@ import pytest
 from surrogate.catalogue.raceways import PROCESSES, raceway_of
 from surrogate.catalogue.words import CatalogueScrew
 
-SIZE = {'nominal_diameter': 0.02, 'lead': 0.005, 'turns': 4.0, 'preload': 500.0}
+SIZE = {'nominal_diameter': 0.02, 'lead': 0.005, 'nut': 'double', 'turns': 4.0, 'preload': 500.0}
 
 
 @pytest.mark.parametrize(

@@ -6,13 +6,19 @@ import math
 import re
 
 import pytest
-from surrogate.catalogue.screw import screw_of
+from surrogate.catalogue.screw import equal_halves, screw_of
 from surrogate.catalogue.words import CatalogueScrew
 from surrogate.datasheet_writer import write_sheet
 from surrogate.formulas.plausibility import rated_pressure
 from surrogate.parameters import load_screw
 
-SIZE = {'nominal_diameter': 0.02, 'lead': 0.005, 'turns': 4.0, 'dynamic_rating': 10910.0}
+SIZE = {
+    'nominal_diameter': 0.02,
+    'lead': 0.005,
+    'nut': 'double',
+    'turns': 4.0,
+    'dynamic_rating': 10910.0,
+}
 
 
 def test_every_value_has_a_note(tmp_path):
@@ -41,7 +47,9 @@ def test_what_follows_from_the_size():
 
 def test_the_nominal_screw_out_of_its_catalogue_values(screw):
     """Three turns on its ball circle hold the balls of the published study."""
-    given = CatalogueScrew(pitch_diameter=0.032, lead=0.01, turns=3.02, preload=990.0)
+    given = CatalogueScrew(
+        pitch_diameter=0.032, lead=0.01, nut='double', turns=3.02, preload=990.0
+    )
     found, notes = screw_of(given)
     assert found.pitch_radius == screw.pitch_radius
     assert notes['pitch_radius_mm'] == 'given, as a diameter'
@@ -50,6 +58,7 @@ def test_the_nominal_screw_out_of_its_catalogue_values(screw):
     given = CatalogueScrew(
         pitch_diameter=0.032,
         lead=0.01,
+        nut='double',
         balls=51,
         ball_diameter=5.953e-3,
         preload=990.0,
@@ -72,6 +81,46 @@ def test_a_share_of_c_is_the_preload():
     screw, notes = screw_of(CatalogueScrew(**SIZE, preload_share=0.08))
     assert screw.preload == pytest.approx(872.8)
     assert notes['preload_N'] == 'derived (8 % of C 10.91 kN, given)'
+
+
+@pytest.mark.parametrize(
+    ('counted', 'balls', 'note'),
+    [
+        # A turn of 20.635 mm and a lead of 5 mm is 65.0 mm long and holds 20.47 balls.
+        ({'turns': 4.0}, 40, 'derived (2 turns, half of the 4 of the nut)'),
+        ({'turns': 5.0}, 51, 'derived (2.5 turns, half of the 5 of the nut)'),
+        ({'turns': None, 'balls': 82}, 41, 'derived (half of the 82 balls of the nut)'),
+        ({'turns': None, 'balls': 83}, 41, 'derived (half of the 83 balls of the nut)'),
+    ],
+)
+def test_an_offset_nut_is_two_halves_of_its_turns(counted, balls, note):
+    """Half of its loaded balls carry in each direction, and half is not twice all of them."""
+    given = CatalogueScrew(**SIZE | {'nut': 'offset', 'ball_diameter': 3.175e-3} | counted)
+    screw, notes = screw_of(given)
+    assert screw.loaded_balls_per_nut == balls
+    assert notes['loaded_balls_per_nut'] == note
+
+
+def test_halves_that_need_not_be_equal_are_named(says):
+    for counted, key in (
+        ({'turns': 5.0}, 'five_turns'),
+        ({'turns': 2.5}, 'turns_2_5'),
+        ({'turns': None, 'balls': 83}, 'balls_83'),
+        ({'turns': 4.0}, None),
+        ({'turns': 5.0, 'balls': 82}, None),  # balls count, as they do in the sheet
+    ):
+        offset = CatalogueScrew(**SIZE | {'nut': 'offset'} | counted)
+        assert list(equal_halves(offset)) == ([says(key)] if key else [])
+        assert list(equal_halves(CatalogueScrew(**SIZE | counted))) == []
+
+
+def test_without_preload_no_nut_is_relieved():
+    """A load stands for it, of which the sheet says that it is to be replaced."""
+    screw, notes = screw_of(CatalogueScrew(**SIZE, preload=0.0))
+    assert screw.working_load == pytest.approx(2**1.5 * 0.01 * screw.static_rating, rel=1e-3)
+    assert notes['working_load_N'] == (
+        'derived (2.83 % of C0, without preload: state the largest axial load)'
+    )
 
 
 def test_numbers_that_no_screw_has_are_refused(refused):

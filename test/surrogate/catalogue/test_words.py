@@ -8,7 +8,13 @@ import pytest
 from surrogate.catalogue.words import CatalogueOil, CatalogueScrew, flag_of
 from surrogate.datasheet import sheet_of
 
-ENOUGH = {'nominal_diameter_mm': 20.0, 'lead_mm': 5.0, 'turns': 4.0, 'preload_N': 500.0}
+ENOUGH = {
+    'nominal_diameter_mm': 20.0,
+    'lead_mm': 5.0,
+    'nut': 'double',
+    'turns': 4.0,
+    'preload_N': 500.0,
+}
 
 
 def test_flags_carry_their_unit():
@@ -21,6 +27,7 @@ def test_flags_carry_their_unit():
     [
         ('nominal_diameter_mm', 'diameter_missing'),
         ('lead_mm', 'lead_missing'),
+        ('nut', 'nut_missing'),
         ('turns', 'turns_missing'),
         ('preload_N', 'preload_missing'),
     ],
@@ -37,10 +44,13 @@ def test_what_cannot_be_derived_is_asked_for(without, key, refused):
         ({'lead_mm': 'five'}, 'lead_five'),
         ({'process': 'cast'}, 'process_cast'),
         ({'turns': 500.0}, 'turns_500'),
+        ({'nut': 'single'}, 'nut_single'),
+        ({'nut': 'oversize'}, 'nut_oversize'),
+        ({'nut': 'plain'}, 'nut_plain'),
     ],
 )
 def test_a_value_that_no_catalogue_has_is_refused(content, key, refused):
-    """A radius as a diameter, a word as a number."""
+    """A radius as a diameter, a word as a number; nor a nut that is not modelled."""
     refused(key, sheet_of, CatalogueScrew, ENOUGH | content, 'screw new')
 
 

@@ -5,7 +5,6 @@
 from datetime import date
 import json
 import math
-import sys
 
 import numpy as np
 import pytest
@@ -130,6 +129,26 @@ def test_the_onset_makes_a_calibrated_sheet(run, tmp_path, capsys, refused):
     refused('onset_beside', run, data, *words, '--loss', 'soft_l1')
 
 
+def test_an_onset_that_is_refused_leaves_no_sheet(run, tmp_path, capsys, says):
+    """A seal of 0.3 N m over a textbook's curve: one sentence, exit code 1, nothing to build."""
+    rpm = np.geomspace(3, 1000, 14)
+    drag = 0.06 * np.exp(-rpm / 210) + 0.05 * (rpm / 600) ** 0.6 + 0.15
+    drag += 0.15 * np.exp(-rpm * math.pi / 30 * SCREW.pitch_radius / 0.02)
+    drag *= 1 + 0.01 * np.cos(5 * np.arange(rpm.size))
+    data = tmp_path / 'stairs.csv'
+    lines = [f'{speed},{torque}' for speed, torque in zip(rpm, drag, strict=True)]
+    data.write_text('\n'.join(['speed_rpm,torque_Nm', *lines]), encoding='utf-8')
+    sheet = tmp_path / 'found.yaml'
+    assert run(data, '--onset', '--out', sheet, '--plot', tmp_path) == 1
+    printed = capsys.readouterr()
+    assert says('onset_beyond') in printed.out
+    assert str(sheet) not in printed.err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ['identify.png', 'stairs.csv']
+    assert run(data, '--onset', '--json') == 1
+    onset = json.loads(capsys.readouterr().out)['onset']
+    assert (onset['refused'], onset['band']) == (True, None)
+
+
 def test_options_that_mean_nothing_are_refused(run, data, tmp_path, refused):
     """Bag options for a CSV, and the other way round; a temperature that stands twice."""
     refused('speed_topic_has', run, data, '--speed-topic', 'joint_states')
@@ -155,12 +174,10 @@ def test_a_bag_is_read_by_who_can(run, tmp_path, capsys):
     assert 'note: half of it was steady' in capsys.readouterr().out
 
 
-def test_a_picture(run, data, tmp_path, monkeypatch, refused):
-    """One file, nothing half-written; without matplotlib or a place for it one sentence."""
+def test_a_picture(run, data, tmp_path, refused):
+    """One file, nothing half-written; without a place for it one sentence."""
     pytest.importorskip('matplotlib')
     folder = tmp_path / 'deep' / 'plots'
     assert run(data, '--plot', folder) == 0
     assert [path.name for path in folder.iterdir()] == ['identify.png']
     refused('plot_drag_cannot', run, data, '--plot', data)
-    monkeypatch.setitem(sys.modules, 'surrogate.identify.figures', None)
-    refused('plot_needs_matplotlib', run, data, '--plot', folder)

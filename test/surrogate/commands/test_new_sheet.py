@@ -46,7 +46,8 @@ def test_from_the_page_of_a_catalogue_to_the_onset(run, tmp_path, capsys, says, 
     """The larger the screw, the slower contact begins; what is assumed of Ra is told."""
     diameter, lead, ball, dynamic, static, expected = CATALOGUE[size]
     words = ('--nominal-diameter-mm', diameter, '--lead-mm', lead, '--ball-diameter-mm', ball)
-    ratings = ('--dynamic-rating-kN', dynamic, '--static-rating-kN', static, '--turns', 4)
+    ratings = ('--dynamic-rating-kN', dynamic, '--static-rating-kN', static)
+    words += ('--nut', 'double', '--turns', 4)
     path = tmp_path / 'my.yaml'
     assert run('screw', 'new', *words, *ratings, '--ra-um', 0.16, '--out', path) == 0
     assert capsys.readouterr() == (f'{path}\n', '')
@@ -55,6 +56,21 @@ def test_from_the_page_of_a_catalogue_to_the_onset(run, tmp_path, capsys, says, 
     oil = load_lubricant('iso_vg_68')
     found = onset_point(load_screw(str(path)), oil, 0.0, oil.reference_temperature)
     assert found['speed_rad_s'] / RPM == pytest.approx(expected, rel=0.02)
+
+
+def test_a_page_of_a_single_nut_does_not_become_two_nuts(run, tmp_path, capsys, says, refused):
+    """Its kind is asked for: an offset nut has two halves of its turns, the others no sheet."""
+    path = tmp_path / 'my.yaml'
+    page = ('--nominal-diameter-mm', 40, '--lead-mm', 10, '--ball-diameter-mm', 6.35)
+    page += ('--turns', 5, '--dynamic-rating-kN', 21.3, '--ra-um', 0.16, '--out', path)
+    refused('nut_missing', run, 'screw', 'new', *page)
+    for nut, key in (('oversize', 'nut_oversize'), ('plain', 'nut_plain')):
+        refused(key, run, 'screw', 'new', '--nut', nut, *page)
+    assert not path.exists()
+    assert run('screw', 'new', '--nut', 'offset', *page) == 0
+    assert capsys.readouterr() == (f'{path}\n', says('five_turns'))
+    # A ball circle of 41.27 mm and a lead of 10 mm give 130.0 mm a turn, 20.5 balls.
+    assert load_screw(str(path)).loaded_balls_per_nut == int(2.5 * 20.477)
 
 
 def test_a_grease_loads(run, tmp_path, capsys):

@@ -122,6 +122,15 @@ def test_info_is_a_page_a_person_reads(run, capsys):
         assert part in text
 
 
+def test_info_of_a_surface_whose_header_is_not_whole_names_the_file(run, tmp_path, refused):
+    inputs = json.loads(json.dumps(DATA.header['inputs']))
+    del inputs['lubricant']['minimum_temperature']
+    path = tmp_path / 'part.npz'
+    write(path, replace(DATA, header={**DATA.header, 'inputs': inputs}))
+    with refused('not_whole', path=path):
+        run('info', str(path))
+
+
 def test_formulas_beyond_what_they_were_fitted_over_are_named_once(run, capsys):
     """Of the whole surface; where contacts are solved no formula is left to be warned of."""
     assert run('info', 'closed_form', '--json') == 0

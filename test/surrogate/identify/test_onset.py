@@ -3,6 +3,7 @@
 """The profile over the onset factor: ends of known curves, bounds, and fits of known answers."""
 
 from dataclasses import replace
+import itertools
 import math
 
 import numpy as np
@@ -30,6 +31,37 @@ WARM, FREEDOM = 313.15, 18
 SLOW = np.geomspace(5.0, 1000.0, 12) * RPM
 FAST = np.geomspace(400.0, 2000.0, 12) * RPM
 FACTOR, FRICTION, CONSTANT, RATE, SEAL = 0.6, 0.08, 0.05, 3e-4, 4e-3
+
+
+STAIRS = np.geomspace(3.0, 1000.0, 14)
+"""Speeds of a staircase [rev/min]."""
+DRAG = {
+    'slow_fade': (300.0, 0.3, 0.30),
+    'late_contact': (700.0, 0.3, 0.30),
+    'quick_fade': (700.0, 0.02, 0.30),
+    'half_the_drag': (700.0, 0.02, 0.15),
+    'no_film': (300.0, 0.005, 0.30),
+}
+"""Speed of the onset [rev/min], sliding speed over which a seal fades [m/s], its drag [N m]."""
+
+
+def stribeck(begins, fades, drag):
+    """
+    Return a staircase by the curve of a textbook, and the contacts that are fitted to it.
+
+    Contacts: 60 mN m of boundary friction that fade exponentially with the speed, and viscous drag
+    with its power 0.6. Beside them a constant and an exponentially fading half of `drag` [N m],
+    a drag in proportion to the speed and a ripple of 1 %.
+
+    """
+    speed = np.concatenate([STAIRS, -STAIRS]) * RPM
+    run = no_load_run({'speed': speed, 'torque': speed}, source='stairs', temperature=WARM)
+    turns = np.abs(speed) / RPM
+    contacts = 0.06 * np.exp(-turns / (0.3 * begins)) + 0.05 * (turns / 600) ** 0.6
+    beside = 0.5 * drag * (1 + np.exp(-np.abs(speed) * SCREW.pitch_radius / fades))
+    ripple = 1 + 0.01 * np.random.default_rng(7).standard_normal(len(speed))
+    torque = run.direction * (contacts + beside) * ripple + 1e-4 * speed
+    return replace(run, torque=torque), formula_model(SCREW, OIL, run, FITTED)
 
 
 def parabola(centre, error):
@@ -161,6 +193,36 @@ def test_without_an_upturn_there_is_a_bound_and_no_calibration(says):
     sheet = identified_screw(SCREW, run, contacts, found, '2026-11-24')
     assert sheet.roughness.calibration == ''
     assert 'does not turn up' in page(identification_record(SCREW, run, contacts, found))
+
+
+@pytest.mark.parametrize('key', DRAG)
+def test_drag_beside_the_contacts_makes_no_calibration(key, says):
+    """Two to eight times theirs: friction goes to its bound, or the onset beyond the speeds."""
+    run, contacts = stribeck(*DRAG[key])
+    found = identify(SCREW, run, contacts, FITTED)
+    assert found.onset_refused
+    onset = found.estimate('onset_factor')
+    assert (onset.value, math.isnan(onset.low)) == (SCREW.roughness.onset_factor, True)
+    assert onset.reason == says(key)
+    assert found.value('asperity_friction') == SCREW.roughness.asperity_friction
+    record = identification_record(SCREW, run, contacts, found)
+    assert (record['converged'], record['status']) == (True, says('refused'))
+    assert f'  contact begins         {onset.reason}\n' in page(record)
+
+
+def test_what_is_calibrated_has_friction_inside_and_its_onset_among_the_speeds():
+    """Whatever drag a textbook puts beside the contacts."""
+    calibrated = []
+    for fades, drag in itertools.product((0.005, 0.02, 0.1, 0.3), (0.05, 0.15, 0.3)):
+        run, contacts = stribeck(300.0, fades, drag)
+        found = identify(SCREW, run, contacts, FITTED)
+        if not found.estimate('onset_factor').reason:
+            begins, *_ = onset_speeds(contacts, run, (found.value('onset_factor'),) * 3)
+            calibrated.append((found.value('asperity_friction'), begins / RPM))
+    assert calibrated
+    for friction, begins in calibrated:
+        assert 0.05 < friction < 0.3
+        assert 3.0 <= begins <= 1000.0
 
 
 def test_runs_that_tell_no_onset_are_refused(slow, refused):

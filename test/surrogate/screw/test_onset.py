@@ -18,6 +18,7 @@ from surrogate.screw import closed_form
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.onset import (
     extrapolated,
+    onset_over_working_load,
     onset_page,
     onset_point,
     onset_record,
@@ -44,11 +45,19 @@ s, o: 500 N, 40 degC
 20 to 40 rev/min over the range of that pressure
   Contact is likely below 10 rev/min and possible below 120 rev/min.
   summits are cut under 2800 N, 1.5 GPa
+  that load matters: run in, contact begins at 45 rev/min if it was 1400 N, {high}
   extrapolated: Rq
   roughness: rough"""
 
 
-def test_the_page_of_a_record_by_hand():
+@pytest.mark.parametrize(
+    ('speed', 'high'),
+    [
+        (12 * RPM, 'at 12 rev/min if it was 12050 N'),
+        (math.nan, 'at an unknown speed if it was 12050 N, more than the summits bear'),
+    ],
+)
+def test_the_page_of_a_record_by_hand(speed, high):
     state = {'speed_rad_s': 60 * RPM, 'central_film_m': 50e-9, 'cutting_pressure_Pa': 7e9}
     run_in = {'speed_rad_s': 30 * RPM, 'central_film_m': 25e-9, 'cutting_pressure_Pa': 3e9}
     run_in['speed_range_rad_s'] = [20 * RPM, 40 * RPM]
@@ -61,12 +70,14 @@ def test_the_page_of_a_record_by_hand():
         'working_load_stated': True,
         'working_load_N': 2800.0,
         'working_pressure_Pa': 1.5e9,
+        'other_working_loads_N': [1400.0, 12050.0],
+        'other_working_load_speeds_rad_s': [45 * RPM, speed],
         'extrapolated': ['Rq'],
         'roughness': 'rough',
     }
     for one in (state, run_in):
         one['band'] = [0.5, 2.0]
-    assert onset_page(record) == PAGE
+    assert onset_page(record) == PAGE.format(high=high)
 
 
 def test_both_states_and_their_bounds_stand_in_the_record(record, screw, oil):
@@ -79,6 +90,29 @@ def test_both_states_and_their_bounds_stand_in_the_record(record, screw, oil):
     low = run_in_at(screw, screw.roughness.run_in_low)
     found = onset_point(low, oil, 0.0, KELVIN)['speed_rad_s']
     assert record['states']['run_in']['speed_range_rad_s'][0] == found
+
+
+def test_other_working_loads_cut_the_summits_of_the_last_state(record, screw, oil):
+    """The higher the load, the lower the summits and the slower the onset; half and double."""
+    low, high = record['other_working_loads_N']
+    assert [low, high] == pytest.approx([math.sqrt(2) * 990, 4 * math.sqrt(2) * 990])
+    slow = with_raceway(screw, state='run_in')
+    for load, speed in zip((low, high), record['other_working_load_speeds_rad_s'], strict=True):
+        assert (
+            speed == onset_point(replace(slow, working_load=load), oil, 0.0, KELVIN)['speed_rad_s']
+        )
+    half, double = record['other_working_load_speeds_rad_s']
+    assert half > record['states']['run_in']['speed_rad_s'] > double > 0
+
+
+def test_a_working_load_that_summits_do_not_bear_has_no_onset(screw, oil):
+    """Double the load presses the nominal contact by 1.6 GPa."""
+    soft = dict.fromkeys(('run_in_low', 'run_in_pressure', 'run_in_high'), 1.5e9)
+    found = onset_over_working_load(
+        with_raceway(screw, state='run_in', **soft), oil, 0.0, KELVIN, [2800.0, 5600.0]
+    )
+    assert found[0] > 0
+    assert math.isnan(found[1])
 
 
 def test_running_in_is_at_a_pressure_that_the_contact_bears(screw):
@@ -170,7 +204,7 @@ def test_a_place_that_no_screw_has_is_refused(screw, oil, load, kelvin, sentence
 
 
 @pytest.mark.parametrize(
-    ('name', 'ends'), [('rms', (0.06e-6, 0.24e-6)), ('cutoff_short', (1.25e-6, 10e-6))]
+    ('name', 'ends'), [('rms', (0.1e-6, 0.3e-6)), ('cutoff_short', (1.25e-6, 10e-6))]
 )
 def test_the_ends_of_what_was_marched_are_not_extrapolated(screw, name, ends):
     for end, beyond in zip(ends, (0.0, math.inf), strict=True):
@@ -178,13 +212,18 @@ def test_the_ends_of_what_was_marched_are_not_extrapolated(screw, name, ends):
         assert len(extrapolated(with_raceway(screw, **{name: math.nextafter(end, beyond)}))) == 1
 
 
-def test_what_was_not_marched_is_called_extrapolated(screw):
+def test_what_was_not_marched_is_called_extrapolated(screw, says):
     assert extrapolated(screw) == []
     assert extrapolated(with_raceway(screw, rms=0.0)) == []
     rough = replace(screw, ball_roughness=BallRoughness(grade='G10'))
     assert extrapolated(rough) == ['rough balls (marched: smooth ones)']
-    fine = with_raceway(screw, cutoff_short=0.5e-6, rms=0.4e-6)
-    assert [text.split()[0] for text in extrapolated(fine)] == ['Rq', 'short']
+    fine = with_raceway(screw, cutoff_short=0.5e-6, rms=0.06e-6)
+    assert extrapolated(fine) == [says('rms_0_06'), says('short')]
+    assert extrapolated(with_raceway(screw, lay='longitudinal', fan_angle=0.2, rms=0.4e-6)) == [
+        says('both')
+    ]
+    known = {'onset_factor': 0.6, 'onset_band': 1.4, 'calibrated': '2026-11-24'}
+    assert extrapolated(with_raceway(screw, rms=0.06e-6, **known)) == []
 
 
 @pytest.mark.parametrize('lay', ['longitudinal', 'transverse'])
@@ -201,6 +240,7 @@ def test_smooth_raceways_say_so(screw, oil):
     page = onset_page(onset_record(smooth, oil, 0.0, KELVIN))
     assert 'no contact: raceway and ball are smooth' in page
     assert 'Contact is likely' not in page
+    assert 'that load matters' not in page
 
 
 def test_the_picture_falls_with_the_cutting_pressure(screw, oil, record, monkeypatch):

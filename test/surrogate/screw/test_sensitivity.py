@@ -253,6 +253,29 @@ def test_every_end_of_every_input_is_a_sheet(screw, oil):
     assert {spec.name for spec in fields(OperatingPoint)} >= {'temperature'}
 
 
+def test_the_page_says_where_the_law_is_off_by_more_than_its_band(screw, oil, record, says):
+    assert record['law_doubt'] == ''
+    assert '\n  law ' not in sensitivity_page(record)
+    fine = sensitivity_record(with_raceway(screw, rms=0.06e-6), oil, POINT, inputs=QUICK[:1])
+    assert f'\n  law        {says("rms_0_06")}\n' in sensitivity_page(fine)
+
+
+def test_half_and_double_of_the_working_load_are_in_no_band(screw, oil):
+    """Assumed or stated; what it does is computed, and no measurement takes it out of a band."""
+    load = BY_NAME['working_load']
+    case = ScrewCase(screw=screw, lubricant=oil, point=POINT)
+    assert load.bounds(case) == pytest.approx((math.sqrt(2) * 990, 4 * math.sqrt(2) * 990))
+    run_in = replace(with_raceway(screw, state='run_in'), working_load=1000.0)
+    assert load.bounds(replace(case, screw=run_in)) == (500.0, 2000.0)
+    found = sensitivity_record(run_in, oil, POINT, inputs=[load, BY_NAME['temperature']])
+    row = row_of(found, 'working_load_N')
+    assert [row[end] for end in ('low', 'stated', 'high')] == [500.0, 1000.0, 2000.0]
+    light, heavy = row['onset_factors']
+    assert light > 1 > heavy > 0
+    assert found['unknown_band'] == row_of(found, 'temperature_degC')['onset_factors']
+    assert 'working_load' in LEFT_OUT
+
+
 def test_an_end_that_the_model_refuses_is_not_known(screw, oil, refused):
     """It leaves a band that is not known, and the page has the sentence."""
     soft = dict.fromkeys(('hardness', 'run_in_low', 'run_in_pressure', 'run_in_high'), 1.8e9)
@@ -280,10 +303,11 @@ s, o: 30 rev/min, 500 N, 40 degC, closed form
 low stated high onset torque RCS 0.01 eta 0.85
 rev/min N m rev/min rev/min
 as stated 60 0.5 90 -
-a_unit 0.5 - 2 30 to 120 0.4 to - 45 to 180 - to 300 because
+a_unit 0.5 - 10710 30 to 120 0.4 to - 45 to 180 - to 300 because
 b 1 1.5 1e+06 30 to 120 0.4 to - 45 to 180 - to 300 not so
 not known contact begins at 0.5 to 2 times the stated speed: 30 to 120 rev/min
 numerics contact begins at 0.8 to 1.2 times the stated speed: 48 to 75 rev/min
+law here it is off
 measure m: 0.7 to 1.4 times is left
 then n: 0.9 to 1.1 times is left"""
 
@@ -308,11 +332,12 @@ def test_the_page_of_a_record_by_hand():
         'temperature_K': 313.15,
         'stated': stated,
         'inputs': [
-            {'key': 'a_unit', 'low': 0.5, 'stated': None, 'high': 2.0, 'refused': '', **ends},
+            {'key': 'a_unit', 'low': 0.5, 'stated': None, 'high': 10714.0, 'refused': '', **ends},
             {'key': 'b', 'low': 1.0, 'stated': 1.5, 'high': 1e6, 'refused': 'not so', **ends},
         ],
         'unknown_band': [0.5, 2.0],
         'numerical_band': [0.8, 1.25],
+        'law_doubt': 'here it is off',
         'measure': [
             {'measurement': 'm', 'unknown_band': [0.7, 1.4]},
             {'measurement': 'n', 'unknown_band': [0.9, 1.1]},

@@ -207,6 +207,7 @@ def inputs_with(data, kind, **changes):
         lambda data: inputs_with(data, 'screw', speed_limit=0.0),
         lambda data: inputs_with(data, 'screw', pitch_radius=None),
         lambda data: inputs_with(data, 'screw', roughness={}),
+        lambda data: inputs_with(data, 'screw', lead=10**400),
         lambda data: inputs_with(data, 'lubricant', kinematic_viscosity_40='68'),
         lambda data: {'header': {**data.header, 'load_breaks': [1.0]}},
         lambda data: settings_with(data, speed_range=[0.0, 100.0]),

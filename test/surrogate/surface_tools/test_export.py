@@ -6,7 +6,6 @@ import csv
 from dataclasses import replace
 import json
 import math
-import sys
 
 import numpy as np
 import pytest
@@ -67,7 +66,5 @@ def test_a_table_holds_every_node(run, tmp_path):
     assert {row['converged'] for row in rows} == {'1'}
 
 
-def test_what_cannot_be_written_is_one_sentence(run, tmp_path, refused, monkeypatch):
+def test_what_cannot_be_written_is_one_sentence(run, tmp_path, refused):
     refused('cannot_written_regular', run, '--csv', tmp_path)
-    monkeypatch.setitem(sys.modules, 'xarray', None)
-    refused('install_extra_netcdf', run, '--netcdf', tmp_path / 'a.nc')

@@ -3,7 +3,6 @@
 """Pictures of a surface: what they draw, not how they look."""
 
 from dataclasses import replace
-import sys
 
 import numpy as np
 import pytest
@@ -103,8 +102,3 @@ def test_pictures_per_temperature(run, tmp_path, capsys):
 @pytest.mark.parametrize('celsius', [9.9, 80.1])
 def test_a_temperature_that_is_not_covered(run, tmp_path, celsius, refused):
     refused('degc_surface_covers', run, '--out', tmp_path, '--temperature-degC', celsius)
-
-
-def test_without_matplotlib_the_extra_is_named(run, tmp_path, monkeypatch, refused):
-    monkeypatch.setitem(sys.modules, 'surrogate.surface_tools.figures', None)
-    refused('install_extra_plot', run, '--out', tmp_path)

@@ -355,8 +355,3 @@ def test_a_wrong_pool_is_one_sentence(monkeypatch, workers, dask, sentence, refu
         pytest.importorskip('distributed')
     monkeypatch.setattr(task_workers, 'PATIENCE', 0.3)
     refused(sentence, open_pool, workers, dask)
-
-
-def test_dask_that_is_not_installed_names_the_extra(monkeypatch, refused):
-    monkeypatch.setitem(sys.modules, 'distributed', None)
-    refused('install_extra_dask', open_pool, 2, 'local')

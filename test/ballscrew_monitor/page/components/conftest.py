@@ -24,7 +24,12 @@ ROOT = Path(__file__).resolve().parents[4]
 OWN = ROOT / 'ballscrew_monitor' / 'page' / 'components'
 LANGUAGES = ROOT / 'ballscrew_monitor' / 'page' / 'languages'
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
+# The clock by which data grow old goes slowly: none do while a machine is busy elsewhere.
 WATCHED = """
+    {
+      const clock = performance.now.bind(performance);
+      performance.now = () => clock() / 1000;
+    }
     window.violations = [];
     document.addEventListener('securitypolicyviolation', (event) => {
       window.violations.push(`${event.violatedDirective} ${event.blockedURI}`);
@@ -185,6 +190,7 @@ class FakeServer:
         self.thread.start()
         self.port, self.server, self.requests, self.greeting = 0, None, [], []
         self.clients, self.answers = set(), {}
+        self.language = 'en'
         self.start()
 
     def run(self, coroutine):
@@ -221,17 +227,13 @@ class FakeServer:
         if request.path == '/live':
             return None
         if request.path == '/':
-            language = self._language(request)
-            return self._respond(connection, components.index(language), 'text/html')
+            # A tab of some browsers has its language for the page alone, and not for the socket.
+            self.language = components.language_of(request.headers.get('Accept-Language', ''))
+            return self._respond(connection, components.index(self.language), 'text/html')
         known = components.table().get(request.path.removeprefix('/components/'))
         if known is None:
             return connection.respond(HTTPStatus.NOT_FOUND, '')
         return self._respond(connection, known[0].decode(), known[1])
-
-    def _language(self, request):
-        from ballscrew_monitor.page.components import language_of
-
-        return language_of(request.headers.get('Accept-Language', ''))
 
     def _respond(self, connection, text, kind):
         from ballscrew_monitor.page.guard import POLICY
@@ -245,9 +247,8 @@ class FakeServer:
     async def _speak(self, connection):
         from websockets import ConnectionClosed
 
-        language = self._language(connection.request)
         for record, arrays in self.greeting:
-            more = {'language': language, 'words': words(language)}
+            more = {'language': self.language, 'words': words(self.language)}
             greets = record['kind'] == 'hello'
             await connection.send(encoded(record | (more if greets else {}), arrays))
         self.clients.add(connection)

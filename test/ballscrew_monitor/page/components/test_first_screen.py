@@ -93,7 +93,7 @@ def test_a_warning_that_is_only_held_says_so(shown, greeted, frames):
 
 
 RCS = {'key': 'cause_rcs', 'values': {'value': {'rcs': 0.27}, 'limit': {'rcs': 0.01}}}
-ADVICE = {'key': 'advice_speed', 'values': {'speed': {'speed': 640.0}, 'load': {'load_N': None}}}
+ADVICE = {'key': 'advice_speed', 'values': {'speed': {'speed': 640.0}}}
 
 
 @pytest.mark.parametrize(

@@ -53,8 +53,16 @@ TYPES = {
 }
 
 
+def content_of(log, rate=10.0):
+    """Return the first map of a log, whose rate [Hz] is stated if it has no time."""
+    content = guess(log).content
+    if 'rate_Hz' in content['time']:
+        content['time']['rate_Hz'] = rate
+    return content
+
+
 def converted(log, out):
-    convert(log, make_map(guess(log).content), out)
+    convert(log, make_map(content_of(log)), out)
     return Bag(out)
 
 
@@ -111,7 +119,7 @@ def test_the_bag_says_what_it_was_made_of_and_so_does_the_file_alone(mill_bag):
     assert facts.source == 'mill.csv'
     assert facts.mapping['axes']['x']['speed'] == {'column': 'X1_ActualVelocity'}
     assumed = {one.key: one.value for one in facts.assumptions}
-    assert assumed['time.rate_Hz'] == 10.0
+    assert facts.mapping['time'] == {'rate_Hz': 10.0}
     assert assumed['x.load.from'] == 'current'
     assert assumed['z.load'] == 'unknown'
     assert facts.parameters['axes'] == ['x', 'y', 'z']
@@ -120,7 +128,8 @@ def test_the_bag_says_what_it_was_made_of_and_so_does_the_file_alone(mill_bag):
     assert 'assumed of mill.csv, axis z: load = unknown' in said
     together = next(one for one in said if one.startswith('assumed of mill.csv, all axes: '))
     assert 'lead_mm = 10.0' in together
-    assert 'time.rate_Hz = 10.0' in together
+    assert 'time.epoch = 2000-01-01T00:00:00Z' in together
+    assert 'rate_Hz' not in together
     assert Bag(mill_bag.files[0]).metadata == mill_bag.metadata
 
 
@@ -149,7 +158,7 @@ def test_other_programs_read_it(mill_bag):
 def test_a_log_slower_than_the_timeouts_lengthens_them(tmp_path, write_csv, says):
     speed = [100.0] * 20
     log = write_csv(
-        tmp_path / 'log.csv', {'t': np.arange(20.0) * 2, 'x_vel': speed, 'x_force': speed}
+        tmp_path / 'log.csv', {'t_s': np.arange(20.0) * 2, 'x_vel': speed, 'x_force': speed}
     )
     bag = converted(log, tmp_path / 'bag')
     facts = facts_of(bag)
@@ -176,7 +185,7 @@ def test_a_torque_and_a_temperature_have_their_topics(tmp_path, write_csv):
 def test_a_load_may_be_left_to_the_node(tmp_path, write_csv):
     columns = {'t': np.arange(40.0) / 100, 'x_vel_mm_s': [100.0] * 40, 'x_current_A': [20.0] * 40}
     log = write_csv(tmp_path / 'log.csv', columns)
-    content = guess(log).content
+    content = content_of(log)
     content['assumed']['x.load.from']['value'] = 'motor_torque'
     content['axes']['x'] |= {'torque_uncertainty_Nm': 0.05, 'inertia_kg_m2': 1e-4}
     content['axes']['x'] |= {'always_free': True, 'free_load_N': -200.0}
@@ -193,7 +202,7 @@ def test_a_load_may_be_left_to_the_node(tmp_path, write_csv):
 
 def test_another_lead_than_that_of_the_surface_is_said(tmp_path, write_csv, mill):
     log = write_csv(tmp_path / 'mill.csv', mill())
-    content = guess(log).content
+    content = content_of(log)
     content['assumed']['x.lead_mm']['value'] = 5.0
     content['assumed']['y.screw']['value'] = 'mine'
     notes = convert(log, make_map(content), tmp_path / 'bag').notes
@@ -203,11 +212,11 @@ def test_another_lead_than_that_of_the_surface_is_said(tmp_path, write_csv, mill
 
 def test_nothing_is_written_when_the_log_is_bad(tmp_path, write_csv, mill, refused):
     log = write_csv(tmp_path / 'mill.csv', mill())
-    content = guess(log).content
+    content = content_of(log)
     content['parameters'] = {'x': {'nonsense': 1.0}}
     refused('nonsense_unknown', convert, log, make_map(content), tmp_path / 'bag')
     assert not (tmp_path / 'bag').exists()
-    refused('file_directory', convert, log, make_map(guess(log).content), log)
+    refused('file_directory', convert, log, make_map(content_of(log)), log)
 
 
 class Shown:
@@ -250,7 +259,7 @@ def test_a_table_is_made_a_bag_block_by_block(small_blocks, tmp_path, write_csv,
         write_csv(log, columns)
     else:
         pl.DataFrame(columns).write_parquet(log)
-    mapping, shown = make_map(guess(log).content), Shown()
+    mapping, shown = make_map(content_of(log)), Shown()
     small_blocks.clear()
     convert(log, mapping, out, shown=shown)
     assert max(small_blocks) == 32
@@ -266,7 +275,7 @@ def test_a_table_is_made_a_bag_block_by_block(small_blocks, tmp_path, write_csv,
 
 def test_the_blocks_leave_no_trace_in_the_bag(monkeypatch, tmp_path, write_csv, mill):
     log, found = write_csv(tmp_path / 'mill.csv', mill(1000)), []
-    mapping = make_map(guess(log).content)
+    mapping = make_map(content_of(log))
     for block in (7, 1000):
         monkeypatch.setattr(sources, 'BLOCK', block)
         convert(log, mapping, tmp_path / str(block))
@@ -278,7 +287,7 @@ def test_an_interrupt_leaves_no_half_bag(small_blocks, tmp_path, write_csv, mill
     log = write_csv(tmp_path / 'mill.csv', mill())
     shown = Shown(until=0.5)
     with pytest.raises(KeyboardInterrupt):
-        convert(log, make_map(guess(log).content), tmp_path / 'bag', shown=shown)
+        convert(log, make_map(content_of(log)), tmp_path / 'bag', shown=shown)
     assert shown.shares['rows written', 300][-1] < 1.0
     assert [path.name for path in tmp_path.iterdir()] == ['mill.csv']
 
@@ -288,8 +297,7 @@ def test_an_interrupt_leaves_no_half_bag(small_blocks, tmp_path, write_csv, mill
 )
 def test_every_sample_of_the_real_log_is_judged_or_refused_with_a_reason(tmp_path):
     log = Path(os.environ['BALLSCREW_RECORDINGS']) / 'cnc_mill' / 'experiment_01.csv'
-    made = guess(log).content
-    assert made['assumed']['time.rate_Hz']['value'] == 10.0
+    assert guess(log).content['time'] == {'rate_Hz': None}
     bag = converted(log, tmp_path / 'bag')
     assert bag.types == TYPES
     check_every_sample(bag, 1055)
@@ -297,7 +305,7 @@ def test_every_sample_of_the_real_log_is_judged_or_refused_with_a_reason(tmp_pat
 
 TWO_AXES = ('/x/oil_temperature', '/x/axial_load', '/y/axial_load', '/joint_states')
 FINITE = st.floats(-1e15, 1e15)
-ROW = st.tuples(st.integers(0, 100_000), FINITE, *[st.none() | FINITE] * 3)
+ROW = st.tuples(st.integers(1, 100_000), FINITE, *[st.none() | FINITE] * 3)
 
 
 @given(first=st.tuples(st.just(0), *[FINITE] * 4), others=st.lists(ROW, min_size=1))
@@ -350,13 +358,23 @@ def messages_of(stamp, speed, force, warmth, torque):
     return *messages, joints
 
 
-def test_a_guess_is_a_map_that_works_unedited(mill_log, tmp_path, capsys, says):
+def test_a_guess_is_a_map_that_works_once_the_rate_is_stated(mill_log, tmp_path, capsys, says):
     assert cli.main(['import', str(mill_log), '--guess']) == 0
     captured = capsys.readouterr()
-    assert set(yaml.safe_load(captured.out)) == {'log', 'axes', 'assumed'}
+    assert set(yaml.safe_load(captured.out)) == {'log', 'time', 'axes', 'assumed'}
     assert says('z_load_known') in captured.err
+    assert says('state_rate') in captured.err
     mapping, bag = tmp_path / 'map.yaml', tmp_path / 'bag'
     mapping.write_text(captured.out)
+    for command in (
+        ['import', str(mill_log), '--config', str(mapping), '--out', str(bag)],
+        ['replay', str(mill_log), '--map', str(mapping)],
+        ['replay', str(mill_log), '--map', str(mapping), '--out', str(tmp_path / 'report')],
+        ['health', str(mill_log), '--map', str(mapping)],
+    ):
+        assert cli.main(command) == 2, command
+        assert says('blank_rate') in capsys.readouterr().err
+    mapping.write_text(captured.out.replace('rate_Hz: null', 'rate_Hz: 10'))
     assert cli.main(['import', str(mill_log), '--config', str(mapping), '--out', str(bag)]) == 0
     assert '  assumed x.lead_mm = 10.0: ' in capsys.readouterr().out
     assert cli.main(['replay', str(bag), '--json']) == 0
@@ -388,7 +406,7 @@ def test_a_workbook_without_its_reader_is_a_sentence(tmp_path, capsys, monkeypat
     log = tmp_path / 'book.xlsx'
     log.write_bytes(b'PK\3\4')
     monkeypatch.setitem(sys.modules, 'fastexcel', None)
-    assert cli.main(['import', str(log), '--guess']) == 1
+    assert cli.main(['import', str(log), '--guess']) == 2
     assert capsys.readouterr().err == says('no_fastexcel')
 
 
@@ -425,9 +443,10 @@ def test_an_axis_whose_motion_cannot_be_read_is_refused(tmp_path, write_csv, ref
 
 def test_it_is_shown_how_far_rows_are_put_in_order(small_blocks, tmp_path, write_csv, mill):
     columns = mill(320)
-    columns['t'] = np.roll(np.arange(320.0) / 10, 5)
+    columns['t'] = np.arange(320.0) / 10
+    columns['t'][::40] += 0.5  # a row of each forty stands five rows too early
     log, shown = write_csv(tmp_path / 'mill.csv', columns), Shown()
-    content = guess(log).content
+    content = content_of(log)
     content['time'] = {'column': 't', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'}
     content['assumed'] = {
         key: one for key, one in content['assumed'].items() if not key.startswith('time')

@@ -24,7 +24,7 @@ def guessed(tmp_path, write_csv):
     return make
 
 
-def test_a_mill_log_is_understood(mill_log):
+def test_a_mill_log_is_understood(mill_log, says, refused):
     made = guess(mill_log)
     axes, assumed = made.content['axes'], made.content['assumed']
     assert list(axes) == ['x', 'y', 'z']
@@ -35,15 +35,18 @@ def test_a_mill_log_is_understood(mill_log):
     }
     assert axes['z']['load'] == {'unknown': 'Z1_CurrentFeedback is always 0'}
     assert 'current' not in axes['z']
-    assert assumed['time.rate_Hz']['value'] == 10.0
+    assert made.content['time'] == {'rate_Hz': None}
+    assert made.unstated == (says('state_rate'),)
+    assert f'#   {made.unstated[0]}\n' in made.text
     assert assumed['x.speed.unit']['value'] == 'mm/s'
     assert assumed['x.load.from']['value'] == 'current'
     assert assumed['x.torque_constant_Nm_per_A']['value'] > 0
     assert all(entry['reason'] for entry in assumed.values())
     assert any('spindle' in note for note in made.notes)
     assert any('axis z: the load is not known' in note for note in made.notes)
-    assert make_map(yaml.safe_load(made.text)).rate == 10.0
     assert yaml.safe_load(made.text) == made.content
+    refused('blank_rate', make_map, made.content)
+    assert make_map(made.content | {'time': {'rate_Hz': 10.0}}).rate == 10.0
 
 
 def test_units_in_names_are_not_assumed(guessed):
@@ -102,11 +105,10 @@ def test_position_and_time_tell_the_unit_of_the_speed(factor, unit, guessed):
     assert made.content['assumed']['x.speed.unit']['value'] == unit
 
 
-def test_what_cannot_be_told_is_said_or_refused(guessed, refused):
+def test_what_cannot_be_told_is_said_or_refused(guessed, refused, says):
     made = guessed({'x_vel': SPEED, 'x_force': SPEED})
-    entry = made.content['assumed']['time.rate_Hz']
-    assert entry['value'] > 0
-    assert 'nothing in it tells the rate' in entry['reason']
+    assert made.content['time'] == {'rate_Hz': None}
+    assert made.unstated == (says('no_time'),)
     refused('column_looks_like', guessed, {'a': TIME, 'b': TIME})
     made = guessed({'t': TIME, 'x_speed_furlong': SPEED, 'x_force': SPEED})
     reason = made.content['assumed']['x.speed.unit']['reason']
@@ -179,14 +181,40 @@ def test_axes_are_told_by_the_words_in_which_names_differ(guessed, says):
     assert list(make_map(made.content).axes[0].columns) == ['speed', 'load', 'temperature']
 
 
-def test_a_time_by_name_comes_before_one_by_unit_and_one_that_does_not_rise_is_said(guessed):
+def test_a_time_by_name_comes_before_one_by_unit_and_one_that_does_not_rise_is_said(guessed, says):
     columns = {'served_ms': TIME * 1e3, 'time_s': TIME, 'x_vel': SPEED, 'x_force': SPEED}
     assert guessed(columns).content['time']['column'] == 'time_s'
     del columns['time_s']
     assert guessed(columns).content['time'] == {'column': 'served_ms', 'unit': 'ms'}
     made = guessed({'Zeit_ms': 0 * TIME, 'x_vel': SPEED, 'x_force': SPEED})
-    reason = made.content['assumed']['time.rate_Hz']['reason']
-    assert reason.startswith('the log has no time that rises (Zeit_ms)')
+    assert made.content['time'] == {'rate_Hz': None}
+    assert made.unstated == (says('still_time'),)
+
+
+def test_whole_numbers_may_be_a_time_of_any_unit_and_one_without_a_name_is_told(guessed, says):
+    ticks = [f'{134_000_000_000_000_000 + 200_000 * row}' for row in range(200)]
+    made = guessed({'Time': ticks, 'x_vel': SPEED, 'x_force': SPEED})
+    assert made.content['time'] == {'column': 'Time', 'unit': None}
+    assert made.unstated == (says('ticks_by_name'),)
+    made = guessed({'Name': ticks, 'x_vel': SPEED, 'x_force': SPEED})
+    assert made.content['time'] == {'rate_Hz': None}
+    assert made.unstated == (says('ticks_without_name'),)
+
+
+def test_a_column_of_another_time_is_left_out_where_one_is_read(guessed):
+    columns = {'Time': ['07/14/2025'] * 200, 'time_s': TIME, 'x_vel': SPEED, 'x_force': SPEED}
+    made = guessed(columns)
+    assert made.content['time'] == {'column': 'time_s', 'unit': 's'}
+    assert not made.unstated
+    assert any("'07/14/2025' in row 2; it is left out" in note for note in made.notes)
+
+
+def test_what_a_map_says_first_stays_in_comments(guessed):
+    columns = {'Time': ['1\n: 2'] * 200, 'x_vel': SPEED, 'x_force': SPEED}
+    columns = {name: [f'"{one}"' for one in column] for name, column in columns.items()}
+    made = guessed(columns)
+    assert len(made.unstated) == 1
+    assert yaml.safe_load(made.text) == made.content
 
 
 def test_a_speed_without_a_number_is_none_and_the_position_is_used(guessed, says):

@@ -71,6 +71,15 @@ def test_the_decimal_mark_is_that_of_most_cells(text, expected, tmp_path):
     np.testing.assert_array_equal(values, expected)
 
 
+@pytest.mark.parametrize('cells', [[['a'], ['b']], [{'a': 1}, {'a': 2}]], ids=['list', 'struct'])
+def test_an_optional_column_whose_cells_hold_several_values_is_left_out(cells, tmp_path):
+    path = tmp_path / 'log.parquet'
+    pl.DataFrame({'t': [0.0, 1.0], 'v': cells}).write_parquet(path)
+    table = open_table(path, ['t', 'v'], optional=['v'])
+    assert list(table.head(9)['t']) == [0.0, 1.0]
+    assert 'it must hold numbers' in table.left_out['v']
+
+
 def test_times_of_day_become_seconds(tmp_path):
     text = 't\n2026-01-02T03:04:05.5Z\n2026-01-02T03:04:06.5Z\n'
     values = open_table(text_log(tmp_path, text), ['t']).head(99)['t']
@@ -186,3 +195,22 @@ def test_an_optional_column_without_a_number_is_left_out_with_the_reason(tmp_pat
     assert list(table.head(9)) == ['a']
     assert table.left_out['b'].endswith(says('left_out'))
     assert not table.notes
+
+
+@pytest.mark.parametrize(
+    ('text', 'layout'),
+    [
+        ('a,b\n1,2\n1,oops\n', Layout()),
+        ('# of axis x\n\na,b\n1,2\n1,oops\n', Layout()),
+        ('Maschine;3\nZeit;b\ns;\n0;1\n1;oops\n', Layout(skip=1, header_rows=2)),
+        ('"a\nof two lines",b\r\n1,2\r\n1,oops\r\n', Layout()),
+        ('a,b\n\n1,2\n1,oops\n', Layout()),
+    ],
+    ids=['names', 'comment', 'units', 'name of two lines', 'empty line'],
+)
+def test_rows_are_the_lines_of_the_file(text, layout, tmp_path):
+    table = open_table(text_log(tmp_path, text), ['b'], layout=layout)
+    unknown = table.first_row + np.flatnonzero(np.isnan(table.head(99)['b']))
+    lines = text.splitlines()
+    assert lines[unknown[-1] - 1].endswith('oops')
+    assert f'in row {unknown[0]};' in table.notes[0]

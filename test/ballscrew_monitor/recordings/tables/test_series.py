@@ -227,6 +227,17 @@ def test_the_unit_that_fits_is_named_where_another_is_stated(notes, factor, unit
         assert all(f'in {stated} says: {unit} fits' in note for note in found)
 
 
+@pytest.mark.parametrize('position', [1e200, -1e200, 1e300])
+def test_a_position_where_no_axis_is_is_refused(notes, position, refused):
+    refused('no_position', notes, SPEED, 'mm/s', np.where(TIME == TIME[7], position, POSITION))
+
+
+def test_large_numbers_beside_good_ones_say_nothing(notes):
+    assert not notes(SPEED, 'mm/s', np.where(TIME == TIME[7], 1e99, POSITION))
+    assert not notes(np.where(TIME == TIME[7], 1e200, SPEED), 'mm/s')
+    assert not notes(np.where(TIME == TIME[7], 1e80, SPEED), 'mm/s', 1e90 * POSITION)
+
+
 def test_a_gap_noise_and_rest_say_nothing_a_wrong_sign_or_factor_is_told(notes):
     late = np.where(np.arange(400) < 200, TIME, TIME + 30.0)
     position = np.where(np.arange(400) < 200, POSITION, POSITION + 5e3)

@@ -1,0 +1,231 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The first sheet of a workbook (xlsx) as texts; what it comes to is known before it is read.
+
+The reader makes a rectangle of all cells, the empty ones too, so that one cell far off fills the
+memory. What the sheet says of its size may be wrong: the references of the cells tell it.
+
+"""
+
+from collections.abc import Iterator
+import importlib
+from pathlib import Path
+import re
+import sys
+from typing import IO
+from xml.parsers import expat
+import zipfile
+import zlib
+
+from ballscrew_monitor.recordings.tables.cells import readable
+from ballscrew_monitor.recordings.words import short
+import polars as pl
+from surrogate import limits
+from surrogate.files import InputError
+
+NUMBER = 8  # [bytes] of a cell
+UNPACKABLE = (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError, OSError)
+NO_DAY = '1899-12-31 '
+"""Day that a sheet adds to a time of day."""
+SHEET = b'sheetData'  # the element that holds the cells
+CELL = re.compile(rb'[<:]c[\s/>]')
+COLUMN, ROW = '[A-Za-z]{1,7}', '[0-9]{1,19}'
+PLAIN_CELL = re.compile(f'<c r="({COLUMN})({ROW})"'.encode())
+LETTERS = 26
+VALUES = ('v', 'is')  # elements that hold the value of a cell
+
+
+def first_sheet(path: Path) -> pl.DataFrame:
+    """Return the cells of the first sheet; raises InputError, ImportError without its reader."""
+    fastexcel = importlib.import_module('fastexcel')  # it is optional
+    _check_size(path)
+    with readable(f'log {path} cannot be read', Exception):
+        names = fastexcel.read_excel(path).sheet_names
+    if not names:
+        raise InputError(f'log {path} lists no sheet, the workbook is damaged: save it as CSV')
+    with readable(f'log {path} cannot be read', Exception):
+        cells = pl.read_excel(
+            path,
+            engine='calamine',
+            has_header=False,
+            infer_schema_length=0,
+            drop_empty_rows=False,
+            drop_empty_cols=False,
+        )
+    return cells.select(pl.all().cast(pl.String).str.strip_prefix(NO_DAY))
+
+
+def _check_size(path: Path) -> None:
+    """Raise InputError if a workbook comes to more than is allowed, whatever it says of itself."""
+    failure = f'log {path} cannot be read'
+    with readable(failure, *UNPACKABLE), zipfile.ZipFile(path) as archive:
+        sheets = _sheets(path, archive)
+        if not sheets:  # the reader takes other workbooks, too
+            raise InputError(f'{failure}: it holds no sheet of xlsx')
+        for part, size in sheets:
+            _check_cells(path, archive, part, max(size, limits.CHUNK))
+
+
+def _sheets(path: Path, archive: zipfile.ZipFile) -> list[tuple[zipfile.ZipInfo, int]]:
+    """Return the parts that hold cells, and their sizes [B], after all parts were unpacked."""
+    most, unpacked = min(limits.most_unpacked(path.stat().st_size), limits.WORKBOOK), 0
+    sheets = []
+    for part in archive.infolist():
+        part.file_size = sys.maxsize  # it is read to its end, whatever it says
+        begin, is_sheet, tail = unpacked, False, b''
+        with archive.open(part) as stream:
+            while block := stream.read(limits.MEGA):
+                unpacked += len(block)
+                if unpacked > most:
+                    raise InputError(
+                        f'log {path} comes to more than {most // limits.MEGA} MB when it is '
+                        'unpacked: save its sheet as CSV'
+                    )
+                text = tail + block
+                is_sheet |= SHEET in text
+                tail = text[slice(-len(SHEET), None)]
+        if is_sheet:
+            sheets.append((part, unpacked - begin))
+    return sheets
+
+
+def _check_cells(path: Path, archive: zipfile.ZipFile, part: zipfile.ZipInfo, most: int) -> None:
+    """Raise InputError if the rectangle around the cells of a sheet comes to more than `most`."""
+    try:
+        with archive.open(part) as stream:
+            cells = _plain_cells(_whole_tags(stream))
+        if cells is None or NUMBER * cells.count > most:
+            with archive.open(part) as stream:
+                cells = _cells(_whole_tags(stream))
+    except (expat.ExpatError, ValueError) as error:
+        raise InputError(f'log {path} cannot be read, {short(part.filename)}: {error}') from None
+    if NUMBER * cells.count > most:
+        raise InputError(
+            f'log {path}: the cells of {short(part.filename)} lie within {cells.height} rows and '
+            f'{cells.width} columns, which come to {NUMBER * cells.count / limits.MEGA:.0f} MB at '
+            f'{NUMBER} bytes for a cell, allowed are {most / limits.MEGA:.0f} MB: clear the cells '
+            'far off, or save the sheet as CSV'
+        )
+
+
+def _whole_tags(stream: IO[bytes]) -> Iterator[bytes]:
+    """Yield blocks that end before a tag; raises ValueError where none begins for long."""
+    rest = b''
+    while block := stream.read(limits.MEGA):
+        text = rest + block
+        cut = max(text.rfind(b'<'), 0)
+        if len(text) - cut > limits.LINE:
+            raise ValueError(f'a tag has more than {limits.LINE // limits.MEGA} MB')
+        yield text[:cut]
+        rest = text[cut:]
+    yield rest
+
+
+class _Extent:
+    """Rows and columns between the first and the last of some cells."""
+
+    def __init__(self) -> None:
+        self._rows: set[int] = set()
+        self._columns: set[int] = set()
+
+    def add(self, rows: set[int], columns: set[int]) -> None:
+        self._rows = _ends(self._rows | rows)
+        self._columns = _ends(self._columns | columns)
+
+    @property
+    def height(self) -> int:
+        return max(self._rows) - min(self._rows) + 1 if self._rows else 0
+
+    @property
+    def width(self) -> int:
+        return max(self._columns) - min(self._columns) + 1 if self._columns else 0
+
+    @property
+    def count(self) -> int:
+        return self.height * self.width
+
+
+def _ends(numbers: set[int]) -> set[int]:
+    return {min(numbers), max(numbers)} if numbers else numbers
+
+
+def _plain_cells(texts: Iterator[bytes]) -> _Extent | None:
+    """Return the extent of all cells, empty ones too; None if one has no reference as usual."""
+    extent = _Extent()
+    for text in texts:
+        references = PLAIN_CELL.findall(text)
+        if len(references) != len(CELL.findall(text)):
+            return None
+        if references:
+            letters, digits = map(set, zip(*references))
+            extent.add({int(one) for one in digits}, {_column(one.decode()) for one in letters})
+    return extent
+
+
+def _column(letters: str) -> int:
+    """Return the number of a column, that of A is 1."""
+    number = 0
+    for letter in letters.upper():
+        number = LETTERS * number + ord(letter) - ord('A') + 1
+    return number
+
+
+def _cells(texts: Iterator[bytes]) -> _Extent:
+    """Return the extent of the cells with a value; raises ExpatError and ValueError."""
+    reader = _CellReader()
+    for text in texts:
+        reader.parser.Parse(text, False)
+    reader.parser.Parse(b'', True)
+    return reader.extent
+
+
+class _CellReader:
+    """Follows the cells of a sheet; one without a reference comes after the one before."""
+
+    def __init__(self) -> None:
+        self.extent, self.parser = _Extent(), expat.ParserCreate()
+        self.parser.StartElementHandler = self._begin
+        self.parser.EndElementHandler = self._end
+        self.parser.CharacterDataHandler = self._take
+        self.parser.StartDoctypeDeclHandler = self._refuse
+        self._row = self._column = 0
+        self._place = 0, 0
+        self._is_value = False
+
+    def _begin(self, name: str, attributes: dict[str, str]) -> None:
+        kind = name.rpartition(':')[2]
+        if kind == 'row':
+            self._row, self._column = _row(attributes.get('r', str(self._row + 1))), 0
+        elif kind == 'c':
+            row, self._column = self._row, self._column + 1
+            if 'r' in attributes:
+                row, self._column = _reference(attributes['r'])
+            self._place = row, self._column
+        self._is_value = self._is_value or kind in VALUES
+
+    def _end(self, name: str) -> None:
+        if name.rpartition(':')[2] in VALUES:
+            self._is_value = False
+
+    def _take(self, text: str) -> None:
+        if self._is_value:
+            row, column = self._place
+            self.extent.add({row}, {column})
+
+    def _refuse(self, *words: object) -> None:
+        raise ValueError('it states a type of document')
+
+
+def _row(text: str) -> int:
+    if not re.fullmatch(ROW, text):
+        raise ValueError(f'a row is numbered {short(text)}')
+    return int(text)
+
+
+def _reference(text: str) -> tuple[int, int]:
+    """Return row and column of a reference such as B7."""
+    match = re.fullmatch(f'({COLUMN})({ROW})', text)
+    if not match:
+        raise ValueError(f'a cell is called {short(text)}')
+    return int(match[2]), _column(match[1])

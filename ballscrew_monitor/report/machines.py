@@ -1,0 +1,82 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Machines of recordings, which tell axes of one name apart.
+
+A machine is the name that the map of a log states, else the folder that holds the recording.
+
+"""
+
+from collections import Counter
+from collections.abc import Iterable
+import os.path
+from pathlib import Path
+from typing import NamedTuple
+
+
+class MachineAxis(NamedTuple):
+    """An axis of a machine, which is a stated name or the absolute path of a folder."""
+
+    machine: str
+    axis: str
+
+
+def folder_of(log: Path) -> Path:
+    """
+    Return the resolved folder that holds a recording.
+
+    A folder with `metadata.yaml` is the recording itself. A link counts where it lies.
+
+    """
+    folder = Path(os.path.abspath(log if log.is_dir() else log.parent))
+    return (folder.parent if (folder / 'metadata.yaml').is_file() else folder).resolve()
+
+
+def machine_names(axes: Iterable[MachineAxis]) -> dict[str, str]:
+    """Return a short name of each machine: of a folder, as much of its path as tells it apart."""
+    machines = list(dict.fromkeys(one.machine for one in axes))
+    return {one: _short_name(one, {*machines} - {one}) for one in machines}
+
+
+def _short_name(machine: str, others: set[str]) -> str:
+    if not _is_folder(machine):
+        return machine
+    parts = Path(machine).parts
+    endings = (str(Path(*parts[-depth:])) for depth in range(1, len(parts)))
+    alone = (one for one in endings if not any(_ends_with(other, one) for other in others))
+    return next(alone, machine)
+
+
+def _ends_with(machine: str, ending: str) -> bool:
+    if not _is_folder(machine):
+        return machine == ending
+    count = len(Path(ending).parts)
+    return Path(machine).parts[-count:] == Path(ending).parts
+
+
+def _is_folder(machine: str) -> bool:
+    return machine.startswith('/')
+
+
+def axis_titles(axes: Iterable[MachineAxis]) -> dict[MachineAxis, str]:
+    """Return the name of each axis, with its machine where machines share that name."""
+    known = list(dict.fromkeys(axes))
+    names, count = machine_names(known), Counter(one.axis for one in known)
+    return {
+        one: one.axis if count[one.axis] == 1 else f'{one.axis} of {names[one.machine]}'
+        for one in known
+    }
+
+
+def folders_note(axes: Iterable[MachineAxis]) -> str:
+    """Return in a sentence that folders with axes of one name count as machines, or ''."""
+    known = set(axes)
+    count = Counter(one.axis for one in known)
+    folders = {one.machine for one in known if count[one.axis] > 1 and _is_folder(one.machine)}
+    if len(folders) < 2:
+        return ''
+    return (
+        f'{len(folders)} folders of recordings count as {len(folders)} machines: if they are of '
+        'one machine, state machine in the map of its logs, or put its recordings into one '
+        'folder'
+    )

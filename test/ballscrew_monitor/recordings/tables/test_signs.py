@@ -1,0 +1,207 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Numbers that may be read in two ways are refused until the map states the decimal sign.
+
+The true numbers are those that are written here, with one decimal sign in all of a log.
+
+"""
+
+import math
+from pathlib import Path
+import tempfile
+
+from ballscrew_monitor import cli
+from ballscrew_monitor.recordings.tables import read as read_module
+from ballscrew_monitor.recordings.tables import sources
+from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.read import open_table
+from ballscrew_monitor.recordings.tables.series import read_series
+from hypothesis import given, settings
+from hypothesis import strategies as st
+import numpy as np
+import pytest
+from surrogate.files import InputError
+
+OTHER = {'.': ',', ',': '.'}
+
+
+def written(value, sign, digits=0, *, parted=True):
+    """Return a number with a decimal sign, its thousands parted by the other one or by nothing."""
+    text = f'{value:,.{digits}f}' if parted else f'{value:.{digits}f}'
+    return text.translate(str.maketrans('.,', sign + OTHER[sign]))
+
+
+def log_of(folder, columns, separator=';'):
+    """Write a table of texts, in quotes where they hold the separator."""
+    rows = [list(columns), *zip(*columns.values(), strict=True)]
+    quoted = [[f'"{cell}"' if separator in cell else cell for cell in row] for row in rows]
+    path = Path(folder) / 'log.csv'
+    path.write_text(''.join(f'{separator.join(row)}\n' for row in quoted))
+    return path
+
+
+@pytest.fixture
+def read(tmp_path):
+    """Return a function that reads columns of texts, by default all of them."""
+
+    def make(columns, names=None, *, decimal='', separator=';'):
+        path = log_of(tmp_path, columns, separator)
+        return open_table(path, names or list(columns), decimal=decimal).head(99)
+
+    return make
+
+
+VALUES = st.lists(
+    st.floats(-5e6, 5e6) | st.integers(-9999, 9999).map(float), min_size=1, max_size=9
+)
+
+
+@given(VALUES, st.sampled_from('.,'), st.sampled_from(';\t,'), st.integers(0, 4), st.booleans())
+@settings(max_examples=300)
+def test_no_number_is_another_one(values, sign, separator, digits, parted):
+    """It is right, unknown or refused; once the sign is stated it is right."""
+    columns = {
+        't': [written(row / 100, sign, 2) for row in range(len(values))],
+        'v': [written(value, sign, digits, parted=parted) for value in values],
+    }
+    true = np.array([float(f'{value:.{digits}f}') for value in values])
+    with tempfile.TemporaryDirectory() as folder:
+        log = log_of(folder, columns, separator)
+        found = open_table(log, ['t', 'v'], decimal=sign).head(99)
+        np.testing.assert_array_equal(found['v'], true)
+        np.testing.assert_array_equal(found['t'], np.arange(len(values)) / 100)
+        try:
+            found = open_table(log, ['t', 'v']).head(99)
+        except InputError:
+            return
+        known = np.isfinite(found['v'])
+        np.testing.assert_array_equal(found['v'][known], true[known])
+
+
+@pytest.mark.parametrize('sign', '.,')
+def test_both_readings_are_named_and_the_map_decides(read, refused, sign):
+    columns = {
+        't': [written(row / 100, sign, 2) for row in range(3)],
+        'v': ['845', '0', written(5400.0, sign)],
+    }
+    key = {'.': 'comma_of_thousands', ',': 'point_of_thousands'}[sign]
+    refused(key, read, columns)
+    assert read(columns, decimal=sign)['v'].tolist() == [845.0, 0.0, 5400.0]
+    assert read(columns, decimal=OTHER[sign])['v'].tolist() == [845.0, 0.0, 5.4]
+    assert read(columns, decimal=OTHER[sign])['t'].tolist() == [0.0, 0.01, 0.02]  # they show it
+
+
+@pytest.mark.parametrize('block', [1, 2, 99])
+@pytest.mark.parametrize(
+    ('shown', 'expected'),
+    [('12.35', 12.35), ('0.125', 0.125), ('5.4e3', 5400.0), ('1234.567', 1234.567), ('.5', 0.5)],
+)
+def test_a_column_that_shows_its_sign_is_read_by_it(read, monkeypatch, shown, expected, block):
+    monkeypatch.setattr(sources, 'BLOCK', block)
+    columns = {'t': ['0,1', '0,2'], 'v': ['5.400', shown]}
+    for decimal in ('', ',', '.'):
+        assert read(columns, decimal=decimal)['v'].tolist() == [5.4, expected]
+
+
+@pytest.mark.parametrize('shown', ['12,35', '1.234,5', '1.234.567'])
+def test_cells_of_the_column_itself_may_show_the_other_sign(read, refused, shown):
+    true = {'12,35': 12.35, '1.234,5': 1234.5, '1.234.567': 1_234_567.0}[shown]
+    columns = {'n': ['1', '2'], 'v': ['5.400', shown]}
+    refused('same_column', read, columns)
+    assert read(columns, decimal=',')['v'].tolist() == [5400.0, true]
+
+
+def test_where_nothing_has_the_other_sign_a_point_is_decimal(read):
+    columns = {'t': ['0', '10'], 'v': ['5.400', '5.500'], 'n': ['N 1,5', '14.07.2025 10:00:00,5']}
+    assert read(columns, ['t', 'v'])['v'].tolist() == [5.4, 5.5]
+    columns = {'t': ['0', '10'], 'v': ['5,400', '5,500']}
+    assert read(columns)['v'].tolist() == [5.4, 5.5]
+
+
+def test_a_column_that_is_not_read_shows_the_sign_too(read, refused):
+    columns = {'t': ['0', '10'], 'v': ['5.400', '5.500'], 'oil': ['41,5', '41,5']}
+    refused('of_another', read, columns, ['t', 'v'])
+
+
+def test_two_columns_of_which_neither_is_clear_are_refused(read, refused):
+    refused('neither', read, {'v': ['5.400'], 'f': ['1,250']})
+
+
+@pytest.mark.parametrize(
+    ('content', 'key'), [(None, 'blank'), ('', 'empty'), (';', 'other'), ([','], 'list')]
+)
+def test_a_map_states_a_point_or_a_comma(content, key, refused):
+    axes = {'x': {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'mm/s'}}}
+    mapping = {'time': {'rate_Hz': 10.0}, 'axes': axes}
+    assert make_map(mapping).decimal == ''
+    assert make_map(mapping | {'decimal': ','}).decimal == ','
+    refused(key, make_map, mapping | {'decimal': content})
+
+
+COUNT = 800
+
+
+@pytest.fixture
+def german_log(tmp_path):
+    """Return a log of 540 rev/min at 10 mm of lead: 46 revolutions in 8 s."""
+    times = np.arange(COUNT) / 100
+    speeds = 5400.0 * np.sin(math.pi * times / 2)
+    columns = {
+        'Zeit [s]': [written(time, ',', 2) for time in times],
+        'X Vorschub [mm/min]': [written(speed, ',') for speed in speeds],
+        'X Kraft [N]': [written(-2400.0 if speed >= 0.0 else 2400.0, ',') for speed in speeds],
+    }
+    return log_of(tmp_path, columns)
+
+
+def test_each_command_refuses_it_until_the_map_says_which(german_log, tmp_path, capsys, says):
+    log, mapping, out = str(german_log), tmp_path / 'map.yaml', tmp_path / 'out'
+    assert cli.main(['import', log, '--guess']) == 0
+    captured = capsys.readouterr()
+    assert says('of_the_log', log=log) in captured.err
+    assert f'#   {says("of_the_log", log=log)}\n' in captured.out
+    unsaid = captured.out.replace('decimal: null\n', '')
+    for content, said in ((captured.out, says('blank')), (unsaid, says('of_the_log', log=log))):
+        mapping.write_text(content)
+        for command in (
+            ['import', log, '--config', str(mapping), '--out', str(out)],
+            ['replay', log, '--map', str(mapping)],
+            ['replay', log, '--map', str(mapping), '--out', str(out)],
+            ['health', log, '--map', str(mapping)],
+        ):
+            assert cli.main(command) == 2, command
+            assert said in capsys.readouterr().err
+    mapping.write_text(captured.out.replace('decimal: null', "decimal: ','"))
+    assert cli.main(['replay', log, '--map', str(mapping)]) == 0
+    shown = capsys.readouterr().out
+    assert '-56.55 to 56.55 rad/s' in shown
+    assert '-2400 to 2400 N' in shown
+    assert ', 46 revolutions, ' in shown
+
+
+def test_a_guess_takes_the_sign_of_the_other_columns_for_its_units(tmp_path):
+    columns = {
+        't_s': [written(row / 100, ',', 2) for row in range(9)],
+        'x_vel': [written(500.0 * row, ',') for row in range(9)],
+    }
+    content = guess(log_of(tmp_path, columns)).content
+    assert content['decimal'] is None
+    assert content['assumed']['x.speed.unit']['value'] == 'mm/min'  # 4.000 is no 4 m/s
+
+
+def test_one_look_is_enough_for_a_log_that_is_clear(tmp_path, monkeypatch):
+    """Other columns are looked at only where those of the map leave a doubt."""
+    looks = []
+    plain = sources.Source.head
+    monkeypatch.setattr(
+        sources.Source, 'head', lambda source: looks.append(source) or plain(source)
+    )
+    assert read_module.Source is sources.Source
+    axes = {'x': {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'mm/s'}}}
+    mapping = make_map({'time': {'rate_Hz': 10.0, 'epoch': '2026-01-01'}, 'axes': axes})
+    read_series(log_of(tmp_path, {'v': ['5.400', '12.5'], 'n': ['1,5', '2']}), mapping)
+    assert not looks
+    read_series(log_of(tmp_path, {'v': ['5.400', '5.500'], 'n': ['1', '2']}), mapping)
+    assert len(looks) == 1

@@ -1,0 +1,299 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Times that no recording has are refused, with the rows of the file; in no form is a rate wrong.
+
+The true rate is that of the clock which writes the cells here.
+
+"""
+
+import datetime as dt
+from pathlib import Path
+import tempfile
+
+from ballscrew_monitor import cli
+from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.series import read_series
+from ballscrew_monitor.recordings.tables.time_gate import AGAIN, TimeGate
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+import numpy as np
+import openpyxl
+import polars as pl
+import pytest
+from surrogate.files import InputError
+
+YEAR = 365.25 * 86400.0  # [s]
+EPOCH = '2000-01-01T00:00:00Z'
+AXIS = {
+    'lead_mm': 10.0,
+    'speed': {'column': 'v', 'unit': 'mm/s'},
+    'temperature': {'column': 'w', 'unit': 'degC'},
+}
+
+
+def content_of(time):
+    return {'time': time, 'axes': {'x': AXIS}}
+
+
+@pytest.fixture
+def read(tmp_path, write_csv):
+    """Return a function that reads a table of times t, in [s] unless told otherwise."""
+
+    def make(times, speeds=None, temperatures=None, *, name='log.csv', **time):
+        count = len(times)
+        columns = {
+            't': times,
+            'v': [1.0] * count if speeds is None else speeds,
+            'w': [40.0] * count if temperatures is None else temperatures,
+        }
+        path = tmp_path / name
+        if name.endswith('.parquet'):
+            pl.DataFrame(columns).write_parquet(path)
+        elif name.endswith('.xlsx'):
+            book = openpyxl.Workbook()
+            for row in [list(columns), *zip(*columns.values(), strict=True)]:
+                book.active.append(
+                    [getattr(cell, 'item', lambda cell=cell: cell)() for cell in row]
+                )
+            book.save(path)
+        else:
+            write_csv(path, columns, form='{:.15g}')
+        time = {'column': 't', 'unit': 's', 'epoch': EPOCH} | time
+        return read_series(path, make_map(content_of(time)))
+
+    return make
+
+
+def test_more_rows_in_a_second_than_any_table_has_are_refused(read, refused):
+    steps = np.arange(500)
+    assert read(steps * 1e-5).count == 500
+    assert read(1.7e9 + steps * 1e-5, epoch='2026-01-01T00:00:00Z').count == 500
+    refused('fast', read, steps / 1.1e5)
+    refused('fast_parquet', read, steps / 1.1e5, name='log.parquet')
+    days = 45852.4998842593 + steps * 0.05 / 86400
+    refused('days', read, days)
+    assert read(days, scale=86400).usual_period == pytest.approx(0.05, rel=0.01)
+
+
+def test_times_that_most_rows_share_are_refused(read, refused):
+    rows = np.arange(400)
+    refused('equal', read, rows // 100)
+    assert read(rows * 2 // 3).count == 400  # each third row has the time of the one before
+
+
+def test_more_than_ten_years_are_refused(read, refused):
+    steps = np.arange(500.0)
+    steps[-1] = 10 * YEAR
+    assert read(steps).count == 500
+    steps[-1] = 10 * YEAR + 1
+    refused('span', read, steps)
+
+
+@pytest.mark.parametrize('ending', ['csv', 'parquet', 'xlsx'])
+def test_a_time_that_begins_again_is_refused_with_the_rows(read, refused, ending):
+    run = np.arange(300) / 100
+    key = 'again_parquet' if ending == 'parquet' else 'again'
+    refused(key, read, np.tile(run, 3), name=f'log.{ending}')
+
+
+def test_a_clock_set_back_by_an_hour_begins_again(read, refused):
+    begin = dt.datetime(2025, 10, 26, 2, 59, 58)
+    times = [begin + dt.timedelta(seconds=row / 20) for row in range(40)]
+    times += [one - dt.timedelta(minutes=59) for one in times]
+    refused('set_back', read, [f'{one:%d.%m.%Y %H:%M:%S.%f}' for one in times])
+
+
+@given(
+    st.floats(0.0, 50.0),
+    st.lists(st.integers(AGAIN + 1, 60), min_size=2, max_size=5),
+    st.integers(1, 70),
+)
+def test_runs_that_were_appended_are_told_by_the_row_of_the_second(first, counts, block):
+    times = np.concatenate([first + np.arange(count) / 100 for count in counts])
+    assert f'begins again in row {2 + counts[0]}, with ' in gated(times, block).fault()[0]
+
+
+@given(st.integers(3, 30), st.integers(1, 9), st.integers(1, 40))
+def test_a_run_of_few_rows_at_the_end_begins_again_too(count, more, block):
+    times = np.concatenate([5.0 + np.arange(count) / 100, np.arange(more) / 100])
+    assert f'begins again in row {2 + count}, with 0 s ' in gated(times, block).fault()[0]
+
+
+@given(st.lists(st.permutations(range(5)), min_size=4, max_size=30), st.integers(1, 40))
+def test_rows_that_come_a_little_late_are_no_fault(parts, block):
+    times = [0.05 * number + row / 100 for number, part in enumerate(parts) for row in part]
+    assert gated(np.array([*times, 1e3]), block).fault() == ('', '')
+
+
+def gated(times, block):
+    """Return the gate that was shown times in blocks, the first of them in row 2."""
+    gate = TimeGate()
+    for begin in range(0, len(times), block):
+        part = slice(begin, begin + block)
+        gate.add(times[part], 2 + np.arange(len(times))[part])
+    return gate
+
+
+@given(
+    st.lists(st.sampled_from([-3.0, -1e-3, 0.0, 1e-7, 1e-3, 1.0, 4e8]), min_size=1, max_size=60),
+    st.integers(1, 60),
+)
+@example([1.0, 1.0, -3.0, *[1e-3] * 20], 3)
+def test_blocks_leave_no_trace(steps, block):
+    times = np.cumsum([0.0, *steps])
+    assert gated(times, block).fault() == gated(times, len(times)).fault()
+
+
+def test_only_the_rows_of_the_motion_count(read, refused):
+    """A slow temperature has rows of its own, out of order, and times of another clock."""
+    rows, nothing = np.arange(400), ['']
+    times = [*(rows / 100), *[3.0] * 900, *np.tile(np.arange(50) / 50, 2), 1.0 + 20 * YEAR]
+    speeds = [*rows.tolist(), *nothing * 1001]
+    temperatures = [*nothing * 400, *[40.0] * 1001]
+    assert read(times, speeds, temperatures).count == 1401
+    refused('of_the_motion', read, [*times[:200], *times], [*speeds[:200], *speeds])
+
+
+@pytest.mark.parametrize(
+    ('form', 'guessed', 'refused'),
+    [
+        ('%m/%d/%Y %H:%M:%S.%f', 'guess_month_first', 'month_first'),
+        ('%Y-%m-%d %I:%M:%S.%f %p', 'guess_half_days', 'half_days'),
+    ],
+)
+def test_a_time_that_is_not_read_is_refused_by_each_command(
+    form, guessed, refused, tmp_path, write_csv, capsys, says
+):
+    begin = dt.datetime(2025, 7, 14, 11, 59, 50)
+    times = [f'{begin + dt.timedelta(seconds=row / 20):{form}}' for row in range(800)]
+    columns = {'Time': times, 'X Feed (mm/min)': [78.5] * 800, 'X Force (N)': [-900.0] * 800}
+    log = write_csv(tmp_path / 'log.csv', columns)
+    assert cli.main(['import', str(log), '--guess']) == 0
+    captured = capsys.readouterr()
+    assert captured.err.splitlines()[-1] == says(guessed, log=log)
+    mapping, out = tmp_path / 'map.yaml', tmp_path / 'out'
+    stated = captured.out.replace('rate_Hz: null', 'column: Time, unit: s')
+    for content, said in ((captured.out, 'blank_rate'), (stated, refused)):
+        mapping.write_text(content)
+        for command in (
+            ['import', str(log), '--config', str(mapping), '--out', str(out)],
+            ['replay', str(log), '--map', str(mapping)],
+            ['replay', str(log), '--map', str(mapping), '--out', str(out)],
+            ['health', str(log), '--map', str(mapping)],
+        ):
+            assert cli.main(command) == 2, command
+            assert says(said) in capsys.readouterr().err
+    assert not (out / 'metadata.yaml').exists()
+    mapping.write_text(captured.out.replace('rate_Hz: null', 'rate_Hz: 20'))
+    assert cli.main(['replay', str(log), '--map', str(mapping)]) == 0
+    assert ' s of 39.9 s, ' in capsys.readouterr().out
+
+
+BEGIN = dt.datetime(2025, 7, 14, 11, 59, 50)
+SINCE_1601 = dt.datetime(1601, 1, 1)
+
+
+def clock(form, *, digits=6):
+    """Return what writes a time [s] since the begin in a form, with digits of the second."""
+
+    def write(time):
+        at = BEGIN + dt.timedelta(microseconds=round(time * 1e6))
+        fraction = f'{at:%f}'[:digits]
+        return at.strftime(form).replace('FFF', fraction)
+
+    return write
+
+
+def number(scale, *, digits=6, first=0.0, wrap=float('inf')):
+    """Return what writes a time [s] as a number of units, from a first one on, which may wrap."""
+    return lambda time: f'{(first + time * scale) % wrap:.{digits}f}'
+
+
+UNIVERSAL = BEGIN.replace(tzinfo=dt.UTC).timestamp()
+TEXTS = {
+    'iso': clock('%Y-%m-%d %H:%M:%S.FFF', digits=3),
+    'iso T': clock('%Y-%m-%dT%H:%M:%S.FFFZ'),
+    'iso in whole seconds': clock('%Y-%m-%d %H:%M:%S'),
+    'zone': clock('%Y-%m-%d %H:%M:%S.FFF+02:00'),
+    'German': clock('%d.%m.%Y %H:%M:%S,FFF', digits=3),
+    'German of two digits': clock('%d.%m.%y %H:%M:%S,FFF'),
+    'year first': clock('%Y/%m/%d %H:%M:%S.FFF'),
+    'month first': clock('%m/%d/%Y %H:%M:%S.FFF'),
+    'month first, half days': clock('%m/%d/%Y %I:%M:%S.FFF %p'),
+    'day first': clock('%d/%m/%Y %H:%M:%S.FFF'),
+    'words': clock('%d-%b-%Y %H:%M:%S.FFF'),
+    'of the day': clock('%H:%M:%S.FFF'),
+    'of half a day': clock('%I:%M:%S.FFF %p'),
+    'colon': clock('%H:%M:%S:FFF', digits=3),
+    'minutes': clock('%Y-%m-%d %H:%M'),
+    'of the hour': clock('%M:%S.FFF', digits=1),
+}
+STATED = {
+    's': number(1.0),
+    'ms': number(1e3, digits=3),
+    'us': number(1e6, digits=0, first=5e8),
+    'ns': number(1e9, digits=0, first=1.7e18),
+    'min': number(1 / 60, digits=9),
+    'h': number(1 / 3600, digits=10),
+}
+UNSTATED = {
+    'seconds': number(1.0, digits=4),
+    'of 1970': number(1.0, digits=5, first=UNIVERSAL),
+    'ms of 1970': number(1e3, digits=0, first=1e3 * UNIVERSAL),
+    'us of 1970': number(1e6, digits=0, first=1e6 * UNIVERSAL),
+    'whole ms': number(1e3, digits=0, first=12.0),
+    'whole ticks of 100 us': number(1e4, digits=0),
+    'ms that wrap': number(1e3, digits=0, first=65_000.0, wrap=65_536.0),
+    'since 1601': number(1e7, digits=0, first=1e7 * (BEGIN - SINCE_1601).total_seconds()),
+    'since the year 1': number(1e7, digits=0, first=638_880_911_900_000_000.0),
+    'days of a sheet': number(1 / 86400, digits=10, first=45_852.4998842593),
+    'since 1904': number(1.0, digits=4, first=UNIVERSAL + 2_082_844_800.0),
+    'whole seconds': number(1.0, digits=0, first=UNIVERSAL),
+}
+NAMES = ('Time', 'Zeit', 'timestamp', 't')
+FORMS = (
+    [(name, text) for name in NAMES for text in [*TEXTS.values(), *UNSTATED.values()]]
+    + [(f'{name} [{unit}]', text) for name in NAMES for unit, text in STATED.items()]
+    + [(f'time_{unit}', STATED[unit]) for unit in ('s', 'ms', 'us', 'ns')]
+    + [('Name', text) for text in UNSTATED.values()]
+)
+COUNT = 240
+
+
+def outcome(name, text, rate, *, appended=False):
+    """Return the rate [Hz] that a log with times in a form is read with, None if it is not."""
+    times = np.arange(COUNT) / rate
+    lines = [f'{text(time)};{20.0 + row % 7};-900' for row, time in enumerate(times)]
+    lines *= 1 + appended
+    with tempfile.TemporaryDirectory() as folder:
+        log = Path(folder) / 'log.csv'
+        log.write_text('\n'.join([f'{name};x_vel_mm_s;x_force_N', *lines]) + '\n')
+        content = guess(log).content
+        try:
+            series = read_series(log, make_map(content))
+        except InputError:
+            return None
+        stamps = np.concatenate([block.stamps for block in series.blocks()])
+    return 1e9 * (len(stamps) - 1) / (stamps[-1] - stamps[0])
+
+
+@given(st.sampled_from(FORMS), st.floats(-1.0, 3.7), st.booleans())
+@example(('Time', UNSTATED['days of a sheet']), 0.0, False)
+@settings(max_examples=300)
+def test_in_whatever_form_a_time_stands_the_rate_is_right_or_refused(form, decade, appended):
+    rate = 10**decade
+    found = outcome(*form, rate, appended=appended)
+    assert found is None or found == pytest.approx(rate, rel=0.01)
+    assert found is None or not appended
+
+
+@pytest.mark.parametrize('form', ['iso', 'iso T', 'zone', 'German', 'year first', 'of the day'])
+def test_the_forms_of_the_manual_are_read(form):
+    assert outcome('Time', TEXTS[form], 50.0) == pytest.approx(50.0, rel=1e-3)
+
+
+@pytest.mark.parametrize('unit', STATED)
+def test_a_unit_in_the_name_is_that_of_the_time(unit):
+    assert outcome(f'Time [{unit}]', STATED[unit], 50.0) == pytest.approx(50.0, rel=1e-3)

@@ -1,0 +1,165 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A workbook is refused before it is read if its cells come to too much, however they are told."""
+
+import io
+import re
+import sys
+import types
+import zipfile
+
+from ballscrew_monitor.recordings.tables import workbook
+from ballscrew_monitor.recordings.tables.workbook import first_sheet
+import openpyxl
+import polars as pl
+import pytest
+from surrogate import limits
+
+ROWS = [('t', 'v'), ('0', '3'), ('0.1', '4'), ('0.2', '5')]
+FAR = '<row r="1048576"><c r="Z1048576"><v>1</v></c></row>'
+FORMS = {
+    'as usual': lambda text: text,
+    'no references': lambda text: re.sub(r' r="\w+"', '', text),
+    'blanks': lambda text: re.sub(r' r="(\w+)"', r" r = '\1'", text),
+    'another order': lambda text: re.sub(r'<c r="(\w+)" t="n"', r'<c t="n" r="\1"', text),
+    'small letters': lambda text: re.sub(r'r="([A-Z])(\d)', lambda m: m[0].lower(), text),
+    'prefix': lambda text: re.sub('<(/?)([a-z])', r'<\1x:\2', text, flags=re.I).replace(
+        'xmlns=', 'xmlns:x='
+    ),
+    'rows upside down': lambda text: re.sub('(<row r="3".*?</row>)(<row.*?</row>)', r'\2\1', text),
+}
+
+
+@pytest.fixture
+def book(tmp_path):
+    """Return the function that writes a workbook whose sheet is changed as a text."""
+
+    def write(change=lambda text: text, left_out=()):
+        made, content = openpyxl.Workbook(), io.BytesIO()
+        for row in [ROWS[0], *([float(cell) for cell in row] for row in ROWS[1:])]:
+            made.active.append(row)
+        made.save(content)
+        path = tmp_path / 'log.xlsx'
+        with zipfile.ZipFile(content) as held, zipfile.ZipFile(path, 'w') as archive:
+            for name in {*held.namelist()} - {*left_out}:
+                part = held.read(name)
+                if name.endswith('sheet1.xml'):
+                    part = change(part.decode()).encode()
+                archive.writestr(name, part)
+        return path
+
+    return write
+
+
+@pytest.fixture
+def unread(monkeypatch):
+    """Let nothing read a workbook."""
+    monkeypatch.setitem(sys.modules, 'fastexcel', types.SimpleNamespace())
+
+
+def with_row(row):
+    return lambda text: re.sub(r'</(\w+:)?sheetData>', row + r'\g<0>', text)
+
+
+@pytest.mark.parametrize('form', FORMS)
+def test_cells_are_the_same_however_they_are_told(form, book):
+    assert first_sheet(book(FORMS[form])).rows() == ROWS
+
+
+@pytest.mark.parametrize('form', FORMS)
+def test_a_cell_far_off_is_refused_before_anything_is_read(form, book, unread, refused):
+    refused('far_off', first_sheet, book(lambda text: with_row(FAR)(FORMS[form](text))))
+
+
+@pytest.mark.parametrize(
+    'row',
+    [
+        '<row r="4000000000"><c r="ZZZZZZ4000000000"><v>1</v></c></row>',
+        '<row r="9"><c r="A4000000000"><v>1</v></c><c r="A9"><v>1</v></c></row>',
+        '<row r="4000000000"><c><v>1</v></c></row>',
+        '<row><c r="ALL9"/><c t="inlineStr"><is><t>x</t></is></c></row><row r="9999999"/>' + FAR,
+        f'<row><c r="A9" s="{"x" * 3000}"><v>1</v></c></row>{FAR}',
+    ],
+)
+def test_no_reference_hides_behind_others(row, book, unread, refused):
+    refused('far_off_anywhere', first_sheet, book(with_row(row)))
+
+
+@pytest.mark.parametrize('size', [1, 7, 64])
+def test_a_reference_may_lie_across_blocks(size, book, unread, refused, monkeypatch):
+    path = book(with_row(FAR))
+    monkeypatch.setattr(limits, 'most_unpacked', lambda packed: 10**9)
+    monkeypatch.setattr(limits, 'WORKBOOK', 10**9)
+    monkeypatch.setattr(limits, 'MEGA', size)
+    refused('far_off_anywhere', first_sheet, path)
+
+
+@pytest.mark.parametrize(
+    'row',
+    [
+        '<row r="1048576"><c r="XFD1048576" s="1"/></row>',
+        '<row r="1048576"><c r="XFD1048576"><v></v>\n</c></row>',
+        '<row r="1048576"><c r="XFD1048576"><f>A1</f></c></row>',
+        '<row r="1048576" ht="12.8"/>',
+    ],
+    ids=['format', 'no value', 'formula', 'row'],
+)
+def test_cells_without_a_value_are_none(row, book):
+    assert first_sheet(book(with_row(row))).rows() == ROWS
+
+
+@pytest.mark.parametrize(
+    ('key', 'change'),
+    [
+        ('doctype', lambda text: f'<!DOCTYPE worksheet>{FORMS["blanks"](text)}'),
+        ('cell', with_row('<row><c r="9A"><v>1</v></c></row>')),
+        ('row', with_row('<row r="x"><c><v>1</v></c></row>')),
+        ('ill_formed', with_row('<row><c t="n"><v>1</v></d></row>')),
+        ('long_tag', with_row(f'<row><c r="A1" s="{"x" * 5000}"><v>1</v></c></row>')),
+    ],
+)
+def test_a_sheet_that_is_none_is_refused(key, change, book, unread, refused, monkeypatch):
+    path = book(change)
+    monkeypatch.setattr(limits, 'most_unpacked', lambda packed: 10**9)
+    monkeypatch.setattr(limits, 'LINE', 4000)
+    monkeypatch.setattr(limits, 'MEGA', 1000)
+    refused(key, first_sheet, path)
+
+
+def test_a_workbook_without_a_sheet_is_refused(book, unread, refused):
+    refused('no_part', first_sheet, book(left_out=['xl/worksheets/sheet1.xml']))
+
+
+def test_a_workbook_that_lists_no_sheet_is_refused(book, refused):
+    refused('no_list', first_sheet, book(left_out=['xl/workbook.xml']))
+
+
+class Panic(BaseException):
+    """As a reader raises it that is not written in Python."""
+
+
+def test_a_panic_of_the_reader_is_a_sentence_and_an_interrupt_is_none(book, refused, monkeypatch):
+    raised = []
+
+    def read(*arguments, **named):
+        raise raised.pop()
+
+    monkeypatch.setattr(pl, 'read_excel', read)
+    for error in (Panic('capacity overflow'), IndexError('capacity overflow')):
+        raised.append(error)
+        refused('panic', first_sheet, book())
+    for error in (KeyboardInterrupt(), SystemExit(3), GeneratorExit()):
+        raised.append(error)
+        with pytest.raises(type(error)):
+            first_sheet(book())
+
+
+def test_what_a_cell_comes_to_is_that_of_the_whole_sheet(book, monkeypatch, refused):
+    path = book()
+    size = len(zipfile.ZipFile(path).read('xl/worksheets/sheet1.xml'))
+    monkeypatch.setattr(limits, 'CHUNK', 0)
+    monkeypatch.setattr(limits, 'PACKING', 100)
+    monkeypatch.setattr(workbook, 'NUMBER', size // 8)
+    assert first_sheet(path).rows() == ROWS
+    monkeypatch.setattr(workbook, 'NUMBER', size // 8 + 1)
+    refused('eight_cells', first_sheet, path)
