@@ -76,12 +76,13 @@ THEMES = {
     'ballscrew_monitor/test_signals.py',
     'config/test_deployment.py',
     'config/test_parameter_files.py',
+    'config/test_workspace.py',
     'surrogate/builder/full/test_shipped.py',
     'surrogate/ehl/test_identities.py',
     'surrogate/ehl/test_mixed.py',
     'surrogate/ehl/test_tables.py',
 }
-# By the extras `bags`, `report`, `xlsx`, `page`, `areal`, `dask` and `netcdf`.
+# Not asked of rosdep: numba, and the extras bags, report, xlsx, page, areal, dask and netcdf.
 OPTIONAL = {
     *'SurfaceTopography apsw contourpy distributed fastexcel h11 lz4 mcap numba'.split(),
     *'polars prometheus_client rosbags starlette uvicorn websockets xarray zstandard'.split(),
