@@ -303,7 +303,8 @@ def bag_text(folder, bag):
     for entry in known['topics_with_message_count']:
         topic = entry['topic_metadata']
         lines.append(f'{topic["name"]} {topic["type"]} {entry["message_count"]}\n')
-    lines += [f'{key}: {value}\n' for key, value in (known['custom_data'] or {}).items()]
+    for key, text in (known['custom_data'] or {}).items():
+        lines.append(plain_lines({key: yaml.safe_load(text)}))  # where lines end depends on names
     said = SaidByNode(folder)
     for file in known['relative_file_paths']:
         with (bag / file).open('rb') as stream:
