@@ -250,7 +250,8 @@ def page_records(message):
 def read_frame(made):
     """Return the record and the arrays of a frame to a browser."""
     (size,) = struct.unpack_from('<I', made)
-    record, at = json.loads(made[4 : 4 + size]), 4 + size
+    at = 4 + size
+    record = json.loads(made[4:at])
     arrays = {}
     for name, count in record.pop('arrays'):
         arrays[name] = np.frombuffer(made, '<f8', count, at)
