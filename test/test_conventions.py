@@ -83,6 +83,7 @@ THEMES = {
     'ballscrew_monitor/test_signals.py',
     'config/test_deployment.py',
     'config/test_parameter_files.py',
+    'config/test_workspace.py',
     'golden/test_golden.py',
     'surrogate/builder/full/test_shipped.py',
     'surrogate/ehl/test_identities.py',
