@@ -27,7 +27,7 @@ from ballscrew_monitor.core.interrupts import (
     raise_signals,
     SIGNALLED,
 )
-from ballscrew_monitor.core.prerequisites import refuse
+from ballscrew_monitor.core.prerequisites import refuse, require
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.settings.middleware import check_middleware
 from surrogate.cli import add_commands, Parser
@@ -183,6 +183,7 @@ def _solve(args: argparse.Namespace) -> int:
 def _doctor(args: argparse.Namespace) -> int:
     from ballscrew_monitor.clients.doctor import doctor
 
+    require('ballscrew_msgs')  # the node does not start without it
     return doctor(args.params, seconds=args.seconds, as_json=args.json)
 
 

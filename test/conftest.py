@@ -22,7 +22,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 DEADLINE = 600.0  # [s] which only ends a hang, in this file as in all others
 # No package of a machine with ROS 2.
-OPTIONAL = 'contourpy fastexcel mcap mcap_ros2 polars rosbags zstandard'.split()
+OPTIONAL = 'contourpy fastexcel mcap mcap_ros2 numba polars rosbags zstandard'.split()
 OPTIONAL += 'h11 prometheus_client starlette uvicorn websockets'.split()
 # Tests that solve contacts, talk over DDS, start processes, draw many pictures, repeat thousands
 # of fits or run linters over the whole tree: folders and files, and fixtures that make any test

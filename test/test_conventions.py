@@ -83,13 +83,14 @@ THEMES = {
     'ballscrew_monitor/test_signals.py',
     'config/test_deployment.py',
     'config/test_parameter_files.py',
+    'config/test_workspace.py',
     'golden/test_golden.py',
     'surrogate/builder/full/test_shipped.py',
     'surrogate/ehl/test_identities.py',
     'surrogate/ehl/test_mixed.py',
     'surrogate/ehl/test_tables.py',
 }
-# By the extras `bags`, `report`, `xlsx`, `page`, `areal`, `dask` and `netcdf`.
+# Not asked of rosdep: numba, and the extras bags, report, xlsx, page, areal, dask and netcdf.
 OPTIONAL = {
     *'SurfaceTopography contourpy distributed fastexcel h11 lz4 mcap numba polars'.split(),
     *'prometheus_client starlette uvicorn websockets xarray zstandard'.split(),

@@ -163,7 +163,7 @@ class Monitor:
 
     def leave_out(self, step: int, sample: InputSample) -> bool:
         """
-        Leave a step [ns] of the node's clock forward out of an excursion; tell whether it was.
+        Leave a step [ns] of the node's clock forward out of an excursion; return True if it was.
 
         It is if the stamps follow that clock, as the first `sample` of the speed after it shows.
 

@@ -175,6 +175,7 @@ def leave_out(memory: Any, step: int) -> None:
     """Leave a `step` [ns] of the clock forward out of what has begun and still goes on."""
     if memory.event_active:
         memory.event_start[ACTIVE] += step
+        memory.event_stamp += step
     memory.raising = memory.clearing = memory.moment = False
 
 
@@ -332,5 +333,6 @@ def _move_times(memory: Any, shift: int) -> None:
     memory.raising = memory.clearing = False
     if memory.event_active:
         memory.event_start[ACTIVE] = max(0, memory.event_start[ACTIVE] + shift)
+        memory.event_stamp = max(0, memory.event_stamp + shift)
     if memory.since != 0:
         memory.since = max(0, memory.since + shift)

@@ -34,6 +34,7 @@ from surrogate.surface import Surface, SurfaceError, SurfacePoint
 
 STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 LOG_INTERVAL = nanoseconds(1.0)  # [ns] shortest time between two lines about the inputs
+MOST_LEAPS = 8  # of the stamps in one warning that the event log tells of
 AT_ONCE = 50  # points that are evaluated before samples have a turn
 NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
 PLAIN = dict.fromkeys(('efficiency', 'rcs', 'film_ratio'), Float64)
@@ -75,6 +76,7 @@ class AxisPublisher:
         self._said_at = -NEWS_INTERVAL
         self._logged: diagnostics.StatusSummary | None = None
         self._logged_at = -LOG_INTERVAL
+        self._leaps = 0, 0  # number of an event, and leaps of the stamps that were noted in it
         make = quiet_publishers(node)
         simulated = node.get_parameter('use_sim_time').value
         promise = state_qos(axis.name, values, simulated=simulated)
@@ -86,6 +88,12 @@ class AxisPublisher:
             name: make(kind, f'~/{axis.name}/plain/{name}', STATE_QOS)
             for name, kind in kinds.items()
         }
+
+    def may_note_leap(self) -> bool:
+        """Return True if a leap of the stamps in a warning is one of its first."""
+        number, count = self.axis.monitor.memory.event_number, self._leaps[1]
+        self._leaps = number, count + 1 if number == self._leaps[0] else 1
+        return self._leaps[1] <= MOST_LEAPS
 
     def adapt(self) -> None:
         """Take over the parameters as they are now."""

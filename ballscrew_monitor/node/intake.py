@@ -16,7 +16,6 @@ from collections.abc import Callable, Iterable
 import contextlib
 import operator
 import time
-from time import monotonic_ns
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
@@ -282,7 +281,7 @@ class Intake(Waitable):
             waited = max(wall - arrival.received, 0) if arrival.received else 0
             lost = arrival.topic.loss.take(arrival.number)
             at = max(now - waited, 0) if self._clock is None else self._simulated
-            if 2 * (now - at) < abs(step):  # the first one that arrived after the step
+            if step and 2 * (now - at) < abs(step):  # the first one that arrived after the step
                 self._hand_over(heard, step)
                 step = 0
             heard.append((arrival, at, lost))
@@ -294,8 +293,8 @@ class Intake(Waitable):
         """Return by how much [ns] the clock of the system was set since the last look, 0: not."""
         if self._clock is not None:
             return 0
-        before = monotonic_ns()
-        return self._system_steps.take(time.time_ns(), before, monotonic_ns())
+        before = time.monotonic_ns()
+        return self._system_steps.take(time.time_ns(), before, time.monotonic_ns())
 
     def _hand_over(self, heard: list[Heard], step: int) -> None:
         """Hand over what was heard as one burst, and begin the next one; note a step after it."""

@@ -309,7 +309,7 @@ class BallscrewMonitor(LifecycleNode):
         self, publisher: AxisPublisher, judge: Callable[[Any], State | None], event: Any
     ) -> None:
         state = judge(event)
-        if moved := publisher.axis.monitor.moved:
+        if (moved := publisher.axis.monitor.moved) and publisher.may_note_leap():
             text = f'the stamps of the speed leap {step_text(moved)} in a warning'
             self._kept.note(Kind.CLOCK_STEP, publisher.name, by_s=seconds(moved), text=text)
         publisher.frame.take(publisher.axis.monitor.row)

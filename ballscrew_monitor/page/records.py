@@ -203,8 +203,6 @@ def event_record(event: msg.OutOfZone) -> dict[str, Any]:
     advice, ending = str(event.advice), ''
     if advice.startswith(ACKNOWLEDGED):
         advice, ending = Advice(target_speed=speed).text, advice
-    elif math.isfinite(event.cause.target_load):
-        advice = ''  # a node of another version advises a load
     return {
         'id': event.event_id,
         'begin': seconds(stamp_of(event.start)),

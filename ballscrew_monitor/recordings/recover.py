@@ -20,6 +20,10 @@ from surrogate.files import InputError
 from surrogate.plain_yaml import plain_values
 
 SUFFIX = '.mcap'
+SQLITE = (
+    '{file} is a sqlite3 file of a bag, only MCAP files are recovered: ballscrew replay reads it '
+    'as it is, and of a damaged one the intact part'
+)
 
 
 def recover(path: Path) -> tuple[Path, int, float]:
@@ -35,10 +39,7 @@ def recover(path: Path) -> tuple[Path, int, float]:
     if not file.is_file():
         raise InputError(f'{file} does not exist, it must be an MCAP file or the folder of one')
     if kind_of(file) == 'sqlite3':
-        raise InputError(
-            f'{file} is a sqlite3 file of a bag, only MCAP files are recovered: ballscrew replay '
-            'reads it as it is, and of a damaged one the intact part'
-        )
+        raise InputError(SQLITE.format(file=file))
     target = _target(file)
     if target.exists():
         raise InputError(f'{target} is there already, it would be written over: move it away')
@@ -52,6 +53,8 @@ def recover(path: Path) -> tuple[Path, int, float]:
 
 def _unfinished(folder: Path) -> Path:
     found = sorted(folder.glob(f'*{SUFFIX}{ACTIVE}'))
+    if not found and (stored := sorted(folder.glob('*.db3'))):
+        raise InputError(SQLITE.format(file=stored[0]))
     if len(found) != 1:
         raise InputError(f'{folder} holds {len(found)} unfinished recordings, it must be one')
     return found[0]

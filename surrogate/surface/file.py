@@ -202,6 +202,8 @@ def _check(path: str | Path, data: SurfaceData) -> None:
     """Refuse a file that verifies but was written by a program that broke the format."""
     try:
         sound = _has_sound_arrays(data) and _has_sound_ensemble(data) and _has_sound_header(data)
+    except KeyError as error:
+        raise SurfaceError(f'{path}: its header lacks {error}, build it again') from None
     except DAMAGE:
         sound = False
     if not sound:
@@ -243,10 +245,14 @@ def _has_sound_ensemble(data: SurfaceData) -> bool:
 def _has_sound_header(data: SurfaceData) -> bool:
     """Tell whether the lookup finds what it needs, and no more speeds than there are nodes."""
     screw, oil = (data.header['inputs'][kind] for kind in ('screw', 'lubricant'))
+    raceway = screw['roughness']
     numbers = (
         screw['lead'],
         screw['preload'],
-        screw['roughness']['rms'],
+        screw['parasitic_torque'],
+        screw['parasitic_torque_rate'],
+        raceway['rms'],
+        1.0 if raceway['onset_band'] is None else raceway['onset_band'],
         oil['reference_temperature'],
         oil['kinematic_viscosity_40'],
     )
@@ -255,7 +261,8 @@ def _has_sound_header(data: SurfaceData) -> bool:
     s, rounding = data.speed_coordinate, 1e-9
     return (
         data.header['tier'] in TIERS
-        and all(isinstance(one['name'], str) for one in (screw, oil))
+        and all(isinstance(sheet['name'], str) for sheet in (screw, oil))
+        and all(isinstance(raceway[word], str) for word in ('lay', 'state', 'traced'))
         and all(math.isfinite(number) for number in numbers)
         and all(0 < number < math.inf for number in above_zero)
         and set(data.header['load_breaks']) <= set(data.load.tolist())

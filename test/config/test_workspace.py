@@ -73,9 +73,9 @@ def tracked(tmp_path_factory):
 
 def bash(script, folder, **environment):
     """Return what a script prints."""
-    home = {'PATH': PATH, 'COLCON_HOME': str(folder), 'COLCON_LOG_LEVEL': 'error'}
+    home = {'PATH': PATH, 'COLCON_HOME': str(folder)}
     done = subprocess.run(
-        ['bash', '-euc', script],
+        ['bash', '-ec', script],
         cwd=folder,
         env=child_environment(0) | home | environment,
         capture_output=True,
@@ -120,13 +120,16 @@ def test_the_repository_alone_is_a_workspace_of_both_packages(tracked):
 def test_the_node_runs_from_the_install_space_with_what_rosdep_brings(workspace, wait_for):
     """The interfaces are those of the environment, as compiling them would take a minute."""
     folder, _ = workspace
-    bash('colcon build --base-paths src/ballscrew_monitor --event-handlers log-', folder)
+    bash('colcon build --base-paths src/ballscrew_monitor', folder)
     (folder / 'blind').mkdir()
     (folder / 'blind' / 'sitecustomize.py').write_text(BLIND.format(hidden=HIDDEN))
     setup = f'export PYTHONPATH={shlex.quote(str(folder / "blind"))}; . install/setup.sh'
-    script = 'import ballscrew_monitor, surrogate; print(ballscrew_monitor.__file__)'
-    place = bash(f'{setup}; {shlex.quote(sys.executable)} -c "{script}"', folder).strip()
+    python = f'{setup}; {shlex.quote(sys.executable)} -c'
+    script = 'import ballscrew_monitor as package; print(package.__file__)'
+    place = bash(f'{python} "{script}"', folder).strip()
     assert Path(place).is_relative_to(folder / 'install')
+    script = "from importlib.util import find_spec; print(find_spec('numba'))"
+    assert bash(f'{python} "{script}"', folder) == 'None\n'
     program = 'install/ballscrew_monitor/lib/ballscrew_monitor/ballscrew_monitor'
     log = folder / 'node.log'
     with free_domain() as domain, log.open('w') as output:

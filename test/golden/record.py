@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Record the golden outputs anew, see README.md.
+Record the golden outputs again, see README.md.
 
     python test/golden/record.py                # of all cases
     python test/golden/record.py warm_up live   # of these
@@ -25,7 +25,7 @@ from golden.cases import CASES  # noqa: E402
 
 def main() -> int:
     """Record the cases that the command line names, or all."""
-    parser = argparse.ArgumentParser(description='Record the golden outputs anew.')
+    parser = argparse.ArgumentParser(description='Record the golden outputs again.')
     parser.add_argument('cases', nargs='*', choices=[[], *CASES], help='none: all of them')
     for case in parser.parse_args().cases or CASES:
         begin = time.process_time()

@@ -3,7 +3,7 @@
 """
 All that the online half says of the same inputs is what is on file, see README.md.
 
-Where a change is meant, record the outputs anew and read how they differ.
+Where a change is meant, record the outputs again and read how they differ.
 
 """
 

@@ -47,7 +47,7 @@ PICTURES = (
 PAGES = (('page',),)
 ROS = (*READS[:-2], *PAGES, ('doctor',), ('solve', '--axis', 'x'))
 NEEDS = {
-    'ballscrew_msgs': ROS[:5],
+    'ballscrew_msgs': (*ROS[:5], ('doctor',)),
     'contourpy': (*REPORTS, *PAGES),
     'distributed': (('surface', 'build', '--out', '{out}/c.npz', '--dask', 'local'),),
     'h11': PAGES,

@@ -175,17 +175,28 @@ def test_a_step_of_the_nodes_clock_is_left_out_if_the_stamps_follow_it(
 ):
     monitor, step = slow_is_bad(core, clear_delay=SECOND), 3600 * SECOND
     core.feed(monitor, [stamped(one, before, header) for one in core.motion(10.0, count=100)])
-    begin = monitor.event.start
+    begin, length = monitor.event.start, monitor.event.stamp - monitor.event.start
     next_ones = core.motion(10.0, start=START + SECOND + step, count=50)
     first = stamped(next_ones[1], after, header)
     assert monitor.leave_out(step, first) is follows
     assert monitor.event.start == begin + follows * step
+    assert monitor.event.stamp - monitor.event.start == length
     for one in next_ones:
         assert monitor.update(stamped(one, after, header)) is None or not monitor.moved
     good = core.motion(40.0, start=START + 3 * SECOND // 2 + step, count=101)
     core.feed(monitor, [stamped(one, after, header) for one in good])
     assert not monitor.event.active
     assert monitor.event.stamp - monitor.event.start == 5 * SECOND // 2
+
+
+@pytest.mark.parametrize('step', [-600 * SECOND, -20 * SECOND])
+def test_a_clock_that_is_set_back_changes_no_length_of_an_excursion(core, step):
+    monitor = slow_is_bad(core)
+    core.feed(monitor, core.motion(10.0, count=100))
+    length = monitor.event.stamp - monitor.event.start
+    core.feed(monitor, core.motion(10.0, start=START + SECOND + step, count=3))
+    assert monitor.event.active
+    assert monitor.event.stamp - monitor.event.start == length
 
 
 def test_what_moves_the_begin_of_an_excursion_is_told_with_the_sample(core):

@@ -5,6 +5,7 @@
 import types
 
 from ballscrew_monitor.node.alarm import end_all
+from ballscrew_monitor.node.axis_publisher import AxisPublisher, MOST_LEAPS
 import pytest
 import rclpy.clock
 from rclpy.duration import Duration
@@ -69,3 +70,13 @@ def test_all_axes_speak_before_any_waits_and_share_one_time():
     assert said == [*['why'] * 4, 500_000_000, 300_000_000, 100_000_000, 0]
     end_all([axis], 'nothing to end', standing)
     assert said[8:] == ['nothing to end']
+
+
+def test_of_two_clocks_that_take_turns_the_first_leaps_in_a_warning_are_noted():
+    memory = types.SimpleNamespace(event_number=1)
+    axis = types.SimpleNamespace(monitor=types.SimpleNamespace(memory=memory))
+    publisher = types.SimpleNamespace(axis=axis, _leaps=(0, 0))
+    for number in (1, 2):
+        memory.event_number = number
+        noted = [AxisPublisher.may_note_leap(publisher) for _ in range(3 * MOST_LEAPS)]
+        assert noted == [True] * MOST_LEAPS + [False] * (2 * MOST_LEAPS)

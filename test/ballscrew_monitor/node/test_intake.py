@@ -34,7 +34,8 @@ class Watch:
 
     def __init__(self, monkeypatch, may_go_on=lambda: True):
         self.now, self.may_go_on = 0.0, may_go_on
-        self.time_ns, self.end = time.time_ns, time.monotonic() + DEADLINE
+        self.time_ns, self.monotonic_ns = time.time_ns, time.monotonic_ns
+        self.end = time.monotonic() + DEADLINE
         monkeypatch.setattr(intake_module, 'time', self)
 
     def monotonic(self):
@@ -185,14 +186,14 @@ def test_a_step_of_the_system_clock_is_told_and_left_out_before_the_next_speed(
     bench, monkeypatch, hours
 ):
     """It is one of the steady clock the other way round."""
-    said, left_out, steady = [], [], intake_module.monotonic_ns
+    said, left_out, steady = [], [], intake_module.time.monotonic_ns
     bench.axis.monitor = SteppedMonitor()
     monkeypatch.setattr(bench.intake, '_stepped', lambda step, now: said.append(step))
     monkeypatch.setattr(bench.intake, '_left_out', lambda axis, step: left_out.append(axis))
     bench.publish('speed', 1)
     bench.until(lambda: bench.taken, meanwhile=bench.intake.drain)
     step = hours * 3600 * SECOND
-    monkeypatch.setattr(intake_module, 'monotonic_ns', lambda: steady() - step)
+    monkeypatch.setattr(intake_module.time, 'monotonic_ns', lambda: steady() - step)
     bench.intake.drain()
     bench.intake.drain()
     assert [round(one / SECOND) for one in said] == [hours * 3600]
@@ -207,20 +208,42 @@ def test_a_step_of_the_system_clock_is_told_and_left_out_before_the_next_speed(
     assert left_out == [bench.axis] * len(told)
 
 
+def held(bench, count):
+    """Return what has arrived, and was not taken, when it is so many messages."""
+    arrivals, waiting = [], bench.intake._waiting
+    return bench.wait_for(
+        lambda: arrivals.extend(waiting()) or (arrivals if len(arrivals) == count else None),
+        meanwhile=nothing,
+    )
+
+
+def test_what_comes_with_a_time_of_the_clock_is_one_burst(bench, monkeypatch):
+    """The speed is judged last, whichever came first."""
+    bench.publish('speed', 1)
+    bench.publish('load', 2)
+    found = sorted(held(bench, 2), key=lambda one: one.topic.name, reverse=True)
+    shown = types.SimpleNamespace(clock=types.SimpleNamespace(sec=9, nanosec=0))
+    clock = types.SimpleNamespace(topic=object(), message=shown)
+    monkeypatch.setattr(bench.intake, '_clock', clock.topic)
+    monkeypatch.setattr(bench.intake, '_waiting', lambda: [clock, *found])
+    bursts = []
+    monkeypatch.setattr(bench.intake._journal, 'hear', lambda batch: bursts.append(len(batch)))
+    bench.intake.drain()
+    assert bursts == [2]
+    assert [event.source for event in bench.taken] == [Source.LOAD, Source.SPEED]
+
+
 def test_messages_before_and_after_a_step_are_two_bursts(bench, monkeypatch):
-    heard, steady = [], intake_module.monotonic_ns
+    steady = intake_module.time.monotonic_ns
     bench.axis.monitor = SteppedMonitor()
     bench.intake.drain()
     bench.publish('speed', 1)
     bench.publish('speed', 2)
-    waiting = bench.intake._waiting
-    found = bench.wait_for(
-        lambda: heard.extend(waiting()) or (heard if len(heard) == 2 else None), meanwhile=nothing
-    )
+    found = held(bench, 2)
     step = 3600 * SECOND
     old = dataclasses.replace(found[0], received=found[0].received - step)
     monkeypatch.setattr(bench.intake, '_waiting', lambda: [old, found[1]])
-    monkeypatch.setattr(intake_module, 'monotonic_ns', lambda: steady() - step)
+    monkeypatch.setattr(intake_module.time, 'monotonic_ns', lambda: steady() - step)
     bursts = []
     monkeypatch.setattr(bench.intake._journal, 'hear', lambda batch: bursts.append(len(batch)))
     bench.intake.drain()

@@ -21,8 +21,8 @@ class Opened(StateDatabase):
     """A database that is opened at once."""
 
     def __init__(self, folder, limit=LIMIT):
-        self.damage, self.notices = [], []
-        super().__init__(folder, limit, damage=self.damage, notices=self.notices)
+        self.damage = []
+        super().__init__(folder, limit, damage=self.damage)
         self.found = self.load()
 
     def setting(self, name):

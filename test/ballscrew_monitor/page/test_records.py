@@ -158,12 +158,6 @@ def test_advice_is_said_by_its_numbers_and_why_an_event_ended_in_words(page_part
     assert key or told['advice'] == {'free': 'the end'}
 
 
-def test_where_a_node_of_another_version_advises_a_load_nothing_is_advised():
-    event = event_of(f'{TARGET.text} or at this speed load with -812 N', TARGET)
-    event.cause.target_load = -812.0
-    assert records.event_record(event)['advice'] == ''
-
-
 @pytest.mark.parametrize(
     ('code', 'told'), [(0, []), (101, []), (215, [215]), (401, []), (999, [])]
 )

@@ -114,8 +114,9 @@ def test_a_sqlite3_file_is_not_said_to_hold_no_message(tmp_path, refused):
     file = tmp_path / 'a_0.db3'
     with contextlib.closing(sqlite3.connect(file)) as base, base:
         base.execute('CREATE TABLE messages(id INTEGER PRIMARY KEY)')
-    with refused('of_sqlite', file=file):
-        recover(file)
+    for path in (file, tmp_path):
+        with refused('of_sqlite', file=file):
+            recover(path)
     assert [*tmp_path.iterdir()] == [file]
 
 

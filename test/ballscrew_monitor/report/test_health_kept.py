@@ -11,7 +11,7 @@ from ballscrew_monitor.cli import main
 from ballscrew_monitor.health.points import add, model_torque
 from ballscrew_monitor.health.records import Baseline, SpectrumBin, Stretch
 from ballscrew_monitor.health.rows import DAY
-from ballscrew_monitor.health.store import HealthStore
+from ballscrew_monitor.health.store import HealthStore, read_health
 from ballscrew_monitor.report import health_kept
 from ballscrew_monitor.settings.parameters import defaults
 import pytest
@@ -74,7 +74,9 @@ def test_another_speed_is_advised_where_the_parameters_or_the_command_let_it(
     monkeypatch.setattr(health_kept, 'assess_kept', lambda *parts: asked.append(parts[-1]))
     values = defaults(['x']) | {'x.advice.speed': parameter}
     options = {'over': 600.0, 'days': None, 'co2_per_kwh': math.nan, 'speed_allowed': option}
-    health_kept.kept_healths(folder, values, options)
+    stored = read_health(folder)
+    titles = {health_kept.stored_axis(folder, 'x'): 'x'}
+    health_kept.kept_healths(folder, stored, titles, values, options)
     assert {one.speed_allowed for one in asked} == {parameter or option}
 
 

@@ -250,7 +250,8 @@ def page_records(message):
 def read_frame(made):
     """Return the record and the arrays of a frame to a browser."""
     (size,) = struct.unpack_from('<I', made)
-    record, at = json.loads(made[4 : 4 + size]), 4 + size
+    at = 4 + size
+    record = json.loads(made[4:at])
     arrays = {}
     for name, count in record.pop('arrays'):
         arrays[name] = np.frombuffer(made, '<f8', count, at)
@@ -303,7 +304,8 @@ def bag_text(folder, bag):
     for entry in known['topics_with_message_count']:
         topic = entry['topic_metadata']
         lines.append(f'{topic["name"]} {topic["type"]} {entry["message_count"]}\n')
-    lines += [f'{key}: {value}\n' for key, value in (known['custom_data'] or {}).items()]
+    for key, text in (known['custom_data'] or {}).items():
+        lines.append(plain_lines({key: yaml.safe_load(text)}))  # where lines end depends on names
     said = SaidByNode(folder)
     for file in known['relative_file_paths']:
         with (bag / file).open('rb') as stream:

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What `ballscrew doctor` says of a scripted graph, with parameters that are right and wrong."""
+"""Findings of `ballscrew doctor` in a scripted graph, with parameters that are right and wrong."""
 
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import WrenchStamped

@@ -171,7 +171,7 @@ class Run:
         answer = self.world.call(self.node, service, kind, **request)
         self.answers.append((self.world.now, service, kind.Request(**request), answer))
 
-    def set(self, **values):
+    def set_parameters(self, **values):
         """Set parameters, with `__` for a dot."""
         named = [Parameter(name.replace('__', '.'), value=one) for name, one in values.items()]
         given = [one.to_parameter_msg() for one in named]
@@ -372,28 +372,28 @@ def positions(run):
 
 def parameters_change(run):
     """Change parameters, those that must not change among them."""
-    run.set(x__limits__efficiency=0.95)
+    run.set_parameters(x__limits__efficiency=0.95)
     run.go(1.0)
-    run.set(x__limits__efficiency=0.85, x__limits__rcs=0.02)
-    run.set(p__publish_period=0.0)
+    run.set_parameters(x__limits__efficiency=0.85, x__limits__rcs=0.02)
+    run.set_parameters(p__publish_period=0.0)
     run.go(0.5)
-    run.set(x__limits__rcs=2.0)
-    run.set(x__limits__rcs=1)
-    run.set(x__surface='other.npz')
-    run.set(axes=['x'])
-    run.set(x__publish_period=5.0)
-    run.set(no_such_parameter=1.0)
-    run.set(x__limits__rcs=0.01)
-    run.set(p__publish_period=0.2)
-    run.set(s__one_source=False)
+    run.set_parameters(x__limits__rcs=2.0)
+    run.set_parameters(x__limits__rcs=1)
+    run.set_parameters(x__surface='other.npz')
+    run.set_parameters(axes=['x'])
+    run.set_parameters(x__publish_period=5.0)
+    run.set_parameters(no_such_parameter=1.0)
+    run.set_parameters(x__limits__rcs=0.01)
+    run.set_parameters(p__publish_period=0.2)
+    run.set_parameters(s__one_source=False)
     run.go(0.5)
     other = run.world.publisher('/s/rpm', Float64, node='somebody')
     for _ in range(10):
         run.go(PERIOD)
         other.publish(Float64(data=710.0))
     run.world.leave(other)
-    run.set(x__warning__policy='both')
-    run.set(s__one_source=True)
+    run.set_parameters(x__warning__policy='both')
+    run.set_parameters(s__one_source=True)
     run.go(0.5)
 
 
@@ -418,7 +418,7 @@ def evaluations(run):
 def dwelling(run):
     """Stay where the surface cannot tell, so that a full solve corrects it."""
     run.go(36.0, x=(DWELL, -1000.0))
-    run.set(x__solve_on_dwell=False)
+    run.set_parameters(x__solve_on_dwell=False)
     run.go(1.0, x=(DWELL, -1000.0))
     run.go(1.0)
 
@@ -475,7 +475,7 @@ def lifecycle(run):
     run.go(1.0)
     run.change('activate')
     run.go(2.0, x=(CREEP, -1000.0))
-    run.set(use_sim_time=False)
+    run.set_parameters(use_sim_time=False)
 
 
 SCRIPT = (

@@ -363,7 +363,7 @@ class ScriptedTimer(Timer):
     def due(self):
         """Return when it is due on the time of the world [ns]."""
         now = self._now
-        if now < self._last:  # as rcl does: a clock that was set back begins a period anew
+        if now < self._last:  # as rcl does: a clock that was set back begins another period
             self._next = now + self._period
         self._last = now
         is_ours = not (isinstance(self._clock, ROSClock) and self._clock.ros_time_is_active)

@@ -193,6 +193,34 @@ def inputs_with(data, kind, **changes):
     return {'header': {**data.header, 'inputs': {**inputs, kind: sheet}}}
 
 
+def without(content, path):
+    """Return a header, or a part of it, without the key at the end of a path."""
+    key, *rest = path
+    kept = {name: value for name, value in content.items() if name != key}
+    return {**kept, key: without(content[key], rest)} if rest else kept
+
+
+ROUGHNESS = ('rms', 'lay', 'state', 'traced', 'onset_band')
+SCREW = ('name', 'lead', 'preload', 'speed_limit', 'pitch_radius')
+DRAG = ('parasitic_torque', 'parasitic_torque_rate')
+READ = [
+    *(('settings',), ('inputs', 'screw'), ('inputs', 'lubricant'), ('load_breaks',)),
+    *(('inputs', 'screw', name) for name in (*SCREW, *DRAG, 'roughness')),
+    *(('inputs', 'screw', 'roughness', name) for name in ROUGHNESS),
+    *(
+        ('inputs', 'lubricant', name)
+        for name in ('name', 'reference_temperature', 'kinematic_viscosity_40')
+    ),
+]
+
+
+@pytest.mark.parametrize('path', READ, ids='.'.join)
+def test_a_header_without_what_is_read_is_refused(tmp_path, surface_data, path, refused):
+    header = without(dict(surface_data.header), path)
+    file.write(tmp_path / 'part.npz', replace(surface_data, header=header))
+    refused('header_lacks', file.read, tmp_path / 'part.npz')
+
+
 @pytest.mark.parametrize(
     'change',
     [
@@ -202,11 +230,8 @@ def inputs_with(data, kind, **changes):
         lambda data: {'mask': data.mask.astype(np.uint8)},
         unmasked_hole,
         lambda data: {'header': {**data.header, 'tier': 'guess'}},
-        lambda data: {'header': {k: v for k, v in data.header.items() if k != 'settings'}},
-        lambda data: {'header': {**data.header, 'inputs': {}}},
         lambda data: inputs_with(data, 'screw', speed_limit=0.0),
         lambda data: inputs_with(data, 'screw', pitch_radius=None),
-        lambda data: inputs_with(data, 'screw', roughness={}),
         lambda data: inputs_with(data, 'screw', lead=10**400),
         lambda data: inputs_with(data, 'lubricant', kinematic_viscosity_40='68'),
         lambda data: {'header': {**data.header, 'load_breaks': [1.0]}},
