@@ -87,7 +87,8 @@ def test_what_is_not_there_is_said_as_from_the_message():
     message = JointState(name=['a', 'bc'], velocity=[])
     _, (other,) = walk(reader(JOINT, 'velocity[x]'), message)
     assert other['outcome'] == Outcome.OTHER_JOINTS
-    names = serialize_message(message)[other['names_begin'] : other['names_end']]
+    begin, end = other['names_begin'], other['names_end']
+    names = serialize_message(message)[begin:end]
     assert names.replace(b'\0', b'') == b'\x02a\x03bc'
     for field, array in (('velocity[a]', 0), ('velocity[2]', 0)):
         layout, (short,) = walk(reader(JOINT, field), message)
