@@ -10,6 +10,7 @@ from importlib.abc import MetaPathFinder
 import os
 from pathlib import Path
 import re
+import shutil
 from string import Formatter
 import sys
 import time
@@ -18,6 +19,7 @@ import tomllib
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis.database import DirectoryBasedExampleDatabase
 import pytest
+import yaml
 
 ROOT = Path(__file__).resolve().parents[1]
 DEADLINE = 600.0  # [s] which only ends a hang, in this file as in all others
@@ -249,6 +251,18 @@ def short_bag(nominal_bag, tmp_path_factory):
     directory = tmp_path_factory.mktemp('bags') / 'short'
     cut(Bag(nominal_bag), directory, 32.9999, 36.005)
     return directory
+
+
+@pytest.fixture
+def miscounted_bag(short_bag, tmp_path):
+    """Return a copy of it whose metadata count one message too many of each topic."""
+    copy = shutil.copytree(short_bag, tmp_path / 'miscounted')
+    metadata = copy / 'metadata.yaml'
+    content = yaml.safe_load(metadata.read_text())
+    for topic in content['rosbag2_bagfile_information']['topics_with_message_count']:
+        topic['message_count'] += 1
+    metadata.write_text(yaml.safe_dump(content))
+    return copy
 
 
 @pytest.fixture

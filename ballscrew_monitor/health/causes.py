@@ -36,6 +36,10 @@ What a change may differ from the pattern of its cause by at each place, over th
 Another oil is not quite the same oil at another temperature.
 
 """
+NOT_IDENTIFIED = (
+    'the torque constant and the gear ratio are not judged: the surface has no parasitic torque, '
+    'which a run without load identifies (ballscrew identify)'
+)
 STEPS = 41
 """Sizes that are tried of each cause."""
 GRIDS, FEWEST_STEPS = 3, 6
@@ -115,8 +119,8 @@ CANDIDATES = (
         -0.5,
         0.5,
         lambda model, points, size: np.full(len(points), size),
-        'a constant drag of {value:+.3f} N m ({low:+.3f} to {high:+.3f}): wipers, covers or '
-        'bearings',
+        'there is a constant drag of {value:+.3f} N m ({low:+.3f} to {high:+.3f}): wipers, '
+        'covers or bearings',
         'a wiper adds one torque at all speeds and loads',
     ),
     Candidate(
@@ -126,8 +130,8 @@ CANDIDATES = (
         -0.01,
         0.01,
         lambda model, points, size: size * np.abs([one.speed for one in points]),
-        'a drag in proportion to the speed, {value:+.2g} N m s/rad ({low:+.2g} to {high:+.2g}): '
-        'grease or oil is churned',
+        'there is a drag in proportion to the speed, {value:+.2g} N m s/rad ({low:+.2g} to '
+        '{high:+.2g}): grease or oil is churned',
         'churning grows with the speed and vanishes at rest',
     ),
     Candidate(
@@ -209,10 +213,11 @@ def carrying(
     """
     Return causes of which those that do not carry a reported change are excluded, and last.
 
-    `fits` are theirs, in the same order.
+    `fits` are theirs, in the same order. So is the torque constant beside a drag that was never
+    identified: it is not told from the part of the drag that the surface lacks.
 
     """
-    told = []
+    told, is_identified = [], model.is_identified
     for cause, fit in zip(causes, fits):
         pattern = fit.candidate.pattern(model, change.points, fit.size)
         alone = float(pattern.sum() / change.friction.sum())
@@ -222,6 +227,8 @@ def carrying(
                 f'{100.0 * change.common:+.0f} %'
             )
             cause = dataclasses.replace(cause, excluded=True, text=text)
+        elif cause.code is CauseCode.TORQUE_CONSTANT and not (cause.excluded or is_identified):
+            cause = dataclasses.replace(cause, excluded=True, text=NOT_IDENTIFIED)
         told.append(cause)
     return sorted(told, key=lambda one: one.excluded)
 

@@ -40,6 +40,12 @@ NOT_TOLD = (
     'the measured torque lies far from that of the surface, and the motion so far does not tell '
     'why: check sign and unit of the load, torque constant, gear ratio and offset'
 )
+NEITHER = (
+    'the measured torque lies far from that of the surface, and the motion so far does not tell '
+    'why: check sign and unit of the load, and the offset; the surface has no parasitic torque: '
+    'identify it by a run without load (ballscrew identify)'
+)
+"""What is said where neither is told nor identified: nothing of the torque constant."""
 
 
 def input_fault(points: Sequence[ComparablePoint], surface: Surface) -> str:
@@ -60,16 +66,10 @@ def input_fault(points: Sequence[ComparablePoint], surface: Surface) -> str:
     if nothing - chi < CERTAIN or chi > LEFT * nothing:
         return ''
     if second - chi < EXCLUDED * birge(chi, len(means)):
-        return NOT_TOLD
-    if best.code is CauseCode.TORQUE_CONSTANT and not is_identified(surface):
+        return NOT_TOLD if model.is_identified else NEITHER
+    if best.code is CauseCode.TORQUE_CONSTANT and not model.is_identified:
         return NOT_IDENTIFIED
     return _sentence(best, size)
-
-
-def is_identified(surface: Surface) -> bool:
-    """Return True if a surface has the drag of wipers, bearings and ball returns of its screw."""
-    screw = surface.header['inputs']['screw']
-    return any(screw[name] > 0.0 for name in ('parasitic_torque', 'parasitic_torque_rate'))
 
 
 def _fit(pattern: Array, residual: Array, inverse: Array) -> tuple[float, float]:

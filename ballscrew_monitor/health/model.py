@@ -38,6 +38,12 @@ class Model:
         self.calibration = calibration or Calibration()
         self._known: dict[bytes, Array] = {}
 
+    @property
+    def is_identified(self) -> bool:
+        """Return True if the surface has the drag of wipers, bearings and ball returns."""
+        screw = self.surface.header['inputs']['screw']
+        return any(screw[name] > 0.0 for name in ('parasitic_torque', 'parasitic_torque_rate'))
+
     def friction(self, points: Sequence[ComparablePoint]) -> Array:
         """Return the friction torque of the model at points [N m], with that of the wiper."""
         return self.calibration.friction(self.surface, places_of(points))

@@ -115,6 +115,7 @@ def _histories(
                         on_share=functools.partial(_show, bar, number, len(logs)),
                         health=HistoryMaker,
                     )
+                say(*(f'{log}: {note}' for note in case.notes))
                 say(*(f'{log}: check {hint}' for hint in hints_on(case.axes)))
                 yield from (axis.history for axis in case.axes if axis.history is not None)
             except (InputError, SurfaceError) as error:

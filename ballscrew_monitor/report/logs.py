@@ -82,6 +82,13 @@ def is_one_bag(folder: Path, *, tables: bool = False, out: Path | None = None) -
     return len(files) == 1 or _are_parts(files)
 
 
+def bears_name_of_bag(folder: Path) -> bool:
+    """Return True if a folder is one bag and bears the name of its files, finished or not."""
+    stems = [_stem(file.name) for file in _files(folder, (*ENDINGS, ACTIVE))]
+    parts = [part[1] for part in map(_PART.fullmatch, stems) if part is not None]
+    return folder.name in (*stems, *parts) and is_one_bag(folder, tables=True)
+
+
 def _are_parts(files: Sequence[Path]) -> bool:
     """Tell whether files are by their names all parts of one bag that was split."""
     parts = [_PART.fullmatch(_stem(file.name)) for file in files]

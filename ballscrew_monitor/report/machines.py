@@ -13,6 +13,8 @@ import os.path
 from pathlib import Path
 from typing import NamedTuple
 
+from ballscrew_monitor.report.logs import bears_name_of_bag
+
 
 class MachineAxis(NamedTuple):
     """An axis of a machine, which is a stated name or the absolute path of a folder."""
@@ -25,11 +27,16 @@ def folder_of(log: Path) -> Path:
     """
     Return the resolved folder that holds a recording.
 
-    A folder with `metadata.yaml` is the recording itself. A link counts where it lies.
+    A folder with `metadata.yaml` is the recording itself, and so is one that bears the name of the
+    files of its only bag, as that of a recorder that was killed. A link counts where it lies.
 
     """
     folder = Path(os.path.abspath(log if log.is_dir() else log.parent))
-    return (folder.parent if (folder / 'metadata.yaml').is_file() else folder).resolve()
+    return (folder.parent if _is_recording(folder) else folder).resolve()
+
+
+def _is_recording(folder: Path) -> bool:
+    return (folder / 'metadata.yaml').is_file() or bears_name_of_bag(folder)
 
 
 def machine_names(axes: Iterable[MachineAxis]) -> dict[str, str]:

@@ -22,7 +22,7 @@ from ballscrew_monitor.recordings.columns import Flags, Floats, JudgedColumns, T
 from ballscrew_monitor.recordings.declared import unwritten, written
 import numpy as np
 
-REST = 'gaps in the speed, up to its timeout'
+REST = 'no speed was recorded'
 """The time without rows in words."""
 MOST_GAPS = 1000  # of the longest that are kept
 STRAY = 1.5  # times the span of log times from which on stamps are no time line

@@ -147,8 +147,9 @@ def _hardly_judged(case: AxisCase, judged: float, whole: float) -> AxisVerdict:
     reasons = case.survey.reasons
     reason = _longest({key: reasons[key] for key in reasons if key is not Reason.STANDSTILL})
     why = reason.text if reason else 'the reason is not known'
-    if case.survey.rest > (reasons[reason] if reason else 0.0):
-        reason, why = Reason.NO_SPEED, REST
+    rest = case.survey.rest
+    if rest > (reasons[reason] if reason else 0.0):
+        reason, why = Reason.NO_SPEED, f'{REST} for {duration(rest)}'
     return AxisVerdict(
         sentence=f'axis {case.axis} was judged for {duration(judged)} ({percent(judged / whole)}) '
         f'of the {duration(whole)} in which it moved or may have moved: {why}.',

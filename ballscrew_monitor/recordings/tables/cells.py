@@ -164,7 +164,7 @@ class Cells:
                 read = kind[0].add(cells, self._row)
 
     def _count_numbers(self, cells: pl.Series, points: _Count, commas: _Count) -> bool:
-        """Count cells as numbers with a point and with a comma; tell if one of both reads all."""
+        """Count cells as numbers with a point and with a comma; return True if one reads all."""
         commaed, pointed = (_holds(cells, mark) for mark in ',.')
         numbers = _finite(_points, _with_points(cells) if commaed.any() else cells)
         self.signs.look(cells, {'.': pointed, ',': commaed}, np.isnan(numbers), self._row)

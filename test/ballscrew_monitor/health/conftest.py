@@ -84,3 +84,13 @@ def motion():
 @pytest.fixture(scope='session')
 def surface():
     return Surface.load(shipped_surface())
+
+
+@pytest.fixture
+def identified():
+    """Return a surface whose screw has a parasitic torque."""
+    found = Surface.load(shipped_surface())
+    inputs = found.header['inputs']
+    screw = {**inputs['screw'], 'parasitic_torque': 0.05}
+    found.header = {**found.header, 'inputs': {**inputs, 'screw': screw}}
+    return found

@@ -4,7 +4,15 @@
 
 import math
 
-from ballscrew_monitor.health.causes import CANDIDATES, carries, carrying, causes_of, Fit, fits_of
+from ballscrew_monitor.health.causes import (
+    CANDIDATES,
+    carries,
+    carrying,
+    causes_of,
+    Fit,
+    fits_of,
+    NOT_IDENTIFIED,
+)
 from ballscrew_monitor.health.change import Change
 from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.records import CauseCode, Place
@@ -88,13 +96,20 @@ def test_what_does_not_carry_the_change_is_not_told(code, size, change, model):
         (CauseCode.WIPER, -0.17),
         (CauseCode.WIPER, -0.10),
         (CauseCode.CHURNING, -0.17 / 30.0),  # 30 rad/s in the mean
-        (CauseCode.TORQUE_CONSTANT, -0.17),
     ],
 )
 def test_a_cause_that_carries_the_change_stays_told(code, size, change, model):
     cause = told(code, size, change(lambda one: FALLEN), model)
     assert not cause.excluded
     assert 'not by' not in cause.text
+
+
+def test_the_torque_constant_is_a_cause_beside_an_identified_drag_alone(change, model, identified):
+    seen = change(lambda one: FALLEN)
+    assert not told(CauseCode.TORQUE_CONSTANT, -0.17, seen, Model(identified)).excluded
+    cause = told(CauseCode.TORQUE_CONSTANT, -0.17, seen, model)
+    assert cause.excluded
+    assert cause.text == NOT_IDENTIFIED
 
 
 def test_an_offset_of_a_mean_that_did_not_change_stays_told(change, model):

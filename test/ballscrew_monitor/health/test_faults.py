@@ -5,23 +5,12 @@
 import dataclasses
 import math
 
-from ballscrew_monitor.health.faults import input_fault, NOT_IDENTIFIED, NOT_TOLD
+from ballscrew_monitor.health.faults import input_fault, NEITHER, NOT_IDENTIFIED, NOT_TOLD
 from ballscrew_monitor.health.model import Model
 from ballscrew_monitor.health.records import Place
 import pytest
-from surrogate.surface import shipped_surface, Surface
 
 SPEEDS, LOADS = (2.0, 8.0, 30.0, 100.0), (-1200.0, -400.0, 0.0, 800.0)
-
-
-@pytest.fixture
-def identified():
-    """Return a surface whose screw has a parasitic torque."""
-    found = Surface.load(shipped_surface())
-    inputs = found.header['inputs']
-    screw = {**inputs['screw'], 'parasitic_torque': 0.05}
-    found.header = {**found.header, 'inputs': {**inputs, 'screw': screw}}
-    return found
 
 
 @pytest.fixture
@@ -83,6 +72,14 @@ def test_another_torque_constant_is_told_with_its_factor(told, identified):
 
 def test_a_drag_that_was_never_identified_says_nothing_of_the_torque_constant(told):
     assert told(replaced(motor_torque=3.0), 1.0, 0.0) == NOT_IDENTIFIED
+
+
+def test_what_is_not_told_by_a_drag_that_was_never_identified_names_no_torque_constant(
+    told, identified
+):
+    assert told(replaced(axial_load=0.05)) == NEITHER
+    assert told(replaced(axial_load=0.05), surface=identified) == NOT_TOLD
+    assert 'torque constant' not in NEITHER
 
 
 def test_a_factor_beyond_any_unit_is_not_told(told, identified):

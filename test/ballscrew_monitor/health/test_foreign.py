@@ -178,3 +178,4 @@ def test_the_torque_constant_is_not_judged_by_a_drag_that_was_never_identified(y
     notes = [note for health in years(change) for note in health.notes]
     assert not [one for one in notes if 'times that of the surface' in one]
     assert [one for one in notes if 'identify it by a run without load' in one]
+    assert not [one for one in years(change) if 'torque constant' in one.advice]

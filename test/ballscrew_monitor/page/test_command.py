@@ -178,3 +178,11 @@ def test_a_recording_is_played(node, short_bag):
         process.terminate()
         process.communicate(timeout=DEADLINE)
     assert process.returncode == 0
+
+
+def test_what_is_odd_about_a_recording_is_said_once(node, miscounted_bag):
+    process, _ = begin(node, miscounted_bag)
+    process.terminate()
+    said = process.communicate(timeout=DEADLINE)[1].splitlines()
+    lines = [line for line in said if 'counts other messages' in line]
+    assert [line.startswith(f'ballscrew: bag {miscounted_bag}: ') for line in lines] == [True]

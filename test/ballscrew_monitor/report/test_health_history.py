@@ -137,6 +137,12 @@ def test_the_command_tells_what_one_recording_lacks(capsys, tmp_path):
     assert json.loads((tmp_path / 'health.json').read_text())['x']['course']
 
 
+def test_the_command_says_what_is_odd_about_a_bag_once(miscounted_bag, capsys):
+    assert main(['health', str(miscounted_bag)]) == 0
+    lines = [line for line in capsys.readouterr().err.splitlines() if 'counts other' in line]
+    assert [line.startswith(f'ballscrew: {miscounted_bag}: bag ') for line in lines] == [True]
+
+
 def test_where_no_log_can_be_read_nothing_is_written(capsys, tmp_path, says):
     assert main(['health', 'none.mcap', '--out', str(tmp_path / 'out')]) == 2
     assert capsys.readouterr().err.splitlines()[0] == says('no_log')

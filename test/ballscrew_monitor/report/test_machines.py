@@ -123,10 +123,30 @@ def test_the_folder_that_holds_a_recording(tmp_path, monkeypatch):
     (other / 'link.mcap').symlink_to(parts / 'parts_0.mcap')
     mill = (tmp_path / 'mill').resolve()
     assert folder_of(bag) == folder_of(bag / 'bag_0.mcap') == mill
-    assert folder_of(parts) == folder_of(parts / 'parts_0.mcap') == parts.resolve()
+    assert folder_of(parts) == folder_of(parts / 'parts_0.mcap') == mill
     assert folder_of(other / 'link.mcap') == other.resolve()
     monkeypatch.chdir(bag)
     assert [folder_of(type(bag)(name)) for name in ('.', 'bag_0.mcap', '../bag')] == [mill] * 3
+
+
+def test_the_folder_of_a_killed_recorder_is_the_recording_itself(tmp_path):
+    killed, finished = (tmp_path / f'recordings/20260105T06000{n}Z' for n in range(2))
+    for folder in (killed, finished):
+        folder.mkdir(parents=True)
+    (killed / f'{killed.name}.mcap.active').touch()
+    for name in (f'{finished.name}.mcap', 'metadata.yaml'):
+        (finished / name).touch()
+    assert folder_of(killed) == folder_of(finished) == killed.parent.resolve()
+    assert folder_of(next(killed.iterdir())) == killed.parent.resolve()
+
+
+@pytest.mark.parametrize('beside', ['other.mcap', 'mill.csv', 'day/day_0.mcap'])
+def test_a_folder_with_more_than_the_bag_of_its_name_is_a_machine(tmp_path, beside):
+    mill = tmp_path / 'mill'
+    (mill / 'day').mkdir(parents=True)
+    for name in ('mill.mcap', beside):
+        (mill / name).touch()
+    assert folder_of(mill / 'mill.mcap') == mill.resolve()
 
 
 def axes_of(*machines, axis='x'):

@@ -58,7 +58,7 @@ def test_lines_of_an_axis_that_is_well_has_gaps_warns_or_has_no_rows(judged, say
     assert lines_of(case, 'events') == ['none']
     assert lines_of(case, 'verdict') == [says('good_stayed_optimal')]
     case = judged.case([judged.columns(0, 51), judged.columns(250, 51)])
-    assert lines_of(case, 'not judged') == ['2 s: gaps in the speed, up to its timeout']
+    assert lines_of(case, 'not judged') == ['2 s: no speed was recorded']
     case = judged.case([judged.columns()], [judged.event(1, 0.1, 0.2)])
     assert lines_of(case, 'why')[0].startswith('The oil film was too thin')
     assert 'at this load run at 573 rev/min' in lines_of(case, 'what to do')[0]
