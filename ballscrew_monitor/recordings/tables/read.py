@@ -22,6 +22,9 @@ import numpy as np
 import polars as pl
 from surrogate.files import InputError
 
+SURE_BETWEEN = ('', ',')
+"""Separators of cells whose sign is decimal if the log does not show the other one."""
+
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Table:
@@ -143,7 +146,7 @@ def _doubts(source: Source, found: Mapping[str, Cells]) -> dict[str, str]:
     """
     Return what numbers may be others, as columns of the log differ in their sign or show none.
 
-    Commas between the cells are those of English logs, whose point is decimal.
+    Cells of a workbook are numbers, and those between commas have a decimal point.
 
     """
     if not any(cells.signs.doubtful for cells in found.values()):
@@ -162,7 +165,8 @@ def _doubts(source: Source, found: Mapping[str, Cells]) -> dict[str, str]:
     clear = [
         sign
         for sign in OTHER_SIGN
-        if source.separator == ',' or any(cells.signs.shows(sign) for cells in every.values())
+        if source.separator in SURE_BETWEEN
+        or any(cells.signs.shows(sign) for cells in every.values())
     ]
     doubts: dict[str, str] = {}
     for cells in found.values():

@@ -245,6 +245,9 @@ STATED = {
 }
 UNSTATED = {
     'seconds': number(1.0, digits=4),
+    'decimal ms': number(1e3, digits=1),
+    'decimal min': number(1 / 60, digits=9),
+    'decimal h': number(1 / 3600, digits=10),
     'of 1970': number(1.0, digits=5, first=UNIVERSAL),
     'ms of 1970': number(1e3, digits=0, first=1e3 * UNIVERSAL),
     'us of 1970': number(1e6, digits=0, first=1e6 * UNIVERSAL),
