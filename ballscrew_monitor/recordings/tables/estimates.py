@@ -16,7 +16,7 @@ FAST = 2.0  # [m/s] no feed axis moves faster
 FASTEST = 2000.0  # in mm/s, the same
 UNIVERSAL = (946_684_800.0, 4_102_444_800.0)  # [s] of the universal clock: 2000 to 2100
 DAY = 86400.0  # [s]
-RATES = (0.5, 5e3)  # [Hz] of plausible logs
+SLOWEST = 0.5  # [Hz] of a plausible log
 FACTOR = 1.5  # by which a place and its speed may disagree
 
 
@@ -76,20 +76,14 @@ def time_unit(values: Array) -> str:
     """
     Return the unit of times that none is stated for, empty where they may be of any.
 
-    It is known of the universal clock. Times with decimals count in seconds if that makes a
-    plausible rate.
+    It is known of the universal clock alone.
 
     """
     step = float(np.median(np.diff(values)))
     for unit in ('s', 'ms', 'us', 'ns'):
-        if is_universal(values, unit) and step * TIME_UNITS[unit] <= 1.0 / RATES[0]:
+        if is_universal(values, unit) and step * TIME_UNITS[unit] <= 1.0 / SLOWEST:
             return unit
-    return 's' if has_decimals(values) and 1.0 / RATES[1] <= step <= 1.0 / RATES[0] else ''
-
-
-def has_decimals(values: Array) -> bool:
-    """Return True if not all values are whole numbers."""
-    return bool((values % 1.0).any())
+    return ''
 
 
 def is_universal(values: Array, unit: str) -> bool:

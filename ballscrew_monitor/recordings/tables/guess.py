@@ -23,7 +23,7 @@ from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, Layout, RATED, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
 from ballscrew_monitor.recordings.tables.sources import layout_of, source_of
-from ballscrew_monitor.recordings.tables.time_gate import TimeGate
+from ballscrew_monitor.recordings.tables.time_gate import SHORTEST, TimeGate
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
@@ -205,34 +205,31 @@ class _Guesser:
                 f'it does not rise, such as from {values[at]:.12g} in row {rows[at]} to '
                 f'{values[at + 1]:.12g} in row {rows[at + 1]}'
             )
-        unit, *_ = self._unit_of_time(one, values)
         gate = TimeGate()
-        if unit or estimates.has_decimals(values):
-            gate.add(values * conversions.TIME_UNITS[unit or 's'], rows)
+        if unit := self._unit_of_time(one, values)[0]:
+            gate.add(values * conversions.TIME_UNITS[unit], rows)
         return gate.fault()[0]
 
-    def _unit_of_time(self, one: Named, values: Array) -> tuple[str, bool, bool]:
-        """Return the unit of times, empty if unknown; if it is stated; if they are since 1970."""
+    def _unit_of_time(self, one: Named, values: Array) -> tuple[str, bool]:
+        """Return the unit of times, empty if unknown, and if they are since 1970."""
         if stated := 's' if one.column in self.timed else one.unit:
-            return stated, True, estimates.is_universal(values, stated)
+            return stated, estimates.is_universal(values, stated)
         unit = estimates.time_unit(values)
-        absolute = bool(unit) and estimates.is_universal(values, unit)
-        return unit, absolute, absolute
+        return unit, bool(unit)
 
     def _time_of(self, one: Named, values: Array) -> dict[str, Any]:
-        unit, known, absolute = self._unit_of_time(one, values[np.isfinite(values)])
+        unit, absolute = self._unit_of_time(one, values[np.isfinite(values)])
         step = float(np.nanmedian(np.diff(values)))
-        why = f'column {one.column} states none that is known; its rows are {step:.3g} apart'
         if not unit:
-            self.unstated.append(f'state time.unit in the map: {why}, which may be of any')
-        elif not known:
-            self._assume('time.unit', unit, why)
+            self.unstated.append(
+                f'state time.unit in the map: column {one.column} states none that is known; its '
+                f'rows are {step:.3g} apart, which may be of any{_rates(step)}'
+            )
         if not absolute:
             self._assume_epoch(f'column {one.column} does not count from a known time')
         if unit:
             self.step = step * conversions.TIME_UNITS[unit]
-        place: dict[str, Any] = {'column': one.column}
-        return place if 'time.unit' in self.assumed else place | {'unit': unit or None}
+        return {'column': one.column, 'unit': unit or None}
 
     def _assume_epoch(self, why: str) -> None:
         self._assume('time.epoch', EPOCH, f'{why}, and a stamp of 0 means that there is none')
@@ -392,3 +389,13 @@ class _Guesser:
         used = {part.get('column') for axis in self.used.values() for part in axis.values()}
         used |= {entry['value'] for entry in self.assumed.values()} | set(time.values())
         self.notes += names.left_out([one for one in self.named if one.column not in used])
+
+
+def _rates(step: float) -> str:
+    """Return the rates that a step between rows makes in those units of a time that may be."""
+    told = [
+        f'{unit} {1.0 / (step * factor):.3g} Hz'
+        for unit, factor in conversions.TIME_UNITS.items()
+        if SHORTEST <= step * factor <= 1.0 / estimates.SLOWEST
+    ]
+    return f': in {", in ".join(told)}' if told else ''

@@ -87,6 +87,8 @@ def read_name(column: str) -> Named:
         kind = _kind_by_unit(column, place)
         rank += 0 if is_of_the_screw(column) else BY_UNIT
     unit = unit_of(column, kind)
+    if kind == 'time' and not unit and words[:1] == ['seconds']:  # such as seconds_elapsed
+        unit = 's'
     # In another unit than those of the quantity it is another quantity, such as a load in percent.
     if BRACKETS.search(column) and not unit:
         kind = ''

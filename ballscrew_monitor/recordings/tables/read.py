@@ -15,12 +15,15 @@ import difflib
 from pathlib import Path
 
 from ballscrew_monitor.recordings.tables.cells import Array, Cells, Reading
-from ballscrew_monitor.recordings.tables.quantities import Layout
+from ballscrew_monitor.recordings.tables.quantities import Layout, OTHER_SIGN
 from ballscrew_monitor.recordings.tables.sources import layout_of, Source, source_of
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
 import polars as pl
 from surrogate.files import InputError
+
+SURE_BETWEEN = ('', ',')
+"""Separators of cells whose sign is decimal if the log does not show the other one."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -140,7 +143,12 @@ def _cells(source: Source, name: str, decimal: str = '') -> Cells:
 
 
 def _doubts(source: Source, found: Mapping[str, Cells]) -> dict[str, str]:
-    """Return what numbers may be others, as columns of the log differ in their decimal sign."""
+    """
+    Return what numbers may be others, as columns of the log differ in their sign or show none.
+
+    Cells of a workbook are numbers, and those between commas have a decimal point.
+
+    """
     if not any(cells.signs.doubtful for cells in found.values()):
         return {}
     others = {name: _cells(source, name) for name in source.names() if name not in found}
@@ -148,14 +156,21 @@ def _doubts(source: Source, found: Mapping[str, Cells]) -> dict[str, str]:
     for name, cells in others.items():
         if head[name].dtype == pl.String:
             cells.add(head[name])
+    every = others | dict(found)
     elsewhere = {
         sign: f'{cell} of column {short(repr(name))}'
-        for name, cells in (others | dict(found)).items()
+        for name, cells in every.items()
         for sign, cell in cells.signs.seen.items()
     }
+    clear = [
+        sign
+        for sign in OTHER_SIGN
+        if source.separator in SURE_BETWEEN
+        or any(cells.signs.shows(sign) for cells in every.values())
+    ]
     doubts: dict[str, str] = {}
     for cells in found.values():
-        for sign, doubt in cells.signs.doubts(elsewhere).items():
+        for sign, doubt in cells.signs.doubts(elsewhere, clear).items():
             doubts.setdefault(sign, f'{cells.where} {doubt}')
     return doubts
 

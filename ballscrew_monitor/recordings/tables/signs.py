@@ -7,7 +7,7 @@ In 5.400 the point may be either. A cell such as 12.35 or 1,234.5 shows which it
 
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 import dataclasses
 import re
 
@@ -106,20 +106,25 @@ class Signs:
         """Return the signs that may part thousands wherever they stand, each with a cell."""
         return {sign: cell for sign, cell in self._doubtful.items() if sign not in self._sure}
 
-    def doubts(self, elsewhere: Mapping[str, str]) -> dict[str, str]:
+    def doubts(self, elsewhere: Mapping[str, str], clear: Collection[str]) -> dict[str, str]:
         """
         Return what is not clear, by the sign that would be decimal instead, in words.
 
-        It is clear unless the numbers of the log hold that one too: `elsewhere` says where.
+        A sign that is `clear`, as the log shows elsewhere that it is decimal, is so unless the
+        numbers of the log hold the other one too: `elsewhere` says where.
 
         """
         found = {}
         for sign, cell in self.doubtful.items():
             other = OTHER_SIGN[sign]
             if other in elsewhere:
-                found[other] = (
-                    f'holds {cell.words}, which is {cell.readings(sign)}, for numbers of the log '
-                    f'have a decimal {NAMES[other]}, too, such as {elsewhere[other]}: state '
-                    f"`decimal: '{other}'` or `decimal: '{sign}'` in the map"
-                )
+                why = f'have a decimal {NAMES[other]}, too, such as {elsewhere[other]}'
+            elif sign not in clear:
+                why = f'nowhere show whether the {NAMES[sign]} is decimal or parts thousands'
+            else:
+                continue
+            found[other] = (
+                f'holds {cell.words}, which is {cell.readings(sign)}, for numbers of the log '
+                f"{why}: state `decimal: '{other}'` or `decimal: '{sign}'` in the map"
+            )
         return found

@@ -86,6 +86,11 @@ class TimeGate:
 
     def fault(self) -> tuple[str, str]:
         """Return what no recording does, and the key that decides; empty if all is well."""
+        fault = self.fault_of_steps()
+        return fault if any(fault) else self.fault_of_span()
+
+    def fault_of_steps(self) -> tuple[str, str]:
+        """Return a fault of the times as they follow each other, as `fault` does."""
         if 2 * self._equal > self._steps and self._first_equal:
             (time, row), (_, later) = self._first_equal
             return (
@@ -109,6 +114,10 @@ class TimeGate:
                 f'second, allowed are {RATE:.0f}',
                 f'correct time.unit or time.scale, or {INSTEAD}',
             )
+        return '', ''
+
+    def fault_of_span(self) -> tuple[str, str]:
+        """Return the fault of a span that is too long, as `fault` does."""
         (least, row), (most, later) = self._least, self._most
         if most - least > LONGEST:
             return (

@@ -180,7 +180,13 @@ class Times:
             row += len(times)
 
     def _check_gate(self, gate: TimeGate, name: str) -> None:
-        """Raise InputError if the rows of the motion have times that no recording has."""
+        """
+        Raise InputError if times are such as no recording has.
+
+        The span is that of all rows. What the times of the rows do one by one is refused only of
+        those of the motion.
+
+        """
         if not any(gate.fault()):
             return
         motion = [
@@ -192,7 +198,8 @@ class Times:
             moves = np.any([np.isfinite(block[name]) for name in motion], axis=0)
             known = np.isfinite(times) & moves
             of_motion.add(times[known], row + np.flatnonzero(known))
-        fault, mend = of_motion.fault()
+        steps, span = of_motion.fault_of_steps(), gate.fault_of_span()
+        fault, mend = steps if any(steps) else span
         if fault:
             where = f'log {self._table.path}: column {short(repr(name))}'
             raise InputError(f'{where}: {fault}: {mend}')

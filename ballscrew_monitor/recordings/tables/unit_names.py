@@ -32,8 +32,9 @@ _ALIASES = {
     'degC': ('c', '°c', 'deg/c', '°/c', 'grad/c', 'celsius'),
     'A': ('amp', 'amps'),
     's': ('sec', 'seconds', 'sek', 'sekunden'),
-    'ms': ('msec', 'millis'),
-    'us': ('usec', 'µs', 'μs'),
+    'ms': ('msec', 'millis', 'milliseconds'),
+    'us': ('usec', 'µs', 'μs', 'microseconds'),
+    'ns': ('nanoseconds',),
 }
 
 
@@ -88,8 +89,9 @@ def _stands_alone(text: str) -> bool:
 
 
 def _stated(column: str) -> Iterator[str]:
-    """Yield what may be a unit: in brackets, at the end, `rpm` anywhere, longer inside."""
+    """Yield what may be a unit: in brackets, the whole, the end, `rpm` anywhere, longer inside."""
     yield from (_plain(text) for text in BRACKETS.findall(column))
+    yield _plain(BRACKETS.sub(' ', column))
     yield from _ends(column)
     bare = BRACKETS.sub(' ', column)
     spans = [match.span() for match in WORD.finditer(bare)]

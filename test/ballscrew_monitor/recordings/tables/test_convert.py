@@ -169,7 +169,7 @@ def test_a_log_slower_than_the_timeouts_lengthens_them(tmp_path, write_csv, says
 
 def test_a_torque_and_a_temperature_have_their_topics(tmp_path, write_csv):
     columns = {
-        't': np.arange(20.0) / 10,
+        't_s': np.arange(20.0) / 10,
         'x_vel_mm_s': [100.0] * 20,
         'x_force_N': [100.0] * 20,
         'x_torque_Nm': [0.5] * 20,
@@ -183,7 +183,8 @@ def test_a_torque_and_a_temperature_have_their_topics(tmp_path, write_csv):
 
 
 def test_a_load_may_be_left_to_the_node(tmp_path, write_csv):
-    columns = {'t': np.arange(40.0) / 100, 'x_vel_mm_s': [100.0] * 40, 'x_current_A': [20.0] * 40}
+    speeds, currents = [100.0] * 40, [20.0] * 40
+    columns = {'t_s': np.arange(40.0) / 100, 'x_vel_mm_s': speeds, 'x_current_A': currents}
     log = write_csv(tmp_path / 'log.csv', columns)
     content = content_of(log)
     content['assumed']['x.load.from']['value'] = 'motor_torque'

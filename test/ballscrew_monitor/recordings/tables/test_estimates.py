@@ -48,7 +48,8 @@ def test_the_largest_place_tells_the_unit():
         (1.7e12, 10.0, 'ms'),
         (1.7e15, 1e4, 'us'),
         (1.7e18, 1e7, 'ns'),
-        (0.0, 0.01, 's'),
+        (0.0, 0.01, ''),
+        (0.0, 0.5, ''),
         (0.0, 1e-7, ''),
         (45852.5, 1.0 / 86400, ''),
         (5.0, 10.0, ''),
@@ -62,7 +63,7 @@ def test_the_largest_place_tells_the_unit():
 )
 def test_size_and_step_tell_the_unit_of_times_or_nothing_does(begin, step, expected):
     """
-    Times since 1970 and times with decimals; whole numbers and days of a sheet may be of any unit.
+    Times since 1970 alone; others, with decimals or without, may be of any unit.
 
     The last are ticks of 100 ns since 1601 and since the year 1.
 

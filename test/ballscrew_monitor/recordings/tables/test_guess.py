@@ -76,7 +76,7 @@ def test_units_in_names_are_not_assumed(guessed):
 
 @pytest.mark.parametrize('name', ['Drehmoment [%]', 'Motorstrom [%]'])
 def test_a_part_of_the_rated_torque_needs_that(name, guessed):
-    made = guessed({'t': TIME, 'Vorschub [mm/min]': SPEED, name: SPEED})
+    made = guessed({'t_s': TIME, 'Vorschub [mm/min]': SPEED, name: SPEED})
     assert made.content['assumed']['x.torque_rated_Nm']['value'] > 0
     assert 'x.torque_constant_Nm_per_A' not in made.content['assumed']
     assert (
@@ -101,7 +101,7 @@ def test_logs_of_one_axis_need_no_letter(guessed):
 )
 def test_position_and_time_tell_the_unit_of_the_speed(factor, unit, guessed):
     position = 300.0 - 100.0 * np.cos(TIME)
-    made = guessed({'t': TIME, 'x_pos': position, 'x_vel': SPEED * factor}, form='{:.9g}')
+    made = guessed({'t_s': TIME, 'x_pos': position, 'x_vel': SPEED * factor}, form='{:.9g}')
     assert made.content['assumed']['x.speed.unit']['value'] == unit
 
 
@@ -267,5 +267,26 @@ def test_a_time_of_day_counts_in_seconds_and_a_count_beside_a_date_is_none(guess
     assert made.content['time'] == {'column': 'Uhrzeit', 'unit': 's'}
     dates = ['02.01.2026'] * 200
     made = guessed({'Datum': dates, 'Zeit': TIME, 'x_vel': SPEED, 'x_force': SPEED})
-    assert made.content['time'] == {'column': 'Zeit'}
-    assert made.content['assumed']['time.unit']['value'] == 's'
+    assert made.content['time'] == {'column': 'Zeit', 'unit': None}
+
+
+@pytest.mark.parametrize('scale', [1.0, 1e3, 1 / 60])
+def test_a_time_with_decimals_is_of_no_unit_until_one_is_stated(scale, guessed, refused, says):
+    columns = {'x_vel_mm_s': SPEED, 'x_force_N': SPEED}
+    made = guessed({'time': TIME * scale} | columns, form='{:.9g}')
+    assert made.content['time'] == {'column': 'time', 'unit': None}
+    assert 'time.unit' not in made.content['assumed']
+    refused('no_unit', make_map, made.content)
+    if scale == 1.0:
+        assert made.unstated == (says('rates_of_units'),)
+        assert f'#   {says("rates_of_units")}\n' in made.text
+
+
+@pytest.mark.parametrize(
+    ('name', 'unit'),
+    [('t_s', 's'), ('Zeit (s)', 's'), ('seconds', 's'), ('seconds_elapsed', 's')]
+    + [('TimeSeconds', 's'), ('Zeit [ms]', 'ms'), ('MilliSeconds', 'ms'), ('t (min)', 'min')],
+)
+def test_a_name_states_the_unit_of_its_time(name, unit, guessed):
+    made = guessed({name: TIME, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED})
+    assert made.content['time'] == {'column': name, 'unit': unit}

@@ -113,11 +113,27 @@ def test_cells_of_the_column_itself_may_show_the_other_sign(read, refused, shown
     assert read(columns, decimal=',')['v'].tolist() == [5400.0, true]
 
 
-def test_where_nothing_has_the_other_sign_a_point_is_decimal(read):
-    columns = {'t': ['0', '10'], 'v': ['5.400', '5.500'], 'n': ['N 1,5', '14.07.2025 10:00:00,5']}
-    assert read(columns, ['t', 'v'])['v'].tolist() == [5.4, 5.5]
+@pytest.mark.parametrize('separator', ';\t')
+def test_a_log_that_shows_no_sign_is_refused(read, refused, separator):
+    columns = {'t': ['0', '10'], 'v': ['5.400', '-12.000'], 'n': ['N 1,5', '14.07.2025 10:00,5']}
+    refused('nowhere', read, columns, ['t', 'v'], separator=separator)
+    assert read(columns, ['t', 'v'], decimal='.')['v'].tolist() == [5.4, -12.0]
+    assert read(columns, ['t', 'v'], decimal=',')['v'].tolist() == [5400.0, -12000.0]
     columns = {'t': ['0', '10'], 'v': ['5,400', '5,500']}
-    assert read(columns)['v'].tolist() == [5.4, 5.5]
+    refused('nowhere_comma', read, columns, separator=separator)
+
+
+@pytest.mark.parametrize('shown', ['0.400', '0.000', '1234.500', '20.5'])
+def test_a_cell_or_another_column_shows_that_a_point_is_decimal(read, shown):
+    true = float(shown)
+    assert read({'t': ['0', '10'], 'v': ['10.000', shown]})['v'].tolist() == [10.0, true]
+    columns = {'t': ['0', '10'], 'v': ['10.000', '20.500'], 'w': ['40.000', shown]}
+    assert read(columns, ['t', 'v'])['v'].tolist() == [10.0, 20.5]
+
+
+def test_a_point_between_commas_is_decimal(read):
+    columns = {'t': ['0', '10'], 'v': ['5.400', '5.500'], 'n': ['N 1', '14.07.2025 10:00:00']}
+    assert read(columns, ['t', 'v'], separator=',')['v'].tolist() == [5.4, 5.5]
 
 
 def test_a_column_that_is_not_read_shows_the_sign_too(read, refused):
@@ -203,5 +219,5 @@ def test_one_look_is_enough_for_a_log_that_is_clear(tmp_path, monkeypatch):
     mapping = make_map({'time': {'rate_Hz': 10.0, 'epoch': '2026-01-01'}, 'axes': axes})
     read_series(log_of(tmp_path, {'v': ['5.400', '12.5'], 'n': ['1,5', '2']}), mapping)
     assert not looks
-    read_series(log_of(tmp_path, {'v': ['5.400', '5.500'], 'n': ['1', '2']}), mapping)
+    read_series(log_of(tmp_path, {'v': ['5.400', '5.500'], 'n': ['1', '0.5']}), mapping)
     assert len(looks) == 1

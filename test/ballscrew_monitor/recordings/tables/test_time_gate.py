@@ -146,14 +146,19 @@ def test_blocks_leave_no_trace(steps, block):
     assert gated(times, block).fault() == gated(times, len(times)).fault()
 
 
-def test_only_the_rows_of_the_motion_count(read, refused):
-    """A slow temperature has rows of its own, out of order, and times of another clock."""
+def test_the_order_is_that_of_the_rows_of_the_motion(read, refused):
+    """A slow temperature has rows of its own, out of order and with times that others have."""
     rows, nothing = np.arange(400), ['']
-    times = [*(rows / 100), *[3.0] * 900, *np.tile(np.arange(50) / 50, 2), 1.0 + 20 * YEAR]
+    times = [*(rows / 100), *[3.0] * 900, *np.tile(np.arange(50) / 50, 2), 1.0 + 9 * YEAR]
     speeds = [*rows.tolist(), *nothing * 1001]
     temperatures = [*nothing * 400, *[40.0] * 1001]
     assert read(times, speeds, temperatures).count == 1401
     refused('of_the_motion', read, [*times[:200], *times], [*speeds[:200], *speeds])
+
+
+def test_a_row_far_off_is_refused_though_it_holds_no_motion(read, refused):
+    times, speeds = [*(np.arange(300) / 100), 4e8], [*[1.0] * 300, '']
+    refused('span_of_all', read, times, speeds)
 
 
 @pytest.mark.parametrize(
@@ -240,6 +245,9 @@ STATED = {
 }
 UNSTATED = {
     'seconds': number(1.0, digits=4),
+    'decimal ms': number(1e3, digits=1),
+    'decimal min': number(1 / 60, digits=9),
+    'decimal h': number(1 / 3600, digits=10),
     'of 1970': number(1.0, digits=5, first=UNIVERSAL),
     'ms of 1970': number(1e3, digits=0, first=1e3 * UNIVERSAL),
     'us of 1970': number(1e6, digits=0, first=1e6 * UNIVERSAL),
