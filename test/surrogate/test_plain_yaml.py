@@ -20,9 +20,12 @@ def test_the_last_allowed_depth_and_number_are_read(refused):
     deepest = '[' * (DEPTH - 1) + '1' + ']' * (DEPTH - 1)
     assert str(plain_values(deepest)) == deepest
     refused('deep', plain_values, f'[{deepest}]')
-    most = '[' + ', '.join(['1'] * (VALUES - 1)) + ']'
-    assert len(plain_values(most)) == VALUES - 1
+    thousand = f'[{", ".join(["1"] * 999)}]'  # with the list itself
+    lists, ones = VALUES // 1000 - 1, 999
+    most = f'[&a {thousand}{", *a" * (lists - 1)}{", 1" * ones}]'
+    assert len(plain_values(most)) == lists + ones
     refused('many', plain_values, f'[{most}]')
+    refused('many', plain_values, most.replace('[&a', '[1, &a'))
     refused('large', plain_values, '#' * (TEXT + 1))
 
 
