@@ -14,6 +14,7 @@ Pictures are left out: no test reads how they look.
 import argparse
 import ast
 from collections.abc import Iterator
+import gc
 from importlib.machinery import SourceFileLoader
 import itertools
 import os
@@ -211,6 +212,7 @@ def run(path: str, mutant: Mutant | None, limit: float, cache: str) -> NoReturn:
     """Run the tests of a source and leave the process, with 0 if they pass."""
     import pytest
 
+    gc.freeze()  # what the other process has left is not to be destroyed in this one
     signal.alarm(round(limit))  # which kills
     for stream in (1, 2):
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream)

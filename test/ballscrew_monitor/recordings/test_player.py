@@ -287,14 +287,17 @@ def test_a_rate_that_the_node_cannot_follow_is_a_failure_with_the_count(node, no
     node.start('--params-file', PARAMS, use_sim_time='true')
     with play(node.domain, nominal_bag, '--rate', 10, '--params', PARAMS) as player:
         node.until(lambda: states and states[-1].inputs[0].received, 'a sample')
+        said = len(node.told)
+        node.until(lambda: len(node.told) > said + 1, 'diagnostics that the player hears, too')
         node.process.send_signal(signal.SIGSTOP)
         assert ' messages in ' in player.stdout.readline()  # all are sent
         node.process.send_signal(signal.SIGCONT)
         _, err = player.communicate(timeout=DEADLINE)
     assert player.returncode == 1, err
-    taken, count = map(int, re.findall(r'took (\d+) of (\d+)', err)[0])
-    assert err == says('did_not_follow', taken=taken, count=count)
-    assert 0 < taken < count
+    ((taken, count, source),) = re.findall(r'took (\d+) of (\d+) messages of its (\w+)', err)
+    assert err == says('did_not_follow', taken=taken, count=count, source=source)
+    assert source in ('speed', 'load')
+    assert 0 < int(taken) < int(count)
 
 
 def test_a_rate_that_the_node_follows_is_none(node, short_bag, wait_for):
