@@ -3,8 +3,9 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # The checks, then the tests, whose closing line comes last. Arguments are for pytest.
-# One worker more than the two cores of the smallest machine that this is for: talk over DDS is mostly
-# waiting. Each has its share of the files until it helps the others. `-n 0` runs all in one process.
+# A worker for each of the two cores of the smallest machine that this is for: a third one gains little
+# and lets nodes and listeners wait for each other. Each has its share of the files until it helps the
+# other. `-n 0` runs all in one process.
 set -u
 cd "$(dirname "$0")/.."
 export ROS_PYTHON_CHECK_FIELDS=1
@@ -25,7 +26,7 @@ check() {
 check ruff check --quiet --output-format concise
 check ruff format --check --quiet --output-format concise
 [ -z "$failed" ] || echo "== failed:$failed"
-.venv/bin/pytest -q -n 3 --dist worksteal "$@"
+.venv/bin/pytest -q -n 2 --dist worksteal "$@"
 code=$?
 [ $code != 0 ] || [ -z "$failed" ] || code=1
 exit $code

@@ -95,7 +95,7 @@ def play(domain, *arguments):
 
 def test_everything_arrives_as_it_was_recorded(domain, listener, short_bag):
     bag = Bag(short_bag)
-    with play(domain, short_bag, '--rate', 4) as player:
+    with play(domain, short_bag, '--rate', 1) as player:
         listener.until_all_of(bag)
         out, err = player.communicate(timeout=DEADLINE)
     assert (player.returncode, err) == (0, '')
