@@ -358,6 +358,7 @@ class NodeProcess:
         self.clients = {}
         self.stamp = 0
         self.publishers = ()
+        self.after_states = []
         self.told = self.listen(DiagnosticArray, '/diagnostics')
 
     def start(self, *arguments, **parameters):
@@ -400,9 +401,17 @@ class NodeProcess:
         return heard
 
     def states(self, axis='x'):
-        """Return the list to which the states of an axis are appended."""
+        """
+        Return the list to which the states of an axis are appended.
+
+        The node learns of subscriptions in their order: once what is latched has come to the
+        second one, no state is published without the first.
+
+        """
         qos = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
-        return self.listen(BallScrewState, f'{self.name}/{axis}/state', qos)
+        heard = self.listen(BallScrewState, f'{self.name}/{axis}/state', qos)
+        self.after_states.append(self.infos(axis))
+        return heard
 
     def events(self, axis='x'):
         """Return the list to which the events of an axis are appended, from the last one on."""
@@ -516,12 +525,17 @@ class NodeProcess:
         message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
         return message
 
+    def knows_listeners(self):
+        """Return True if the node knows all subscriptions of its states."""
+        return all(self.after_states)
+
     def until_matched(self, *publishers, inputs=('Speed', 'Load')):
         """Wait until the inputs have one publisher each, and these their node."""
         # A best-effort sample is lost unless both sides know of each other.
         self.until(
             lambda: (
                 all(publisher.get_subscription_count() for publisher in publishers)
+                and self.knows_listeners()
                 and self.told
                 and {f'{name} publishers [-]' for name in inputs}
                 <= {

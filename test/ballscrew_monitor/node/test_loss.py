@@ -60,10 +60,17 @@ class Machine:
         return self.speed is not None and condition(self.speed)
 
     def judge(self, publisher=None):
-        """Publish one speed and wait for the state that it gives."""
-        before = self.states[-1].judged if self.states else 0
-        self.publish(publisher)
-        self.node.until(lambda: self.states and self.states[-1].judged > before, 'a state')
+        """Publish a speed, again with each of the diagnostics, until there is a state of one."""
+        before, told = self.states[-1].judged if self.states else 0, 0
+
+        def is_judged():
+            nonlocal told
+            if told != len(self.node.told):
+                told = len(self.node.told)
+                self.publish(publisher)
+            return self.states and self.states[-1].judged > before
+
+        self.node.until(is_judged, 'a state')
 
     def is_said(self, sentence):
         return any(

@@ -80,13 +80,37 @@ def listener(domain, short_bag, wait_for):
     made.close()
 
 
-def play(domain, *arguments):
+# A player that waits for the words of a node as long as a busy one takes, and after some messages
+# for a word of the test.
+GATED = f"""
+import sys
+from ballscrew_monitor.cli import main
+from ballscrew_monitor.recordings import following
+from ballscrew_monitor.recordings.player import Player
+
+following.FIRST_WORD = following.LAST_WORD = {DEADLINE}
+messages_of = Player._messages
+
+def gated(*args):
+    for number, message in enumerate(messages_of(*args)):
+        if number == 300:
+            print('300 are sent', flush=True)
+            sys.stdin.readline()
+        yield message
+
+Player._messages = gated
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def play(domain, *arguments, command=('-m', 'ballscrew_monitor')):
     """Start the player as a process, which waits for its listener unless told otherwise."""
-    command = ['ballscrew_monitor', 'play', '--wait', DEADLINE, *arguments]
+    words = [*command, 'play', '--wait', DEADLINE, *arguments]
     return subprocess.Popen(
-        [sys.executable, '-m', *map(str, command)],
+        [sys.executable, *map(str, words)],
         cwd=ROOT,
         env=child_environment(domain),
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -285,11 +309,14 @@ def test_a_rate_that_the_node_cannot_follow_is_a_failure_with_the_count(node, no
     """A node that gets no processor time loses what does not fit into its queues."""
     states = node.states()
     node.start('--params-file', PARAMS, use_sim_time='true')
-    with play(node.domain, nominal_bag, '--rate', 10, '--params', PARAMS) as player:
+    node.until(node.knows_listeners, 'the node')
+    options = ('--rate', 10, '--params', PARAMS)
+    with play(node.domain, nominal_bag, *options, command=('-c', GATED)) as player:
         node.until(lambda: states and states[-1].inputs[0].received, 'a sample')
-        said = len(node.told)
-        node.until(lambda: len(node.told) > said + 1, 'diagnostics that the player hears, too')
+        assert player.stdout.readline() == '300 are sent\n'
         node.process.send_signal(signal.SIGSTOP)
+        player.stdin.write('play\n')
+        player.stdin.flush()
         assert ' messages in ' in player.stdout.readline()  # all are sent
         node.process.send_signal(signal.SIGCONT)
         _, err = player.communicate(timeout=DEADLINE)
@@ -302,8 +329,9 @@ def test_a_rate_that_the_node_cannot_follow_is_a_failure_with_the_count(node, no
 
 def test_a_rate_that_the_node_follows_is_none(node, short_bag, wait_for):
     node.start('--params-file', PARAMS, use_sim_time='true')
-    with play(node.domain, short_bag, '--rate', 0.5, '--params', PARAMS) as player:
-        _, err = player.communicate(timeout=DEADLINE)
+    options = ('--rate', 0.5, '--params', PARAMS)
+    with play(node.domain, short_bag, *options, command=('-c', GATED)) as player:
+        _, err = player.communicate('play\n', timeout=DEADLINE)
     assert (player.returncode, err) == (0, '')
 
 
