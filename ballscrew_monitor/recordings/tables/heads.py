@@ -15,7 +15,7 @@ SEPARATORS = (';', '\t', '|', ',')
 """What may part the cells; a comma may be a decimal mark as well, hence it is the last."""
 COMMENT = '#'
 QUOTED = re.compile('"[^"]*"')
-NUMBER = re.compile(r'\s*[-+]?[\d.,]*\d[\d.,:eETZ +/-]*')
+NUMBER = re.compile(r'\s*[-+]?[.,]*\d[\d.,:eETZ +/-]*')
 """A number, date or time in whatever form."""
 FULL = 0.5  # of the cells of the fullest row: emptier ones belong to no table
 
