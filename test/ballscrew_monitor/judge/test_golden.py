@@ -16,9 +16,9 @@ and a masked node. `golden_rows.npz` holds columns of four tables. Their names t
 * `state_`: each published state; `row` -1 where none gave it.
 
 Four things have changed since. The light-load gate has a hysteresis, an excursion keeps limit and
-place of its worst sample, and its last stamp moves with a clock that is set back: these are left
-out here. The lookup adds up its sums in another
-order, for which numbers have a relative tolerance.
+place of its worst sample: these are left out here. Its last stamp moves with a clock that is set
+back, so while it is active its length is held. The lookup adds up its sums in another order, for
+which numbers have a relative tolerance.
 
 """
 
@@ -64,7 +64,7 @@ def check(found, wanted, names, place):
         assert close(-1 if here is None else here, there), f'{place}: {name} {here} {there}'
 
 
-def check_row(row, memory, wanted, texts, monitor, place):
+def check_row(row, memory, wanted, texts, monitor, lengths, place):
     check(row, wanted, SAME, place)
     if wanted.published:
         check(row, wanted, REST, place)
@@ -85,6 +85,10 @@ def check_row(row, memory, wanted, texts, monitor, place):
     told |= {'start': memory.event_start[0]}
     if not memory.event_active:
         told |= {'stamp': memory.event_stamp}
+    elif memory.event_number:  # whose last stamp moves with its begin
+        length = wanted.told_stamp - wanted.told_start
+        length = lengths.setdefault(int(memory.event_number), length)
+        assert memory.event_stamp - memory.event_start[0] == length, place
     told |= {'worst_value': memory.event_worst[0], 'cause': memory.event_code[0]}
     for name, value in told.items():
         there = getattr(wanted, f'told_{name}')
@@ -126,6 +130,7 @@ def test_rows_are_the_golden_ones(run, golden, core, monkeypatch):
     of_run = np.isin(golden.arrays['row_event'], numbers)
     wanted_rows = iter(golden.table('row_', of_run))
     wanted_states = iter(golden.table('state_', of_run[golden.arrays['state_row']]))
+    lengths = {}  # of excursions, by their numbers [ns]
     for number, stored in zip(numbers.tolist(), golden.table('event_', numbers)):
         place, event, states = f'event {number}', golden.event(stored), []
         if event is None:
@@ -136,7 +141,7 @@ def test_rows_are_the_golden_ones(run, golden, core, monkeypatch):
             wanted = next(wanted_rows)
             assert wanted.event == number
             texts = golden.arrays['texts']
-            check_row(rows.pop(), monitor.memory, wanted, texts, monitor, place)
+            check_row(rows.pop(), monitor.memory, wanted, texts, monitor, lengths, place)
         for state in states:
             check_state(state, next(wanted_states), place)
     assert next(wanted_rows, None) is None
