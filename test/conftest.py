@@ -132,6 +132,11 @@ sys.path.append(str(ROOT / 'bags'))  # the generators are scripts beside each ot
 sys.path.append(str(ROOT / 'test' / 'golden'))  # what makes the golden outputs
 
 
+def pytest_collection_finish():
+    """Leave what has been collected out of every later search for garbage."""
+    gc.freeze()
+
+
 def pytest_collection_modifyitems(items):
     """Mark what is fast, all but what is named as slow; linters come first, so long are they."""
     items.sort(key=lambda item: item.get_closest_marker('linter') is None)

@@ -172,11 +172,13 @@ def test_a_wrong_file_has_its_sentence(name, domain, tmp_path, monkeypatch, caps
     command = ['doctor', '--params', str(path), '--json', '--seconds']
 
     def findings(seconds):
-        assert cli.main([*command, str(seconds)]) == 1
-        return json.loads(capsys.readouterr().out)['findings']
+        code = cli.main([*command, str(seconds)])
+        return code, json.loads(capsys.readouterr().out)['findings']
 
-    found = patient(findings, lambda found: len(found) == 1 and sentence in found[0])
-    assert len(found) == 1
+    code, found = patient(
+        findings, lambda result: len(result[1]) == 1 and sentence in result[1][0]
+    )
+    assert (code, len(found)) == (1, 1)
     assert sentence in found[0]
 
 
