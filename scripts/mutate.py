@@ -38,7 +38,7 @@ COVERED = {
     'ballscrew_monitor/judge/slopes.py': 'point step',
     'ballscrew_monitor/judge/step.py': 'monitor golden',
     'ballscrew_monitor/judge/views.py': 'inputs zone monitor step golden',
-    'ballscrew_monitor/judge/zone.py': 'views step golden',
+    'ballscrew_monitor/judge/zone.py': 'monitor step golden',
     'surrogate/surface/correction.py': 'found',
     'surrogate/surface/fields.py': 'solved file',
     'surrogate/surface/found.py': 'load_scan tables lookup correction',

@@ -19,8 +19,7 @@ import functools
 import math
 from typing import Any, NamedTuple
 
-from ballscrew_monitor.core.conversions import rounded, signed
-from ballscrew_monitor.core.estimate import MachinePoint, opposing_load_of
+from ballscrew_monitor.core.conversions import Direction, opposing_load, rounded, signed
 from ballscrew_monitor.core.judgement import efficiency_to_clear, Limits, rcs_to_clear
 from surrogate.surface import Found, look_up, Surface, Validity
 from surrogate.units import RPM
@@ -84,11 +83,15 @@ class Advisor:
     """
     What an event was raised by, and the advice on it, worked out when first asked for.
 
-    There is one only where the process leaves the axis free in its speed: `speed_allowed`.
+    Speed [rad/s], axial load [N], temperature [K], machine frame. There is advice only where the
+    process leaves the axis free in its speed: `speed_allowed`.
 
     """
 
-    point: MachinePoint
+    speed: float
+    axial_load: float
+    temperature: float
+    direction: Direction
     surface: Surface
     limits: Limits
     speed_allowed: bool = False
@@ -101,20 +104,23 @@ class Advisor:
             return Advice()
         return Advice(target_speed=self._speed(), carry=self._carry())
 
+    @property
+    def _load(self) -> float:
+        """Load [N] that opposes the motion."""
+        return opposing_load(self.axial_load, self.direction)
+
     def _carry(self) -> str:
         """Say whether RCS passes its limit wherever in both bands of the surface that may lie."""
-        surface, point = self.surface, self.point
+        surface, place = self.surface, (self._load, self.temperature)
         least = min(*surface.limit_band, *surface.numerical_band)
-        place = opposing_load_of(point), point.temperature
-        here = surface.lookup(abs(point.speed), *place).rcs
+        here = surface.lookup(abs(self.speed), *place).rcs
         if math.isnan(least) or not here >= self.limits.rcs:
             return ''
-        sure = surface.lookup(abs(point.speed) / least, *place).rcs >= self.limits.rcs
+        sure = surface.lookup(abs(self.speed) / least, *place).rcs >= self.limits.rcs
         return SURELY if sure else PERHAPS
 
     def _speed(self) -> float:
         """Return the nearest screw speed [rad/s] that clears at this load; NaN for none."""
-        point = self.point
         slowest, fastest = self.surface.speed_range
         slowest = max(slowest, self.limits.standstill_speed)
         if not slowest < fastest:
@@ -123,14 +129,14 @@ class Advisor:
         grid = (slowest * ratio ** (i / (SCAN_POINTS - 1)) for i in range(SCAN_POINTS))
         speeds = [min(speed, fastest) for speed in grid]
         criterion = Criterion(
-            load=float(opposing_load_of(point)),
-            temperature=float(point.temperature),
+            load=float(self._load),
+            temperature=float(self.temperature),
             rcs=float(rcs_to_clear(self.limits)),
             efficiency=float(efficiency_to_clear(self.limits)),
             light_load=float(self.limits.light_load),
         )
-        found = self.nearest(self.surface, criterion, abs(point.speed), speeds)
-        return signed(found, point.direction)
+        found = self.nearest(self.surface, criterion, abs(self.speed), speeds)
+        return signed(found, self.direction)
 
 
 def nearest(tables: Any, criterion: Criterion, here: float, speeds: Any, room: Any) -> float:

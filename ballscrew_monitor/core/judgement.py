@@ -1,17 +1,50 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The words of a judgement: levels, zones, gates, limits and findings."""
+"""The words of a judgement: sources, validity, levels, zones, gates, limits and findings."""
 
 import dataclasses
 import enum
 import math
 from typing import Self
 
-from ballscrew_monitor.core.estimate import PointEstimate, PointValidity
 from surrogate.files import InputError
 
 NAN = math.nan
+DOMINANT_RCS = 0.5  # [-] from here on asperities carry the larger part of the load
 FROM_TORQUE = ', efficiency judged from a load derived from the motor torque'
+
+
+class PointSource(enum.IntEnum):
+    """Where a number of an operating point comes from; OperatingPoint.SOURCE_."""
+
+    UNKNOWN = 0
+    MEASURED = 1
+    DEFAULT = 2
+    HELD = 3
+    DERIVED = 4  # the load, from the motor torque
+
+
+class PointValidity(enum.IntEnum):
+    """Whether an instant could be judged; PointResult.VALIDITY_, up to 6 those of a surface."""
+
+    UNKNOWN = 0
+    VALID = 1
+    SPEED_BELOW_RANGE = 2
+    SPEED_ABOVE_RANGE = 3
+    LOAD_OUT_OF_RANGE = 4
+    TEMPERATURE_OUT_OF_RANGE = 5
+    MASKED = 6
+    NO_INPUT = 7
+    NO_SURFACE = 8  # reserved by the message; without a surface the node is not active
+
+
+class ContactState(enum.IntEnum):
+    """Asperity contact by RCS; PointResult.CONTACT_."""
+
+    UNKNOWN = 0
+    NONE = 1
+    PARTIAL = 2
+    DOMINANT = 3
 
 
 class Level(enum.IntEnum):
@@ -166,16 +199,6 @@ class Finding:
     text: str = ''
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Verdict:
-    """Judgement of one instant; `clear` tells whether it counts towards clearing a warning."""
-
-    zone: Zone
-    gates: tuple[Gate, ...] = ()
-    findings: tuple[Finding, ...] = ()
-    clear: bool = False
-
-
 def violation(code: Code, value: float, limit: float, *, derived: bool = False) -> Finding:
     """Return the finding that a criterion is not met; a `derived` load is named."""
     if code is Code.UNKNOWN:
@@ -186,14 +209,3 @@ def violation(code: Code, value: float, limit: float, *, derived: bool = False) 
         text = f'too much power is lost: efficiency {value:.3g}, limit {limit:.3g}'
         text += FROM_TORQUE if derived else ''
     return Finding(code=code, severity=Severity.WARN, value=value, limit=limit, text=text)
-
-
-def unjudged(estimate: PointEstimate) -> Finding:
-    """Return why a point has no zone."""
-    if estimate.validity is PointValidity.NO_INPUT:
-        return Finding(code=Code.INPUT_LOST, severity=Severity.ERROR, text=estimate.reason)
-    return Finding(
-        code=Code.OUT_OF_RANGE,
-        severity=Severity.WARN,
-        text=estimate.reason or 'the surface holds no number here',
-    )

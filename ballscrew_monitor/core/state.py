@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Data into and out of a monitor: settings, events, sums over time and states.
+Data into and out of a monitor: settings, events and sums over time.
 
 A warning that is known can be shelved for a time, so that nobody is called for it again and again.
 Shelving changes what is said of a warning, never the judgement. Time is an argument [ns], the
@@ -15,9 +15,8 @@ import math
 
 from ballscrew_monitor.core.advice import Advice, Advisor
 from ballscrew_monitor.core.conversions import nanoseconds, SECOND, seconds
-from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
-from ballscrew_monitor.core.inputs import InputStatus, Source, YEAR
-from ballscrew_monitor.core.judgement import Code, Finding, Level, Limits, Severity, Verdict
+from ballscrew_monitor.core.inputs import Source, YEAR
+from ballscrew_monitor.core.judgement import Code, Finding, Limits, Severity
 from surrogate.files import InputError
 from surrogate.units import TURN
 
@@ -124,18 +123,6 @@ class Extremes:
     high: float = NAN
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class WindowStatistics:
-    """Extremes since the last publication: [rad/s], [N], [-], [-], [-]."""
-
-    count: int
-    speed: Extremes
-    axial_load: Extremes
-    efficiency: Extremes
-    rcs: Extremes
-    film_ratio: Extremes
-
-
 WINDOW = ('speed', 'axial_load', 'efficiency', 'rcs', 'film_ratio')
 
 
@@ -240,34 +227,3 @@ def _line(text: str, name: str, what: str, least: int, most: int) -> str:
             f'{name} has {len(line)} characters, it must say {what} in {least} to {most}'
         )
     return line
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class State:
-    """
-    Judgement of one axis at one instant.
-
-    `event` is that which began or ended at this state, else None; `event_id` is that of the
-    active event or of the last one. `shelving` is that in force. Torques [N m] in the machine
-    frame.
-
-    """
-
-    axis: str
-    stamp: int
-    point: MachinePoint
-    estimate: PointEstimate
-    verdict: Verdict
-    level: Level
-    level_since: int
-    event_id: int
-    event: Event | None
-    limits: Limits
-    window: WindowStatistics
-    inputs: tuple[InputStatus, ...]
-    totals: Totals
-    judged: int
-    measured_torque: float
-    torque_residual: float
-    surface_id: str
-    shelving: Shelving = NOT_SHELVED

@@ -16,7 +16,6 @@ import math
 
 from ballscrew_monitor.core.advice import Advisor
 from ballscrew_monitor.core.conversions import Direction
-from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.lubrication import opposed
 from ballscrew_monitor.health.records import ComparablePoint
@@ -203,7 +202,10 @@ def _feed(programme: Programme) -> Remedy:
     """Return the slowest feed at which the programme lies inside, slower points raised to it."""
     advisors = (
         Advisor(
-            point=_machine_point(one),
+            speed=one.speed,
+            axial_load=one.axial_load,
+            temperature=one.temperature,
+            direction=Direction.POSITIVE if one.place.direction > 0 else Direction.NEGATIVE,
             surface=programme.surface,
             limits=programme.limits,
             speed_allowed=True,
@@ -217,16 +219,6 @@ def _feed(programme: Programme) -> Remedy:
             feed = speed * programme.surface.lead / TURN * MINUTE
             return Remedy(kind='feed', value=feed, share=share)
     return Remedy(kind='feed', reason='no feed of the surface would')
-
-
-def _machine_point(point: ComparablePoint) -> MachinePoint:
-    direction = Direction.POSITIVE if point.place.direction > 0 else Direction.NEGATIVE
-    return MachinePoint(
-        speed=point.speed,
-        axial_load=point.axial_load,
-        temperature=point.temperature,
-        direction=direction,
-    )
 
 
 def _helps(one: Remedy) -> bool:

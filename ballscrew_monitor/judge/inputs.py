@@ -11,8 +11,8 @@ Functions of the subset that numba compiles, see `surrogate.surface.compiled`. `
 import math
 from typing import Any
 
-from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source, StampSource, Why
+from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.judge.records import INPUTS, NOT_KNOWN, RATE_SAMPLES, SHOWN, WHYS
 
 TEMPERATURE, LOAD, TORQUE, SPEED = map(int, Source)

@@ -9,16 +9,14 @@ step; they are kept here.
 """
 
 import dataclasses
-import math
 from typing import Any
 
 from ballscrew_monitor.core.advice import interpreted, Nearest
-from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source, StampSource
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.memory import Memory as Kept
-from ballscrew_monitor.core.state import Event, MonitorSettings, NOT_SHELVED, Shelving, State
+from ballscrew_monitor.core.state import Event, MonitorSettings, NOT_SHELVED, Shelving, Totals
 from ballscrew_monitor.judge import views
 from ballscrew_monitor.judge.inputs import least_lag, SPEED
 from ballscrew_monitor.judge.point import set_answer, set_point
@@ -29,7 +27,6 @@ from ballscrew_monitor.judge.step import leave_out, NOTHING, STATE, step
 from ballscrew_monitor.judge.zone import ACTIVE, end_excursion
 from surrogate.surface import Surface
 
-NAN = math.nan
 EARLIEST, LATEST = -(2**61), 2**61
 """Stamps that are judged [ns]; stamps beyond count as these."""
 MOST_OTHERS = 16
@@ -133,21 +130,20 @@ class Monitor:
         """Judge with `surface` from now on."""
         self.surface = surface
         self._tables = surface.tables
-        self._surface_id = surface.sha256[:16]
 
-    def update(self, event: InputSample | Refusal) -> State | None:
-        """Take one sample or refusal; return the state when one is due."""
+    def update(self, event: InputSample | Refusal) -> Row | None:
+        """Take one sample or refusal; return its row if a state is due."""
         if isinstance(event, Refusal):
             self.joints.hear(event, self.memory)
         fill(self._event, event)
         return self._step()
 
-    def tick(self, now: int) -> State | None:
-        """Return a state at the grid stamp `now` [ns] if the speed is missing or stale."""
+    def tick(self, now: int) -> Row | None:
+        """Return the row of a state at the grid stamp `now` [ns] if no speed is fresh."""
         self._event.kind, self._event.stamp = TICK, within(now)
         return self._step()
 
-    def _step(self) -> State | None:
+    def _step(self) -> Row | None:
         number, start = self.memory.event_number, self.memory.event_start[ACTIVE]
         active = self.memory.event_active
         slopes = self.speeds, self.positions
@@ -159,7 +155,7 @@ class Monitor:
         if found != STATE:
             return None
         row, self._row = self._row, Row()
-        return self.state(row)
+        return row
 
     def leave_out(self, step: int, sample: InputSample) -> bool:
         """
@@ -176,36 +172,6 @@ class Monitor:
         leave_out(memory, step)
         return True
 
-    def state(self, row: Row) -> State:
-        """Return the state that a row is published as, the memory being that after the row."""
-        memory, settings = self.memory, self._settings
-        point = views.point_of(row)
-        estimate = views.estimate_of(row, point, self.surface)
-        torque = point.motor_torque
-        if point.motor_torque_source is not PointSource.MEASURED:
-            torque = NAN
-        return State(
-            axis=settings.axis,
-            stamp=int(row.stamp),
-            point=point,
-            estimate=estimate,
-            verdict=views.verdict_of(row, estimate, settings.limits),
-            level=Level(int(row.level)),
-            level_since=int(row.level_since),
-            event_id=int(row.event_id),
-            event=self.event if row.edge else None,
-            limits=settings.limits,
-            window=views.window_of(memory),
-            inputs=self.input_status(int(row.now)),
-            totals=views.totals_of(memory),
-            judged=int(memory.judged),
-            measured_torque=torque,
-            # Of a load derived from it, the torque of the model says nothing new.
-            torque_residual=NAN if point.derived else torque - estimate.machine_torque,
-            surface_id=self._surface_id,
-            shelving=self.shelving.at(int(row.now)),
-        )
-
     @property
     def level(self) -> Level:
         """Return the held level."""
@@ -218,6 +184,11 @@ class Monitor:
         if made != self._told:  # the advice of one event is worked out once
             self._told = made
         return self._told
+
+    @property
+    def totals(self) -> Totals:
+        """Return the sums."""
+        return views.totals_of(self.memory)
 
     @property
     def shelving(self) -> Shelving:
@@ -236,7 +207,7 @@ class Monitor:
         event = self.event
         if event.active:
             event = dataclasses.replace(event, stamp=int(self.memory.stamp))
-        return Kept(totals=views.totals_of(self.memory), event=event, shelving=self.shelving)
+        return Kept(totals=self.totals, event=event, shelving=self.shelving)
 
     def take_up(self, kept: Kept) -> None:
         """Go on with what was kept; what has been added up meanwhile counts too."""
@@ -269,22 +240,13 @@ class Monitor:
         self.ending = ending
         return self.event
 
-    def current_point(self, now: int) -> MachinePoint | str:
-        """Return the operating point at `now` [ns], or in a sentence why it is not known."""
+    def row_at(self, now: int) -> Row:
+        """Return the operating point at `now` [ns] and what the surface says of it."""
         row = Row(now=within(now))
         memory = dataclasses.replace(self.memory)
         set_point(self._tables, self.numbers, memory, self.speeds, row)
         set_answer(self._tables, self.numbers, row)
-        point = views.point_of(row)
-        reason = views.reason_of(row, point, self.surface)
-        if math.isnan(row.axial_load) or row.validity in (
-            PointValidity.NO_INPUT,
-            PointValidity.UNKNOWN,
-        ):
-            return reason
-        if abs(point.speed) < self._settings.limits.standstill_speed:
-            return 'the screw stands still'
-        return point
+        return row
 
     def reset_totals(self) -> None:
         """Set the totals to zero."""

@@ -12,7 +12,7 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import Direction, Nut
-from ballscrew_monitor.core.estimate import ContactState, DOMINANT_RCS
+from ballscrew_monitor.core.judgement import ContactState, DOMINANT_RCS
 from ballscrew_monitor.judge.derived_load import derive_load, no_load, NOT_FRESH, STANDSTILL
 from ballscrew_monitor.judge.inputs import (
     DEFAULT,
@@ -102,7 +102,7 @@ def set_answer(tables: Any, settings: Any, row: Any) -> None:
         leave(row, row.validity)
     else:
         look_up(tables, abs(row.speed), opposing_load(row), row.temperature, row)
-    _set_words(settings, row)
+    set_words(settings, row)
 
 
 def opposing_load(row: Any) -> float:
@@ -124,7 +124,7 @@ def _is_complete(row: Any) -> bool:
     )
 
 
-def _set_words(settings: Any, row: Any) -> None:
+def set_words(settings: Any, row: Any) -> None:
     """Set torque and nut in the machine frame, regime and contact state of a row."""
     row.machine_torque, row.machine_nut = math.nan, NO_NUT
     row.regime, row.contact_state = NO_REGIME, NO_STATE

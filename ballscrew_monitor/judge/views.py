@@ -1,125 +1,29 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Rows and memory as the typed values and sentences that messages and reports are made of."""
+"""Memory as the typed values that messages, reports and the state over restarts are made of."""
 
-import dataclasses
 import math
 from typing import Any
 
 from ballscrew_monitor.core import inputs, judgement
 from ballscrew_monitor.core.advice import Advisor, interpreted, Nearest
-from ballscrew_monitor.core.conversions import Direction, Nut, seconds
-from ballscrew_monitor.core.estimate import (
-    ContactState,
-    MachinePoint,
-    PointEstimate,
-    PointValidity,
-    reason_text,
-)
+from ballscrew_monitor.core.conversions import Direction, seconds
 from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource, Why
-from ballscrew_monitor.core.judgement import Code, Gate, Limits, Verdict, Zone
-from ballscrew_monitor.core.state import (
-    Event,
-    Extremes,
-    MonitorSettings,
-    Totals,
-    WINDOW,
-    WindowStatistics,
-)
-from ballscrew_monitor.judge import derived_load
+from ballscrew_monitor.core.judgement import Code, Zone
+from ballscrew_monitor.core.state import Event, MonitorSettings, Totals
 from ballscrew_monitor.judge.inputs import is_fresh, is_lagging, least_lag, SLOW_GAPS
 from ballscrew_monitor.judge.records import NOT_KNOWN, RATE_SAMPLES, SHOWN, WHYS
-from ballscrew_monitor.judge.zone import ACTIVE, SPEED
-from surrogate.surface import Regime, REGIMES, Surface
+from ballscrew_monitor.judge.zone import ACTIVE
+from surrogate.surface import REGIMES, Surface
 
 NAN = math.nan
 
 SOURCES = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)
 """Inputs in the order of a state."""
-"""Sentences of the last refused messages."""
-_POINT: dict[str, Any] = {field.name: field.type for field in dataclasses.fields(MachinePoint)}
-"""Names and types of what a row and a point have in common."""
 _PARTS = {f'{regime.word}_time': ('regime_time', int(regime)) for regime in REGIMES} | {
     f'{zone.name.lower()}_time': ('zone_time', int(zone)) for zone in (Zone.OPTIMAL, Zone.OUTSIDE)
 }
 """Times of the totals that are parts of a list in a memory, and their places there."""
-
-
-def point_of(row: Any) -> MachinePoint:
-    """Return the operating point of a row."""
-    return MachinePoint(**{name: kind(getattr(row, name)) for name, kind in _POINT.items()})
-
-
-def estimate_of(row: Any, point: MachinePoint, surface: Surface) -> PointEstimate:
-    """Return what the model says of the point of a row; the row itself holds the numbers."""
-    validity = PointValidity(int(row.validity))
-    if validity is not PointValidity.VALID:
-        return PointEstimate(validity=validity, reason=reason_of(row, point, surface))
-    return PointEstimate(
-        validity=validity,
-        numbers=row,
-        rcs=float(row.rcs),
-        efficiency=float(row.efficiency),
-        machine_torque=float(row.machine_torque),
-        worst_nut=Nut(int(row.machine_nut)),
-        regime=Regime(int(row.regime)),
-        contact_state=ContactState(int(row.contact_state)),
-    )
-
-
-def reason_of(row: Any, point: MachinePoint, surface: Surface) -> str:
-    """Return why a row has no answer of the surface, empty if it has one."""
-    validity = PointValidity(int(row.validity))
-    if validity is PointValidity.VALID:
-        return ''
-    known = point.direction is not Direction.UNKNOWN
-    if point.derived and known and validity is not PointValidity.NO_INPUT:
-        said = derived_text(row)
-        if said or validity is PointValidity.UNKNOWN:
-            return said
-    return reason_text(validity, point, surface)
-
-
-def derived_text(row: Any) -> str:
-    """Return why the motor torque does not tell the load; empty where the surface says why."""
-    first, second = float(row.derived_first), float(row.derived_second)
-    if row.derived == derived_load.STANDSTILL:
-        return 'the screw stands still, friction may hold any part of the load'
-    if row.derived == derived_load.NO_ACCELERATION:
-        return 'the acceleration is not known yet, and with it the torque that inertia takes'
-    if row.derived == derived_load.TOO_MUCH_INERTIA:
-        return (
-            f'inertia and drag take {first:.3g} N m and the torque is {second:.3g} N m, '
-            f'allowed is a share of {float(row.derived_third):g}: too little is left for the load'
-        )
-    if row.derived == derived_load.SEVERAL_LOADS:
-        return (
-            f'the torque is that of several loads, from {first:.4g} to {second:.4g} N that oppose '
-            'the motion'
-        )
-    if row.derived == derived_load.OUTSIDE:
-        return (
-            f'the torque along the motion, {first:.3g} N m, asks for a load outside the surface, '
-            f'{second:.4g} to {float(row.derived_third):.4g} N that oppose the motion'
-        )
-    return ''
-
-
-def verdict_of(row: Any, estimate: PointEstimate, limits: Limits) -> Verdict:
-    """Return the zone of a row, the gates that are shut, and what was found."""
-    gates = tuple(gate for gate in Gate if gate and row.gates & 1 << gate - 1)
-    zone = Zone(int(row.zone))
-    findings: tuple[judgement.Finding, ...] = ()
-    rcs, efficiency = float(row.rcs), float(row.efficiency)
-    if zone is Zone.OUTSIDE and rcs >= limits.rcs:
-        findings += (judgement.violation(Code.RCS_HIGH, rcs, limits.rcs),)
-    if zone is Zone.OUTSIDE and Gate.LIGHT_LOAD not in gates and efficiency < limits.efficiency:
-        code, limit = Code.EFFICIENCY_LOW, limits.efficiency
-        findings += (judgement.violation(code, efficiency, limit, derived=bool(row.derived)),)
-    lost = estimate.validity is PointValidity.NO_INPUT
-    if zone is Zone.UNKNOWN and (Gate.STANDSTILL not in gates or lost):
-        findings = (judgement.unjudged(estimate),)
-    return Verdict(zone=zone, gates=gates, findings=findings, clear=bool(row.clears))
 
 
 def event_of(
@@ -140,15 +44,13 @@ def event_of(
     code = Code(int(memory.event_code[ACTIVE]))
     worst, limit = float(memory.event_worst[ACTIVE]), float(memory.event_limit[ACTIVE])
     cause = judgement.violation(code, worst, limit, derived=bool(memory.event_derived[ACTIVE]))
-    point = MachinePoint(
-        speed=float(memory.event_speed[ACTIVE]),
-        axial_load=float(memory.event_load[ACTIVE]),
-        temperature=float(memory.event_temperature[ACTIVE]),
-        direction=Direction(int(memory.event_direction[ACTIVE])),
-    )
-    known = math.isfinite(point.speed + point.axial_load + point.temperature)
+    speed, load = float(memory.event_speed[ACTIVE]), float(memory.event_load[ACTIVE])
+    temperature = float(memory.event_temperature[ACTIVE])
     advisor = Advisor(
-        point=point,
+        speed=speed,
+        axial_load=load,
+        temperature=temperature,
+        direction=Direction(int(memory.event_direction[ACTIVE])),
         surface=surface,
         limits=settings.limits,
         speed_allowed=settings.speed_allowed,
@@ -161,7 +63,7 @@ def event_of(
         start=int(memory.event_start[ACTIVE]),
         worst_value=worst,
         cause=cause,
-        advisor=advisor if known else None,
+        advisor=advisor if math.isfinite(speed + load + temperature) else None,
         ending=ending,
     )
 
@@ -204,23 +106,6 @@ def clear_totals(memory: Any) -> None:
     memory.angle = memory.energy_lost = 0.0
     for times in (memory.regime_time, memory.zone_time):
         times[:] = [0] * len(times)
-
-
-def window_of(memory: Any) -> WindowStatistics:
-    """Return the statistics of the window of the last state."""
-    parts = {name: _extremes(memory, column) for column, name in enumerate(WINDOW)}
-    return WindowStatistics(count=int(memory.window_count[SPEED]), **parts)
-
-
-def _extremes(memory: Any, column: int) -> Extremes:
-    count = int(memory.window_count[column])
-    if not count:
-        return Extremes()
-    return Extremes(
-        low=float(memory.window_low[column]),
-        mean=float(memory.window_total[column]) / count,
-        high=float(memory.window_high[column]),
-    )
 
 
 def input_state_of(memory: Any, settings: Any, source: Source, now: int) -> InputState:

@@ -15,8 +15,13 @@ from typing import Any
 
 from ballscrew_monitor.core import judgement
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.estimate import PointSource, PointValidity
-from ballscrew_monitor.core.judgement import efficiency_to_clear, rcs_to_clear, Reason
+from ballscrew_monitor.core.judgement import (
+    efficiency_to_clear,
+    PointSource,
+    PointValidity,
+    rcs_to_clear,
+    Reason,
+)
 from ballscrew_monitor.judge.records import (
     COLUMNS,
     EVENT_BEGINS,

@@ -12,18 +12,26 @@ publishing; numbers are values, with the unit in brackets.
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from ballscrew_monitor.core.conversions import celsius, clock_text, seconds
-from ballscrew_monitor.core.estimate import PointValidity
+from ballscrew_monitor.core.conversions import celsius, clock_text, SECOND
 from ballscrew_monitor.core.fault_codes import cause_code, Fault
-from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source
-from ballscrew_monitor.core.judgement import Gate, Level, WarningPolicy
+from ballscrew_monitor.core.inputs import InputSample, InputState, InputStatus, Refusal, Source
+from ballscrew_monitor.core.judgement import (
+    Code,
+    ContactState,
+    Gate,
+    Level,
+    PointSource,
+    PointValidity,
+    WarningPolicy,
+    Zone,
+)
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.core.state import Event, State
 from ballscrew_monitor.core.vitals import VitalSigns
 from ballscrew_monitor.messages import reasons
 from ballscrew_monitor.messages.reasons import Standing
+from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
-from surrogate.surface import Surface
+from surrogate.surface import Regime, Surface
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
@@ -39,6 +47,7 @@ BUSY = (
     'publish_period, or give some axes a node of their own'
 )
 PARTS = ('Lubrication', 'Inputs', 'Surface')
+Inputs = tuple[InputStatus, ...]
 
 
 class StatusSummary(NamedTuple):
@@ -133,8 +142,9 @@ def hardware_id(node: str, axis: str, screw: str) -> str:
 def statuses(
     node: str,
     axis: str,
-    state: State | None,
-    event: Event,
+    state: BallScrewState | None,
+    inputs: Inputs,
+    cause: Code,
     surface: Surface,
     *,
     links: Mapping[Source, Link] | None,
@@ -146,9 +156,10 @@ def statuses(
     """
     Return the three statuses of a configured axis of the `node`, by full name.
 
-    `state` is its last one, if there is one; `links` says how each input is connected, None: the
-    node is inactive; `refused` why the surface was not reloaded; `defect` is a sentence about one
-    of the program; `policy` what is warned of.
+    `state` is its last one, if there is one, with its `inputs`; `cause` is that of its event;
+    `links` says how each input is connected, None: the node is inactive; `refused` why the
+    surface was not reloaded; `defect` is a sentence about one of the program; `policy` what is
+    warned of.
     While the clock stands no state tells that an input is dead, so nothing but a warning is held.
 
     """
@@ -170,14 +181,14 @@ def statuses(
         for status in made[:2]:
             _say(status, _stale(Fault.INACTIVE if links is None else why))
     else:
-        for status, said in zip(made, summaries(state, event, links, policy)):
+        for status, said in zip(made, summaries(state, inputs, cause, links, policy)):
             _say(status, said)
         if clock_stands:
-            warns = state.level is Level.WARN and policy.of_zone
+            warns = state.level == Level.WARN and policy.of_zone
             for status in made[1:2] if warns else made[:2]:
                 _say(status, _stale(Fault.CLOCK_STANDS))
         made[0].values += key_values(_lubrication_values(state))
-        made[1].values += key_values(_input_values(state.inputs))
+        made[1].values += key_values(_input_values(inputs))
     if defect:
         _say(made[0], StatusSummary(ERROR, defect, Fault.PROGRAM_FAILED))
     return made
@@ -189,70 +200,74 @@ def _stale(code: Fault) -> StatusSummary:
 
 
 def summaries(
-    state: State,
-    event: Event,
+    state: BallScrewState,
+    inputs: Inputs,
+    cause: Code,
     links: Mapping[Source, Link],
     policy: WarningPolicy = WarningPolicy.ZONE,
 ) -> tuple[StatusSummary, StatusSummary]:
     """Return what Lubrication and Inputs say; only a change of it is news."""
-    standing, text, code = reasons.summary(state.axis, state.inputs, links)
-    return _lubrication(state, event, policy), StatusSummary(_LEVELS[standing], text, code)
+    standing, text, code = reasons.summary(state.axis, inputs, links)
+    derived = any(status.state is InputState.DERIVED for status in inputs)
+    lubrication = _lubrication(state, cause_code(cause), policy, derived=derived)
+    return lubrication, StatusSummary(_LEVELS[standing], text, code)
 
 
-def _lubrication(state: State, event: Event, policy: WarningPolicy) -> StatusSummary:
+def _lubrication(
+    state: BallScrewState, cause: Fault, policy: WarningPolicy, *, derived: bool
+) -> StatusSummary:
     """Return what is said of the lubrication; a warning that is not to call keeps its code."""
-    cause = cause_code(event.cause.code)
-    if state.level is Level.WARN and state.shelving.until == 0:
+    if state.level == Level.WARN and not state.shelved:
         if policy.of_zone:
             return StatusSummary(WARN, cause.text, cause)
         return StatusSummary(OK, f'{cause.text}{NO_WARNING}', cause)
-    validity = state.estimate.validity
-    still = Gate.STANDSTILL in state.verdict.gates
+    validity = PointValidity(state.result.validity)
+    still = Gate.STANDSTILL in state.active_gates
     code = _NOT_JUDGED.get(validity, Fault.NONE)
     if code is Fault.NO_INPUT:
         return StatusSummary(STALE, code.text, code)
-    if code is Fault.NOT_MOVED and state.point.derived and not still:
+    if code is Fault.NOT_MOVED and derived and not still:
         return StatusSummary(WARN, Fault.NOT_DERIVED.text, Fault.NOT_DERIVED)
     if code and not (still and validity in _OF_STANDSTILL):
         return StatusSummary(WARN, code.text, code)
-    if state.level is Level.WARN:
-        until = clock_text(state.shelving.until)
-        return StatusSummary(OK, f'shelved until {until}: {state.shelving.reason}', cause)
-    if state.level is Level.OK:
+    if state.level == Level.WARN:
+        until = clock_text(state.shelved_until.sec * SECOND + state.shelved_until.nanosec)
+        return StatusSummary(OK, f'shelved until {until}: {state.shelve_reason}', cause)
+    if state.level == Level.OK:
         return StatusSummary(OK, 'standstill' if still else 'optimal')
     if still:  # nothing is amiss with an axis that has been parked since it was switched on
         return StatusSummary(OK, 'standstill, not judged for long enough yet')
     return StatusSummary(WARN, Fault.TOO_SHORT.text, Fault.TOO_SHORT)
 
 
-def _lubrication_values(state: State) -> list[tuple[str, object]]:
-    point, result, totals = state.point, state.estimate, state.totals
+def _lubrication_values(state: BallScrewState) -> list[tuple[str, object]]:
+    point, result, totals = state.point, state.result, state.totals
     return [
-        ('Level', state.level.name),
-        ('Zone', state.verdict.zone.name),
-        ('Validity', result.validity.name),
+        ('Level', Level(state.level).name),
+        ('Zone', Zone(state.zone).name),
+        ('Validity', PointValidity(result.validity).name),
         ('Reason', result.reason),
-        ('Regime', result.regime.name),
-        ('Contact', result.contact_state.name),
+        ('Regime', Regime(result.regime).name),
+        ('Contact', ContactState(result.contact_state).name),
         ('Event', state.event_id),
         ('Speed [rad/s]', point.speed),
         ('Axial load [N]', point.axial_load),
-        ('Axial load from', point.axial_load_source.name),
+        ('Axial load from', PointSource(point.axial_load_source).name),
         ('Axial load uncertainty [N]', point.axial_load_uncertainty),
-        ('Oil temperature [degC]', celsius(point.temperature)),
+        ('Oil temperature [degC]', point.temperature),
         ('Efficiency [-]', result.efficiency),
-        ('Efficiency limit [-]', state.limits.efficiency),
+        ('Efficiency limit [-]', state.efficiency_limit),
         ('RCS [-]', result.rcs),
-        ('RCS limit [-]', state.limits.rcs),
+        ('RCS limit [-]', state.rcs_limit),
         ('Film ratio [-]', result.film_ratio),
         ('Judged [-]', state.judged),
-        ('Running time [s]', seconds(totals.running_time)),
-        ('Time outside [s]', seconds(totals.outside_time)),
+        ('Running time [s]', totals.running_time),
+        ('Time outside [s]', totals.outside_time),
         ('Energy lost [J]', totals.energy_lost),
     ]
 
 
-def _input_values(inputs: tuple[InputStatus, ...]) -> list[tuple[str, object]]:
+def _input_values(inputs: Inputs) -> list[tuple[str, object]]:
     values: list[tuple[str, object]] = []
     for status in inputs:
         name = status.source.name.capitalize()

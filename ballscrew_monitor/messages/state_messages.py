@@ -15,23 +15,39 @@ from ballscrew_monitor.core import conversions, judgement
 from ballscrew_monitor.core import state as states
 from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import celsius, Direction, SECOND, seconds
-from ballscrew_monitor.core.estimate import MachinePoint, PointEstimate
-from ballscrew_monitor.core.inputs import InputStatus
-from ballscrew_monitor.core.state import Event, MonitorSettings, State, TIMES, WINDOW
+from ballscrew_monitor.core.inputs import InputStatus, Source
+from ballscrew_monitor.core.judgement import (
+    Code,
+    Gate,
+    Level,
+    PointSource,
+    PointValidity,
+    Severity,
+    Zone,
+)
+from ballscrew_monitor.core.state import Event, MonitorSettings, TIMES, WINDOW
+from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.judge.records import LIGHT_LOAD, Row, STANDSTILL
 from ballscrew_monitor.judge.views import SOURCES
+from ballscrew_monitor.messages.unjudged import reason_of
 from ballscrew_msgs import msg
 from builtin_interfaces.msg import Time
-from surrogate.surface import Surface
+from surrogate.surface import Regime, Surface
 
 TIERS = {'closed_form': msg.PointResult.TIER_CLOSED_FORM, 'full': msg.PointResult.TIER_FULL}
 NAN = math.nan
 NO_ADVICE = Advice()
-NUMBERS = tuple(
-    name
-    for name, kind in msg.PointResult.get_fields_and_field_types().items()
-    if kind == 'double' and name not in ('efficiency', 'rcs')
-)
-"""The numbers of a surface that a PointResult repeats under the same name."""
+
+
+def _names(message: type[Any], kind: str) -> tuple[str, ...]:
+    """Return the fields of a message that are of one kind."""
+    fields = message.get_fields_and_field_types()
+    return tuple(name for name in fields if fields[name] == kind)
+
+
+NUMBERS = _names(msg.PointResult, 'double')
+POINT_NUMBERS, POINT_CODES = (_names(msg.OperatingPoint, kind) for kind in ('double', 'uint8'))
+"""Numbers and codes of a row that a PointResult and an OperatingPoint repeat by name."""
 
 
 def fill_time(message: Time, stamp: int) -> None:
@@ -39,22 +55,17 @@ def fill_time(message: Time, stamp: int) -> None:
     message.sec, message.nanosec = divmod(stamp, SECOND)
 
 
-def fill_point(message: msg.OperatingPoint, point: MachinePoint) -> None:
-    """Fill in an operating point."""
-    message.speed = float(point.speed)
-    message.axial_load = float(point.axial_load)
-    message.temperature = celsius(float(point.temperature))
-    message.motor_torque = float(point.motor_torque)
-    message.speed_source = int(point.speed_source)
-    message.axial_load_source = int(point.axial_load_source)
-    message.temperature_source = int(point.temperature_source)
-    message.motor_torque_source = int(point.motor_torque_source)
-    message.direction = int(point.direction)
-    message.direction_held = point.direction_held
-    message.axial_load_uncertainty = float(point.axial_load_uncertainty)
+def fill_point(message: msg.OperatingPoint, row: Any) -> None:
+    """Fill in the operating point of a row."""
+    for name in POINT_NUMBERS:
+        setattr(message, name, float(getattr(row, name)))
+    message.temperature = celsius(message.temperature)
+    for name in POINT_CODES:
+        setattr(message, name, int(getattr(row, name)))
+    message.direction_held = bool(row.direction_held)
 
 
-def read_point(message: msg.OperatingPoint, *, default_temperature: float) -> MachinePoint:
+def read_point(message: msg.OperatingPoint, *, default_temperature: float) -> Row:
     """
     Return the point of an evaluation request, its direction that of the speed.
 
@@ -65,30 +76,53 @@ def read_point(message: msg.OperatingPoint, *, default_temperature: float) -> Ma
     if message.speed == 0.0 and message.direction in tuple(Direction):
         direction = Direction(message.direction)
     missing = math.isnan(message.temperature)
-    return MachinePoint(
+    return Row(
         speed=message.speed,
         axial_load=message.axial_load,
-        direction=direction,
+        direction=int(direction),
         temperature=default_temperature if missing else conversions.kelvin(message.temperature),
     )
 
 
-def fill_result(message: msg.PointResult, result: PointEstimate, tier: int) -> None:
-    """Fill in what the model says, `tier` a TIER_ constant."""
-    numbers = result.numbers
-    message.validity = int(result.validity)
+def fill_result(message: msg.PointResult, row: Any, tier: int, reason: str) -> None:
+    """Fill in what a row says of its point, `tier` a TIER_ constant; or the `reason` why not."""
+    valid = row.validity == PointValidity.VALID
+    message.validity = int(row.validity)
     message.tier = tier
-    message.reason = result.reason
-    message.efficiency = float(result.efficiency)
-    message.rcs = float(result.rcs)
+    message.reason = reason
     for name in NUMBERS:
-        setattr(message, name, NAN if numbers is None else float(getattr(numbers, name)))
-    message.back_driving = numbers is not None and bool(numbers.back_driving)
-    message.corrected = numbers is not None and bool(numbers.corrected)
-    message.worst_side = 0 if numbers is None else int(numbers.worst_side)
-    message.worst_nut = int(result.worst_nut)
-    message.regime = int(result.regime)
-    message.contact_state = int(result.contact_state)
+        setattr(message, name, float(getattr(row, name)) if valid else NAN)
+    message.back_driving = valid and bool(row.back_driving)
+    message.corrected = valid and bool(row.corrected)
+    message.worst_side = int(row.worst_side) if valid else 0
+    message.worst_nut = int(row.machine_nut)
+    message.regime = int(row.regime)
+    message.contact_state = int(row.contact_state)
+
+
+def findings_of(row: Any, limits: judgement.Limits, reason: str) -> list[msg.Finding]:
+    """Return what is wrong with the instant of a row; `reason` is why it has no answer."""
+    rcs, efficiency = float(row.rcs), float(row.efficiency)
+    still, light = row.gates & STANDSTILL, row.gates & LIGHT_LOAD
+    findings: list[judgement.Finding] = []
+    if row.zone == Zone.OUTSIDE and rcs >= limits.rcs:
+        findings.append(judgement.violation(Code.RCS_HIGH, rcs, limits.rcs))
+    if row.zone == Zone.OUTSIDE and not light and efficiency < limits.efficiency:
+        findings.append(
+            judgement.violation(
+                Code.EFFICIENCY_LOW, efficiency, limits.efficiency, derived=bool(row.derived)
+            )
+        )
+    lost = row.validity == PointValidity.NO_INPUT
+    if row.zone == Zone.UNKNOWN and (not still or lost):
+        findings.append(
+            judgement.Finding(
+                code=Code.INPUT_LOST if lost else Code.OUT_OF_RANGE,
+                severity=Severity.ERROR if lost else Severity.WARN,
+                text=reason or 'the surface holds no number here',
+            )
+        )
+    return [finding_message(finding) for finding in findings]
 
 
 def finding_message(finding: judgement.Finding, advice: Advice = NO_ADVICE) -> msg.Finding:
@@ -105,14 +139,16 @@ def finding_message(finding: judgement.Finding, advice: Advice = NO_ADVICE) -> m
     )
 
 
-def fill_window(message: msg.WindowStatistics, window: states.WindowStatistics) -> None:
-    """Fill in the statistics of a window."""
-    message.count = window.count
-    for name in WINDOW:
-        extremes = getattr(window, name)
-        setattr(message, f'{name}_min', float(extremes.low))
-        setattr(message, f'{name}_mean', float(extremes.mean))
-        setattr(message, f'{name}_max', float(extremes.high))
+def fill_window(message: msg.WindowStatistics, memory: Any) -> None:
+    """Fill in the statistics of the window since the last state; NaN where there was nothing."""
+    message.count = int(memory.window_count[Source.SPEED])
+    for column, name in enumerate(WINDOW):
+        count = int(memory.window_count[column])
+        low, high = float(memory.window_low[column]), float(memory.window_high[column])
+        mean = float(memory.window_total[column]) / count if count else NAN
+        setattr(message, f'{name}_min', low if count else NAN)
+        setattr(message, f'{name}_mean', mean)
+        setattr(message, f'{name}_max', high if count else NAN)
 
 
 def fill_input(message: msg.InputHealth, status: InputStatus) -> None:
@@ -139,58 +175,70 @@ def fill_totals(message: Any, totals: states.Totals) -> None:
     fill_time(message.since, totals.since)
 
 
-class StateWriter:
-    """Writes states of one axis into one message that is used again and again."""
-
-    def __init__(self, axis: str, tier: int) -> None:
-        """Begin with an empty message, `tier` a TIER_ constant."""
-        self.tier = tier
-        self._message = msg.BallScrewState(axis=axis, inputs=[msg.InputHealth() for _ in SOURCES])
-        self._message.header.frame_id = axis
-
-    def write(self, state: State) -> msg.BallScrewState:
-        """Return the message of `state`; it is good until the next call."""
-        message = self._message
-        fill_time(message.header.stamp, state.stamp)
-        fill_time(message.level_since, state.level_since)
-        fill_point(message.point, state.point)
-        fill_result(message.result, state.estimate, self.tier)
-        fill_window(message.window, state.window)
-        fill_totals(message.totals, state.totals)
-        for part, status in zip(message.inputs, state.inputs):
-            fill_input(part, status)
-        _fill_judgement(message, state)
-        message.measured_torque = float(state.measured_torque)
-        message.torque_residual = float(state.torque_residual)
-        message.surface_id = state.surface_id
-        message.shelved = state.shelving.until != 0
-        fill_time(message.shelved_until, state.shelving.until)
-        message.shelve_reason = state.shelving.reason
-        return message
+def empty_state(axis: str) -> msg.BallScrewState:
+    """Return a state of an axis to be filled."""
+    message = msg.BallScrewState(axis=axis, inputs=[msg.InputHealth() for _ in SOURCES])
+    message.header.frame_id = axis
+    return message
 
 
-def _fill_judgement(message: msg.BallScrewState, state: State) -> None:
-    message.level = int(state.level)
-    message.event_id = state.event_id
-    message.zone = int(state.verdict.zone)
-    message.findings = [finding_message(finding) for finding in state.verdict.findings]
-    message.active_gates = [int(gate) for gate in state.verdict.gates]
-    message.rcs_limit = float(state.limits.rcs)
-    message.efficiency_limit = float(state.limits.efficiency)
-    message.light_load_limit = float(state.limits.light_load)
-    message.standstill_limit = float(state.limits.standstill_speed)
-    message.judged = state.judged
+def fill_state(message: msg.BallScrewState, row: Any, monitor: Monitor) -> tuple[InputStatus, ...]:
+    """
+    Fill in the state that a row is published as, `monitor` remembering what it did after the row.
+
+    Return how well the inputs do.
+
+    """
+    reason, inputs = reason_of(row, monitor.surface), monitor.input_status(int(row.now))
+    fill_time(message.header.stamp, int(row.stamp))
+    fill_point(message.point, row)
+    fill_result(message.result, row, TIERS[monitor.surface.tier], reason)
+    fill_window(message.window, monitor.memory)
+    fill_totals(message.totals, monitor.totals)
+    for part, status in zip(message.inputs, inputs):
+        fill_input(part, status)
+    _fill_judgement(message, row, monitor.settings.limits, reason)
+    message.judged = int(monitor.memory.judged)
+    measured = row.motor_torque_source == PointSource.MEASURED
+    message.measured_torque = torque = float(row.motor_torque) if measured else NAN
+    # Of a load derived from it, the torque of the model says nothing new.
+    message.torque_residual = NAN if row.derived else torque - float(row.machine_torque)
+    message.surface_id = monitor.surface.sha256[:16]
+    fill_shelving(message, monitor.shelving.at(int(row.now)))
+    return inputs
 
 
-def plain_values(state: State) -> dict[str, float | str | bool]:
+def fill_shelving(message: msg.BallScrewState, shelving: states.Shelving) -> None:
+    """Fill in until when the warning is shelved, and why."""
+    message.shelved = shelving.until != 0
+    fill_time(message.shelved_until, shelving.until)
+    message.shelve_reason = shelving.reason
+
+
+def _fill_judgement(
+    message: msg.BallScrewState, row: Any, limits: judgement.Limits, reason: str
+) -> None:
+    message.level = int(row.level)
+    fill_time(message.level_since, int(row.level_since))
+    message.event_id = int(row.event_id)
+    message.zone = int(row.zone)
+    message.findings = findings_of(row, limits, reason)
+    message.active_gates = [int(gate) for gate in Gate if gate and row.gates & 1 << gate - 1]
+    message.rcs_limit = float(limits.rcs)
+    message.efficiency_limit = float(limits.efficiency)
+    message.light_load_limit = float(limits.light_load)
+    message.standstill_limit = float(limits.standstill_speed)
+
+
+def plain_values(state: msg.BallScrewState) -> dict[str, float | str | bool]:
     """Return what each plain topic says of a state; numbers that are not known are NaN."""
-    result = state.estimate
+    result = state.result
     return {
-        'efficiency': float(result.efficiency),
-        'rcs': float(result.rcs),
-        'film_ratio': float(result.film_ratio),
-        'regime': result.regime.name,
-        'out_of_zone': state.level is judgement.Level.WARN and not state.shelving.until,
+        'efficiency': result.efficiency,
+        'rcs': result.rcs,
+        'film_ratio': result.film_ratio,
+        'regime': Regime(result.regime).name,
+        'out_of_zone': state.level == Level.WARN and not state.shelved,
     }
 
 

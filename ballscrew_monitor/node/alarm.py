@@ -8,7 +8,8 @@ from typing import Any, TYPE_CHECKING
 
 from ballscrew_monitor.core.conversions import clock_text, seconds
 from ballscrew_monitor.core.judgement import Level
-from ballscrew_monitor.core.state import Acknowledgement, NAMELESS, NOT_SHELVED, Shelving, State
+from ballscrew_monitor.core.state import Acknowledgement, NAMELESS, NOT_SHELVED, Shelving
+from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.messages.state_messages import out_of_zone_message
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts, totals_facts
@@ -87,13 +88,13 @@ class Alarm:
         publish(message)
         self._record(f'~/{self._axis.name}/out_of_zone', message)
 
-    def follow(self, state: State, frame: Mapping[str, list[float]]) -> None:
-        """Keep the event that a state has begun, with a freeze frame, or ended, and then speak."""
+    def follow(self, row: Row, frame: Mapping[str, list[float]]) -> None:
+        """Keep the event that a row has begun, with a freeze frame, or ended, and then speak."""
         event, monitor = self._axis.monitor.event, self._axis.monitor
         # First: who is killed meanwhile must not have said a number that is not kept.
         kind = Kind.EVENT_BEGIN if event.active else Kind.EVENT_END
         before = {'freeze_frame': frame} if event.active else {}
-        self._note_event(kind, point=point_facts(state.point), **before)
+        self._note_event(kind, point=point_facts(row), **before)
         self.publish()
         if event.active:
             advice = f'; {event.advice.text}' if event.advice.text else ''

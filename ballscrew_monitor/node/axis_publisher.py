@@ -3,20 +3,20 @@
 """Everything that the node keeps of one axis: the axis, its publishers, and its last words."""
 
 from collections.abc import Callable, Mapping, Sequence
-import dataclasses
 import traceback
 from typing import Any, TypeVar
 
 from ballscrew_monitor.core.conversions import nanoseconds
-from ballscrew_monitor.core.estimate import estimate, MachinePoint
 from ballscrew_monitor.core.fault_codes import Fault
-from ballscrew_monitor.core.full_point import corrected, Dwell, objection, solved_at
-from ballscrew_monitor.core.inputs import InputSample, Refusal, Source
+from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source
 from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.core.state import MonitorSettings, Shelving, State
+from ballscrew_monitor.core.state import MonitorSettings, Shelving
+from ballscrew_monitor.judge.full_point import answer, corrected, Dwell, objection, solved_at
+from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.messages import diagnostics, state_messages
 from ballscrew_monitor.messages.state_messages import plain_values, TIERS
+from ballscrew_monitor.messages.unjudged import point_or_reason, reason_of
 from ballscrew_monitor.node.alarm import Alarm, LatchedTopics, quiet_publishers
 from ballscrew_monitor.node.freeze_frame import FreezeFrame
 from ballscrew_monitor.node.journal import NodeJournal
@@ -69,8 +69,9 @@ class AxisPublisher:
         self.defect = ''  # of the program, where it failed for this axis first
         self.failed = False  # in what was guarded last
         self._node, self._values, self._kept, self._recording = node, values, kept, recording
-        self._writer = state_messages.StateWriter(axis.name, TIERS[axis.surface.tier])
-        self._last: State | None = None
+        self._message = state_messages.empty_state(axis.name)
+        self._last: BallScrewState | None = None  # once it is filled
+        self._inputs: tuple[InputStatus, ...] = ()
         self._links: Mapping[Source, Link] = {}
         self._said: tuple[diagnostics.StatusSummary, ...] = ()
         self._said_at = -NEWS_INTERVAL
@@ -105,18 +106,18 @@ class AxisPublisher:
         for publisher in (self._state, *self._plain.values()):
             self._node.destroy_lifecycle_publisher(publisher)
 
-    def publish_state(self, state: State) -> None:
-        """Publish a state, and before it the event that it begins or ends."""
-        self._last = state
-        if state.event is not None:
-            self.alarm.follow(state, self.frame.facts(state.stamp))
-        message = self._writer.write(state)
+    def publish_state(self, row: Row) -> None:
+        """Publish the state of a row, and before it the event that it begins or ends."""
+        self._last = message = self._message
+        self._inputs = state_messages.fill_state(message, row, self.axis.monitor)
+        if row.edge:
+            self.alarm.follow(row, self.frame.facts(row.stamp))
         self._state.publish(message)
         self._recording.record(f'~/{self.name}/state', message)
-        self._publish_plain(state)
+        self._publish_plain()
 
-    def _publish_plain(self, state: State) -> None:
-        for name, value in plain_values(state).items() if self._plain else ():
+    def _publish_plain(self) -> None:
+        for name, value in plain_values(self._message).items() if self._plain else ():
             self._plain[name].publish(PLAIN[name](data=value))
 
     def shelve(self, shelving: Shelving) -> None:
@@ -133,8 +134,8 @@ class AxisPublisher:
 
     def _show_shelving(self) -> None:
         if self._last is not None:
-            self._last = dataclasses.replace(self._last, shelving=self.axis.monitor.shelving)
-            self._publish_plain(self._last)
+            state_messages.fill_shelving(self._message, self.axis.monitor.shelving)
+            self._publish_plain()
 
     def publish_info(self) -> None:
         """Publish what the surface and the limits are."""
@@ -160,34 +161,43 @@ class AxisPublisher:
         """Limits and parameters in force."""
         return self.axis.monitor.settings
 
-    def current_point(self) -> MachinePoint | str:
+    def current_point(self) -> Row | str:
         """Return the operating point of now, or why there is none."""
         now = self._node.get_clock().now().nanoseconds
-        return self.guarded('a solve', self.axis.monitor.current_point, now) or self.defect
+        return self.guarded('a solve', point_or_reason, self.axis.monitor, now) or self.defect
 
-    def is_dwelling(self, state: State) -> bool:
-        """Tell whether the point of a state should be solved; only where that is asked for."""
-        return self._values[f'{self.name}.solve_on_dwell'] and self.dwell.update(state)
+    def is_dwelling(self, row: Row) -> bool:
+        """Return True if the point of a row should be solved; only where that is asked for."""
+        wanted = self._values[f'{self.name}.solve_on_dwell']
+        return wanted and self.dwell.update(row, self.settings.limits)
 
-    def correct(self, point: MachinePoint, full: SurfacePoint) -> tuple[bool, str]:
-        """Correct the surface by a full solve and keep it; return whether, and what or why not."""
-        return self.guarded('a correction', self._correct, point, full) or (False, self.defect)
+    def answer(self, row: Row) -> Row:
+        """Return what the surface says of the point of a row."""
+        return answer(row, self.surface, rcs_limit=self.settings.limits.rcs)
 
-    def _correct(self, point: MachinePoint, full: SurfacePoint) -> tuple[bool, str]:
+    def correct(self, row: Row, full: SurfacePoint) -> tuple[bool, str]:
+        """
+        Correct the surface by a full solve at the point of a row, and keep it.
+
+        Return whether, and what or why not.
+
+        """
+        return self.guarded('a correction', self._correct, row, full) or (False, self.defect)
+
+    def _correct(self, row: Row, full: SurfacePoint) -> tuple[bool, str]:
         if not self._values[f'{self.name}.correct_surface']:
             return False, f'parameter {self.name}.correct_surface is false'
-        numbers = estimate(point, self.surface, rcs_limit=self.settings.limits.rcs).numbers
-        problem = objection(full, numbers, self.surface)
+        problem = objection(full, row, self.surface)
         if problem:
             return False, problem
         try:
-            surface = self.surface.with_correction(solved_at(point), full)
+            surface = self.surface.with_correction(solved_at(row), full)
         except SurfaceError as error:
             return False, str(error)
         self.use_surface(surface)
         problem = self._save()
         kept = f'not kept: {problem}' if problem else 'kept'
-        self._kept.note(Kind.CORRECTION, self.name, point=point_facts(point), result=kept)
+        self._kept.note(Kind.CORRECTION, self.name, point=point_facts(row), result=kept)
         return True, f'corrected the surface about this point, {kept}'
 
     def _save(self) -> str:
@@ -236,7 +246,6 @@ class AxisPublisher:
     def use_surface(self, surface: Surface) -> None:
         """Judge with another surface from now on, and say so."""
         self.axis.use_surface(surface, self._values)
-        self._writer.tier = TIERS[surface.tier]
         self.publish_info()
         self._recording.describe([self.name], 'surface')
 
@@ -270,21 +279,21 @@ class AxisPublisher:
     def _evaluate(self, point: OperatingPoint) -> PointResult:
         result = PointResult()
         warmth = self.settings.default_temperature
-        asked = state_messages.read_point(point, default_temperature=warmth)
-        answer = estimate(asked, self.surface, rcs_limit=self.settings.limits.rcs)
-        state_messages.fill_result(result, answer, TIERS[self.surface.tier])
+        row = self.answer(state_messages.read_point(point, default_temperature=warmth))
+        reason = reason_of(row, self.surface)
+        state_messages.fill_result(result, row, TIERS[self.surface.tier], reason)
         return result
 
     def has_news(self, now: int) -> bool:
         """Tell whether at `now` [ns] the last state changes what was said, if not just now."""
         if self._last is None or now - self._said_at < NEWS_INTERVAL:
             return False
-        return self._summaries(self._last) != self._said
+        return self._summaries() != self._said
 
     def say_news(self, now: int) -> None:
         """Take the last state for said at `now` [ns], and log a change of the inputs."""
         if self._last is not None:
-            self._said, self._said_at = self._summaries(self._last), now
+            self._said, self._said_at = self._summaries(), now
             self.log_inputs(now)
 
     def log_inputs(self, now: int) -> None:
@@ -345,7 +354,8 @@ class AxisPublisher:
             self._node.get_fully_qualified_name(),
             self.axis.name,
             self._last,
-            self.axis.monitor.event,
+            self._inputs,
+            self.axis.monitor.event.cause.code,
             self.axis.surface,
             links=links,
             clock_stands=stood > self.settings.timeouts[Source.SPEED],
@@ -354,9 +364,9 @@ class AxisPublisher:
             policy=self._policy,
         )
 
-    def _summaries(self, state: State) -> tuple[diagnostics.StatusSummary, ...]:
-        event = self.axis.monitor.event
-        return diagnostics.summaries(state, event, self._links, self._policy)
+    def _summaries(self) -> tuple[diagnostics.StatusSummary, ...]:
+        cause = self.axis.monitor.event.cause.code
+        return diagnostics.summaries(self._message, self._inputs, cause, self._links, self._policy)
 
     @property
     def _policy(self) -> WarningPolicy:

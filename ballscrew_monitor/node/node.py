@@ -9,8 +9,8 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import nanoseconds, seconds
 from ballscrew_monitor.core.inputs import InputSample, Refusal
-from ballscrew_monitor.core.state import State
 from ballscrew_monitor.core.tick_grid import TickGrid
+from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.alarm import end_all, LatchedTopics
 from ballscrew_monitor.node.axis_healths import AxisHealths
@@ -296,7 +296,7 @@ class BallscrewMonitor(LifecycleNode):
         return self._axis_publishers[axis.name].guarded(place, call, *args, **named)
 
     def _judge(
-        self, publisher: AxisPublisher, judge: Callable[[Any], State | None], event: Any
+        self, publisher: AxisPublisher, judge: Callable[[Any], Row | None], event: Any
     ) -> None:
         """Judge a sample, a refusal or a tick; a defect is an error of its axis alone."""
         known = publisher.defect
@@ -306,14 +306,14 @@ class BallscrewMonitor(LifecycleNode):
             self._publish_diagnostics([publisher.name])
 
     def _judge_one(
-        self, publisher: AxisPublisher, judge: Callable[[Any], State | None], event: Any
+        self, publisher: AxisPublisher, judge: Callable[[Any], Row | None], event: Any
     ) -> None:
-        state = judge(event)
+        row = judge(event)
         if (moved := publisher.axis.monitor.moved) and publisher.may_note_leap():
             text = f'the stamps of the speed leap {step_text(moved)} in a warning'
             self._kept.note(Kind.CLOCK_STEP, publisher.name, by_s=seconds(moved), text=text)
         publisher.frame.take(publisher.axis.monitor.row)
-        self._publish(publisher, state)
+        self._publish(publisher, row)
 
     def _on_tick(self) -> None:
         """Tick on the grid of stamps, when that is due; what has arrived by then comes first."""
@@ -333,14 +333,14 @@ class BallscrewMonitor(LifecycleNode):
         due = journal.due(self._axis_publishers, steady, now)
         self._recording.describe(due, 'time')
 
-    def _publish(self, publisher: AxisPublisher, state: State | None) -> None:
+    def _publish(self, publisher: AxisPublisher, row: Row | None) -> None:
         """Publish a state, and diagnostics for what it changes, though these not in a flood."""
-        if state is None:
+        if row is None:
             return
-        publisher.publish_state(state)
-        if publisher.is_dwelling(state) and not self._solves.solver.busy:
+        publisher.publish_state(row)
+        if publisher.is_dwelling(row) and not self._solves.solver.busy:
             self.get_logger().info(f'axis {publisher.name}: solving the point where it dwells')
-            self._solves.solve(publisher, state.point)
+            self._solves.solve(publisher, row)
         now = self._steady.now().nanoseconds
         if publisher.has_news(now):  # what comes too soon is sent with the next state or the timer
             publisher.say_news(now)

@@ -16,15 +16,16 @@ import time
 from typing import Any
 
 from ballscrew_monitor.core.conversions import machine_nut
-from ballscrew_monitor.core.estimate import (
-    estimate,
-    estimate_from,
-    MachinePoint,
-    PointEstimate,
-    PointValidity,
+from ballscrew_monitor.judge.full_point import (
+    compare,
+    Comparison,
+    request_of,
+    solved_at,
+    with_numbers,
 )
-from ballscrew_monitor.core.full_point import compare, Comparison, request_of, solved_at
+from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.messages.state_messages import fill_result, read_point, TIERS
+from ballscrew_monitor.messages.unjudged import reason_of
 from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.node.solver_process import Done, End, Job, MOST_WAITING, Solver, Step
 from ballscrew_msgs.action import SolveOperatingPoint
@@ -49,7 +50,7 @@ class _Goal:
     """A goal at work; `handle` is None for a solve that the node has asked for itself."""
 
     axis: AxisPublisher
-    point: MachinePoint
+    row: Row  # of the point
     job: Job
     handle: ServerGoalHandle | None = None
     told: float = -math.inf  # when feedback was last sent [s]
@@ -96,42 +97,38 @@ class SolveServer:
             self._finish(goal, Done(job=goal.job, end=End.FAILED, sentence=reason))
         self._rest()
 
-    def solve(self, axis: AxisPublisher, point: MachinePoint) -> None:
+    def solve(self, axis: AxisPublisher, row: Row) -> None:
         """Solve a point for the node itself, to correct the surface; the outcome is logged."""
-        self._begin(axis, point, DEFAULT_TIMEOUT, None)
+        self._begin(axis, row, DEFAULT_TIMEOUT, None)
 
     def _on_goal(self, request: Any) -> GoalResponse:
-        point = self._wanted(request)[1]
-        refusal = point if isinstance(point, str) else self.solver.refusal
+        row = self._wanted(request)[1]
+        refusal = row if isinstance(row, str) else self.solver.refusal
         if not refusal:
             return GoalResponse.ACCEPT
         # Each is logged, since who has sent the goal reads the reason there.
         self._node.get_logger().warning(f'solve of axis {request.axis} rejected: {refusal}')
         return GoalResponse.REJECT
 
-    def _wanted(self, request: Any) -> tuple[AxisPublisher | str, MachinePoint | str]:
+    def _wanted(self, request: Any) -> tuple[AxisPublisher | str, Row | str]:
         """Return the axis and the point that a goal asks for, or why there is none."""
         axis = self._find_axis(request.axis)
         return axis, axis if isinstance(axis, str) else requested_point(request, axis)
 
     def _on_accepted(self, handle: ServerGoalHandle) -> None:
         request = handle.request
-        axis, point = self._wanted(request)
+        axis, row = self._wanted(request)
         handle.execute()
-        if isinstance(axis, str) or isinstance(point, str):
-            self._answer(handle, empty_result(str(point)), End.FAILED)
+        if isinstance(axis, str) or isinstance(row, str):
+            self._answer(handle, empty_result(str(row)), End.FAILED)
         else:
-            self._begin(axis, point, request.timeout or DEFAULT_TIMEOUT, handle)
+            self._begin(axis, row, request.timeout or DEFAULT_TIMEOUT, handle)
 
     def _begin(
-        self,
-        axis: AxisPublisher,
-        point: MachinePoint,
-        timeout: float,
-        handle: ServerGoalHandle | None,
+        self, axis: AxisPublisher, row: Row, timeout: float, handle: ServerGoalHandle | None
     ) -> None:
-        job = Job(request=request_of(axis.surface, point), timeout=timeout)
-        self._goals[job] = _Goal(axis=axis, point=point, job=job, handle=handle)
+        job = Job(request=request_of(axis.surface, row), timeout=timeout)
+        self._goals[job] = _Goal(axis=axis, row=row, job=job, handle=handle)
         self.solver.submit(job)
         if self._timer is None:
             # On the steady clock: simulated time may stand, and the solver does not.
@@ -164,12 +161,12 @@ class SolveServer:
         if goal.handle is None or now - goal.told < FEEDBACK_PERIOD:
             return
         goal.told = now
-        message = feedback_message(goal.job.step, goal.point)
+        message = feedback_message(goal.job.step, goal.row)
         goal.handle.publish_feedback(message)
 
     def _finish(self, goal: _Goal, done: Done) -> None:
         del self._goals[goal.job]
-        result = result_message(goal.axis, goal.point, done)
+        result = result_message(goal.axis, goal.row, done)
         end = End.FAILED if done.end is End.SOLVED and not result.success else done.end
         if goal.handle is not None:
             self._answer(goal.handle, result, end)
@@ -197,25 +194,25 @@ def _end_goal(handle: ServerGoalHandle, *, result: Any, end: End) -> Any:
     return result
 
 
-def requested_point(request: Any, axis: AxisPublisher) -> MachinePoint | str:
+def requested_point(request: Any, axis: AxisPublisher) -> Row | str:
     """Return the point that a goal asks for, or what is wrong with the goal."""
     if not 0.0 <= request.timeout <= LONGEST_TIMEOUT:
         return f'timeout is {request.timeout:g} s, allowed is 0 to {LONGEST_TIMEOUT:g} s'
     if request.use_current:
         return axis.current_point()
-    point = read_point(request.point, default_temperature=axis.settings.default_temperature)
-    if not math.isfinite(point.speed + point.axial_load + point.temperature):
+    row = read_point(request.point, default_temperature=axis.settings.default_temperature)
+    if not math.isfinite(row.speed + row.axial_load + row.temperature):
         return 'speed, axial load and temperature of the point must be finite'
-    if point.speed == 0.0:
+    if row.speed == 0.0:
         return 'the speed of the point is 0 rad/s, a solve needs motion'
-    return point
+    return row
 
 
-def feedback_message(step: Step, point: MachinePoint) -> Any:
+def feedback_message(step: Step, row: Row) -> Any:
     """Return how far a solve is, its nut in the machine frame."""
     return SolveOperatingPoint.Feedback(
         stage=step.stage,
-        nut=int(machine_nut(step.nut, point.axial_load)),
+        nut=int(machine_nut(step.nut, row.axial_load)),
         side=step.side,
         iteration=step.iteration,
         residual=float(step.residual),
@@ -228,22 +225,23 @@ def empty_result(status: str) -> Any:
     """Return a result that knows nothing but why."""
     result = SolveOperatingPoint.Result(status=status, wall_time=math.nan)
     for part in (result.full, result.surface):
-        fill_result(part, PointEstimate(validity=PointValidity.UNKNOWN, reason=status), 0)
+        fill_result(part, Row(), 0, status)
     result.efficiency_stderr = result.rcs_stderr = math.nan
     _fill_comparison(result, Comparison())
     return result
 
 
-def result_message(axis: AxisPublisher, point: MachinePoint, done: Done) -> Any:
+def result_message(axis: AxisPublisher, row: Row, done: Done) -> Any:
     """Return the result of a solve that has ended; one that is worth it corrects the surface."""
     result = empty_result(_status(done))
     result.wall_time = float(done.wall_time)
-    answer = estimate(point, axis.surface, rcs_limit=axis.settings.limits.rcs)
-    fill_result(result.surface, answer, TIERS[axis.surface.tier])
+    answer = axis.answer(row)
+    reason = reason_of(answer, axis.surface)
+    fill_result(result.surface, answer, TIERS[axis.surface.tier], reason)
     if done.end is End.SOLVED and done.result['converged']:
-        load = solved_at(point).opposing_load
+        load = solved_at(row).opposing_load
         full = read_solved(done.result, opposing_load=load, lead=axis.surface.lead)
-        _fill_full(result, axis, point, full, answer)
+        _fill_full(result, axis, full, answer)
     return result
 
 
@@ -257,20 +255,14 @@ def read_solved(frame: Mapping[str, Any], *, opposing_load: float, lead: float) 
     return solved_point(*groups, worst_contact=worst, opposing_load=opposing_load, lead=lead)
 
 
-def _fill_full(
-    result: Any,
-    axis: AxisPublisher,
-    point: MachinePoint,
-    full: SurfacePoint,
-    answer: PointEstimate,
-) -> None:
-    found = estimate_from(point, full, rcs_limit=axis.settings.limits.rcs)
-    fill_result(result.full, found, PointResult.TIER_FULL)
-    _fill_comparison(result, compare(full, answer.numbers))
+def _fill_full(result: Any, axis: AxisPublisher, full: SurfacePoint, answer: Row) -> None:
+    solved = with_numbers(answer, full, rcs_limit=axis.settings.limits.rcs)
+    fill_result(result.full, solved, PointResult.TIER_FULL, '')
+    _fill_comparison(result, compare(full, answer))
     result.efficiency_stderr = float(full.efficiency_stderr)
     result.rcs_stderr = float(full.rcs_stderr)
     result.success = True
-    result.corrected, result.correction = axis.correct(point, full)
+    result.corrected, result.correction = axis.correct(answer, full)
 
 
 def _fill_comparison(result: Any, comparison: Comparison) -> None:

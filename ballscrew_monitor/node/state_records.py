@@ -9,11 +9,11 @@ import json
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import celsius, seconds
-from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.fault_codes import cause_code
-from ballscrew_monitor.core.full_point import KeptSolve, Solve
 from ballscrew_monitor.core.memory import AxisRecord, Memory, record_of
 from ballscrew_monitor.core.state import Event, TIMES, Totals
+from ballscrew_monitor.judge.full_point import KeptSolve, Solve
+from ballscrew_monitor.judge.records import Row
 from surrogate.files import InputError, to_json
 from surrogate.limits import read_json
 
@@ -137,12 +137,12 @@ def step_text(step: int) -> str:
     return f'{"forward" if step > 0 else "back"} by {abs(seconds(step)):.6g} s'
 
 
-def point_facts(point: MachinePoint) -> dict[str, float]:
-    """Return where an axis was, in the machine frame."""
+def point_facts(row: Row) -> dict[str, float]:
+    """Return where the axis of a row was, in the machine frame."""
     return {
-        'speed_rad_s': point.speed,
-        'axial_load_N': point.axial_load,
-        'temperature_degC': celsius(point.temperature),
+        'speed_rad_s': row.speed,
+        'axial_load_N': row.axial_load,
+        'temperature_degC': celsius(row.temperature),
     }
 
 

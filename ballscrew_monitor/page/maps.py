@@ -20,8 +20,9 @@ from ballscrew_monitor.core.conversions import (
     kelvin,
     opposing_load,
 )
-from ballscrew_monitor.core.estimate import estimate, MachinePoint
 from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.judge.full_point import answer
+from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.judge.zone import BY_VALIDITY
 from ballscrew_monitor.page.history import COLUMNS
 from ballscrew_monitor.page.phrases import phrase, Said, unjudged, violated
@@ -183,23 +184,23 @@ def point_of(
     surface: Surface, limits: Limits, speed: float, load: float, temperature: float
 ) -> dict[str, Any]:
     """Return what the surface says at a speed [rad/s], opposing load [N], temperature [degC]."""
-    point = MachinePoint(
+    point = Row(
         speed=abs(speed),
         axial_load=opposing_load(load, Direction.POSITIVE),
         temperature=kelvin(temperature),
-        direction=Direction.POSITIVE if speed else Direction.UNKNOWN,
+        direction=int(Direction.POSITIVE if speed else Direction.UNKNOWN),
     )
-    found = estimate(point, surface, rcs_limit=limits.rcs)
-    zone, words = judged(found.rcs, found.efficiency, load, limits)
-    turns, reason = abs(speed) / RPM, BY_VALIDITY[found.validity]
+    row = answer(point, surface, rcs_limit=limits.rcs)
+    zone, words = judged(row.rcs, row.efficiency, load, limits)
+    turns, reason = abs(speed) / RPM, BY_VALIDITY[row.validity]
     return {
         'speed_rpm': turns,
         'load_N': load,
         'temperature_degC': temperature,
-        'efficiency': found.efficiency,
-        'rcs': found.rcs,
-        'film_ratio': found.film_ratio,
-        'torque_N_m': found.machine_torque,
+        'efficiency': row.efficiency,
+        'rcs': row.rcs,
+        'film_ratio': row.film_ratio,
+        'torque_N_m': row.machine_torque,
         'zone': zone,
         'words': words or unjudged(reason, turns, load, temperature),
     }

@@ -7,9 +7,8 @@ from typing import Any
 
 from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import Direction, opposing_load, seconds, signed
-from ballscrew_monitor.core.estimate import PointSource, PointValidity
 from ballscrew_monitor.core.inputs import InputState
-from ballscrew_monitor.core.judgement import Level, Reason, Zone
+from ballscrew_monitor.core.judgement import Level, PointSource, PointValidity, Reason, Zone
 from ballscrew_monitor.core.state import ACKNOWLEDGED
 from ballscrew_monitor.judge.zone import BY_VALIDITY
 from ballscrew_monitor.messages.health_messages import stamp_of

@@ -18,7 +18,7 @@ import time
 from typing import Any
 
 from ballscrew_monitor.core.conversions import celsius, Direction, kelvin, opposing_load
-from ballscrew_monitor.core.full_point import corrected, JUDGED, KeptSolve, SolvedAt
+from ballscrew_monitor.judge.full_point import corrected, JUDGED, KeptSolve, SolvedAt
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.phrases import free, Phrase, phrase, Said
 from ballscrew_msgs.msg import OperatingPoint, PointResult, SurfaceInfo

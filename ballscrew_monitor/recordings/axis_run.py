@@ -6,15 +6,18 @@ from collections.abc import Callable, Iterator, Sequence
 import operator
 from typing import Any, NamedTuple
 
-from ballscrew_monitor.core.inputs import Source, Why
-from ballscrew_monitor.core.state import Event, State
+from ballscrew_monitor.core.inputs import InputStatus, Source, Why
+from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.judge import records, views
 from ballscrew_monitor.judge.many import Judged, ManyJudge
 from ballscrew_monitor.judge.monitor import MOST_OTHERS
+from ballscrew_monitor.messages.state_messages import empty_state, fill_state, out_of_zone_message
+from ballscrew_monitor.messages.unjudged import reason_of
 from ballscrew_monitor.recordings.bulk.events import CHECK, Events, Notes, places_of_axis, some
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns
 from ballscrew_monitor.recordings.summary import event_record
 from ballscrew_monitor.settings.axis import Axis
+from ballscrew_msgs.msg import BallScrewState, OutOfZone
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.surface.records import from_array
@@ -22,7 +25,7 @@ from surrogate.surface.records import from_array
 
 class TimedState(NamedTuple):
     """
-    A state, its axis, and the event that it tells of.
+    A state of an axis, how well its inputs do, and the event that it tells of.
 
     `log_time` [ns] is that of the message or the tick at which it is due.
 
@@ -30,8 +33,9 @@ class TimedState(NamedTuple):
 
     log_time: int
     axis: Axis
-    state: State
-    event: Event | None
+    state: BallScrewState
+    inputs: tuple[InputStatus, ...]
+    event: OutOfZone | None
 
 
 Part = JudgedColumns | TimedState | AxisOutcome
@@ -94,14 +98,16 @@ class AxisRun:
 
     def _state(self, log_time: int, row: records.Row, *, states: bool) -> Iterator[TimedState]:
         """Yield the state of a row if states are wanted, and keep the event that it tells of."""
-        state = self.axis.monitor.state(row)
-        event = state.event
-        if event is not None:
-            self._note(event)
-        elif states:
-            event, self._ended = self._ended, None
-        if states:
-            yield TimedState(log_time, self.axis, state, event)
+        monitor = self.axis.monitor
+        if row.edge:
+            self._note(monitor.event)
+        if not states:
+            return
+        event, self._ended = (monitor.event, self._ended) if row.edge else (self._ended, None)
+        state = empty_state(self.axis.name)
+        inputs = fill_state(state, row, monitor)
+        message = event and out_of_zone_message(self.axis.name, event, shelved=state.shelved)
+        yield TimedState(log_time, self.axis, state, inputs, message)
 
     def change(self, axis: Axis) -> None:
         """Go on with an axis as it is described now; an event may have been ended meanwhile."""
@@ -118,7 +124,7 @@ class AxisRun:
         monitor, row = self.axis.monitor, self._last_row
         if monitor.event.active:
             self._note(monitor.event, until=int(monitor.memory.stamp))
-        reason = '' if row is None else views.reason_of(row, views.point_of(row), monitor.surface)
+        reason = '' if row is None else reason_of(row, monitor.surface)
         return AxisOutcome(
             axis=self.axis.name,
             first=self._first,
@@ -126,7 +132,7 @@ class AxisRun:
             rows=self._rows,
             states=self._states,
             judged=int(monitor.memory.judged),
-            totals=views.totals_of(monitor.memory),
+            totals=monitor.totals,
             events=tuple(
                 event_record(event, until=until)
                 for _, (event, until) in sorted(self._events.items())

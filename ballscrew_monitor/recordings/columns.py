@@ -14,9 +14,16 @@ import enum
 from typing import Any
 
 from ballscrew_monitor.core.conversions import Direction, Nut, seconds
-from ballscrew_monitor.core.estimate import ContactState, PointSource, PointValidity
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why
-from ballscrew_monitor.core.judgement import Level, Limits, Reason, Zone
+from ballscrew_monitor.core.judgement import (
+    ContactState,
+    Level,
+    Limits,
+    PointSource,
+    PointValidity,
+    Reason,
+    Zone,
+)
 from ballscrew_monitor.core.state import TIMES, Totals
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 import numpy as np

@@ -14,9 +14,9 @@ import dataclasses
 from typing import Any
 
 from ballscrew_monitor.core.fields import message_class
-from ballscrew_monitor.core.full_point import corrected, KeptSolve
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.judge.dump import dump, restored
+from ballscrew_monitor.judge.full_point import corrected, KeptSolve
 from ballscrew_monitor.judge.records import MEMORY_VERSION, NOT_KNOWN, REFUSAL, SAMPLE, TICK
 from ballscrew_monitor.recordings.axis_run import AxisRun
 from ballscrew_monitor.recordings.bag import Bag

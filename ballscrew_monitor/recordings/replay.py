@@ -12,11 +12,10 @@ of itself, judged with its own parameters, is taken in the order in which the no
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.messages.state_messages import out_of_zone_message, StateWriter, TIERS
 from ballscrew_monitor.recordings.axis_run import AxisRun, judged_parts, Part, TimedState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk.decode import decode, named_instead, readers_by_topic
@@ -31,13 +30,6 @@ from surrogate.files import InputError
 
 def ignore(share: float) -> None:
     """Be told which share is done [-], and do nothing."""
-
-
-class Judged(NamedTuple):
-    """A state and, if an event began or ended with it, that event; the state is reused."""
-
-    state: BallScrewState
-    event: OutOfZone | None
 
 
 def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
@@ -66,22 +58,17 @@ def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
     return counts
 
 
-def replay(bag: Bag, values: Mapping[str, Any]) -> Iterator[Judged]:
-    """Yield every state that the node would publish for `bag`, as `replay_parts` does."""
-    writers: dict[str, StateWriter] = {}
+def replay(
+    bag: Bag, values: Mapping[str, Any]
+) -> Iterator[tuple[BallScrewState, OutOfZone | None]]:
+    """
+    Yield every state that the node would publish for `bag`, as `replay_parts` does.
+
+    With it comes the event that begins or ends with it, if one does.
+
+    """
     parts = replay_parts(bag, values)
-    return (answer(one, writers) for one in parts if isinstance(one, TimedState))
-
-
-def answer(one: TimedState, writers: dict[str, StateWriter]) -> Judged:
-    """Return what the node publishes with a state; `writers` are those of the axes by name."""
-    name, tier, event = one.axis.name, TIERS[one.axis.surface.tier], None
-    writer = writers.setdefault(name, StateWriter(name, tier))
-    writer.tier = tier  # the node may have taken another one
-    if one.event is not None:
-        shelved = one.state.shelving.until != 0
-        event = out_of_zone_message(name, one.event, shelved=shelved)
-    return Judged(state=writer.write(one.state), event=event)
+    return ((part.state, part.event) for part in parts if isinstance(part, TimedState))
 
 
 def replay_parts(

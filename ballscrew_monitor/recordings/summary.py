@@ -173,7 +173,7 @@ def summary_of(said: Iterable[BallScrewState | OutOfZone]) -> Summary | None:
 
 def event_record(event: Event, *, until: int) -> EventRecord:
     """Return an event as it stands at the stamp `until` [ns]."""
-    point = None if event.advisor is None else event.advisor.point
+    point = event.advisor
     return EventRecord(
         event_id=event.number,
         start=event.start,

@@ -19,8 +19,8 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import Direction
-from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.recordings.columns import Floats, JudgedColumns
 import numpy as np
 from surrogate.units import TURN

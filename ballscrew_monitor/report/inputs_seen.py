@@ -8,8 +8,8 @@ import enum
 import math
 
 from ballscrew_monitor.core.conversions import celsius, seconds
-from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why, YEAR
+from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import Extremes
 from ballscrew_monitor.messages.doctor import Heard, InputFacts, known_range, unit_doubts

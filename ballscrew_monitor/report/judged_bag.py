@@ -9,7 +9,7 @@ from typing import Any
 
 from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.core.judgement import Code
 from ballscrew_monitor.messages import state_messages
 from ballscrew_monitor.messages.diagnostics import statuses, summaries
 from ballscrew_monitor.recordings.axis_run import TimedState
@@ -17,7 +17,6 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, whole_bag
 from ballscrew_monitor.recordings.bulk.batches import Batch, batches, END
 from ballscrew_monitor.recordings.recorder import DIAGNOSTICS, recorded_topics
-from ballscrew_monitor.recordings.replay import answer
 from ballscrew_monitor.settings.parameters import input_topics, NODE_NAME, output, with_types
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import numpy as np
@@ -89,8 +88,7 @@ class Answers:
 
     def __init__(self) -> None:
         """Begin with no axis known."""
-        self._writers: dict[str, state_messages.StateWriter] = {}
-        self._events: dict[str, Event] = {}
+        self._causes: dict[str, Code] = {}  # of the event that is active, or of the last one
         self._latest: dict[str, TimedState] = {}
         self._said: dict[str, Any] = {}
         self._said_at = 0  # [ns]
@@ -98,23 +96,22 @@ class Answers:
     def messages(self, one: TimedState) -> Iterator[tuple[str, Any]]:
         """Yield topic and message of all that the node would say with a state."""
         name = one.axis.name
-        if name not in self._events:
-            self._events[name] = Event()
+        if name not in self._causes:
+            self._causes[name] = Code.UNKNOWN
             info = state_messages.surface_info_message(
                 name, one.axis.surface, one.axis.monitor.settings, stamp=one.log_time
             )
             yield output(name, 'surface_info'), info
-        state, event = answer(one, self._writers)
-        yield output(name, 'state'), state
+        yield output(name, 'state'), one.state
         if one.event is not None:
-            self._events[name] = one.event
-            yield output(name, 'out_of_zone'), event
+            self._causes[name] = Code(one.event.cause.code)
+            yield output(name, 'out_of_zone'), one.event
         yield from self._diagnostics(one)
 
     def _diagnostics(self, one: TimedState) -> Iterator[tuple[str, DiagnosticArray]]:
         """Yield diagnostics of all axes where those of one change, or the last are old."""
         name = one.axis.name
-        summary = summaries(one.state, self._events[name], {})
+        summary = summaries(one.state, one.inputs, self._causes[name], {})
         self._latest[name] = one
         if summary == self._said.get(name) and one.log_time - self._said_at < PERIOD:
             return
@@ -127,6 +124,5 @@ class Answers:
         yield DIAGNOSTICS.name, array
 
     def _statuses(self, one: TimedState) -> list[DiagnosticStatus]:
-        axis = one.axis
-        event = self._events[axis.name]
-        return statuses(f'/{NODE_NAME}', axis.name, one.state, event, axis.surface, links={})
+        name, cause, surface = one.axis.name, self._causes[one.axis.name], one.axis.surface
+        return statuses(f'/{NODE_NAME}', name, one.state, one.inputs, cause, surface, links={})

@@ -14,8 +14,8 @@ import math
 from typing import Any, Protocol, TYPE_CHECKING
 
 from ballscrew_monitor.core.conversions import LINEAR_UNITS, POSITION_UNITS, Scaling, SECOND
-from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.recordings.axis_run import TimedState
 from ballscrew_monitor.recordings.bag import Bag

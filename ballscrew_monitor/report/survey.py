@@ -14,9 +14,8 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import Direction, SECOND
-from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.core.judgement import Reason, Zone
+from ballscrew_monitor.core.judgement import PointSource, Reason, Zone
 from ballscrew_monitor.core.state import Extremes
 from ballscrew_monitor.recordings.columns import Flags, Floats, JudgedColumns, Times
 from ballscrew_monitor.recordings.declared import unwritten, written

@@ -8,9 +8,8 @@ import math
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import celsius, SECOND
-from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.core.judgement import Level, Limits, Zone
+from ballscrew_monitor.core.judgement import Level, Limits, PointSource, Zone
 from ballscrew_monitor.recordings import columns
 from ballscrew_monitor.report import buckets
 from ballscrew_monitor.report.buckets import AxisBudget, Rows

@@ -21,8 +21,9 @@ import time
 import timeit
 
 from ballscrew_monitor.core.inputs import InputSample, Source, StampSource
-from ballscrew_monitor.core.state import MonitorSettings, State
+from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axis
 from surrogate.surface import Surface
@@ -49,14 +50,14 @@ class CompiledMonitor(Monitor):
         self._memories = np.zeros(2, dtype=many.MEMORY)
         self._fields = operator.attrgetter(*dataclasses.asdict(self._event))
 
-    def _step(self) -> State | None:
+    def _step(self) -> Row | None:
         self._events[0] = self._fields(self._event)
         room = self._events, self._rows, self._places, self._memories
         _, _, told = self._entry(self.surface.array_tables, *self._arrays, *room, True)
         if not told:
             return None
         self.memory = self._many.from_array(self._many.Memory, self._memories[0])
-        return self.state(self._many.from_array(self._many.Row, self._rows[0]))
+        return self._many.from_array(self._many.Row, self._rows[0])
 
 
 def since_start() -> float:

@@ -5,9 +5,8 @@
 import dataclasses
 
 from ballscrew_monitor.core.conversions import Direction
-from ballscrew_monitor.core.estimate import PointValidity
 from ballscrew_monitor.core.fields import stamp_of
-from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
+from ballscrew_monitor.core.judgement import Code, Gate, Level, PointValidity, Zone
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.recordings.summary import Summary, summary_of

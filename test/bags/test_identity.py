@@ -5,10 +5,10 @@
 import itertools
 from pathlib import Path
 import random
-import re
 import types
 
 from ballscrew_monitor.core.conversions import nanoseconds, SECOND
+from ballscrew_monitor.messages.state_messages import empty_state, fill_state
 from ballscrew_monitor.node.intake import ordered
 from ballscrew_monitor.node.journal import Journal
 from ballscrew_monitor.node.topic import Arrival
@@ -101,14 +101,11 @@ class Listener:
         for _ in self.journal.due([AXIS], grid, grid):
             self.describe('time', grid)
 
-    def publish(self, state):
-        if state is not None:
-            self.said.append(text_of(state))
-
-
-def text_of(state):
-    """Return every digit of a state; the surface of an advice is another one in a replay."""
-    return re.sub('surface=<[^>]*>', '', repr(state))
+    def publish(self, row):
+        if row is not None:
+            message = empty_state(AXIS)
+            fill_state(message, row, self.axis.monitor)
+            self.said.append(repr(message))
 
 
 def bursts(messages, draw):
@@ -137,7 +134,7 @@ def again(folder):
     (path,) = folder.iterdir()
     bag = Bag(path)
     parts = replay_parts(bag, recorded_values(bag))
-    said = [text_of(part.state) for part in parts if isinstance(part, TimedState)]
+    said = [repr(part.state) for part in parts if isinstance(part, TimedState)]
     return said, ' '.join(bag.remarks)
 
 

@@ -19,17 +19,18 @@ import warnings
 
 from ballscrew_monitor.core import advice
 from ballscrew_monitor.core.conversions import direction_of, SECOND
-from ballscrew_monitor.core.estimate import MachinePoint, PointSource, PointValidity
 from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.core.inputs import InputSample, Source
-from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.core.judgement import Limits, PointSource, PointValidity
 from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.cycle import domain as domains
 from ballscrew_monitor.cycle.domain import free_domain, SHARED_MEMORY
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.health.records import SpectrumBin
-from ballscrew_monitor.judge import derived_load, point, step
+from ballscrew_monitor.judge import derived_load, full_point, point, step
 from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.judge.records import Row
+from ballscrew_monitor.messages.state_messages import empty_state, fill_state
 from ballscrew_monitor.node.solver_process import MODULE, path_to_this_code
 from ballscrew_monitor.settings.qos import started_node
 from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone, SurfaceInfo
@@ -164,9 +165,7 @@ def make_point(speed=10.0, axial_load=-1000.0, temperature=313.15, **changes):
         'temperature_source': PointSource.MEASURED,
         'direction': direction_of(speed),
     }
-    return MachinePoint(
-        speed=speed, axial_load=axial_load, temperature=temperature, **(values | changes)
-    )
+    return Row(speed=speed, axial_load=axial_load, temperature=temperature, **(values | changes))
 
 
 def make_monitor(surface=None, limits=None, **changes):
@@ -193,13 +192,29 @@ def motion(value, *, start=START, count=1, force=-1000.0, step=STEP):
     ]
 
 
+class Published:
+    """A row of which a state is published, the message, and what the monitor says right then."""
+
+    def __init__(self, monitor, row):
+        self.row, self.totals, self.event = row, monitor.totals, None
+        self.message = empty_state(monitor.settings.axis)
+        self.inputs = fill_state(self.message, row, monitor)
+        self.judged, self.window = self.message.judged, self.message.window
+        if row.edge:
+            self.event = monitor.event
+
+    def __getattr__(self, name):
+        return getattr(self.row, name)
+
+
 def feed(monitor, events):
     """Return the states that events give; a number is the stamp of a tick."""
-    states = [
-        monitor.tick(event) if isinstance(event, int) else monitor.update(event)
-        for event in events
-    ]
-    return [state for state in states if state is not None]
+    states = []
+    for event in events:
+        row = monitor.tick(event) if isinstance(event, int) else monitor.update(event)
+        if row is not None:
+            states.append(Published(monitor, row))
+    return states
 
 
 def look_up(surface, speed, load, temperature, found):
@@ -243,7 +258,7 @@ def constant_or(constant, real):
 
 
 def take_constants(patch):
-    for module in (advice, point, step, derived_load):
+    for module in (advice, point, step, derived_load, full_point):
         for constant in (look_up, look_up_rest, is_inside, scan, scan_part):
             name = constant.__name__
             if hasattr(module, name):

@@ -7,7 +7,7 @@ import math
 import re
 
 from ballscrew_monitor.core.advice import Advice, Advisor
-from ballscrew_monitor.core.estimate import opposing_load_of
+from ballscrew_monitor.core.conversions import Direction, opposing_load
 from ballscrew_monitor.core.judgement import efficiency_to_clear, rcs_to_clear
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.messages.state_messages import out_of_zone_message
@@ -19,9 +19,19 @@ from surrogate.surface import shipped_surface, Surface
 SURFACE = Surface.load(shipped_surface())
 
 
+def advisor_of(point, surface, limits, *, speed_allowed=True):
+    place = {name: getattr(point, name) for name in ('speed', 'axial_load', 'temperature')}
+    return Advisor(
+        **place,
+        direction=Direction(point.direction),
+        surface=surface,
+        limits=limits,
+        speed_allowed=speed_allowed,
+    )
+
+
 def advise(point, surface, limits):
-    advisor = Advisor(point=point, surface=surface, limits=limits, speed_allowed=True)
-    return advisor.advice
+    return advisor_of(point, surface, limits).advice
 
 
 def faster_is_better(speed, load):
@@ -75,7 +85,8 @@ def test_advice_is_a_sentence_without_a_sign(core, says):
 
 def test_no_speed_is_advised_unless_the_process_leaves_it_free(core):
     surface = core.surface(rcs=faster_is_better)
-    advisor = Advisor(point=core.point(speed=5.0), surface=surface, limits=core.limits())
+    point, limits = core.point(speed=5.0), core.limits()
+    advisor = advisor_of(point, surface, limits, speed_allowed=False)
     assert repr(advisor.advice) == repr(Advice())
     assert surface.asked == []  # nor is one looked for
 
@@ -91,7 +102,7 @@ def test_no_advice_names_a_load_or_a_sign(core, speed, load, temperature, effici
     """Neither in words nor in the message, anywhere on the surface and beyond it."""
     point = core.point(speed=speed, axial_load=load, temperature=temperature)
     limits = core.limits(efficiency=efficiency)
-    advisor = Advisor(point=point, surface=SURFACE, limits=limits, speed_allowed=free)
+    advisor = advisor_of(point, SURFACE, limits, speed_allowed=free)
     message = out_of_zone_message(
         'x', Event(number=1, active=True, advisor=advisor), shelved=False
     )
@@ -143,6 +154,8 @@ def test_who_follows_the_advice_clears_the_warning(core, sign, name, sensitive):
     point = core.point(speed=sign * 1.5, axial_load=load)
     advice = advise(point, surface, limits)
     there = dataclasses.replace(point, speed=advice.target_speed)
-    numbers = surface.lookup(abs(there.speed), opposing_load_of(there), there.temperature)
+    numbers = surface.lookup(
+        abs(there.speed), opposing_load(load, Direction(there.direction)), there.temperature
+    )
     assert numbers.rcs < rcs_to_clear(limits)
     assert numbers.efficiency >= efficiency_to_clear(limits)

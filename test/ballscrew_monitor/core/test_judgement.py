@@ -5,9 +5,18 @@
 import math
 
 from ballscrew_monitor.core.conversions import Direction, Nut
-from ballscrew_monitor.core.estimate import ContactState, PointSource, PointValidity
 from ballscrew_monitor.core.inputs import InputState, StampSource
-from ballscrew_monitor.core.judgement import Code, Gate, Level, Reason, Severity, Zone
+from ballscrew_monitor.core.judgement import (
+    Code,
+    ContactState,
+    Gate,
+    Level,
+    PointSource,
+    PointValidity,
+    Reason,
+    Severity,
+    Zone,
+)
 from ballscrew_msgs.msg import BallScrewState, Finding, InputHealth, OperatingPoint, PointResult
 import pytest
 from surrogate.surface import Regime

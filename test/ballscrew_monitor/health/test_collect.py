@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.estimate import PointSource
+from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.health.collect import Collector
 from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.health.points import add

@@ -7,7 +7,6 @@ import functools
 import math
 
 from ballscrew_monitor.core.conversions import Direction, direction_of
-from ballscrew_monitor.core.estimate import estimate, MachinePoint
 from ballscrew_monitor.health.points import (
     add,
     aged,
@@ -20,6 +19,8 @@ from ballscrew_monitor.health.points import (
 )
 from ballscrew_monitor.health.records import LoadSource
 from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.judge.full_point import answer
+from ballscrew_monitor.judge.records import Row
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
@@ -98,10 +99,9 @@ def test_other_places_sources_and_surfaces_are_other_points(motion, surface):
 
 def test_the_torque_of_the_model_is_that_of_the_judgement(surface):
     for speed, load in ((50.0, 500.0), (-50.0, 500.0), (30.0, -800.0), (-30.0, 0.0)):
-        point = MachinePoint(
-            speed=speed, axial_load=load, temperature=313.0, direction=direction_of(speed)
-        )
-        judged = estimate(point, surface, rcs_limit=0.01).machine_torque
+        direction = int(direction_of(speed))
+        row = Row(speed=speed, axial_load=load, temperature=313.0, direction=direction)
+        judged = answer(row, surface, rcs_limit=0.01).machine_torque
         assert model_torque(surface, speed, load, 313.0) == judged
     assert Direction.NEGATIVE is direction_of(-30.0)
     assert math.isnan(model_torque(surface, 1e6, 0.0, 313.0))

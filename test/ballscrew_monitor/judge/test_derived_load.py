@@ -10,7 +10,7 @@ from ballscrew_monitor.core.conversions import Direction, direction_of, opposing
 from ballscrew_monitor.core.state import LoadDerivation
 from ballscrew_monitor.judge import derived_load
 from ballscrew_monitor.judge.records import Row, Settings
-from ballscrew_monitor.judge.views import derived_text
+from ballscrew_monitor.messages.unjudged import derived_text
 from hypothesis import assume, given
 from hypothesis import strategies as st
 import numpy as np

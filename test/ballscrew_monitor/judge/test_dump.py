@@ -88,7 +88,7 @@ def test_the_monitor_goes_on_as_if_nothing_had_happened(core, stream, derived, d
     assert second.kept == first.kept
     for event in stream[cut:]:
         said, again = core.feed(first, [event]), core.feed(second, [event])
-        assert repr(again) == repr(said)
+        assert repr([state.message for state in again]) == repr([state.message for state in said])
         if any(state.event for state in said):
             assert repr(second.event.advice) == repr(first.event.advice)
     assert dump(second) == dump(first)

@@ -24,11 +24,13 @@ which numbers have a relative tolerance.
 
 import math
 
+from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.judgement import Code
 from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.judge import monitor as monitors
-from ballscrew_monitor.judge import views
 from ballscrew_monitor.judge.step import NOTHING, step
+from ballscrew_monitor.messages.state_messages import findings_of
+from ballscrew_monitor.messages.unjudged import reason_of
 import numpy as np
 
 TOLERANCE = 1e-12  # of numbers [-]: the lookup adds up its sums in another order
@@ -73,10 +75,9 @@ def check_row(row, memory, wanted, texts, monitor, lengths, place):
     assert row.machine_nut == wanted.worst_nut, place
     assert (row.derived == 0) == (wanted.derived < 0), place
     assert bool(row.edge) == bool(wanted.edge), place
-    point = views.point_of(row)
-    estimate = views.estimate_of(row, point, monitor.surface)
-    assert estimate.reason == texts[wanted.reason], place
-    findings = views.verdict_of(row, estimate, monitor.settings.limits).findings
+    reason = reason_of(row, monitor.surface)
+    assert reason == texts[wanted.reason], place
+    findings = findings_of(row, monitor.settings.limits, reason)
     values = {one.code: one.value for one in findings}
     assert sum(2**code for code in values) == wanted.findings, place
     assert close(values.get(Code.RCS_HIGH, math.nan), wanted.rcs_finding), place
@@ -97,16 +98,17 @@ def check_row(row, memory, wanted, texts, monitor, lengths, place):
 
 def check_state(state, wanted, place):
     check(state, wanted, ('stamp', 'level_since', 'event_id', 'judged'), place)
-    check(state, wanted, ('measured_torque', 'torque_residual'), place)
-    assert state.shelving.until == wanted.shelved_until, place
+    check(state.message, wanted, ('measured_torque', 'torque_residual'), place)
+    until = state.message.shelved_until
+    assert until.sec * SECOND + until.nanosec == wanted.shelved_until, place
     for name in Totals.__dataclass_fields__:
         here, there = getattr(state.totals, name), getattr(wanted, f'total_{name}')
         assert close(here, there), f'{place}: total {name} {here} {there}'
     assert state.window.count == wanted.window_count, place
     for name in ('speed', 'axial_load', 'efficiency', 'rcs', 'film_ratio'):
-        for part in ('low', 'mean', 'high'):
-            here = getattr(getattr(state.window, name), part)
-            there = getattr(wanted, f'window_{name}_{part}')
+        for part, stored in (('min', 'low'), ('mean', 'mean'), ('max', 'high')):
+            here = getattr(state.window, f'{name}_{part}')
+            there = getattr(wanted, f'window_{name}_{stored}')
             assert close(here, there), f'{place}: window {name} {part} {here} {there}'
     for one in state.inputs:
         prefix = one.source.name.lower()

@@ -6,8 +6,8 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import InputState, Source, StampSource, Why
+from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.judge import inputs
 from ballscrew_monitor.judge.records import (
     Event,

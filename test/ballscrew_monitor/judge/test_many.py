@@ -8,7 +8,6 @@ import sys
 
 from ballscrew_monitor.core.advice import Advisor
 from ballscrew_monitor.core.conversions import direction_of, SECOND
-from ballscrew_monitor.core.estimate import MachinePoint
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, PositionSettings
@@ -249,9 +248,14 @@ def test_a_memory_has_the_fields_of_its_slots():
 @settings(max_examples=30, deadline=None)
 def test_advice_comes_out_the_same(speed, load, temperature, efficiency):
     limits = dataclasses.replace(LIMITS, efficiency=efficiency)
-    point = MachinePoint(
-        speed=speed, axial_load=load, temperature=temperature, direction=direction_of(speed)
+    asked = Advisor(
+        speed=speed,
+        axial_load=load,
+        temperature=temperature,
+        direction=direction_of(speed),
+        surface=SURFACE,
+        limits=limits,
+        speed_allowed=True,
     )
-    asked = Advisor(point=point, surface=SURFACE, limits=limits, speed_allowed=True)
     compiled = dataclasses.replace(asked, nearest=compiled_nearest())
     assert repr(compiled.advice) == repr(asked.advice)

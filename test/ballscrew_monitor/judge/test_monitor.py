@@ -11,9 +11,11 @@ from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
 from ballscrew_monitor.core.judgement import Code, Level, violation, Zone
 from ballscrew_monitor.core.memory import Memory
-from ballscrew_monitor.core.state import Event, NOT_SHELVED, Shelving, Totals
+from ballscrew_monitor.core.state import Event, Shelving, Totals
 from ballscrew_monitor.judge import records
 from ballscrew_monitor.judge.monitor import EARLIEST, fill, LATEST, MOST_OTHERS, within
+from ballscrew_monitor.judge.views import SOURCES
+from ballscrew_monitor.messages.unjudged import point_or_reason
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
@@ -48,9 +50,8 @@ def test_the_row_of_the_last_event_is_there_whether_or_not_a_state_is_due(core):
     assert monitor.row is None
     found = []
     for event in core.motion(40.0, count=3):
-        state = monitor.update(event)
-        row = monitor.row
-        found.append((event.source, row and (row.stamp, row.speed), state is not None))
+        states, row = core.feed(monitor, [event]), monitor.row
+        found.append((event.source, row and (row.stamp, row.speed), bool(states)))
     stamps = [START + number * STEP for number in range(3)]
     assert found == [
         one
@@ -135,7 +136,7 @@ def test_worst_value_limit_and_place_are_of_one_sample(core, course, raise_delay
     assert (event.cause.code, event.cause.value, event.worst_value) == (code, value, value)
     assert event.cause.limit == limit
     assert f'{value:.3g}, limit {limit:.3g}' in event.cause.text
-    point = event.advisor.point
+    point = event.advisor
     assert (point.speed, point.axial_load, point.temperature) == (speed, -force, 313.15)
 
 
@@ -149,7 +150,7 @@ def test_the_limit_of_the_worst_sample_stays_with_it(core):
     monitor.surface.numbers = {'rcs': 0.75}
     core.feed(monitor, core.motion(12.0, start=START + 2 * STEP))
     assert (monitor.event.worst_value, monitor.event.cause.limit) == (0.75, 0.375)
-    assert monitor.event.advisor.point.speed == 12.0
+    assert monitor.event.advisor.speed == 12.0
 
 
 def stamped(event, lag=0, header=True):
@@ -253,15 +254,15 @@ def test_totals_reset(core):
 
 def test_new_limits_and_a_new_surface_hold_from_the_next_sample(core):
     monitor = core.monitor(core.surface(rcs=0.5), core.limits(raise_delay=0))
-    assert core.feed(monitor, core.motion(10.0))[-1].verdict.zone is Zone.OUTSIDE
+    assert core.feed(monitor, core.motion(10.0))[-1].zone == Zone.OUTSIDE
     limits = core.limits(rcs=0.625, raise_delay=0)
     monitor.settings = dataclasses.replace(monitor.settings, limits=limits)
     state = core.feed(monitor, core.motion(10.0, start=START + STEP))[-1]
-    assert (state.verdict.zone, state.limits) == (Zone.OPTIMAL, limits)
+    assert (state.zone, state.message.rcs_limit) == (Zone.OPTIMAL, limits.rcs)
     monitor = core.monitor(core.surface(rcs=0.5))
     core.feed(monitor, core.motion(10.0))
     monitor.use_surface(core.surface(rcs=0.125))
-    assert core.feed(monitor, core.motion(10.0, start=START + STEP))[-1].estimate.rcs == 0.125
+    assert core.feed(monitor, core.motion(10.0, start=START + STEP))[-1].rcs == 0.125
 
 
 @pytest.mark.parametrize(
@@ -280,7 +281,7 @@ def test_the_point_of_now_is_known_or_said_to_be_missing(core, events, now, answ
     monitor = core.monitor()
     core.feed(monitor, [core.sample(*event) for event in events])
     before = dataclasses.asdict(monitor.memory)
-    found = monitor.current_point(now)
+    found = point_or_reason(monitor, now)
     if isinstance(answer, str):
         assert found.startswith(answer)
     else:
@@ -295,8 +296,8 @@ def test_a_monitor_goes_on_where_another_one_ended(core):
     assert states[0].event.number == 8
     assert states[-1].totals.running_time == 5 * SECOND + STEP
     assert states[-1].totals.since == SECOND
-    assert states[-1].shelving == KEPT.shelving
-    assert states[-1].level is Level.WARN
+    assert monitor.shelving == KEPT.shelving
+    assert states[-1].level == Level.WARN
     kept = monitor.kept.event
     assert (kept.active, kept.stamp) == (True, START + STEP)
 
@@ -314,9 +315,9 @@ def test_a_shelved_warning_is_judged_and_counted_as_ever(core):
     shelved, plain = (slow_is_bad(core, memory, raise_delay=0) for memory in (KEPT, Memory()))
     events = core.motion(10.0, count=20)
     for one, other in zip(core.feed(shelved, events), core.feed(plain, events), strict=True):
-        assert (one.level, one.verdict, one.judged) == (other.level, other.verdict, other.judged)
+        assert (one.level, one.zone, one.judged) == (other.level, other.zone, other.judged)
     late = core.motion(10.0, start=START + 10 * SECOND)
-    assert core.feed(shelved, late)[0].shelving is NOT_SHELVED
+    assert not core.feed(shelved, late)[0].message.shelved
 
 
 def others(*names):
@@ -367,3 +368,8 @@ def test_a_record_holds_an_event_whose_stamps_fit(stamp, arrival, lost):
     assert (record.stamp, record.stamp_source) == (within(stamp), receive)
     assert isinstance(record.value, float)
     assert within(LATEST) - within(EARLIEST) < 2**63
+
+
+def test_inputs_come_in_the_order_of_a_state(core):
+    assert [one.source for one in core.monitor().input_status(0)] == list(SOURCES)
+    assert set(SOURCES) == set(Source)

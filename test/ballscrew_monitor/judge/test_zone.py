@@ -6,10 +6,10 @@ import math
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
-from ballscrew_monitor.core.state import Extremes, Totals
+from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.judge import records
 from ballscrew_monitor.judge.records import LIGHT_LOAD, Memory, Row, STANDSTILL
-from ballscrew_monitor.judge.views import add_totals, clear_totals, event_of, totals_of, window_of
+from ballscrew_monitor.judge.views import add_totals, clear_totals, event_of, totals_of
 from ballscrew_monitor.judge.zone import (
     add_to_totals,
     add_to_window,
@@ -19,6 +19,8 @@ from ballscrew_monitor.judge.zone import (
     set_zone,
     shut_gates,
 )
+from ballscrew_monitor.messages.state_messages import fill_window
+from ballscrew_msgs.msg import WindowStatistics
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
@@ -250,7 +252,7 @@ def test_an_excursion_keeps_one_sample_as_its_worst(core, rows, raise_delay, cle
         assert event.worst_value == event.cause.value == value(worst)
         assert event.cause.limit == (asked.limits.rcs if high else asked.limits.efficiency)
         assert ('derived' in event.cause.text) == (not high and worst.derived != 0)
-        point = event.advisor.point
+        point = event.advisor
         for name in ('speed', 'axial_load', 'temperature', 'direction'):
             assert getattr(point, name) == getattr(worst, name)
 
@@ -275,32 +277,39 @@ def add_up(*rows, memory=None):
     return totals_of(memory)
 
 
+def window_of(memory):
+    window = WindowStatistics()
+    fill_window(window, memory)
+    return window
+
+
 def test_a_window_holds_what_was_judged_until_it_was_told():
     memory = Memory()
     assert window_of(memory).count == 0
-    assert math.isnan(window_of(memory).speed.low)
+    assert math.isnan(window_of(memory).speed_min)
     for one in (row(speed=10.0, rcs=0.01), row(speed=-30.0, rcs=0.09), row(speed=20.0)):
         add_to_window(memory, one)
     add_to_window(memory, row(speed=0.2, zone=0, gates=STANDSTILL))
     clear_window(memory)
-    found = window_of(memory)
-    assert found.count == 3
-    assert found.speed == Extremes(low=-30.0, mean=0.0, high=20.0)
-    assert found.rcs.high == 0.09
-    assert found.efficiency == Extremes(low=0.9, mean=pytest.approx(0.9), high=0.9)
+    window = window_of(memory)
+    assert window.count == 3
+    assert (window.speed_min, window.speed_mean, window.speed_max) == (-30.0, 0.0, 20.0)
+    assert window.rcs_max == 0.09
+    assert (window.efficiency_min, window.efficiency_max) == (0.9, 0.9)
+    assert window.efficiency_mean == pytest.approx(0.9)
     memory.window_told = True
     clear_window(memory)
     assert window_of(memory).count == 0
-    assert math.isnan(window_of(memory).speed.low)
+    assert math.isnan(window_of(memory).speed_min)
 
 
 def test_efficiency_counts_only_where_it_was_judged():
     memory = Memory()
     add_to_window(memory, row(gates=LIGHT_LOAD, efficiency=0.01))
-    found = window_of(memory)
-    assert found.count == 1
-    assert math.isnan(found.efficiency.mean)
-    assert found.film_ratio.mean == 3.0
+    window = window_of(memory)
+    assert window.count == 1
+    assert math.isnan(window.efficiency_mean)
+    assert window.film_ratio_mean == 3.0
 
 
 def test_each_sample_lasts_until_the_next():

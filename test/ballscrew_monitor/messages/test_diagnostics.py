@@ -6,15 +6,15 @@ import dataclasses
 import math
 from pathlib import Path
 import re
+import types
 
 from ballscrew_monitor.core import sqlite_file
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.estimate import PointValidity
 from ballscrew_monitor.core.fault_codes import Fault
-from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
-from ballscrew_monitor.core.judgement import Level, WarningPolicy
+from ballscrew_monitor.core.inputs import InputSample, InputState, Refusal, Source, Why
+from ballscrew_monitor.core.judgement import Code, Level, PointValidity, WarningPolicy
 from ballscrew_monitor.core.links import Link, Publisher
-from ballscrew_monitor.core.state import Event, LoadDerivation, shelve
+from ballscrew_monitor.core.state import LoadDerivation, shelve
 from ballscrew_monitor.core.vitals import VitalSigns
 from ballscrew_monitor.messages import diagnostics, reasons
 from ballscrew_monitor.messages.diagnostics import ERROR, OK, STALE, WARN
@@ -24,6 +24,7 @@ import pytest
 
 START = 1000 * SECOND
 WALL = 1_800_000_000 * SECOND
+NOTHING = None, (), Code.UNKNOWN  # state, inputs and cause of an axis that has said nothing
 LINKS = {
     Source.SPEED: Link(topic='/s', type_name='a/msg/B', matched=1),
     Source.LOAD: Link(topic='/l', type_name='a/msg/B'),
@@ -45,15 +46,14 @@ def after(
     **limits,
 ):
     delays = {'raise_delay': 0, 'clear_delay': 0}
-    limits, state = core.limits(**(delays | limits)), None
-    monitor = core.monitor(surface, limits, **(settings or {}))
-    for event in events:
-        state = monitor.update(event) or state
+    monitor = core.monitor(surface, core.limits(**(delays | limits)), **(settings or {}))
+    last = (core.feed(monitor, events) or [types.SimpleNamespace(message=None, inputs=())])[-1]
     made = diagnostics.statuses(
         'node',
         'x',
-        state,
-        monitor.event,
+        last.message,
+        last.inputs,
+        monitor.event.cause.code,
         monitor.surface,
         links=links or LINKS,
         clock_stands=clock_stands,
@@ -95,7 +95,7 @@ def test_names_and_hardware_of_two_machines_and_two_axes_differ(core):
         status
         for node in ('/mill/monitor', '/lathe/monitor')
         for axis in ('x', 'y')
-        for status in diagnostics.statuses(node, axis, None, Event(), core.surface(), links=None)
+        for status in diagnostics.statuses(node, axis, *NOTHING, core.surface(), links=None)
     ]
     assert len({status.name for status in made}) == 12
     assert made[0].name == 'mill/monitor: x: Lubrication'
@@ -115,15 +115,12 @@ def test_all_is_well_once_the_delay_is_over(core):
 
 @pytest.mark.parametrize(('derived', 'key'), [(False, 'not_moved'), (True, 'not_derived')])
 def test_the_torque_is_blamed_only_where_the_load_follows_from_it(core, derived, key, says):
-    monitor = core.monitor(None, core.limits())
-    monitor.update(LOAD)
-    state = monitor.update(SPEED)
-    unknown = dataclasses.replace(
-        state,
-        point=dataclasses.replace(state.point, derived=derived),
-        estimate=dataclasses.replace(state.estimate, validity=PointValidity.UNKNOWN),
-    )
-    lubrication, _ = diagnostics.summaries(unknown, Event(), LINKS)
+    (last,) = core.feed(core.monitor(None, core.limits()), [LOAD, SPEED])
+    last.message.result.validity = int(PointValidity.UNKNOWN)
+    inputs = list(last.inputs)
+    if derived:
+        inputs[1] = dataclasses.replace(inputs[1], state=InputState.DERIVED)
+    lubrication, _ = diagnostics.summaries(last.message, inputs, Code.UNKNOWN, LINKS)
     assert (lubrication.level, lubrication.message) == (WARN, says(key))
 
 
@@ -281,7 +278,7 @@ def test_a_trouble_of_an_input_has_one_sentence_with_its_cure(core, changes, mes
     [(LINKS, 'nothing has been judged yet'), (None, 'the node is inactive, nothing is judged')],
 )
 def test_without_a_state_there_is_no_news(core, links, message):
-    made = diagnostics.statuses('n', 'x', None, Event(), core.surface(), links=links)
+    made = diagnostics.statuses('n', 'x', *NOTHING, core.surface(), links=links)
     assert [said(status) for status in made[:2]] == [(STALE, message)] * 2
     assert made[2].level == OK
 
@@ -295,13 +292,13 @@ def test_without_a_state_there_is_no_news(core, links, message):
     ],
 )
 def test_a_shelved_warning_is_no_warning_and_hides_no_other(core, events, shown):
-    state, monitor = None, core.monitor(core.surface(rcs=0.5), core.limits(raise_delay=0))
+    monitor = core.monitor(core.surface(rcs=0.5), core.limits(raise_delay=0))
     monitor.shelving = shelve(START, 60.0, 'nut is ordered')
-    for event in events:
-        state = monitor.update(event) or state
-    assert state.level is Level.WARN
-    assert diagnostics.summaries(state, monitor.event, LINKS)[0][:2] == shown
-    assert not plain_values(state)['out_of_zone']
+    last = core.feed(monitor, events)[-1]
+    assert last.level == Level.WARN
+    cause = monitor.event.cause.code
+    assert diagnostics.summaries(last.message, last.inputs, cause, LINKS)[0][:2] == shown
+    assert not plain_values(last.message)['out_of_zone']
 
 
 def test_the_state_directory():
@@ -327,7 +324,14 @@ def test_a_defect_says_where_it_came_up_and_what_to_do(core, event, place, says)
     sentence = diagnostics.defect_text(ZeroDivisionError('by 0'), event)
     assert sentence == says('program_failed', place=place)
     made = diagnostics.statuses(
-        'node', 'x', None, monitor.event, monitor.surface, links=LINKS, defect=sentence
+        'node',
+        'x',
+        None,
+        (),
+        monitor.event.cause.code,
+        monitor.surface,
+        links=LINKS,
+        defect=sentence,
     )
     assert said(made[0]) == (ERROR, sentence)
     assert all(status.message != sentence for status in made[1:])
@@ -378,10 +382,10 @@ def test_a_warning_that_is_not_to_call_keeps_its_code(core, policy):
 
 def test_what_holds_for_the_whole_axis_or_node_has_its_code(core):
     surface = core.surface()
-    inactive = diagnostics.statuses('n', 'x', None, Event(), surface, links=None)
+    inactive = diagnostics.statuses('n', 'x', *NOTHING, surface, links=None)
     assert codes_of(inactive) == [Fault.INACTIVE, Fault.INACTIVE, Fault.NONE]
     facts = {'refused': 'why', 'defect': 'it failed', 'clock_stands': True}
-    made = diagnostics.statuses('n', 'x', None, Event(), surface, links=LINKS, **facts)
+    made = diagnostics.statuses('n', 'x', *NOTHING, surface, links=LINKS, **facts)
     assert codes_of(made) == [Fault.PROGRAM_FAILED, Fault.CLOCK_STANDS, Fault.RELOAD_REFUSED]
     assert codes_of(diagnostics.failed('n', 'x', 'why')) == [Fault.NOT_CONFIGURED] * 3
     for problem, kept, recorded in (('', 0, 0), ('why', Fault.NOT_KEPT, Fault.NOT_RECORDED)):

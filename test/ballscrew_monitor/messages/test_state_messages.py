@@ -8,7 +8,7 @@ from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.messages import state_messages
-from ballscrew_monitor.messages.state_messages import StateWriter
+from ballscrew_monitor.messages.state_messages import empty_state, fill_state
 from ballscrew_msgs import msg
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
@@ -17,10 +17,16 @@ STAMP = 1_000_000_000 * SECOND + 5
 NAN = math.nan
 
 
-def one_state(core, *, speed=-20.0, surface=None, limits=None, stamp=STAMP):
+def one_row(core, *, speed=-20.0, surface=None, limits=None, stamp=STAMP):
     monitor = core.monitor(surface, limits)
     monitor.update(InputSample(source=Source.LOAD, value=1000.0, stamp=stamp))
     return monitor.update(InputSample(source=Source.SPEED, value=speed, stamp=stamp)), monitor
+
+
+def state_message(row, monitor):
+    message = empty_state('x')
+    fill_state(message, row, monitor)
+    return message
 
 
 def over_the_wire(message):
@@ -28,8 +34,8 @@ def over_the_wire(message):
 
 
 def test_a_state_as_a_message(core):
-    state, _ = one_state(core, surface=core.surface(rcs=0.5), limits=core.limits(raise_delay=0))
-    message = over_the_wire(StateWriter('x', msg.PointResult.TIER_CLOSED_FORM).write(state))
+    row, monitor = one_row(core, surface=core.surface(rcs=0.5), limits=core.limits(raise_delay=0))
+    message = over_the_wire(state_message(row, monitor))
     assert (message.axis, message.header.frame_id) == ('x', 'x')
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1_000_000_000, 5)
     assert message.level_since == message.header.stamp
@@ -50,12 +56,12 @@ def test_a_state_as_a_message(core):
 
 
 def test_a_result_as_a_message(core):
-    state, _ = one_state(core)
-    result = StateWriter('x', msg.PointResult.TIER_FULL).write(state).result
-    expected = (msg.PointResult.VALIDITY_VALID, msg.PointResult.TIER_FULL, '')
+    row, monitor = one_row(core)
+    result = state_message(row, monitor).result
+    expected = (msg.PointResult.VALIDITY_VALID, msg.PointResult.TIER_CLOSED_FORM, '')
     assert (result.validity, result.tier, result.reason) == expected
-    for name in ('efficiency', 'rcs', *state_messages.NUMBERS):
-        assert getattr(result, name) == getattr(state.estimate.numbers, name) or (
+    for name in state_messages.NUMBERS:
+        assert getattr(result, name) == getattr(row, name) or (
             name.endswith('_std') and math.isnan(getattr(result, name))
         )
     wanted = (msg.PointResult.NUT_POSITIVE, msg.PointResult.SIDE_NUT)
@@ -64,23 +70,24 @@ def test_a_result_as_a_message(core):
 
 
 def test_a_used_message_keeps_nothing_of_the_state_before(core):
-    writer = StateWriter('x', 1)
-    bad, _ = one_state(core, surface=core.surface(rcs=0.5, back_driving=True, corrected=True))
-    assert writer.write(bad).result.corrected
-    lost, _ = one_state(core, speed=500.0, stamp=SECOND)
-    fresh = StateWriter('x', 1).write(lost)
-    assert repr(writer.write(lost)) == repr(fresh)
+    used = empty_state('x')
+    fill_state(
+        used, *one_row(core, surface=core.surface(rcs=0.5, back_driving=True, corrected=True))
+    )
+    assert used.result.corrected
+    lost = one_row(core, speed=500.0, stamp=SECOND)
+    fresh = state_message(*lost)
+    fill_state(used, *lost)
+    assert repr(used) == repr(fresh)
     assert not fresh.result.back_driving
     assert not fresh.result.corrected
-    numbers = [
-        getattr(fresh.result, name) for name in ('efficiency', 'rcs', *state_messages.NUMBERS)
-    ]
+    numbers = [getattr(fresh.result, name) for name in state_messages.NUMBERS]
     assert all(math.isnan(number) for number in numbers)
     assert 'above the surface' in fresh.result.reason
 
 
 def test_an_event_as_a_message_and_that_there_was_none(core):
-    _, monitor = one_state(core, surface=core.surface(rcs=0.5), limits=core.limits(raise_delay=0))
+    _, monitor = one_row(core, surface=core.surface(rcs=0.5), limits=core.limits(raise_delay=0))
     message = over_the_wire(state_messages.out_of_zone_message('x', monitor.event, shelved=True))
     assert (message.axis, message.event_id, message.active) == ('x', 1, True)
     assert (message.start.sec, message.duration, message.worst_value) == (1_000_000_000, 0.0, 0.5)

@@ -17,8 +17,9 @@ STAMP = 1000 * SECOND
 
 def state_of(core, *, speed=10.0, load=1000.0, **numbers):
     monitor = core.monitor(core.surface(**numbers), core.limits(raise_delay=0))
-    monitor.update(InputSample(source=Source.LOAD, value=load, stamp=STAMP))
-    return monitor.update(InputSample(source=Source.SPEED, value=speed, stamp=STAMP))
+    inputs = ((Source.LOAD, load), (Source.SPEED, speed))
+    samples = [InputSample(source=source, value=value, stamp=STAMP) for source, value in inputs]
+    return core.feed(monitor, samples)[-1].message
 
 
 def test_values_of_a_state_outside_the_zone_survive_the_wire(core):

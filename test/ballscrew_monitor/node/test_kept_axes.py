@@ -89,9 +89,9 @@ class Machine:
         self.stamp += STEP
         for source, value in ((Source.LOAD, -1000.0), (Source.SPEED, speed)):
             sample = InputSample(source=source, value=value, stamp=self.stamp)
-            state = self.monitor.update(sample)
-        if state is not None and state.event is not None:
-            self.alarm.follow(state, {})
+            row = self.monitor.update(sample)
+        if row is not None and row.edge:
+            self.alarm.follow(row, {})
         if self.stamp % SECOND == 0:
             self.look()
         self.state.work(self.stamp / SECOND)

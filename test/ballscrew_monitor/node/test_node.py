@@ -473,7 +473,7 @@ DEFECTS = {
         lambda node: node.trigger_deactivate() and node.trigger_activate(),
         'its activation',
     ),
-    'a point': (Monitor, 'current_point', solves, 'a solve'),
+    'a point': (Monitor, 'row_at', solves, 'a solve'),
     'evaluation': (
         AxisPublisher,
         '_evaluate',

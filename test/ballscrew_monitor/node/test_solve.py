@@ -10,7 +10,7 @@ import signal
 import time
 
 from action_msgs.msg import GoalStatus
-from ballscrew_monitor.core.full_point import request_of
+from ballscrew_monitor.judge.full_point import request_of
 from ballscrew_monitor.messages.state_messages import read_point
 from ballscrew_monitor.node.solve_server import LONGEST_TIMEOUT, SERVICE_QOS
 from ballscrew_msgs.action import SolveOperatingPoint

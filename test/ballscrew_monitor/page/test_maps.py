@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 from ballscrew_monitor.core.conversions import kelvin
 from ballscrew_monitor.core.judgement import rcs_to_clear
-from ballscrew_monitor.messages.state_messages import out_of_zone_message, StateWriter, TIERS
+from ballscrew_monitor.messages.state_messages import out_of_zone_message
 from ballscrew_monitor.page import maps, records
 from ballscrew_monitor.page.maps import Motion
 from ballscrew_monitor.recordings.words import TURNS
@@ -175,7 +175,7 @@ def test_the_advice_on_a_standing_warning_lies_just_beyond_the_limit(
     monitor = core.monitor(surface, usual_limits, **changes)
     moves = core.motion(sign * part * limit, force=-sign * load)
     (state,) = core.feed(monitor, moves)
-    message = StateWriter('x', TIERS[surface.tier]).write(state)
+    message = state.message
     view = page_parts.axis()
     view.know({}, surface, '')
     view.hear(records.row_of(message), {}, records.limits_record(message), 0.0)

@@ -7,7 +7,7 @@ import math
 
 from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import Direction
-from ballscrew_monitor.core.estimate import PointSource, PointValidity
+from ballscrew_monitor.core.judgement import PointSource, PointValidity
 from ballscrew_monitor.core.memory import RESTARTED
 from ballscrew_monitor.core.state import Acknowledgement, NAMELESS
 from ballscrew_monitor.page import records

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import xml.etree.ElementTree as ElementTree
 
 from ballscrew_monitor.core.conversions import kelvin
-from ballscrew_monitor.core.full_point import SolvedAt
+from ballscrew_monitor.judge.full_point import SolvedAt
 from ballscrew_monitor.messages.diagnostics import recording
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_records import Corrections

@@ -5,14 +5,14 @@
 import math
 from types import SimpleNamespace
 
-from ballscrew_monitor.core.estimate import estimate
-from ballscrew_monitor.core.full_point import SolvedAt
+from ballscrew_monitor.judge.full_point import answer, SolvedAt
 from ballscrew_monitor.messages.state_messages import (
     fill_result,
     read_point,
     surface_info_message,
     TIERS,
 )
+from ballscrew_monitor.messages.unjudged import reason_of
 from ballscrew_monitor.page import records, surfaces
 from ballscrew_monitor.page.phrases import english
 from ballscrew_monitor.page.surfaces import known_surface, places_of, point_message, SurfaceLink
@@ -55,7 +55,8 @@ def answered(surface, points):
     for point in points:
         asked = read_point(point, default_temperature=math.nan)
         result = PointResult()
-        fill_result(result, estimate(asked, surface, rcs_limit=0.01), TIERS[surface.tier])
+        row = answer(asked, surface, rcs_limit=0.01)
+        fill_result(result, row, TIERS[surface.tier], reason_of(row, surface))
         results.append(result)
     return results
 

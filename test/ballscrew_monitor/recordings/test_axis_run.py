@@ -7,12 +7,12 @@ import math
 from pathlib import Path
 
 from ballscrew_monitor.core.conversions import seconds
-from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.fields import OtherJoints, stamp_of
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
-from ballscrew_monitor.core.judgement import Reason
+from ballscrew_monitor.core.judgement import PointSource, Reason
 from ballscrew_monitor.judge.dump import dump, restored
 from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.messages.state_messages import empty_state, fill_state
 from ballscrew_monitor.recordings.axis_run import AxisRun
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
@@ -202,15 +202,18 @@ def test_states_and_outcome_are_those_of_a_monitor_alone(happened, cut):
         told.append((happening(now, source, choice), now))
     axis, other = alone(), alone().monitor
     notes = Notes()
-    run, events, states, wanted = AxisRun(axis, notes), [], [], []
+    run, events, states, wanted, edges = AxisRun(axis, notes), [], [], [], 0
     for part in (told[:cut], told[cut:]):
         for event, _ in part:
-            state = other.tick(event) if isinstance(event, int) else other.update(event)
-            wanted += [] if state is None else [state]
+            row = other.tick(event) if isinstance(event, int) else other.update(event)
+            if row is not None:
+                message = empty_state('x')
+                edges += row.edge != 0
+                wanted.append((message, fill_state(message, row, other)))
         arrays = [event_array(*timed, notes) for timed in part]
         array = np.concatenate(arrays or [blank(0)])
         found = [one[1] for one in run.take(array) if isinstance(one, tuple)]
-        states += [one.state for one in found]
+        states += [(one.state, one.inputs) for one in found]
         events += [one.event for one in found if one.event is not None]
         assert repr(axis.monitor.input_status(now)) == repr(other.input_status(now))
         assert axis.monitor.kept == other.kept
@@ -221,13 +224,13 @@ def test_states_and_outcome_are_those_of_a_monitor_alone(happened, cut):
         run.change(changed)
         axis = changed
     assert list(map(without_joints, states)) == list(map(without_joints, wanted))
-    assert sum(one.event is not None for one in wanted) <= len(events)
+    assert edges <= len(events)
     outcome = run.outcome()
     assert (outcome.states, outcome.judged) == (len(wanted), other.memory.judged)
     assert len(outcome.events) == other.event.number
 
 
 def without_joints(state):
-    """Return a state as text, without the joints that its inputs name."""
-    inputs = tuple(dataclasses.replace(one, joints=None) for one in state.inputs)
-    return repr(dataclasses.replace(state, inputs=inputs))
+    """Return a message and its inputs as text, without the joints that these name."""
+    message, inputs = state
+    return repr((message, [dataclasses.replace(status, joints=None) for status in inputs]))

@@ -37,7 +37,7 @@ def start(node, tmp_path):
 def replayed(path):
     """Return the states of a replay with every digit, and what it says of the node's notes."""
     bag = Bag(path)
-    states = [str(one.state) for one in replay(bag, recorded_values(bag))]
+    states = [str(state) for state, _ in replay(bag, recorded_values(bag))]
     return states, ' '.join(bag.remarks)
 
 

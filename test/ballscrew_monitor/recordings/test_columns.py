@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of columns, and what follows from them."""
 
-from ballscrew_monitor.core.estimate import PointSource
+from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.recordings.columns import COLUMNS, JudgedColumns
 import numpy as np
 

@@ -9,9 +9,8 @@ import subprocess
 import types
 
 from ballscrew_monitor.core.conversions import Direction, SECOND
-from ballscrew_monitor.core.estimate import PointSource, PointValidity
 from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource
-from ballscrew_monitor.core.judgement import Level, Zone
+from ballscrew_monitor.core.judgement import Level, PointSource, PointValidity, Zone
 from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns, Reason
 from ballscrew_monitor.recordings.summary import EventRecord

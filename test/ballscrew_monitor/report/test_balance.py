@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 
 from ballscrew_monitor.core.conversions import Direction
-from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.tables.convert import convert
 from ballscrew_monitor.recordings.tables.guess import guess

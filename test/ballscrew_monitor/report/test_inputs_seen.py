@@ -4,8 +4,8 @@
 
 import math
 
-from ballscrew_monitor.core.estimate import PointSource
 from ballscrew_monitor.core.inputs import InputState, Source, Why
+from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.report.inputs_seen import inputs_seen, REFUSALS, Trouble
 import numpy as np
 import pytest

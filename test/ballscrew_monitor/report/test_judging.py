@@ -4,7 +4,7 @@
 
 import dataclasses
 
-from ballscrew_monitor.core.estimate import PointSource
+from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.health.records import LoadSource
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.report.health_history import HistoryMaker

@@ -5,8 +5,7 @@
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.estimate import PointSource
-from ballscrew_monitor.core.judgement import Zone
+from ballscrew_monitor.core.judgement import PointSource, Zone
 from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.report.log_page import verdict_part

@@ -18,10 +18,10 @@ import types
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.estimate import MachinePoint, opposing_load_of
-from ballscrew_monitor.core.judgement import Gate
-from ballscrew_monitor.core.state import State
-from surrogate.surface import Correction, Found, Surface
+from ballscrew_monitor.core.judgement import Limits, PointValidity
+from ballscrew_monitor.judge.point import opposing_load, set_answer, set_words
+from ballscrew_monitor.judge.records import LIGHT_LOAD, Row, Settings, STANDSTILL
+from surrogate.surface import Correction, Found, look_up_rest, Surface
 
 NAN = math.nan
 JUDGED = ('efficiency', 'rcs')
@@ -65,15 +65,32 @@ Solve = Correction | KeptSolve
 """A full solve that has corrected a surface, or did so in an earlier run of the node."""
 
 
-def solved_at(point: MachinePoint) -> SolvedAt:
-    """Return the place on the surface of a point in the machine frame."""
-    load = opposing_load_of(point)
-    return SolvedAt(speed=abs(point.speed), opposing_load=load, temperature=point.temperature)
+def answer(row: Row, surface: Surface, *, rcs_limit: float) -> Row:
+    """Return what a surface says of the point of a row; the limit [-] names the contact state."""
+    answered = dataclasses.replace(row)
+    set_answer(surface.tables, Settings(rcs=rcs_limit), answered)
+    look_up_rest(surface.tables, opposing_load(answered), answered)
+    return answered
 
 
-def compare(full: Found, surface: Found | None) -> Comparison:
-    """Hold a full solve against the surface; None: the surface has no answer."""
-    if surface is None:
+def with_numbers(row: Row, full: Found, *, rcs_limit: float) -> Row:
+    """Return a row of the same point with the numbers of a full solve."""
+    numbers = {field.name: getattr(full, field.name) for field in dataclasses.fields(Found)}
+    solved = dataclasses.replace(row, **numbers)
+    set_words(Settings(rcs=rcs_limit), solved)
+    return solved
+
+
+def solved_at(row: Row) -> SolvedAt:
+    """Return the place on the surface of the point of a row."""
+    return SolvedAt(
+        speed=abs(row.speed), opposing_load=opposing_load(row), temperature=row.temperature
+    )
+
+
+def compare(full: Found, surface: Found) -> Comparison:
+    """Hold a full solve against the answer of the surface, if there is one."""
+    if surface.validity != PointValidity.VALID:
         return Comparison()
     differences = {name: getattr(full, name) - getattr(surface, name) for name in JUDGED}
     within = all(
@@ -89,11 +106,11 @@ def stated_error(surface: Found, name: str) -> float:
     return error + known(getattr(surface, f'{name}_stderr'))
 
 
-def objection(full: Found, answer: Found | None, surface: Surface) -> str:
+def objection(full: Found, answer: Found, surface: Surface) -> str:
     """Return why a full solve may not correct a surface with this answer; empty if it may."""
     if surface.tier != 'full':
         return f'a surface of the {surface.tier.replace("_", "-")} tier is not corrected'
-    if answer is None:
+    if answer.validity != PointValidity.VALID:
         return 'the surface has no answer at this point'
     if math.isnan(full.rcs_stderr):
         return 'the standard error of the result (rcs) is not known'
@@ -114,10 +131,10 @@ def corrected(surface: Surface, kept: Iterable[Solve]) -> Surface:
     return surface
 
 
-def request_of(surface: Surface, point: MachinePoint) -> dict[str, Any]:
-    """Return what is asked of the solver: the surface and the point."""
+def request_of(surface: Surface, row: Row) -> dict[str, Any]:
+    """Return what is asked of the solver: the surface and the point of a row."""
     header = {name: surface.header[name] for name in TOLD if name in surface.header}
-    return {'header': header, 'point': dataclasses.asdict(solved_at(point))}
+    return {'header': header, 'point': dataclasses.asdict(solved_at(row))}
 
 
 def known(number: float) -> float:
@@ -130,36 +147,31 @@ class Dwell:
     """Tells when a solve is worth its time."""
 
     _since: int = 0
-    _point: MachinePoint | None = None
+    _place: tuple[float, float] | None = None  # speed [rad/s], axial load [N]
     _asked: int | None = None
 
-    def update(self, state: State) -> bool:
-        """Take a state; tell whether its point should be solved."""
-        stamp, point = state.stamp, state.point
-        if self._point is None or stamp < self._since or not _is_near(point, self._point):
-            self._since, self._point = stamp, point
+    def update(self, row: Row, limits: Limits) -> bool:
+        """Take a row; return True if its point should be solved."""
+        stamp, place = row.stamp, (row.speed, row.axial_load)
+        if self._place is None or stamp < self._since or not _is_near(place, self._place):
+            self._since, self._place = stamp, place
         rested = self._asked is None or not 0 <= stamp - self._asked < PAUSE
-        due = rested and stamp - self._since >= STAY and is_uncertain(state)
+        due = rested and stamp - self._since >= STAY and is_uncertain(row, limits)
         if due:
             self._asked = stamp
         return due
 
 
-def is_uncertain(state: State) -> bool:
-    """Tell whether the stated error of the surface, or its spread, reaches a limit of the zone."""
-    numbers, gates = state.estimate.numbers, state.verdict.gates
-    if numbers is None or numbers.corrected or Gate.STANDSTILL in gates:
+def is_uncertain(row: Row, limits: Limits) -> bool:
+    """Return True if the stated error of the surface, or its spread, reaches a limit."""
+    if row.validity != PointValidity.VALID or row.corrected or row.gates & STANDSTILL:
         return False
-    judged = JUDGED[1:] if Gate.LIGHT_LOAD in gates else JUDGED
     return any(
-        abs(getattr(numbers, name) - getattr(state.limits, name))
-        <= max(stated_error(numbers, name), known(getattr(numbers, f'{name}_std')))
-        for name in judged
+        abs(getattr(row, name) - getattr(limits, name))
+        <= max(stated_error(row, name), known(getattr(row, f'{name}_std')))
+        for name in (JUDGED[1:] if row.gates & LIGHT_LOAD else JUDGED)
     )
 
 
-def _is_near(point: MachinePoint, other: MachinePoint) -> bool:
-    return all(
-        abs(here - there) <= SAME * abs(there)
-        for here, there in ((point.speed, other.speed), (point.axial_load, other.axial_load))
-    )
+def _is_near(place: tuple[float, float], other: tuple[float, float]) -> bool:
+    return all(abs(here - there) <= SAME * abs(there) for here, there in zip(place, other))

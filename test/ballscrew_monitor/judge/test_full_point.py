@@ -5,11 +5,10 @@
 import math
 import types
 
-from ballscrew_monitor.core import full_point
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.estimate import estimate
-from ballscrew_monitor.core.full_point import Dwell, PAUSE, solved_at, stated_error, STAY
-from ballscrew_monitor.core.judgement import Gate, Verdict, Zone
+from ballscrew_monitor.judge import full_point
+from ballscrew_monitor.judge.full_point import Dwell, PAUSE, solved_at, stated_error, STAY
+from ballscrew_monitor.judge.records import STANDSTILL
 import pytest
 from surrogate.surface import shipped_surface, Surface
 
@@ -27,6 +26,7 @@ def answer(**changes):
         'rcs_error': 2.0**-9,
         'efficiency_stderr': math.nan,
         'rcs_stderr': math.nan,
+        'validity': 1,
     }
     return types.SimpleNamespace(**(numbers | changes))
 
@@ -65,7 +65,7 @@ def test_a_difference_is_held_against_the_errors_of_both(changes, within):
 
 
 def test_the_stated_error_is_that_of_interpolation_and_law_or_not_known():
-    found = full_point.compare(full(), None)
+    found = full_point.compare(full(), answer(validity=0))
     assert math.isnan(found.efficiency)
     assert math.isnan(found.rcs)
     assert not found.within_stated_error
@@ -81,7 +81,7 @@ def test_the_stated_error_is_that_of_interpolation_and_law_or_not_known():
         (full(rcs_stderr=2.0**-8), answer(), SURFACE, 'rcs 0.0039) is above'),
         (full(rcs_stderr=math.nan), answer(), SURFACE, 'result (rcs) is not known'),
         (full(efficiency_stderr=math.nan), answer(), SURFACE, ''),
-        (full(), None, SURFACE, 'no answer'),
+        (full(), answer(validity=0), SURFACE, 'no answer'),
         (full(), answer(), CLOSED_FORM, 'closed-form tier is not corrected'),
         (full(), answer(rcs_error=math.nan), SURFACE, ''),
     ],
@@ -112,12 +112,11 @@ def test_a_request_holds_the_inputs_of_the_surface_and_no_names_to_look_up(core)
     assert set(request['header']) == {'tier', 'inputs'}
 
 
-def state_at(core, stamp, point, surface):
-    """Return what of a state counts, with the gate that is shut at standstill."""
-    gates = (Gate.STANDSTILL,) if abs(point.speed) < 0.5 else ()
-    found = estimate(point, surface, rcs_limit=core.limits().rcs)
-    facts = {'stamp': stamp, 'point': point, 'estimate': found, 'limits': core.limits()}
-    return types.SimpleNamespace(verdict=Verdict(zone=Zone.UNKNOWN, gates=gates), **facts)
+def row_at(core, stamp, point, surface):
+    """Return a row of a stamp, with the gate that is shut at standstill."""
+    row = full_point.answer(point, surface, rcs_limit=core.limits().rcs)
+    row.stamp, row.gates = stamp, STANDSTILL if abs(point.speed) < 0.5 else 0
+    return row
 
 
 def asked(core, stamps, numbers=None, dwell=None, **point):
@@ -125,7 +124,7 @@ def asked(core, stamps, numbers=None, dwell=None, **point):
     dwell = dwell or Dwell()
     surface = core.surface(**({'rcs': 0.25, 'rcs_error': 0.0625} if numbers is None else numbers))
     here = core.point(**point)
-    return [one for one in stamps if dwell.update(state_at(core, one, here, surface))]
+    return [one for one in stamps if dwell.update(row_at(core, one, here, surface), core.limits())]
 
 
 def test_a_solve_is_asked_for_after_a_stay_and_not_again_for_a_while(core):
@@ -157,8 +156,8 @@ def test_a_solve_is_asked_for_after_a_stay_and_not_again_for_a_while(core):
     ],
 )
 def test_only_a_limit_within_reach_of_the_error_is_uncertain(core, numbers, uncertain):
-    state = state_at(core, START, core.point(), core.surface(**numbers))
-    assert full_point.is_uncertain(state) is uncertain
+    row = row_at(core, START, core.point(), core.surface(**numbers))
+    assert full_point.is_uncertain(row, core.limits()) is uncertain
 
 
 def test_at_standstill_and_outside_the_surface_there_is_nothing_to_solve(core):
