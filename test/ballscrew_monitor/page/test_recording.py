@@ -27,7 +27,7 @@ def judged(short_bag):
     """Return the states that the node publishes for 3 s, as rows and records, and its events."""
     bag = Bag(short_bag)
     found = replay(bag, parameters_for(bag, None, PARAMS).values)
-    return [(records.row_of(one.state), records.state_record(one.state)) for one in found]
+    return [(records.row_of(state), records.state_record(state)) for state, _ in found]
 
 
 @pytest.fixture(scope='module')
