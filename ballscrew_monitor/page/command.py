@@ -115,7 +115,10 @@ def _checked(args: argparse.Namespace) -> PageOptions:
         raise InputError(
             f'--host is {args.host}, which others reach: a page for others needs --token-file'
         )
-    _check_belonging(args)
+    for name in ('node', 'allow_acting') if args.log else ('map', 'params'):
+        if getattr(args, name):
+            source = 'running nodes' if args.log else 'a recording'
+            raise InputError(f'--{name.replace("_", "-")} is for {source}: leave it out')
     if args.language not in ('', *languages()):
         raise InputError(
             f'--language is {args.language}, allowed is {", ".join(sorted(languages()))}'
@@ -137,14 +140,6 @@ def _checked(args: argparse.Namespace) -> PageOptions:
     )
 
 
-def _check_belonging(args: argparse.Namespace) -> None:
-    """Raise InputError for an option of nodes with a recording, and the other way round."""
-    for name in ('node', 'allow_acting') if args.log else ('map', 'params'):
-        if getattr(args, name):
-            what = 'running nodes' if args.log else 'a recording'
-            raise InputError(f'--{name.replace("_", "-")} is for {what}: leave it out')
-
-
 def _check_certificate(cert: Path, key: Path) -> None:
     try:
         ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(cert, key)
@@ -164,7 +159,7 @@ async def _serve(
     app = PageApp(hub, answer, tokens, metrics, language=options.language)
     server = server_of(options, app.guarded(options.host))
     print(f'page {options.url} (Ctrl-C ends it)', flush=True)
-    tasks = [asyncio.create_task(one.follow()) for one in (what_if, source)]
+    tasks = [asyncio.create_task(part.follow()) for part in (what_if, source)]
     serving = asyncio.create_task(server.serve(sockets=[bound]))
     while not is_stopped() and not serving.done() and not any(task.done() for task in tasks):
         await asyncio.sleep(POLL)

@@ -113,8 +113,8 @@ def map_of(
         'rows': zone.shape[0],
         'light_load_N': limits.light_load,
         'lines': [
-            {'kind': one.kind, 'label': one.label, 'height': one.height, 'array': f'line{at}'}
-            for at, one in enumerate(lines)
+            {'kind': line.kind, 'label': line.label, 'height': line.height, 'array': f'line{at}'}
+            for at, line in enumerate(lines)
         ],
     }
     edges = field.load, field.speed * RPM
@@ -123,7 +123,7 @@ def map_of(
         'zone': np.where(zone == NO_NUMBER, math.nan, zone),
         'dwell': np.histogram2d(motion.load, motion.speed, edges, weights=motion.steps)[0],
     }
-    return record, arrays | {f'line{at}': one.points for at, one in enumerate(lines)}
+    return record, arrays | {f'line{at}': line.points for at, line in enumerate(lines)}
 
 
 def _bands(field: Field, surface: Surface, limits: Limits) -> list[MapLine]:
@@ -155,8 +155,8 @@ def limit_speed(
     faster, slower = borders[borders >= speed], borders[borders < speed][::-1]
     # Interpolated like the borders, so that a speed beside one is on its right side.
     here = np.interp(math.log(max(speed, speeds[0])), np.log(speeds), excess)
-    found = faster if here >= 0.0 else slower
-    return float(found[0]) if found.size else math.nan
+    border = faster if here >= 0.0 else slower
+    return float(border[0]) if border.size else math.nan
 
 
 def limit_record(
@@ -189,17 +189,17 @@ def point_of(
         temperature=kelvin(temperature),
         direction=Direction.POSITIVE if speed else Direction.UNKNOWN,
     )
-    found = estimate(point, surface, rcs_limit=limits.rcs)
-    zone, words = judged(found.rcs, found.efficiency, load, limits)
-    turns, reason = abs(speed) / RPM, BY_VALIDITY[found.validity]
+    result = estimate(point, surface, rcs_limit=limits.rcs)
+    zone, words = judged(result.rcs, result.efficiency, load, limits)
+    turns, reason = abs(speed) / RPM, BY_VALIDITY[result.validity]
     return {
         'speed_rpm': turns,
         'load_N': load,
         'temperature_degC': temperature,
-        'efficiency': found.efficiency,
-        'rcs': found.rcs,
-        'film_ratio': found.film_ratio,
-        'torque_N_m': found.machine_torque,
+        'efficiency': result.efficiency,
+        'rcs': result.rcs,
+        'film_ratio': result.film_ratio,
+        'torque_N_m': result.machine_torque,
         'zone': zone,
         'words': words or unjudged(reason, turns, load, temperature),
     }
@@ -231,12 +231,12 @@ def ghosts_of(
         speed = factor * motion.speed
         steps = motion.steps / factor
         (heat,) = _everywhere(speed, kelvin(temperature))
-        found = look_up_many(surface, speed, motion.load, heat)
-        known = np.isfinite(found['rcs'])
-        outside = known & ~is_optimal(motion.load, found['rcs'], found['efficiency'], limits)
+        fields = look_up_many(surface, speed, motion.load, heat)
+        known = np.isfinite(fields['rcs'])
+        outside = known & ~is_optimal(motion.load, fields['rcs'], fields['efficiency'], limits)
         judged_time, time = steps[known].sum(), steps.sum()
         unknown = float(steps[~known].sum() / time) if time else math.nan
-        lost = (found['friction_torque'] * speed * steps)[known].sum()
+        lost = (fields['friction_torque'] * speed * steps)[known].sum()
         share = steps[outside].sum() / judged_time if judged_time else math.nan
         ghosts.append(
             {
