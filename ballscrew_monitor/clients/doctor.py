@@ -254,7 +254,6 @@ class Examination:
             return link, type_name, str(error)
 
     def _hearing(self, axis: str, source: Source) -> Hearing | None:
-        """Begin to listen to an input, if it can be."""
         link, type_name, opened = self._look(axis, source)
         if not isinstance(opened, Input) or type_name not in types_of(link):
             return None

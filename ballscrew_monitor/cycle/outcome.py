@@ -193,7 +193,6 @@ def report(plan: Plan, outcome: Outcome) -> None:
 
 
 def _axis_lines(outcome: Outcome, axis: Axis, recorded: Bag) -> Iterator[str]:
-    """Yield what the node said of an axis, in words."""
     kinds = {
         output(axis.name, 'state'): BallScrewState,
         output(axis.name, 'out_of_zone'): OutOfZone,

@@ -200,7 +200,6 @@ class Supervision:
             raise self._failure(f'ended with exit code {code}')
 
     def _failure(self, what: str) -> RunFailure:
-        """Return what the node did, with its last words."""
         words = self._process.last_words()
         log = f'; {self._process.log} ends with: {words}' if words else ''
         return RunFailure(f'the node {what}{log}')

@@ -65,7 +65,6 @@ class PageApp:
 
     @contextlib.asynccontextmanager
     async def _ticking(self, app: Starlette) -> AsyncIterator[None]:
-        """Let the hub send what is new while the server runs."""
         ticking = asyncio.create_task(self._tick())
         yield
         ticking.cancel()

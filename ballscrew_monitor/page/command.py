@@ -107,7 +107,6 @@ class LiveSource:
 
 
 def _checked(args: argparse.Namespace) -> PageOptions:
-    """Return the options; raises InputError."""
     if (args.cert is None) is not (args.key is None):
         raise InputError('--cert and --key belong together: give both, or none of them')
     token = None if args.token_file is None else read_token(args.token_file)
@@ -151,7 +150,6 @@ def _check_certificate(cert: Path, key: Path) -> None:
 async def _serve(
     options: PageOptions, bound: socket.socket, begin: Begin, is_stopped: Callable[[], bool]
 ) -> None:
-    """Serve what a source brings."""
     hub, tokens = Hub(acting=options.acting), Tokens(options.token)
     what_if, source = WhatIf(hub, options.oils), begin(hub)
     metrics = Metrics(HubCollector(hub, lambda: tokens.wrong))

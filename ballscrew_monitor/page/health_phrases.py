@@ -66,6 +66,5 @@ def _why(health: AxisHealth, known: Known) -> Phrase:
 
 
 def _interval(quantity: HealthQuantity) -> dict[str, Any]:
-    """Return value, low and high with their unit."""
     ends = ('value', 'low', 'high')
     return {name: {'value': getattr(quantity, name), 'unit': quantity.unit} for name in ends}

@@ -96,7 +96,6 @@ class HubCollector(Collector):
     """Reads the hub."""
 
     def __init__(self, hub: Hub, wrong_tokens: Callable[[], int]) -> None:
-        """Read `hub`, and how many tokens were wrong."""
         self._hub, self._wrong_tokens = hub, wrong_tokens
 
     def collect(self) -> Iterable[GaugeMetricFamily | CounterMetricFamily]:
@@ -129,7 +128,6 @@ class Metrics:
     """Answers of `/metrics`."""
 
     def __init__(self, collector: HubCollector) -> None:
-        """Answer what a collector reads."""
         self._registry = CollectorRegistry()
         self._registry.register(collector)
 

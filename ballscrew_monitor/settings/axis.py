@@ -283,7 +283,6 @@ def _torque_unit(name: str, values: Mapping[str, Any]) -> float:
 
 
 def _positions_of(name: str, values: Mapping[str, Any], lead: float) -> PositionSettings | None:
-    """Return how the speed follows from positions, None where it is an input; lead [m]."""
     unit = values[f'{name}.speed.unit']
     if unit not in POSITION_UNITS:
         return None
