@@ -127,7 +127,8 @@ def _docstring_lines(nodes: list[ast.AST]) -> set[int]:
 
 
 def _body_length(function: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
-    body = function.body[ast.get_docstring(function) is not None :]
+    begin = 0 if ast.get_docstring(function) is None else 1
+    body = function.body[begin:]
     return (body[-1].end_lineno or 0) - body[0].lineno + 1 if body else 0
 
 

@@ -73,7 +73,7 @@ class Tokens:
     """The token, if one is needed; wrong ones are slowed and counted."""
 
     def __init__(self, token: str | None, *, slowness: float = SLOWNESS) -> None:
-        """A wrong token is answered after `slowness` [s]."""
+        """Answer a wrong token after `slowness` [s]."""
         self._token, self._slowness = token, slowness
         self.wrong = 0
         self._waiting = 0
