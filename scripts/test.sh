@@ -2,7 +2,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 #
-# The checks, then the tests, whose closing line comes last. Arguments are for pytest.
+# The checks, the size of the sources, then the tests, whose closing line comes last. Arguments are for pytest.
 # A worker for each of the two cores of the smallest machine that this is for: a third one gains little
 # and lets nodes and listeners wait for each other. Each has its share of the files until it helps the
 # other. `-n 0` runs all in one process.
@@ -26,6 +26,8 @@ check() {
 check ruff check --quiet --output-format concise
 check ruff format --check --quiet --output-format concise
 [ -z "$failed" ] || echo "== failed:$failed"
+echo '== size'
+.venv/bin/python scripts/count.py --summary
 .venv/bin/pytest -q -n 2 --dist worksteal "$@"
 code=$?
 [ $code != 0 ] || [ -z "$failed" ] || code=1

@@ -175,6 +175,20 @@ def upward_offline(path, named):
     return [(line, name) for line, name in others if room(name) not in below]
 
 
+def in_circles(imported):
+    """Return the modules that import themselves, of a graph `{module: its imports}`."""
+    circular = []
+    for module in imported:
+        reached, waiting = set(), list(imported[module])
+        while waiting:
+            name = waiting.pop()
+            if name not in reached:
+                reached.add(name)
+                waiting += imported.get(name, ())
+        circular += [module] if module in reached else []
+    return circular
+
+
 def relative(path, named):
     return [(line, name) for line, name in named if name.startswith('.')]
 
@@ -193,6 +207,24 @@ def test_online_half_imports_downward():
 
 def test_offline_half_imports_downward():
     report(offenders(upward_offline, 'surrogate'))
+
+
+@pytest.mark.parametrize('half', MODULES)
+def test_no_module_imports_itself_by_way_of_others(half):
+    """An import for types alone counts too: who reads one of the files needs the other."""
+    paths = MODULES[half]
+    report(in_circles({name_of(path): {name for _, name in imports(path)} for path in paths}))
+
+
+def test_an_import_for_types_alone_closes_a_circle():
+    sources = {
+        'a': 'import b',
+        'b': 'from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import c',
+        'c': 'def f():\n    import a',
+        'd': 'import a',
+    }
+    imported = {name: {other for _, other in imported_by(text)} for name, text in sources.items()}
+    assert in_circles(imported) == ['a', 'b', 'c']
 
 
 def test_no_import_is_relative():

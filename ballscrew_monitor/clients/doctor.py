@@ -55,9 +55,9 @@ def spun(
     """Spin for some `seconds` [s] until a condition gives something, or until interrupted."""
     assert node.executor is not None
     end = time.monotonic() + seconds
-    while not (found := condition()) and time.monotonic() < end and not interrupted:
+    while not (value := condition()) and time.monotonic() < end and not interrupted:
         node.executor.spin_once(timeout_sec=POLL)
-    return found
+    return value
 
 
 def surroundings(node: Node) -> Surroundings:
@@ -83,13 +83,13 @@ def surroundings(node: Node) -> Surroundings:
 
 def domains_of(udp_table: str) -> list[int]:
     """Return the ROS domains whose ports a table of UDP sockets, as Linux writes it, shows."""
-    found = set()
+    domains = set()
     for line in udp_table.splitlines()[1:]:
         port = int(line.split()[1].rpartition(':')[2], 16) - PORTS
         domain, offset = divmod(port, PER_DOMAIN)
         if 0 <= domain <= MOST_DOMAIN and offset in OFFSETS:
-            found.add(domain)
-    return sorted(found)
+            domains.add(domain)
+    return sorted(domains)
 
 
 class Hearing:
@@ -166,9 +166,9 @@ def doctor(params: Path, *, seconds: float, as_json: bool = False) -> int:
         around = surroundings(node)
     if interrupted:
         return SIGNALLED + interrupted[0]
-    found = [*filter(None, [notice()]), *examination.refused, *findings(around, facts, seconds)]
-    print(_record(found, facts) if as_json else _page(found, facts, around))
-    return ILL if found else HEALTHY
+    wrong = [*filter(None, [notice()]), *examination.refused, *findings(around, facts, seconds)]
+    print(_record(wrong, facts) if as_json else _page(wrong, facts, around))
+    return ILL if wrong else HEALTHY
 
 
 class Examination:
@@ -221,8 +221,8 @@ class Examination:
         """Return the facts of every input after listening to those that can be."""
         hearings = {wanted: self._hearing(*wanted) for wanted in self._wanted}
         # The way to a publisher takes its time on a busy machine; none of it is silence.
-        open_ones = [one for one in hearings.values() if one is not None]
-        self._spin(lambda: all(one.messages for one in open_ones), DISCOVERY)
+        listening = [hearing for hearing in hearings.values() if hearing is not None]
+        self._spin(lambda: all(hearing.messages for hearing in listening), DISCOVERY)
         self._spin(lambda: False, seconds)
         return [self._facts(*wanted, hearings[wanted]) for wanted in self._wanted]
 
@@ -248,32 +248,35 @@ class Examination:
         lead, field = surface.lead if surface else 1.0, self._value(axis, source, 'field')
         try:
             scaling = axis_settings.scaling_of(axis, self._values, source, lead)
-            one = OpenInput(source=source, topic=topic, field=field, scaling=scaling)
-            return link, type_name, one.close(type_name)
+            opened = OpenInput(source=source, topic=topic, field=field, scaling=scaling)
+            return link, type_name, opened.close(type_name)
         except InputError as error:
             return link, type_name, str(error)
 
     def _hearing(self, axis: str, source: Source) -> Hearing | None:
-        """Begin to listen to an input, if it can be."""
-        link, type_name, made = self._look(axis, source)
-        if not isinstance(made, Input) or type_name not in types_of(link):
+        link, type_name, opened = self._look(axis, source)
+        if not isinstance(opened, Input) or type_name not in types_of(link):
             return None
         hearing = Hearing(
-            made,
+            opened,
             self._node.get_clock(),
             timeout=nanoseconds(self._value(axis, source, 'timeout')),
             max_future=nanoseconds(self._values[f'{axis}.max_future']),
             max_lag=nanoseconds(self._values[f'{axis}.max_lag']),
         )
         self._node.create_subscription(
-            made.message_type, link.topic, hearing.take, qos.input_qos()
+            opened.message_type, link.topic, hearing.take, qos.input_qos()
         )
         return hearing
 
     def _facts(self, axis: str, source: Source, hearing: Hearing | None) -> InputFacts:
         surface, unit = self._surfaces[axis], self._value(axis, source, 'unit')
-        link, type_name, made = self._look(axis, source)
+        link, type_name, opened = self._look(axis, source)
         scaled = surface is not None and source is not Source.TORQUE
+        numbers: tuple[str, ...] = ()
+        if isinstance(opened, str):
+            with contextlib.suppress(InputError):
+                numbers = number_fields(message_class(type_name))
         return InputFacts(
             axis=axis,
             source=source,
@@ -285,26 +288,19 @@ class Examination:
             else {},
             known=known_range(surface, source, unit),
             heard=hearing.heard() if hearing else None,
-            problem=made if isinstance(made, str) else '',
-            numbers=_numbers_of(type_name) if isinstance(made, str) else (),
+            problem=opened if isinstance(opened, str) else '',
+            numbers=numbers,
         )
 
 
-def _numbers_of(type_name: str) -> tuple[str, ...]:
-    try:
-        return number_fields(message_class(type_name))
-    except InputError:
-        return ()
-
-
-def _page(found: list[str], facts: list[InputFacts], around: Surroundings) -> str:
+def _page(wrong: list[str], facts: list[InputFacts], around: Surroundings) -> str:
     lines = [
         f'ROS domain {around.domain}, discovery range {around.discovery}: '
         f'nodes {len(around.nodes)}, topics {len(around.topics)}'
     ]
-    lines += [_line(one) for one in facts]
-    lines.append(f'findings: {len(found) or "none"}')
-    return '\n'.join(lines + [f'* {text}' for text in found])
+    lines += [_line(input_facts) for input_facts in facts]
+    lines.append(f'findings: {len(wrong) or "none"}')
+    return '\n'.join(lines + [f'* {text}' for text in wrong])
 
 
 def _line(facts: InputFacts) -> str:
@@ -321,15 +317,15 @@ def _line(facts: InputFacts) -> str:
     return ', '.join(parts)
 
 
-def _record(found: list[str], facts: list[InputFacts]) -> str:
+def _record(wrong: list[str], facts: list[InputFacts]) -> str:
     inputs = {
-        one.parameter: {
-            'topic': one.link.topic,
-            'types': types_of(one.link),
-            'received': one.heard.status.received if one.heard else 0,
-            'rate_Hz': one.heard.status.rate if one.heard else None,
-            'lag_s': one.heard.status.lag if one.heard else None,
+        each.parameter: {
+            'topic': each.link.topic,
+            'types': types_of(each.link),
+            'received': each.heard.status.received if each.heard else 0,
+            'rate_Hz': each.heard.status.rate if each.heard else None,
+            'lag_s': each.heard.status.lag if each.heard else None,
         }
-        for one in facts
+        for each in facts
     }
-    return json_text({'findings': found, 'inputs': inputs})
+    return json_text({'findings': wrong, 'inputs': inputs})

@@ -150,15 +150,15 @@ class _Conversation:
 
     def _hear_refusals(self) -> list[str]:
         """Return the list to which the node's log adds why it refuses a solve from now on."""
-        begin, found = f'solve of axis {self._question.axis} rejected: ', list[str]()
+        begin, refusals = f'solve of axis {self._question.axis} rejected: ', list[str]()
         now = self._node.get_clock().now().nanoseconds
 
         def hear(line: Log) -> None:
             if line.msg.startswith(begin) and Time.from_msg(line.stamp).nanoseconds >= now:
-                found.append(line.msg.removeprefix(begin))
+                refusals.append(line.msg.removeprefix(begin))
 
         self._node.create_subscription(Log, '/rosout', hear, LOG_QOS)
-        return found
+        return refusals
 
     def _give_up(self, sentence: str) -> int:
         """Complain of a node that was waited for in vain; an interrupt needs no words."""
@@ -175,11 +175,11 @@ class _Conversation:
                 if ACTION_TYPE in types and wanted in ('', name)
             ]
 
-        found: list[str] | None = self._until(offered, wait)
-        if found and len(found) > 1:
-            nodes = ', '.join(sorted(name.rpartition('/')[0] for name in found))
+        actions: list[str] | None = self._until(offered, wait)
+        if actions and len(actions) > 1:
+            nodes = ', '.join(sorted(name.rpartition('/')[0] for name in actions))
             raise InputError(f'several nodes solve, name one of them with --node: {nodes}')
-        return found[0] if found else None
+        return actions[0] if actions else None
 
     def _take_back(self, handle: Any) -> None:
         """Cancel a goal, and wait a little until the node knows, whatever interrupts."""
@@ -197,11 +197,11 @@ def _complain(sentence: str) -> int:
     return NOT_SOLVED
 
 
-def _in_rpm(found: re.Match[str]) -> str:
+def _in_rpm(rate: re.Match[str]) -> str:
     try:
-        return f'{float(found[1]) / RPM:.4g} rev/min'
+        return f'{float(rate[1]) / RPM:.4g} rev/min'
     except ValueError:  # a word
-        return found[0]
+        return rate[0]
 
 
 def _show(message: Any) -> None:
@@ -246,6 +246,6 @@ def page_of(axis: str, result: Any) -> str:
         f'difference in efficiency {result.efficiency_difference:+.2g}, in RCS '
         f'{result.rcs_difference:+.2g}: {within} the error that the surface states'
     )
-    said = result.correction or 'not corrected'
-    rows.append(said if result.corrected else f'surface not corrected: {said}')
+    correction = result.correction or 'not corrected'
+    rows.append(correction if result.corrected else f'surface not corrected: {correction}')
     return '\n'.join([head, *rows])

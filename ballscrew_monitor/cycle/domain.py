@@ -47,7 +47,7 @@ def port(domain: int, participant: int) -> int:
 
 
 def is_free(domain: int) -> bool:
-    """Tell whether no participant on this machine listens in `domain`."""
+    """Return True if no participant on this machine listens in `domain`."""
     for participant in PARTICIPANTS:
         bound = _bind(port(domain, participant))
         if bound is None:
@@ -58,7 +58,7 @@ def is_free(domain: int) -> bool:
 
 @contextlib.contextmanager
 def held(domain: int) -> Iterator[bool]:
-    """Hold a domain, if it is free; tell whether that is so."""
+    """Hold a domain, if it is free; yield True if it is."""
     lock = _bind(port(domain, LOCK_PARTICIPANT), LOOPBACK)
     if lock is None:
         yield False
@@ -83,13 +83,13 @@ def free_domain() -> Iterator[int]:
 
 def _bind(number: int, address: str = '') -> socket.socket | None:
     """Return a socket bound to a UDP port, None when somebody has it on any address."""
-    made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    bound = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
-        made.bind((address, number))
+        bound.bind((address, number))
     except OSError:
-        made.close()
+        bound.close()
         return None
-    return made
+    return bound
 
 
 def remove_stale(free_domains: Collection[int], folder: Path = SHARED_MEMORY) -> None:
@@ -105,13 +105,15 @@ def stale(folder: Path, free_domains: Collection[int]) -> set[Path]:
     """Return the files of FastDDS in `folder` that are of this user and that nobody uses."""
     groups = collections.defaultdict(list)
     for path in folder.iterdir():
-        found = _FILE.fullmatch(path.name)
-        if found and _is_mine(path):
-            groups[found['name'], found['port']].append(path)
+        with contextlib.suppress(FileNotFoundError):
+            name = _FILE.fullmatch(path.name)
+            if name and path.stat().st_uid == os.geteuid():
+                groups[name['name'], name['port']].append(path)
     if not groups:
         return set()
     # Looked up after the files: whoever made one has it by now.
-    used = {file for one in Path('/proc').glob('[0-9]*') for file in files_of(one, folder)}
+    processes = Path('/proc').glob('[0-9]*')
+    used = {file for process in processes for file in files_of(process, folder)}
     return {
         path
         for (_, number), paths in groups.items()
@@ -121,7 +123,7 @@ def stale(folder: Path, free_domains: Collection[int]) -> set[Path]:
 
 
 def _is_left(paths: Iterable[Path], number: str | None, free_domains: Collection[int]) -> bool:
-    """Tell whether the files of a segment, or of a port `number`, have nobody any more."""
+    """Return True if the files of a segment, or of a port `number`, have nobody any more."""
     locks = [path for path in paths if path.name.endswith(('_el', '_sl'))]
     if any(map(_is_locked, locks)):
         return False
@@ -130,15 +132,8 @@ def _is_left(paths: Iterable[Path], number: str | None, free_domains: Collection
     return (int(number) - PORT_BASE) // DOMAIN_GAIN in free_domains
 
 
-def _is_mine(path: Path) -> bool:
-    try:
-        return path.stat().st_uid == os.geteuid()
-    except FileNotFoundError:
-        return False
-
-
 def _is_locked(path: Path) -> bool:
-    """Tell whether a process holds the lock file; one that is not ours to open counts as held."""
+    """Return True if a process holds the lock file, or it is not ours to open."""
     try:
         with path.open('rb') as file:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

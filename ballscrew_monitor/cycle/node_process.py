@@ -83,11 +83,11 @@ class NodeProcess:
 
 def child_environment(domain: int) -> dict[str, str]:
     """Return the environment of a child process in `domain`."""
-    made = dict(os.environ)
-    if '_ROS_WHEELS_BOOTSTRAP_COMPLETE' in made:
+    environment = dict(os.environ)
+    if '_ROS_WHEELS_BOOTSTRAP_COMPLETE' in environment:
         for name in WHEEL_VARIABLES:
-            made.pop(name, None)
-    return made | confined(domain) | {'PYTHONUNBUFFERED': '1'}
+            environment.pop(name, None)
+    return environment | confined(domain) | {'PYTHONUNBUFFERED': '1'}
 
 
 def confined(domain: int) -> dict[str, str]:

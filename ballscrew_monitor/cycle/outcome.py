@@ -160,11 +160,11 @@ def facts(plan: Plan, outcome: Outcome) -> dict[str, str]:
         for axis, state in outcome.states.items()
     ]
     notes = (*judged, *outcome.failures)
-    said = parameters.names_in_file(plan.params)
-    made = LogFacts(
+    stated = parameters.names_in_file(plan.params)
+    log_facts = LogFacts(
         source=plan.bag.path.name, parameters={}, mapping={}, assumptions=(), notes=notes
     )
-    return made.texts() | {f'{PREFIX}parameters': parameters_text(plan.values, said)}
+    return log_facts.texts() | {f'{PREFIX}parameters': parameters_text(plan.values, stated)}
 
 
 def report(plan: Plan, outcome: Outcome) -> None:
@@ -175,18 +175,6 @@ def report(plan: Plan, outcome: Outcome) -> None:
     recorded = Bag(outcome.recording)
     for axis in plan.axes:
         print('\n'.join(_axis_lines(outcome, axis, recorded)))
-    made = _write_report(recorded, plan)
-    size = outcome.recording.stat().st_size / 1e6
-    files = ', '.join(str(plan.out / name) for name in (*made, LOG))
-    print(
-        f'\nnode        {outcome.cpu_time:.1f} s of processor time, its start included; '
-        f'messages sent at most {1e3 * outcome.lateness:.0f} ms late\n'
-        f'files       {outcome.recording} ({size:.1f} MB), {files}'
-    )
-
-
-def _write_report(recorded: Bag, plan: Plan) -> list[str]:
-    """Write the report of a recording; return its files that a person opens, if there are any."""
     # Imported here: it takes longer than everything else of the program.
     from ballscrew_monitor.report.log_report import report_log
 
@@ -194,17 +182,23 @@ def _write_report(recorded: Bag, plan: Plan) -> list[str]:
         report_log(recorded, plan.out, parameters_for(recorded, None, plan.params), picture=True)
     except InputError as error:  # of a run that ended too early
         say(f'no report: {error}')
-    return [name for name in (PAGE, PICTURE) if (plan.out / name).exists()]
+    written = [name for name in (PAGE, PICTURE) if (plan.out / name).exists()]
+    size = outcome.recording.stat().st_size / 1e6
+    files = ', '.join(str(plan.out / name) for name in (*written, LOG))
+    print(
+        f'\nnode        {outcome.cpu_time:.1f} s of processor time, its start included; '
+        f'messages sent at most {1e3 * outcome.lateness:.0f} ms late\n'
+        f'files       {outcome.recording} ({size:.1f} MB), {files}'
+    )
 
 
 def _axis_lines(outcome: Outcome, axis: Axis, recorded: Bag) -> Iterator[str]:
-    """Yield what the node said of an axis, in words."""
     kinds = {
         output(axis.name, 'state'): BallScrewState,
         output(axis.name, 'out_of_zone'): OutOfZone,
     }
-    found = recorded.messages(kinds)
-    summary = summary_of(deserialize_message(one.data, kinds[one.topic]) for one in found)
+    messages = recorded.messages(kinds)
+    summary = summary_of(deserialize_message(item.data, kinds[item.topic]) for item in messages)
     yield (
         f'\naxis {axis.name}: screw {axis.surface.screw_name}, oil {axis.surface.oil_name}, '
         f'{axis.surface.tier.replace("_", "-")} model'

@@ -45,6 +45,7 @@ from surrogate.files import InputError
 
 START_PATIENCE = 30.0  # [s] until the node is active and matched
 SETTLE_PATIENCE = 2.0  # [s] for the last messages after the end of the bag
+LAST_WORDS = 1.0  # [s] for what the node says while it stops
 RUN_ON_PATIENCE = 3.0  # [s] of /clock after that, for a node that publishes now and then
 POLL = 0.05  # [s] longest wait for a message
 
@@ -70,7 +71,13 @@ class Supervision:
         self._executor = node.executor
         topics = list(input_topics(plan.values))
         self._player = Player(node, plan.bag, rate=plan.rate, topics=topics)
-        recorded, listeners = recorded_topics(plan.values), self._listeners()
+        listeners: dict[str, Any] = {'/diagnostics': self._on_diagnostics}
+        for axis in plan.values['axes']:
+            listeners[output(axis, 'state')] = functools.partial(self._states.__setitem__, axis)
+            listeners[output(axis, 'surface_info')] = lambda data, axis=axis: self._active.add(
+                axis
+            )
+        recorded = recorded_topics(plan.values)
         self._recorder = Recorder(node, writer, recorded, lambda: self._player.now, listeners)
 
     def close(self) -> None:
@@ -94,7 +101,15 @@ class Supervision:
             thread.join()
         if self._broken is not None:
             raise self._broken
-        self._stop_node()
+        code = self._process.stop()
+        deadline = time.monotonic() + LAST_WORDS
+        while time.monotonic() < deadline:  # record what it says at last
+            before = self._writer.total
+            self._executor.spin_once(timeout_sec=POLL)
+            if self._writer.total == before:
+                break
+        if code != 0:
+            raise self._failure(f'ended with exit code {code} when it was asked to stop')
         return self.outcome()
 
     def outcome(self, *failures: str) -> Outcome:
@@ -108,13 +123,6 @@ class Supervision:
             lateness=self._player.lateness,
             cpu_time=self._process.cpu_time,
         )
-
-    def _listeners(self) -> dict[str, Any]:
-        found: dict[str, Any] = {'/diagnostics': self._on_diagnostics}
-        for axis in self._plan.values['axes']:
-            found[output(axis, 'state')] = functools.partial(self._states.__setitem__, axis)
-            found[output(axis, 'surface_info')] = lambda data, axis=axis: self._active.add(axis)
-        return found
 
     def _on_diagnostics(self, data: bytes) -> None:
         if len(self._active) < len(self._plan.expected):
@@ -178,7 +186,7 @@ class Supervision:
         return deserialize_message(self._states[axis], BallScrewState)
 
     def _all_received(self) -> bool:
-        """Tell whether the states say that every speed message of the bag has been taken."""
+        """Return True if the states say that every speed message of the bag has been taken."""
         return all(
             axis.name in self._states
             and speed_health(self._state(axis.name)).received
@@ -191,79 +199,66 @@ class Supervision:
         if code is not None:
             raise self._failure(f'ended with exit code {code}')
 
-    def _stop_node(self) -> None:
-        """Stop the node and record what it says at last."""
-        code = self._process.stop()
-        deadline = time.monotonic() + 1.0
-        while time.monotonic() < deadline:
-            before = self._writer.total
-            self._executor.spin_once(timeout_sec=POLL)
-            if self._writer.total == before:
-                break
-        if code != 0:
-            raise self._failure(f'ended with exit code {code} when it was asked to stop')
-
     def _failure(self, what: str) -> RunFailure:
-        """Return what the node did, with its last words."""
         words = self._process.last_words()
-        said = f'; {self._process.log} ends with: {words}' if words else ''
-        return RunFailure(f'the node {what}{said}')
+        log = f'; {self._process.log} ends with: {words}' if words else ''
+        return RunFailure(f'the node {what}{log}')
 
 
 LOCK = '.lock'
 
 
-def run(made: Plan) -> int:
+def run(plan: Plan) -> int:
     """Carry out the plan; return the exit code."""
     stop = threading.Event()
-    with _exclusive(made.out), interrupts(stop) as interrupted:
+    with _exclusive(plan.out), interrupts(stop) as interrupted:
         print(
-            f'bag {made.bag.path}: {made.bag.duration:.1f} s, at {made.rate:g}x; '
-            f'parameters {made.params}',
+            f'bag {plan.bag.path}: {plan.bag.duration:.1f} s, at {plan.rate:g}x; '
+            f'parameters {plan.params}',
             flush=True,
         )
-        say(*made.bag.notes)
-        remove_report(made.out)  # the recording of this run would belie an earlier one
-        outcome = _supervise(made, stop)
+        say(*plan.bag.notes)
+        remove_report(plan.out)  # the recording of this run would belie an earlier one
+        outcome = _supervise(plan, stop)
     if interrupted:
         say(f'interrupted, recorded so far: {outcome.recording}')
         return SIGNALLED + interrupted[0]
     say(*outcome.failures)
-    outcomes.report(made, outcome)
+    outcomes.report(plan, outcome)
     return FAILED if outcome.failures else DONE
 
 
-def _supervise(made: Plan, stop: threading.Event) -> Outcome:
+def _supervise(plan: Plan, stop: threading.Event) -> Outcome:
     with free_domain() as domain, contextlib.ExitStack() as stack:
         os.environ |= confined(domain)
         remove_stale({domain})  # it has just been found free; at the end somebody may be in it
         stack.callback(lambda: remove_stale({domain} if is_free(domain) else ()))
-        node = NodeProcess(made.params, made.out / LOG, domain=domain)
+        node = NodeProcess(plan.params, plan.out / LOG, domain=domain)
         stack.callback(node.stop)
         print(
             f'node ballscrew_monitor: process {node.pid}, ROS_DOMAIN_ID={domain} '
             'ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST',
-            *(f'full solve  {line}' for line in solve_lines(made, domain)),
+            *(f'full solve  {line}' for line in solve_lines(plan, domain)),
             sep='\n',
             flush=True,
         )
-        writer = stack.enter_context(BagWriter(made.out, RECORDING))
-        supervision = Supervision(made, node, writer, domain)
+        writer = stack.enter_context(BagWriter(plan.out, RECORDING))
+        supervision = Supervision(plan, node, writer, domain)
         stack.callback(supervision.close)
         try:
             outcome = supervision.carry_out(stop)
             if not stop.is_set():
-                outcome = dataclasses.replace(outcome, failures=outcomes.losses(made, outcome))
+                outcome = dataclasses.replace(outcome, failures=outcomes.losses(plan, outcome))
         except RunFailure as failure:
             outcome = supervision.outcome(str(failure))
-        writer.add_metadata(outcomes.facts(made, outcome))
+        writer.add_metadata(outcomes.facts(plan, outcome))
         return outcome
 
 
-def solve_lines(made: Plan, domain: int) -> list[str]:
+def solve_lines(plan: Plan, domain: int) -> list[str]:
     """Return what to type in another terminal for a full solve of the current point."""
     variables = ' '.join(f'{name}={value}' for name, value in ros_environment(domain).items())
-    return [f'{variables} ballscrew solve --axis {axis.name}' for axis in made.axes]
+    return [f'{variables} ballscrew solve --axis {axis.name}' for axis in plan.axes]
 
 
 @contextlib.contextmanager

@@ -78,7 +78,7 @@ class StatusLine:
         self._open = False
 
     def due(self, now: float) -> bool:
-        """Tell whether it is time for the next status; `now` [s] of a steady clock."""
+        """Return True if it is time for the next status; `now` [s] of a steady clock."""
         return now >= self._next
 
     def show(self, cells: Sequence[str], now: float) -> None:

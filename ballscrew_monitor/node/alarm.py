@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The warning of one axis: its topic, its log, what people do to it; topics that stay."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 import functools
-from typing import Any, TYPE_CHECKING
+from typing import Any
 
 from ballscrew_monitor.core.conversions import clock_text, seconds
 from ballscrew_monitor.core.judgement import Level
@@ -16,14 +16,10 @@ from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts,
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import LATCHED_QOS
 from ballscrew_msgs.msg import AxisHealth, OutOfZone, SurfaceInfo
-from rclpy.clock import Clock
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
 from rclpy.publisher import Publisher
-
-if TYPE_CHECKING:  # which imports this module
-    from ballscrew_monitor.node.axis_publisher import AxisPublisher
 
 
 def quiet_publishers(node: LifecycleNode) -> functools.partial[Any]:
@@ -47,19 +43,6 @@ class LatchedTopics:
         self.event = make(OutOfZone, f'~/{axis}/out_of_zone', LATCHED_QOS)
         self.info = make(SurfaceInfo, f'~/{axis}/surface_info', LATCHED_QOS)
         self.health = make(AxisHealth, f'~/{axis}/health', LATCHED_QOS)
-
-
-LAST_WORD = Duration(seconds=0.5)  # for subscribers to take the end of an event
-
-
-def end_all(publishers: Iterable['AxisPublisher'], reason: str, clock: Clock) -> None:
-    """End what is active; on a steady `clock`, all subscribers together have one time to hear."""
-    place = 'the end of its event'
-    ended = [one.alarm for one in publishers if one.guarded(place, one.alarm.end, reason)]
-    deadline = (clock.now() + LAST_WORD).nanoseconds
-    for alarm in ended:
-        left = deadline - clock.now().nanoseconds
-        alarm.wait(Duration(nanoseconds=max(left, 0)))  # a negative one never ends
 
 
 class Alarm:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Everything that the node keeps of one axis: the axis, its publishers, and its last words."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 import traceback
 from typing import Any, TypeVar
 
@@ -27,6 +27,8 @@ from ballscrew_monitor.settings.qos import state_qos
 from ballscrew_msgs.msg import BallScrewState, OperatingPoint, PointResult
 from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.clock import Clock
+from rclpy.duration import Duration
 from rclpy.lifecycle import LifecycleNode
 from rclpy.qos import QoSProfile, QoSReliabilityPolicy
 from std_msgs.msg import Bool, Float64, String
@@ -36,6 +38,7 @@ STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 LOG_INTERVAL = nanoseconds(1.0)  # [ns] shortest time between two lines about the inputs
 MOST_LEAPS = 8  # of the stamps in one warning that the event log tells of
 AT_ONCE = 50  # points that are evaluated before samples have a turn
+LAST_WORD = Duration(seconds=0.5)  # for subscribers to take the end of an event
 NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
 PLAIN = dict.fromkeys(('efficiency', 'rcs', 'film_ratio'), Float64)
 PLAIN |= {'regime': String, 'out_of_zone': Bool}
@@ -371,3 +374,13 @@ class AxisPublisher:
     @property
     def _policy(self) -> WarningPolicy:
         return WarningPolicy(self._values[f'{self.name}.warning.policy'])
+
+
+def end_all(publishers: Iterable[AxisPublisher], reason: str, clock: Clock) -> None:
+    """End what is active; on a steady `clock`, all subscribers together have one time to hear."""
+    place = 'the end of its event'
+    ended = [axis.alarm for axis in publishers if axis.guarded(place, axis.alarm.end, reason)]
+    deadline = (clock.now() + LAST_WORD).nanoseconds
+    for alarm in ended:
+        left = deadline - clock.now().nanoseconds
+        alarm.wait(Duration(nanoseconds=max(left, 0)))  # a negative one never ends

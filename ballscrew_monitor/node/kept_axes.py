@@ -3,21 +3,34 @@
 """Records of the axes of one node: restored at the start, handed over while they are judged."""
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, TYPE_CHECKING
+from typing import Any, Protocol
 
 from ballscrew_monitor.core.memory import after_restart, AxisRecord, Memory, memory_of, record_of
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_records import entry_of, event_facts, Kind
+from ballscrew_monitor.settings.axis import Axis
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.clock import Clock
 from rclpy.node import Node
 
-if TYPE_CHECKING:  # which imports this module
-    from ballscrew_monitor.node.axis_publisher import AxisPublisher
-
 LOOK = 1.0  # [s] between two looks
 PERIOD = 4.0  # [s] between two records of the sums: with the write below 5 s
+
+
+class KeptAxis(Protocol):
+    """An axis as its records need it; its publisher is one."""
+
+    axis: Axis
+
+    def guarded(self, event: str, call: Callable[..., Any], *args: Any) -> Any:
+        """Return what a call returns; if the program fails in it, None."""
+
+    def restore(self, *, late: bool) -> str:
+        """Take up corrections of before; return what became of them, if there are any."""
+
+    def end_shelving(self) -> bool:
+        """End a shelving that is over; return True if one was."""
 
 
 class KeptAxes:
@@ -27,7 +40,7 @@ class KeptAxes:
         self,
         node: Node,
         state: RestartState,
-        publishers: Mapping[str, 'AxisPublisher'],
+        publishers: Mapping[str, KeptAxis],
         say: Callable[[list[str]], None],
         *,
         clock: Clock,
@@ -77,11 +90,14 @@ class KeptAxes:
                 self._node.get_logger().info(f'axis {name}: {said}')
         self._log()
 
-    def _restore(self, publisher: 'AxisPublisher', late: bool) -> str:
-        monitor = publisher.axis.monitor
-        monitor.take_up(self._recall(publisher.name, late=late))
-        self.remember(publisher.name, monitor.kept)
+    def _restore(self, publisher: KeptAxis, late: bool) -> str:
+        axis = publisher.axis
+        axis.monitor.take_up(self._recall(axis.name, late=late))
+        self._remember(axis)
         return publisher.restore(late=late)
+
+    def _remember(self, axis: Axis) -> None:
+        self.remember(axis.name, axis.monitor.kept)
 
     def _recall(self, axis: str, *, late: bool) -> Memory:
         """Return what is known of an axis from before; an event that was interrupted is over."""
@@ -96,7 +112,7 @@ class KeptAxes:
     def remember_all(self) -> None:
         """Keep the sums, events and shelvings of all axes."""
         for publisher in self._publishers.values():
-            publisher.guarded('what is kept of it', publisher.alarm.remember)
+            publisher.guarded('what is kept of it', self._remember, publisher.axis)
 
     def close(self) -> None:
         """Write all that waits, and let another node have the directory."""

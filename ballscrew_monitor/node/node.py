@@ -12,9 +12,9 @@ from ballscrew_monitor.core.inputs import InputSample, Refusal
 from ballscrew_monitor.core.tick_grid import TickGrid
 from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.messages import diagnostics
-from ballscrew_monitor.node.alarm import end_all, LatchedTopics
+from ballscrew_monitor.node.alarm import LatchedTopics
 from ballscrew_monitor.node.axis_healths import AxisHealths
-from ballscrew_monitor.node.axis_publisher import AxisPublisher, STATE_QOS
+from ballscrew_monitor.node.axis_publisher import AxisPublisher, end_all, STATE_QOS
 from ballscrew_monitor.node.axis_services import AxisServices, not_built
 from ballscrew_monitor.node.heartbeat import Heartbeat
 from ballscrew_monitor.node.intake import Intake

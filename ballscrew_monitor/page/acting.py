@@ -67,9 +67,9 @@ class Acting:
         view, name = self._hub.view(text_in(request, 'axis')), text_in(request, 'name')
         reason = text_in(request, 'reason') if request.get('reason') else ''
         asked = AcknowledgeAlarm.Request(axis=view.axis, name=name, reason=reason)
-        said = (await self._call(view, AcknowledgeAlarm, 'acknowledge_as', asked)).message
+        message = (await self._call(view, AcknowledgeAlarm, 'acknowledge_as', asked)).message
         plain, done = f'acknowledged of {view.axis} by {name}', phrase('acknowledged', name=name)
-        return {'message': done if said == plain else free(said)}, {}
+        return {'message': done if message == plain else free(message)}, {}
 
     async def _shelve(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
         view, name = self._hub.view(text_in(request, 'axis')), text_in(request, 'name')
@@ -87,25 +87,21 @@ class Acting:
         answers: list[Any] = []
         try:
             if not await _waited(client.service_is_ready, PATIENCE):
-                raise Refused(await self._in_ros(self._why_silent, view.node, name))
+                if view.node in await self._in_ros(self._node.get_fully_qualified_node_names):
+                    raise Refused(phrase('node_older', node=view.node, name=name))
+                raise Refused(_silent('node_silent', PATIENCE, node=view.node))
             for patience in (REPEAT, PATIENCE):
                 answers.append(await self._in_ros(client.call_async, request))
-                if await _waited(lambda: any(one.done() for one in answers), patience):
+                if await _waited(lambda: any(answer.done() for answer in answers), patience):
                     break
             else:
                 raise Refused(_silent('node_silent', PATIENCE, node=view.node))
         finally:
             await self._in_ros(self._node.destroy_client, client)
-        answer = next(one.result() for one in answers if one.done())
+        answer = next(answer.result() for answer in answers if answer.done())
         if not answer.success:
             raise InputError(answer.message)
         return answer
-
-    def _why_silent(self, node: str, name: str) -> Phrase:
-        """Return why a service of a `node` is not there: one of an older version lacks it."""
-        if node in self._node.get_fully_qualified_node_names():
-            return phrase('node_older', node=node, name=name)
-        return _silent('node_silent', PATIENCE, node=node)
 
     async def _solve(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
         view = self._hub.view(text_in(request, 'axis'))
@@ -136,10 +132,14 @@ class Acting:
         """Return the result of a goal; a browser that leaves takes it back."""
         await self._until(client.server_is_ready, PATIENCE, 'solve_none')
         post = asyncio.get_running_loop().call_soon_threadsafe
-        goal = goal_of(question)
-        sent = await self._in_ros(
-            client.send_goal_async, goal, lambda step: post(_tell_progress, *key, step)
-        )
+        browser, number = key
+
+        def show_progress(message: Any) -> None:
+            step = message.feedback
+            record = {'id': number, 'share': step.fraction, 'words': step.stage}
+            post(browser.reply, frame('progress', record))
+
+        sent = await self._in_ros(client.send_goal_async, goal_of(question), show_progress)
         await self._until(sent.done, PATIENCE, 'solve_silent')
         handle = sent.result()
         if not handle.accepted:
@@ -147,7 +147,7 @@ class Acting:
         self._solves[key] = handle
         answer = await self._in_ros(handle.get_result_async)
         while not answer.done():
-            if key[0] not in self._hub.browsers:
+            if browser not in self._hub.browsers:
                 await self._in_ros(handle.cancel_goal_async)
                 raise InputError('the browser has left')
             if not client.server_is_ready():
@@ -190,7 +190,7 @@ def _silent(key: str, seconds: float, **values: str) -> Phrase:
 
 
 async def _waited(condition: Callable[[], Any], seconds: float) -> bool:
-    """Wait some `seconds` [s] for a condition; tell whether it has come."""
+    """Wait some `seconds` [s] for a condition; return True if it has come."""
     clock = asyncio.get_running_loop().time
     end = clock() + seconds
     while not condition():
@@ -198,12 +198,6 @@ async def _waited(condition: Callable[[], Any], seconds: float) -> bool:
             return False
         await asyncio.sleep(POLL)
     return True
-
-
-def _tell_progress(browser: Browser, number: Any, message: Any) -> None:
-    step = message.feedback
-    record = {'id': number, 'share': step.fraction, 'words': step.stage}
-    browser.reply(frame('progress', record))
 
 
 def _solve_record(question: Question, result: Any, view: AxisView) -> dict[str, Any]:

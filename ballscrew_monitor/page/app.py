@@ -23,7 +23,7 @@ TRY_LATER, RUDE = 1013, 1008  # codes with which a socket is closed
 BUSY = 'Too many browsers look at this page.'
 NO_REQUESTS = 'Too much was sent that is no request.'
 Answering = Callable[[Browser, str], Awaitable[bool]]
-"""Answers the text of a browser; tells whether its socket may stay."""
+"""Answers the text of a browser; returns True if its socket may stay."""
 
 
 class PageApp:
@@ -45,7 +45,7 @@ class PageApp:
 
         """
         self._language = language
-        self.failure: BaseException | None = None
+        self.failure: Exception | None = None
         self._hub, self._answer, self._tokens, self._metrics = hub, answer, tokens, metrics
 
     def guarded(self, host: str) -> Guard:
@@ -55,7 +55,7 @@ class PageApp:
             Route('/components/{name:path}', self._component),
             Route('/login', self._login, methods=['GET', 'POST']),
             Route('/healthz', self._healthz),
-            Route('/favicon.ico', self._no_icon),
+            Route('/favicon.ico', lambda request: Response(status_code=204)),
             Route('/metrics', lambda request: self._metrics()),
             WebSocketRoute('/live', self._live),
         ]
@@ -65,36 +65,31 @@ class PageApp:
 
     @contextlib.asynccontextmanager
     async def _ticking(self, app: Starlette) -> AsyncIterator[None]:
-        """Let the hub send what is new while the server runs."""
         ticking = asyncio.create_task(self._tick())
-        ticking.add_done_callback(self._note_end)
         yield
         ticking.cancel()
 
-    def _note_end(self, ticking: 'asyncio.Task[None]') -> None:
-        self.failure = None if ticking.cancelled() else ticking.exception()
-
     async def _tick(self) -> None:
-        while True:
-            self._hub.tick(time.monotonic())
-            await asyncio.sleep(PERIOD)
+        try:
+            while True:
+                self._hub.tick(time.monotonic())
+                await asyncio.sleep(PERIOD)
+        except Exception as error:
+            self.failure = error
 
     async def _index(self, request: Request) -> Response:
         return HTMLResponse(components.index(self._language_of(request)))
 
     async def _component(self, request: Request) -> Response:
-        found = components.table().get(request.path_params['name'])
-        if found is None:
+        file = components.table().get(request.path_params['name'])
+        if file is None:
             return PlainTextResponse('There is no such file.', status_code=404)
-        return Response(found[0], media_type=found[1])
+        return Response(file[0], media_type=file[1])
 
     async def _healthz(self, request: Request) -> Response:
         if self.failure is not None:
             return PlainTextResponse('The page sends nothing any more.', status_code=503)
         return PlainTextResponse('ok')
-
-    async def _no_icon(self, request: Request) -> Response:
-        return Response(status_code=204)
 
     def _language_of(self, asked: HTTPConnection) -> str:
         accepted = asked.headers.get('accept-language', '')
@@ -136,12 +131,12 @@ class PageApp:
             await socket.close(RUDE, NO_REQUESTS)
 
     async def _hear(self, socket: WebSocket, browser: Browser) -> bool:
-        """Answer a browser until it leaves; tell whether it must."""
+        """Answer a browser until it leaves; return True if it must."""
         while True:
-            said = await socket.receive()
-            if said['type'] == 'websocket.disconnect':
+            message = await socket.receive()
+            if message['type'] == 'websocket.disconnect':
                 return False
-            if not await self._answer(browser, said.get('text') or ''):
+            if not await self._answer(browser, message.get('text') or ''):
                 return True
 
 

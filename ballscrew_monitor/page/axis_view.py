@@ -24,7 +24,7 @@ INACTIVE, GONE, ACTIVE = 'inactive', 'gone', 'active'
 """States of a node."""
 LUBRICATION = diagnostics.PARTS[0]
 SEEN_FAULTS = {Fault.NONE, Fault.INACTIVE, Fault.NOTHING_YET, Fault.WORSE, Fault.NOT_KNOWN}
-TOLD_FAULTS = {int(one) for one in Fault if one.status != LUBRICATION} - SEEN_FAULTS
+TOLD_FAULTS = {int(fault) for fault in Fault if fault.status != LUBRICATION} - SEEN_FAULTS
 """Codes that are told beside level, reason and condition, which say the others."""
 
 
@@ -32,7 +32,6 @@ class AxisView:
     """One axis of one node."""
 
     def __init__(self, node: str, axis: str) -> None:
-        """Begin without anything known."""
         self.node, self.axis = node, axis
         self.standing = ACTIVE
         self.history = History()
@@ -145,15 +144,15 @@ class AxisView:
 
     def news(self, now: float, period: float) -> list[bytes]:
         """Return frames with what was not sent yet; a state comes after `period` [s] anyway."""
-        made = []
+        frames = []
         if self._events_are_news:
-            made.append(self.events_frame())
+            frames.append(self.events_frame())
             self._events_are_news = False
-        due = self.history.count > self._sent or self._health_is_news or made
+        due = self.history.count > self._sent or self._health_is_news or frames
         if due or now - self._sent_at >= period:
-            made.append(self._state_frame(now, self._sent, health=self._health_is_news))
+            frames.append(self._state_frame(now, self._sent, health=self._health_is_news))
             self._sent, self._sent_at, self._health_is_news = self.history.count, now, False
-        return made
+        return frames
 
     def greeting(self, now: float) -> list[bytes]:
         """Return frames with all that was sent so far."""
@@ -171,13 +170,13 @@ class AxisView:
         return frame('events', {'axis': self.name, 'events': events})
 
     def _state_frame(self, now: float, since: int, *, health: bool) -> bytes:
-        told = self.events[max(self.events)] if self.events else None
+        event = self.events[max(self.events)] if self.events else None
         record = {
             'axis': self.name,
             **self.state,
             'age_s': self.age(now),
-            'advice': told['advice'] if told is not None and told['active'] else '',
-            'event': told,
+            'advice': event['advice'] if event is not None and event['active'] else '',
+            'event': event,
             'limit': self.limit,
             'standing': self.standing,
             'faults': sorted(TOLD_FAULTS.intersection(self.codes.values())),

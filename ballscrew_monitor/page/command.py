@@ -107,7 +107,6 @@ class LiveSource:
 
 
 def _checked(args: argparse.Namespace) -> PageOptions:
-    """Return the options; raises InputError."""
     if (args.cert is None) is not (args.key is None):
         raise InputError('--cert and --key belong together: give both, or none of them')
     token = None if args.token_file is None else read_token(args.token_file)
@@ -115,7 +114,10 @@ def _checked(args: argparse.Namespace) -> PageOptions:
         raise InputError(
             f'--host is {args.host}, which others reach: a page for others needs --token-file'
         )
-    _check_belonging(args)
+    for name in ('node', 'allow_acting') if args.log else ('map', 'params'):
+        if getattr(args, name):
+            source = 'running nodes' if args.log else 'a recording'
+            raise InputError(f'--{name.replace("_", "-")} is for {source}: leave it out')
     if args.language not in ('', *languages()):
         raise InputError(
             f'--language is {args.language}, allowed is {", ".join(sorted(languages()))}'
@@ -137,14 +139,6 @@ def _checked(args: argparse.Namespace) -> PageOptions:
     )
 
 
-def _check_belonging(args: argparse.Namespace) -> None:
-    """Raise InputError for an option of nodes with a recording, and the other way round."""
-    for name in ('node', 'allow_acting') if args.log else ('map', 'params'):
-        if getattr(args, name):
-            what = 'running nodes' if args.log else 'a recording'
-            raise InputError(f'--{name.replace("_", "-")} is for {what}: leave it out')
-
-
 def _check_certificate(cert: Path, key: Path) -> None:
     try:
         ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(cert, key)
@@ -156,7 +150,6 @@ def _check_certificate(cert: Path, key: Path) -> None:
 async def _serve(
     options: PageOptions, bound: socket.socket, begin: Begin, is_stopped: Callable[[], bool]
 ) -> None:
-    """Serve what a source brings."""
     hub, tokens = Hub(acting=options.acting), Tokens(options.token)
     what_if, source = WhatIf(hub, options.oils), begin(hub)
     metrics = Metrics(HubCollector(hub, lambda: tokens.wrong))
@@ -164,7 +157,7 @@ async def _serve(
     app = PageApp(hub, answer, tokens, metrics, language=options.language)
     server = server_of(options, app.guarded(options.host))
     print(f'page {options.url} (Ctrl-C ends it)', flush=True)
-    tasks = [asyncio.create_task(one.follow()) for one in (what_if, source)]
+    tasks = [asyncio.create_task(part.follow()) for part in (what_if, source)]
     serving = asyncio.create_task(server.serve(sockets=[bound]))
     while not is_stopped() and not serving.done() and not any(task.done() for task in tasks):
         await asyncio.sleep(POLL)

@@ -45,13 +45,13 @@ ENGLISH = 'en'
 @functools.cache
 def table() -> dict[str, tuple[bytes, str]]:
     """Return content and type of each file by its name."""
-    found = {}
+    files = {}
     for name in (*SHEETS, *SCRIPTS):
         file = ROOM.joinpath('components', name)
         if name in SHARED or file.is_file():
             text = component(SHARED[name]) if name in SHARED else file.read_text(encoding='utf-8')
-            found[name] = text.encode(), TYPES[name.rpartition('.')[2]]
-    return found
+            files[name] = text.encode(), TYPES[name.rpartition('.')[2]]
+    return files
 
 
 @functools.cache
@@ -92,13 +92,13 @@ def _document(language: str, *body: str) -> str:
 @functools.cache
 def index(language: str = ENGLISH) -> str:
     """Return the page; all that changes comes over its socket."""
-    said = languages()[language]['link_first']
+    first = languages()[language]['link_first']
     scripts = (
         element('script', src=f'/components/{name}', defer='')
         for name in SCRIPTS
         if name in table()
     )
-    main = element('main', element('p', said, class_='link', role='status'), id='page')
+    main = element('main', element('p', first, class_='link', role='status'), id='page')
     return _document(language, main, *scripts)
 
 

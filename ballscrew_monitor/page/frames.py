@@ -29,4 +29,6 @@ def frame(kind: str, record: Mapping[str, Any], arrays: Mapping[str, ArrayLike] 
     content = to_json({'kind': kind, **record, 'arrays': named})
     text = json.dumps(content, separators=(',', ':'), allow_nan=False).encode()
     text += b' ' * (-(LENGTH.size + len(text)) % ALIGNED)
-    return b''.join([LENGTH.pack(len(text)), text, *(one.tobytes() for one in parts.values())])
+    return b''.join(
+        [LENGTH.pack(len(text)), text, *(values.tobytes() for values in parts.values())]
+    )

@@ -46,7 +46,7 @@ _HOST = re.compile(r'(?P<name>\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9._-]+)(?::\d{1,5})?')
 
 
 def is_loopback(host: str) -> bool:
-    """Tell whether nobody but this machine reaches an address."""
+    """Return True if nobody but this machine reaches an address."""
     try:
         return host == 'localhost' or ipaddress.ip_address(host).is_loopback
     except ValueError:
@@ -73,7 +73,7 @@ class Tokens:
     """The token, if one is needed; wrong ones are slowed and counted."""
 
     def __init__(self, token: str | None, *, slowness: float = SLOWNESS) -> None:
-        """Begin; a wrong token is answered after `slowness` [s]."""
+        """Answer a wrong token after `slowness` [s]."""
         self._token, self._slowness = token, slowness
         self.wrong = 0
         self._waiting = 0
@@ -84,7 +84,7 @@ class Tokens:
         return hmac.digest((self._token or '').encode(), b'page', hashlib.sha256).hex()
 
     def admits(self, headers: Headers) -> bool:
-        """Tell whether a request carries cookie or token, a bearer; count wrong ones."""
+        """Return True if a request carries cookie or token, a bearer; count wrong ones."""
         if self._token is None:
             return True
         cookies = SimpleCookie()
@@ -100,7 +100,7 @@ class Tokens:
 
     async def accept(self, token: str) -> bool | None:
         """
-        Tell whether a token is right; None for one that is not while too many others wait.
+        Return True if a token is right; None for one that is not while too many others wait.
 
         The right one always opens: nobody shuts the reader out by wrong ones. The length of the
         token guards against guesses; that they wait bounds how many are at work.
@@ -119,8 +119,8 @@ class Tokens:
         return False
 
 
-def _same(one: str, other: str) -> bool:
-    return hmac.compare_digest(one.encode(), other.encode())
+def _same(text: str, other: str) -> bool:
+    return hmac.compare_digest(text.encode(), other.encode())
 
 
 class Guard:
@@ -167,11 +167,11 @@ class Guard:
         return None
 
     def _knows(self, host: str) -> bool:
-        """Tell whether Host is a name of ours; an address cannot be rebound."""
-        found = _HOST.fullmatch(host)
-        if found is None:
+        """Return True if Host is a name of ours; an address cannot be rebound."""
+        parts = _HOST.fullmatch(host)
+        if parts is None:
             return False
-        name = found['name'].strip('[]').lower()
+        name = parts['name'].strip('[]').lower()
         if name in self._names or is_loopback(name):
             return True
         try:

@@ -9,7 +9,7 @@ from typing import Any
 from ballscrew_monitor.health.records import CauseCode
 from ballscrew_monitor.health.words import ADVICE, explained
 from ballscrew_monitor.page.phrases import free, Phrase, phrase, Said
-from ballscrew_msgs.msg import AxisHealth, HealthCause, HealthQuantity
+from ballscrew_msgs.msg import AxisHealth, HealthQuantity
 
 DRAG, PRELOAD = 'drag change', 'preload'
 VERDICTS = {
@@ -24,10 +24,14 @@ Known = dict[str, HealthQuantity]
 
 def verdict_phrase(health: AxisHealth) -> Said:
     """Return the condition of an axis, the size of its change and its cause."""
-    named = {one.name: one for one in health.quantities}
+    named = {quantity.name: quantity for quantity in health.quantities}
     if DRAG not in named or health.condition not in VERDICTS:
         return free(health.verdict) if health.verdict else ''
-    known = {name: one for name, one in named.items() if math.isfinite(one.high - one.low)}
+    known = {
+        name: quantity
+        for name, quantity in named.items()
+        if math.isfinite(quantity.high - quantity.low)
+    }
     if DRAG not in known:
         return phrase('verdict_unknown', axis=health.axis, why=free(named[DRAG].reason))
     values = {'axis': health.axis, **_interval(known[DRAG])}
@@ -39,34 +43,28 @@ def verdict_phrase(health: AxisHealth) -> Said:
 def advice_phrase(health: AxisHealth) -> Said:
     """Return what to do about the likely causes; an advice on oil or feed is free."""
     _, likely = explained(math.nan, health.causes)
-    codes = [CAUSES.get(one.code) for one in likely]
+    codes = [CAUSES.get(cause.code) for cause in likely]
     if health.condition != AxisHealth.CONDITION_WORSE or not codes or None in codes:
         return free(health.advice) if health.advice else ''
     # Two causes may have one remedy, which is said once.
-    told = {ADVICE[code]: phrase(f'remedy_{code.name.lower()}') for code in codes if code}
-    return functools.reduce(_or, told.values())
-
-
-def _or(first: Phrase, second: Phrase) -> Phrase:
-    return phrase('either_or', first=first, second=second)
+    remedies = {ADVICE[code]: phrase(f'remedy_{code.name.lower()}') for code in codes if code}
+    return functools.reduce(
+        lambda first, second: phrase('either_or', first=first, second=second), remedies.values()
+    )
 
 
 def _why(health: AxisHealth, known: Known) -> Phrase:
     certainty, likely = explained(known[DRAG].value, health.causes)
-    cause = {'cause': _cause(likely[0], known)} if likely else {}
-    return phrase(f'why_{certainty.name.lower()}', **cause)
-
-
-def _cause(cause: HealthCause, known: Known) -> Phrase:
-    """Return what has changed and by how much; a cause of another version has its own words."""
-    code = CAUSES.get(cause.code)
-    if code is None:
-        return free(cause.text)
+    why = f'why_{certainty.name.lower()}'
+    if not likely:
+        return phrase(why)
+    cause, code = likely[0], CAUSES.get(likely[0].code)
+    if code is None:  # of another version
+        return phrase(why, cause=free(cause.text))
     size = known.get(PRELOAD, cause.size) if code is CauseCode.PRELOAD_LOST else cause.size
-    return phrase(f'change_{code.name.lower()}', **_interval(size))
+    return phrase(why, cause=phrase(f'change_{code.name.lower()}', **_interval(size)))
 
 
 def _interval(quantity: HealthQuantity) -> dict[str, Any]:
-    """Return value, low and high with their unit."""
     ends = ('value', 'low', 'high')
     return {name: {'value': getattr(quantity, name), 'unit': quantity.unit} for name in ends}

@@ -31,7 +31,6 @@ class History:
     """Rows in order of their stamps; `count` is the number of all that were ever taken."""
 
     def __init__(self) -> None:
-        """Begin without a row."""
         self.count = 0
         self._begin = 0  # of the rows since time last went back
         self._ring = np.empty((LARGEST, len(COLUMNS)))

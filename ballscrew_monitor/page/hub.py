@@ -34,7 +34,6 @@ class Browser:
     """What waits for one browser."""
 
     def __init__(self, language: str = ENGLISH) -> None:
-        """Begin with nothing, in a language."""
         self.language = language
         self.is_behind = False
         self.dropped = 0
@@ -45,17 +44,17 @@ class Browser:
 
     @property
     def is_ready(self) -> bool:
-        """Tell whether it has read all and waits for more."""
+        """Return True if it has read all and waits for more."""
         return self._reads and not self._waiting
 
-    def greet(self, made: Iterable[bytes]) -> None:
+    def greet(self, frames: Iterable[bytes]) -> None:
         """Let frames with all that is known wait, in place of those that wait."""
         self.is_behind = False
         self._waiting.clear()
-        self._waiting.extend(made)
+        self._waiting.extend(frames)
         self._wakes.set()
 
-    def put(self, made: bytes) -> None:
+    def put(self, data: bytes) -> None:
         """Let a frame wait; of one that does not keep up nothing waits."""
         if len(self._waiting) >= MOST_WAITING:
             self.dropped += len(self._waiting)
@@ -64,12 +63,12 @@ class Browser:
         if self.is_behind:
             self.dropped += 1
             return
-        self._waiting.append(made)
+        self._waiting.append(data)
         self._wakes.set()
 
-    def reply(self, made: bytes) -> None:
+    def reply(self, data: bytes) -> None:
         """Let an answer wait, which goes before all else and is not superseded."""
-        self._replies.append(made)
+        self._replies.append(data)
         self._wakes.set()
 
     async def take(self) -> bytes:
@@ -134,13 +133,13 @@ class Hub:
         if words:
             self.notices[node] = words
 
-    def tell(self, made: bytes) -> None:
+    def tell(self, data: bytes) -> None:
         """Send a frame to every browser."""
         for browser in self.browsers:
-            browser.put(made)
+            browser.put(data)
 
     def join(self, browser: Browser, now: float) -> bool:
-        """Greet a browser at `now` [s] of a steady clock; tell whether there is room for it."""
+        """Greet a browser at `now` [s] of a steady clock; return True if there is room for it."""
         if len(self.browsers) >= MOST_BROWSERS:
             return False
         self.browsers.add(browser)
@@ -155,8 +154,8 @@ class Hub:
     def tick(self, now: float) -> None:
         """Send what is new at `now` [s] of a steady clock."""
         for view in self.axes.values():
-            for made in view.news(now, IDLE_PERIOD):
-                self.tell(made)
+            for data in view.news(now, IDLE_PERIOD):
+                self.tell(data)
             self._is_changed |= view.is_changed
             view.is_changed = False
         for browser in self.browsers:

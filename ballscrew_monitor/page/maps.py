@@ -114,8 +114,8 @@ def map_of(
         'rows': zone.shape[0],
         'light_load_N': limits.light_load,
         'lines': [
-            {'kind': one.kind, 'label': one.label, 'height': one.height, 'array': f'line{at}'}
-            for at, one in enumerate(lines)
+            {'kind': line.kind, 'label': line.label, 'height': line.height, 'array': f'line{at}'}
+            for at, line in enumerate(lines)
         ],
     }
     edges = field.load, field.speed * RPM
@@ -124,7 +124,7 @@ def map_of(
         'zone': np.where(zone == NO_NUMBER, math.nan, zone),
         'dwell': np.histogram2d(motion.load, motion.speed, edges, weights=motion.steps)[0],
     }
-    return record, arrays | {f'line{at}': one.points for at, one in enumerate(lines)}
+    return record, arrays | {f'line{at}': line.points for at, line in enumerate(lines)}
 
 
 def _bands(field: Field, surface: Surface, limits: Limits) -> list[MapLine]:
@@ -156,8 +156,8 @@ def limit_speed(
     faster, slower = borders[borders >= speed], borders[borders < speed][::-1]
     # Interpolated like the borders, so that a speed beside one is on its right side.
     here = np.interp(math.log(max(speed, speeds[0])), np.log(speeds), excess)
-    found = faster if here >= 0.0 else slower
-    return float(found[0]) if found.size else math.nan
+    border = faster if here >= 0.0 else slower
+    return float(border[0]) if border.size else math.nan
 
 
 def limit_record(
@@ -232,12 +232,12 @@ def ghosts_of(
         speed = factor * motion.speed
         steps = motion.steps / factor
         (heat,) = _everywhere(speed, kelvin(temperature))
-        found = look_up_many(surface, speed, motion.load, heat)
-        known = np.isfinite(found['rcs'])
-        outside = known & ~is_optimal(motion.load, found['rcs'], found['efficiency'], limits)
+        fields = look_up_many(surface, speed, motion.load, heat)
+        known = np.isfinite(fields['rcs'])
+        outside = known & ~is_optimal(motion.load, fields['rcs'], fields['efficiency'], limits)
         judged_time, time = steps[known].sum(), steps.sum()
         unknown = float(steps[~known].sum() / time) if time else math.nan
-        lost = (found['friction_torque'] * speed * steps)[known].sum()
+        lost = (fields['friction_torque'] * speed * steps)[known].sum()
         share = steps[outside].sum() / judged_time if judged_time else math.nan
         ghosts.append(
             {

@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Numbers of all axes for Prometheus, read when it asks."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 import time
-from typing import Any
 
 from ballscrew_monitor.page.axis_view import ACTIVE, AxisView
 from ballscrew_monitor.page.history import COLUMNS
@@ -51,22 +50,22 @@ def _outside_share(view: AxisView) -> Values:
 
 def _inputs(name: str) -> Callable[[AxisView], Values]:
     def of_inputs(view: AxisView) -> Values:
-        for one in view.state.get('inputs', ()):
-            if one['state'] != 'not_configured' and one[name] is not None:
-                yield (one['name'],), float(one[name])
+        for each in view.state.get('inputs', ()):
+            if each['state'] != 'not_configured' and each[name] is not None:
+                yield (each['name'],), float(each[name])
 
     return of_inputs
 
 
 def _input_ok(view: AxisView) -> Values:
-    for one in view.state.get('inputs', ()):
-        if one['state'] != 'not_configured':
-            yield (one['name'],), float(one['state'] in ('ok', 'derived'))
+    for each in view.state.get('inputs', ()):
+        if each['state'] != 'not_configured':
+            yield (each['name'],), float(each['state'] in ('ok', 'derived'))
 
 
 def _health(view: AxisView) -> Values:
-    for one in (view.health or {}).get('quantities', ()):
-        yield (one['name'], one['unit']), one['value']
+    for quantity in (view.health or {}).get('quantities', ()):
+        yield (quantity['name'], quantity['unit']), quantity['value']
 
 
 INPUT, QUANTITY = (*LABELS, 'input'), (*LABELS, 'quantity', 'unit')
@@ -97,13 +96,17 @@ class HubCollector(Collector):
     """Reads the hub."""
 
     def __init__(self, hub: Hub, wrong_tokens: Callable[[], int]) -> None:
-        """Read `hub`, and how many tokens were wrong."""
         self._hub, self._wrong_tokens = hub, wrong_tokens
 
     def collect(self) -> Iterable[GaugeMetricFamily | CounterMetricFamily]:
         """Yield all families of numbers."""
         for table, kind in ((GAUGES, GaugeMetricFamily), (COUNTERS, CounterMetricFamily)):
-            yield from self._families(table, kind)
+            for name, (text, labels, values) in table.items():
+                family = kind(f'ballscrew_{name}', text, labels=labels)
+                for view in self._hub.axes.values():
+                    for more, value in values(view):
+                        family.add_metric([view.node, view.axis, *more], value)
+                yield family
         age = GaugeMetricFamily(
             'ballscrew_state_age_seconds', 'Since the last state', labels=LABELS
         )
@@ -120,20 +123,11 @@ class HubCollector(Collector):
         ):
             yield CounterMetricFamily(f'ballscrew_page_{name}', text, value=count)
 
-    def _families(self, table: Mapping[str, Any], kind: Any) -> Iterable[Any]:
-        for name, (text, labels, values) in table.items():
-            family = kind(f'ballscrew_{name}', text, labels=labels)
-            for view in self._hub.axes.values():
-                for more, value in values(view):
-                    family.add_metric([view.node, view.axis, *more], value)
-            yield family
-
 
 class Metrics:
     """Answers of `/metrics`."""
 
     def __init__(self, collector: HubCollector) -> None:
-        """Answer what a collector reads."""
         self._registry = CollectorRegistry()
         self._registry.register(collector)
 

@@ -38,20 +38,20 @@ def free(sentence: str) -> Phrase:
 class Refused(InputError):
     """A refusal that has words in each language."""
 
-    def __init__(self, said: Said) -> None:
+    def __init__(self, sentence: Said) -> None:
         """Refuse by a phrase whose values are texts and free sentences."""
-        self.said = said
-        super().__init__(english(said))
+        self.sentence = sentence
+        super().__init__(english(sentence))
 
 
-def english(said: Said) -> str:
-    """Return what is said in English; the values of a phrase are texts and free sentences."""
-    if isinstance(said, str):
-        return said
-    if 'free' in said:
-        return str(said['free'])
-    values = {name: english(value) for name, value in said['values'].items()}
-    return languages()[ENGLISH][said['key']].format(**values)
+def english(sentence: Said) -> str:
+    """Return a sentence in English; the values of a phrase are texts and free sentences."""
+    if isinstance(sentence, str):
+        return sentence
+    if 'free' in sentence:
+        return str(sentence['free'])
+    values = {name: english(value) for name, value in sentence['values'].items()}
+    return languages()[ENGLISH][sentence['key']].format(**values)
 
 
 def violated(quantity: str, value: float, limit: float, *, derived: bool = False) -> Phrase:

@@ -30,7 +30,6 @@ class Manners:
     """How a browser has behaved: times of its last requests [s], and its faults."""
 
     def __init__(self) -> None:
-        """Begin well."""
         self.times: deque[float] = deque(maxlen=MOST_A_SECOND)
         self.faults = 0
 
@@ -56,19 +55,26 @@ class Questions:
         self._manners: weakref.WeakKeyDictionary[Browser, Manners] = weakref.WeakKeyDictionary()
 
     async def answer(self, browser: Browser, text: str) -> bool:
-        """Answer a request; tell whether the browser may stay."""
+        """Answer a request; return True if the browser may stay."""
         manners = self._manners.setdefault(browser, Manners())
         request: Mapping[str, Any] = {'id': None}
         try:
-            self._check_pace(manners)
+            now, times = self._clock(), manners.times
+            quick = len(times) == MOST_A_SECOND and now - times[0] < 1.0
+            times.append(now)
+            if quick:
+                raise InputError(f'more than {MOST_A_SECOND} requests came within a second')
             request = _read(text)
-            handler = self._handler(request)
+            known, act = self._handlers, request.get('do')
+            if not isinstance(act, str) or act not in known:
+                allowed = ', '.join(known) or 'nothing'
+                raise InputError(f'do is {act!r:.40}, allowed is {allowed}')
         except InputError as error:
             manners.faults += 1
             _tell(browser, request, _refusal(error))
             return manners.faults <= MOST_FAULTS
-        answering = asyncio.create_task(self._answer(handler, browser, request))
-        if request['do'] in self._long:
+        answering = asyncio.create_task(self._answer(known[act], browser, request))
+        if act in self._long:
             self._under_way.add(answering)
             answering.add_done_callback(self._under_way.discard)
         else:
@@ -88,23 +94,10 @@ class Questions:
             answer = _refusal(Refused(phrase('program_fault', why=free(repr(error)))))
         _tell(browser, request, answer)
 
-    def _handler(self, request: Mapping[str, Any]) -> Handler:
-        known, asked = self._handlers, request.get('do')
-        if not isinstance(asked, str) or asked not in known:
-            raise InputError(f'do is {asked!r:.40}, allowed is {", ".join(known) or "nothing"}')
-        return known[asked]
-
-    def _check_pace(self, manners: Manners) -> None:
-        now, times = self._clock(), manners.times
-        quick = len(times) == MOST_A_SECOND and now - times[0] < 1.0
-        times.append(now)
-        if quick:
-            raise InputError(f'more than {MOST_A_SECOND} requests came within a second')
-
 
 def _refusal(error: InputError) -> Answer:
-    said = error.said if isinstance(error, Refused) else str(error)
-    return {'ok': False, 'message': said}, {}
+    message = error.sentence if isinstance(error, Refused) else str(error)
+    return {'ok': False, 'message': message}, {}
 
 
 def _tell(browser: Browser, request: Mapping[str, Any], answer: Answer) -> None:

@@ -65,7 +65,8 @@ def _rows_of(block: JudgedColumns) -> Array:
         fresh(block.axial_load, block.axial_load_source),
         fresh(block.temperature + celsius(0.0), block.temperature_source),
         np.where(light, np.nan, block.efficiency),
-        *(np.where(still, np.nan, one) for one in (block.rcs, block.film_ratio)),
+        np.where(still, np.nan, block.rcs),
+        np.where(still, np.nan, block.film_ratio),
         np.where(still, np.nan, block.machine_torque),
         block.measured_torque,
         block.level,
@@ -73,15 +74,10 @@ def _rows_of(block: JudgedColumns) -> Array:
     return np.column_stack(columns)[block.published]
 
 
-def _codes_of(block: JudgedColumns) -> NDArray[np.uint8]:
-    return np.column_stack([getattr(block, name) for name in CODES])[block.published]
-
-
 class RecordedAxis:
     """One axis of a recording and its view."""
 
     def __init__(self, log: str, case: AxisCase, course: Course) -> None:
-        """Begin before the first row."""
         self.course, self._case = course, case
         self.view = AxisView(log, case.axis)
         self._at = 0
@@ -120,9 +116,9 @@ class RecordedAxis:
             record = self._state_record(self.course.rows[end - 1], self.course.codes[end - 1])
             self.view.hear(self.course.rows[end - 1].tolist(), record, self._limits, now)
         self.view.show_events(
-            _event_record(one, stamp)
-            for one in self._case.outcome.events
-            if seconds(one.start) <= stamp
+            _event_record(event, stamp)
+            for event in self._case.outcome.events
+            if seconds(event.start) <= stamp
         )
 
     def _state_record(self, row: Array, codes: NDArray[np.uint8]) -> dict[str, Any]:
@@ -185,8 +181,12 @@ class Recording:
 
     def clock(self) -> dict[str, Any]:
         """Return how the clock stands, since the first row [s]."""
-        told = {'at_s': self._at, 'span_s': self._last - self._first}
-        return told | {'rate': self._factor, 'playing': self._plays}
+        return {
+            'at_s': self._at,
+            'span_s': self._last - self._first,
+            'rate': self._factor,
+            'playing': self._plays,
+        }
 
     def advance(self, seconds: float, now: float) -> None:
         """Play for some `seconds` [s], at `now` [s] of a steady clock; stop at the end."""
@@ -200,13 +200,13 @@ class Recording:
     async def follow(self) -> None:
         """Play until cancelled."""
         loop = asyncio.get_running_loop()
-        before = told = loop.time()
+        before = sent = loop.time()
         while True:
             now = loop.time()
             self.advance(now - before, now)
-            if now - told >= CLOCK_PERIOD:
+            if now - sent >= CLOCK_PERIOD:
                 self._tell()
-                told = now
+                sent = now
             before = now
             await asyncio.sleep(PERIOD)
 
@@ -243,12 +243,12 @@ class CourseKeeper:
     """Keeps of the blocks of a recording what its courses are made of."""
 
     def __init__(self) -> None:
-        """Begin with nothing."""
         self._parts: dict[str, list[tuple[Array, NDArray[np.uint8]]]] = {}
 
     def add(self, block: JudgedColumns) -> None:
         """Take a block: the rows of which the node publishes a state."""
-        self._parts.setdefault(block.axis, []).append((_rows_of(block), _codes_of(block)))
+        codes = np.column_stack([getattr(block, name) for name in CODES])[block.published]
+        self._parts.setdefault(block.axis, []).append((_rows_of(block), codes))
 
     def blocks(self, axis: str) -> Iterable[JudgedColumns]:
         """Return none: nothing is asked for again."""

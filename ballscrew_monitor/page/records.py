@@ -75,7 +75,7 @@ def state_record(state: BallScrewState) -> dict[str, Any]:
         'level': LEVELS.get(state.level, UNKNOWN),
         'zone': ZONES.get(state.zone, UNKNOWN),
         'headline': headline(state),
-        'inputs': [_input(one) for one in state.inputs],
+        'inputs': [_input(health) for health in state.inputs],
         'shelved': shelving_record(state),
         'totals': totals_record(state.totals),
     }
@@ -83,17 +83,13 @@ def state_record(state: BallScrewState) -> dict[str, Any]:
 
 def headline(state: BallScrewState) -> Phrase:
     """Return in one sentence why the level or the zone is what it is."""
-    worst = max(state.findings, key=lambda one: one.severity, default=None)
-    if worst is None:
-        return _without_finding(state)
-    if worst.code in QUANTITIES:
+    worst = max(state.findings, key=lambda finding: finding.severity, default=None)
+    if worst is not None and worst.code in QUANTITIES:
         quantity = QUANTITIES[worst.code]
         derived = quantity == 'efficiency' and _is_derived(state)
         return violated(quantity, worst.value, worst.limit, derived=derived)
-    return why_unjudged(state) if worst.code in OF_UNJUDGED else free(worst.text)
-
-
-def _without_finding(state: BallScrewState) -> Phrase:
+    if worst is not None:
+        return why_unjudged(state) if worst.code in OF_UNJUDGED else free(worst.text)
     if BallScrewState.GATE_STANDSTILL in state.active_gates:
         return _unjudged(state, Reason.STANDSTILL)
     if state.zone == Zone.OPTIMAL:
@@ -104,14 +100,14 @@ def _without_finding(state: BallScrewState) -> Phrase:
 
 def why_unjudged(state: BallScrewState) -> Phrase:
     """Return why an instant has no zone; a code of another version has the words of its node."""
-    validity, said = state.result.validity, str(state.result.reason)
+    validity, sentence = state.result.validity, str(state.result.reason)
     if validity == PointValidity.NO_INPUT:
         return missing(_missing(state))
     if validity >= len(BY_VALIDITY):
-        return free(said)
+        return free(sentence)
     reason = BY_VALIDITY[validity]
     if reason in OF_TORQUE and _is_derived(state) and state.point.direction:
-        return detailed(_unjudged(state, Reason.NO_DERIVED_LOAD), said)
+        return detailed(_unjudged(state, Reason.NO_DERIVED_LOAD), sentence)
     return _unjudged(state, reason)
 
 
@@ -123,8 +119,10 @@ def _unjudged(state: BallScrewState, reason: int) -> Phrase:
 
 
 def _is_derived(state: BallScrewState) -> bool:
-    """Tell whether the load follows from the motor torque."""
-    return any(one.name == 'load' and one.state == InputState.DERIVED for one in state.inputs)
+    """Return True if the load follows from the motor torque."""
+    return any(
+        health.name == 'load' and health.state == InputState.DERIVED for health in state.inputs
+    )
 
 
 def _missing(state: BallScrewState) -> list[str]:
@@ -183,15 +181,15 @@ def health_record(health: msg.AxisHealth) -> dict[str, Any]:
         'notes': [free(note) for note in health.notes],
         'quantities': [
             {
-                'name': one.name,
-                'value': one.value,
-                'low': one.low,
-                'high': one.high,
-                'unit': one.unit,
-                'known': math.isfinite(one.value),
-                'words': free(one.reason) if one.reason else '',
+                'name': quantity.name,
+                'value': quantity.value,
+                'low': quantity.low,
+                'high': quantity.high,
+                'unit': quantity.unit,
+                'known': math.isfinite(quantity.value),
+                'words': free(quantity.reason) if quantity.reason else '',
             }
-            for one in health.quantities
+            for quantity in health.quantities
         ],
     }
 
@@ -245,8 +243,8 @@ def range_record(speed: Pair, load: Pair, temperature: Pair) -> dict[str, float]
 
 def code_of(status: DiagnosticStatus) -> int:
     """Return the code of the fault that a diagnostic status states, 0 for none."""
-    said = [one.value for one in status.values if one.key == 'Code']
-    codes = [int(one) for one in said if len(one) < LONGEST_CODE and one.isdecimal()]
+    texts = [pair.value for pair in status.values if pair.key == 'Code']
+    codes = [int(text) for text in texts if len(text) < LONGEST_CODE and text.isdecimal()]
     return codes[0] if codes else 0
 
 

@@ -110,19 +110,19 @@ class RosSide:
 
     def _look(self) -> None:
         """Take up the axes that have come, and let go of those that have left."""
-        found = {
+        bases = {
             topic.removesuffix('/state')
             for topic, types in self._node.get_topic_names_and_types()
             if STATE_TYPE in types and topic.endswith('/state')
             if self._node.count_publishers(topic)
             if self._only in ('', node_of(topic.removesuffix('/state')))
         }
-        for base in sorted(self._links.keys() - found):
+        for base in sorted(self._links.keys() - bases):
             self._let_go(base)
-        for base in sorted(self._refused.keys() - found):
+        for base in sorted(self._refused.keys() - bases):
             del self._refused[base]
             self._later(self._hub.notice, node_of(base), '')
-        for base in sorted(found - self._links.keys()):
+        for base in sorted(bases - self._links.keys()):
             has_room = len(self._links) < MOST_AXES
             if has_room and self._refused.get(base) != sent_hashes(self._node, base):
                 self._take_up(base)
@@ -164,9 +164,9 @@ class RosSide:
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:
-            if found := records.place_of(status.name):
-                node, axis, part = found
-                views = [one.view for one in self._links.values() if one.view.node == node]
+            if place := records.place_of(status.name):
+                node, axis, part = place
+                views = [link.view for link in self._links.values() if link.view.node == node]
                 for view in views:
                     if axis in ('', view.axis):
                         self._later(view.hear_code, part, records.code_of(status))
@@ -188,7 +188,7 @@ def node_of(base: str) -> str:
 def sent_hashes(node: Node, base: str) -> set[str]:
     """Return the hashes of the type of the state below `base`, as it is sent."""
     sent = node.get_publishers_info_by_topic(f'{base}/state')
-    return {str(one.topic_type_hash) for one in sent}
+    return {str(publisher.topic_type_hash) for publisher in sent}
 
 
 def version_problem(node: str, hashes: tuple[set[str], set[str]]) -> Said:
@@ -240,12 +240,13 @@ class AxisLink:
     def hashes(self) -> tuple[set[str], set[str]]:
         """Return the hashes of the type of the state, as it is sent and as we read it."""
         read = self._node.get_subscriptions_info_by_topic(f'{self.view.name}/state')
-        mine = {str(one.topic_type_hash) for one in read if one.node_name == self._node.get_name()}
-        return sent_hashes(self._node, self.view.name), mine
+        name = self._node.get_name()
+        ours = {str(reader.topic_type_hash) for reader in read if reader.node_name == name}
+        return sent_hashes(self._node, self.view.name), ours
 
     @property
     def is_asking(self) -> bool:
-        """Tell whether parameters or corrections that go with the surface are not known yet."""
+        """Return True if parameters or corrections that go with the surface are not known yet."""
         return self._is_due or self._surface.is_asking
 
     def ask(self) -> None:

@@ -49,11 +49,6 @@ class PageOptions:
         return f'{"https" if self.cert else "http"}://{host}:{self.port}/'
 
 
-def _why(error: OSError) -> str:
-    """Return the reason without the address that Python adds to it."""
-    return str(error) if error.errno is None else os.strerror(error.errno)
-
-
 @contextlib.contextmanager
 def bound_socket(options: PageOptions) -> Iterator[socket.socket]:
     """Open the port; raises InputError where it is taken or not of this machine."""
@@ -61,8 +56,10 @@ def bound_socket(options: PageOptions) -> Iterator[socket.socket]:
         family = socket.AF_INET6 if ':' in options.host else socket.AF_INET
         bound = socket.create_server((options.host, options.port), family=family)
     except OSError as error:
+        # Without the address that Python adds to it.
+        why = str(error) if error.errno is None else os.strerror(error.errno)
         raise InputError(
-            f'port {options.port} of {options.host} cannot be opened ({_why(error)}): stop the '
+            f'port {options.port} of {options.host} cannot be opened ({why}): stop the '
             'page that has it, or give another --port or --host'
         ) from None
     with bound:

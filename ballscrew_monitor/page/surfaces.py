@@ -96,22 +96,19 @@ def with_corrections(
     """
     solves = [
         KeptSolve(
-            **dataclasses.asdict(place), solved={name: getattr(said, name) for name in FIELDS}
+            **dataclasses.asdict(place), solved={name: getattr(answer, name) for name in FIELDS}
         )
-        for place, said in answers[:count]
+        for place, answer in answers[:count]
     ]
-    made = corrected(surface, solves)
-    return made if all(itertools.starmap(functools.partial(_agrees, made), answers)) else None
-
-
-def _agrees(surface: Surface, place: SolvedAt, said: PointResult) -> bool:
-    found = surface.lookup(place.speed, place.opposing_load, place.temperature)
-    pairs = [(getattr(found, name), getattr(said, name)) for name in JUDGED]
-    return all(
-        math.isclose(mine, theirs, rel_tol=SAME, abs_tol=SAME)
-        or (math.isnan(mine) and math.isnan(theirs))
-        for mine, theirs in pairs
-    )
+    surface = corrected(surface, solves)
+    for place, answer in answers:
+        point = surface.lookup(place.speed, place.opposing_load, place.temperature)
+        for name in JUDGED:
+            ours, theirs = getattr(point, name), getattr(answer, name)
+            both_unknown = math.isnan(ours) and math.isnan(theirs)
+            if not both_unknown and not math.isclose(ours, theirs, rel_tol=SAME, abs_tol=SAME):
+                return None
+    return surface
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -167,7 +164,7 @@ class SurfaceLink:
 
     @property
     def is_asking(self) -> bool:
-        """Tell whether the node has corrections that are not known yet."""
+        """Return True if the node has corrections that are not known yet."""
         return self._question is not None
 
     def close(self) -> None:
@@ -195,7 +192,7 @@ class SurfaceLink:
         """Ask for the corrections, until they are known; a first answer may be lost."""
         question = self._question
         if question is not None:
-            points = [point_message(one) for one in question.places]
+            points = [point_message(place) for place in question.places]
             request = EvaluateOperatingPoint.Request(axis=self._view.axis, points=points)
             self._client.call(request, functools.partial(self._on_answer, question))
 

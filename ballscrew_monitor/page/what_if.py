@@ -42,7 +42,7 @@ class Followed:
     loads: tuple[float, float]
 
     def suits(self, other: 'Followed') -> bool:
-        """Tell whether the map does for another motion."""
+        """Return True if the map does for another motion."""
         return (
             (self.sha256, self.limits) == (other.sha256, other.limits)
             and abs(self.temperature - other.temperature) < WARMER
@@ -54,7 +54,6 @@ class WhatIf:
     """Maps of the axes of a hub; surfaces of other oils by their names."""
 
     def __init__(self, hub: Hub, oils: Iterable[Surface] = ()) -> None:
-        """Begin without a map."""
         self._hub, self._oils = hub, tuple(oils)
         self._followed: weakref.WeakKeyDictionary[AxisView, Followed] = weakref.WeakKeyDictionary()
         self._turn = asyncio.Lock()
@@ -69,7 +68,7 @@ class WhatIf:
         if view.surface is None:
             return []
         screw, oil = view.surface.screw_name, view.surface.oil_name
-        return [oil, *(one.oil_name for one in self._oils if one.screw_name == screw)]
+        return [oil, *(other.oil_name for other in self._oils if other.screw_name == screw)]
 
     async def follow(self) -> None:
         """Keep the map of every axis as its motion is now, until cancelled."""
@@ -104,14 +103,15 @@ class WhatIf:
         if before is not None and view.map_frame is not None and before.suits(wanted):
             return
         warmth = round(warmth / WARMER) * WARMER
-        made = await self._in_turn(maps.map_of, surface, limits, warmth, motion, QUANTITY)
+        record, arrays = await self._in_turn(
+            maps.map_of, surface, limits, warmth, motion, QUANTITY
+        )
         if view.surface is not surface:  # another has come meanwhile
             return
-        load = made[0]['load']
-        loads = load['low'], load['high']
+        loads = record['load']['low'], record['load']['high']
         self._followed[view] = dataclasses.replace(wanted, loads=loads)
-        told = {'axis': view.name, 'without': view.without}
-        view.map_frame = frame('map', told | made[0], made[1])
+        head = {'axis': view.name, 'without': view.without}
+        view.map_frame = frame('map', head | record, arrays)
         self._hub.tell(view.map_frame)
 
     async def _in_turn(self, compute: Callable[..., Any], *args: Any) -> Any:
@@ -125,13 +125,11 @@ class WhatIf:
             raise Refused(view.no_map)
         if view.limits['rcs_limit'] is None:
             raise Refused(phrase('no_limits'))
-        return view, self._with_oil(view, request.get('oil')), maps.limits_of(view.limits)
-
-    def _with_oil(self, view: AxisView, oil: Any) -> Surface:
-        assert view.surface is not None
-        for one in (view.surface, *self._oils):
-            if oil in (None, one.oil_name) and one.screw_name == view.surface.screw_name:
-                return one
+        oil = request.get('oil')
+        for surface in (view.surface, *self._oils):
+            is_of_screw = surface.screw_name == view.surface.screw_name
+            if is_of_screw and oil in (None, surface.oil_name):
+                return view, surface, maps.limits_of(view.limits)
         raise InputError(
             f'oil is {oil!r:.40}, allowed is {", ".join(self.grades(view))}: give the page more '
             'surfaces with --oils'
@@ -146,8 +144,8 @@ class WhatIf:
         record, arrays = await self._in_turn(
             maps.map_of, surface, limits, warmth, motion, quantity
         )
-        told = {'axis': view.name, 'oil': surface.oil_name, 'without': without}
-        return told | record, arrays
+        head = {'axis': view.name, 'oil': surface.oil_name, 'without': without}
+        return head | record, arrays
 
     async def _read(self, browser: Browser, request: Mapping[str, Any]) -> Answer:
         view, surface, limits = self._view(request)
@@ -166,8 +164,8 @@ class WhatIf:
         factors = request.get('factors')
         if not isinstance(factors, list) or not 1 <= len(factors) <= MOST_FACTORS:
             raise InputError(f'factors must be a list of 1 to {MOST_FACTORS} numbers')
-        known = [number_in({'factor': one}, 'factor') for one in factors]
-        if not all(FACTORS[0] <= one <= FACTORS[1] for one in known):
+        known = [number_in({'factor': factor}, 'factor') for factor in factors]
+        if not all(FACTORS[0] <= factor <= FACTORS[1] for factor in known):
             raise InputError(f'a factor must be {FACTORS[0]:g} to {FACTORS[1]:g}')
         rows = view.history.since(0)
         motion = maps.Motion.of(rows, limits)

@@ -45,7 +45,7 @@ class Axis:
     def topics(self) -> dict[Source, str]:
         """Return the topic of each input as it is configured."""
         configured: list[Input | OpenInput] = [*self.inputs, *self.open_inputs]
-        return {one.source: one.topic for one in configured}
+        return {each.source: each.topic for each in configured}
 
     @property
     def max_future(self) -> int:
@@ -54,7 +54,7 @@ class Axis:
 
     @property
     def one_source(self) -> bool:
-        """Tell whether an input that several publishers send is refused."""
+        """Return True if an input that several publishers send is refused."""
         return self.monitor.settings.one_source
 
     def adapt(self, values: Mapping[str, Any]) -> None:
@@ -71,17 +71,30 @@ class Axis:
 def build_axis(name: str, values: Mapping[str, Any]) -> Axis:
     """Return the axis `name` made of parameter `values` by full name; raises InputError."""
     surface = load_surface(name, values)
-    # In the order in which equal stamps are taken.
-    inputs = [
-        _input_of(name, values, source, surface.lead)
-        for source in Source
-        if is_configured(name, values, source)
-    ]
+    inputs: list[Input] = []  # in the order in which equal stamps are taken
+    open_inputs: list[OpenInput] = []
+    for source in Source:
+        if not is_configured(name, values, source):
+            continue
+        prefix = f'{name}.{source.name.lower()}'
+        topic, field, kind = (values[f'{prefix}.{leaf}'] for leaf in ('topic', 'field', 'type'))
+        if not topic:
+            raise InputError(f'parameter {prefix}.topic is empty, it must name a topic')
+        scaling = scaling_of(name, values, source, surface.lead)
+        try:
+            opened = OpenInput(source=source, topic=topic, field=field, scaling=scaling)
+            if kind:
+                inputs.append(opened.close(kind))
+            else:
+                check_path(field)
+                open_inputs.append(opened)
+        except InputError as error:
+            raise InputError(f'parameters {prefix}: {error}') from None
     return Axis(
         name=name,
         surface=surface,
-        inputs=tuple(one for one in inputs if isinstance(one, Input)),
-        open_inputs=tuple(one for one in inputs if isinstance(one, OpenInput)),
+        inputs=tuple(inputs),
+        open_inputs=tuple(open_inputs),
         monitor=Monitor(surface, settings_of(name, values, surface)),
     )
 
@@ -113,23 +126,23 @@ def check_topics(axes: Iterable[Axis], resolve: Callable[[str], str]) -> None:
     for axis in axes:
         for source, topic in axis.topics.items():
             resolved_topic(axis.name, source, topic, resolve)
-        for one in axis.inputs:
-            name = resolve(one.topic)
-            if types.setdefault(name, one.type_name) != one.type_name:
+        for known in axis.inputs:
+            name = resolve(known.topic)
+            if types.setdefault(name, known.type_name) != known.type_name:
                 raise InputError(
-                    f'topic {name} is configured as {types[name]} and as {one.type_name}'
+                    f'topic {name} is configured as {types[name]} and as {known.type_name}'
                 )
 
 
 def named_topics(values: Mapping[str, Any], resolve: Callable[[str], str]) -> set[str]:
     """Return the full names of all topics that parameters `values` name, as far as they are."""
-    found = set()
+    topics = set()
     for axis in values['axes']:
         for source in Source:
             if topic := values[f'{axis}.{source.name.lower()}.topic']:
                 with contextlib.suppress(InputError):
-                    found.add(resolved_topic(axis, source, topic, resolve))
-    return found
+                    topics.add(resolved_topic(axis, source, topic, resolve))
+    return topics
 
 
 def start_text(axis: Axis, node: str, resolve: Callable[[str], str], folder: Path | None) -> str:
@@ -140,7 +153,9 @@ def start_text(axis: Axis, node: str, resolve: Callable[[str], str], folder: Pat
     `resolve` returns the full name of a topic.
 
     """
-    read = [f'{source.name.lower()} from {resolve(one)}' for source, one in axis.topics.items()]
+    read = [
+        f'{source.name.lower()} from {resolve(topic)}' for source, topic in axis.topics.items()
+    ]
     surface = axis.surface
     return (
         f'axis {axis.name} reads {" and ".join(read)}, is judged by the {surface.tier} surface '
@@ -192,10 +207,19 @@ def reload_surface(axis: Axis, values: Mapping[str, Any]) -> Surface:
 
 
 def settings_of(name: str, values: Mapping[str, Any], surface: Surface) -> MonitorSettings:
-    """Return what the monitor is told; some limits are in parts of those of the surface."""
+    """Return the settings of the monitor; some limits are in parts of those of the surface."""
+    prefix = f'{name}.limits.'
     return MonitorSettings(
         axis=name,
-        limits=_limits_of(name, values, surface.preload),
+        limits=Limits(
+            rcs=values[prefix + 'rcs'],
+            efficiency=values[prefix + 'efficiency'],
+            light_load=values[prefix + 'light_load_fraction'] * surface.preload,
+            standstill_speed=values[prefix + 'standstill_speed'],
+            raise_delay=nanoseconds(values[prefix + 'raise_delay']),
+            clear_delay=nanoseconds(values[prefix + 'clear_delay']),
+            hysteresis=values[prefix + 'hysteresis'],
+        ),
         timeouts={
             source: nanoseconds(values[f'{name}.{source.name.lower()}.timeout'])
             for source in Source
@@ -259,7 +283,6 @@ def _torque_unit(name: str, values: Mapping[str, Any]) -> float:
 
 
 def _positions_of(name: str, values: Mapping[str, Any], lead: float) -> PositionSettings | None:
-    """Return how the speed follows from positions, None where it is an input; lead [m]."""
     unit = values[f'{name}.speed.unit']
     if unit not in POSITION_UNITS:
         return None
@@ -279,37 +302,6 @@ def _plausible_of(name: str, values: Mapping[str, Any], surface: Surface) -> dic
         source: values[f'{name}.limits.plausible_{source.name.lower()}'] or PLAUSIBLE * most
         for source, most in largest.items()
     }
-
-
-def _limits_of(name: str, values: Mapping[str, Any], preload: float) -> Limits:
-    prefix = f'{name}.limits.'
-    return Limits(
-        rcs=values[prefix + 'rcs'],
-        efficiency=values[prefix + 'efficiency'],
-        light_load=values[prefix + 'light_load_fraction'] * preload,
-        standstill_speed=values[prefix + 'standstill_speed'],
-        raise_delay=nanoseconds(values[prefix + 'raise_delay']),
-        clear_delay=nanoseconds(values[prefix + 'clear_delay']),
-        hysteresis=values[prefix + 'hysteresis'],
-    )
-
-
-def _input_of(
-    name: str, values: Mapping[str, Any], source: Source, lead: float
-) -> Input | OpenInput:
-    prefix = f'{name}.{source.name.lower()}'
-    if not values[f'{prefix}.topic']:
-        raise InputError(f'parameter {prefix}.topic is empty, it must name a topic')
-    topic, field = values[f'{prefix}.topic'], values[f'{prefix}.field']
-    kind, scaling = values[f'{prefix}.type'], scaling_of(name, values, source, lead)
-    try:
-        one = OpenInput(source=source, topic=topic, field=field, scaling=scaling)
-        if kind:
-            return one.close(kind)
-        check_path(field)
-        return one
-    except InputError as error:
-        raise InputError(f'parameters {prefix}: {error}') from None
 
 
 def scaling_of(name: str, values: Mapping[str, Any], source: Source, lead: float) -> Scaling:

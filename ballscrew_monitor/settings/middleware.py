@@ -53,7 +53,17 @@ def check_middleware(
             ': unset it, or install the package of that name'
         )
     for server in _servers(environment) if discovers else ():
-        _check_server(server)
+        address = _address(server)
+        if address is None:
+            raise InputError(
+                f'{SERVERS} names {server!r}, a server must be HOST:PORT such as '
+                f'127.0.0.1:{SERVER_PORT}, several with a semicolon between them'
+            )
+        if _resolves(address[0]) is False:
+            raise InputError(
+                f'{SERVERS} names {server!r}, whose host has no address: mend the name, '
+                'or unset it'
+            )
 
 
 def installed(environment: Mapping[str, str]) -> set[str]:
@@ -61,8 +71,8 @@ def installed(environment: Mapping[str, str]) -> set[str]:
     prefixes = [sys.prefix]
     if WHEELS not in environment:  # the wheels load their own, whatever else is sourced
         prefixes += filter(None, environment.get('AMENT_PREFIX_PATH', '').split(os.pathsep))
-    found = {path.name for prefix in prefixes for path in Path(prefix, INDEX).glob('rmw_*')}
-    return found - {'rmw_implementation'}
+    names = {path.name for prefix in prefixes for path in Path(prefix, INDEX).glob('rmw_*')}
+    return names - {'rmw_implementation'}
 
 
 def _is_fast_dds(environment: Mapping[str, str]) -> bool:
@@ -76,29 +86,16 @@ def _servers(environment: Mapping[str, str]) -> list[str]:
     return [server for server in environment.get(SERVERS, '').split(';') if server]
 
 
-def _check_server(server: str) -> None:
-    address = _address(server)
-    if address is None:
-        raise InputError(
-            f'{SERVERS} names {server!r}, a server must be HOST:PORT such as '
-            f'127.0.0.1:{SERVER_PORT}, several with a semicolon between them'
-        )
-    if _resolves(address[0]) is False:
-        raise InputError(
-            f'{SERVERS} names {server!r}, whose host has no address: mend the name, or unset it'
-        )
-
-
 def _address(server: str) -> tuple[str, int] | None:
     """Return host and port of a server, None if it has not the form of one."""
-    found = _SERVER.fullmatch(server)
-    if found is None or not 0 < int(found['port'] or SERVER_PORT) <= 0xFFFF:
+    parts = _SERVER.fullmatch(server)
+    if parts is None or not 0 < int(parts['port'] or SERVER_PORT) <= 0xFFFF:
         return None
-    return found['bracketed'] or found['host'], int(found['port'] or SERVER_PORT)
+    return parts['bracketed'] or parts['host'], int(parts['port'] or SERVER_PORT)
 
 
 def _resolves(host: str) -> bool | None:
-    """Tell whether a host has an address; None when that takes too long to know."""
+    """Return True if a host has an address; None when that takes too long to know."""
     answers: list[bool] = []
 
     def ask() -> None:

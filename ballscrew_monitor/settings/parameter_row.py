@@ -76,7 +76,13 @@ class ParameterRow:
     def check(self, name: str, value: Any) -> None:
         """Raise InputError unless `value` is allowed for the parameter `name`."""
         value = self.read(value)
-        self._check_type(name, value)
+        parts = value if isinstance(value, list) else [value]
+        of_texts = not isinstance(value, list) or all(isinstance(part, str) for part in parts)
+        if type(value) is not type(self.default) or not of_texts:
+            texts = isinstance(self.default, (str, list))
+            bare = texts and any(isinstance(part, bool) for part in parts)
+            allowed = _TYPE_NAMES[type(self.default)] + (f', {BARE_WORDS}' if bare else '')
+            raise InputError(f'parameter {name} is {value!r}, it must be {allowed}')
         good = not self.choices or value in self.choices
         if isinstance(value, float):
             good = self.low <= value <= self.high and not (self.nonzero and value == 0.0)
@@ -91,27 +97,16 @@ class ParameterRow:
         except InputError as error:
             raise InputError(f'parameter {name}: {error}') from None
 
-    def _check_type(self, name: str, value: Any) -> None:
-        parts = value if isinstance(value, list) else [value]
-        texts = isinstance(self.default, (str, list))
-        if type(value) is type(self.default) and (
-            not isinstance(value, list) or all(isinstance(part, str) for part in parts)
-        ):
-            return
-        hint = f', {BARE_WORDS}' if texts and any(isinstance(part, bool) for part in parts) else ''
-        allowed = _TYPE_NAMES[type(self.default)]
-        raise InputError(f'parameter {name} is {value!r}, it must be {allowed}{hint}')
-
     def descriptor(self) -> ParameterDescriptor:
         """Return the descriptor that ROS tools show and that rclpy enforces."""
-        made = ParameterDescriptor(
+        descriptor = ParameterDescriptor(
             description=f'{self.text} [{self.unit}]' if self.unit else self.text,
             read_only=self.change is Change.NEVER,
         )
         if isinstance(self.default, float):
-            made.floating_point_range = [
+            descriptor.floating_point_range = [
                 FloatingPointRange(from_value=self.low, to_value=self.high)
             ]
         changes = f'changes {self.change.value}' if self.change is not Change.NEVER else ''
-        made.additional_constraints = '; '.join(filter(None, (self.allowed, changes)))
-        return made
+        descriptor.additional_constraints = '; '.join(filter(None, (self.allowed, changes)))
+        return descriptor

@@ -64,7 +64,7 @@ def defaults(axes: list[str]) -> dict[str, Any]:
 
 
 def is_of_ros(name: str) -> bool:
-    """Tell whether a parameter is one of any ROS node, and not of this one."""
+    """Return True if a parameter is one of any ROS node, and not of this one."""
     return name.partition('.')[0] in ROS_NAMES
 
 
@@ -170,14 +170,14 @@ def _sections(text: str) -> dict[str, Any]:
     from surrogate.plain_yaml import plain_values  # the node is handed its parameters by ROS
 
     try:
-        found = plain_values(text, change=_take_letters_as_ros)
+        nodes = plain_values(text, change=_take_letters_as_ros)
     except InputError as error:
         raise InputError(f'the parameter file cannot be read: {error}') from None
-    if not isinstance(found, dict) or not all(
-        isinstance(key, str) and isinstance(section, dict) for key, section in found.items()
+    if not isinstance(nodes, dict) or not all(
+        isinstance(key, str) and isinstance(section, dict) for key, section in nodes.items()
     ):
         raise InputError('no ROS parameter file, it must be node names with ros__parameters below')
-    return found
+    return nodes
 
 
 def _take_letters_as_ros(root: Any) -> None:
@@ -209,7 +209,7 @@ def flatten(section: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
 
 
 def is_configured(name: str, values: Mapping[str, Any], source: Source) -> bool:
-    """Tell whether the axis `name` has an input; some may be left out, or be derived."""
+    """Return True if the axis `name` has an input; some may be left out, or be derived."""
     if source is Source.LOAD and values[f'{name}.load.source'] == MOTOR_TORQUE:
         return False
     return source not in OPTIONAL or bool(values[f'{name}.{source.name.lower()}.topic'])
@@ -222,14 +222,14 @@ def absolute(topic: str) -> str:
 
 def input_topics(values: Mapping[str, Any]) -> dict[str, str]:
     """Return topic and type of every input configured in the parameters `values`."""
-    found = {}
+    types = {}
     for axis in values['axes']:
         for source in reversed(Source):
             prefix = f'{axis}.{source.name.lower()}'
             topic = values[f'{prefix}.topic']
             if topic and is_configured(axis, values, source):
-                found[absolute(topic)] = values[f'{prefix}.type']
-    return found
+                types[absolute(topic)] = values[f'{prefix}.type']
+    return types
 
 
 def with_types(values: Mapping[str, Any], types: Mapping[str, str]) -> dict[str, Any]:

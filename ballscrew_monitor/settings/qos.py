@@ -91,17 +91,13 @@ def check_overrides(given: Mapping[str, Any], topics: Collection[str]) -> None:
                 f'parameter {name} is of no input, allowed is {PREFIX}.TOPIC.subscription.POLICY '
                 f'with TOPIC of {", ".join(sorted(topics))} and POLICY of {", ".join(POLICIES)}'
             )
-        _check_value(name, value, POLICIES[policy])
-
-
-def _check_value(name: str, value: Any, words: tuple[str, ...]) -> None:
-    if words:
-        good, allowed = value in words, f'one of {", ".join(words)}'
-    else:
-        good = type(value) is int and 1 <= value <= MOST_DEPTH
-        allowed = f'a whole number, 1 to {MOST_DEPTH}'
-    if not good:
-        raise InputError(f'parameter {name} is {value!r}, allowed is {allowed}')
+        if words := POLICIES[policy]:
+            good, allowed = value in words, f'one of {", ".join(words)}'
+        else:
+            good = type(value) is int and 1 <= value <= MOST_DEPTH
+            allowed = f'a whole number, 1 to {MOST_DEPTH}'
+        if not good:
+            raise InputError(f'parameter {name} is {value!r}, allowed is {allowed}')
 
 
 def overridden(given: Mapping[str, Any], topic: str, policy: str) -> str:

@@ -39,7 +39,7 @@ def _standing(case: Any, args: argparse.Namespace) -> int:
 
     solution, surface = solve_case(case)
     record = contact_record(case, solution)
-    show(record, lambda one: contact_page(one, case, solution, surface), json=args.json)
+    show(record, lambda record: contact_page(record, case, solution, surface), json=args.json)
     if args.plot:
         _plot(args.plot, 'figures', 'draw_contact', solution, surface)
     return 0 if solution.converged else 1
@@ -62,7 +62,7 @@ def _rolling(case: Any, args: argparse.Namespace) -> int:
     finally:
         progress.close()
     record = rolling_record(case, solution, surface)
-    show(record, lambda one: rolling_page(one, case, solution), json=args.json)
+    show(record, lambda record: rolling_page(record, case, solution), json=args.json)
     if args.plot:
         _plot(args.plot, 'rolling_figure', 'draw_rolling', solution)
     return 0 if solution.converged else 1

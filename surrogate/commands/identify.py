@@ -75,12 +75,12 @@ def add_identify_command(subparsers: Any, read_bag: BagReader | None = None) -> 
     parser.add_argument('--out', type=Path, metavar='FILE', help='datasheet to write (YAML)')
     parser.add_argument('--plot', type=Path, metavar='DIR', help='directory for the picture')
     add_json(parser)
-    _add_columns(parser.add_argument_group('CSV'))
-    _add_topics(parser.add_argument_group('bag'))
+    _add_sources(parser)
     parser.set_defaults(handler=_identify, read_bag=read_bag)
 
 
-def _add_columns(group: Any) -> None:
+def _add_sources(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group('CSV')
     for name, usual in (('speed', 'speed_rpm'), ('torque', 'torque_Nm')):
         group.add_argument(
             f'--{name}-column',
@@ -93,9 +93,7 @@ def _add_columns(group: Any) -> None:
         metavar='K',
         help='torque on the screw over the current in current_A [N m/A]',
     )
-
-
-def _add_topics(group: Any) -> None:
+    group = parser.add_argument_group('bag')
     group.add_argument('--speed-topic', metavar='TOPIC')
     group.add_argument('--speed-field', metavar='PATH', help='such as velocity[x_axis]')
     group.add_argument(
@@ -118,27 +116,20 @@ def _identify(args: argparse.Namespace) -> int:
     _check(args)
     screw, lubricant = load_inputs(args)
     run = _run(args, screw, lubricant)
-    fitted = _fitted(args)
+    fitted = tuple(FITTED[name] for name in dict.fromkeys(args.fit))
+    if args.onset:
+        from surrogate.identify.onset import FITTED as fitted
     contacts = _contacts(args, screw, lubricant, run, fitted)
-    found = identify(screw, run, contacts, fitted, loss=args.loss)
-    record = identification_record(screw, run, contacts, found)
+    result = identify(screw, run, contacts, fitted, loss=args.loss)
+    record = identification_record(screw, run, contacts, result)
     show(record, page, json=args.json)
-    usable = found.converged and not found.onset_refused
+    usable = result.converged and not result.onset_refused
     if args.out and usable:
-        _write(args.out, screw, lubricant, run, contacts, found)
+        _write(args.out, screw, lubricant, run, contacts, result)
     if args.plot:
         title = f'{screw.name}, {lubricant.name}, tier {contacts.tier}'
-        _plot(args.plot, run, found, title, record['onset'])
+        _plot(args.plot, run, result, title, record['onset'])
     return 0 if usable else 1
-
-
-def _fitted(args: argparse.Namespace) -> tuple[str, ...]:
-    """Return the parameters that are fitted beside the parasitic torque."""
-    if args.onset:
-        from surrogate.identify.onset import FITTED as WITH_ONSET
-
-        return WITH_ONSET
-    return tuple(FITTED[name] for name in dict.fromkeys(args.fit))
 
 
 def _check(args: argparse.Namespace) -> None:
@@ -171,12 +162,10 @@ def _check(args: argparse.Namespace) -> None:
 
 
 def _oil_sheet(out: Path) -> Path:
-    """Return where an identified oil is written."""
     return out.with_name(f'{out.stem}_oil{out.suffix}')
 
 
 def _run(args: argparse.Namespace, screw: Screw, lubricant: Lubricant) -> Any:
-    """Read the data, whatever they are."""
     from surrogate.identify.data import no_load_run, read_drag_csv
 
     bag = args.data.is_dir() or args.data.suffix == '.mcap'
@@ -235,7 +224,7 @@ def _contacts(
 
 
 def _write(
-    out: Path, screw: Screw, lubricant: Lubricant, run: Any, contacts: Any, found: Any
+    out: Path, screw: Screw, lubricant: Lubricant, run: Any, contacts: Any, result: Any
 ) -> None:
     """Write the screw, and beside it the oil where its viscosity was identified."""
     from datetime import date
@@ -244,20 +233,20 @@ def _write(
     from surrogate.identify.record import identified_oil, identified_screw
 
     day = date.today().isoformat()
-    write_sheet(out, identified_screw(screw, run, contacts, found, day))
+    write_sheet(out, identified_screw(screw, run, contacts, result, day))
     print(out, file=sys.stderr)
-    if 'viscosity_factor' in [one.name for one in found.estimates]:
+    if 'viscosity_factor' in [estimate.name for estimate in result.estimates]:
         oil = _oil_sheet(out)
-        write_sheet(oil, identified_oil(lubricant, run, contacts, found))
+        write_sheet(oil, identified_oil(lubricant, run, contacts, result))
         print(oil, file=sys.stderr)
 
 
-def _plot(folder: Path, run: Any, found: Any, title: str, onset: Any) -> None:
+def _plot(folder: Path, run: Any, result: Any, title: str, onset: Any) -> None:
     """Draw the picture; only this needs matplotlib."""
     from surrogate.identify.figures import draw_identification
 
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        print(draw_identification(folder, run, found, title, onset), file=sys.stderr)
+        print(draw_identification(folder, run, result, title, onset), file=sys.stderr)
     except OSError as error:
         raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None

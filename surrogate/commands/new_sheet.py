@@ -34,7 +34,6 @@ def add_new_commands(subparsers: Any) -> None:
 
 
 def _new(args: argparse.Namespace) -> int:
-    """Write a sheet; without flags ask for its values on a terminal."""
     from surrogate.datasheet_writer import write_sheet
 
     specs = fields(SHEETS[args.sheet][0])

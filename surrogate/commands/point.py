@@ -110,7 +110,6 @@ def add_temperature(parser: argparse.ArgumentParser) -> None:
 
 
 def _point(args: argparse.Namespace) -> int:
-    """Solve a point; exit code 1 when it is not converged."""
     from surrogate.builder.contact_onset import onset_of_sheets
     from surrogate.formulas.shaft import shaft_doubts
     from surrogate.screw.closed_form_record import closed_form_record, page
@@ -179,9 +178,9 @@ def _full(
     settings = ScrewSettings(
         kinematics=args.kinematics or 'rolling', inlet_heating=not args.isothermal
     )
-    found = solve_screw(screw, lubricant, point, settings=settings)
-    record = solution_record(screw, lubricant, point, found, settings)
-    return found, record | {'wall_s': time.perf_counter() - started}
+    solution = solve_screw(screw, lubricant, point, settings=settings)
+    record = solution_record(screw, lubricant, point, solution, settings)
+    return solution, record | {'wall_s': time.perf_counter() - started}
 
 
 def oil_temperature(args: argparse.Namespace, lubricant: Lubricant) -> float:

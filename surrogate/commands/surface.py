@@ -14,7 +14,7 @@ from surrogate.builder.companions import build_companions
 from surrogate.builder.tiers import build_surface, default_settings, find_tier, TIERS
 from surrogate.commands.output import add_json, show, tell
 from surrogate.commands.point import add_inputs, load_inputs
-from surrogate.commands.surface_inspect import add_inspect_commands
+from surrogate.commands.surface_inspect import add_file, add_inspect_commands
 from surrogate.commands.sweep import add_sweep_command, add_workers
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant
@@ -38,8 +38,13 @@ def add_surface_command(subparsers: Any) -> None:
     )
     _add_build(actions.add_parser('build', help='build a surface file'))
     add_sweep_command(actions)
-    _add_clean(actions.add_parser('clean', help='remove kept results of an unfinished build'))
-    _add_info(actions.add_parser('info', help='describe a surface file'))
+    clean = actions.add_parser('clean', help='remove kept results of an unfinished build')
+    clean.add_argument('out', type=Path, metavar='OUT', help='surface that was being built')
+    clean.set_defaults(handler=_clean)
+    info = actions.add_parser('info', help='describe a surface file')
+    add_file(info)
+    add_json(info)
+    info.set_defaults(handler=_info)
     add_inspect_commands(actions)
 
 
@@ -82,19 +87,6 @@ def _add_build(parser: argparse.ArgumentParser) -> None:
     )
     add_workers(parser)
     parser.set_defaults(handler=_build)
-
-
-def _add_clean(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('out', type=Path, metavar='OUT', help='surface that was being built')
-    parser.set_defaults(handler=_clean)
-
-
-def _add_info(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        'file', nargs='?', type=Path, help='a path, or a tier of those shipped (default full)'
-    )
-    add_json(parser)
-    parser.set_defaults(handler=_info)
 
 
 def _build(args: argparse.Namespace) -> int:
@@ -147,11 +139,11 @@ def _one_temperature(args: argparse.Namespace, lubricant: Lubricant) -> dict[str
             f'--temperature-degC is {args.temperature:g} degC, allowed is '
             f'{low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC (the range of the oil sheet)'
         )
-    found: dict[str, Any] = {
+    settings: dict[str, Any] = {
         'temperature_range': (max(kelvin - HALF_KELVIN, low), min(kelvin + HALF_KELVIN, high)),
         'temperature_nodes': 2,
     }
-    return found | ({'held_out': HELD_OUT} if find_tier(args.tier).spreads else {})
+    return settings | ({'held_out': HELD_OUT} if find_tier(args.tier).spreads else {})
 
 
 @contextmanager

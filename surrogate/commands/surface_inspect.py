@@ -26,19 +26,36 @@ def add_inspect_commands(actions: Any) -> None:
     """Add the subcommands to those of `surface`."""
     _add_check(actions.add_parser('check', help='compare a surface file with fresh solves'))
     _add_query(actions.add_parser('query', help='look up one point, or those of a table'))
-    _add_plot(actions.add_parser('plot', help='draw a surface, a picture per temperature'))
+    plot = actions.add_parser('plot', help='draw a surface, a picture per temperature')
+    add_file(plot)
+    plot.add_argument('--out', type=Path, required=True, metavar='DIR', help='where pictures go')
+    plot.add_argument(
+        '--temperature-degC',
+        type=float,
+        nargs='+',
+        metavar='T',
+        dest='temperatures',
+        help='temperatures [degC] (default: both ends and that of the oil datasheet)',
+    )
+    plot.set_defaults(handler=_plot)
     _add_diff(actions.add_parser('diff', help='compare two surface files'))
-    _add_export(actions.add_parser('export', help='write a surface as NetCDF or as a table'))
+    export = actions.add_parser('export', help='write a surface as NetCDF or as a table')
+    add_file(export)
+    to = export.add_mutually_exclusive_group(required=True)
+    to.add_argument('--netcdf', type=Path, metavar='OUT.nc', help='NetCDF file to write')
+    to.add_argument('--csv', type=Path, metavar='OUT.csv', help='table to write, a line per node')
+    export.set_defaults(handler=_export)
 
 
-def _add_file(parser: argparse.ArgumentParser) -> None:
+def add_file(parser: argparse.ArgumentParser) -> None:
+    """Add the surface that a subcommand reads."""
     parser.add_argument(
         'file', nargs='?', type=Path, help='a path, or a tier of those shipped (default full)'
     )
 
 
 def _add_check(parser: argparse.ArgumentParser) -> None:
-    _add_file(parser)
+    add_file(parser)
     parser.add_argument('--points', type=int, default=20, help='random points (default 20)')
     parser.add_argument('--seed', type=int, default=1, help='seed of the points (default 1)')
     parser.add_argument(
@@ -59,7 +76,7 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_query(parser: argparse.ArgumentParser) -> None:
-    _add_file(parser)
+    add_file(parser)
     add_operating_point(parser, required=False)
     parser.add_argument(
         '--csv',
@@ -72,20 +89,6 @@ def _add_query(parser: argparse.ArgumentParser) -> None:
     )
     add_json(parser)
     parser.set_defaults(handler=_query)
-
-
-def _add_plot(parser: argparse.ArgumentParser) -> None:
-    _add_file(parser)
-    parser.add_argument('--out', type=Path, required=True, metavar='DIR', help='where pictures go')
-    parser.add_argument(
-        '--temperature-degC',
-        type=float,
-        nargs='+',
-        metavar='T',
-        dest='temperatures',
-        help='temperatures [degC] (default: both ends and that of the oil datasheet)',
-    )
-    parser.set_defaults(handler=_plot)
 
 
 def _add_diff(parser: argparse.ArgumentParser) -> None:
@@ -107,14 +110,6 @@ def _add_diff(parser: argparse.ArgumentParser) -> None:
         )
     add_json(parser)
     parser.set_defaults(handler=_diff)
-
-
-def _add_export(parser: argparse.ArgumentParser) -> None:
-    _add_file(parser)
-    to = parser.add_mutually_exclusive_group(required=True)
-    to.add_argument('--netcdf', type=Path, metavar='OUT.nc', help='NetCDF file to write')
-    to.add_argument('--csv', type=Path, metavar='OUT.csv', help='table to write, a line per node')
-    parser.set_defaults(handler=_export)
 
 
 def _check(args: argparse.Namespace) -> int:
@@ -139,14 +134,14 @@ def _check(args: argparse.Namespace) -> int:
         Progress(args.points, 'points').step if slow else lambda: None,
     )
     print(f'{path}: {result.sentence()}')
-    for one in limit_errors(
+    for limit in limit_errors(
         data, args.limit_points, args.seed, lambda: time.monotonic() < deadline
     ):
-        off = f'is off by {100 * one.error:+.2g} % of the speed'
+        off = f'is off by {100 * limit.error:+.2g} % of the speed'
         print(
-            f'RCS is 0.01 at {one.speed / RPM:.3g} rev/min, {one.load:.0f} N, '
-            f'{one.temperature - ZERO_CELSIUS:.0f} degC; that '
-            + (off if math.isfinite(one.error) else 'has no solution')
+            f'RCS is 0.01 at {limit.speed / RPM:.3g} rev/min, {limit.load:.0f} N, '
+            f'{limit.temperature - ZERO_CELSIUS:.0f} degC; that '
+            + (off if math.isfinite(limit.error) else 'has no solution')
         )
     return 0 if result.passed else 1
 
@@ -228,7 +223,7 @@ def _diff(args: argparse.Namespace) -> int:
     record = diff_record(read(find_surface(args.first)), read(find_surface(args.second)))
     sentences = exceeded(record, tolerances)
     whole = {**record, 'tolerances': tolerances, 'exceeded': sentences}
-    show(whole, lambda one: diff_page(one, sentences), json=args.json)
+    show(whole, lambda whole: diff_page(whole, sentences), json=args.json)
     return 1 if sentences else 0
 
 

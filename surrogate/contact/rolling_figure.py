@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.contact.rolling_record import hertz_of
 from surrogate.ehl.moving import MovingSolution
-from surrogate.ehl.to_si import PUNCTURED
+from surrogate.ehl.results import PUNCTURED
 from surrogate.plotting.style import BLUE, draw_picture, GREY, MAP, new_figure, VERMILION
 from surrogate.units import MICRO, NANO
 

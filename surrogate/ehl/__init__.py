@@ -7,14 +7,14 @@ case scales a contact (scales) to its domain (domain) and grid. half_space (defo
 kernels.reynolds (film) make the system of one grid, which newton iterates with linear:
 kernels.krylov over kernels.level, whose lines and bands (kernels.line, kernels.bands) precondition
 it, and kernels.transfer to coarser grids; kernels.fft convolves. search finds the way to the case,
-solver judges the solution, to_si returns it in SI units, friction integrates it. interface holds
+solver judges the solution, results returns it in SI units, friction integrates it. interface holds
 inputs and result.
 
 """
 
 from surrogate.ehl.interface import Condition, ContactLubricant, ContactSolution, Settings, Status
+from surrogate.ehl.results import punctured_nodes
 from surrogate.ehl.solver import solve_contact
-from surrogate.ehl.to_si import punctured_nodes
 
 __all__ = [
     'Condition',

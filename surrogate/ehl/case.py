@@ -108,7 +108,7 @@ class ScaledCase(ScaledContact):
         return heights / self.height_unit
 
     def has_heights_on(self, shape: tuple[int, int]) -> bool:
-        """Tell whether heights can be had on the half grid: an array needs common nodes."""
+        """Return True if heights can be had on the half grid: an array needs common nodes."""
         nodes = (self.settings.nx, self.settings.ny)
         common = all(n - 1 == 2 * (half - 1) for n, half in zip(nodes, shape, strict=True))
         return self.roughness is None or callable(self.roughness) or common
@@ -246,7 +246,7 @@ def make_case(
         settings, domain = replace(settings, ny=ny), (*domain[:2], side / b)
     open_inlet = settings.domain is None if settings.open_inlet is None else settings.open_inlet
     return ScaledCase(
-        **{one.name: getattr(scaled, one.name) for one in fields(scaled)},
+        **{field.name: getattr(scaled, field.name) for field in fields(scaled)},
         settings=settings,
         domain=(domain[0], domain[1], domain[2] * scaled.ellipticity),
         open_inlet=open_inlet,

@@ -92,16 +92,17 @@ def _summit_reaches(scaled: ScaledContact, reach: float) -> tuple[float, float, 
         return 0.0, 0.0, 0.0
     out = np.linspace(0, reach, 1 + round(min(reach / FINEST, MOST_LINES)))
     across = np.linspace(-1.3, 1.3, PLACES)
-    unit = scaled.ellipticity**2 * scaled.contact.radius_x / scaled.contact.radius_y
+    place = 1 + out
+    # Dry gap beside a line contact, over a^2/Rx: the narrowest one along x.
+    gap = (place * np.sqrt(place**2 - 1) - np.arccosh(place)) / 2
     before, behind = (
-        _outermost(out, _heights(scaled, side * (1 + out), across), _gap_along(1 + out))
-        for side in (-1, 1)
+        _outermost(out, _heights(scaled, side * place, across), gap) for side in (-1, 1)
     )
     along = np.linspace(-1 - before, 1 + behind, PLACES)
-    beside = (
-        _outermost(out, _heights(scaled, along, side * (1 + out)).T, unit * _gap_across(1 + out))
-        for side in (-1, 1)
-    )
+    # Beside a circular contact, over b^2/Ry: narrower than along y.
+    unit = scaled.ellipticity**2 * scaled.contact.radius_x / scaled.contact.radius_y
+    gap = unit * ((np.sqrt(place**2 - 1) - (2 - place**2) * np.arccos(1 / place)) / math.pi)
+    beside = (_outermost(out, _heights(scaled, along, side * place).T, gap) for side in (-1, 1))
     return before, behind, max(beside)
 
 
@@ -116,13 +117,3 @@ def _outermost(out: Array, heights: Array, gap: Array) -> float:
     """Return the place just outside the last line on which a summit is higher than the gap."""
     touching = np.flatnonzero(heights.max(axis=1) > gap)
     return float(out[min(touching[-1] + 1, out.size - 1)]) if touching.size else 0.0
-
-
-def _gap_along(x: Array) -> Array:
-    """Return the dry gap beside a line contact, over a^2/Rx: the narrowest one along x."""
-    return (x * np.sqrt(x**2 - 1) - np.arccosh(x)) / 2
-
-
-def _gap_across(y: Array) -> Array:
-    """Return the dry gap beside a circular contact, over b^2/Ry: narrower than along y."""
-    return (np.sqrt(y**2 - 1) - (2 - y**2) * np.arccos(1 / y)) / math.pi

@@ -104,7 +104,10 @@ def node_strengths(
     `film` shears the local or the central film. Raises InputError for options that make no sense.
 
     """
-    _check_options(asperity_friction, film)
+    if not 0 <= asperity_friction <= 1:
+        raise InputError(f'asperity_friction is {asperity_friction!r}, allowed is 0 to 1')
+    if film not in get_args(Film):
+        raise InputError(f'film is {film!r}, allowed is local or central')
     x, y = np.meshgrid(solution.x, solution.y, indexing='ij')
     area, stress = solution.node_area, solution.lubricant.eyring_stress
     thickness = solution.film if film == 'local' else np.full_like(x, solution.central_film)
@@ -197,10 +200,3 @@ def _on_grid(solution: ContactSolution, slip: ArrayLike, name: str) -> Array:
     if not np.isfinite(values).all():
         raise InputError(f'{name} holds a value that is not finite, allowed are finite m/s')
     return np.broadcast_to(values, solution.film.shape)
-
-
-def _check_options(asperity_friction: float, film: str) -> None:
-    if not 0 <= asperity_friction <= 1:
-        raise InputError(f'asperity_friction is {asperity_friction!r}, allowed is 0 to 1')
-    if film not in get_args(Film):
-        raise InputError(f'film is {film!r}, allowed is local or central')

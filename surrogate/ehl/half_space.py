@@ -120,31 +120,22 @@ def _symbol(length_x: int, length_y: int, aspect: float, periodic: bool) -> Arra
     """Return the spectrum of the kernel between cells of size 1 by `aspect`."""
     lag_x, lag_y = 1.0 * np.arange(length_x // 2 + 1), aspect * np.arange(length_y // 2 + 1)
     x, y = lag_x[:, None], lag_y[None, :]
-    if periodic:
-        quarter = _influence_of_images(x, y, aspect, length_y * aspect)
+    if periodic:  # the cell and its images every `width`, less a constant
+        width = length_y * aspect
+        quarter: Array = np.zeros(np.broadcast_shapes(x.shape, y.shape))
+        for image in range(-IMAGES, IMAGES + 1):
+            quarter += influence_love_1929(x, y + image * width, 1.0, aspect)
+        # Beyond them the load is spread evenly, so that their sum is an integral from a distance
+        # s on, -aspect/width ln(s + sqrt(s^2 + x^2)), to either side.
+        reach = (IMAGES + 0.5) * width
+        for beyond in (reach - y, reach + y):
+            quarter -= aspect / width * np.log(beyond + np.hypot(beyond, x))
     else:
         quarter = influence_love_1929(x, y, 1.0, aspect)
     rows = np.fft.hfft(quarter, axis=1)[:, : length_y // 2 + 1]
     symbol = np.fft.hfft(rows, axis=0)
     symbol.flags.writeable = False
     return symbol
-
-
-def _influence_of_images(x: Array, y: Array, aspect: float, width: float) -> Array:
-    """
-    Return the influence of a cell and of its images every `width` along y, less a constant.
-
-    Beyond `IMAGES` of them on each side the load is spread evenly, so that their sum is an
-    integral, -aspect/width ln(s + sqrt(s^2 + x^2)) from the distance s on, to either side.
-
-    """
-    total = np.zeros(np.broadcast_shapes(x.shape, y.shape))
-    for image in range(-IMAGES, IMAGES + 1):
-        total += influence_love_1929(x, y + image * width, 1.0, aspect)
-    reach = (IMAGES + 0.5) * width
-    for beyond in (reach - y, reach + y):
-        total -= aspect / width * np.log(beyond + np.hypot(beyond, x))
-    return total
 
 
 def _pack(symbol: Array, symmetric: bool) -> Array:

@@ -59,7 +59,6 @@ class ContactLubricant:
     limiting_shear_share: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
         _require('viscosity', self.viscosity, 'Pa s', 1e-4, 100.0)
         _require('pressure_viscosity', self.pressure_viscosity, '1/Pa', 1e-10, 1e-7)
         _require('eyring_stress', self.eyring_stress, 'Pa', 1e4, 1e9)
@@ -79,7 +78,6 @@ class Condition:
     entrainment_speed: float
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
         _require('load', self.load, 'N', 1e-6, 1e7)
         _require('entrainment_speed', self.entrainment_speed, 'm/s', 0.0, 1e3)
 
@@ -127,7 +125,6 @@ class Settings:
     meniscus_length: float = 1e-3
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
         for name in ('nx', 'ny'):
             value = getattr(self, name)
             if not (isinstance(value, int) and 17 <= value <= LARGEST_GRID and value % 2):

@@ -50,9 +50,18 @@ def jacobian_levels(
     if problem.dry or now.contact.any():
         return levels
     while grid.coarser is not None and len(levels) < LEVELS:
-        grid, problem = grid.coarser, _coarser(problem)
+        # The problem with twice the node distance, as far as its Jacobian goes.
+        inlet = inject(problem.inlet[None])[0] ** 2
+        grid, problem = grid.coarser, replace(problem, mobility=problem.mobility / 2, inlet=inlet)
         pressure, gap, film = inject(pressure), inject(gap), inject(film)
-        levels.append(_coarse_level(grid, problem, pressure, gap, film))
+        contact = np.zeros(grid.shape, bool)
+        _, by_pressure, by_gap, _ = film_rows(grid, problem, pressure, gap, contact)
+        sizes = np.where(film, np.abs(by_pressure[0]) + np.abs(by_gap[0]) * grid.stiffness, 0.0)
+        factor = np.divide(1.0, sizes, out=np.zeros(grid.shape), where=sizes > 0)
+        by_pressure *= factor
+        by_gap *= factor
+        by_pressure[0][sizes == 0] = 1.0  # cavitated
+        levels.append(_level(grid, contact, by_pressure, by_gap, sizes))
     return levels
 
 
@@ -61,10 +70,15 @@ def _level(
 ) -> GridLevel:
     work = grid.workspace
     work.by_pressure[:], work.by_gap[:] = by_pressure, by_gap
+    own = contact.copy()  # without the mirror column, or the copies of a period
+    if grid.symmetric:
+        own[:, 0] = False
+    if grid.periodic:
+        own[:, [0, -1]] = False
     return GridLevel(
         space=grid.krylov_space,
         work=work,
-        nodes=np.flatnonzero(_own_nodes(grid, contact)),
+        nodes=np.flatnonzero(own),
         contact=contact,
         box=contact_box(contact),
         weights=grid.weights.astype(KRYLOV_TYPE),
@@ -77,43 +91,12 @@ def contact_box(contact: Mask) -> tuple[int, int, int, int]:
     """Return first row, end of the rows, first column, end of the columns about the contact."""
     ends: list[int] = []
     for axis in (1, 0):
-        found = np.flatnonzero(contact.any(axis=axis))
+        lines = np.flatnonzero(contact.any(axis=axis))
         last = contact.shape[1 - axis] - 1
         ends += (
-            [max(int(found[0]) - 1, 1), min(int(found[-1]) + 2, last)] if found.size else [1, 1]
+            [max(int(lines[0]) - 1, 1), min(int(lines[-1]) + 2, last)] if lines.size else [1, 1]
         )
     return ends[0], ends[1], ends[2], ends[3]
-
-
-def _coarser(problem: GridProblem) -> GridProblem:
-    """Return the problem with twice the node distance, as far as its Jacobian goes."""
-    return replace(
-        problem, mobility=problem.mobility / 2, inlet=inject(problem.inlet[None])[0] ** 2
-    )
-
-
-def _coarse_level(
-    grid: Grid, problem: GridProblem, pressure: Array, gap: Array, film: Mask
-) -> GridLevel:
-    """Linearise about an injected state; nodes outside `film` are cavitated."""
-    contact = np.zeros(grid.shape, bool)
-    _, by_pressure, by_gap, _ = film_rows(grid, problem, pressure, gap, contact)
-    sizes = np.where(film, np.abs(by_pressure[0]) + np.abs(by_gap[0]) * grid.stiffness, 0.0)
-    factor = np.divide(1.0, sizes, out=np.zeros(grid.shape), where=sizes > 0)
-    by_pressure *= factor
-    by_gap *= factor
-    by_pressure[0][sizes == 0] = 1.0
-    return _level(grid, contact, by_pressure, by_gap, sizes)
-
-
-def _own_nodes(grid: Grid, mask: Mask) -> Mask:
-    """Drop the mirror column of a mask, or the copies of a period."""
-    own = mask.copy()
-    if grid.symmetric:
-        own[:, 0] = False
-    if grid.periodic:
-        own[:, [0, -1]] = False
-    return own
 
 
 def _apply(planes: Array, field: Array) -> Array:

@@ -75,12 +75,19 @@ def solve_grid(
     while True:
         now = evaluate(grid, problem, state)
         tell(count, now.flux_error)
-        converged = _is_converged(now, problem, limits)
+        converged = bool(
+            now.flux_error < limits.flux
+            and now.gap_error < limits.gap
+            and abs(now.load_rest) < limits.load * problem.load
+        )
         late = time.perf_counter() > limits.deadline
         finite = math.isfinite(now.flux_error) and math.isfinite(now.load_rest)
         if converged or late or not finite or count >= limits.newton or hopeless >= HOPELESS:
             break
-        new, used = _step(grid, problem, state, now, _tightened(limits, now.flux_error, last))
+        # Loose linear solves alone lose thick films of cold oil.
+        stalls = now.flux_error >= FALLING * last
+        tolerance = min(limits.krylov, limits.stalled) if stalls else limits.krylov
+        new, used = _step(grid, problem, state, now, replace(limits, krylov=tolerance))
         state = _shortened(grid, problem, state, new, now.flux_error, limits.halvings)
         last = now.flux_error
         krylov += used
@@ -109,38 +116,18 @@ def _shortened(
     for _ in range(halvings):
         if evaluate(grid, problem, new).flux_error < (1 - LEAST_FALL * share) * flux:
             break
-        new, share = _between(old, new), share / 2
+        share /= 2
+        new = GridState(
+            film_pressure=0.5 * (old.film_pressure + new.film_pressure),
+            asperity_pressure=0.5 * (old.asperity_pressure + new.asperity_pressure),
+            approach=0.5 * (old.approach + new.approach),
+        )
     return new
-
-
-def _between(old: GridState, new: GridState) -> GridState:
-    """Return the state in the middle of two."""
-    return GridState(
-        film_pressure=0.5 * (old.film_pressure + new.film_pressure),
-        asperity_pressure=0.5 * (old.asperity_pressure + new.asperity_pressure),
-        approach=0.5 * (old.approach + new.approach),
-    )
-
-
-def _is_converged(now: Evaluation, problem: GridProblem, limits: NewtonLimits) -> bool:
-    return bool(
-        now.flux_error < limits.flux
-        and now.gap_error < limits.gap
-        and abs(now.load_rest) < limits.load * problem.load
-    )
-
-
-def _tightened(limits: NewtonLimits, flux: float, last: float) -> NewtonLimits:
-    """Return limits of the next step; loose linear solves alone lose thick films of cold oil."""
-    if flux < FALLING * last:
-        return limits
-    return replace(limits, krylov=min(limits.krylov, limits.stalled))
 
 
 def _step(
     grid: Grid, problem: GridProblem, state: GridState, now: Evaluation, limits: NewtonLimits
 ) -> tuple[GridState, int]:
-    """One Newton step, limited."""
     film_change, total_change, approach, used = solve_linear(
         grid, problem, state, now, limits.krylov
     )
@@ -155,7 +142,10 @@ def _step(
         )
         asperity_change[contact] += film_change[contact] - limited
         film_change[contact] = limited
-    share = min(1.0, min(limits.step, limits.viscous / _stiffening(problem)) / max(free, 1e-30))
+    # Slope of ln(viscosity) at the Hertz pressure.
+    slope = fluid_at(1.0, problem.pressure_scale, problem.growth, problem.exponent, 0.0)[1]
+    stiffening = max(float(slope), 1e-30)
+    share = min(1.0, min(limits.step, limits.viscous / stiffening) / max(free, 1e-30))
     asperity_pressure = state.asperity_pressure + share * asperity_change
     if share == 1.0:
         asperity_pressure[~contact] = 0.0
@@ -164,12 +154,6 @@ def _step(
         asperity_pressure=asperity_pressure,
         approach=state.approach + share * approach,
     ), used
-
-
-def _stiffening(problem: GridProblem) -> float:
-    """Return the slope of ln(viscosity) at the Hertz pressure."""
-    slope = fluid_at(1.0, problem.pressure_scale, problem.growth, problem.exponent, 0.0)[1]
-    return max(float(slope), 1e-30)
 
 
 def limit_on_contact(problem: GridProblem, pressure: Array, change: Array, rise: float) -> Array:

@@ -19,10 +19,10 @@ from surrogate.ehl.case import Array, COARSEST, ScaledCase, STIFF
 from surrogate.ehl.grid import Grid, GridState, transfer
 from surrogate.ehl.interface import ContactSolution
 from surrogate.ehl.newton import NewtonLimits, NewtonResult, solve_grid
+from surrogate.ehl.results import film_and_share, Half, state_from_solution
 from surrogate.ehl.system import GridProblem
-from surrogate.ehl.to_si import film_and_share, Half, state_from_solution
 
-Found = tuple[Grid, NewtonResult]
+GridResult = tuple[Grid, NewtonResult]
 FINEST_CUT = 1 / 64
 """Shortest step of a continuation path, as a share of it [-]."""
 WARM_CUT = 1 / 4
@@ -107,7 +107,7 @@ class Search:
                 if step < finest or outcome.out_of_time:
                     return outcome
 
-    def smooth(self, speed: float, *, final: bool) -> Found:
+    def smooth(self, speed: float, *, final: bool) -> GridResult:
         """Solve the smooth contact at a speed [m/s] from cold through the cascade."""
         levels = self.case.levels()
         grid, outcome = self._cascade(speed, levels[:-1])
@@ -140,11 +140,11 @@ class Search:
     def _cascade(
         self, speed: float, levels: list[tuple[int, int]]
     ) -> tuple[Grid | None, NewtonResult | None]:
-        """Solve the coarser grids at first order; on the last also at the final order."""
+        """Solve the coarser grids at first order; the last also as the finest, for its film."""
         grid: Grid | None = None
         outcome: NewtonResult | None = None
         limits = self.limits(rough=False, final=False)
-        for place, shape in enumerate(levels):
+        for shape in levels:
             finer = self.case.grid(*shape, symmetric=True)
             problem = self.case.problem(finer, speed, self.case.shape_heights(finer), 1.0)
             if outcome is not None and outcome.converged and grid is not None:
@@ -152,23 +152,15 @@ class Search:
             else:
                 outcome = self.from_hertz(finer, speed, limits)
             grid = finer
-            if place == len(levels) - 1 and outcome.converged:
-                outcome = self._half_grid(grid, problem, speed, outcome)
-        return grid, outcome
-
-    def _half_grid(
-        self, grid: Grid, problem: GridProblem, speed: float, start: NewtonResult
-    ) -> NewtonResult:
-        """Solve the last but one grid as the finest is solved and note its film."""
-        if not self.case.settings.error_estimate or self.case.touches:
-            return start
+        skips = not self.case.settings.error_estimate or self.case.touches
+        if grid is None or outcome is None or not outcome.converged or skips:
+            return grid, outcome
         limits = replace(self.limits(rough=False, final=True), flux=1e-3, newton=15)
-        order = self.case.order
-        outcome = self.solve(grid, replace(problem, order=order), start.state, limits)
-        if not outcome.converged or (outcome.contact.any() and not problem.dry):
-            return start
-        self.half = film_and_share(self.case, grid, outcome)
-        return outcome
+        half = self.solve(grid, replace(problem, order=self.case.order), outcome.state, limits)
+        if not half.converged or (half.contact.any() and not problem.dry):
+            return grid, outcome
+        self.half = film_and_share(self.case, grid, half)
+        return grid, half
 
     def from_hertz(self, grid: Grid, speed: float, limits: NewtonLimits) -> NewtonResult:
         """Start from Hertz's pressure at this speed [m/s] or, failing that, at a faster one."""
@@ -204,11 +196,9 @@ class Search:
             return self.case.problem(grid, speed, heights, 1.0, 1.0 - t)
 
         outcome = self.solve(grid, stiffening(0.0), self.case.hertz_state(grid, speed), limits)
-        return (
-            self.march(grid, outcome.state, stiffening, limits, 0.5)
-            if (outcome.converged)
-            else outcome
-        )
+        if not outcome.converged:
+            return outcome
+        return self.march(grid, outcome.state, stiffening, limits, 0.5)
 
     def _slowing(
         self, grid: Grid, heights: Array, fast: float, slow: float, order: float | None = None
@@ -221,7 +211,7 @@ class Search:
 
         return problem
 
-    def rough(self) -> Found:
+    def rough(self) -> GridResult:
         """
         Solve a rough contact from cold: all the way on the half grid, then on the finest.
 
@@ -236,30 +226,25 @@ class Search:
             case=replace(case, settings=replace(case.settings, nx=nx, ny=ny)),
             deadline=self.deadline,
         )
-        coarse, found = other.thin()
+        coarse, half = other.thin()
         self.newton, self.krylov = self.newton + other.newton, self.krylov + other.krylov
-        if found.converged:
-            grid, outcome = self._refined(coarse, found)
-            if outcome.converged:
-                if case.settings.error_estimate:
-                    self.half = film_and_share(case, coarse, found)
-                return grid, outcome
-        return self.thin()
-
-    def _refined(self, coarse: Grid, found: NewtonResult) -> Found:
-        """Solve a rough contact on the finest grid from a coarser one."""
-        case, settings = self.case, self.case.settings
-        grid = case.grid(settings.nx, settings.ny, symmetric=False)
+        if not half.converged:
+            return self.thin()
+        grid = case.grid(case.settings.nx, case.settings.ny, symmetric=False)
         heights = case.shape_heights(grid) - case.rough_heights(grid)
         problem = case.problem(grid, case.condition.entrainment_speed, heights, case.order)
-        state = transfer(found.state, coarse, grid)
-        return grid, self.solve(grid, problem, state, self.limits(rough=True, final=True))
+        state = transfer(half.state, coarse, grid)
+        outcome = self.solve(grid, problem, state, self.limits(rough=True, final=True))
+        if not outcome.converged:
+            return self.thin()
+        if case.settings.error_estimate:
+            self.half = film_and_share(case, coarse, half)
+        return grid, outcome
 
     def _half_shape(self) -> tuple[int, int]:
-        """Return the nodes of the half grid along and across."""
         return self.case.settings.nx // 4 * 2 + 1, self.case.settings.ny // 4 * 2 + 1
 
-    def thin(self) -> Found:
+    def thin(self) -> GridResult:
         """
         Solve a rough contact, or a smooth one whose film is near the floor, from cold.
 
@@ -310,7 +295,7 @@ class Search:
         height = float(rough[inside].std()) if inside.any() else 0.0
         return max(PARTING * height, 2 * self.case.floor)
 
-    def warm(self, start: ContactSolution) -> Found | None:
+    def warm(self, start: ContactSolution) -> GridResult | None:
         """
         Solve from a neighbouring solution; None if that fails.
 
@@ -321,7 +306,9 @@ class Search:
         """
         case, settings = self.case, self.case.settings
         rough = case.roughness is not None
-        if rough and not self._is_near(start) or _is_rigid(start):
+        flattened = start.semi_axis_x**2 / start.contact.radius_x
+        is_rigid = start.central_film > RIGID * flattened
+        if rough and not self._is_near(start) or is_rigid:
             return None
         grid = case.grid(settings.nx, settings.ny, symmetric=not rough)
         heights = case.shape_heights(grid)
@@ -341,7 +328,7 @@ class Search:
         return (grid, outcome) if outcome.converged else None
 
     def _is_near(self, start: ContactSolution) -> bool:
-        """Tell whether load and speed of a rough solution are near enough to start from it."""
+        """Return True if load and speed of a rough solution are near enough to start from it."""
         here, there = self.case.condition, start.condition
         if abs(there.load / here.load - 1) > SAME_LOAD:
             return False
@@ -363,23 +350,15 @@ class Search:
             heights = heights - case.rough_heights(coarser)
         limits = replace(self.limits(rough=case.touches, final=True), newton=WARM_NEWTON)
         problem = case.problem(coarser, speed, heights, case.order)
-        found = self.solve(coarser, problem, transfer(outcome.state, grid, coarser), limits)
-        if found.converged:
-            self.half = film_and_share(case, coarser, found)
+        half = self.solve(coarser, problem, transfer(outcome.state, grid, coarser), limits)
+        if half.converged:
+            self.half = film_and_share(case, coarser, half)
 
-    def refuse(self) -> Found:
+    def refuse(self) -> GridResult:
         """Return Hertz's state on the finest grid without any iteration."""
         case, settings = self.case, self.case.settings
-        grid, speed = (
-            case.grid(settings.nx, settings.ny, symmetric=True),
-            (case.condition.entrainment_speed),
-        )
+        grid = case.grid(settings.nx, settings.ny, symmetric=True)
+        speed = case.condition.entrainment_speed
         problem = case.problem(grid, speed, case.shape_heights(grid), 1.0)
         limits = replace(self.limits(rough=False, final=True), newton=0)
         return grid, self.solve(grid, problem, case.hertz_state(grid, speed), limits)
-
-
-def _is_rigid(start: ContactSolution) -> bool:
-    """Tell whether the bodies of a smooth solution hardly deform."""
-    flattened = start.semi_axis_x**2 / start.contact.radius_x
-    return start.central_film > RIGID * flattened

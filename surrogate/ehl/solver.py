@@ -21,8 +21,8 @@ from surrogate.ehl.interface import (
     Status,
 )
 from surrogate.ehl.newton import NewtonResult
-from surrogate.ehl.search import Found, Search
-from surrogate.ehl.to_si import film_and_share, make_solution
+from surrogate.ehl.results import film_and_share, make_solution
+from surrogate.ehl.search import GridResult, Search
 from surrogate.ehl.watch import at
 from surrogate.formulas.geometry import Contact
 
@@ -95,21 +95,20 @@ def prepare() -> None:
             )
 
 
-def _find(search: Search, start: ContactSolution | None) -> Found:
+def _find(search: Search, start: ContactSolution | None) -> GridResult:
     """Choose the way: refuse, warm, thin or smooth."""
     case, speed = search.case, search.case.condition.entrainment_speed
     if not case.touches and speed and case.coarseness(case.settings, speed) > UNRESOLVED:
         return search.refuse()
-    found = search.warm(start) if start is not None else None
-    if found is not None:
-        return found
+    warm = search.warm(start) if start is not None else None
+    if warm is not None:
+        return warm
     if case.roughness is not None:
         return search.rough()
     return search.thin() if case.touches and speed else search.smooth(speed, final=True)
 
 
 def _status(search: Search, grid: Grid, outcome: NewtonResult) -> Status:
-    """Judge an outcome."""
     case = search.case
     if outcome.out_of_time:
         return Status.OUT_OF_TIME
@@ -119,10 +118,15 @@ def _status(search: Search, grid: Grid, outcome: NewtonResult) -> Status:
         return Status.GRID_TOO_COARSE
     if not outcome.converged:
         return Status.CONTINUATION_FAILED if case.roughness is not None else Status.STALLED
+    # Only border nodes can lie below; rows before outlet and sides carry no part of the load.
     below = outcome.gap.min() < (1 - 2 * case.settings.gap_tolerance) * case.floor
-    if below or _touches_edge(case, grid, outcome):  # only border nodes can lie below
-        return Status.DOMAIN_TOO_SMALL
-    return Status.CONVERGED
+    pressure = outcome.state.film_pressure + outcome.state.asperity_pressure
+    edge = np.zeros(grid.shape)
+    edge[-2], edge[:, -2] = pressure[-2], pressure[:, -2]
+    if not grid.symmetric:
+        edge[:, 1] = pressure[:, 1]
+    at_edge = grid.integral(edge) > EDGE_SHARE * case.load
+    return Status.DOMAIN_TOO_SMALL if below or at_edge else Status.CONVERGED
 
 
 def _confirm(search: Search, grid: Grid, outcome: NewtonResult) -> tuple[Grid, NewtonResult, bool]:
@@ -145,40 +149,30 @@ def _confirm(search: Search, grid: Grid, outcome: NewtonResult) -> tuple[Grid, N
         if max(nx, ny) > LARGEST_GRID:
             return grid, outcome, False
         settings = replace(settings, nx=nx, ny=ny)
-        finer, found = _finer(search, replace(case, settings=settings), grid, outcome)
-        if not found.converged:
+        finer, refined = _finer(search, replace(case, settings=settings), grid, outcome)
+        if not refined.converged:
             return grid, outcome, False
-        grid, outcome = finer, found
+        grid, outcome = finer, refined
     return grid, outcome, settings.refine or not outcome.contact.any()
 
 
-def _finer(search: Search, case: ScaledCase, grid: Grid, outcome: NewtonResult) -> Found:
+def _finer(search: Search, case: ScaledCase, grid: Grid, outcome: NewtonResult) -> GridResult:
     """Solve on a finer grid, from the coarser one or else from cold."""
     speed, settings = case.condition.entrainment_speed, case.settings
     finer = case.grid(settings.nx, settings.ny, symmetric=True)
     if outcome.converged:
         problem = case.problem(finer, speed, case.shape_heights(finer), case.order)
-        found = search.solve(
+        refined = search.solve(
             finer,
             problem,
             transfer(outcome.state, grid, finer),
             search.limits(rough=False, final=True),
         )
         search.half = film_and_share(case, grid, outcome)
-        if found.converged:
-            return finer, found
+        if refined.converged:
+            return finer, refined
     other = Search(case=case, deadline=search.deadline)
-    finer, found = other.smooth(speed, final=True)
+    finer, refined = other.smooth(speed, final=True)
     search.half = other.half
     search.newton, search.krylov = search.newton + other.newton, search.krylov + other.krylov
-    return finer, found
-
-
-def _touches_edge(case: ScaledCase, grid: Grid, outcome: NewtonResult) -> bool:
-    """Tell whether the last rows of nodes before outlet and sides carry part of the load."""
-    pressure = outcome.state.film_pressure + outcome.state.asperity_pressure
-    edge = np.zeros(grid.shape)
-    edge[-2], edge[:, -2] = pressure[-2], pressure[:, -2]
-    if not grid.symmetric:
-        edge[:, 1] = pressure[:, 1]
-    return grid.integral(edge) > EDGE_SHARE * case.load
+    return finer, refined

@@ -71,13 +71,22 @@ def check_plausible(screw: Screw) -> None:
 
 def doubts(screw: Screw) -> list[str]:
     """Return a sentence for each number that is possible but unusual."""
+    sentences = []
+    circle = 2 * math.pi * screw.pitch_radius / math.cos(helix_angle(screw))
+    turns = screw.loaded_balls_per_nut * screw.ball_diameter / circle
+    if turns * screw.ball_diameter < LEAST_FILL * 2 * screw.pitch_radius:
+        radius = MILLI * screw.pitch_radius
+        sentences.append(
+            f'pitch_radius_mm is {radius:g} mm, on which the balls fill {turns:.2g} turns: '
+            f'if it is the diameter, {radius / 2:g} mm would fit'
+        )
+    if not USUAL[0] <= rated_pressure(screw) <= USUAL[1]:
+        fit = rating_by_hertz(screw) / MILLI
+        sentences.append(f'{_rating(screw)}, usual is 4 to 4.5 GPa: {fit:.3g} kN would fit')
+    sentences += _doubts_of_roughness(screw.roughness)
     load = screw.working_load or UNLOADING_RATIO * screw.preload
-    found = (
-        *_doubts_of_size(screw),
-        *_doubts_of_roughness(screw.roughness),
-        *shaft_doubts(screw, screw.fastest_speed, load, ', by the sheet'),
-    )
-    return [f'{screw.name}: {text}' for text in found]
+    sentences += shaft_doubts(screw, screw.fastest_speed, load, ', by the sheet')
+    return [f'{screw.name}: {sentence}' for sentence in sentences]
 
 
 def _rating(screw: Screw) -> str:
@@ -85,20 +94,6 @@ def _rating(screw: Screw) -> str:
         f'static_rating_kN is {screw.static_rating / MILLI:g} kN and presses '
         f'{screw.loaded_balls_per_nut} balls by {GIGA * rated_pressure(screw):.3g} GPa each'
     )
-
-
-def _doubts_of_size(screw: Screw) -> Iterator[str]:
-    radius = MILLI * screw.pitch_radius
-    circle = 2 * math.pi * screw.pitch_radius / math.cos(helix_angle(screw))
-    turns = screw.loaded_balls_per_nut * screw.ball_diameter / circle
-    if turns * screw.ball_diameter < LEAST_FILL * 2 * screw.pitch_radius:
-        yield (
-            f'pitch_radius_mm is {radius:g} mm, on which the balls fill {turns:.2g} turns: '
-            f'if it is the diameter, {radius / 2:g} mm would fit'
-        )
-    if not USUAL[0] <= rated_pressure(screw) <= USUAL[1]:
-        fit = rating_by_hertz(screw) / MILLI
-        yield f'{_rating(screw)}, usual is 4 to 4.5 GPa: {fit:.3g} kN would fit'
 
 
 def _doubts_of_roughness(sheet: Roughness) -> Iterator[str]:

@@ -73,7 +73,9 @@ def buckling_load(screw: Screw) -> float:
 def service_of(screw: Screw) -> dict[str, Any]:
     """Return what a sheet states for the service of a screw, and what follows from it, in SI."""
     shaft = {'critical_speed': critical_speed(screw), 'buckling_load': buckling_load(screw)}
-    return screw.service() | {name: one for name, one in shaft.items() if not math.isnan(one)}
+    return screw.service() | {
+        name: value for name, value in shaft.items() if not math.isnan(value)
+    }
 
 
 def shaft_doubts(screw: Screw, speed: float, load: float, whose: str = '') -> Iterator[str]:

@@ -60,7 +60,7 @@ def efficiency_slope(friction_torque: float, opposing_load: float, lead: float) 
 
 
 def is_back_driving(friction_torque: float, opposing_load: float, lead: float) -> bool:
-    """Tell whether the load drives the screw and gives more torque [N m] than friction takes."""
+    """Return True if the load drives the screw and gives more torque [N m] than friction takes."""
     return bool(driving_torque(friction_torque, opposing_load, lead) < 0)
 
 

@@ -13,7 +13,7 @@ from surrogate.surface.contact_onset import ContactOnset, onset_of_surface, Zone
 from surrogate.surface.correction import Correction, HasOperatingPoint
 from surrogate.surface.fields import FIELDS
 from surrogate.surface.file import SurfaceError
-from surrogate.surface.found import Found, leave, look_up, look_up_rest
+from surrogate.surface.interpolate import Found, leave, look_up, look_up_rest
 from surrogate.surface.load_scan import is_inside, scan, scan_part
 from surrogate.surface.lookup import Surface
 from surrogate.surface.point import solved_point, SurfacePoint, Validity

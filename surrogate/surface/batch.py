@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.surface.compiled import compiled
-from surrogate.surface.found import Found, look_up, look_up_rest
+from surrogate.surface.interpolate import Found, look_up, look_up_rest
 from surrogate.surface.lookup import Surface
 from surrogate.surface.records import dtype_of
 from surrogate.surface.tables import SurfaceTables
@@ -33,7 +33,11 @@ def look_up_many(
     try:
         fill = _compiled()
     except ImportError:
-        _interpret(surface.tables, points, rows)
+        answers = [Found() for _ in rows]
+        speeds, loads, heats = (each.tolist() for each in points)
+        fill_rows(surface.tables, speeds, loads, heats, answers)
+        for name in rows.dtype.names or ():
+            rows[name] = [getattr(answer, name) for answer in answers]
     else:
         fill(surface.array_tables, *points, rows)
     return rows
@@ -51,11 +55,3 @@ def fill_rows(
 @functools.cache
 def _compiled() -> Callable[..., Any]:
     return compiled(fill_rows)
-
-
-def _interpret(tables: SurfaceTables, points: list[Array], rows: NDArray[Any]) -> None:
-    found = [Found() for _ in rows]
-    speed, load, temperature = (each.tolist() for each in points)
-    fill_rows(tables, speed, load, temperature, found)
-    for name in rows.dtype.names or ():
-        rows[name] = [getattr(one, name) for one in found]

@@ -26,14 +26,14 @@ _REGISTERED: set[types.FunctionType] = set()
 
 def called_by(function: Callable[..., Any]) -> list[types.FunctionType]:
     """Return a function and all plain functions that it calls, each once."""
-    found: list[types.FunctionType] = []
+    functions: list[types.FunctionType] = []
     waiting: list[Any] = [function]
     while waiting:
-        one = waiting.pop()
-        if isinstance(one, types.FunctionType) and one not in found:
-            found.append(one)
-            waiting += [one.__globals__.get(name) for name in one.__code__.co_names]
-    return found
+        value = waiting.pop()
+        if isinstance(value, types.FunctionType) and value not in functions:
+            functions.append(value)
+            waiting += [value.__globals__.get(name) for name in value.__code__.co_names]
+    return functions
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -59,8 +59,8 @@ def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
     # A file of its own in the cache: other sources are compiled again, and what was compiled from
     # these does not name what is gone.
     entry.__qualname__ = f'{function.__name__}_{digest}'
-    made: Callable[..., Any] = numba.njit(cache=True, **WITHOUT_COUNTS)(entry)
-    return made
+    dispatcher: Callable[..., Any] = numba.njit(cache=True, **WITHOUT_COUNTS)(entry)
+    return dispatcher
 
 
 def _digest(parts: list[types.FunctionType]) -> str:

@@ -51,7 +51,7 @@ class ZoneLimits:
         return replace(self, efficiency=-math.inf)
 
     def has_zone(self, rcs: Array, efficiency: Array, load: Array) -> bool:
-        """Tell whether one of some points, opposing loads [N], is optimal; NaN is not."""
+        """Return True if one of some points, opposing loads [N], is optimal; NaN is not."""
         fit = (efficiency >= self.efficiency) | (np.abs(load) < self.light_load)
         return bool(np.any((rcs < self.rcs) & fit))
 
@@ -94,8 +94,12 @@ class ContactOnset:
         """Return all of it; `as_feed` in m/min first, as an axis moves, beside rev/min."""
         begins = 'Contact never begins, for raceway and balls are smooth'
         if self.speed:
+            between = ''
+            if math.isfinite(self.band[0]):
+                low, high = (_rounded(factor * self.speed / RPM) for factor in self.band)
+                between = f' ({low} to {high}{self.doubt})'
             begins = (
-                f'Contact begins at {self._speed(self.speed, as_feed)}{self._range()} '
+                f'Contact begins at {self._speed(self.speed, as_feed)}{between} '
                 f'at {self.temperature - ZERO_CELSIUS:.3g} degC'
             )
             law = law_doubt(rms=self.rms, lay=self.lay, calibrated=self.calibrated)
@@ -114,12 +118,6 @@ class ContactOnset:
             'optimal_zone': self.zone,
         }
 
-    def _range(self) -> str:
-        if not math.isfinite(self.band[0]):
-            return ''
-        low, high = (_rounded(factor * self.speed / RPM) for factor in self.band)
-        return f' ({low} to {high}{self.doubt})'
-
     def _speed(self, speed: float, as_feed: bool) -> str:
         turns = f'{_rounded(speed / RPM)} rev/min'
         feed = _rounded(speed * self.lead / TURN * MINUTE)
@@ -131,13 +129,9 @@ class ContactOnset:
         text = f'in {self.oil} there is no optimal zone'
         if self.reach < (1 - 1e-6) * self.fastest:
             text += f' up to {self._speed(self.reach, as_feed)}, where the surface ends'
-        if math.isfinite(self.slower):
-            return f'{text}: contact begins slow enough {self._remedies()}'
-        return f'{text}: where no contact is, friction takes too much; lower the preload'
-
-    def _remedies(self) -> str:
+        if not math.isfinite(self.slower):
+            return f'{text}: where no contact is, friction takes too much; lower the preload'
         thicker = self.slower * self.viscosity * MICRO
-        smoother = self.rms / self.slower**RMS_POWER * MICRO
         ways = [
             f'with oil of {_rounded(thicker)} mm2/s at 40 degC '
             f'(now {_rounded(self.viscosity * MICRO)})'
@@ -145,8 +139,10 @@ class ContactOnset:
         if math.isfinite(self.colder):
             ways.append(f'below {self.colder - ZERO_CELSIUS:.3g} degC')
         if self.rms:
+            smoother = self.rms / self.slower**RMS_POWER * MICRO
             ways.append(f'with Rq {smoother:.2g} um (now {self.rms * MICRO:.2g})')
-        return f'{", ".join(ways[:-1])} or {ways[-1]}' if ways[1:] else ways[0]
+        remedies = f'{", ".join(ways[:-1])} or {ways[-1]}' if ways[1:] else ways[0]
+        return f'{text}: contact begins slow enough {remedies}'
 
 
 def law_doubt(*, rms: float, lay: str, calibrated: bool = False) -> str:
@@ -188,7 +184,14 @@ def contact_onset(
     speed, zone = onset(temperature), has_zone(temperature)
     slower = colder = NAN
     if not zone and not has_film(temperature):
-        colder = _colder(has_zone, temperature, coldest)
+        places: list[float] = np.linspace(temperature, coldest, TEMPERATURES + 1).tolist()
+        warmer, heat = next(
+            (pair for pair in zip(places, places[1:]) if has_zone(pair[1])), (NAN, NAN)
+        )
+        for _ in range(HALVINGS if math.isfinite(heat) else 0):
+            middle = 0.5 * (warmer + heat)
+            warmer, heat = (warmer, middle) if has_zone(middle) else (middle, heat)
+        colder = heat  # the warmest that has a zone
         slower = speed / onset(colder) if math.isfinite(colder) else WORST * speed / reach
     return ContactOnset(
         speed=speed,
@@ -249,27 +252,14 @@ def _has(
     surface: Surface, slowest: float, fastest: float, temperature: float, limits: ZoneLimits
 ) -> bool:
     speeds, loads = grid_of((slowest, fastest), surface.load_range)
-    found = look_up_many(surface, speeds, loads, np.full(speeds.size, temperature))
-    return limits.has_zone(found['rcs'], found['efficiency'], loads)
+    rows = look_up_many(surface, speeds, loads, np.full(speeds.size, temperature))
+    return limits.has_zone(rows['rcs'], rows['efficiency'], loads)
 
 
 def grid_of(speeds: tuple[float, float], loads: tuple[float, float]) -> tuple[Array, Array]:
     """Return speeds [rad/s] and loads [N] of the points among which a zone is looked for."""
     across, up = np.meshgrid(np.geomspace(*speeds, SPEEDS), np.linspace(*loads, LOADS))
     return across.ravel(), up.ravel()
-
-
-def _colder(has_zone: Callable[[float], bool], temperature: float, coldest: float) -> float:
-    """Return the warmest temperature [K] below a given one that has a zone, NaN if none does."""
-    places: list[float] = np.linspace(temperature, coldest, TEMPERATURES + 1).tolist()
-    found = next((i for i in range(1, len(places)) if has_zone(places[i])), None)
-    if found is None:
-        return NAN
-    bad, good = places[found - 1], places[found]
-    for _ in range(HALVINGS):
-        middle = 0.5 * (bad + good)
-        bad, good = (bad, middle) if has_zone(middle) else (middle, good)
-    return good
 
 
 def _rounded(value: float) -> str:

@@ -67,8 +67,8 @@ class Correction:
 
 def solved_values(solution: object) -> dict[str, float]:
     """Return the fields that a solution has; raises SurfaceError when nothing was solved."""
-    found = {name: float(getattr(solution, name, math.nan)) for name in FIELDS}
-    known = {name: value for name, value in found.items() if not math.isnan(value)}
+    values = {name: float(getattr(solution, name, math.nan)) for name in FIELDS}
+    known = {name: value for name, value in values.items() if not math.isnan(value)}
     if not getattr(solution, 'converged', True) or not known:
         status = getattr(solution, 'status', 'it has no numbers')
         raise SurfaceError(f'no correction by a solution that is not converged: {status}')
@@ -148,7 +148,7 @@ def _pull(name: str, value: float, target: float | None) -> tuple[float, float]:
 def corrected_hash(sha256: str, corrections: Sequence[Correction]) -> str:
     """Return the content hash of a surface of hash `sha256` with these corrections."""
     content = [
-        [one.speed, one.opposing_load, one.temperature, one.solved, TRUST_RADIUS]
-        for one in corrections
+        [pull.speed, pull.opposing_load, pull.temperature, pull.solved, TRUST_RADIUS]
+        for pull in corrections
     ]
     return hashlib.sha256(canonical_json([sha256, content])).hexdigest()

@@ -9,6 +9,7 @@ order. A file that does not verify is refused with one sentence.
 """
 
 from collections.abc import Iterator, Mapping
+import contextlib
 from dataclasses import dataclass, field
 import hashlib
 import io
@@ -125,7 +126,6 @@ def read(path: str | Path) -> SurfaceData:
 
 def from_bytes(path: str | Path, content: bytes) -> SurfaceData:
     """Verify the content of a file, called `path` in the sentence of a SurfaceError."""
-    _check_content(path, content)
     header, arrays = _read_arrays(path, content)
     stated, provenance = header.pop('sha256', ''), header.pop('provenance', {})
     try:
@@ -141,21 +141,16 @@ def from_bytes(path: str | Path, content: bytes) -> SurfaceData:
     return data
 
 
-def _check_content(path: str | Path, content: bytes) -> None:
-    """Refuse by its directory a small file that would fill the memory."""
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as archive:
-            unpacked = sum(entry.file_size for entry in archive.infolist())
-    except DAMAGE:
-        return  # told when it is read
+def _read_arrays(path: str | Path, content: bytes) -> tuple[dict[str, Any], Arrays]:
+    unpacked = 0
+    with contextlib.suppress(*DAMAGE), zipfile.ZipFile(io.BytesIO(content)) as archive:
+        # A small file may fill the memory; a damaged one is refused when it is read.
+        unpacked = sum(entry.file_size for entry in archive.infolist())
     if unpacked > limits.SURFACE:
         raise SurfaceError(f'{path}: {unpacked} bytes when unpacked, allowed is {limits.SURFACE}')
-
-
-def _read_arrays(path: str | Path, content: bytes) -> tuple[dict[str, Any], Arrays]:
     try:
-        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
-            arrays = {name: archive[name] for name in archive.files}
+        with np.load(io.BytesIO(content), allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
         header = limits.read_json(arrays.pop('header').tobytes())
     except DAMAGE:
         raise SurfaceError(
@@ -243,7 +238,7 @@ def _has_sound_ensemble(data: SurfaceData) -> bool:
 
 
 def _has_sound_header(data: SurfaceData) -> bool:
-    """Tell whether the lookup finds what it needs, and no more speeds than there are nodes."""
+    """Return True if the lookup finds what it needs, and no more speeds than there are nodes."""
     screw, oil = (data.header['inputs'][kind] for kind in ('screw', 'lubricant'))
     raceway = screw['roughness']
     numbers = (

@@ -99,20 +99,15 @@ def patch_table(axes: Sequence[Array], breaks: Sequence[Array], values: Array) -
             ],
             axis,
         )
-    slopes = [
-        _slopes_by_piece(nodes, cuts, values, axis)
-        for axis, (nodes, cuts) in enumerate(zip(axes, breaks))
-    ]
+    slopes = []
+    for axis, (nodes, cuts) in enumerate(zip(axes, breaks)):
+        parts, start = [], 0
+        for piece in split_at(nodes, cuts):
+            rows = range(start, start + piece.stop - piece.start)
+            parts.append(monotone_slopes(nodes[piece], np.take(values, rows, axis), axis))
+            start = rows.stop
+        slopes.append(np.concatenate(parts, axis))
     return np.stack([values, *slopes], axis=len(axes))
-
-
-def _slopes_by_piece(nodes: Array, breaks: Array, values: Array, axis: int) -> Array:
-    parts, start = [], 0
-    for piece in split_at(nodes, breaks):
-        rows = range(start, start + piece.stop - piece.start)
-        parts.append(monotone_slopes(nodes[piece], np.take(values, rows, axis), axis))
-        start = rows.stop
-    return np.concatenate(parts, axis)
 
 
 Weights = tuple[float, float, float, float]

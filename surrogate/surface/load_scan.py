@@ -12,7 +12,8 @@ temperature changes.
 import math
 
 from surrogate.formulas.torque import driving_torque
-from surrogate.surface.found import (
+from surrogate.surface.hermite import hermite_weights, patch_weights, Weights
+from surrogate.surface.interpolate import (
     bump,
     cell_below,
     Face,
@@ -23,7 +24,6 @@ from surrogate.surface.found import (
     TORQUE,
     width_of,
 )
-from surrogate.surface.hermite import hermite_weights, patch_weights, Weights
 from surrogate.surface.tables import PULL, ROUNDING, SurfaceTables, WIDTH
 
 NAN = math.nan
@@ -45,7 +45,7 @@ def scan(tables: SurfaceTables, speed: float, temperature: float) -> int:
 
 
 def is_inside(tables: SurfaceTables, speed: float, temperature: float) -> bool:
-    """Tell whether the surface covers a speed |w| [rad/s] and a temperature [K]."""
+    """Return True if the surface covers a speed |w| [rad/s] and a temperature [K]."""
     return bool(
         tables.speed_low <= speed <= tables.speed_high
         and tables.temperature_low <= temperature <= tables.temperature_high

@@ -28,7 +28,8 @@ from surrogate.surface.correction import (
 )
 from surrogate.surface.fields import FIELDS
 from surrogate.surface.file import SurfaceData, SurfaceError
-from surrogate.surface.found import (
+from surrogate.surface.hermite import hermite_weights
+from surrogate.surface.interpolate import (
     cell_below,
     face_weights,
     field,
@@ -38,7 +39,6 @@ from surrogate.surface.found import (
     onset_on_face,
     width_of,
 )
-from surrogate.surface.hermite import hermite_weights
 from surrogate.surface.point import SurfacePoint, VALIDITIES, Validity
 from surrogate.surface.tables import as_lists, summary, SurfaceTables, tabulate, with_pulls
 
@@ -47,7 +47,6 @@ class Surface:
     """A verified surface, ready for lookup; build it with `load` or from `SurfaceData`."""
 
     def __init__(self, data: SurfaceData) -> None:
-        """Tabulate values and slopes."""
         self.header: Mapping[str, Any] = data.header
         self.sha256 = self._uncorrected = data.sha256
         self._pulls: dict[tuple[int, int, int], Correction] = {}
@@ -67,11 +66,11 @@ class Surface:
         """
         data = surface_file.read(path)
         for kind, named, wanted in (('screw', 'screw', screw), ('lubricant', 'oil', oil)):
-            found = data.header['inputs'][kind]['name']
-            if wanted is not None and found != wanted:
+            sheet = data.header['inputs'][kind]['name']
+            if wanted is not None and sheet != wanted:
                 raise SurfaceError(
-                    f'{path}: built for {named} {found!r}, configured is {wanted!r}: state '
-                    f'{named} {found}, or build the surface of {wanted}'
+                    f'{path}: built for {named} {sheet!r}, configured is {wanted!r}: state '
+                    f'{named} {sheet}, or build the surface of {wanted}'
                 )
         return cls(data)
 
@@ -176,11 +175,11 @@ class Surface:
         is NaN and `validity` says which limit was passed. A NaN argument is out of range.
 
         """
-        found = SurfacePoint()
-        validity = look_up(self.tables, speed, opposing_load, temperature, found)
-        look_up_rest(self.tables, opposing_load, found)
-        found.validity = VALIDITIES[validity]
-        return found
+        point = SurfacePoint()
+        validity = look_up(self.tables, speed, opposing_load, temperature, point)
+        look_up_rest(self.tables, opposing_load, point)
+        point.validity = VALIDITIES[validity]
+        return point
 
     @property
     def corrections(self) -> tuple[Correction, ...]:
@@ -202,35 +201,35 @@ class Surface:
         """
         values = solved_values(solution)
         where = abs(point.speed), point.opposing_load, point.temperature
-        found = self.lookup(*where)
-        if found.validity is not Validity.VALID:
+        answer = self.lookup(*where)
+        if answer.validity is not Validity.VALID:
             raise SurfaceError(
-                f'no correction where the surface has no answer: {found.validity.name}'
+                f'no correction where the surface has no answer: {answer.validity.name}'
             )
-        cell = found.speed_cell, found.load_cell, found.heat_cell
-        fractions = found.speed_fraction, found.load_fraction, found.heat_fraction
-        here = self._uncorrected_values(found)
-        made = {
+        cell = answer.speed_cell, answer.load_cell, answer.heat_cell
+        fractions = answer.speed_fraction, answer.load_fraction, answer.heat_fraction
+        here = self._uncorrected_values(answer)
+        pulls = {
             place: make_correction(point, place, where, here, values)
             for place, where in places_of(cell, fractions, self.cells)
         }
-        replaced = {_solve_of(self._pulls[place]) for place in made if place in self._pulls}
+        replaced = {_solve_of(self._pulls[place]) for place in pulls if place in self._pulls}
         kept = {
             place: pull for place, pull in self._pulls.items() if _solve_of(pull) not in replaced
         }
         other = copy.copy(self)
-        other._pulls = kept | made
+        other._pulls = kept | pulls
         other.array_tables = with_pulls(self._base_tables, other._pulls)
         other.__dict__.pop('tables', None)
         other.sha256 = corrected_hash(self._uncorrected, other.corrections)
         return other
 
-    def _uncorrected_values(self, found: SurfacePoint) -> list[float]:
+    def _uncorrected_values(self, point: SurfacePoint) -> list[float]:
         """Return the fields at a place, transformed, without corrections."""
         tables, across, along = self.tables, len(self.tables.heat_nodes), self.tables.rows
-        i, j, k = found.speed_cell, found.load_cell, found.heat_cell
-        loads = found.load_fraction, found.heat_fraction
-        fast = hermite_weights(width_of(tables.speed_nodes, i), found.speed_fraction)
+        i, j, k = point.speed_cell, point.load_cell, point.heat_cell
+        loads = point.load_fraction, point.heat_fraction
+        fast = hermite_weights(width_of(tables.speed_nodes, i), point.speed_fraction)
         face = face_weights(tables.load_nodes, j, loads[0], tables.heat_nodes, k, loads[1])
         node = (i * along + tables.load_rows[j]) * across + k
         return [

@@ -8,7 +8,7 @@ import enum
 
 from surrogate.formulas.torque import efficiency_slope, is_back_driving
 from surrogate.surface.fields import FIELDS, MEASURED, SHARES
-from surrogate.surface.found import fill_torques, Found, share
+from surrogate.surface.interpolate import fill_torques, Found, share
 
 
 class Validity(enum.IntEnum):

@@ -47,10 +47,10 @@ def dtype_of(kind: type[Any]) -> np.dtype[Any]:
 
 def as_array(record: object) -> NDArray[Any]:
     """Return an array of one record."""
-    made = np.zeros(1, dtype=dtype_of(type(record)))
-    for name in made.dtype.names or ():
-        made[name][0] = getattr(record, name)
-    return made
+    array = np.zeros(1, dtype=dtype_of(type(record)))
+    for name in array.dtype.names or ():
+        array[name][0] = getattr(record, name)
+    return array
 
 
 def from_array(kind: type[Record], element: Any) -> Record:

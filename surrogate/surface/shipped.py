@@ -42,7 +42,7 @@ def shipped_surface(
         path = SHIPPED / f'{screw}_{oil}{ending}.npz'
         if path.is_file():
             return path
-    shipped = ', '.join(sorted(found.stem for found in SHIPPED.glob('*.npz')))
+    shipped = ', '.join(sorted(file.stem for file in SHIPPED.glob('*.npz')))
     raise SurfaceError(
         f'no surface {f"of tier {tier} " if tier else ""}is shipped for screw {screw!r} and oil '
         f'{oil!r}, shipped are {shipped or "none"}'

@@ -94,18 +94,19 @@ def check_surface(
     errors: list[dict[str, float]] = []
     tried = unsolved = silent = 0
     while tried < points and has_time():
-        found = _compare(surface, data.header, drawn)
+        error = _compare(surface, data.header, drawn)
         step()
         tried += 1
-        unsolved += found is None
-        if found is not None and all(map(math.isfinite, found.values())):
-            errors.append(found)
+        unsolved += error is None
+        if error is not None and all(map(math.isfinite, error.values())):
+            errors.append(error)
         else:
-            silent += found is not None
+            silent += error is not None
     worst = {
         name: max((error[name] for error in errors), default=math.nan)
         for name in ('efficiency', 'rcs_over_aim', 'accepted', *STATED)
     }
+    stated = {name: surface.errors[name][0] for name in STATED}
     return CheckResult(
         asked=points,
         tried=tried,
@@ -118,12 +119,10 @@ def check_surface(
         efficiency=worst['efficiency'],
         rcs=worst['rcs_over_aim'],
         accepted=worst['accepted'],
-        stated={name: _ratio(worst[name], surface.errors[name][0]) for name in STATED},
+        stated={
+            name: worst[name] / most if most > 0 else math.nan for name, most in stated.items()
+        },
     )
-
-
-def _ratio(found: float, stated: float) -> float:
-    return found / stated if stated > 0 else math.nan
 
 
 def _compare(
@@ -143,17 +142,17 @@ def _compare(
     solved = solve_point(header, speed, load, kelvin)
     if not (solved.converged and math.isfinite(solved.rcs)):
         return None
-    found, rcs = surface.lookup(speed, load, kelvin), solved.rcs
+    point, rcs = surface.lookup(speed, load, kelvin), solved.rcs
     aim = rcs_tolerance(rcs)
-    errors = {name: abs(getattr(found, name) - getattr(solved, name)) for name in STATED}
+    errors = {name: abs(getattr(point, name) - getattr(solved, name)) for name in STATED}
     efficiency = torque.efficiency(solved.friction_torque, load, surface.lead)
-    wrong = abs(found.efficiency - efficiency)
+    wrong = abs(point.efficiency - efficiency)
     return {
         'efficiency': wrong,
         'rcs_over_aim': errors['rcs'] / aim,
         'accepted': max(
-            wrong / _larger(EFFICIENCY_TOLERANCE, found.efficiency_error),
-            errors['rcs'] / _larger(aim, found.rcs_error),
+            wrong / _larger(EFFICIENCY_TOLERANCE, point.efficiency_error),
+            errors['rcs'] / _larger(aim, point.rcs_error),
         ),
         **errors,
     }

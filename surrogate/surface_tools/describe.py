@@ -79,14 +79,13 @@ def surface_warnings(data: SurfaceData) -> list[str]:
 
     places = np.meshgrid(data.header['settings']['speed_range'], data.load, data.temperature)
     # The groups of films do not depend on what asperities do.
-    found = closed_form.solve(
+    solution = closed_form.solve(
         *screw_and_oil(data.header['inputs']), *places, share_of=np.zeros_like
     )
-    return formula_warnings(found)
+    return formula_warnings(solution)
 
 
 def _summary(data: SurfaceData, group: str, name: str) -> dict[str, float]:
-    """Return the median and the largest of a spread over the nodes."""
     values = getattr(data, group).get(name, np.empty(0))
     known = values[np.isfinite(values)]
     if not known.size:
@@ -101,7 +100,7 @@ def info_page(record: Mapping[str, Any]) -> str:
             f'{record["file"]}',
             f'  {record["contact_onset"]["sentence"]}',
             *_head(record),
-            *_told(record),
+            *_builder_lines(record),
             '  measured interpolation error                    max         p95',
             *(
                 f'    {_label(name):44} {error["max"]:<10.3g}  {error["p95"]:.3g}'
@@ -149,8 +148,7 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
     )
 
 
-def _told(record: Mapping[str, Any]) -> Iterator[str]:
-    """Yield what the builder of a tier says of its result."""
+def _builder_lines(record: Mapping[str, Any]) -> Iterator[str]:
     for name, words in (('limit_band', 'what is not known'), ('numerical_band', 'the numerics')):
         if record[name] is not None:
             low, high = record[name]
@@ -172,14 +170,14 @@ def march_lines(march: Mapping[str, Any]) -> Iterator[str]:
     """Yield a line for each strip of the raceway that was marched, beside the law."""
     if not march:
         yield '  marched      no strip: all failed'
-    for name, one in march.items():
-        marched, told = one['marched_m_s'], one['told_m_s']
-        found = 'does not begin'
+    for name, strip in march.items():
+        marched, by_law = strip['marched_m_s'], strip['told_m_s']
+        onset = 'does not begin'
         if marched is not None:
-            found = f'begins at {marched:.3g} m/s, told over marched {told / marched:.2f}'
+            onset = f'begins at {marched:.3g} m/s, told over marched {by_law / marched:.2f}'
         yield (
-            f'  marched      {name}, waves down to {1e6 * one["shortest_wave_m"]:.2g} um: contact '
-            f'{found}, told {told:.3g} m/s; {one["status"]}'
+            f'  marched      {name}, waves down to {1e6 * strip["shortest_wave_m"]:.2g} um: '
+            f'contact {onset}, told {by_law:.3g} m/s; {strip["status"]}'
         )
 
 

@@ -35,7 +35,14 @@ def diff_record(first: SurfaceData, second: SurfaceData) -> dict[str, Any]:
 
     """
     surfaces = (Surface(first), Surface(second))
-    ranges = _common_ranges(*surfaces)
+    common = []
+    for name in ('speed_range', 'load_range', 'temperature_range'):
+        (low, high), (other_low, other_high) = (getattr(surface, name) for surface in surfaces)
+        low, high = max(low, other_low), min(high, other_high)
+        if not low < high:
+            raise SurfaceError(f'the surfaces have no {name.replace("_", " ")} in common')
+        common.append((low, high))
+    ranges = common[0], common[1], common[2]
     return {
         'sha256': [surface.sha256 for surface in surfaces],
         'inputs': list(_differences(first.header, second.header)),
@@ -49,17 +56,6 @@ def diff_record(first: SurfaceData, second: SurfaceData) -> dict[str, Any]:
         **_compare_fields(*surfaces, _lattice(first, second, ranges)),
         'zone': _compare_zones(*surfaces, ranges),
     }
-
-
-def _common_ranges(first: Surface, second: Surface) -> Ranges:
-    found = []
-    for name in ('speed_range', 'load_range', 'temperature_range'):
-        (low, high), (other_low, other_high) = getattr(first, name), getattr(second, name)
-        low, high = max(low, other_low), min(high, other_high)
-        if not low < high:
-            raise SurfaceError(f'the surfaces have no {name.replace("_", " ")} in common')
-        found.append((low, high))
-    return found[0], found[1], found[2]
 
 
 def _axis(data: SurfaceData, name: str) -> dict[str, Any]:
@@ -86,7 +82,7 @@ def _compare_fields(
     gaps: dict[str, list[float]] = {name: [] for name in (*FIELDS, 'efficiency')}
     for point in lattice:
         here, there = first.lookup(*point), second.lookup(*point)
-        valid = [found.validity is Validity.VALID for found in (here, there)]
+        valid = [answer.validity is Validity.VALID for answer in (here, there)]
         one_sided += valid[0] != valid[1]
         if not all(valid):
             continue
@@ -115,8 +111,8 @@ def _lattice(
 
 
 def _middles(first: Array, second: Array, ends: tuple[float, float]) -> list[float]:
-    found = {0.5 * (low + high) for axis in (first, second) for low, high in zip(axis, axis[1:])}
-    return sorted({*ends, *(float(one) for one in found if ends[0] < one < ends[1])})
+    middles = {0.5 * (low + high) for axis in (first, second) for low, high in zip(axis, axis[1:])}
+    return sorted({*ends, *(float(node) for node in middles if ends[0] < node < ends[1])})
 
 
 def _summary(gaps: list[float], points: list[tuple[float, float, float]]) -> dict[str, Any]:
@@ -169,61 +165,46 @@ def zone_limits(
     At an opposing load [N] and a temperature [K], RCS < 0.01 and efficiency >= 0.85.
 
     """
+
+    def is_optimal(log_speed: float) -> bool:
+        speed = min(max(math.exp(log_speed), speed_range[0]), speed_range[1])
+        point = surface.lookup(speed, load, temperature)
+        return point.rcs < RCS_LIMIT and point.efficiency >= EFFICIENCY_LIMIT
+
     slow, fast = (math.log(speed) for speed in speed_range)
     scan = np.linspace(slow, fast, SCAN).tolist()
-    inside = [_is_optimal(surface, s, load, temperature, speed_range) for s in scan]
+    inside = [is_optimal(log_speed) for log_speed in scan]
     if not any(inside):
         return None
     begin, end = inside.index(True), SCAN - 1 - inside[::-1].index(True)
     limits = [scan[begin], scan[end]]
     for place, (good, bad) in enumerate(((begin, begin - 1), (end, end + 1))):
-        if 0 <= bad < SCAN:
-            limits[place] = _bisect(surface, scan[good], scan[bad], load, temperature, speed_range)
+        if not 0 <= bad < SCAN:
+            continue
+        inner, outer = scan[good], scan[bad]
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (inner + outer)
+            if is_optimal(middle):
+                inner = middle
+            else:
+                outer = middle
+        limits[place] = inner
     return math.exp(limits[0]), math.exp(limits[1])
-
-
-def _bisect(
-    surface: Surface,
-    good: float,
-    bad: float,
-    load: float,
-    temperature: float,
-    speed_range: tuple[float, float],
-) -> float:
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (good + bad)
-        if _is_optimal(surface, middle, load, temperature, speed_range):
-            good = middle
-        else:
-            bad = middle
-    return good
-
-
-def _is_optimal(
-    surface: Surface,
-    log_speed: float,
-    load: float,
-    temperature: float,
-    speed_range: tuple[float, float],
-) -> bool:
-    speed = min(max(math.exp(log_speed), speed_range[0]), speed_range[1])
-    found = surface.lookup(speed, load, temperature)
-    return found.rcs < RCS_LIMIT and found.efficiency >= EFFICIENCY_LIMIT
 
 
 def exceeded(record: Mapping[str, Any], tolerances: Mapping[str, float]) -> list[str]:
     """Return one sentence per difference that exceeds its tolerance; NaN exceeds."""
     zone = record['zone']
-    found = {
+    differences = {
         'efficiency': record['fields']['efficiency']['max'],
         'rcs': record['fields']['rcs']['max'],
         'zone': max(zone['largest_shift_slow'], zone['largest_shift_fast']),
     }
-    if not zone['lines'] or math.isnan(found['zone']):
-        found.pop('zone')
+    if not zone['lines'] or math.isnan(differences['zone']):
+        differences.pop('zone')
     sentences = [
         f'{name} differs by {value:.3g}, allowed is {tolerances[name]:g}'
-        for name, value in found.items()
+        for name, value in differences.items()
         if not value <= tolerances[name]
     ]
     if record['answered_by_one_only']:
@@ -241,8 +222,8 @@ def diff_page(record: Mapping[str, Any], sentences: list[str]) -> str:
     if not record['inputs']:
         lines.append('inputs and settings: the same')
     lines += [
-        f'{one["what"]}: {_short(one["first"])} in A, {_short(one["second"])} in B'
-        for one in record['inputs']
+        f'{item["what"]}: {_short(item["first"])} in A, {_short(item["second"])} in B'
+        for item in record['inputs']
     ]
     for name, (first, second) in record['axes'].items():
         lines.append(

@@ -20,10 +20,27 @@ def to_netcdf(data: SurfaceData) -> bytes:
     """Return a surface as NetCDF 3, which every reader knows, with 64-bit offsets."""
     import xarray
 
+    cell_fields: Variables = {}
+    for name, values in data.errors.items():
+        text = FIELD_TEXTS[name]
+        words = f'{text.words}, measured interpolation error'
+        cell_fields[f'error_{name}'] = (CELLS, values, _texts(text.unit or '1', words))
+    screw, oil = (data.header['inputs'][kind]['name'] for kind in ('screw', 'lubricant'))
     dataset = xarray.Dataset(
-        data_vars={**_node_fields(data), **_cell_fields(data)},
+        data_vars={**_node_fields(data), **cell_fields},
         coords=_coordinates(data),
-        attrs=_attributes(data),
+        attrs={
+            'Conventions': 'CF-1.11',
+            'title': f'Ball screw {screw} with oil {oil}: friction and contact over speed, load '
+            'and temperature',
+            'source': f'ballscrew_monitor, tier {data.header["tier"]}',
+            'tier': str(data.header['tier']),
+            'screw': screw,
+            'oil': oil,
+            'sha256': data.sha256,
+            'header': json.dumps(data.header, sort_keys=True),
+            'provenance': json.dumps(data.provenance, sort_keys=True),
+        },
     )
     return bytes(dataset.to_netcdf(engine='scipy', format='NETCDF3_64BIT'))
 
@@ -38,13 +55,13 @@ def _coordinates(data: SurfaceData) -> Variables:
         'load': ('N', 'axial load, positive opposes the motion'),
         'temperature': ('K', 'oil temperature'),
     }
-    found: Variables = {}
+    coordinates: Variables = {}
     for name, (unit, words) in texts.items():
-        found[name] = ((name,), getattr(data, name), _texts(unit, words))
+        coordinates[name] = ((name,), getattr(data, name), _texts(unit, words))
         cell = f'{name}_cell'
-        found[cell] = ((cell,), middle[cell], _texts(unit, f'{words}, middle of the cell'))
-    found['speed'] = (NODES, speeds(data), _texts('rad s-1', 'speed of the screw'))
-    return found
+        coordinates[cell] = ((cell,), middle[cell], _texts(unit, f'{words}, middle of the cell'))
+    coordinates['speed'] = (NODES, speeds(data), _texts('rad s-1', 'speed of the screw'))
+    return coordinates
 
 
 def speeds(data: SurfaceData) -> Any:
@@ -57,7 +74,7 @@ def _texts(unit: str, words: str) -> dict[str, Any]:
 
 
 def _node_fields(data: SurfaceData) -> Variables:
-    found: Variables = {
+    fields: Variables = {
         'log_onset': (
             NODES[1:],
             data.log_onset,
@@ -96,38 +113,12 @@ def _node_fields(data: SurfaceData) -> Variables:
     for prefix, group, more in kinds:
         for name, values in group.items():
             text = FIELD_TEXTS[name]
-            found[prefix + name] = (NODES, values, _texts(text.unit or '1', f'{text.words}{more}'))
-    return found
-
-
-def _cell_fields(data: SurfaceData) -> Variables:
-    return {
-        f'error_{name}': (
-            CELLS,
-            values,
-            _texts(
-                FIELD_TEXTS[name].unit or '1',
-                f'{FIELD_TEXTS[name].words}, measured interpolation error',
-            ),
-        )
-        for name, values in data.errors.items()
-    }
-
-
-def _attributes(data: SurfaceData) -> dict[str, str]:
-    screw, oil = (data.header['inputs'][kind]['name'] for kind in ('screw', 'lubricant'))
-    return {
-        'Conventions': 'CF-1.11',
-        'title': f'Ball screw {screw} with oil {oil}: friction and contact over speed, load and '
-        'temperature',
-        'source': f'ballscrew_monitor, tier {data.header["tier"]}',
-        'tier': str(data.header['tier']),
-        'screw': screw,
-        'oil': oil,
-        'sha256': data.sha256,
-        'header': json.dumps(data.header, sort_keys=True),
-        'provenance': json.dumps(data.provenance, sort_keys=True),
-    }
+            fields[prefix + name] = (
+                NODES,
+                values,
+                _texts(text.unit or '1', f'{text.words}{more}'),
+            )
+    return fields
 
 
 def to_table(data: SurfaceData) -> str:

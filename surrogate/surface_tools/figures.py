@@ -68,9 +68,11 @@ def cut(surface: Surface, temperature: float) -> Slice:
     points = [surface.lookup(w, f, temperature) for f in load.tolist() for w in speed.tolist()]
     names = ('efficiency', 'rcs', 'film_ratio', 'efficiency_error', 'rcs_error', 'rcs_std')
     shape = (len(load), len(speed))
-    valid = np.reshape([found.validity is Validity.VALID for found in points], shape)
+    valid = np.reshape([point.validity is Validity.VALID for point in points], shape)
     fields = {
-        name: np.where(valid, np.reshape([getattr(one, name) for one in points], shape), np.nan)
+        name: np.where(
+            valid, np.reshape([getattr(point, name) for point in points], shape), np.nan
+        )
         for name in names
     }
     light = LIGHT_LOAD * surface.preload
@@ -135,22 +137,15 @@ def _map(
 
 def _limit(axes: Axes, part: Slice, values: Array, levels: list[float]) -> None:
     """Draw the lines of some limits, where the values reach them; several are labelled."""
-    known = values[np.isfinite(values)]
-    if known.size and any(known.min() < level < known.max() for level in levels):
+    if _reaches(values, levels):
         lines = axes.contour(part.speed, part.load, values, levels=levels, **LIMIT)
         if len(levels) > 1:
             axes.clabel(lines, fmt='%g', fontsize=7)
 
 
-def _limit_bands(axes: Axes, part: Slice, rcs: Array) -> None:
-    """Draw where the limit of RCS may lie, by what is not known and by the numerics."""
-    known = rcs[np.isfinite(rcs)]
-    if not (known.size and known.min() < RCS_LIMIT < known.max()):
-        return
-    for style, band in part.bands.items():
-        for factor in filter(math.isfinite, band):
-            speed = factor * part.speed
-            axes.contour(speed, part.load, rcs, levels=[RCS_LIMIT], linestyles=style, **LIMIT)
+def _reaches(values: Array, levels: list[float]) -> bool:
+    known = values[np.isfinite(values)]
+    return bool(known.size) and any(known.min() < level < known.max() for level in levels)
 
 
 def _draw_efficiency(figure: Figure, axes: Axes, part: Slice) -> None:
@@ -168,7 +163,10 @@ def _draw_rcs(figure: Figure, axes: Axes, part: Slice) -> None:
     )
     _map(figure, axes, part, np.maximum(values, 1e-4), title, '[-]', norm=norm, cmap=LESS_IS_GOOD)
     _limit(axes, part, values, [RCS_LIMIT])
-    _limit_bands(axes, part, values)
+    for style, band in part.bands.items() if _reaches(values, [RCS_LIMIT]) else ():
+        for factor in filter(math.isfinite, band):
+            speed = factor * part.speed
+            axes.contour(speed, part.load, values, levels=[RCS_LIMIT], linestyles=style, **LIMIT)
 
 
 def _draw_film_ratio(figure: Figure, axes: Axes, part: Slice) -> None:
@@ -194,11 +192,11 @@ def _classes(
     )
     axes.set_facecolor(UNKNOWN)
     axes.set_title(title)
-    found = {int(value) for value in values[np.isfinite(values)]}
+    numbers = {int(value) for value in values[np.isfinite(values)]}
     patches = [
         Patch(color=colour, label=name)
         for number, (name, colour) in enumerate(names)
-        if number in found
+        if number in numbers
     ]
     axes.legend(handles=patches, fontsize=7, loc='upper left', framealpha=0.9)
 

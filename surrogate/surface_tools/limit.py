@@ -49,29 +49,24 @@ def limit_errors(
     """Yield the errors at up to `points` random points, as long as `has_time` says so."""
     surface, drawn = Surface(data), random.Random(seed)
     for _ in range(points):
-        place = _random_place(surface, drawn) if has_time() else None
-        if place is None:
+        if not has_time():
             return
+        for _ in range(TRIES):
+            load = drawn.uniform(*surface.load_range)
+            temperature = drawn.uniform(*surface.temperature_range)
+            speed = limit_speed(surface, load, temperature)
+            if speed is not None:
+                break
+        else:
+            return
+        place = speed, load, temperature
         solved = solve_point(data.header, *place).rcs
-        speed, load, temperature = place
         yield LimitError(
             speed=speed,
             load=load,
             temperature=temperature,
             error=limit_error(surface, place, solved),
         )
-
-
-def _random_place(surface: Surface, drawn: random.Random) -> tuple[float, float, float] | None:
-    """Return a speed [rad/s], load [N], temperature [K] on the limit, None where none is found."""
-    for _ in range(TRIES):
-        load, heat = (
-            drawn.uniform(*ends) for ends in (surface.load_range, surface.temperature_range)
-        )
-        speed = limit_speed(surface, load, heat)
-        if speed is not None:
-            return speed, load, heat
-    return None
 
 
 def limit_speed(surface: Surface, load: float, temperature: float) -> float | None:
@@ -90,11 +85,11 @@ def limit_speed(surface: Surface, load: float, temperature: float) -> float | No
     if not above(low) > 0 > above(high):
         return None
     try:
-        found = float(brentq(above, low, high))
+        root = float(brentq(above, low, high))
     except ValueError:  # a masked node on the way, whose lookup is NaN
         return None
-    inside = low < found - STEP and found + STEP < high
-    return math.exp(found) if inside and above(found - STEP) > above(found + STEP) else None
+    inside = low < root - STEP and root + STEP < high
+    return math.exp(root) if inside and above(root - STEP) > above(root + STEP) else None
 
 
 def limit_error(surface: Surface, place: tuple[float, float, float], rcs: float) -> float:

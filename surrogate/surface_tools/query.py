@@ -10,7 +10,7 @@ from typing import Any
 
 from surrogate.files import InputError
 from surrogate.parameters import OperatingPoint
-from surrogate.surface import regime_of, Surface, SurfacePoint, Validity
+from surrogate.surface import regime_of, Surface, Validity
 from surrogate.surface_tools.fields import derived_key, FIELD_TEXTS, WORST_CONTACTS
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -21,7 +21,8 @@ SPREAD_OF = ('friction_torque', 'rcs')
 
 def query_record(surface: Surface, point: OperatingPoint) -> dict[str, Any]:
     """Look up one point and return it as plain numbers, SI, NaN with a reason where unknown."""
-    found = surface.lookup(abs(point.speed), point.opposing_load, point.temperature)
+    answer = surface.lookup(abs(point.speed), point.opposing_load, point.temperature)
+    known = answer.validity is Validity.VALID
     return {
         'tier': surface.tier,
         'screw': surface.screw_name,
@@ -31,27 +32,19 @@ def query_record(surface: Surface, point: OperatingPoint) -> dict[str, Any]:
         'load_N': point.load,
         'opposing_load_N': point.opposing_load,
         'temperature_K': point.temperature,
-        **_numbers(found),
-        'reason': _reason(surface, found.validity),
-    }
-
-
-def _numbers(found: SurfacePoint) -> dict[str, Any]:
-    """Return everything that a surface says of a point."""
-    known = found.validity is Validity.VALID
-    return {
-        'validity': found.validity.name,
-        'efficiency': found.efficiency,
-        'efficiency_error': found.efficiency_error if known else math.nan,
-        'efficiency_std': found.efficiency_std if known else math.nan,
-        **{text.key: getattr(found, name) for name, text in FIELD_TEXTS.items()},
-        **{derived_key(name, 'error'): getattr(found, f'{name}_error') for name in SPREAD_OF},
-        **{derived_key(name, 'std'): getattr(found, f'{name}_std') for name in SPREAD_OF},
-        **{derived_key(name, 'stderr'): getattr(found, f'{name}_stderr') for name in SPREAD_OF},
-        'driving_torque_Nm': found.driving_torque,
-        'back_driving': found.back_driving,
-        'regime': regime_of(found.film_ratio).word,
-        'worst_contact': WORST_CONTACTS[found.worst_contact] if known else '',
+        'validity': answer.validity.name,
+        'efficiency': answer.efficiency,
+        'efficiency_error': answer.efficiency_error if known else math.nan,
+        'efficiency_std': answer.efficiency_std if known else math.nan,
+        **{text.key: getattr(answer, name) for name, text in FIELD_TEXTS.items()},
+        **{derived_key(name, 'error'): getattr(answer, f'{name}_error') for name in SPREAD_OF},
+        **{derived_key(name, 'std'): getattr(answer, f'{name}_std') for name in SPREAD_OF},
+        **{derived_key(name, 'stderr'): getattr(answer, f'{name}_stderr') for name in SPREAD_OF},
+        'driving_torque_Nm': answer.driving_torque,
+        'back_driving': answer.back_driving,
+        'regime': regime_of(answer.film_ratio).word,
+        'worst_contact': WORST_CONTACTS[answer.worst_contact] if known else '',
+        'reason': _reason(surface, answer.validity),
     }
 
 
@@ -101,8 +94,8 @@ def _line(title: str, unit: str, record: dict[str, Any], key: str, name: str) ->
         ('std', 'between strips'),
         ('stderr', 'of mean'),
     ):
-        found = 'efficiency_' + kind if name == 'efficiency' else derived_key(name, kind)
-        value = record.get(found, math.nan)
+        column = 'efficiency_' + kind if name == 'efficiency' else derived_key(name, kind)
+        value = record.get(column, math.nan)
         if math.isfinite(value):
             texts.append(f'{words} {value:.2g}')
     errors = f'   ({", ".join(texts)})' if texts else ''

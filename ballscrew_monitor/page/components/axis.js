@@ -165,7 +165,7 @@ class Axis {
     }
   }
 
-  /** Tell whether the node of this axis has left. */
+  /** Return True if the node of this axis has left. */
   get gone() {
     return this.state?.standing === 'gone';
   }
@@ -175,7 +175,7 @@ class Axis {
     return this.state ? (this.state.age_s ?? NaN) + (performance.now() - this.arrived) / 1000 : NaN;
   }
 
-  /** Tell whether the newest state says something about now, or about the place of a recording. */
+  /** Return True if the newest state says something about now, or about the place of a recording. */
   get fresh() {
     return !this.gone && (this.age < STALE || Boolean(this.state && this.recorded));
   }

@@ -32,7 +32,7 @@ def bands_across(ny: int) -> int:
 def mark_thick_film(
     by_pressure: Array, by_gap: Array, contact: Mask, sizes: Array, near: Array, thick: Array
 ) -> bool:
-    """Set 1 on nodes of thick film, without contact nor cavity, else 0 [-]; tell if any is."""
+    """Set 1 on nodes of thick film, without contact nor cavity, else 0 [-]; True if any is."""
     nx, ny = thick.shape
     stiffness, limit = near[0], near.dtype.type(THICK)
     zero, one = thick.dtype.type(0), thick.dtype.type(1)

@@ -47,22 +47,12 @@ def make_fft(length: int, dtype: DTypeLike) -> Fft:
     )
 
 
-def _radices(length: int) -> list[int]:
-    radices = []
-    while length % 3 == 0:
-        radices.append(3)
-        length //= 3
-    while length >= 4:
-        radices.append(4)
-        length //= 4
-    return radices + ([2] if length == 2 else [])
-
-
 def _places(length: int) -> NDArray[np.int64]:
     """Return where the forward transform leaves each frequency."""
     place = np.zeros(length, dtype=np.int64)
     frequency, block = np.arange(length), length
-    for radix in _radices(length):
+    while block > 1:
+        radix = 3 if block % 3 == 0 else min(block, 4)
         block //= radix
         place += block * (frequency % radix)
         frequency = frequency // radix

@@ -111,7 +111,7 @@ def advance(level: GridLevel, direction: Array) -> None:
 
 @njit(cache=True, error_model='numpy')
 def is_done(work: Workspace, tolerance: float, limit: int) -> bool:
-    """Tell whether the residual is small, the iterations are used up or broke down."""
+    """Return True if the residual is small, the iterations are used up or broke down."""
     used = work.used[0]
     small = abs(work.reduced[used]) < tolerance * work.reduced[-1]
     return bool(small or used == limit or work.used[1])

@@ -46,7 +46,6 @@ class StripContact:
     columns: int
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
         for name, unit in (
             ('radius', 'm'),
             ('reduced_modulus', 'Pa'),
@@ -172,7 +171,7 @@ def strip_case(scaled: ScaledContact, settings: Settings) -> StripCase:
     """Return a scaled strip on the domain of its settings."""
     assert settings.domain is not None
     return StripCase(
-        **{one.name: getattr(scaled, one.name) for one in fields(scaled)},
+        **{field.name: getattr(scaled, field.name) for field in fields(scaled)},
         settings=settings,
         domain=settings.domain,
         open_inlet=True,
@@ -181,14 +180,14 @@ def strip_case(scaled: ScaledContact, settings: Settings) -> StripCase:
 
 
 def smooth_strip(case: StripCase, grid: Grid) -> tuple[GridState, bool]:
-    """Solve the smooth line contact on a few columns, and lay it out; tell if it converged."""
+    """Solve the smooth line contact on a few columns, and lay it out; True if it converged."""
     width = NARROWEST * LONG_CELL * grid.dx
     part = replace(case, width=width, semi_axis_y=0.5 * width * case.semi_axis_x)
     search = Search(case=part, deadline=math.inf)
-    _, found = search.smooth(case.condition.entrainment_speed, final=True)
-    column = found.state.film_pressure[:, 1:2]
+    _, outcome = search.smooth(case.condition.entrainment_speed, final=True)
+    column = outcome.state.film_pressure[:, 1:2]
     return GridState(
         film_pressure=np.repeat(column, grid.y.size, axis=1),
         asperity_pressure=np.zeros(grid.shape),
-        approach=found.state.approach,
-    ), found.converged
+        approach=outcome.state.approach,
+    ), outcome.converged

@@ -21,9 +21,9 @@ from surrogate.ehl.moving.feed import raceway_heights
 from surrogate.ehl.moving.interface import LEAST_TRANSITS, MarchSettings, MovingSolution
 from surrogate.ehl.moving.line import scale_strip, smooth_strip, strip_case, StripContact
 from surrogate.ehl.moving.run import March, SmoothPath
+from surrogate.ehl.results import state_from_solution
 from surrogate.ehl.scales import scale_contact, ScaledContact
 from surrogate.ehl.solver import solve_contact
-from surrogate.ehl.to_si import state_from_solution
 from surrogate.ehl.watch import at
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
@@ -111,7 +111,7 @@ def contact_march(
 ) -> March:
     """Return a march at its start: load [N], entrainment speeds of its way [m/s]."""
     conditions = [Condition(load=load, entrainment_speed=speed) for speed in speeds]
-    fastest = max(conditions, key=lambda one: one.entrainment_speed)
+    fastest = max(conditions, key=lambda condition: condition.entrainment_speed)
     scaled = scale_contact(contact, lubricant, fastest, raceway)
     steady = settings.steady(settings.domain or marching_domain(scaled))
     case = make_case(contact, lubricant, conditions[0], steady, raceway)

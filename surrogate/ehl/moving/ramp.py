@@ -81,7 +81,7 @@ class SpeedRamp:
         if not (rising[0] < rcs <= rising[-1]):
             return math.nan
         last = int(np.argmax(rising >= rcs))
-        low, high = (math.log(max(rising[one], 1e-9)) for one in (last - 1, last))
+        low, high = (math.log(max(rising[k], 1e-9)) for k in (last - 1, last))
         weight = (math.log(rcs) - low) / (high - low)
         return math.exp(logs[last - 1] + weight * (logs[last] - logs[last - 1]))
 
@@ -150,7 +150,7 @@ def _ramp(march: March, transits: float) -> SpeedRamp:
     march.run(transits / march.settings.places)
     shortest = min(map(len, march.places), default=0)
     steps = [place[:shortest] for place in march.places]
-    speeds = np.array([one.speed for place in steps[:1] for one in place])
+    speeds = np.array([step.speed for place in steps[:1] for step in place])
     films, losses = _smooth_at(march, speeds)
     return SpeedRamp(
         status=march.status,
@@ -175,8 +175,8 @@ def _smooth_at(march: March, speeds: Array) -> tuple[Array, Array]:
         np.log(values)[order]
         for values in (
             march.path.speeds,
-            [one.centre_film for one in smooth],
-            [one.rolling_loss for one in smooth],
+            [measure.centre_film for measure in smooth],
+            [measure.rolling_loss for measure in smooth],
         )
     )
     wanted = np.log(speeds)
@@ -185,5 +185,5 @@ def _smooth_at(march: March, speeds: Array) -> tuple[Array, Array]:
 
 def _over_places(places: Sequence[Sequence[Measure]], name: str) -> Array:
     """Return the mean over the places of a number of each step, in its unit [any]."""
-    tracks = [[getattr(one, name) for one in place] for place in places]
+    tracks = [[getattr(step, name) for step in place] for place in places]
     return np.asarray(np.mean(tracks, axis=0)) if tracks else np.empty(0)

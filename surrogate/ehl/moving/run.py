@@ -78,7 +78,6 @@ class March:
     ended: MarchStatus | None = None
 
     def __post_init__(self) -> None:
-        """Make the gauge."""
         self.gauge = Gauge(
             case=self.case, grid=self.grid, slide_roll_ratio=self.settings.slide_roll_ratio
         )
@@ -201,17 +200,17 @@ class March:
 
     def _with_averages(self, bare: MovingSolution) -> MovingSolution:
         step_length = self.settings.stride * self.grid.dx
-        found, smooth = average(self.places, step_length), self.smooth_measures()[0]
+        means, smooth = average(self.places, step_length), self.smooth_measures()[0]
         assert self.last is not None
         state, case = self.last.outcome.state, self.case
         return replace(
             bare,
-            **found.numbers,  # type: ignore[arg-type]
-            thin_shares=found.thin_shares,
+            **means.numbers,  # type: ignore[arg-type]
+            thin_shares=means.thin_shares,
             x=self.grid.x,
-            rcs_along=found.rcs_along,
-            centre_films=np.array([one.centre_film for steps in self.places for one in steps]),
-            memory=found.memory,
+            rcs_along=means.rcs_along,
+            centre_films=np.array([step.centre_film for steps in self.places for step in steps]),
+            memory=means.memory,
             transits=sum(map(len, self.places)) * step_length / 2,
             smooth_rolling_loss=smooth.rolling_loss,
             central_film=smooth.centre_film,

@@ -112,16 +112,16 @@ class Stepper:
             shear=self.shear,
         )
         problem = replace(self._problem(rough), columns=columns)
-        made = self._solve(problem)
-        state, before = made.outcome.state, self._energy
-        self._energy = self._energy_of(problem, state, made.outcome.gap)
+        step = self._solve(problem)
+        state, before = step.outcome.state, self._energy
+        self._energy = self._energy_of(problem, state, step.outcome.gap)
         length = self.stride * self.grid.dx
-        made = replace(made, stored=(self._energy - before) / length)
+        step = replace(step, stored=(self._energy - before) / length)
         self._approach_before, self._state = self._state.approach, state
         self._mass, self._carried = carried_on(
-            self.grid, problem, state.film_pressure, made.outcome.gap, made.outcome.contact
+            self.grid, problem, state.film_pressure, step.outcome.gap, step.outcome.contact
         )
-        return made
+        return step
 
     def _energy_of(self, problem: GridProblem, state: GridState, gap: Array) -> float:
         """Return half the integral of pressure times deflection, and load times approach [-]."""
@@ -142,32 +142,28 @@ class Stepper:
         Where nothing converges the next step goes on from what came nearest.
 
         """
-        predicted = self._predicted()
+        predicted = state = self._state
+        if self.moving:  # its ripples move on
+            smooth, before = self.smooth, self._ripples_over
+            film = state.film_pressure - before.film_pressure
+            asperity = state.asperity_pressure - before.asperity_pressure
+            predicted = GridState(
+                film_pressure=_moved_on(film, smooth.film_pressure, self.stride),
+                asperity_pressure=_moved_on(asperity, smooth.asperity_pressure, self.stride),
+                approach=2 * state.approach - self._approach_before,
+            )
         tries = [solve_grid(self.grid, problem, predicted, self.limits)]
         careful = replace(self.limits, krylov=TIGHT, newton=PATIENT, halvings=HALVINGS)
-        for start in (predicted, self._state, self.smooth):
+        for start in (predicted, state, self.smooth):
             if not tries[-1].converged:
                 tries.append(solve_grid(self.grid, problem, start, careful))
         return Step(
             speed=self.speed,
             stored=0.0,
             problem=problem,
-            outcome=min(tries, key=lambda one: (not one.converged, one.flux_error)),
-            newton=sum(one.newton for one in tries),
-            krylov=sum(one.krylov for one in tries),
-        )
-
-    def _predicted(self) -> GridState:
-        """Return the last state with its ripples moved on."""
-        if not self.moving:
-            return self._state
-        state, smooth, before = self._state, self.smooth, self._ripples_over
-        film = state.film_pressure - before.film_pressure
-        asperity = state.asperity_pressure - before.asperity_pressure
-        return GridState(
-            film_pressure=_moved_on(film, smooth.film_pressure, self.stride),
-            asperity_pressure=_moved_on(asperity, smooth.asperity_pressure, self.stride),
-            approach=2 * state.approach - self._approach_before,
+            outcome=min(tries, key=lambda result: (not result.converged, result.flux_error)),
+            newton=sum(result.newton for result in tries),
+            krylov=sum(result.krylov for result in tries),
         )
 
 

@@ -15,8 +15,8 @@ from surrogate.ehl.grid import Grid
 from surrogate.ehl.kernels.moving import dissipated
 from surrogate.ehl.moving.interface import HARDNESS, Mean, THIN_FILMS
 from surrogate.ehl.moving.step import Step
+from surrogate.ehl.results import central_film, PUNCTURED
 from surrogate.ehl.system import film_planes, thin_film
-from surrogate.ehl.to_si import central_film, PUNCTURED
 
 Array = NDArray[np.float64]
 CORE = 0.8
@@ -158,12 +158,12 @@ def average(places: Sequence[Sequence[Measure]], step_length: float) -> Averages
     """Average the steps, `step_length` [semi-axes] apart, of all places that have any."""
     places = [steps for steps in places if steps]
     numbers = {
-        name: _mean([np.mean([getattr(one, name) for one in steps]) for steps in places])
+        name: _mean([np.mean([getattr(step, name) for step in steps]) for steps in places])
         for name in NUMBERS
     }
-    thin = np.array([np.mean([one.thin_shares for one in steps], axis=0) for steps in places])
-    along = [np.mean([one.rcs_along for one in steps], axis=0) for steps in places]
-    tracks = [np.array([one.rcs for one in steps]) for steps in places]
+    thin = np.array([np.mean([step.thin_shares for step in steps], axis=0) for steps in places])
+    along = [np.mean([step.rcs_along for step in steps], axis=0) for steps in places]
+    tracks = [np.array([step.rcs for step in steps]) for steps in places]
     return Averages(
         numbers=numbers,
         thin_shares=tuple(_mean(column) for column in thin.T),

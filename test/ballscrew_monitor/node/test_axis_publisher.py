@@ -4,8 +4,7 @@
 
 import types
 
-from ballscrew_monitor.node.alarm import end_all
-from ballscrew_monitor.node.axis_publisher import AxisPublisher, MOST_LEAPS
+from ballscrew_monitor.node.axis_publisher import AxisPublisher, end_all, MOST_LEAPS
 import pytest
 import rclpy.clock
 from rclpy.duration import Duration

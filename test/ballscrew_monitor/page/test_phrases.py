@@ -101,4 +101,4 @@ def test_a_refusal_is_raised_in_english_and_keeps_its_phrase(refused):
     said = phrase('with_detail', what=phrase('no_limits'), why=phrases.free('no state yet'))
     with refused('limits') as caught:
         raise phrases.Refused(said)
-    assert caught.value.said == said
+    assert caught.value.sentence == said

@@ -14,7 +14,7 @@ import pytest
 from surrogate.surface import batch, shipped_surface, Surface, Validity
 from surrogate.surface.compiled import compiled
 from surrogate.surface.file import read
-from surrogate.surface.found import Found, look_up
+from surrogate.surface.interpolate import Found, look_up
 from surrogate.surface.load_scan import scan
 from surrogate.surface.records import as_array
 

@@ -61,6 +61,7 @@ def make_solution(
     numbers = _numbers(case, grid, outcome, half)
     if status is not Status.CONVERGED:
         numbers = dict.fromkeys(numbers, math.nan)
+    y = np.concatenate([-grid.y[:1:-1], grid.y[1:]]) if grid.symmetric else grid.y
     return ContactSolution(
         contact=case.contact,
         lubricant=case.lubricant,
@@ -71,7 +72,7 @@ def make_solution(
         asperity_pressure=_full(grid, state.asperity_pressure) * pressure,
         film=_full(grid, outcome.gap) * height,
         x=grid.x * case.semi_axis_x,
-        y=_full_y(grid) * case.semi_axis_x,
+        y=y * case.semi_axis_x,
         contact_mask=_full(grid, outcome.contact),
         cavitation_mask=_full(grid, outcome.cavitated),
         hertz_pressure=pressure,
@@ -127,10 +128,6 @@ def _full(grid: Grid, field: NDArray[Kind]) -> NDArray[Kind]:
     if not grid.symmetric:
         return field.copy()
     return np.concatenate([field[:, :1:-1], field[:, 1:]], axis=1)
-
-
-def _full_y(grid: Grid) -> Array:
-    return np.concatenate([-grid.y[:1:-1], grid.y[1:]]) if grid.symmetric else grid.y.copy()
 
 
 def _two_grid(film: float, half_film: float) -> tuple[float, float]:

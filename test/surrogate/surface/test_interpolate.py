@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.surface import found
+from surrogate.surface import interpolate
 from surrogate.surface.fields import FIELDS
 from surrogate.surface.tables import ONSETS, SPREADS, WIDTH
 
@@ -20,8 +20,13 @@ NODES = [0.0, 1.0, 3.0, 4.0]
     [(0.0, 0), (0.5, 0), (1.0, 1), (2.9, 1), (3.0, 2), (4.0, 2), (-1.0, 0), (5.0, 2)],
 )
 def test_a_node_belongs_to_the_cell_above_it(value, cell):
-    assert found.cell_below(NODES, value) == cell
-    assert found.fraction_of(NODES, cell, NODES[cell] + 0.25 * found.width_of(NODES, cell)) == 0.25
+    assert interpolate.cell_below(NODES, value) == cell
+    assert (
+        interpolate.fraction_of(
+            NODES, cell, NODES[cell] + 0.25 * interpolate.width_of(NODES, cell)
+        )
+        == 0.25
+    )
 
 
 @pytest.mark.parametrize(
@@ -40,7 +45,7 @@ def test_a_node_belongs_to_the_cell_above_it(value, cell):
     ],
 )
 def test_a_trust_region_is_a_smoothstep_up_and_down(fraction, centre, height):
-    assert found.bump(fraction, centre) == pytest.approx(height)
+    assert interpolate.bump(fraction, centre) == pytest.approx(height)
 
 
 @pytest.mark.parametrize('place', [(0.25, 0.5, 0.125), (0.0, 1.0, 0.5), (1.0, 1.0, 1.0)])
@@ -51,16 +56,16 @@ def test_spreads_are_linear_along_each_axis(place):
     table = [math.nan] * (along + across + 2 * SPREADS)
     for x, y, z in itertools.product((0, 1), repeat=3):
         table[x * along + y * across + z * SPREADS] = value(x, y, z)
-    weights = found.corner_weights(*place)
-    assert found.spread(table, 0, across, along, weights) == pytest.approx(value(*place))
+    weights = interpolate.corner_weights(*place)
+    assert interpolate.spread(table, 0, across, along, weights) == pytest.approx(value(*place))
 
 
 def test_shares_and_exponentials_stay_in_their_range():
-    assert [found.share(value) for value in (-1e-9, 0.5, 1.0 + 1e-9)] == [0.0, 0.5, 1.0]
-    assert math.isnan(found.share(math.nan))
-    assert found.exponential(709.0) == math.exp(709.0)
-    assert found.exponential(709.1) == found.exponential(1e9) == math.inf
-    assert (found.part(0.5, 3.0), found.part(0.0, math.nan)) == (1.5, 0.0)
+    assert [interpolate.share(value) for value in (-1e-9, 0.5, 1.0 + 1e-9)] == [0.0, 0.5, 1.0]
+    assert math.isnan(interpolate.share(math.nan))
+    assert interpolate.exponential(709.0) == math.exp(709.0)
+    assert interpolate.exponential(709.1) == interpolate.exponential(1e9) == math.inf
+    assert (interpolate.part(0.5, 3.0), interpolate.part(0.0, math.nan)) == (1.5, 0.0)
 
 
 AXES = np.array([0.0, 0.5, 1.5]), np.array([-1.0, 1.0, 4.0, 4.5]), np.array([2.0, 3.0, 5.0, 9.0])
@@ -86,34 +91,34 @@ def test_a_sum_of_cubics_comes_back_in_every_cell():
             axis[cell] + part * (axis[cell + 1] - axis[cell])
             for axis, cell, part in zip(AXES, (i, j, k), (u, v, w))
         ]
-        face = found.face_weights(AXES[1], j, v, AXES[2], k, w)
-        fast = found.hermite_weights(found.width_of(AXES[0], i), u)
+        face = interpolate.face_weights(AXES[1], j, v, AXES[2], k, w)
+        fast = interpolate.hermite_weights(interpolate.width_of(AXES[0], i), u)
         node = (i * along + j) * across + k
         back = [
-            found.field(values, name, node, across, along, fast, face)
+            interpolate.field(values, name, node, across, along, fast, face)
             for name in range(len(FIELDS))
         ]
         assert back == pytest.approx(cubics(*place)[0], rel=1e-12, abs=1e-10)
-        begins = found.onset_on_face(onset, j * across + k, across, face)
+        begins = interpolate.onset_on_face(onset, j * across + k, across, face)
         assert begins == pytest.approx(cubics(AXES[0][0], *place[1:])[0][2], rel=1e-12, abs=1e-10)
 
 
 def test_a_point_without_an_answer_is_as_if_nothing_had_been_found():
     """Whatever an earlier point has left; the two halves together leave nothing of it."""
-    used = found.Found(**{one.name: 1 for one in dataclasses.fields(found.Found)})
-    assert found.leave(used, found.MASKED) == found.MASKED
+    used = interpolate.Found(**{one.name: 1 for one in dataclasses.fields(interpolate.Found)})
+    assert interpolate.leave(used, interpolate.MASKED) == interpolate.MASKED
     judged = {'validity', 'corrected', 'worst_contact', 'rcs', 'efficiency', 'film_ratio'}
     judged |= {'friction_torque', 'driving_torque', *(n for n in used.__slots__ if '_cell' in n)}
     judged |= {name for name in used.__slots__ if name.endswith('_fraction')}
-    fresh = found.Found(validity=found.MASKED)
+    fresh = interpolate.Found(validity=interpolate.MASKED)
     for name in used.__slots__:
         left = getattr(fresh, name) if name in judged else 1
         np.testing.assert_equal(getattr(used, name), left, name)
-    found.leave_rest(used)
+    interpolate.leave_rest(used)
     assert repr(used) == repr(fresh)
 
 
 @pytest.mark.parametrize(('contact', 'nut', 'side'), [(-1, 0, 0), (0, 1, 1), (1, 1, 2), (2, 2, 1)])
 def test_contacts_count_by_nut_and_side(contact, nut, side):
-    place = found.Found(worst_contact=contact)
+    place = interpolate.Found(worst_contact=contact)
     assert (place.worst_nut, place.worst_side) == (nut, side)

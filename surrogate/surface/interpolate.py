@@ -80,7 +80,7 @@ class Found:
 
 
 def look_up(
-    tables: SurfaceTables, speed: float, load: float, temperature: float, found: Found
+    tables: SurfaceTables, speed: float, load: float, temperature: float, point: Found
 ) -> int:
     """
     Locate a point and look up the numbers that are judged; return the validity.
@@ -90,11 +90,11 @@ def look_up(
 
     """
     if not tables.temperature_low <= temperature <= tables.temperature_high:
-        return leave(found, HEAT_OUTSIDE)
+        return leave(point, HEAT_OUTSIDE)
     if not tables.load_low <= load <= tables.load_high:
-        return leave(found, LOAD_OUTSIDE)
+        return leave(point, LOAD_OUTSIDE)
     if not tables.speed_low <= speed <= tables.speed_high:
-        return leave(found, SPEED_ABOVE if speed > tables.speed_high else SPEED_BELOW)
+        return leave(point, SPEED_ABOVE if speed > tables.speed_high else SPEED_BELOW)
     speeds, loads, heats = tables.speed_nodes, tables.load_nodes, tables.heat_nodes
     j, k = cell_below(loads, load), cell_below(heats, temperature)
     v, w = fraction_of(loads, j, load), fraction_of(heats, k, temperature)
@@ -104,15 +104,15 @@ def look_up(
     # The mapping rounds, so an end may be passed by a rounding.
     inside = min(max(s, speeds[0]), speeds[-1])
     if not abs(inside - s) < ROUNDING:
-        return leave(found, SPEED_BELOW if s < speeds[0] else SPEED_ABOVE)
+        return leave(point, SPEED_BELOW if s < speeds[0] else SPEED_ABOVE)
     i = cell_below(speeds, inside)
     u = fraction_of(speeds, i, inside)
     cell = (i * (len(loads) - 1) + j) * (across - 1) + k
     if not tables.open_cells[cell]:
-        return leave(found, MASKED)
-    found.validity = VALID
-    found.speed_cell, found.load_cell, found.heat_cell = i, j, k
-    found.speed_fraction, found.load_fraction, found.heat_fraction = u, v, w
+        return leave(point, MASKED)
+    point.validity = VALID
+    point.speed_cell, point.load_cell, point.heat_cell = i, j, k
+    point.speed_fraction, point.load_fraction, point.heat_fraction = u, v, w
     fast, values, along = hermite_weights(width_of(speeds, i), u), tables.values, tables.rows
     at = (i * along + row) * across + k
     torque = field(values, TORQUE, at, across, along, fast, face)
@@ -120,42 +120,42 @@ def look_up(
     ratio = field(values, RATIO, at, across, along, fast, face)
     pull, weight = tables.pull_of_cell[cell], 0.0
     if pull >= 0:
-        weight = pull_weight(tables.pulls, pull, found)
+        weight = pull_weight(tables.pulls, pull, point)
         torque = pulled(tables.pulls, pull, weight, TORQUE, torque)
         rcs = pulled(tables.pulls, pull, weight, RCS, rcs)
         ratio = pulled(tables.pulls, pull, weight, RATIO, ratio)
-    found.friction_torque, found.rcs, found.film_ratio = torque, share(rcs), exponential(ratio)
-    found.corrected = weight != 0.0
+    point.friction_torque, point.rcs, point.film_ratio = torque, share(rcs), exponential(ratio)
+    point.corrected = weight != 0.0
     node = ((i + (u > 0.5)) * len(loads) + j + (v > 0.5)) * across + k + (w > 0.5)
-    found.worst_contact = tables.worst_contacts[node]
-    fill_torques(found, load, tables.lead)
+    point.worst_contact = tables.worst_contacts[node]
+    fill_torques(point, load, tables.lead)
     return VALID
 
 
-def leave(found: Found, validity: int) -> int:
+def leave(point: Found, validity: int) -> int:
     """Say why what is judged is not known; return that."""
-    found.validity = validity
-    found.speed_cell = found.load_cell = found.heat_cell = -1
-    found.speed_fraction = found.load_fraction = found.heat_fraction = NAN
-    found.friction_torque = found.rcs = found.film_ratio = NAN
-    found.efficiency = found.driving_torque = NAN
-    found.corrected, found.worst_contact = False, -1
+    point.validity = validity
+    point.speed_cell = point.load_cell = point.heat_cell = -1
+    point.speed_fraction = point.load_fraction = point.heat_fraction = NAN
+    point.friction_torque = point.rcs = point.film_ratio = NAN
+    point.efficiency = point.driving_torque = NAN
+    point.corrected, point.worst_contact = False, -1
     return validity
 
 
-def fill_torques(found: Found, load: float, lead: float) -> None:
+def fill_torques(point: Found, load: float, lead: float) -> None:
     """Fill in what follows from the friction torque at an opposing load [N]; lead [m]."""
-    found.efficiency = efficiency(found.friction_torque, load, lead)
-    found.driving_torque = driving_torque(found.friction_torque, load, lead)
+    point.efficiency = efficiency(point.friction_torque, load, lead)
+    point.driving_torque = driving_torque(point.friction_torque, load, lead)
 
 
-def look_up_rest(tables: SurfaceTables, load: float, found: Found) -> None:
+def look_up_rest(tables: SurfaceTables, load: float, point: Found) -> None:
     """Fill in all that `look_up` left, at the place that it found; opposing load [N]."""
-    if found.validity != VALID:
-        leave_rest(found)
+    if point.validity != VALID:
+        leave_rest(point)
         return
-    i, j, k = found.speed_cell, found.load_cell, found.heat_cell
-    u, v, w = found.speed_fraction, found.load_fraction, found.heat_fraction
+    i, j, k = point.speed_cell, point.load_cell, point.heat_cell
+    u, v, w = point.speed_fraction, point.load_fraction, point.heat_fraction
     loads, across, along = tables.load_nodes, len(tables.heat_nodes), tables.rows
     fast = hermite_weights(width_of(tables.speed_nodes, i), u)
     face = face_weights(loads, j, v, tables.heat_nodes, k, w)
@@ -168,48 +168,48 @@ def look_up_rest(tables: SurfaceTables, load: float, found: Found) -> None:
     cell = (i * (len(loads) - 1) + j) * (across - 1) + k
     pull = tables.pull_of_cell[cell]
     if pull >= 0:
-        weight = pull_weight(tables.pulls, pull, found)
+        weight = pull_weight(tables.pulls, pull, point)
         shared = pulled(tables.pulls, pull, weight, SHARE, shared)
         central = pulled(tables.pulls, pull, weight, CENTRAL, central)
         minimum = pulled(tables.pulls, pull, weight, MINIMUM, minimum)
         coefficient = pulled(tables.pulls, pull, weight, COEFFICIENT, coefficient)
         pressure = pulled(tables.pulls, pull, weight, PRESSURE, pressure)
-    found.asperity_share = share(shared)
-    found.central_film, found.minimum_film = exponential(central), exponential(minimum)
-    found.friction_coefficient, found.max_pressure = coefficient, pressure
-    found.friction_torque_error = tables.errors[ERRORS * cell]
-    found.rcs_error = tables.errors[ERRORS * cell + 1]
-    slope = efficiency_slope(found.friction_torque, load, tables.lead)
-    found.efficiency_error = found.friction_torque_error * slope
-    found.back_driving = is_back_driving(found.friction_torque, load, tables.lead)
+    point.asperity_share = share(shared)
+    point.central_film, point.minimum_film = exponential(central), exponential(minimum)
+    point.friction_coefficient, point.max_pressure = coefficient, pressure
+    point.friction_torque_error = tables.errors[ERRORS * cell]
+    point.rcs_error = tables.errors[ERRORS * cell + 1]
+    slope = efficiency_slope(point.friction_torque, load, tables.lead)
+    point.efficiency_error = point.friction_torque_error * slope
+    point.back_driving = is_back_driving(point.friction_torque, load, tables.lead)
     if not tables.has_spreads:
-        leave_spreads(found)
+        leave_spreads(point)
         return
     corners = corner_weights(u, v, w)
     node = SPREADS * ((i * len(loads) + j) * across + k)
     across, along = SPREADS * across, SPREADS * len(loads) * across
     spreads = tables.spreads
-    found.friction_torque_std = spread(spreads, node, across, along, corners)
-    found.friction_torque_stderr = spread(spreads, node + 1, across, along, corners)
-    found.rcs_std = spread(spreads, node + 2, across, along, corners)
-    found.rcs_stderr = spread(spreads, node + 3, across, along, corners)
-    found.efficiency_std = found.friction_torque_std * slope
-    found.efficiency_stderr = found.friction_torque_stderr * slope
+    point.friction_torque_std = spread(spreads, node, across, along, corners)
+    point.friction_torque_stderr = spread(spreads, node + 1, across, along, corners)
+    point.rcs_std = spread(spreads, node + 2, across, along, corners)
+    point.rcs_stderr = spread(spreads, node + 3, across, along, corners)
+    point.efficiency_std = point.friction_torque_std * slope
+    point.efficiency_stderr = point.friction_torque_stderr * slope
 
 
-def leave_rest(found: Found) -> None:
+def leave_rest(point: Found) -> None:
     """Say that all that `look_up` leaves is not known."""
-    found.asperity_share = found.central_film = found.minimum_film = NAN
-    found.friction_coefficient = found.max_pressure = NAN
-    found.friction_torque_error = found.rcs_error = found.efficiency_error = NAN
-    leave_spreads(found)
-    found.back_driving = False
+    point.asperity_share = point.central_film = point.minimum_film = NAN
+    point.friction_coefficient = point.max_pressure = NAN
+    point.friction_torque_error = point.rcs_error = point.efficiency_error = NAN
+    leave_spreads(point)
+    point.back_driving = False
 
 
-def leave_spreads(found: Found) -> None:
+def leave_spreads(point: Found) -> None:
     """Say that what strips of the raceway differ by is not known."""
-    found.friction_torque_std = found.rcs_std = found.efficiency_std = NAN
-    found.friction_torque_stderr = found.rcs_stderr = found.efficiency_stderr = NAN
+    point.friction_torque_std = point.rcs_std = point.efficiency_std = NAN
+    point.friction_torque_stderr = point.rcs_stderr = point.efficiency_stderr = NAN
 
 
 def cell_below(nodes: Any, value: float) -> int:
@@ -316,13 +316,13 @@ def exponential(value: float) -> float:
     return math.inf if value > LARGEST_EXPONENT else math.exp(value)
 
 
-def pull_weight(pulls: Any, pull: int, found: Found) -> float:
+def pull_weight(pulls: Any, pull: int, point: Found) -> float:
     """Return the weight of a correction at a place of its cell [-]."""
     at = PULL * pull
     return (
-        bump(found.speed_fraction, pulls[at])
-        * bump(found.load_fraction, pulls[at + 1])
-        * bump(found.heat_fraction, pulls[at + 2])
+        bump(point.speed_fraction, pulls[at])
+        * bump(point.load_fraction, pulls[at + 1])
+        * bump(point.heat_fraction, pulls[at + 2])
     )
 
 
