@@ -24,10 +24,12 @@ from surrogate.units import RPM, ZERO_CELSIUS
 
 def add_inspect_commands(actions: Any) -> None:
     """Add the subcommands to those of `surface`."""
-    _add_check(actions.add_parser('check', help='compare a surface file with fresh solves'))
+    text = 'Exit code 1: a point or the other surface differs by more than the tolerance.'
+    check = 'compare a surface file with fresh solves'
+    _add_check(actions.add_parser('check', help=check, epilog=text))
     _add_query(actions.add_parser('query', help='look up one point, or those of a table'))
     _add_plot(actions.add_parser('plot', help='draw a surface, a picture per temperature'))
-    _add_diff(actions.add_parser('diff', help='compare two surface files'))
+    _add_diff(actions.add_parser('diff', help='compare two surface files', epilog=text))
     _add_export(actions.add_parser('export', help='write a surface as NetCDF or as a table'))
 
 

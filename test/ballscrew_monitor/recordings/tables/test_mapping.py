@@ -8,6 +8,7 @@ import math
 from pathlib import Path
 import textwrap
 
+from ballscrew_monitor.recordings.tables import mapping
 from ballscrew_monitor.recordings.tables.mapping import make_map, read_map
 import pytest
 from surrogate.files import InputError
@@ -119,6 +120,11 @@ def test_a_map_is_a_file(tmp_path, refused):
         refused('a_table', read_map, table)
     path.rename(tmp_path / 'map.txt').write_text(yaml.safe_dump(GOOD))
     assert read_map(tmp_path / 'map.txt').content == GOOD
+
+
+def test_every_key_has_a_place_with_its_meaning():
+    leaves = {place.rpartition('.')[2] for place in mapping.PLACES}
+    assert leaves >= {*mapping.NUMBERS, *mapping.LINES, *mapping.TEXTS, *mapping.INPUTS}
 
 
 def test_the_map_of_the_guide_is_one():
