@@ -128,7 +128,7 @@ def test_every_key_has_a_place_with_its_meaning():
 
 
 def test_the_map_of_the_guide_is_one():
-    page = Path(__file__).resolve().parents[4] / 'docs' / 'guide' / 'own_log.md'
+    page = Path(__file__).resolve().parents[4] / 'docs' / 'guide' / 'recordings.md'
     lines = page.read_text(encoding='utf-8').splitlines()
     first = lines.index('    log: log.csv')
     block = itertools.takewhile(lambda line: line.startswith('    '), lines[first:])
