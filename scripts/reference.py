@@ -29,6 +29,9 @@ from surrogate.screw import closed_form_record, full_record, sensitivity
 TREE = Path(__file__).resolve().parent.parent
 REFERENCE = TREE / 'docs' / 'reference'
 MADE = 'Made by `python scripts/reference.py` from `{}`.'
+KEYS_ON_FILE = (
+    'YAML. Keys carry their unit. A key without a default is needed; one with `-` may be left out.'
+)
 Rows = Iterable[Sequence[object]]
 
 
@@ -128,7 +131,7 @@ def datasheet_page() -> str:
         'Balls, `ball_roughness`': BallRoughness,
         'Oil': Lubricant,
     }
-    return page('Datasheets', 'surrogate/parameters.py', *sheet_parts(sheets))
+    return page('Datasheets', 'surrogate/parameters.py', KEYS_ON_FILE, *sheet_parts(sheets))
 
 
 def case_page() -> str:
@@ -140,7 +143,8 @@ def case_page() -> str:
         '`domain`': case.CaseDomain,
         '`strip`': case.CaseStrip,
     }
-    return page('The case of one contact', 'surrogate/contact/case.py', *sheet_parts(cases))
+    source = 'surrogate/contact/case.py'
+    return page('The case of one contact', source, KEYS_ON_FILE, *sheet_parts(cases))
 
 
 def sheet_parts(sheets: dict[str, type]) -> Iterator[str]:
@@ -289,7 +293,7 @@ def map_page() -> str:
         'The map of a table',
         'ballscrew_monitor/recordings/tables/mapping.py',
         'A value stands in its place, or under `assumed` as '
-        '`x.lead_mm: {value: 10.0, reason: ...}`, not in both.',
+        '`x.lead_mm: {value: 10.0, reason: ...}`, not in both. `AXIS` is a name below `axes`.',
         table(['place', 'allowed', 'meaning'], rows),
         '## Units',
         'A column is `{column: NAME, unit: UNIT, scale: 1.0, offset: 0.0}`; the unit is that '
