@@ -200,7 +200,12 @@ def message_parts(path: Path) -> Iterator[str]:
 
 
 def message_rows(lines: Iterable[str]) -> Iterator[list[str]]:
-    """Yield names, type and meaning; names with one comment and type have one row."""
+    """
+    Yield names, type and meaning; names with one comment and type have one row.
+
+    The comment of a field holds up to the next one or an empty line, that of a constant for it.
+
+    """
     comment: list[str] = []
     row: list[str] = []
     for line in [*lines, '']:
@@ -214,6 +219,8 @@ def message_rows(lines: Iterable[str]) -> Iterator[list[str]]:
         kind, name = declaration.split(maxsplit=1)
         name, equal, number = (part.strip() for part in name.partition('='))
         shown = f'`{name}`{f" {number}" if equal else ""}'
+        if row and equal:
+            comment = []
         meaning = ' '.join(comment) or beside.strip() or '-'
         if row and row[1:] == [kind, meaning]:
             row[0] += f', {shown}'
