@@ -38,12 +38,24 @@ from surrogate.units import RPM
 BUG, INTERRUPTED = 70, SIGNALLED + signal.SIGINT
 NODE = 'ballscrew_monitor'  # the default name of the node
 # Facts of the event log that are sentences or words: the first that is not empty is printed.
+EXIT_CODES = {
+    0: 'done',
+    1: 'ran, but a check failed, a solve did not converge, nothing could be judged, or there are '
+    'findings',
+    BAD_INPUT: 'bad input: one sentence says what, where and what is allowed; or a package is '
+    'missing: the sentence says how to get it',
+    BUG: 'a fault of the program: one sentence names the file to send with a report',
+    INTERRUPTED: 'ended by SIGINT (Ctrl-C); the node itself and `ballscrew page` end with 0',
+    SIGNALLED
+    + signal.SIGTERM: 'ended by SIGTERM; the node itself and `ballscrew page` end with 0',
+}
+"""Meaning of the exit codes of all commands."""
 TOLD = ('text', 'ending', 'advice', 'reason', 'until', 'result', 'sha256')
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line; return the exit code."""
-    args = _parser().parse_args(arguments)
+    args = command_parser().parse_args(arguments)
     try:
         return _ended(args)
     except Exception:  # noqa: BLE001 whatever it is, a person reads one sentence
@@ -88,7 +100,8 @@ def _ended(args: argparse.Namespace) -> int:
         return INTERRUPTED
 
 
-def _parser() -> argparse.ArgumentParser:
+def command_parser() -> argparse.ArgumentParser:
+    """Return the parser of all commands."""
     parser = Parser(
         prog='ballscrew',
         description='Lubrication and efficiency of ball screws: model, surface '
@@ -96,7 +109,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     subparsers = parser.add_subparsers(required=True, metavar='COMMAND')
     for name, (handler, text) in COMMANDS.items():
-        command = subparsers.add_parser(name, help=text)
+        command = subparsers.add_parser(name, help=text, epilog=options.ENDINGS.get(name))
         command.set_defaults(handler=handler)
         getattr(options, f'add_{name}')(command)
     add_commands(subparsers, _read_bag)

@@ -16,6 +16,18 @@ BAG_TEXT, PARAMS_TEXT = (f'{path.relative_to(TREE)} of the repository' for path 
 MAP_TEXT = 'map of the columns of a table: CSV, Parquet or xlsx'
 OUT = Path('out')
 Parser = argparse.ArgumentParser
+ENDINGS = {
+    'run': 'Exit code 1: the node failed, or samples were lost.',
+    'replay': 'Exit code 0: some motion was judged on at least one axis of each recording. 1: '
+    'nothing was judged or nothing moved; of several recordings, at least one could not be read.',
+    'health': 'Exit code 1: no recording of several could be judged.',
+    'solve': 'Exit code 1: not converged, rejected, timed out, or no node found. 130, 143: the '
+    'solve is withdrawn.',
+    'doctor': 'Exit code 1: findings. 2: a file that the node refuses.',
+    'play': 'Exit code 1: nobody listens, or a monitor did not take all messages of an input.',
+    'page': 'Exit code 2: an option is wrong, or the port is taken.',
+}
+"""Exit codes of a command beyond those of all commands."""
 
 
 def _add_file(parser: Parser, name: str, metavar: str | None, text: str, **more: Any) -> None:

@@ -6,7 +6,7 @@ Marched onsets of contact beside those that the topography tells, and their scat
 Usage: python studies/topography_onset.py [--march NAME] [--benchmark].
 
 Reads results/asperity_marches.csv, in which each row is a strip whose tile was marched under a
-falling speed, and draws the picture of docs/theory/running_in.md. With --march it marches one row
+falling speed, and draws the picture of docs/theory/raceway.md. With --march it marches one row
 again (one to ten minutes), with --benchmark it writes what others need to solve each row.
 
 """

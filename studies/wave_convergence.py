@@ -7,7 +7,7 @@ Usage: python studies/wave_convergence.py [--only NAME ...] [--report].
 
 Marches the 20x5 strip of topography_onset.py with ever shorter waves under a falling speed, on
 three draws. Each march that ends is added to results/wave_convergence.csv at once, and one that
-is there is not marched again. Last it prints the table of docs/theory/running_in.md.
+is there is not marched again. Last it prints the table that docs/theory/raceway.md sums up.
 
 """
 

@@ -31,40 +31,38 @@ def quantity(
     *,
     shift: float = 0.0,
     default: Any = MISSING,
+    means: str = '',
 ) -> Any:
     """
     Declare a number: SI = (file + shift) * factor, allowed range in file units.
 
-    The key on file is the name of the field with the unit as its suffix.
+    The key on file is the name of the field with the unit as its suffix. What it `means` stands in
+    the reference.
 
     """
     return field(
         default=default,
-        metadata={'unit': unit, 'factor': factor, 'shift': shift, 'low': low, 'high': high},
-    )
-
-
-def count(low: int, high: int, *, default: Any = MISSING) -> Any:
-    """Declare a whole number and its range."""
-    return field(
-        default=default,
-        metadata={'unit': '', 'factor': 1, 'shift': 0, 'low': low, 'high': high, 'whole': True},
-    )
-
-
-def quantities(unit: str, factor: float, low: float, high: float) -> Any:
-    """Declare a list of numbers, empty by default; one number alone is a list too."""
-    return field(
-        default=(),
         metadata={
             'unit': unit,
             'factor': factor,
-            'shift': 0.0,
+            'shift': shift,
             'low': low,
             'high': high,
-            'many': True,
+            'means': means,
         },
     )
+
+
+def count(low: int, high: int, *, default: Any = MISSING, means: str = '') -> Any:
+    """Declare a whole number and its range."""
+    spec = quantity('', 1, low, high, shift=0, default=default, means=means)
+    return field(default=default, metadata={**spec.metadata, 'whole': True})
+
+
+def quantities(unit: str, factor: float, low: float, high: float, *, means: str = '') -> Any:
+    """Declare a list of numbers, empty by default; one number alone is a list too."""
+    spec = quantity(unit, factor, low, high, means=means)
+    return field(default=(), metadata={**spec.metadata, 'many': True})
 
 
 def text(
@@ -72,19 +70,21 @@ def text(
     allowed: str = 'a text that is not empty',
     *,
     default: Any = MISSING,
+    means: str = '',
 ) -> Any:
     """Declare a text that matches `pattern`, which `allowed` puts in words."""
-    return field(default=default, metadata={'text': pattern, 'allowed': allowed})
+    metadata = {'text': pattern, 'allowed': allowed, 'means': means}
+    return field(default=default, metadata=metadata)
 
 
-def choice(*allowed: str, default: Any = MISSING) -> Any:
+def choice(*allowed: str, default: Any = MISSING, means: str = '') -> Any:
     """Declare a word out of those allowed."""
-    return field(default=default, metadata={'choice': allowed})
+    return field(default=default, metadata={'choice': allowed, 'means': means})
 
 
-def block(cls: type, *, default: Any = MISSING) -> Any:
+def block(cls: type, *, default: Any = MISSING, means: str = '') -> Any:
     """Declare a nested block of quantities; a list of all its values in order will do too."""
-    return field(default=default, metadata={'block': cls})
+    return field(default=default, metadata={'block': cls, 'means': means})
 
 
 def key_of(spec: Any) -> str:

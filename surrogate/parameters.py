@@ -50,9 +50,9 @@ VISCOSITY_MISMATCH = 2.0
 class Material(Checked):
     """Elastic solid: Young's modulus [Pa], Poisson's ratio [-], density [kg/m3]."""
 
-    young_modulus: float = quantity('GPa', 1e9, 1.0, 1000.0)
-    poisson_ratio: float = quantity('', 1.0, 0.0, 0.49)
-    density: float = quantity('kg_m3', 1.0, 500.0, 20000.0)
+    young_modulus: float = quantity('GPa', 1e9, 1.0, 1000.0, means="Young's modulus")
+    poisson_ratio: float = quantity('', 1.0, 0.0, 0.49, means="Poisson's ratio")
+    density: float = quantity('kg_m3', 1.0, 500.0, 20000.0, means='density')
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -75,30 +75,111 @@ class Screw(Checked):
 
     SERVICE: ClassVar[tuple[str, ...]] = ('dynamic_rating', 'free_length', 'support')
 
-    name: str = text(*NAME)
-    source: str = text()
-    pitch_radius: float = quantity('mm', 1e-3, 1.0, 500.0)
-    lead: float = quantity('mm', 1e-3, 0.5, 200.0)
-    ball_diameter: float = quantity('mm', 1e-3, 0.3, 100.0)
-    contact_angle: float = quantity('deg', math.pi / 180, 20.0, 70.0)
-    conformity_screw: float = quantity('', 1.0, 0.501, 0.7)
-    conformity_nut: float = quantity('', 1.0, 0.501, 0.7)
-    loaded_balls_per_nut: int = count(1, 10000)
-    preload: float = quantity('N', 1.0, 0.0, 1e6)
-    static_rating: float = quantity('kN', 1e3, 0.1, 1e5)
-    dynamic_rating: float | None = quantity('kN', 1e3, 0.1, 1e5, default=None)
-    speed_limit: float = quantity('m_rev_min', RPM, 1.0, 1000.0)
-    parasitic_torque: float = quantity('Nm', 1.0, 0.0, 1e3, default=0.0)
-    parasitic_torque_rate: float = quantity('Nm_s', 1.0, 0.0, 1e3, default=0.0)
-    hysteresis_loss: float = quantity('', 1.0, 0.0, 0.1, default=0.0)
-    flank_clearance: float | None = quantity('um', 1e-6, 0.0, 1000.0, default=None)
-    working_load: float | None = quantity('N', 1.0, 0.0, 1e6, default=None)
-    free_length: float | None = quantity('mm', 1e-3, 10.0, 20000.0, default=None)
-    support: str | None = choice(*SUPPORTS, default=None)
-    raceway: Material = block(Material)
-    ball: Material = block(Material)
-    roughness: Roughness = block(Roughness)
-    ball_roughness: BallRoughness | None = block(BallRoughness, default=None)
+    name: str = text(
+        *NAME,
+        means='part of file names; a node accepts a surface only for the name that it states',
+    )
+    source: str = text(means='where the numbers come from')
+    pitch_radius: float = quantity(
+        'mm', 1e-3, 1.0, 500.0, means='radius of the circle of the ball centres'
+    )
+    lead: float = quantity('mm', 1e-3, 0.5, 200.0, means='travel of the nut per turn')
+    ball_diameter: float = quantity('mm', 1e-3, 0.3, 100.0, means='diameter of a ball')
+    contact_angle: float = quantity(
+        'deg', math.pi / 180, 20.0, 70.0, means='45 for most gothic grooves'
+    )
+    conformity_screw: float = quantity(
+        '',
+        1.0,
+        0.501,
+        0.7,
+        means='groove radius over ball diameter, 0.515 to 0.555; ask the maker, 0.54 if unknown',
+    )
+    conformity_nut: float = quantity('', 1.0, 0.501, 0.7, means='the same of the nut')
+    loaded_balls_per_nut: int = count(
+        1, 10000, means='turns times balls per turn of one nut, of an offset nut of one half'
+    )
+    preload: float = quantity(
+        'N',
+        1.0,
+        0.0,
+        1e6,
+        means='force between the two nuts; from the drag torque if the catalogue states only that',
+    )
+    static_rating: float = quantity(
+        'kN',
+        1e3,
+        0.1,
+        1e5,
+        means='C0 of one nut; refused where it presses a ball by less than 2 or more than 8 GPa',
+    )
+    dynamic_rating: float | None = quantity(
+        'kN', 1e3, 0.1, 1e5, default=None, means='C of one nut; without it no life is stated'
+    )
+    speed_limit: float = quantity(
+        'm_rev_min',
+        RPM,
+        1.0,
+        1000.0,
+        means='D n of the catalogue, pitch diameter times speed; used for warnings',
+    )
+    parasitic_torque: float = quantity(
+        'Nm',
+        1.0,
+        0.0,
+        1e3,
+        default=0.0,
+        means='constant torque of wipers, recirculation and balls that touch each other, '
+        'from `ballscrew identify`',
+    )
+    parasitic_torque_rate: float = quantity(
+        'Nm_s', 1.0, 0.0, 1e3, default=0.0, means='the same in proportion to the speed'
+    )
+    hysteresis_loss: float = quantity(
+        '',
+        1.0,
+        0.0,
+        0.1,
+        default=0.0,
+        means='share of the elastic work of rolling that the steel does not give back',
+    )
+    flank_clearance: float | None = quantity(
+        'um',
+        1e-6,
+        0.0,
+        1000.0,
+        default=None,
+        means='gap between an unloaded ball and the flanks of its groove',
+    )
+    working_load: float | None = quantity(
+        'N',
+        1.0,
+        0.0,
+        1e6,
+        default=None,
+        means='largest axial load in operation, under which summits yield; without it the '
+        'load that unloads the relieved nut, 2.83 preloads (without preload 2.83 % '
+        'of C0)',
+    )
+    free_length: float | None = quantity(
+        'mm',
+        1e-3,
+        10.0,
+        20000.0,
+        default=None,
+        means='length between the bearings, for critical speed and buckling; with `support`',
+    )
+    support: str | None = choice(
+        *SUPPORTS, default=None, means='how the bearings hold the ends; with `free_length_mm`'
+    )
+    raceway: Material = block(Material, means='steel of screw and nut')
+    ball: Material = block(Material, means='material of the balls')
+    roughness: Roughness = block(Roughness, means='roughness of the raceways')
+    ball_roughness: BallRoughness | None = block(
+        BallRoughness,
+        default=None,
+        means='roughness of the balls, with the dimension of the raceway; without it smooth',
+    )
 
     def __post_init__(self) -> None:
         """Check every range and that the balls fit on the pitch circle."""
@@ -185,24 +266,78 @@ class Lubricant(Checked):
 
     """
 
-    name: str = text(*NAME)
-    source: str = text()
-    reference_temperature: float = quantity('degC', 1.0, -50.0, 200.0, shift=ZERO_CELSIUS)
-    viscosity: float = quantity('Pa_s', 1.0, 1e-4, 100.0)
-    pressure_viscosity: float = quantity('1_GPa', 1e-9, 1.0, 100.0)
-    density: float = quantity('kg_m3', 1.0, 500.0, 2000.0)
-    density_slope: float = quantity('kg_m3_K', 1.0, 0.0, 2.0)
-    eyring_stress: float = quantity('MPa', 1e6, 0.1, 100.0)
-    kinematic_viscosity_40: float = quantity('mm2_s', 1e-6, 2.0, 1e5)
-    kinematic_viscosity_100: float = quantity('mm2_s', 1e-6, 1.0, 1e4)
-    minimum_temperature: float = quantity('degC', 1.0, -60.0, 200.0, shift=ZERO_CELSIUS)
-    maximum_temperature: float = quantity('degC', 1.0, -60.0, 250.0, shift=ZERO_CELSIUS)
-    thermal_conductivity: float = quantity('W_m_K', 1.0, 0.01, 1.0, default=0.14)
-    film_floor: float = quantity('nm', 1e-9, 0.1, 100.0, default=3e-9)
-    film_floor_low: float = quantity('nm', 1e-9, 0.1, 100.0, default=1e-9)
-    film_floor_high: float = quantity('nm', 1e-9, 0.1, 100.0, default=5e-9)
-    film_factor: float = quantity('', 1.0, 0.05, 1.0, default=1.0)
-    limiting_shear_share: float | None = quantity('', 1.0, 0.01, 0.2, default=None)
+    name: str = text(
+        *NAME,
+        means='part of file names; a node accepts a surface only for the name that it states',
+    )
+    source: str = text(means='where the numbers come from')
+    reference_temperature: float = quantity(
+        'degC', 1.0, -50.0, 200.0, shift=ZERO_CELSIUS, means='temperature of the next three'
+    )
+    viscosity: float = quantity(
+        'Pa_s',
+        1.0,
+        1e-4,
+        100.0,
+        means='dynamic viscosity; within a factor of two of the kinematic one times the density',
+    )
+    pressure_viscosity: float = quantity(
+        '1_GPa', 1e-9, 1.0, 100.0, means='pressure-viscosity coefficient'
+    )
+    density: float = quantity('kg_m3', 1.0, 500.0, 2000.0, means='density')
+    density_slope: float = quantity('kg_m3_K', 1.0, 0.0, 2.0, means='loss of density per kelvin')
+    eyring_stress: float = quantity('MPa', 1e6, 0.1, 100.0, means='5 for mineral oil')
+    kinematic_viscosity_40: float = quantity(
+        'mm2_s', 1e-6, 2.0, 1e5, means='at 40 degC, from the data sheet'
+    )
+    kinematic_viscosity_100: float = quantity('mm2_s', 1e-6, 1.0, 1e4, means='at 100 degC')
+    minimum_temperature: float = quantity(
+        'degC', 1.0, -60.0, 200.0, shift=ZERO_CELSIUS, means='coldest oil of the sheet'
+    )
+    maximum_temperature: float = quantity(
+        'degC', 1.0, -60.0, 250.0, shift=ZERO_CELSIUS, means='warmest oil of the sheet'
+    )
+    thermal_conductivity: float = quantity(
+        'W_m_K', 1.0, 0.01, 1.0, default=0.14, means='for the heating of the inlet alone'
+    )
+    film_floor: float = quantity(
+        'nm',
+        1e-9,
+        0.1,
+        100.0,
+        default=3e-9,
+        means='boundary film below which a node counts as punctured, which moves the '
+        'onset: 3 with anti-wear additives (literature 2 to 5), 1 of base oil (0.5 '
+        'to 2)',
+    )
+    film_floor_low: float = quantity(
+        'nm',
+        1e-9,
+        0.1,
+        100.0,
+        default=1e-9,
+        means='least likely film floor; draws the broken lines beside the limit alone',
+    )
+    film_floor_high: float = quantity(
+        'nm', 1e-9, 0.1, 100.0, default=5e-9, means='largest likely film floor, likewise'
+    )
+    film_factor: float = quantity(
+        '',
+        1.0,
+        0.05,
+        1.0,
+        default=1.0,
+        means='share of the fully flooded film that starvation or grease leaves',
+    )
+    limiting_shear_share: float | None = quantity(
+        '',
+        1.0,
+        0.01,
+        0.2,
+        default=None,
+        means='largest shear stress of the oil over the pressure, 0.05 to 0.08 of mineral '
+        'oil; without it no limit',
+    )
 
     def __post_init__(self) -> None:
         """Check every range, that oil thins when warm, and that the range holds the reference."""

@@ -8,6 +8,8 @@ stay unused. The hundreds name the status; below 100 a code belongs to several.
 
 """
 
+from typing import Self
+
 from ballscrew_monitor.core.judgement import Code, Worded
 
 STATUSES = (
@@ -18,7 +20,15 @@ STATUSES = (
 
 
 class Fault(Worded):
-    """What is wrong, its number and in words; NONE where nothing is."""
+    """What is wrong, its number and in words, and what to do; NONE where nothing is wrong."""
+
+    cure: str
+
+    def __new__(cls, number: int, text: str, cure: str = '') -> Self:
+        """Return the member of a number, a text and a cure."""
+        member = int.__new__(cls, number)
+        member._value_, member.text, member.cure = number, text, cure
+        return member
 
     @property
     def status(self) -> str:
@@ -26,61 +36,228 @@ class Fault(Worded):
         return STATUSES[self // 100]
 
     NONE = 0, 'nothing is wrong'
-    NOT_SET = 1, 'no message was set'
-    NOT_CONFIGURED = 2, 'not configured, or shut down'
-    INACTIVE = 3, 'the node is inactive, nothing is judged'
-    NOTHING_YET = 4, 'nothing has been judged yet'
-    CLOCK_STANDS = 5, 'the clock stands still'
-    PROGRAM_FAILED = 6, 'the program failed at a message, a tick or a request'
+    NOT_SET = (1, 'no message was set', 'report it with the log of the node')
+    NOT_CONFIGURED = (
+        2,
+        'not configured, or shut down',
+        'correct the parameter or the file that the message names; then configure and activate',
+    )
+    INACTIVE = (3, 'the node is inactive, nothing is judged', 'activate the node')
+    NOTHING_YET = (4, 'nothing has been judged yet', 'wait for an input; see Inputs')
+    CLOCK_STANDS = (5, 'the clock stands still', 'play /clock, or set use_sim_time to false')
+    PROGRAM_FAILED = (
+        6,
+        'the program failed at a message, a tick or a request',
+        'a defect: report the message and the trace in the log; the node goes on with the '
+        'next message, other axes are not affected, and the error stays until the node is '
+        'configured again',
+    )
 
-    RCS_HIGH = 101, 'outside the optimal zone: asperities carry too much'
-    EFFICIENCY_LOW = 102, 'outside the optimal zone: too much power is lost'
-    CAUSE_UNKNOWN = 103, 'outside the optimal zone: cause unknown'
-    NOT_MOVED = 111, 'not judged: the screw has not moved yet'
-    SPEED_BELOW = 112, 'not judged: speed below the surface'
-    SPEED_ABOVE = 113, 'not judged: speed above the surface'
-    LOAD_OUTSIDE = 114, 'not judged: load outside the surface'
-    TEMPERATURE_OUTSIDE = 115, 'not judged: temperature outside the surface'
-    MASKED = 116, 'not judged: the model did not converge here'
-    NO_INPUT = 117, 'not judged: an input is missing'
-    NO_SURFACE = 118, 'not judged: no surface'
-    NOT_DERIVED = 119, 'not judged: the motor torque does not tell the load here'
-    TOO_SHORT = 120, 'not judged for long enough yet'
+    RCS_HIGH = (
+        101,
+        'outside the optimal zone: asperities carry too much',
+        'check the oil temperature; follow the advice of ~/x/health and, with '
+        'advice.speed, of out_of_zone',
+    )
+    EFFICIENCY_LOW = (
+        102,
+        'outside the optimal zone: too much power is lost',
+        'check preload, oil, and sign and unit of the load; follow the advice',
+    )
+    CAUSE_UNKNOWN = (103, 'outside the optimal zone: cause unknown', 'report it')
+    NOT_MOVED = (
+        111,
+        'not judged: the screw has not moved yet',
+        'nothing: the direction is unknown until the screw moves',
+    )
+    SPEED_BELOW = (
+        112,
+        'not judged: speed below the surface',
+        'nothing if the axis only passes; if it dwells there, build the surface to slower speeds',
+    )
+    SPEED_ABOVE = (
+        113,
+        'not judged: speed above the surface',
+        'build the surface to faster speeds, or correct speed.unit',
+    )
+    LOAD_OUTSIDE = (
+        114,
+        'not judged: load outside the surface',
+        'build a wider surface, or correct sign, unit or scale of the load',
+    )
+    TEMPERATURE_OUTSIDE = (
+        115,
+        'not judged: temperature outside the surface',
+        'build a wider surface, or correct temperature.unit',
+    )
+    MASKED = (
+        116,
+        'not judged: the model did not converge here',
+        'a node of the surface beside the point has no number: ballscrew surface info counts them',
+    )
+    NO_INPUT = (117, 'not judged: an input is missing', 'see Inputs')
+    NO_SURFACE = (118, 'not judged: no surface', 'load one; see Surface')
+    NOT_DERIVED = (
+        119,
+        'not judged: the motor torque does not tell the load here',
+        'the screw stands still, inertia and drag take too much of the torque, or several '
+        'loads give this torque',
+    )
+    TOO_SHORT = (
+        120,
+        'not judged for long enough yet',
+        'wait for clear_delay; if it stays, the axis is never inside the surface long enough',
+    )
 
-    INPUT_UNKNOWN = 200, 'an input is unknown'
-    INPUT_MISSING = 201, 'an input was never received'
-    INPUT_OTHER_JOINTS = 202, 'the messages name other joints'
-    INPUT_STALE = 203, 'an input is stale'
-    INPUT_UNUSABLE = 210, 'an input is not usable'
-    INPUT_NOT_A_NUMBER = 211, 'an input is not a finite number'
-    INPUT_FUTURE = 212, 'the stamps of an input lie ahead of the clock'
-    INPUT_OTHER_CLOCK = 213, 'the stamps of an input are of the wall clock, the node on simulated'
-    INPUT_TOO_SHORT = 214, 'the array of an input ends before the element'
-    INPUT_IMPLAUSIBLE = 215, 'an input is beyond the plausible range'
-    INPUT_NOT_DECODED = 216, 'the messages of an input do not decode'
-    INPUT_HOLE = 217, 'the positions of an input come less often than its timeout allows'
-    INPUT_NEGATIVE = 218, 'the stamps of an input are negative'
-    INPUT_SEVERAL = 219, 'several publishers send an input'
-    REFUSED = 231, 'one in a hundred messages or more is refused'
-    GLITCHES = 232, 'samples beyond the plausible range were refused'
-    LOST = 233, 'messages are lost on the way'
-    SIMULATED_STAMPS = 234, 'stamps are of simulated time, the node on the wall clock'
-    LAG = 235, 'stamps lag behind their arrival'
-    SLOW = 236, 'an input comes less often than its timeout allows'
-    SOURCES_UNKNOWN = 237, 'loss is unknown, and whether one source alone sends an input'
-    LOSS_UNKNOWN = 238, 'loss is unknown'
+    INPUT_UNKNOWN = (200, 'an input is unknown', 'report it')
+    INPUT_MISSING = (
+        201,
+        'an input was never received',
+        'check topic, namespace, domain and type, relax a qos_overrides parameter that '
+        'asks for more than the publisher offers, start the source; the message says '
+        'which',
+    )
+    INPUT_OTHER_JOINTS = (
+        202,
+        'the messages name other joints',
+        'name a joint in field that the messages hold',
+    )
+    INPUT_STALE = (
+        203,
+        'an input is stale',
+        'start the publisher again, or set timeout to the value that the message names',
+    )
+    INPUT_UNUSABLE = (210, 'an input is not usable', 'read the reason in the message')
+    INPUT_NOT_A_NUMBER = (
+        211,
+        'an input is not a finite number',
+        'repair the source, or read another field',
+    )
+    INPUT_FUTURE = (
+        212,
+        'the stamps of an input lie ahead of the clock',
+        'synchronise the clocks, or raise max_future',
+    )
+    INPUT_OTHER_CLOCK = (
+        213,
+        'the stamps of an input are of the wall clock, the node on simulated',
+        'set use_sim_time to false, or stamp with /clock',
+    )
+    INPUT_TOO_SHORT = (
+        214,
+        'the array of an input ends before the element',
+        'let the source fill the array; if it states positions only, read positions',
+    )
+    INPUT_IMPLAUSIBLE = (
+        215,
+        'an input is beyond the plausible range',
+        'correct unit or scale, or raise limits.plausible_speed or limits.plausible_load',
+    )
+    INPUT_NOT_DECODED = (
+        216,
+        'the messages of an input do not decode',
+        'record the messages with the type of their publisher',
+    )
+    INPUT_HOLE = (
+        217,
+        'the positions of an input come less often than its timeout allows',
+        'raise speed.timeout',
+    )
+    INPUT_NEGATIVE = (
+        218,
+        'the stamps of an input are negative',
+        'correct the clock of the source',
+    )
+    INPUT_SEVERAL = (
+        219,
+        'several publishers send an input',
+        'stop all but one of the nodes that are named, or set one_source to false',
+    )
+    REFUSED = (
+        231,
+        'one in a hundred messages or more is refused',
+        'the reason and its cure follow; stays for ten seconds after the last refusal',
+    )
+    GLITCHES = (
+        232,
+        'samples beyond the plausible range were refused',
+        'a glitch of the sensor, or a wrong unit; stays for ten seconds after the last one',
+    )
+    LOST = (
+        233,
+        'messages are lost on the way',
+        'lower the rate, raise publish_period, use fewer axes, or give the node priority; '
+        'stays for ten seconds',
+    )
+    SIMULATED_STAMPS = (
+        234,
+        'stamps are of simulated time, the node on the wall clock',
+        'the source follows /clock: set use_sim_time to true',
+    )
+    LAG = (
+        235,
+        'stamps lag behind their arrival',
+        'synchronise the clock of the source, or raise max_lag; the samples are judged',
+    )
+    SLOW = (
+        236,
+        'an input comes less often than its timeout allows',
+        'set timeout to the value that the message names',
+    )
+    SOURCES_UNKNOWN = (
+        237,
+        'loss is unknown, and whether one source alone sends an input',
+        'let the topic have one publisher, or use a middleware that numbers messages',
+    )
+    LOSS_UNKNOWN = (
+        238,
+        'loss is unknown',
+        'use a middleware that numbers messages; appears for a moment when a publisher '
+        'comes or goes',
+    )
 
-    RELOAD_REFUSED = 301, 'kept the old surface, the reload is refused'
+    RELOAD_REFUSED = (
+        301,
+        'kept the old surface, the reload is refused',
+        'repair the file and reload it',
+    )
 
-    WORSE = 401, 'the axis is worse than its baseline'
-    NOT_FOLLOWED = 402, 'the health of the axis is not followed now'
-    NOT_KNOWN = 403, 'whether the axis is worse than its baseline is not known'
+    WORSE = (
+        401,
+        'the axis is worse than its baseline',
+        'follow the advice in ~/x/health; after an intended change name a new baseline',
+    )
+    NOT_FOLLOWED = (
+        402,
+        'the health of the axis is not followed now',
+        'the message says why the store cannot be used, or that the program failed; what '
+        'was gathered waits in memory',
+    )
+    NOT_KNOWN = (
+        403,
+        'whether the axis is worse than its baseline is not known',
+        'the message says what is missing, such as a motor torque or motion',
+    )
 
-    NOT_KEPT = 501, 'sums, events or corrections are not kept'
+    NOT_KEPT = (
+        501,
+        'sums, events or corrections are not kept',
+        'the message says why: make room, mount the directory, give the user of the node '
+        'the right, raise state_limit, or give a second node of this name another name',
+    )
 
-    NOT_RECORDED = 601, 'the recording has a hole, or nothing is recorded'
+    NOT_RECORDED = (
+        601,
+        'the recording has a hole, or nothing is recorded',
+        'the message says why: make room or give the right; relieve the disk or the '
+        'processor; a writer that was killed is started again',
+    )
 
-    BUSY = 701, 'the node uses up one processor'
+    BUSY = (
+        701,
+        'the node uses up one processor',
+        'lower the rate of the inputs, raise publish_period, or give some axes a second node',
+    )
 
 
 _CAUSES = {Code.RCS_HIGH: Fault.RCS_HIGH, Code.EFFICIENCY_LOW: Fault.EFFICIENCY_LOW}

@@ -37,7 +37,10 @@ BagReader = Callable[[argparse.Namespace, float], tuple[dict[str, Any], tuple[st
 def add_identify_command(subparsers: Any, read_bag: BagReader | None = None) -> None:
     """Add `identify`; `read_bag` is what reads a bag, which this half cannot."""
     parser = subparsers.add_parser(
-        'identify', help='find the parasitic torque from torque measured without load'
+        'identify',
+        help='find the parasitic torque from torque measured without load',
+        epilog='Exit code 1: the fit did not converge, or the onset was refused: no sheet is '
+        'written.',
     )
     parser.add_argument('data', type=Path, metavar='DATA', help='CSV, or bag directory or MCAP')
     add_inputs(parser)
@@ -94,7 +97,7 @@ def _add_sources(parser: argparse.ArgumentParser) -> None:
         help='torque on the screw over the current in current_A [N m/A]',
     )
     group = parser.add_argument_group('bag')
-    group.add_argument('--speed-topic', metavar='TOPIC')
+    group.add_argument('--speed-topic', metavar='TOPIC', help='topic of the speed')
     group.add_argument('--speed-field', metavar='PATH', help='such as velocity[x_axis]')
     group.add_argument(
         '--speed-unit', metavar='UNIT', help='rad/s (default), rev/min, m/s, mm/s, mm/min, m/min'
@@ -104,7 +107,8 @@ def _add_sources(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         '--torque-scale', type=float, metavar='K', help='torque on the screw [N m] over the field'
     )
-    group.add_argument('--temperature-topic', metavar='TOPIC')
+    text = 'topic of the oil temperature'
+    group.add_argument('--temperature-topic', metavar='TOPIC', help=text)
     group.add_argument('--temperature-field', metavar='PATH', help='in degC, default temperature')
 
 

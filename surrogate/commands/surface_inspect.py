@@ -24,7 +24,9 @@ from surrogate.units import RPM, ZERO_CELSIUS
 
 def add_inspect_commands(actions: Any) -> None:
     """Add the subcommands to those of `surface`."""
-    _add_check(actions.add_parser('check', help='compare a surface file with fresh solves'))
+    text = 'Exit code 1: a point or the other surface differs by more than the tolerance.'
+    check = 'compare a surface file with fresh solves'
+    _add_check(actions.add_parser('check', help=check, epilog=text))
     _add_query(actions.add_parser('query', help='look up one point, or those of a table'))
     plot = actions.add_parser('plot', help='draw a surface, a picture per temperature')
     add_file(plot)
@@ -38,7 +40,7 @@ def add_inspect_commands(actions: Any) -> None:
         help='temperatures [degC] (default: both ends and that of the oil datasheet)',
     )
     plot.set_defaults(handler=_plot)
-    _add_diff(actions.add_parser('diff', help='compare two surface files'))
+    _add_diff(actions.add_parser('diff', help='compare two surface files', epilog=text))
     export = actions.add_parser('export', help='write a surface as NetCDF or as a table')
     add_file(export)
     to = export.add_mutually_exclusive_group(required=True)

@@ -11,8 +11,13 @@ from surrogate.commands.point import examine
 
 def add_sweep_command(actions: Any) -> None:
     """Add the subcommand to those of `surface`."""
-    parser = actions.add_parser('sweep', help='build the surfaces of a catalogue')
-    parser.add_argument('catalogue', type=Path, metavar='CATALOGUE.yaml')
+    parser = actions.add_parser(
+        'sweep',
+        help='build the surfaces of a catalogue',
+        epilog='Exit code 1: one item or more failed; the others are built.',
+    )
+    text = 'screws, oils and roughness to be combined'
+    parser.add_argument('catalogue', type=Path, metavar='CATALOGUE.yaml', help=text)
     parser.add_argument(
         '--out', type=Path, default=Path('surfaces'), metavar='DIR', help='default: surfaces'
     )

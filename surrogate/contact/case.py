@@ -80,30 +80,120 @@ class CaseRoughness(Checked):
 
     """
 
-    rms: float | None = quantity('um', 1e-6, 0.0, 10.0, default=None)
-    file: str | None = text(default=None)
-    outside: Outside = choice('refuse', 'mirror', default='refuse')
-    seed: int | None = count(0, 2**32 - 1, default=None)
-    patch: Patch | Literal['standard'] | None = choice('rescaled', 'cut', 'standard', default=None)
-    lay: Lay | None = choice('isotropic', 'longitudinal', 'transverse', default=None)
-    shortest_wavelength: float | None = quantity('um', 1e-6, 0.1, 1000.0, default=None)
-    grid_wavelength: float | None = quantity('um', 1e-6, 0.1, 1000.0, default=None)
-    fractal_dimension: float | None = quantity('', 1.0, 2.01, 2.99, default=None)
-    fractal_roughness: float | None = quantity('nm', 1e-9, 1e-6, 1e3, default=None)
-    sample_length: float | None = quantity('mm', 1e-3, 0.01, 100.0, default=None)
-    scale_ratio: float | None = quantity('', 1.0, 1.01, 10.0, default=None)
-    ridges: int | None = count(1, 1000, default=None)
-    position_x: float | None = quantity('mm', 1e-3, -1e3, 1e3, default=None)
-    position_y: float | None = quantity('mm', 1e-3, -1e3, 1e3, default=None)
-    window_x: float | None = quantity('mm', 1e-3, 1e-3, 100.0, default=None)
-    window_y: float | None = quantity('mm', 1e-3, 1e-3, 100.0, default=None)
-    cutoff_long: float | None = quantity('mm', 1e-3, 0.001, 100.0, default=None)
-    cutoff_short: float | None = quantity('um', 1e-6, 0.1, 1000.0, default=None)
-    rms_slope: float | None = quantity('deg', math.pi / 180, 0.001, 45.0, default=None)
-    fan_angle: float | None = quantity('deg', math.pi / 180, 0.0, 90.0, default=None)
-    ball_rms: float | None = quantity('um', 1e-6, 0.0, 10.0, default=None)
-    ball_grade: str | None = choice(*BALL_RA, default=None)
-    asperity_friction: float = quantity('', 1.0, 0.0, 1.0, default=0.1)
+    rms: float | None = quantity(
+        'um', 1e-6, 0.0, 10.0, default=None, means='Rq; 0 is smooth; mandatory without `file`'
+    )
+    file: str | None = text(
+        default=None,
+        means='measured profile or height map, sought beside the case; `cut` unless '
+        '`rms_um` is given',
+    )
+    outside: Outside = choice(
+        'refuse',
+        'mirror',
+        default='refuse',
+        means='beyond a measured map: an error, or its mirror image',
+    )
+    seed: int | None = count(0, 2**32 - 1, default=None, means='draw of the generated raceway (0)')
+    patch: Patch | Literal['standard'] | None = choice(
+        'rescaled',
+        'cut',
+        'standard',
+        default=None,
+        means='`rescaled` (default): scaled once to `rms_um` over the window; `cut`: at '
+        'the height of formula or file; `standard`: by the standard, as a drawing '
+        'means Rq',
+    )
+    lay: Lay | None = choice(
+        'isotropic',
+        'longitudinal',
+        'transverse',
+        default=None,
+        means='direction of the ridges (isotropic)',
+    )
+    shortest_wavelength: float | None = quantity(
+        'um',
+        1e-6,
+        0.1,
+        1000.0,
+        default=None,
+        means='shortest wave of the raceway (8); with `file` the cut-off of a Gaussian '
+        'filter; with `patch: standard` shorter waves are left out',
+    )
+    grid_wavelength: float | None = quantity(
+        'um',
+        1e-6,
+        0.1,
+        1000.0,
+        default=None,
+        means='shorter waves are not on the grid and raise the film floor by 0.05 of their rms',
+    )
+    fractal_dimension: float | None = quantity(
+        '',
+        1.0,
+        2.01,
+        2.99,
+        default=None,
+        means='D (2.68); with `patch: standard` this or `rms_slope_deg`, without a default',
+    )
+    fractal_roughness: float | None = quantity(
+        'nm', 1e-9, 1e-6, 1e3, default=None, means='G (0.97)'
+    )
+    sample_length: float | None = quantity(
+        'mm', 1e-3, 0.01, 100.0, default=None, means='L of the generator (4)'
+    )
+    scale_ratio: float | None = quantity(
+        '', 1.0, 1.01, 10.0, default=None, means='ratio of neighbouring wavelengths (1.5)'
+    )
+    ridges: int | None = count(1, 1000, default=None, means='ridges (10)')
+    position_x: float | None = quantity(
+        'mm', 1e-3, -1e3, 1e3, default=None, means='place of the raceway at the contact centre (0)'
+    )
+    position_y: float | None = quantity('mm', 1e-3, -1e3, 1e3, default=None, means='likewise')
+    window_x: float | None = quantity(
+        'mm',
+        1e-3,
+        1e-3,
+        100.0,
+        default=None,
+        means='side of the window in which the patch is levelled and scaled (Hertz '
+        'rectangle); state one in a series over loads',
+    )
+    window_y: float | None = quantity('mm', 1e-3, 1e-3, 100.0, default=None, means='likewise')
+    cutoff_long: float | None = quantity(
+        'mm',
+        1e-3,
+        0.001,
+        100.0,
+        default=None,
+        means='standard: long cut-off (by the table for Ra = 0.8 Rq)',
+    )
+    cutoff_short: float | None = quantity(
+        'um',
+        1e-6,
+        0.1,
+        1000.0,
+        default=None,
+        means='standard: short cut-off and shortest wave (2.5)',
+    )
+    rms_slope: float | None = quantity(
+        'deg', math.pi / 180, 0.001, 45.0, default=None, means='standard: Rdq of the profile'
+    )
+    fan_angle: float | None = quantity(
+        'deg',
+        math.pi / 180,
+        0.0,
+        90.0,
+        default=None,
+        means='standard: angle over which waves of a lay fan',
+    )
+    ball_rms: float | None = quantity(
+        'um', 1e-6, 0.0, 10.0, default=None, means='standard: Rq of the ball; this or `ball_grade`'
+    )
+    ball_grade: str | None = choice(*BALL_RA, default=None, means='standard: grade of the ball')
+    asperity_friction: float = quantity(
+        '', 1.0, 0.0, 1.0, default=0.1, means='boundary friction coefficient'
+    )
 
     def __post_init__(self) -> None:
         """Check ranges, and that the keys of one kind of surface do not mix with another's."""
@@ -130,8 +220,8 @@ class CaseRoughness(Checked):
 class CaseGrid(Checked):
     """Nodes along and across the track, both odd [-]."""
 
-    nx: int = count(17, LARGEST_GRID)
-    ny: int = count(17, LARGEST_GRID)
+    nx: int = count(17, LARGEST_GRID, means='nodes along the track, odd')
+    ny: int = count(17, LARGEST_GRID, means='nodes across it, odd')
 
     def __post_init__(self) -> None:
         """Check that both are odd, so that a node lies on the centre line."""
@@ -145,18 +235,20 @@ class CaseGrid(Checked):
 class CaseDomain(Checked):
     """Inlet and outlet along x over the semi-axis a [-], half width along y over b [-]."""
 
-    inlet: float = quantity('', 1.0, -50.0, -1.1)
-    outlet: float = quantity('', 1.0, 1.1, 20.0)
-    side: float = quantity('', 1.0, 1.05, 20.0)
+    inlet: float = quantity('', 1.0, -50.0, -1.1, means='inlet over the semi-axis a')
+    outlet: float = quantity('', 1.0, 1.1, 20.0, means='outlet over a')
+    side: float = quantity('', 1.0, 1.05, 20.0, means='half width over b')
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class CaseStrip(Checked):
     """Strip across the contact: its place over b [-], its width [m] and columns of nodes [-]."""
 
-    place: float = quantity('', 1.0, -0.99, 0.99, default=0.0)
-    width: float = quantity('um', 1e-6, 0.1, 1e5)
-    columns: int = count(4, LARGEST_GRID)
+    place: float = quantity(
+        '', 1.0, -0.99, 0.99, default=0.0, means='place across, over the semi-axis b'
+    )
+    width: float = quantity('um', 1e-6, 0.1, 1e5, means='width of the strip')
+    columns: int = count(4, LARGEST_GRID, means='columns of nodes, 3^n 2^k with k at least 2')
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -171,24 +263,95 @@ class ContactCase(Checked):
 
     """
 
-    radius_x: float = quantity('mm', 1e-3, 1e-3, 1e6)
-    radius_y: float = quantity('mm', 1e-3, 1e-3, 1e6)
-    reduced_modulus: float = quantity('GPa', 1e9, 1e-4, 1e4)
-    load: float = quantity('N', 1.0, 1e-3, 1e6)
-    entrainment_speed: float = quantity('m_s', 1.0, 0.0, 1e3)
-    viscosity: float = quantity('Pa_s', 1.0, 1e-4, 100.0)
-    pressure_viscosity: float = quantity('1_GPa', 1e-9, 0.1, 100.0)
-    fluid: Law = choice('roelands_dh', 'barus_incompressible', default='roelands_dh')
-    eyring_stress: float = quantity('MPa', 1e6, 0.01, 1000.0, default=5e6)
-    slide_roll_ratio: tuple[float, ...] = quantities('', 1.0, 0.0, 1000.0)
-    roughness: CaseRoughness | None = block(CaseRoughness, default=None)
-    film_floor: float = quantity('nm', 1e-9, 1e-3, 1e3, default=3e-9)
-    grid: CaseGrid | None = block(CaseGrid, default=None)
-    domain: CaseDomain | None = block(CaseDomain, default=None)
-    kinematics: Kinematics = choice('standing', 'rolling', default='standing')
-    transits: float | None = quantity('', 1.0, 1.0, 1e5, default=None)
-    places: int | None = count(1, 1000, default=None)
-    strip: CaseStrip | None = block(CaseStrip, default=None)
+    radius_x: float = quantity(
+        'mm',
+        1e-3,
+        1e-3,
+        1e6,
+        means='radius of relative curvature along the track, the direction of entrainment',
+    )
+    radius_y: float = quantity('mm', 1e-3, 1e-3, 1e6, means='the same across it')
+    reduced_modulus: float = quantity(
+        'GPa',
+        1e9,
+        1e-4,
+        1e4,
+        means="E' with 2/E' = (1 - nu1²)/E1 + (1 - nu2²)/E2; 226 for steel on steel",
+    )
+    load: float = quantity('N', 1.0, 1e-3, 1e6, means='normal force')
+    entrainment_speed: float = quantity(
+        'm_s', 1.0, 0.0, 1e3, means='mean of both surface speeds; 0 is the dry contact'
+    )
+    viscosity: float = quantity(
+        'Pa_s', 1.0, 1e-4, 100.0, means='ambient viscosity at the temperature of the contact'
+    )
+    pressure_viscosity: float = quantity(
+        '1_GPa', 1e-9, 0.1, 100.0, means='pressure-viscosity coefficient'
+    )
+    fluid: Law = choice(
+        'roelands_dh',
+        'barus_incompressible',
+        default='roelands_dh',
+        means='Roelands viscosity with Dowson-Higginson density, or Barus without compression',
+    )
+    eyring_stress: float = quantity(
+        'MPa', 1e6, 0.01, 1000.0, default=5e6, means='Eyring stress of the friction'
+    )
+    slide_roll_ratio: tuple[float, ...] = quantities(
+        '',
+        1.0,
+        0.0,
+        1000.0,
+        means='slip along x over the entrainment speed, one or a list; each gets a '
+        'friction coefficient; one alone where the roughness rolls (0.019)',
+    )
+    roughness: CaseRoughness | None = block(
+        CaseRoughness, default=None, means='without it the contact is smooth'
+    )
+    film_floor: float = quantity(
+        'nm',
+        1e-9,
+        1e-3,
+        1e3,
+        default=3e-9,
+        means='film at which a node counts as punctured and asperities carry',
+    )
+    grid: CaseGrid | None = block(
+        CaseGrid,
+        default=None,
+        means='nodes; without it by shape, error and shortest wavelength, at most 513 '
+        'along a side',
+    )
+    domain: CaseDomain | None = block(
+        CaseDomain,
+        default=None,
+        means='edges over the Hertz semi-axes, such as -4.5, 1.5, 3; without it by the film',
+    )
+    kinematics: Kinematics = choice(
+        'standing',
+        'rolling',
+        default='standing',
+        means='`rolling`: the roughness rolls through the contact, in steps of time',
+    )
+    transits: float | None = quantity(
+        '',
+        1.0,
+        1.0,
+        1e5,
+        default=None,
+        means='contact lengths that roll through it after a run-in (8)',
+    )
+    places: int | None = count(
+        1,
+        1000,
+        default=None,
+        means='tracks side by side that share the transits (4); two or more give standard errors',
+    )
+    strip: CaseStrip | None = block(
+        CaseStrip,
+        default=None,
+        means='march a strip alone, for waves too short for a grid of the complete contact',
+    )
 
     def __post_init__(self) -> None:
         """Check ranges, and that what rolls can roll."""

@@ -13,6 +13,30 @@ from surrogate.raceway.patch import Raceway
 
 ASPERITY_FRICTION = 0.1
 """Boundary friction coefficient of a case without roughness [-], for dry contacts."""
+KEYS = {
+    'status': 'how the solve ended',
+    'converged': 'whether the numbers are valid',
+    'central_film_m': 'central film',
+    'minimum_film_m': 'smallest film',
+    'max_pressure_Pa': 'largest pressure',
+    'hertz_pressure_Pa': 'largest Hertz pressure',
+    'semi_axis_x_m': 'of the Hertz ellipse, along the track',
+    'semi_axis_y_m': 'across it',
+    'rcs': 'share of the load on punctured nodes',
+    'asperity_share': 'share that asperities carry',
+    'rolling_force_N': 'on each surface, with the tail to the meniscus unless `domain` is stated',
+    'friction_coefficient': 'one for each `slide_roll_ratio`',
+    'load_error': 'relative',
+    'residual': 'of the flux',
+    'newton_iterations': 'number',
+    'krylov_iterations': 'number',
+    'grid': 'nodes along and across',
+    'wall_s': 'wall time',
+    'central_film_error': 'relative, estimated from the half grid',
+    'rcs_error': 'the same of RCS',
+    'film_floor_m': 'floor at which asperities carry',
+}
+"""Keys of the record."""
 
 
 class ContactRecord(TypedDict):

@@ -14,6 +14,43 @@ from surrogate.formulas.geometry import hertz
 from surrogate.raceway.patch import Raceway
 from surrogate.units import GIGA, MICRO, MILLI, NANO
 
+KEYS = {
+    'status': 'how the march ended',
+    'converged': 'whether the numbers are valid',
+    'kinematics': 'rolling',
+    'rcs': 'average over time',
+    'asperity_share': 'average',
+    'mean_film_m': 'over the inner 0.8 of the Hertz zone',
+    'film_rms_m': 'the same zone',
+    'least_film_m': 'smallest film',
+    'thin_film_m': '1, 3, 5 and 10 nm',
+    'thin_share': 'part of the Hertz zone with films below each; 0 up to the floor',
+    'max_pressure_Pa': 'average of the largest pressure',
+    'hard_pressure_Pa': 'pressure at which steel yields',
+    'hard_share': 'part of the load above it',
+    'film_traction': 'at `slide_roll_ratio`, oil alone',
+    'slide_roll_ratio': 'as stated',
+    'rolling_force_N': 'with roughness',
+    'smooth_rolling_force_N': 'of the smooth contact',
+    'central_film_m': 'of the smooth contact',
+    'film_ratio': 'that film over the complete Rq of raceway and ball',
+    'memory_length_m': 'distance over which RCS forgets',
+    'transits': 'contact lengths that rolled through',
+    'places': 'tracks side by side',
+    'steps': 'of the march',
+    'steps_failed': 'of the march',
+    'newton_iterations': 'number',
+    'krylov_iterations': 'number',
+    'grid': 'nodes along and across',
+    'strip_width_m': 'of a strip',
+    'semi_axis_x_m': 'of the Hertz ellipse, along the track',
+    'hertz_pressure_Pa': 'largest Hertz pressure',
+    'film_floor_m': 'floor at which asperities carry',
+    'roughness': 'the printed sentence, Rq, cut-offs, slope, D and G',
+    'wall_s': 'wall time',
+}
+"""Keys of the record; a standard error beside an average has the key of the average."""
+
 
 class RoughnessRecord(TypedDict):
     """Roughness of a record; NaN or None where a surface is not by the standard."""

@@ -25,7 +25,7 @@ def report(screw: Screw, law: AsperityLaw, rows: Mapping[str, StudyRow]) -> str:
     every = trends(screw, law, rows.values())
     parts = (
         '# Numbers beside the published study',
-        'Written by `ballscrew figures`; docs/theory/published_study.md says what they mean. '
+        'Written by `ballscrew figures`; docs/theory/validation.md says what they mean. '
         f'{len(rows)} solves, {seconds:.0f} s of processor time.',
         f'Rolling: {law_sentence(screw, ScrewSettings())}; that speed has a '
         f'standard deviation of {100 * law.deviation:.0f} %.',

@@ -5,7 +5,7 @@ Waves that a grid is too coarse for, as a higher film floor.
 
 Solved with their oil, short waves move the onset of contact as a floor would that is higher by a
 small share of their rms: most of their height is flattened before the film is as thin as the
-floor. The share was fitted to resolved ensembles (docs/theory/roughness.md) and is taken as
+floor. The share was fitted to resolved ensembles (docs/theory/raceway.md) and is taken as
 independent of the load.
 
 """

@@ -46,26 +46,128 @@ class Roughness(Checked):
 
     """
 
-    rms: float = quantity('um', 1e-6, 0.0, 10.0)
-    cutoff_long: float | None = quantity('mm', 1e-3, 0.001, 100.0, default=None)
-    cutoff_short: float = quantity('um', 1e-6, 0.1, 1000.0, default=CUTOFF_SHORT)
-    fractal_dimension: float | None = quantity('', 1.0, *DIMENSIONS, default=None)
-    rms_slope: float | None = quantity('deg', math.pi / 180, 0.001, 45.0, default=None)
-    lay: Lay = choice('isotropic', 'longitudinal', 'transverse', default='isotropic')
-    fan_angle: float | None = quantity('deg', math.pi / 180, 0.0, 90.0, default=None)
-    state: State = choice('run_in', 'new', default='run_in')
-    traced: State = choice('new', 'run_in', default='new')
-    hardness: float = quantity('GPa', 1e9, 1.0, 20.0, default=HARDNESS)
-    run_in_pressure: float = quantity('GPa', 1e9, 0.5, 20.0, default=3e9)
-    run_in_low: float = quantity('GPa', 1e9, 0.5, 20.0, default=2e9)
-    run_in_high: float = quantity('GPa', 1e9, 0.5, 20.0, default=5e9)
-    scale_ratio: float = quantity('', 1.0, 1.01, 10.0, default=1.5)
-    ridges: int = count(1, 1000, default=10)
-    asperity_friction: float = quantity('', 1.0, 0.0, 1.0)
-    onset_factor: float = quantity('', 1.0, *ONSET_FACTORS, default=1.0)
-    onset_band: float | None = quantity('', 1.0, 1.0, 100.0, default=None)
+    rms: float = quantity(
+        'um',
+        1e-6,
+        0.0,
+        10.0,
+        means='Rq of a profile traced across the lay, which moves films and RCS most; 0 is smooth',
+    )
+    cutoff_long: float | None = quantity(
+        'mm',
+        1e-3,
+        0.001,
+        100.0,
+        default=None,
+        means='long cut-off of that profile; without it by ISO 21920 for Ra = 0.8 Rq, '
+        'which every result then states',
+    )
+    cutoff_short: float = quantity(
+        'um', 1e-6, 0.1, 1000.0, default=CUTOFF_SHORT, means='short cut-off, and the shortest wave'
+    )
+    fractal_dimension: float | None = quantity(
+        '',
+        1.0,
+        *DIMENSIONS,
+        default=None,
+        means='steepness of the short waves, from measured profiles; this or `rms_slope_deg`',
+    )
+    rms_slope: float | None = quantity(
+        'deg',
+        math.pi / 180,
+        0.001,
+        45.0,
+        default=None,
+        means='Rdq of the same profile; this or `fractal_dimension`',
+    )
+    lay: Lay = choice(
+        'isotropic',
+        'longitudinal',
+        'transverse',
+        default='isotropic',
+        means='`longitudinal`: ridges along the track; `transverse`: across it',
+    )
+    fan_angle: float | None = quantity(
+        'deg',
+        math.pi / 180,
+        0.0,
+        90.0,
+        default=None,
+        means='angle over which the waves of a lay fan',
+    )
+    state: State = choice(
+        'run_in',
+        'new',
+        default='run_in',
+        means='`run_in`: the raceway has run in; `new`: it has made its first passes only',
+    )
+    traced: State = choice(
+        'new',
+        'run_in',
+        default='new',
+        means='when the profile was traced; one of `run_in` is not cut again',
+    )
+    hardness: float = quantity(
+        'GPa',
+        1e9,
+        1.0,
+        20.0,
+        default=HARDNESS,
+        means='pressure that no summit exceeds; 7 is steel of 60 HRC',
+    )
+    run_in_pressure: float = quantity(
+        'GPa',
+        1e9,
+        0.5,
+        20.0,
+        default=3e9,
+        means='stands for yield and mild wear of running in together; the least certain '
+        'number of the sheet: 2 and 5 move the onset by 0.3 and 1.9',
+    )
+    run_in_low: float = quantity(
+        'GPa',
+        1e9,
+        0.5,
+        20.0,
+        default=2e9,
+        means='its lowest likely value; draws the broken lines beside the limit alone',
+    )
+    run_in_high: float = quantity(
+        'GPa', 1e9, 0.5, 20.0, default=5e9, means='its highest likely value, likewise'
+    )
+    scale_ratio: float = quantity(
+        '',
+        1.0,
+        1.01,
+        10.0,
+        default=1.5,
+        means='ratio of neighbouring wavelengths of the generator',
+    )
+    ridges: int = count(1, 1000, default=10, means='ridges of the generator')
+    asperity_friction: float = quantity(
+        '', 1.0, 0.0, 1.0, means='boundary friction coefficient, 0.1 for mineral oil on steel'
+    )
+    onset_factor: float = quantity(
+        '',
+        1.0,
+        *ONSET_FACTORS,
+        default=1.0,
+        means='speed at which contact begins over that by the topography, fitted by '
+        '`identify --onset`',
+    )
+    onset_band: float | None = quantity(
+        '',
+        1.0,
+        1.0,
+        100.0,
+        default=None,
+        means='factor within which nine of ten lie, of a fitted `onset_factor`',
+    )
     calibrated: str | None = text(
-        r'\d{4}-\d\d-\d\d', "a day in quotes, '2026-11-24'", default=None
+        r'\d{4}-\d\d-\d\d',
+        "a day in quotes, '2026-11-24'",
+        default=None,
+        means='day of the fit; with `onset_band`',
     )
 
     def __post_init__(self) -> None:
@@ -124,8 +226,12 @@ class Roughness(Checked):
 class BallRoughness(Checked):
     """Roughness of the balls: Rq `rms` [m], or the grade of ISO 3290 whose largest Rq it is."""
 
-    rms: float | None = quantity('um', 1e-6, 0.0, 10.0, default=None)
-    grade: str | None = choice(*BALL_RA, default=None)
+    rms: float | None = quantity(
+        'um', 1e-6, 0.0, 10.0, default=None, means='Rq of the balls; this or `grade`'
+    )
+    grade: str | None = choice(
+        *BALL_RA, default=None, means='grade of ISO 3290, whose largest Rq holds'
+    )
 
     def __post_init__(self) -> None:
         """Check the range, and that one of the two is given."""

@@ -36,7 +36,7 @@ Start = tuple[ContactSolution | None, ContactSolution | None]
 ACROSS = 2.42
 """About the width of a rough domain over the semi-axis across (2.4 to 3.1) [-]."""
 GRID_WAVELENGTH = 16e-6
-"""Shortest wavelength on the grid [m]; docs/theory/roughness.md."""
+"""Shortest wavelength on the grid [m]; docs/theory/raceway.md."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -24,6 +24,21 @@ FILM_ERROR = 0.1
 """Estimated error of a central film that is warned about [-]."""
 FEWEST_NODES = 4.0
 """Nodes per shortest wave below which a rough contact is warned about [-]."""
+KEYS = {
+    'converged': 'whether the numbers are valid',
+    'energy_error': 'difference of both derivations of the torque, over the friction torque',
+    'load_change': 'remaining change of the iteration between contacts and balance',
+    'rcs_deviation': 'standard deviation of RCS between marched strips and the law',
+    'asperity_law': 'state of the raceway and pressure at which its summits are cut',
+}
+"""Keys that a point of the full tier has besides."""
+CONTACT_KEYS = {
+    'contact_angle_rad': 'of the ball',
+    'max_pressure_Pa': 'of the smooth film',
+    'film_error': 'estimated relative error of the central film',
+    'opposite_flank_approach_m': 'way of the ball towards its other flank',
+}
+"""Keys that its contacts have besides."""
 
 
 def full_record(

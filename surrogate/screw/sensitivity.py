@@ -35,6 +35,24 @@ SPEEDS = 60
 """Speeds among which a limit of the zone is looked for [-]."""
 INTERPOLATION = RCS_RELATIVE_TOLERANCE / -SLOPE
 """Logarithm of the speed by which a surface may be off at the limit of RCS [-]."""
+KEYS = {
+    'screw': 'name of the sheet',
+    'oil': 'name of the sheet',
+    'speed_rad_s': 'of the point',
+    'load_N': 'of the point',
+    'temperature_K': 'of the point',
+    'stated': '`onset_speed_rad_s`; `friction_torque_Nm`; `rcs_limit_speed_rad_s` (RCS 0.01 in '
+    'the worst contact); `efficiency_limit_speed_rad_s` (fastest speed with 0.85)',
+    'inputs': 'the largest effect on the onset first: `key`, `low`, `stated`, `high` in the '
+    'unit of the key, `reason`, `measured`, `refused`, `onset_factors`, `at_low`, '
+    '`at_high`',
+    'unknown_band': 'least and largest onset over the stated one by what is not known',
+    'numerical_band': 'the same by the law of contact',
+    'law_doubt': 'where the law is off by more; else empty',
+    'measure': 'the two measurements that narrow `unknown_band` most, each with the band that is '
+    'left',
+}
+"""Keys of the record."""
 
 
 def sensitivity_record(

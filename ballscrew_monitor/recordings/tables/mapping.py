@@ -52,6 +52,51 @@ NUMBERS = {
 LINES = {'skip': (0, 1000), 'header_rows': (1, 2)}
 """Numbers of lines, with the least and the most allowed."""
 TEXTS = ('screw', 'oil', 'surface')
+PLACES = {
+    'decimal': "`'.'` or `','`: decimal sign of columns in which no cell shows it, as 5.400 may "
+    'be 5400; the other sign parts thousands',
+    'skip': 'lines before the names of the columns',
+    'header_rows': 'rows of names; 2 with the units or parts of names below',
+    'machine': 'name of the machine, a text: its axes have one history, whatever folder holds a '
+    'log',
+    'time.column': 'column of the time, unit after `scale` and `offset`: `{column: Time, unit: s, '
+    'scale: 86400}` are days of a spreadsheet; texts such as 2026-01-02T03:04:05.5Z, '
+    '02.01.2026 03:04:05,5 or 03:04:05,5 are read as s, without a zone as UTC; a time '
+    'of day goes on through midnight',
+    'time.rate_Hz': 'instead of a column: rows at equal distances',
+    'time.date': 'column of the days, if `column` holds the time of day',
+    'time.epoch': 'time of the first row, such as 2000-01-01T00:00:00Z; without it the column '
+    'is a '
+    'time since 1970',
+    'AXIS.speed': 'column of the speed, of the nut in a linear unit or of the screw; this or '
+    '`position`',
+    'AXIS.position': 'column of the position; without a speed its slope replaces it',
+    'AXIS.load': 'column of the force on the nut, positive along the axis; or `{from: current}`, '
+    '`{from: torque}`, `{from: motor_torque}`, `{unknown: reason}`',
+    'AXIS.torque': 'column of the torque at the screw, in N m or % of the rated one',
+    'AXIS.current': 'column of the motor current, or % of the rated one',
+    'AXIS.temperature': 'column of the oil temperature',
+    'AXIS.lead_mm': 'lead of the screw; needed',
+    'AXIS.torque_constant_Nm_per_A': 'for a load from the current',
+    'AXIS.torque_rated_Nm': 'torque at the screw of 100 %',
+    'AXIS.efficiency': 'for a load from current or torque: force = 2 pi x efficiency x torque / '
+    'lead (1)',
+    'AXIS.torque_uncertainty_Nm': 'for a load from `motor_torque`: half width of the range of '
+    'the true torque',
+    'AXIS.inertia_kg_m2': 'for a load from `motor_torque`: at the screw (0)',
+    'AXIS.temperature_degC': 'oil temperature, if no column states it',
+    'AXIS.free_load_N': 'for a load from `motor_torque`: load of motion without process force, '
+    'positive '
+    'along the axis (0)',
+    'AXIS.always_free': 'for a load from `motor_torque`: `true` if the axis has no process '
+    'force, so that '
+    'its torque is friction',
+    'AXIS.screw': 'as the parameter of the node',
+    'AXIS.oil': 'as the parameter of the node',
+    'AXIS.surface': 'as the parameter of the node',
+    'parameters': 'any other parameter of the node, such as `x: {limits: {rcs: 0.02}}`',
+}
+"""Places of a map with their meaning, `AXIS` being the name of an axis."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -4,11 +4,8 @@
 
 import dataclasses
 import math
-from pathlib import Path
-import re
 import types
 
-from ballscrew_monitor.core import sqlite_file
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.inputs import InputSample, InputState, Refusal, Source, Why
@@ -16,10 +13,9 @@ from ballscrew_monitor.core.judgement import Code, Level, PointValidity, Warning
 from ballscrew_monitor.core.links import Link, Publisher
 from ballscrew_monitor.core.state import LoadDerivation, shelve
 from ballscrew_monitor.core.vitals import VitalSigns
-from ballscrew_monitor.messages import diagnostics, reasons
+from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.messages.diagnostics import ERROR, OK, STALE, WARN
 from ballscrew_monitor.messages.state_messages import plain_values
-from ballscrew_monitor.node import restart_state, state_database
 import pytest
 
 START = 1000 * SECOND
@@ -407,39 +403,6 @@ def test_messages_hold_no_measured_numbers(core):
     for events in ([LOAD, SPEED], [SPEED], [LOAD, sample(Source.SPEED, 1e3)]):
         for status in after(core, *events).values():
             assert not any(character.isdigit() for character in status.message)
-
-
-def first_words(text):
-    return re.split('[:,]', text, maxsplit=1)[0].strip()
-
-
-SENTENCES = [
-    *(fault.text for fault in Fault if fault.status == 'Lubrication'),
-    Fault.NOTHING_YET.text,
-    Fault.INACTIVE.text,
-    diagnostics.KEPT,
-    'the program failed at',
-    *(state_database.UNWRITABLE, state_database.IN_USE),
-    *(sqlite_file.DAMAGED, sqlite_file.OTHER_VERSION, restart_state.SILENT),
-]
-BEGINNINGS = [
-    diagnostics.CLOCK_STANDS,
-    *reasons._REFUSED.values(),
-    *(cure for _, cure, _ in reasons._TROUBLES if isinstance(cure, str)),
-    reasons.slow_reason(1.0, 'x.speed'),
-    'messages are refused',
-    'all inputs arrive; a few',
-    'comes from several publishers',
-]
-
-
-def test_the_reference_says_what_to_do_about_each_message():
-    docs = Path(__file__).parents[3] / 'docs'
-    pages = [docs / 'reference' / 'diagnostics.md', docs / 'guide' / 'kept.md']
-    text = '\n'.join(page.read_text(encoding='utf-8') for page in pages)
-    messages = [*SENTENCES, *sorted({first_words(text) for text in BEGINNINGS})]
-    assert len(messages) > 30
-    assert not [words for words in messages if words not in text]
 
 
 DERIVED = {

@@ -2,23 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Case files: units, defaults and one sentence for each mistake."""
 
-from dataclasses import fields
 import math
-from pathlib import Path
 
 import pytest
-from surrogate.contact.case import (
-    CaseDomain,
-    CaseGrid,
-    CaseRoughness,
-    CaseStrip,
-    ContactCase,
-    load_case,
-)
+from surrogate.contact.case import load_case
 from surrogate.parameters import DATA
 import yaml
 
-PAGE = Path(__file__).parents[3] / 'docs' / 'reference' / 'contact.md'
 CASES = sorted(path.stem for path in (DATA / 'cases').glob('*.yaml'))
 SMALLEST = {
     'radius_x_mm': 2.5888,
@@ -96,15 +86,6 @@ def test_a_rolling_case(tmp_path):
     assert case.roughness.cutoff_long == pytest.approx(0.8e-3)
     assert case.roughness.cutoff_short == pytest.approx(8e-6)
     assert load(tmp_path).kinematics == 'standing'
-
-
-@pytest.mark.parametrize('cls', [ContactCase, CaseRoughness, CaseGrid, CaseDomain, CaseStrip])
-def test_the_page_of_the_command_names_every_key(cls):
-    page = PAGE.read_text(encoding='utf-8')
-    for spec in fields(cls):
-        unit = spec.metadata.get('unit')
-        key = f'{spec.name}_{unit}' if unit else spec.name
-        assert f'`{key}`' in page, key
 
 
 @pytest.mark.parametrize('name', CASES)

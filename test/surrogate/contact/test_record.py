@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from surrogate.contact.case import CaseDomain, CaseGrid, CaseRoughness, load_case
 from surrogate.contact.record import contact_page, contact_record, friction_coefficient
+from surrogate.contact.record import KEYS as DECLARED
 from surrogate.contact.solve import solve_case
 from surrogate.ehl import Settings, solve_contact
 from surrogate.files import to_json
@@ -47,6 +48,7 @@ def test_the_record_has_the_documented_keys_and_friction_grows_with_slip():
     solution, _ = solve_case(SMALL)
     record = contact_record(SMALL, solution)
     assert list(record) == KEYS
+    assert DECLARED.keys() == record.keys()
     assert record['grid'] == [65, 33]
     assert record['converged'] is True
     assert record['rcs'] == record['asperity_share'] == 0.0

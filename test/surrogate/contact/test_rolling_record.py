@@ -7,7 +7,7 @@ import json
 
 import numpy as np
 import pytest
-from surrogate.contact.rolling_record import rolling_page, rolling_record, RollingRecord
+from surrogate.contact.rolling_record import KEYS, rolling_page, rolling_record, RollingRecord
 from surrogate.ehl.moving import MarchStatus, MovingSolution
 from surrogate.files import json_text
 
@@ -27,6 +27,8 @@ def test_the_record_is_strict_json_of_the_march(rolling_case, marched, says):
     """Keys in order; Lambda is the smooth central film over the whole Rq; shares are in order."""
     record = rolling_record(rolling_case, *marched)
     assert list(record) == list(RollingRecord.__annotations__)
+    averages = {key for key in record if '_standard_error' not in key}
+    assert averages == KEYS.keys()
     assert strict(record)['strip_width_m'] is None
     assert record['kinematics'] == 'rolling'
     assert record['grid'] == [65, 65]

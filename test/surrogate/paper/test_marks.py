@@ -21,7 +21,7 @@ TREE = Path(__file__).parents[3]
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 ROWS = read_rows(TREE / 'test' / 'data' / 'paper.csv')
 THEORY = TREE / 'docs' / 'theory'
-PAGE = (THEORY / 'published_study.md').read_text(encoding='utf-8')
+PAGE = (THEORY / 'validation.md').read_text(encoding='utf-8')
 NUMBERS = (THEORY / 'published_study_numbers.md').read_text(encoding='utf-8')
 MARKS = marks(SCREW, ROWS)
 TRENDS = trends(SCREW, law_of(SCREW), ROWS.values())

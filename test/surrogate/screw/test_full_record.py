@@ -5,8 +5,6 @@
 from dataclasses import replace
 import json
 import math
-from pathlib import Path
-import re
 from types import SimpleNamespace
 
 import pytest
@@ -15,7 +13,9 @@ from surrogate.ehl.friction import contact_friction
 from surrogate.files import to_json
 from surrogate.formulas.inlet import SPEED_EXPONENT
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
+from surrogate.screw import closed_form_record as closed_form
 from surrogate.screw import figures as figures_point
+from surrogate.screw import full_record as full
 from surrogate.screw.ball_motion import slip_floor
 from surrogate.screw.closed_form_record import closed_form_record, most_wear, page, with_wear
 from surrogate.screw.contacts import make_contacts, ScrewSettings
@@ -306,20 +306,14 @@ def test_normal_forces_are_those_of_the_solve():
     assert found['contacts'][2]['normal_force_N'] == 0.0
 
 
-def test_the_page_lists_every_key():
-    """The reference has the keys of both tiers, with a star on those of the full one alone."""
-    page = Path(__file__).parents[3] / 'docs' / 'reference' / 'point.md'
-    table = page.read_text(encoding='utf-8').split('## Keys of `--json`')[1].split('## ')[0]
-    (own,) = (line for line in table.splitlines() if line.startswith('| `contacts`'))
+def test_every_key_is_declared_with_its_meaning():
+    """Those of the closed form for both tiers, the others for the full one."""
     point, found = record(60, 800.0)
     formulas = closed_form_record(SCREW, OIL, point)
+    assert closed_form.KEYS.keys() == formulas.keys() | {'contact_onset'}
+    assert closed_form.CONTACT_KEYS.keys() == formulas['contacts'][0].keys()
+    assert full.KEYS.keys() == found.keys() - formulas.keys()
+    solved = found['contacts'][0].keys()
+    assert full.CONTACT_KEYS.keys() == solved - closed_form.CONTACT_KEYS.keys()
     onset = onset_of_surface(Surface.load(shipped_surface())).record()
-    beside = {'contact_onset', *onset} - found.keys()
-    assert all(f'`{key}`' in table for key in beside)
-    for lines, full, closed, others in (
-        (table.replace(own, '`contacts`'), found, formulas, {'reason', *beside}),
-        (own, found['contacts'][0], formulas['contacts'][0], {'contacts'}),
-    ):
-        listed = {key: bool(star) for key, star in re.findall(r'`(\w+)`(\*?)', lines)}
-        wanted = {key: key not in closed for key in full}
-        assert {key: star for key, star in listed.items() if key not in others} == wanted
+    assert all(f'`{key}`' in closed_form.KEYS['contact_onset'] for key in onset)

@@ -104,6 +104,7 @@ def row_of(record, key):
 
 
 def test_what_is_stated_is_what_onset_and_point_say(screw, oil, record):
+    assert record.keys() == sensitivity.KEYS.keys()
     stated = record['stated']
     assert stated['onset_speed_rad_s'] == onset_point(screw, oil, 500.0, 313.15)['speed_rad_s']
     found = solve(screw, oil, [POINT.speed, *list_of_limits(stated)], 500.0, 313.15)

@@ -8,6 +8,7 @@ import math
 from pathlib import Path
 import textwrap
 
+from ballscrew_monitor.recordings.tables import mapping
 from ballscrew_monitor.recordings.tables.mapping import make_map, read_map
 import pytest
 from surrogate.files import InputError
@@ -121,8 +122,13 @@ def test_a_map_is_a_file(tmp_path, refused):
     assert read_map(tmp_path / 'map.txt').content == GOOD
 
 
+def test_every_key_has_a_place_with_its_meaning():
+    leaves = {place.rpartition('.')[2] for place in mapping.PLACES}
+    assert leaves >= {*mapping.NUMBERS, *mapping.LINES, *mapping.TEXTS, *mapping.INPUTS}
+
+
 def test_the_map_of_the_guide_is_one():
-    page = Path(__file__).resolve().parents[4] / 'docs' / 'guide' / 'own_log.md'
+    page = Path(__file__).resolve().parents[4] / 'docs' / 'guide' / 'recordings.md'
     lines = page.read_text(encoding='utf-8').splitlines()
     first = lines.index('    log: log.csv')
     block = itertools.takewhile(lambda line: line.startswith('    '), lines[first:])
