@@ -28,7 +28,7 @@ def add_inspect_commands(actions: Any) -> None:
     _add_query(actions.add_parser('query', help='look up one point, or those of a table'))
     _add_plot(actions.add_parser('plot', help='draw a surface, a picture per temperature'))
     _add_diff(actions.add_parser('diff', help='compare two surface files'))
-    _add_export(actions.add_parser('export', help='write a surface as NetCDF or as a table'))
+    _add_export(actions.add_parser('export', help='write a surface as a table'))
 
 
 def _add_file(parser: argparse.ArgumentParser) -> None:
@@ -111,9 +111,8 @@ def _add_diff(parser: argparse.ArgumentParser) -> None:
 
 def _add_export(parser: argparse.ArgumentParser) -> None:
     _add_file(parser)
-    to = parser.add_mutually_exclusive_group(required=True)
-    to.add_argument('--netcdf', type=Path, metavar='OUT.nc', help='NetCDF file to write')
-    to.add_argument('--csv', type=Path, metavar='OUT.csv', help='table to write, a line per node')
+    text = 'table to write, a line per node'
+    parser.add_argument('--csv', type=Path, required=True, metavar='OUT.csv', help=text)
     parser.set_defaults(handler=_export)
 
 
@@ -233,12 +232,11 @@ def _diff(args: argparse.Namespace) -> int:
 
 
 def _export(args: argparse.Namespace) -> int:
-    from surrogate.surface_tools.export import to_netcdf, to_table
+    from surrogate.surface_tools.export import to_table
 
     data = read(find_surface(args.file))
-    out = args.netcdf or args.csv
-    _write(out, to_netcdf(data) if args.netcdf else to_table(data).encode())
-    print(f'{out}: {data.mask.size} nodes of surface {data.sha256}')
+    _write(args.csv, to_table(data).encode())
+    print(f'{args.csv}: {data.mask.size} nodes of surface {data.sha256}')
     return 0
 
 

@@ -63,7 +63,6 @@ NEEDS = {
     'starlette': PAGES,
     'uvicorn': PAGES,
     'websockets': PAGES,
-    'xarray': (('surface', 'export', LOOKUP, '--netcdf', '{out}/a.nc'),),
     'yaml': (POINT, ('doctor',)),
     'zstandard': READS[:-1],
 }
