@@ -209,8 +209,8 @@ def _events(args: argparse.Namespace) -> int:
 def _recover(args: argparse.Namespace) -> int:
     from ballscrew_monitor.recordings.recover import recover
 
-    path, count, seconds = recover(args.file)
-    print(f'{path}: {count} messages of {seconds:.1f} s')
+    path, count, seconds, lost = recover(args.file)
+    print('; '.join(filter(None, [f'{path}: {count} messages of {seconds:.1f} s', lost])))
     return 0
 
 

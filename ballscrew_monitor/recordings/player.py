@@ -215,7 +215,7 @@ def playback(path: Path, choice: Choice, *, rate: float, patience: float, loop: 
     """
     Play the bag at `path` to whom listens within `patience` [s]; return the exit code.
 
-    Of a damaged bag it plays the intact part, and says how much that is.
+    A bag that has lost its end is played up to there, and said to be so.
 
     """
     bag = Bag(path, salvage=True)
