@@ -73,6 +73,7 @@ setup(
             'data/cases/*.yaml',
             'data/lubricants/*.yaml',
             'data/screws/*.yaml',
+            'data/*.yaml',
             'data/surfaces/*.npz',
             'plotting/*.mplstyle',
         ],

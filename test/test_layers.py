@@ -54,7 +54,7 @@ OFFLINE_FLOORS = (
     ('asperities',),
     ('catalogue', 'contact', 'screw'),
     ('builder',),
-    ('surface_tools', 'identify', 'paper', 'on_demand', 'validation'),
+    ('surface_tools', 'identify', 'studies', 'on_demand'),
     ('commands',),
     ('cli',),
 )

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Captions and axes of all pictures of the comparison with the published study."""
+"""Captions, axes and lines of all pictures of the comparison with the published study."""
 
 from functools import cache
 import textwrap
@@ -11,10 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 import numpy as np
 from surrogate.formulas.kinematics import entrainment_speed_paper
-from surrogate.paper.curves import Curve
-from surrogate.paper.rows import Array
 from surrogate.parameters import load_screw
 from surrogate.plotting.style import new_figure, PURPLE
+from surrogate.studies.rows import Curve
 from surrogate.units import MILLI, RPM
 
 WIDTH, CAPTION_LETTERS = 7.2, 118
@@ -42,7 +41,6 @@ def entrainment(rpm: Any) -> Any:
 
 @cache
 def _one_rpm() -> float:
-    """Return the study's entrainment speed [mm/s] of the nominal screw at 1 rev/min."""
     return MILLI * float(entrainment_speed_paper(load_screw('nominal'), RPM))
 
 
@@ -69,22 +67,25 @@ def finish(axes: Axes, letter: str = '', title: str = '', legend: Any = 'best') 
         axes.legend(fontsize=7, loc=legend)
 
 
-def draw_curve(
-    axes: Axes, x: Array, found: Curve, factor: float, *, floor: float = 0.0, **style: Any
+def over_speed(
+    axes: Axes,
+    found: Curve,
+    style: str,
+    colour: str,
+    label: str,
+    *,
+    factor: float = 1.0,
+    floor: float = 0.0,
 ) -> None:
-    """Draw means times a factor, with the standard deviation as a band."""
-    mean = np.maximum(factor * found.mean, floor)
-    axes.plot(x, mean, **style)
+    """Draw means times a factor over speed, the standard deviation as a band; marker and line."""
+    x, mean = entrainment(found.at), np.maximum(factor * found.mean, floor)
+    line: dict[str, Any] = {'marker': style[0], 'linestyle': style[1:], 'markersize': 4}
+    axes.plot(x, mean, color=colour, label=label, **line)
     if np.isfinite(found.deviation).any():
-        low, high = (factor * (found.mean + sign * found.deviation) for sign in (-1, 1))
-        axes.fill_between(
-            x,
-            np.maximum(low, floor),
-            np.maximum(high, floor),
-            color=style.get('color'),
-            alpha=0.15,
-            linewidth=0,
+        low, high = (
+            np.maximum(factor * (found.mean + sign * found.deviation), floor) for sign in (-1, 1)
         )
+        axes.fill_between(x, low, high, color=colour, alpha=0.15, linewidth=0)
 
 
 def limit(axes: Axes, value: float, label: str) -> None:
