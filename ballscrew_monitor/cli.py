@@ -99,7 +99,7 @@ def _parser() -> argparse.ArgumentParser:
         command = subparsers.add_parser(name, help=text)
         command.set_defaults(handler=handler)
         getattr(options, f'add_{name}')(command)
-    add_commands(subparsers, _read_bag)
+    add_commands(subparsers, {'bag': _read_bag, 'table': _read_table})
     return parser
 
 
@@ -164,6 +164,19 @@ def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tu
     with opened_log(args.data) as bag:
         columns, notes = no_load.read_no_load(bag, channels)
         return columns, (*bag.notes, *notes)
+
+
+def _read_table(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """Return torque over speed out of a table, for `identify`; the lead of the screw [m]."""
+    from ballscrew_monitor.recordings.tables.points import PointColumns, read_points
+
+    asked = PointColumns(
+        lead=lead,
+        torque_constant=args.torque_constant,
+        speed_column=args.speed_column,
+        torque_column=args.torque_column,
+    )
+    return read_points(args.data, asked)
 
 
 def _solve(args: argparse.Namespace) -> int:

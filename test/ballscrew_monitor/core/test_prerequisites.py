@@ -55,7 +55,7 @@ NEEDS = {
     'mcap': READS,
     'numba': (*SOLVES, *JUDGES),
     'numpy': (POINT, ('doctor',)),
-    'polars': (*REPORTS, ('import', '{csv}', '--guess')),
+    'polars': (*REPORTS, ('import', '{csv}', '--guess'), ('identify', '{csv}')),
     'prometheus_client': PAGES,
     'rclpy': ROS,
     'scipy': SOLVES,
