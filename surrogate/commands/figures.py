@@ -11,7 +11,7 @@ from typing import Any
 from surrogate.commands.sweep import add_workers
 from surrogate.files import InputError, replace_file
 from surrogate.progress import Progress
-from surrogate.studies.tasks import FIGURES, StudyTask, tasks
+from surrogate.studies.tasks import FIGURES, tasks
 
 DRAWS = 12
 """Draws of the contacts unless said otherwise [-]."""
@@ -57,14 +57,8 @@ def _figures(args: argparse.Namespace) -> int:
     from surrogate.tasks.workers import open_pool
 
     measured = _measured(args.measured) if args.measured else None
-    bar = Progress(len(wanted), 'solves')
-
-    def progress(done: int, total: int, share: float, task: StudyTask) -> None:
-        note = f'{task.kind} {task.rpm:g} rev/min {task.load:g} N'
-        bar.show(done, total, share=share, note=note)
-
     with open_pool(args.workers, args.dask) as pool:
-        study = run_study(args.out, wanted, pool, progress)
+        study = run_study(args.out, wanted, pool, Progress(len(wanted), 'solves').show)
     failed = [row for row in study.rows.values() if row.status != 'CONVERGED']
     for row in failed:
         print(f'ballscrew: {row.key} did not converge: {row.status}', file=sys.stderr)

@@ -41,9 +41,7 @@ def add_identify_command(subparsers: Any, readers: Mapping[str, LogReader]) -> N
     parser = subparsers.add_parser(
         'identify', help='find the parasitic torque from torque measured without load'
     )
-    parser.add_argument(
-        'data', type=Path, metavar='DATA', help='table of points, or bag'
-    )
+    parser.add_argument('data', type=Path, metavar='DATA', help='table of points, or bag')
     add_inputs(parser)
     parser.add_argument(
         '--temperature-degC',

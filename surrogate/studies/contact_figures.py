@@ -13,7 +13,7 @@ import numpy as np
 from surrogate.parameters import Screw
 from surrogate.plotting.style import BLUE, GREY, VERMILION
 from surrogate.raceway.short_waves import without_short_waves
-from surrogate.studies.drawing import captioned_figure, finish, shades, STYLES
+from surrogate.studies.drawing import declared_figure, finish, shades, STYLES
 from surrogate.studies.readings import REPORTED_FILM
 from surrogate.studies.rows import Array, curve, StudyRow
 from surrogate.studies.solve import published_patch, SHORTEST_ON_GRID, Study
@@ -64,14 +64,7 @@ def _scaled(fields: dict[str, Any]) -> SimpleNamespace:
 def figure_fractal(study: Study, screw: Screw) -> Figure:
     """Return surface, film and asperity pressure of a mixed contact, and a cut along it (4)."""
     row, found = drawn(study, '4')[0]
-    figure = captioned_figure(
-        6.6,
-        f'Draw {row.draw} of the raceway, D 2.68, G 0.97 nm, Rq 0.12 µm over the Hertz rectangle '
-        'at unloading, waves down to 20.6 µm, standing still; contact at the screw (dashed) at '
-        f'{row.rpm:g} rev/min, preload only ({row.normal_force:.1f} N), ISO VG 68 at 40 °C. RCS '
-        f'{row.rcs:.2f}: the share of the load on punctured nodes; asperities carry '
-        f'{row.asperity_share:.2f}. The cut is the centre line.',
-    )
+    figure = declared_figure('4', row=row)
     upper, lower = np.asarray(figure.subfigures(2, 1, height_ratios=(1.65, 1)))
     panels = upper.subplots(1, 4, width_ratios=(2.1, 1, 1, 1))
     raceway = without_short_waves(published_patch(screw, row.draw), SHORTEST_ON_GRID)
@@ -125,12 +118,7 @@ def _draw_split(axes: Axes, found: SimpleNamespace) -> None:
 
 def figure_smooth_speed(study: Study) -> Figure:
     """Return pressure and film of the smooth contact at several speeds (7)."""
-    figure = captioned_figure(
-        3.9,
-        'Smooth contact of ball and screw, preload only (27.6 N), ISO VG 68 at 40 °C, centre '
-        'line. The mark is the published central film at 502.65 mm/s, which is of a rough '
-        'surface.',
-    )
+    figure = declared_figure('7')
     series = drawn(study, '7')
     labels = [f'{1e3 * row.entrainment_speed:.1f} mm/s, {row.rpm:g} rev/min' for row, _ in series]
     _, right = _draw_series(figure, series, labels, 2)
@@ -143,12 +131,7 @@ def figure_smooth_speed(study: Study) -> Figure:
 
 def figure_smooth_load(study: Study) -> Figure:
     """Return pressure and film of the smooth contact at several loads (8)."""
-    figure = captioned_figure(
-        3.9,
-        'Smooth contact of ball and screw of the loaded nut at 502.65 mm/s, ISO VG 68 at 40 °C, '
-        'centre line, for axial loads on the screw; (c) central film of both nuts. The published '
-        'film rises with load; ours falls weakly in the loaded nut and rises in the relieved one.',
-    )
+    figure = declared_figure('8')
     series = [(row, found) for row, found in drawn(study, '8') if row.load in SHOWN_LOADS]
     labels = [f'{row.load:g} N ({row.normal_force:.0f} N per ball)' for row, _ in series]
     *_, right = _draw_series(figure, series, labels, 3)
@@ -189,12 +172,7 @@ def _draw_series(
 def figure_rough(study: Study, name: str) -> Figure:
     """Return pressure and film of the rough contact at several speeds (9) or loads (10)."""
     series = drawn(study, name)
-    figure = captioned_figure(
-        4.9,
-        f'Rough contact of ball and screw in the loaded nut, draw {series[0][0].draw}, standing '
-        'still, ISO VG 68 at 40 °C, centre line. Dotted: the film floor; a node there counts as '
-        'punctured.',
-    )
+    figure = declared_figure(name, draw=series[0][0].draw)
     panels = figure.subplots(2, len(series), sharex='col', squeeze=False)
     top = 1.1 * max(float((found.oil + found.asperities).max()) for _, found in series)
     for column, (row, found) in enumerate(series):

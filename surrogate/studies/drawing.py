@@ -3,6 +3,7 @@
 """Captions, axes and lines of all pictures of the comparison with the published study."""
 
 from functools import cache
+from pathlib import Path
 import textwrap
 from typing import Any
 
@@ -11,20 +12,24 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 import numpy as np
 from surrogate.formulas.kinematics import entrainment_speed_paper
+from surrogate.limits import read_text
 from surrogate.parameters import load_screw
+from surrogate.plain_yaml import plain_values
 from surrogate.plotting.style import new_figure, PURPLE
 from surrogate.studies.rows import Curve
 from surrogate.units import MILLI, RPM
 
 WIDTH, CAPTION_LETTERS = 7.2, 118
 """Width [inch] and letters in a line of a caption."""
+DECLARED = plain_values(read_text(Path(__file__).parents[1] / 'data' / 'study_figures.yaml'))
+"""File, height [inch] and caption of each figure by its number."""
 STYLES = ('-', '--', '-.', ':', (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
 
 
-def captioned_figure(height: float, caption: str) -> Figure:
-    """Return an empty figure of a `height` [inch] with a caption below."""
-    figure = new_figure(WIDTH, height)
-    text = textwrap.fill(caption, CAPTION_LETTERS)
+def declared_figure(name: str, **numbers: Any) -> Figure:
+    """Return an empty figure of the study with its caption below, which tells some numbers."""
+    figure = new_figure(WIDTH, DECLARED[name]['height'])
+    text = textwrap.fill(DECLARED[name]['caption'].format(**numbers), CAPTION_LETTERS)
     figure.supxlabel(text, x=0.012, ha='left', fontsize=7.5, color='#333333')
     return figure
 

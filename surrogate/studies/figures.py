@@ -12,22 +12,21 @@ from surrogate.plotting.style import draw_picture
 from surrogate.studies import contact_figures as contacts
 from surrogate.studies import map_figures as maps
 from surrogate.studies import screw_figures as screws
-from surrogate.studies.screw_figures import MeasuredTorque
+from surrogate.studies.drawing import DECLARED
 from surrogate.studies.solve import SCREW, Study
-from surrogate.studies.tasks import FIGURES
 
 
 def draw_figures(
-    study: Study, figures: Iterable[str], folder: Path, measured: MeasuredTorque | None = None
+    study: Study, figures: Iterable[str], folder: Path, measured: screws.Measured | None = None
 ) -> Iterator[Path]:
     """Draw some figures of a study into a folder; yield the paths."""
     draw = pictures(study, measured)
     for figure in figures:
-        yield draw_picture(folder / f'paper_{FIGURES[figure]}.png', draw[figure])
+        yield draw_picture(folder / f'{DECLARED[figure]["file"]}.png', draw[figure])
 
 
 def pictures(
-    study: Study, measured: MeasuredTorque | None = None
+    study: Study, measured: screws.Measured | None = None
 ) -> dict[str, Callable[[], Figure]]:
     """Return what draws each figure of the study."""
     screw, rows = load_screw(SCREW), list(study.rows.values())

@@ -21,7 +21,7 @@ from surrogate.formulas.torque import efficiency
 from surrogate.parameters import Screw
 from surrogate.plotting.style import BLUE, GREY, VERMILION
 from surrogate.screw.closed_form_record import CONSTANT_FRICTION
-from surrogate.studies.drawing import captioned_figure, entrainment, finish, limit, shades, STYLES
+from surrogate.studies.drawing import declared_figure, entrainment, finish, limit, shades, STYLES
 from surrogate.studies.rows import Array, constant_friction_efficiency, grid, NO_CONTACT, StudyRow
 from surrogate.surface.aims import EFFICIENCY_LIMIT, RCS_LIMIT
 
@@ -82,13 +82,7 @@ def _between(speeds: Array, loads: Array, values: Array, speed: Array, load: Arr
 
 def figure_maps(screw: Screw, rows: Rows) -> Figure:
     """Return maps of RCS and efficiency, and efficiency beside constant friction (12)."""
-    figure = captioned_figure(
-        6.9,
-        'Nominal screw, ISO VG 68 at 40 °C, rolling roughness, the nodes (dots) solved, torque '
-        'interpolated between them and efficiency derived from it. RCS is that '
-        f'of the worst of four contacts; below {NO_CONTACT:g} it counts as 0. (c) Friction '
-        f'coefficient {CONSTANT_FRICTION:g} for constant friction, an assumption.',
-    )
+    figure = declared_figure('12', no_contact=NO_CONTACT, friction=CONSTANT_FRICTION)
     places = figure.subplot_mosaic([['rcs', 'eta'], ['load', 'load']], height_ratios=(1.25, 1))
     found = fine_map(screw, rows)
     log_rcs = np.log10(np.clip(found.rcs, NO_CONTACT, 1))
@@ -140,12 +134,7 @@ def _draw_loads(axes: Axes, screw: Screw, rows: Rows) -> None:
 
 def figure_zone(screw: Screw, law: AsperityLaw, rows: Rows) -> Figure:
     """Return the optimal zone in the plane of speed and load (13)."""
-    figure = captioned_figure(
-        4.6,
-        f'Optimal zone (shaded): RCS below {RCS_LIMIT:g} and efficiency {EFFICIENCY_LIMIT:g} or '
-        'more. Nominal screw, ISO VG 68 at 40 °C, rolling roughness, dots: solved points. Red '
-        'dotted: RCS where the law is off by its standard deviation.',
-    )
+    figure = declared_figure('13', rcs=RCS_LIMIT, efficiency=EFFICIENCY_LIMIT)
     axes = figure.subplots()
     found = fine_map(screw, rows)
     good = (found.rcs < RCS_LIMIT) & (found.eta >= EFFICIENCY_LIMIT)

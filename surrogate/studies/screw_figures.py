@@ -4,7 +4,7 @@
 
 from collections.abc import Sequence
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -13,7 +13,7 @@ from surrogate.asperities.law import AsperityLaw
 from surrogate.parameters import Screw
 from surrogate.plotting.style import BLUE, GREEN, GREY, PURPLE, VERMILION
 from surrogate.studies.drawing import (
-    captioned_figure,
+    declared_figure,
     entrainment,
     finish,
     limit,
@@ -57,17 +57,11 @@ STANDS: dict[str, Any] = {'color': GREY, 'marker': 'v', 'ls': '--', 'markersize'
 STUDY: dict[str, Any] = {'color': GREEN, 'marker': 's', 'markersize': 4}
 STATISTICAL: dict[str, Any] = {'color': VERMILION, 'ls': '-.'}
 Rows = Sequence[StudyRow]
+Measured = tuple[Array, Array, Array]
+"""Measured speeds [rev/min], torque and its standard deviation [N m]."""
 
 
-class MeasuredTorque(NamedTuple):
-    """Measured friction torque: speeds [rev/min], torque and its standard deviation [N m]."""
-
-    rpm: Array
-    torque: Array
-    deviation: Array
-
-
-def read_measured(lines: Sequence[dict[str, str]]) -> MeasuredTorque:
+def read_measured(lines: Sequence[dict[str, str]]) -> Measured:
     """
     Return measurements from the lines of a CSV.
 
@@ -80,20 +74,14 @@ def read_measured(lines: Sequence[dict[str, str]]) -> MeasuredTorque:
     )
     if not len(lines) or not (np.isfinite([rpm, torque]).all() and (rpm > 0).all()):
         raise ValueError('needs numbers in speed_rev_min, above 0, and torque_Nm')
-    return MeasuredTorque(rpm, torque, np.nan_to_num(deviation))
+    return rpm, torque, np.nan_to_num(deviation)
 
 
-def figure_torque(rows: Rows, measured: MeasuredTorque | None = None) -> Figure:
+def figure_torque(rows: Rows, measured: Measured | None = None) -> Figure:
     """Return the friction torque over entrainment speed, with measurements if given (6b)."""
     torque = screw_speeds(rows, 'friction_torque')
     least = int(np.argmin(torque.mean))
-    figure = captioned_figure(
-        3.9,
-        'Friction torque of the nominal screw, preload only, ISO VG 68 at 40 °C. Contacts of '
-        'balls and raceways only: wipers, recirculation and ball-to-ball contact are not in it. '
-        f'Least where the roughness rolls: {MILLI * torque.mean[least]:.1f} mN m at '
-        f'{torque.at[least]:g} rev/min. Grey: one draw of the same roughness, standing still.',
-    )
+    figure = declared_figure('6b', least=MILLI * torque.mean[least], rpm=torque.at[least])
     axes = figure.subplots()
     for column, case, *style in (
         ('friction_torque', OURS, 'o-', 'black', 'friction torque, rolling roughness'),
@@ -103,16 +91,10 @@ def figure_torque(rows: Rows, measured: MeasuredTorque | None = None) -> Figure:
     ):
         over_speed(axes, screw_speeds(rows, column, case), *style, factor=MILLI)
     if measured is not None:
-        axes.errorbar(
-            entrainment(measured.rpm),
-            MILLI * measured.torque,
-            yerr=MILLI * measured.deviation,
-            fmt='D',
-            color=GREEN,
-            capsize=3,
-            markersize=4,
-            label='measured',
-        )
+        rpm, mean, deviation = measured
+        bar: dict[str, Any] = {'yerr': MILLI * deviation, 'capsize': 3, 'markersize': 4}
+        x, y = entrainment(rpm), MILLI * mean
+        axes.errorbar(x, y, fmt='D', color=GREEN, label='measured', **bar)
     axes.set(ylabel='friction torque [mN m]', ylim=(0, None))
     speed_axis(axes)
     finish(axes)
@@ -121,14 +103,7 @@ def figure_torque(rows: Rows, measured: MeasuredTorque | None = None) -> Figure:
 
 def figure_stribeck(law: AsperityLaw, rows: Rows) -> Figure:
     """Return Stribeck curve, load shares and film over entrainment speed (11)."""
-    figure = captioned_figure(
-        8.2,
-        'Nominal screw, preload only, ISO VG 68 at 40 °C; grey: roughness that stands still. (a) '
-        'Mean traction against the slip over the normal force, its parts, and the coefficient '
-        'that would make the rolling losses, too. (b) Worst contact; zero is drawn at the lower '
-        "edge; bands: standard deviation, of the law's onset or of the contact's draws. (c) "
-        'Central film of the smooth contacts.',
-    )
+    figure = declared_figure('11')
     first, second, third = figure.subplots(3, 1, sharex=True)
     friction, standing = (
         screw_speeds(rows, 'friction_coefficient', case) for case in (OURS, STANDING)
@@ -183,14 +158,7 @@ def _mark_films(axes: Axes) -> None:
 
 def figure_trends(screw: Screw, rows: Rows) -> Figure:
     """Return efficiency, film and RCS of rolling and standing roughness and other assumptions."""
-    figure = captioned_figure(
-        7.2,
-        'Black: rolling roughness; grey: standing still, same Rq by the standard, one draw. '
-        'Reported: efficiency and film rise with speed and load, RCS falls with speed, rises with '
-        f'load. (a) Screw under {EFFICIENCY_LOAD:g} N. (b) Central film at 502.65 mm/s, loaded '
-        'nut. (c) Preload only; zero is drawn at the lower edge. (d) Over that of the least load. '
-        'Statistical: share by the film ratio, closed forms.',
-    )
+    figure = declared_figure('trends', load=EFFICIENCY_LOAD)
     panels = figure.subplots(2, 2)
     _draw_losses(panels[0, 0], screw, rows)
     _draw_films(panels[0, 1], rows)

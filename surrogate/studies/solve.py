@@ -62,8 +62,6 @@ INNER = 0.5
 Fields = dict[str, Any]
 """What a picture of a contact needs, SI units: x, y, semi-axes, pressures, film and heights."""
 Numbers = dict[str, float]
-Report = Callable[[int, int, float, StudyTask], None]
-"""Told after each solve: tasks done, tasks in all, share of the work done [-], the task."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -75,13 +73,30 @@ class Study:
 
 
 def run_study(
-    folder: Path, wanted: Sequence[StudyTask], pool: Pool, report: Report | None = None
+    folder: Path,
+    wanted: Sequence[StudyTask],
+    pool: Pool,
+    report: Callable[[int, int], None] = lambda done, total: None,
 ) -> Study:
-    """Solve the tasks whose results `folder` does not keep yet; return all that were wanted."""
+    """
+    Solve the tasks whose results `folder` does not keep yet; return all that were wanted.
+
+    `report` is told after each solve how many are done and how many there are.
+
+    """
     known = known_inputs()
     inputs = {task.key: asdict(task) | {'inputs': known[task.rolls]} for task in wanted}
+    left, done = len(wanted), 0
+
+    def count(outcome: TaskOutcome) -> None:  # those that were kept come first
+        nonlocal left, done
+        left -= 1
+        if not outcome.stored:
+            done += 1
+            report(done, done + left)
+
     with TaskStore(folder / TABLE, WORK) as store:
-        outcomes = run_tasks(pool, solve_plain, inputs, store=store, report=_told(wanted, report))
+        outcomes = run_tasks(pool, solve_plain, inputs, store=store, report=count)
     rows = [
         row_of(task, known[task.rolls], outcomes[task.key].sentence)
         if (result := outcomes[task.key].result) is None
@@ -100,21 +115,6 @@ def known_inputs() -> dict[bool, str]:
     """Return `inputs` of the rows that the asperity law decides, and of those it does not."""
     screw, oil = load_screw(SCREW), load_lubricant(OIL)
     return {True: inputs_hash(screw, oil, VERSION), False: inputs_hash(screw, oil)}
-
-
-def _told(wanted: Sequence[StudyTask], report: Report | None) -> Callable[[TaskOutcome], None]:
-    """Return what reports new outcomes; those that were kept come first."""
-    left, done = {task.key: task for task in wanted}, list[float]()
-
-    def count(outcome: TaskOutcome) -> None:
-        task = left.pop(outcome.name)
-        if outcome.stored or report is None:
-            return
-        done.append(task.cost)
-        total = sum(done) + sum(one.cost for one in left.values())
-        report(len(done), len(done) + len(left), sum(done) / total, task)
-
-    return count
 
 
 def solve_plain(inputs: Mapping[str, Any]) -> dict[str, Any]:

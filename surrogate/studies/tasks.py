@@ -65,13 +65,6 @@ class StudyTask:
         """Whether the asperity law decides what touches."""
         return self.kind == 'screw' and self.case == OURS
 
-    @property
-    def cost(self) -> float:
-        """Rough share of the time [-], for the time left."""
-        if self.kind == 'formulas':
-            return 0.01
-        return (0.2 if self.draw == SMOOTH else 1.0) * (2.5 if self.kind == 'screw' else 1.0)
-
 
 PRELOAD = 0.0
 """Axial load of a screw under preload alone [N]."""
@@ -93,19 +86,6 @@ EFFICIENCY_LOAD = 1000.0
 """Axial load at which efficiencies are compared over speed [N], about the preload."""
 ROLLING_RPM = 200.0
 """Speed inside asperity contact that rolls [rev/min]."""
-FIGURES = {
-    '4': '04_surface',
-    '6b': '06b_torque',
-    '7': '07_smooth_speed',
-    '8': '08_smooth_load',
-    '9': '09_rough_speed',
-    '10': '10_rough_load',
-    '11': '11_stribeck',
-    '12': '12_maps',
-    '13': '13_zone',
-    'trends': 'trends',
-}
-"""Files of the figures by the study's numbers."""
 
 
 def points(
@@ -155,6 +135,10 @@ def solves(draws: int) -> dict[str, list[StudyTask]]:
         '13': maps,
         'trends': trends,
     }
+
+
+FIGURES = tuple(solves(1))
+"""Figures by the study's numbers."""
 
 
 def tasks(figures: Iterable[str], draws: int) -> list[StudyTask]:

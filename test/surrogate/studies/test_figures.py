@@ -114,9 +114,7 @@ def test_axes_say_quantity_and_unit(study, name):
 
 
 def test_torque_with_measurements(study):
-    measured = screws.MeasuredTorque(
-        rpm=np.array([100.0]), torque=np.array([0.05]), deviation=np.array([0.01])
-    )
+    measured = np.array([100.0]), np.array([0.05]), np.array([0.01])
     axes = screws.figure_torque(list(study.rows.values()), measured).axes[0]
     lines = {line.get_label(): line for line in axes.get_lines()}
     for name in ('rolling', 'standing'):
@@ -141,7 +139,7 @@ def test_stribeck_marks_limit_and_film_and_zone_needs_the_map_alone(study):
 
 def test_measurements_are_read_and_refused():
     found = screws.read_measured([{'speed_rev_min': '60', 'torque_Nm': '0.2'}])
-    assert (found.rpm[0], found.torque[0], found.deviation[0]) == (60.0, 0.2, 0.0)
+    assert [values.tolist() for values in found] == [[60.0], [0.2], [0.0]]
     for line in ({'speed': '60', 'torque_Nm': '0.2'}, {'speed_rev_min': 'x', 'torque_Nm': '1'}):
         with pytest.raises(ValueError, match=r'needs numbers|could not convert'):
             screws.read_measured([line])

@@ -66,8 +66,8 @@ def test_a_study_goes_on_where_it_stopped(tmp_path):
     wanted = tasks(('7',), 1)
     told = []
     with open_pool(1) as pool:
-        run_study(tmp_path, wanted[:2], pool, lambda *now: told.append(now[:3]))
-        assert told == [(1, 2, 0.5), (2, 2, 1.0)]
+        run_study(tmp_path, wanted[:2], pool, lambda *now: told.append(now))
+        assert told == [(1, 2), (2, 2)]
         told.clear()
         study = run_study(tmp_path, wanted[:2], pool, lambda *now: told.append(now))
         assert not told
