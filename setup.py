@@ -73,6 +73,7 @@ setup(
             'data/cases/*.yaml',
             'data/lubricants/*.yaml',
             'data/screws/*.yaml',
+            'data/*.yaml',
             'data/surfaces/*.npz',
             'plotting/*.mplstyle',
         ],
@@ -104,7 +105,6 @@ setup(
         'areal': ['SurfaceTopography>=1.17'],
         'dask': ['distributed>=2024.1'],
         'docs': ['pdoc>=16.0'],
-        'netcdf': ['xarray>=2024.1'],
         'test': [
             'ContactMechanics>=1.8',
             'colcon-defaults>=0.2.9',
@@ -117,7 +117,6 @@ setup(
             'pytest-timeout>=2.2',
             'pytest-xdist>=3.5',
             'rosbags>=0.10',
-            'xarray>=2024.1',
             *LINTERS,
         ],
     },

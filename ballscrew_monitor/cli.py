@@ -112,7 +112,7 @@ def command_parser() -> argparse.ArgumentParser:
         command = subparsers.add_parser(name, help=text, epilog=options.ENDINGS.get(name))
         command.set_defaults(handler=handler)
         getattr(options, f'add_{name}')(command)
-    add_commands(subparsers, _read_bag)
+    add_commands(subparsers, {'bag': _read_bag, 'table': _read_table})
     return parser
 
 
@@ -179,6 +179,19 @@ def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tu
         return columns, (*bag.notes, *notes)
 
 
+def _read_table(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """Return torque over speed out of a table, for `identify`; the lead of the screw [m]."""
+    from ballscrew_monitor.recordings.tables.points import PointColumns, read_points
+
+    asked = PointColumns(
+        lead=lead,
+        torque_constant=args.torque_constant,
+        speed_column=args.speed_column,
+        torque_column=args.torque_column,
+    )
+    return read_points(args.data, asked)
+
+
 def _solve(args: argparse.Namespace) -> int:
     from ballscrew_monitor.clients.solve import ask, Question
 
@@ -222,8 +235,8 @@ def _events(args: argparse.Namespace) -> int:
 def _recover(args: argparse.Namespace) -> int:
     from ballscrew_monitor.recordings.recover import recover
 
-    path, count, seconds = recover(args.file)
-    print(f'{path}: {count} messages of {seconds:.1f} s')
+    path, count, seconds, lost = recover(args.file)
+    print('; '.join(filter(None, [f'{path}: {count} messages of {seconds:.1f} s', lost])))
     return 0
 
 

@@ -3,7 +3,6 @@
 """Options of the commands that need ROS, and their defaults."""
 
 import argparse
-import math
 from pathlib import Path
 from typing import Any
 
@@ -87,8 +86,6 @@ def add_health(parser: Parser) -> None:
     _add_number(parser, '--baseline-hours', 'H', text, default=0.16)
     text = 'days that are normal, both included, UTC (default: the first ones in motion)'
     parser.add_argument('--baseline', nargs=2, metavar=('FROM', 'TO'), help=text)
-    text = 'emission of the electricity [kg/kWh] (default none, no CO2 is told)'
-    _add_number(parser, '--co2-kg-per-kWh', 'X', text, default=math.nan)
     text = 'let the advice name other speeds, as advice.speed does: the process is free'
     _add_switch(parser, '--speed-advice', text)
     _add_file(parser, '--out', 'DIR', 'directory for health.json and health.png')

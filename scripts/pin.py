@@ -32,7 +32,7 @@ def main() -> int:
             '--ignore-installed',
             '--report',
             '-',
-            f'{TREE}[wheels,plot,bags,report,xlsx,page,areal,dask,docs,netcdf,test]',
+            f'{TREE}[wheels,plot,bags,report,xlsx,page,areal,dask,docs,test]',
         ],
         check=True,
         stdout=subprocess.PIPE,

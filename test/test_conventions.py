@@ -90,10 +90,10 @@ THEMES = {
     'surrogate/ehl/test_mixed.py',
     'surrogate/ehl/test_tables.py',
 }
-# Not asked of rosdep: numba, and the extras bags, report, xlsx, page, areal, dask and netcdf.
+# Not asked of rosdep: numba, and the extras bags, report, xlsx, page, areal and dask.
 OPTIONAL = {
     *'SurfaceTopography contourpy distributed fastexcel h11 lz4 mcap numba polars'.split(),
-    *'prometheus_client starlette uvicorn websockets xarray zstandard'.split(),
+    *'prometheus_client starlette uvicorn websockets zstandard'.split(),
 }
 
 

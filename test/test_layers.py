@@ -17,7 +17,7 @@ MODULES = {
     for package in ('surrogate', 'ballscrew_monitor')
 }
 # What the offline half stands on, and where it is forbidden to be heavy.
-NUMERICAL = set('distributed matplotlib numba numpy scipy SurfaceTopography xarray yaml'.split())
+NUMERICAL = set('distributed matplotlib numba numpy scipy SurfaceTopography yaml'.split())
 PLOTTING = {'surrogate.plotting.style'}  # for the picture of a page alone
 TASKS = {'surrogate.tasks.pool', 'surrogate.tasks.worker', 'surrogate.tasks.workers'}
 LOOKUP = {
@@ -54,7 +54,7 @@ OFFLINE_FLOORS = (
     ('asperities',),
     ('catalogue', 'contact', 'screw'),
     ('builder',),
-    ('surface_tools', 'identify', 'paper', 'on_demand', 'validation'),
+    ('surface_tools', 'identify', 'studies', 'on_demand'),
     ('commands',),
     ('cli',),
 )

@@ -36,7 +36,6 @@ from ballscrew_monitor.messages.doctor import (
 )
 from ballscrew_monitor.settings import axis as axis_settings
 from ballscrew_monitor.settings import parameters, qos
-from ballscrew_monitor.settings.middleware import notice
 from ballscrew_monitor.settings.parameters import absolute
 from rclpy.clock import Clock
 from rclpy.node import Node
@@ -166,7 +165,7 @@ def doctor(params: Path, *, seconds: float, as_json: bool = False) -> int:
         around = surroundings(node)
     if interrupted:
         return SIGNALLED + interrupted[0]
-    wrong = [*filter(None, [notice()]), *examination.refused, *findings(around, facts, seconds)]
+    wrong = [*examination.refused, *findings(around, facts, seconds)]
     print(_record(wrong, facts) if as_json else _page(wrong, facts, around))
     return ILL if wrong else HEALTHY
 

@@ -21,7 +21,6 @@ from ballscrew_monitor.clients.doctor import spun
 from ballscrew_monitor.core.conversions import direction_of, opposing_load
 from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
 from ballscrew_monitor.recordings.words import say
-from ballscrew_monitor.settings.middleware import notice
 from ballscrew_monitor.settings.qos import started_node
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import OperatingPoint, PointResult
@@ -104,7 +103,6 @@ def goal_of(question: Question) -> Any:
 def ask(question: Question, *, wait: float, as_json: bool) -> int:
     """Ask the node, print what comes of it, and return the exit code."""
     with interrupts(threading.Event()) as interrupted:
-        say(*filter(None, [notice()]))
         with started_node('ballscrew_solve') as node:
             code = _Conversation(node, question, interrupted).run(wait, as_json=as_json)
         return SIGNALLED + interrupted[0] if interrupted else code

@@ -26,7 +26,6 @@ CURES = {
     'mcap': BAGS,
     'numba': _pip('numba'),
     'polars': REPORTS,
-    'xarray': _pip('xarray'),
     'zstandard': BAGS,
     **dict.fromkeys(('h11', 'prometheus_client', 'starlette', 'uvicorn', 'websockets'), WEB),
     'matplotlib': f'{ROSDEP}, or without ROS 2 pip install matplotlib',

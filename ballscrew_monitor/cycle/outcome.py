@@ -54,7 +54,7 @@ def plan(bag: Path, params: Path, out: Path, rate: float) -> Plan:
     """
     Return a checked plan for bag time over wall time `rate` [-].
 
-    Of a damaged bag the intact part is played; the notes of the bag say how much that is. Raises
+    A bag that has lost its end is played up to there; its notes say how much that is. Raises
     InputError before anything is started or written.
 
     """

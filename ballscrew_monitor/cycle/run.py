@@ -27,7 +27,7 @@ from typing import Any
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from ballscrew_monitor.cycle import outcome as outcomes
-from ballscrew_monitor.cycle.domain import free_domain, is_free, remove_stale
+from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import confined, NodeProcess, ros_environment
 from ballscrew_monitor.cycle.outcome import LOG, Outcome, Plan, RECORDING, speed_health
 from ballscrew_monitor.cycle.status import progress_bar, state_cells, StatusLine
@@ -231,8 +231,6 @@ def run(plan: Plan) -> int:
 def _supervise(plan: Plan, stop: threading.Event) -> Outcome:
     with free_domain() as domain, contextlib.ExitStack() as stack:
         os.environ |= confined(domain)
-        remove_stale({domain})  # it has just been found free; at the end somebody may be in it
-        stack.callback(lambda: remove_stale({domain} if is_free(domain) else ()))
         node = NodeProcess(plan.params, plan.out / LOG, domain=domain)
         stack.callback(node.stop)
         print(

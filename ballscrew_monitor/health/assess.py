@@ -66,7 +66,7 @@ DRAG = 'drag change'
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class HealthSettings:
     """
-    What health is told: limits of the zone, the user's CO2 factor [kg/kWh], NaN for none.
+    What health is told: limits of the zone, and what the machine allows.
 
     `speed_allowed`: advice may name another speed, which a process may not allow. Where an axis is
     `always_free` of process force, its readings come daily.
@@ -74,7 +74,6 @@ class HealthSettings:
     """
 
     limits: Limits
-    co2_per_kwh: float = math.nan
     speed_allowed: bool = False
     always_free: bool = False
 
@@ -306,7 +305,7 @@ def _others(
         *life_quantities(spectrum, rated, today),
         lubrication_rate(points, surface, rated, today),
         *severity_quantities(spectrum, baseline, today),
-        *energy_quantities(spectrum, baseline, today, co2_per_kwh=settings.co2_per_kwh),
+        *energy_quantities(spectrum, baseline, today),
     ]
 
 

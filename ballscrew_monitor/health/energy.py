@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Energy lost to friction, against the baseline at equal motion, and what it emits.
+Energy lost to friction, against the baseline at equal motion.
 
 The model says what each day would have lost; measured over expected energy is compared before and
 now, so that another programme, load or temperature is no loss. Days are the unit of the scatter.
@@ -15,7 +15,6 @@ import math
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.health.damage import recent
 from ballscrew_monitor.health.records import Baseline, Quantity, SpectrumBin
-from surrogate.files import InputError
 from surrogate.units import KILOWATT_HOUR, MINUTE
 
 NAN = math.nan
@@ -31,7 +30,6 @@ NAMES = {
     'energy lost': 'kWh',
     'energy against the baseline': '-',
     'energy beyond the baseline': 'kWh',
-    'CO2 beyond the baseline': 'kg',
 }
 """Quantities of energy, with their units."""
 
@@ -46,24 +44,18 @@ class Ratio:
 
 
 def energy_quantities(
-    bins: Sequence[SpectrumBin], baseline: Baseline | None, today: int, *, co2_per_kwh: float = NAN
+    bins: Sequence[SpectrumBin], baseline: Baseline | None, today: int
 ) -> list[Quantity]:
     """
     Return what friction cost over the last 28 days, and how much of it the baseline did not.
 
-    `today` counts days since 1970; `co2_per_kwh` [kg/kWh], without which no CO2 is told.
+    `today` counts days since 1970.
 
     """
-    if not (math.isnan(co2_per_kwh) or 0.0 <= co2_per_kwh < math.inf):
-        raise InputError(f'energy: co2_per_kwh is {co2_per_kwh:g} kg/kWh, allowed is at least 0')
     latest = recent(bins, today, RECENT)
     now = ratio_of(latest)
     lost = _lost(latest, now)
-    share, beyond = _against(bins, baseline, now, lost)
-    found = [lost, share, beyond]
-    if not math.isnan(co2_per_kwh):
-        found.append(_scaled(beyond, 'CO2 beyond the baseline', 'kg', co2_per_kwh))
-    return found
+    return [lost, *_against(bins, baseline, now, lost)]
 
 
 def ratio_of(bins: Iterable[SpectrumBin]) -> Ratio:
@@ -173,15 +165,3 @@ def _few_days(ratio: Ratio, when: str) -> str:
             f'needed are {FEWEST_DAYS}'
         )
     return ''
-
-
-def _scaled(one: Quantity, name: str, unit: str, factor: float) -> Quantity:
-    return dataclasses.replace(
-        one,
-        name=name,
-        unit=unit,
-        value=one.value * factor,
-        low=one.low * factor,
-        high=one.high * factor,
-        evidence=f'{factor:g} kg/kWh as stated; {one.evidence}' if one.is_known else '',
-    )

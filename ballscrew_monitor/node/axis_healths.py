@@ -140,7 +140,6 @@ class AxisHealths:
             file=functools.partial(surface_file, name, values),
             settings=HealthSettings(
                 limits=publisher.settings.limits,
-                co2_per_kwh=values[f'{name}.health.co2_per_kwh'] or math.nan,
                 speed_allowed=values[f'{name}.advice.speed'],
                 always_free=values[f'{name}.health.always_free'],
             ),

@@ -38,8 +38,6 @@ def run(args: list[str] | None, stop: Sequence[int]) -> int:
         print(f'{parameters.NODE_NAME}: {parameters.explain(error)}', file=sys.stderr)
         rclpy.try_shutdown()
         return BAD_INPUT
-    if said := middleware.notice():
-        node.get_logger().warning(said)
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     if not stop:

@@ -28,7 +28,6 @@ from ballscrew_monitor.page.what_if import WhatIf
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.words import say, shown_progress
 from ballscrew_monitor.report.parameters import parameters_for
-from ballscrew_monitor.settings.middleware import notice
 from ballscrew_monitor.settings.qos import started_node
 from rclpy.node import Node
 from surrogate.files import InputError
@@ -81,7 +80,6 @@ def _begin_log(args: argparse.Namespace, nominal: Path) -> Begin:
 
 def _begin_node(options: PageOptions, stack: contextlib.ExitStack) -> Begin:
     """Join the ROS graph; return what follows its nodes."""
-    say(*filter(None, [notice()]))
     node = stack.enter_context(started_node('ballscrew_page'))
     return lambda hub: LiveSource(node, hub, options)
 

@@ -56,7 +56,8 @@ class Bag:
         """
         Open the bag at `path`; raises InputError when it is not readable to its end.
 
-        With `salvage` the intact part of damaged files is read; `notes` says how much that is.
+        With `salvage` an MCAP file that has lost its end is read up to there, and of a split bag
+        the files that are whole; `notes` says how much that is.
 
         """
         self.path = Path(path)
@@ -164,7 +165,7 @@ class Bag:
         if kind == 'rosbag1':
             raise InputError(f'bag {file} is of ROS 1, it must be converted to rosbag2')
         if kind == 'sqlite3':
-            return SqliteStorage(file, salvage=self._salvage)
+            return SqliteStorage(file)
         return McapStorage(file, salvage=self._salvage)
 
     def _all_topics(self) -> dict[str, TopicInfo]:

@@ -7,9 +7,7 @@ Nothing is decoded, so the types need not be installed.
 
 """
 
-import bisect
 from collections.abc import Iterator
-import contextlib
 import io
 from pathlib import Path
 import struct
@@ -46,6 +44,18 @@ FOOTER = struct.Struct('<BQQQI')  # code, length, begin of summary and its offse
 KINDS: dict[int, Any] = {3: Schema, 4: Channel, 12: Metadata}
 """Records that are read besides messages and chunks, by their operation codes."""
 MESSAGE, CHUNK, DATA_END = 5, 6, 15
+
+
+class RecordDamage(ValueError):
+    """The first record that is not whole: where it begins, what is lost with it, and why."""
+
+    def __init__(self, place: int, end: int, reason: str) -> None:
+        """Name the record at `place` [bytes] of a file that has `end` bytes."""
+        super().__init__(f'the record at byte {place} is damaged: {reason}')
+        self.place = place
+        self.lost = ''
+        if place < end:
+            self.lost = f'the last {end - place} bytes, from byte {place} on, are left out'
 
 
 def read_summary(stream: BinaryIO) -> Summary:
@@ -137,51 +147,26 @@ def walked(data: bytes, stored: int) -> list[tuple[int, int]]:
     return found
 
 
-def whole_records(file: Path, *, strict: bool = False) -> Iterator[Any]:
+def whole_records(file: Path) -> Iterator[Any]:
     """
-    Yield the records of an MCAP file that are whole, those of a chunk in its place.
+    Yield the records of an MCAP file up to the end of its data, those of a chunk in its place.
 
-    What a summary holds comes first; it tells where chunks begin behind damage, which nothing
-    follows else. A `strict` reader raises one of `DAMAGE` instead.
+    Raises RecordDamage at the first record that is not whole.
 
     """
     with file.open('rb') as stream:
-        summary = None
-        with contextlib.suppress(*DAMAGE, OSError):
-            summary = read_summary(stream)
-            yield from [*summary.schemas.values(), *summary.channels.values()]
-        begins = sorted(one.chunk_start_offset for one in summary.chunk_indexes) if summary else []
-        for code, at, length in _framed(stream, begins, strict=strict):
+        end, at = stream.seek(0, io.SEEK_END), MAGIC_SIZE
+        while at + RECORD.size <= end:
+            stream.seek(at)
+            code, length = RECORD.unpack(stream.read(RECORD.size))
+            if code == DATA_END:
+                return
             try:
-                stream.seek(at + RECORD.size)
-                yield from _read(stream, code, length)
-            except DAMAGE:
-                if strict:
-                    raise
-
-
-def _framed(
-    stream: BinaryIO, begins: list[int], *, strict: bool
-) -> Iterator[tuple[int, int, int]]:
-    """Yield code, begin and length [bytes] of the records before the end of the data."""
-    end, at = stream.seek(0, io.SEEK_END), MAGIC_SIZE
-    while at + RECORD.size <= end:
-        stream.seek(at)
-        code, length = RECORD.unpack(stream.read(RECORD.size))
-        place = bisect.bisect_right(begins, at)
-        behind = begins[place] if place < len(begins) else end  # where a chunk begins for certain
-        following = at + RECORD.size + length
-        if code == DATA_END and behind == end:
-            return
-        if code == DATA_END or following > behind:
-            if strict:
-                raise McapError(f'the record at byte {at} is damaged')
-            at = behind
-            continue
-        yield code, at, length
-        at = following
-    if strict:
-        raise McapError('its last record is cut off')
+                yield from _read(stream, code, min(length, end))
+            except DAMAGE as error:
+                raise RecordDamage(at, end, ' '.join(str(error).split())) from None
+            at += RECORD.size + length
+        raise RecordDamage(min(at, end), end, 'the file ends within it')
 
 
 def _read(stream: BinaryIO, code: int, length: int) -> Iterator[Any]:

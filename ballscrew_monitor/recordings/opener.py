@@ -18,7 +18,7 @@ def opened_log(
     path: Path, *, mapping: Path | None = None, shown: Shown = shown_progress
 ) -> Iterator[Bag]:
     """
-    Yield the log at `path` as a bag; of damaged files their intact part.
+    Yield the log at `path` as a bag; one that has lost its end is read up to there.
 
     A table is read by the map in the file `mapping` into a bag that goes when the block ends; how
     far that is, is shown.

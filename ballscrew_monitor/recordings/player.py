@@ -28,7 +28,6 @@ from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_monitor.recordings.following import DIAGNOSTICS, Following
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.settings import parameters
-from ballscrew_monitor.settings.middleware import notice
 from ballscrew_monitor.settings.parameters import absolute, input_topics
 from ballscrew_monitor.settings.qos import started_node
 from builtin_interfaces.msg import Time
@@ -216,7 +215,7 @@ def playback(path: Path, choice: Choice, *, rate: float, patience: float, loop: 
     """
     Play the bag at `path` to whom listens within `patience` [s]; return the exit code.
 
-    Of a damaged bag it plays the intact part, and says how much that is.
+    A bag that has lost its end is played up to there, and said to be so.
 
     """
     bag = Bag(path, salvage=True)
@@ -225,7 +224,7 @@ def playback(path: Path, choice: Choice, *, rate: float, patience: float, loop: 
     with interrupts(stop) as interrupted:
         with started_node('ballscrew_player', enable_rosout=True) as node:
             told = list(bag.notes)
-            say(*filter(None, (notice(), *told)))
+            say(*told)
             player = Player(node, bag, rate=rate, topics=topics)
             # What a monitor said when the bag was recorded tells nothing of those of now.
             known = _topics_by_input(choice)

@@ -1,9 +1,9 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-A complete bag of the intact part of a damaged MCAP file.
+A complete bag of an MCAP file that has lost its end, as when its writer was killed.
 
-A recording whose writer was killed is so mended; the file itself is left as it is.
+The file itself is left as it is.
 
 """
 
@@ -13,7 +13,7 @@ from typing import Any
 
 from ballscrew_monitor.recordings.bag_files import kind_of
 from ballscrew_monitor.recordings.bag_writer import ACTIVE, BagWriter, whole_bag
-from ballscrew_monitor.recordings.mcap_records import whole_records
+from ballscrew_monitor.recordings.mcap_records import RecordDamage, whole_records
 from mcap.records import Channel, Metadata, Schema
 from mcap.records import Message as McapMessage
 from surrogate.files import InputError
@@ -21,14 +21,16 @@ from surrogate.plain_yaml import plain_values
 
 SUFFIX = '.mcap'
 SQLITE = (
-    '{file} is a sqlite3 file of a bag, only MCAP files are recovered: ballscrew replay reads it '
-    'as it is, and of a damaged one the intact part'
+    '{file} is a sqlite3 file of a bag, only MCAP files are recovered: ballscrew replay reads '
+    'that of a recorder that was killed as it is, sqlite3 {file} .recover mends a damaged one'
 )
 
 
-def recover(path: Path) -> tuple[Path, int, float]:
+def recover(path: Path) -> tuple[Path, int, float, str]:
     """
-    Write the intact part of a recording; return the new file, its messages and its seconds.
+    Write what a recording holds before its first damage.
+
+    Returns the new file, its messages, its seconds, and a sentence of what is left out, if any.
 
     `path` is an MCAP file, unfinished or damaged, or the folder of an unfinished one. A finished
     name is taken away from an unfinished file, any other gets `_recovered` behind its name. Raises
@@ -43,12 +45,12 @@ def recover(path: Path) -> tuple[Path, int, float]:
     target = _target(file)
     if target.exists():
         raise InputError(f'{target} is there already, it would be written over: move it away')
-    topics = _topics(file)
+    topics, lost = _topics(file)
     if not topics:
         raise InputError(f'{file} holds no message that is whole, nothing can be recovered')
     with whole_bag(target.parent, target.name.removesuffix(SUFFIX)) as writer:
         _copy(file, topics, writer)
-    return target, writer.total, (writer.last - writer.first) * 1e-9
+    return target, writer.total, (writer.last - writer.first) * 1e-9, lost
 
 
 def _unfinished(folder: Path) -> Path:
@@ -67,23 +69,28 @@ def _target(file: Path) -> Path:
     return file.with_name(name) / f'{name}{SUFFIX}'
 
 
-def _topics(file: Path) -> dict[int, tuple[Channel, Schema]]:
-    """Return the channels that hold a message, by their numbers, each with its schema."""
+def _topics(file: Path) -> tuple[dict[int, tuple[Channel, Schema]], str]:
+    """Return the channels that hold a message, each with its schema, by number; what is lost."""
     schemas: dict[int, Schema] = {}
     channels: dict[int, Channel] = {}
     used: set[int] = set()
-    for record in whole_records(file):
-        if isinstance(record, Schema):
-            schemas[record.id] = record
-        elif isinstance(record, Channel):
-            channels[record.id] = record
-        elif isinstance(record, McapMessage):
-            used.add(record.channel_id)
-    return {
+    lost = ''
+    try:
+        for record in whole_records(file):
+            if isinstance(record, Schema):
+                schemas[record.id] = record
+            elif isinstance(record, Channel):
+                channels[record.id] = record
+            elif isinstance(record, McapMessage):
+                used.add(record.channel_id)
+    except RecordDamage as damage:
+        lost = damage.lost
+    topics = {
         number: (channels[number], schemas[channels[number].schema_id])
         for number in sorted(used & channels.keys())
         if channels[number].schema_id in schemas
     }
+    return topics, lost
 
 
 def _copy(file: Path, topics: dict[int, tuple[Channel, Schema]], writer: BagWriter) -> None:
@@ -94,18 +101,19 @@ def _copy(file: Path, topics: dict[int, tuple[Channel, Schema]], writer: BagWrit
         kind = said.get('topic_type_hash', '')
         names = channel.topic, schema.name
         writer.announce(*names, schema.data, type_hash=kind, profiles=profiles)
-    for message in whole_records(file):
-        if isinstance(message, Metadata):
-            writer.add_metadata(message.metadata, name=message.name)
-        if not isinstance(message, McapMessage) or message.channel_id not in topics:
-            continue
-        writer.write(
-            topics[message.channel_id][0].topic,
-            message.data,
-            log_time=message.log_time,
-            publish_time=message.publish_time,
-            sequence=message.sequence,
-        )
+    with contextlib.suppress(RecordDamage):
+        for message in whole_records(file):
+            if isinstance(message, Metadata):
+                writer.add_metadata(message.metadata, name=message.name)
+            if not isinstance(message, McapMessage) or message.channel_id not in topics:
+                continue
+            writer.write(
+                topics[message.channel_id][0].topic,
+                message.data,
+                log_time=message.log_time,
+                publish_time=message.publish_time,
+                sequence=message.sequence,
+            )
 
 
 def _profiles(text: str) -> list[dict[str, Any]]:

@@ -36,8 +36,8 @@ def speed_messages(bag: Bag, axes: Sequence[Axis]) -> dict[str, int]:
     """
     Return for each axis how many messages of `bag` speak of its speed.
 
-    Reads and so verifies the whole bag; raises InputError when it is damaged and was not opened
-    to be salvaged, or when it says nothing of an axis.
+    Reads and so verifies the whole bag; raises InputError if it is damaged, or says nothing of an
+    axis.
 
     """
     speed = {axis.name: axis.inputs[-1] for axis in axes}
@@ -80,7 +80,7 @@ def replay_parts(
     The rows come in blocks, those of one axis in order; then one outcome for each axis. States
     that the node would publish come between the blocks if they are wanted. `on_done` is told which
     share of the bag is done [-]. Raises InputError for bad parameters, for a bag without the
-    topics that they name and, unless its intact part is to be salvaged, for a damaged one.
+    topics that they name and for a damaged one.
 
     """
     notes = Notes()

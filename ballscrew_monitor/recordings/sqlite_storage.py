@@ -1,12 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-The sqlite3 files that a bag is made of, and the messages in the pages of one that is not whole.
-
-The tree over the pages is of no use there: its upper pages may be those that are lost. So each
-page is looked at by itself; one that is a leaf of the table `messages` holds rows of id, topic,
-time and data, and data that are long go on in further pages. The format of pages and rows is that
-of https://www.sqlite.org/fileformat.html, sections 1.6 and 2.1.
+The sqlite3 files that a bag is made of; a damaged one is refused.
 
 A recorder that was killed, or one that still runs, leaves a journal beside its file. SQLite works
 it into a copy of both: nothing is written beside a bag.
@@ -18,22 +13,15 @@ import contextlib
 from pathlib import Path
 import shutil
 import sqlite3
-import struct
-from typing import BinaryIO
 
 from ballscrew_monitor.core.sqlite_file import size_of
 from ballscrew_monitor.recordings import storages
 from ballscrew_monitor.recordings.storages import Message, Storage, TopicInfo
 from ballscrew_monitor.recordings.unpacking import scratch_folder
-import numpy as np
-from numpy.typing import NDArray
 from surrogate import limits
 from surrogate.files import InputError
 
-HEADER = 100  # [bytes] of a file
-LEAF = 0x0D  # a page of rows begins so
-CELLS = 8  # [bytes] before the places of the rows of a page
-INTEGERS = {1: 1, 2: 2, 3: 3, 4: 4, 5: 6, 6: 8, 8: 0, 9: 0}  # [bytes] by the type of a value
+HEADER = 100  # [bytes] of a file, with the size of its pages
 MESSAGES = f"""
 SELECT topic_id, timestamp, data FROM messages
     WHERE typeof(topic_id) = 'integer' AND typeof(timestamp) = 'integer'
@@ -53,7 +41,6 @@ SELECT id, name, type, serialization_format FROM topics
 TABLES = (
     "SELECT name, sql FROM sqlite_master WHERE type = 'table' AND name IN ('topics', 'messages')"
 )
-NO_ROW = (IndexError, ValueError, struct.error, EOFError)
 DAMAGE = (sqlite3.Error, OSError, UnicodeDecodeError, MemoryError)
 LOG, ROLLBACK = '-wal', '-journal'  # endings of the journals of SQLite
 LOG_HEADER, FRAME_HEADER = 32, 24  # [bytes] of a write-ahead log, and before each page in it
@@ -63,34 +50,32 @@ ROLLBACK_MAGIC = bytes.fromhex('d9d505f920a163d7')
 class SqliteStorage(Storage):
     """One sqlite3 file of rosbag2."""
 
-    _strays: frozenset[int] = frozenset()  # places of rows with a garbled time
-
-    def __init__(self, file: Path, *, salvage: bool = False) -> None:
-        """Read the topics; raises InputError when nothing can be had of the file."""
+    def __init__(self, file: Path) -> None:
+        """Read the topics; raises InputError if the file is damaged."""
         self._source, remarks = file, list[str]()
         if journals := _journals(file):
-            try:
-                self._source, remarks = _merged(file, journals, scratch_folder(self))
-            except InputError as error:
-                if not salvage:
-                    raise
-                names = ' and '.join(path.name for path in journals)
-                remarks = [f'{error}; {names} is left out']
-        super().__init__(file, salvage=salvage)
+            self._source, remarks = _merged(file, journals, scratch_folder(self))
+        super().__init__(file)
         for remark in remarks:
             self._remark(remark)
 
     def messages(self, wanted: Collection[str], *, as_written: bool = False) -> storages.Stream:
         """Yield the messages, see `Storage`; they were written by log time, too."""
-        found = self._indexed(wanted) if self.is_indexed else storages.by_log_time(self._whole())
-        yield from (one for one in found if one.topic in wanted)
+        topics = {
+            number: name for number, (name, *_) in self._topic_rows().items() if name in wanted
+        }
+        marks = ', '.join('?' for _ in topics)
+        with self._opened() as database:
+            rows = database.execute(f'{MESSAGES} AND topic_id IN ({marks}) {ORDER}', [*topics])
+            for number, time, data in rows:
+                yield Message(topic=topics[number], data=data, log_time=time, publish_time=time)
 
     def _read_topics(self) -> None:
         with self._opened() as database:
-            if self.salvage:  # rows and index must agree: damage may look like a message
-                ((fault,),) = database.execute('PRAGMA integrity_check(1)')
-                if fault != 'ok':
-                    raise sqlite3.DatabaseError(fault)
+            # Rows and index must agree: damage may look like a message.
+            ((fault,),) = database.execute('PRAGMA integrity_check(1)')
+            if fault != 'ok':
+                raise sqlite3.DatabaseError(fault)
             names = dict.fromkeys(('topics', 'messages'), 0)
             for name, text in database.execute(TABLES):
                 names[name] += text.upper().startswith('CREATE TABLE')
@@ -118,51 +103,10 @@ class SqliteStorage(Storage):
                 'message: they are left out'
             )
 
-    def _indexed(self, wanted: Collection[str]) -> Iterator[Message]:
-        topics = {
-            number: name for number, (name, *_) in self._topic_rows().items() if name in wanted
-        }
-        marks = ', '.join('?' for _ in topics)
-        with self._opened() as database:
-            rows = database.execute(f'{MESSAGES} AND topic_id IN ({marks}) {ORDER}', [*topics])
-            for number, time, data in rows:
-                yield Message(topic=topics[number], data=data, log_time=time, publish_time=time)
-
-    def _read_whole(self) -> None:
-        rows = [row[:2] for row in whole_messages(self._source)]
-        self._strays = strays(np.array(rows, dtype=np.float64).reshape(-1, 2))
-        counts = self._counted(self._whole())
-        self.topics = {
-            name: TopicInfo(type_name=type_name, encoding=encoding, count=counts[name])
-            for name, type_name, encoding in self._topic_rows().values()
-            if counts[name]
-        }
-
-    def _whole(self) -> Iterator[Message]:
-        """Yield the messages that are whole, as written."""
-        topics = self._topic_rows()
-        for place, (number, time, data) in enumerate(
-            whole_messages(self._source) if topics else ()
-        ):
-            if number in topics and place not in self._strays:
-                yield Message(topic=topics[number][0], data=data, log_time=time, publish_time=time)
-
     def _topic_rows(self) -> dict[int, tuple[str, str, str]]:
-        """Return name, type and encoding of the topics by number, none of a file without."""
-        try:
-            with self._database() as database:
-                # Or a file that is shorter than it says is not opened at all.
-                database.execute('PRAGMA writable_schema=ON')
-                return {
-                    number: (name, kind, form)
-                    for number, name, kind, form in database.execute(TOPICS)
-                }
-        except DAMAGE:
-            return {}
-
-    def _database(self) -> contextlib.closing[sqlite3.Connection]:
-        name = f'{self._source.resolve().as_uri()}?mode=ro&immutable=1'
-        return contextlib.closing(sqlite3.connect(name, uri=True, check_same_thread=False))
+        """Return name, type and encoding of the topics by number."""
+        with self._opened() as database:
+            return {number: tuple(rest) for number, *rest in database.execute(TOPICS)}
 
     @contextlib.contextmanager
     def _opened(self) -> Iterator[sqlite3.Connection]:
@@ -170,7 +114,9 @@ class SqliteStorage(Storage):
             # A page that the file ends in would be read as zeros.
             if not ends_with_a_page(self._source):
                 raise sqlite3.DatabaseError('it ends within a page')
-            with self._database() as database:
+            name = f'{self._source.resolve().as_uri()}?mode=ro&immutable=1'
+            connection = sqlite3.connect(name, uri=True, check_same_thread=False)
+            with contextlib.closing(connection) as database:
                 yield database
         except DAMAGE as error:
             raise _damaged(self.file, error) from None
@@ -180,7 +126,7 @@ def _damaged(file: Path, error: BaseException) -> InputError:
     reason = ' '.join(str(error).split()) or type(error).__name__
     return InputError(
         f'bag {file} is truncated or damaged, it must be a complete sqlite3 file of rosbag2 '
-        f'({reason})'
+        f'({reason}), sqlite3 {file} .recover prints what is whole as SQL for a new file'
     )
 
 
@@ -270,137 +216,9 @@ def _rolled_back(file: Path, rollback: Path) -> list[str]:
     ]
 
 
-def strays(rows: NDArray[np.float64]) -> frozenset[int]:
-    """
-    Return the places of rows, of topic number and time [ns], whose time is out of place.
-
-    A clock may be set, so that a time is believed if it lies between those before and after, by
-    `REORDER` at most. Those are times of the same topic, at its ends of any.
-
-    """
-    found = _outside(rows[:, 1])
-    for number in np.unique(rows[:, 0]):
-        places = np.flatnonzero(rows[:, 0] == number)
-        found[places[1:-1]] = _outside(rows[places, 1])[1:-1]
-    return frozenset(np.flatnonzero(found).tolist())
-
-
-def _outside(times: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Tell which times are outside of their neighbours; the first and the last count as inside."""
-    found = np.zeros(len(times), dtype=np.bool_)
-    low, high = np.minimum(times[:-2], times[2:]), np.maximum(times[:-2], times[2:])
-    found[1:-1] = (times[1:-1] < low - storages.REORDER) | (times[1:-1] > high + storages.REORDER)
-    return found
-
-
-def whole_messages(file: Path) -> Iterator[tuple[int, int, bytes]]:
-    """Yield topic number, time [ns] and data of each message that is whole, as written."""
-    with file.open('rb') as stream:
-        pages = _Pages(stream)
-        for number in range(2, pages.count + 1):  # the first one is that of the schema
-            page = pages.read(number)
-            if page[0] == LEAF:
-                yield from _rows(pages, page)
-
-
 def ends_with_a_page(file: Path) -> bool:
-    """Tell whether a file is made of whole pages."""
+    """Return True if a file is made of whole pages."""
     with file.open('rb') as stream:
-        return not _Pages(stream).surplus
-
-
-class _Pages:
-    """The whole pages of a file, counted from 1; `surplus` bytes come after them."""
-
-    def __init__(self, stream: BinaryIO) -> None:
         header = stream.read(HEADER)
         size = int.from_bytes(header[16:18], 'big')
-        self.size = 65536 if size == 1 else max(size, 512)
-        self.usable = self.size - (header[20] if len(header) == HEADER else 0)
-        self.count, self.surplus = divmod(stream.seek(0, 2), self.size)
-        self._stream = stream
-
-    def read(self, number: int) -> bytes:
-        """Return a page; raises EOFError where there is none."""
-        if not 1 <= number <= self.count:
-            raise EOFError
-        self._stream.seek((number - 1) * self.size)
-        return self._stream.read(self.size)
-
-
-def _rows(pages: _Pages, page: bytes) -> Iterator[tuple[int, int, bytes]]:
-    """Yield the messages of a page; what is no whole one is passed over."""
-    (count,) = struct.unpack_from('>H', page, 3)
-    for number in range(min(count, (pages.usable - CELLS) // 2)):
-        try:
-            (place,) = struct.unpack_from('>H', page, CELLS + 2 * number)
-            yield _message(_payload(pages, page, place))
-        except NO_ROW:
-            continue
-
-
-def _payload(pages: _Pages, page: bytes, place: int) -> bytes:
-    """Return the bytes of the row at a place of a page, those of further pages included."""
-    length, place = _varint(page, place)
-    _, place = _varint(page, place)  # the number of the row
-    # Damaged: pages might lead in a circle.
-    if length > min(pages.count * pages.size, limits.MESSAGE):
-        raise EOFError
-    local = _local(length, pages.usable)
-    end = place + local
-    found = bytearray(page[place:end])
-    if local < length:
-        (following,) = struct.unpack_from('>I', page, end)
-        while len(found) < length:
-            page = pages.read(following)
-            (following,) = struct.unpack_from('>I', page)
-            end = min(pages.usable, 4 + length - len(found))
-            found += page[4:end]
-    if len(found) != length:
-        raise EOFError
-    return bytes(found)
-
-
-def _local(length: int, usable: int) -> int:
-    """Return how many bytes of a row are in its page itself."""
-    most = usable - 35
-    if length <= most:
-        return length
-    least = (usable - 12) * 32 // 255 - 23
-    local = least + (length - least) % (usable - 4)
-    return local if local <= most else least
-
-
-def _message(row: bytes) -> tuple[int, int, bytes]:
-    """Return topic, time and data of a row; raises ValueError when it is of another table."""
-    end, place = _varint(row, 0)
-    kinds = []
-    while place < end:
-        kind, place = _varint(row, place)
-        kinds.append(kind)
-    if len(kinds) != 4 or kinds[0] or kinds[3] < 12 or kinds[3] % 2:
-        raise ValueError
-    topic, place = _integer(row, end, kinds[1])
-    time, place = _integer(row, place, kinds[2])
-    if len(row) - place != (kinds[3] - 12) // 2:
-        raise ValueError
-    return topic, time, row[place:]
-
-
-def _integer(row: bytes, place: int, kind: int) -> tuple[int, int]:
-    """Return an integer of a row, and where the next value begins."""
-    if kind not in INTEGERS:
-        raise ValueError
-    end = place + INTEGERS[kind]
-    return (1 if kind == 9 else int.from_bytes(row[place:end], 'big', signed=True)), end
-
-
-def _varint(data: bytes, place: int) -> tuple[int, int]:
-    """Return an integer of one to nine bytes, and where the next one begins."""
-    value = 0
-    for number in range(8):
-        byte = data[place + number]
-        value = value << 7 | byte & 0x7F
-        if byte < 0x80:
-            return value, place + number + 1
-    return value << 8 | data[place + 8], place + 9
+        return stream.seek(0, 2) % (65536 if size == 1 else max(size, 512)) == 0

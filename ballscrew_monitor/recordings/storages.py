@@ -3,8 +3,8 @@
 """
 The files that a bag is made of, above all those of MCAP: topics, time span and messages of each.
 
-A damaged file is refused, or salvaged when that is asked for: its intact part is read, and `note`
-says how much it was.
+A damaged file is refused. An MCAP file that has lost its end is read up to there if that is asked
+for, and `note` says how much it was.
 
 """
 
@@ -19,8 +19,18 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.bag_files import MAGIC
-from ballscrew_monitor.recordings.bulk.chunks import chunk_indexes, ChunkDamage, read_chunk
-from ballscrew_monitor.recordings.mcap_records import DAMAGE, read_summary, whole_records
+from ballscrew_monitor.recordings.bulk.chunks import (
+    chunk_indexes,
+    ChunkDamage,
+    Messages,
+    read_chunk,
+)
+from ballscrew_monitor.recordings.mcap_records import (
+    DAMAGE,
+    read_summary,
+    RecordDamage,
+    whole_records,
+)
 from mcap.records import Channel, ChunkIndex, Schema
 from mcap.records import Message as McapMessage
 from surrogate import limits
@@ -55,25 +65,15 @@ Stream = Generator[Message, None, None]
 
 
 class Storage:
-    """One file of a bag; `salvage` takes the intact part of a damaged one."""
+    """One file of a bag."""
 
-    def __init__(self, file: Path, *, salvage: bool = False) -> None:
-        """Read the topics; raises InputError when nothing can be had of the file."""
-        self.file, self.salvage = file, salvage
+    def __init__(self, file: Path) -> None:
+        """Read the topics; raises InputError if the file is damaged."""
+        self.file = file
         self.topics: dict[str, TopicInfo] = {}
         self.span = (0, 0)
         self.note = ''
-        self.is_indexed = True
-        self._missed: dict[int, str] = {}  # what is said of damaged chunks, by where they begin
-        try:
-            self._read_topics()
-        except InputError:
-            if not salvage or not file.is_file():
-                raise
-            self.is_indexed = False
-            self._read_whole()
-            if not self.topics:
-                raise
+        self._read_topics()
 
     def messages(self, wanted: Collection[str], *, as_written: bool = False) -> Stream:
         """
@@ -88,56 +88,36 @@ class Storage:
         """Read what the file says of its topics; raises InputError on damage."""
         raise NotImplementedError
 
-    def _read_whole(self) -> None:
-        """Read all that is whole once, for topics, span and the note."""
-        raise NotImplementedError
-
-    def compare(self, wanted: Collection[str], counts: Mapping[str, int]) -> None:
-        """Note of which topics another number of messages was read than the file counts."""
-        for topic in sorted(self.topics.keys() & set(wanted)):
-            count, stated = counts.get(topic, 0), self.topics[topic].count
-            if count != stated and self.is_indexed and not self._missed:
-                self._remark(
-                    f'bag {self.file}: it counts {stated} messages of {topic}, {count} were read'
-                )
-
     def _remark(self, text: str) -> None:
         if text not in self.note:  # whoever reads the file again finds the same
             self.note = f'{self.note}; {text}' if self.note else text
 
-    def _counted(self, messages: Iterable[Message]) -> Counter[str]:
-        """Count the messages that are whole by topic, and take down their span in the note."""
-        counts: Counter[str] = Counter()
-        begin = end = 0
-        for message in messages:
-            begin = min(begin, message.log_time) if counts else message.log_time
-            end = max(end, message.log_time)
-            counts[message.topic] += 1
-        if counts:
-            self.span = (begin, end)
-            self.note = (
-                f'bag {self.file} is truncated or damaged: used are the {counts.total()} messages '
-                f'of {(end - begin) * 1e-9:.1f} s that are whole'
-            )
-        return counts
-
 
 class McapStorage(Storage):
-    """One MCAP file."""
+    """One MCAP file; with `salvage` one whose end is lost is read as far as it is whole."""
 
     def __init__(self, file: Path, *, salvage: bool = False) -> None:
-        """Read the topics; raises InputError when nothing can be had of the file."""
+        """Read the topics; raises InputError if nothing can be had of the file."""
         self._schemas: dict[int, Schema] = {}
-        self._channels: dict[int, Channel] = {}  # a damaged chunk may have named them
+        self._channels: dict[int, Channel] = {}
+        self.is_indexed = True
         with damage_is_input(file), file.open('rb') as stream:
             if not MCAP.startswith(stream.read(len(MCAP))):  # an empty file is cut short
                 raise InputError(
                     f'bag {file} is neither an MCAP nor a sqlite3 file by its first bytes'
                 )
-        super().__init__(file, salvage=salvage)
+        try:
+            super().__init__(file)
+        except InputError:
+            if not salvage:
+                raise
+            self.is_indexed = False
+            self._read_whole()
+            if not self.topics:
+                raise
 
     def messages(self, wanted: Collection[str], *, as_written: bool = False) -> Stream:
-        """Yield the messages, see `Storage`; what has been salvaged meanwhile is noted."""
+        """Yield the messages, see `Storage`; what the file counts otherwise is noted."""
         read = self._indexed if self.is_indexed else self._whole
         counts: Counter[str] = Counter()
         for message in read(wanted, reorder=not as_written):
@@ -145,27 +125,35 @@ class McapStorage(Storage):
             yield message
         self.compare(wanted, counts)
 
-    def miss(self, place: ChunkIndex, damage: ChunkDamage) -> None:
-        """Note a damaged chunk; raise InputError unless the rest is to be salvaged."""
-        span = (place.message_end_time - place.message_start_time) * 1e-9
-        text = (
-            f'bag {self.file} is truncated or damaged: {span:.3g} s of data in the chunk at byte '
-            f'{place.chunk_start_offset} cannot be read ({damage})'
+    def compare(self, wanted: Collection[str], counts: Mapping[str, int]) -> None:
+        """Note of which topics another number of messages was read than the file counts."""
+        for topic in sorted(self.topics.keys() & set(wanted)):
+            count, stated = counts.get(topic, 0), self.topics[topic].count
+            if count != stated and self.is_indexed:
+                self._remark(
+                    f'bag {self.file}: it counts {stated} messages of {topic}, {count} were read'
+                )
+
+    def chunk(self, stream: BinaryIO, place: ChunkIndex) -> Messages:
+        """Return the messages of a chunk; raises InputError if it is damaged."""
+        try:
+            return read_chunk(stream, place)
+        except ChunkDamage as damage:
+            span = (place.message_end_time - place.message_start_time) * 1e-9
+            where = f'{span:.3g} s of data in the chunk at byte {place.chunk_start_offset}'
+            raise InputError(self._damaged(f'{where} cannot be read ({damage})')) from None
+
+    def _damaged(self, what: str) -> str:
+        return (
+            f'bag {self.file} is truncated or damaged: {what}, '
+            f'mcap recover {self.file} -o NEW.mcap copies what is whole'
         )
-        if not self.salvage:
-            raise InputError(text)
-        self._missed.setdefault(place.chunk_start_offset, text)
-        more = len(self._missed) - 1
-        self.note = next(iter(self._missed.values())) + (f'; so are {more} more' if more else '')
 
     def _indexed(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
         with damage_is_input(self.file), self.file.open('rb') as stream:
             places, channels = chunk_indexes(stream, wanted)
             if not places:
-                found = (
-                    one for one in self._written(strict=not self.salvage) if one.topic in wanted
-                )
-                yield from by_log_time(found) if reorder else found
+                yield from self._whole(wanted, reorder=reorder)
                 return
             if not reorder:
                 places.sort(key=operator.attrgetter('chunk_start_offset'))
@@ -183,11 +171,7 @@ class McapStorage(Storage):
         self, stream: BinaryIO, place: ChunkIndex, channels: Mapping[int, str]
     ) -> Iterator[tuple[int, Message]]:
         """Yield the messages of a chunk that are of some channels, each with its place there."""
-        try:
-            found = read_chunk(stream, place)
-        except ChunkDamage as damage:
-            self.miss(place, damage)
-            return
+        found = self.chunk(stream, place)
         for at in range(len(found)):
             topic = channels.get(int(found.channel[at]))
             if topic is not None:
@@ -215,7 +199,23 @@ class McapStorage(Storage):
         self.span = (statistics.message_start_time, statistics.message_end_time)
 
     def _read_whole(self) -> None:
-        self._take_topics(self._counted(self._written()))
+        """Read all up to the first damage once, for topics, span and the note."""
+        counts: Counter[str] = Counter()
+        begin = end = 0
+        lost = ''
+        try:
+            for message in self._written():
+                begin = min(begin, message.log_time) if counts else message.log_time
+                end = max(end, message.log_time)
+                counts[message.topic] += 1
+        except RecordDamage as damage:
+            lost = damage.lost and f', {damage.lost}'
+        self._take_topics(counts)
+        self.span = (begin, end)
+        self.note = (
+            f'bag {self.file} is truncated or damaged: used are the {counts.total()} messages '
+            f'of {(end - begin) * 1e-9:.1f} s that are whole{lost}'
+        )
 
     def _take_topics(self, counts: Counter[str]) -> None:
         """Take the topics of all channels, with the number of the messages of each."""
@@ -228,13 +228,20 @@ class McapStorage(Storage):
             )
 
     def _whole(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
-        """Yield the messages of whole chunks by log time, as far as chunks do not overlap more."""
-        found = (one for one in self._written() if one.topic in wanted)
-        return by_log_time(found) if reorder else found
+        """Yield the messages of a file that is read from its begin, by log time if wanted so."""
+        messages = (one for one in self._up_to_damage() if one.topic in wanted)
+        return by_log_time(messages) if reorder else messages
 
-    def _written(self, *, strict: bool = False) -> Iterator[Message]:
-        """Yield all messages of whole chunks in the order of the file."""
-        for record in whole_records(self.file, strict=strict):
+    def _up_to_damage(self) -> Iterator[Message]:
+        try:
+            yield from self._written()
+        except RecordDamage as damage:
+            if self.is_indexed:
+                raise InputError(self._damaged(str(damage))) from None
+
+    def _written(self) -> Iterator[Message]:
+        """Yield all messages in the order of the file; raises RecordDamage."""
+        for record in whole_records(self.file):
             if isinstance(record, Schema):
                 self._schemas[record.id] = record
             elif isinstance(record, Channel):

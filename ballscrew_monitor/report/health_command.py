@@ -147,7 +147,6 @@ def _options(args: argparse.Namespace) -> dict[str, Any]:
     return {
         'over': args.baseline_hours * HOUR,
         'days': None if args.baseline is None else days_of(*args.baseline),
-        'co2_per_kwh': args.co2_kg_per_kWh,
         'speed_allowed': args.speed_advice,
     }
 

@@ -122,7 +122,6 @@ def healths(
     *,
     over: float = LEAST_MOTION,
     days: tuple[int, int] | None = None,
-    co2_per_kwh: float = NAN,
     speed_allowed: bool = False,
     title: str = '',
 ) -> Iterator[Health]:
@@ -141,7 +140,6 @@ def healths(
     companions = companions_beside(file, surface)
     settings = HealthSettings(
         limits=ordered[-1].limits,
-        co2_per_kwh=co2_per_kwh,
         speed_allowed=speed_allowed or ordered[-1].speed_allowed,
         always_free=ordered[-1].always_free,
     )

@@ -64,7 +64,6 @@ def _course(
     *,
     over: float,
     days: tuple[int, int] | None,
-    co2_per_kwh: float,
     speed_allowed: bool,
 ) -> Iterator[Health]:
     """Yield the health of an axis after each four weeks, the last one with what cannot be read."""
@@ -78,7 +77,6 @@ def _course(
     judged = settings_of(axis, values, surface)
     settings = HealthSettings(
         limits=judged.limits,
-        co2_per_kwh=co2_per_kwh,
         speed_allowed=speed_allowed or judged.speed_allowed,
         always_free=values[f'{axis}.health.always_free'],
     )

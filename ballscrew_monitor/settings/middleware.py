@@ -4,7 +4,7 @@
 Settings of the middleware in the environment, made before any of it is loaded.
 
 A middleware that is not there ends the process in C, without a word that helps; a discovery
-server that cannot be found leaves it alone in the graph. So both are looked at first.
+server without an address leaves it alone in the graph. So both are looked at first.
 
 """
 
@@ -12,9 +12,7 @@ from collections.abc import Mapping, MutableMapping
 import os
 from pathlib import Path
 import re
-import socket
 import sys
-import threading
 
 from surrogate.files import InputError
 
@@ -28,12 +26,9 @@ PROFILE = Path(__file__).with_name('loopback.xml')
 PROFILE_VARIABLES = ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
 # Would take the discovery out of the hands of the profile.
 UNSET = ('ROS_LOCALHOST_ONLY', 'ROS_STATIC_PEERS', 'ROS_SUPER_CLIENT', SERVERS)
-RESOLVE = 1.0  # [s] longest wait for the address of a name
-ANSWER = 0.1  # [s] for this machine, or one nearby, to say that nobody listens
 SERVER_PORT = 11811
 _SERVER = re.compile(
-    r'(?:(?P<kind>UDPv4|UDPv6|TCPv4|TCPv6):)?'
-    r'(?:\[(?P<bracketed>[^\]\s]+)\]|(?P<host>[^\[\]:\s]+))(?::(?P<port>\d{1,5}))?'
+    r'(?:(?:UDPv4|UDPv6|TCPv4|TCPv6):)?(?:\[[^\]\s]+\]|[^\[\]:\s]+)(?::(?P<port>\d{1,5}))?'
 )
 
 
@@ -41,7 +36,7 @@ def check_middleware(
     environment: Mapping[str, str] = os.environ, *, discovers: bool = True
 ) -> None:
     """
-    Raise InputError for a middleware or a discovery server with which nothing can work.
+    Raise InputError for a middleware that is not there or a discovery server without an address.
 
     `discovers`: whether anything is to be found in the graph of the environment.
 
@@ -53,17 +48,7 @@ def check_middleware(
             ': unset it, or install the package of that name'
         )
     for server in _servers(environment) if discovers else ():
-        address = _address(server)
-        if address is None:
-            raise InputError(
-                f'{SERVERS} names {server!r}, a server must be HOST:PORT such as '
-                f'127.0.0.1:{SERVER_PORT}, several with a semicolon between them'
-            )
-        if _resolves(address[0]) is False:
-            raise InputError(
-                f'{SERVERS} names {server!r}, whose host has no address: mend the name, '
-                'or unset it'
-            )
+        _check_server(server)
 
 
 def installed(environment: Mapping[str, str]) -> set[str]:
@@ -86,58 +71,13 @@ def _servers(environment: Mapping[str, str]) -> list[str]:
     return [server for server in environment.get(SERVERS, '').split(';') if server]
 
 
-def _address(server: str) -> tuple[str, int] | None:
-    """Return host and port of a server, None if it has not the form of one."""
+def _check_server(server: str) -> None:
     parts = _SERVER.fullmatch(server)
     if parts is None or not 0 < int(parts['port'] or SERVER_PORT) <= 0xFFFF:
-        return None
-    return parts['bracketed'] or parts['host'], int(parts['port'] or SERVER_PORT)
-
-
-def _resolves(host: str) -> bool | None:
-    """Return True if a host has an address; None when that takes too long to know."""
-    answers: list[bool] = []
-
-    def ask() -> None:
-        try:
-            socket.getaddrinfo(host, None)
-            answers.append(True)
-        except OSError:
-            answers.append(False)
-
-    asking = threading.Thread(target=ask, daemon=True)
-    asking.start()
-    asking.join(RESOLVE)
-    return answers[0] if answers else None
-
-
-def _is_silent(server: str) -> bool:
-    address = _address(server)
-    if address is None or 'TCP' in server or not _resolves(address[0]):
-        return False
-    try:
-        family = socket.AF_INET6 if ':' in address[0] else socket.AF_INET
-        with socket.socket(family, socket.SOCK_DGRAM) as probe:
-            probe.settimeout(ANSWER)
-            probe.connect(address)
-            probe.send(b'\0')  # no message of DDS: who listens ignores it
-            probe.recv(1)
-    except ConnectionRefusedError:
-        return True
-    except OSError:  # no answer is the good one
-        pass
-    return False
-
-
-def notice(environment: Mapping[str, str] = os.environ) -> str:
-    """Return what is to be said of discovery servers at which certainly nobody listens now."""
-    silent = [server for server in _servers(environment) if _is_silent(server)]
-    if not silent:
-        return ''
-    return (
-        f'nobody answers at {", ".join(silent)} of {SERVERS}, through it nothing is discovered: '
-        f'start the discovery server, or unset {SERVERS}'
-    )
+        raise InputError(
+            f'{SERVERS} names {server!r}, a server must be HOST:PORT such as '
+            f'127.0.0.1:{SERVER_PORT}, several with a semicolon between them'
+        )
 
 
 def loopback(environment: Mapping[str, str] = os.environ) -> dict[str, str]:

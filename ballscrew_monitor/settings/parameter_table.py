@@ -255,9 +255,6 @@ AXIS_ROWS = (
     ParameterRow('health.baseline_hours', 8.0, 'h', 0.1, 1e4, LIVE).says(
         'Motion over which a baseline is learned, on complete days.'
     ),
-    ParameterRow('health.co2_per_kwh', 0.0, 'kg/kWh', 0.0, 100.0, LIVE).says(
-        'Emission of the electricity; 0: not stated, no CO2 is told.'
-    ),
     ParameterRow('plain_topics', False).says(
         'Publish efficiency, RCS, film ratio, regime and warning as topics of std_msgs too.'
     ),

@@ -119,7 +119,7 @@ def rooms() -> None:
     for x, y, words, style in (
         (0, 6.3, 'offline, surrogate/: no ROS', {'weight': 'bold'}),
         (0, 4.55, 'tasks: solves on workers      commands: the command line', {}),
-        (0, 4.1, 'contact  identify  paper  surface_tools: users of these rooms', {}),
+        (0, 4.1, 'contact  identify  studies  surface_tools: their users', {}),
         (0, 2.3, 'online, ballscrew_monitor/', {'weight': 'bold'}),
         (5.4, 2.3, 'numpy alone', {}),
         (0, 0.45, 'recordings: bags in and out      cycle: make run', {}),

@@ -9,9 +9,9 @@ import sys
 from typing import Any
 
 from surrogate.commands.sweep import add_workers
-from surrogate.files import InputError
-from surrogate.paper.cases import NEEDS, StudyTask, tasks
+from surrogate.files import InputError, replace_file
 from surrogate.progress import Progress
+from surrogate.studies.tasks import FIGURES, tasks
 
 DRAWS = 12
 """Draws of the contacts unless said otherwise [-]."""
@@ -33,7 +33,7 @@ def add_figures_command(subparsers: Any) -> None:
         help='draws of the standing roughness of single contacts (default %(default)s)',
     )
     parser.add_argument(
-        '--only', nargs='+', default=None, metavar='FIGURE', help=f'some of {", ".join(NEEDS)}'
+        '--only', nargs='+', default=None, metavar='FIGURE', help=f'some of {", ".join(FIGURES)}'
     )
     parser.add_argument(
         '--measured',
@@ -47,39 +47,34 @@ def add_figures_command(subparsers: Any) -> None:
 
 def _figures(args: argparse.Namespace) -> int:
     """Solve what is missing, draw, print the numbers; exit code 1 when a solve failed."""
-    figures = tuple(args.only or NEEDS)
+    figures = tuple(args.only or FIGURES)
     wanted = tasks(figures, args.draws)
     from surrogate.asperities.law import law_of
-    from surrogate.paper import figures_set
-    from surrogate.paper.report import report, write_report
-    from surrogate.paper.study import run_study
     from surrogate.parameters import load_screw
+    from surrogate.studies.figures import draw_figures
+    from surrogate.studies.report import report
+    from surrogate.studies.solve import run_study
     from surrogate.tasks.workers import open_pool
 
     measured = _measured(args.measured) if args.measured else None
-    bar = Progress(len(wanted), 'solves')
-
-    def progress(done: int, total: int, share: float, task: StudyTask) -> None:
-        note = f'{task.kind} {task.rpm:g} rev/min {task.load:g} N'
-        bar.show(done, total, share=share, note=note)
-
     with open_pool(args.workers, args.dask) as pool:
-        study = run_study(args.out, wanted, pool, progress)
+        study = run_study(args.out, wanted, pool, Progress(len(wanted), 'solves').show)
     failed = [row for row in study.rows.values() if row.status != 'CONVERGED']
     for row in failed:
         print(f'ballscrew: {row.key} did not converge: {row.status}', file=sys.stderr)
-    for path in figures_set.draw_figures(study, figures, measured):
+    for path in draw_figures(study, figures, args.out, measured):
         print(path, file=sys.stderr)
     screw = load_screw('nominal')
     text = report(screw, law_of(screw), study.rows)
-    print(write_report(args.out, text), file=sys.stderr)
+    replace_file(args.out / 'paper.md', text.encode())
+    print(args.out / 'paper.md', file=sys.stderr)
     print(text, end='')
     return 1 if failed else 0
 
 
 def _measured(path: Path) -> Any:
     """Read measured torques; one sentence when they cannot be read."""
-    from surrogate.paper.figures_screw import read_measured
+    from surrogate.studies.screw_figures import read_measured
 
     try:
         with path.open(newline='', encoding='utf-8') as file:

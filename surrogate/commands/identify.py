@@ -3,7 +3,7 @@
 """The subcommand `identify`: parasitic torque from torque measured without load."""
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 import math
 from pathlib import Path
 import sys
@@ -30,19 +30,21 @@ BAG_OPTIONS = (
     'temperature_field',
 )
 
-BagReader = Callable[[argparse.Namespace, float], tuple[dict[str, Any], tuple[str, ...]]]
+TABLES = ('.csv', '.tsv', '.txt', '.parquet', '.xlsx')
+"""Endings of tables; any other log is a bag."""
+LogReader = Callable[[argparse.Namespace, float], tuple[dict[str, Any], tuple[str, ...]]]
 """Return columns in SI units and notes, for the arguments and the lead [m]."""
 
 
-def add_identify_command(subparsers: Any, read_bag: BagReader | None = None) -> None:
-    """Add `identify`; `read_bag` is what reads a bag, which this half cannot."""
+def add_identify_command(subparsers: Any, readers: Mapping[str, LogReader]) -> None:
+    """Add `identify`; `readers` read a `bag` and a `table`, which this half cannot."""
     parser = subparsers.add_parser(
         'identify',
         help='find the parasitic torque from torque measured without load',
         epilog='Exit code 1: the fit did not converge, or the onset was refused: no sheet is '
         'written.',
     )
-    parser.add_argument('data', type=Path, metavar='DATA', help='CSV, or bag directory or MCAP')
+    parser.add_argument('data', type=Path, metavar='DATA', help='table of points, or bag')
     add_inputs(parser)
     parser.add_argument(
         '--temperature-degC',
@@ -79,22 +81,19 @@ def add_identify_command(subparsers: Any, read_bag: BagReader | None = None) -> 
     parser.add_argument('--plot', type=Path, metavar='DIR', help='directory for the picture')
     add_json(parser)
     _add_sources(parser)
-    parser.set_defaults(handler=_identify, read_bag=read_bag)
+    parser.set_defaults(handler=_identify, readers=readers)
 
 
 def _add_sources(parser: argparse.ArgumentParser) -> None:
-    group = parser.add_argument_group('CSV')
+    group = parser.add_argument_group('table')
     for name, usual in (('speed', 'speed_rpm'), ('torque', 'torque_Nm')):
-        group.add_argument(
-            f'--{name}-column',
-            metavar='NAME',
-            help=f'column with its unit at the end, in place of {usual}',
-        )
+        help_text = f'column with its unit in the name, such as {usual}; default the only one'
+        group.add_argument(f'--{name}-column', metavar='NAME', help=help_text)
     group.add_argument(
         '--torque-constant',
         type=float,
         metavar='K',
-        help='torque on the screw over the current in current_A [N m/A]',
+        help='torque on the screw over the current, which takes its place [N m/A]',
     )
     group = parser.add_argument_group('bag')
     group.add_argument('--speed-topic', metavar='TOPIC', help='topic of the speed')
@@ -140,14 +139,19 @@ def _check(args: argparse.Namespace) -> None:
     """
     Raise InputError for options that contradict.
 
-    Those are other fits beside the onset, a temperature that no oil has, and an output that is an
-    input.
+    Those are other fits beside the onset, a constant of 0, a temperature that no oil has, and an
+    output that is an input.
 
     """
     if args.onset and (args.fit or args.loss != 'linear'):
         raise InputError(
             '--onset fits the asperity friction with it by least squares, allowed is neither '
             '--fit nor --loss beside it'
+        )
+    constant = args.torque_constant
+    if constant is not None and not (math.isfinite(constant) and constant):
+        raise InputError(
+            f'--torque-constant is {constant:g} N m/A, allowed is a finite number other than 0'
         )
     kelvin = ZERO_CELSIUS if args.temperature is None else args.temperature + ZERO_CELSIUS
     if not 0 < kelvin < math.inf:
@@ -170,24 +174,13 @@ def _oil_sheet(out: Path) -> Path:
 
 
 def _run(args: argparse.Namespace, screw: Screw, lubricant: Lubricant) -> Any:
-    from surrogate.identify.data import no_load_run, read_drag_csv
+    from surrogate.identify.data import no_load_run
 
-    bag = args.data.is_dir() or args.data.suffix == '.mcap'
-    _refuse(args, COLUMN_OPTIONS if bag else BAG_OPTIONS, 'bag' if bag else 'CSV')
-    if not bag:
-        columns, notes = (
-            read_drag_csv(
-                args.data,
-                speed_column=args.speed_column,
-                torque_column=args.torque_column,
-                torque_constant=args.torque_constant,
-            ),
-            (),
-        )
-    elif args.read_bag is None:
-        raise InputError(f'{args.data}: is a bag, which only the command ballscrew reads')
-    else:
-        columns, notes = args.read_bag(args, screw.lead)
+    kind = 'table' if args.data.suffix.lower() in TABLES else 'bag'
+    _refuse(args, BAG_OPTIONS if kind == 'table' else COLUMN_OPTIONS, kind)
+    if kind not in args.readers:
+        raise InputError(f'{args.data}: is a {kind}, which only the command ballscrew reads')
+    columns, notes = args.readers[kind](args, screw.lead)
     if args.temperature is not None and 'temperature' in columns:
         raise InputError(
             f'--temperature-degC is {args.temperature:g} degC, and {args.data} holds the '

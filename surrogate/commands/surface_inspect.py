@@ -41,11 +41,10 @@ def add_inspect_commands(actions: Any) -> None:
     )
     plot.set_defaults(handler=_plot)
     _add_diff(actions.add_parser('diff', help='compare two surface files', epilog=text))
-    export = actions.add_parser('export', help='write a surface as NetCDF or as a table')
+    export = actions.add_parser('export', help='write a surface as a table')
     add_file(export)
-    to = export.add_mutually_exclusive_group(required=True)
-    to.add_argument('--netcdf', type=Path, metavar='OUT.nc', help='NetCDF file to write')
-    to.add_argument('--csv', type=Path, metavar='OUT.csv', help='table to write, a line per node')
+    text = 'table to write, a line per node'
+    export.add_argument('--csv', type=Path, required=True, metavar='OUT.csv', help=text)
     export.set_defaults(handler=_export)
 
 
@@ -230,12 +229,11 @@ def _diff(args: argparse.Namespace) -> int:
 
 
 def _export(args: argparse.Namespace) -> int:
-    from surrogate.surface_tools.export import to_netcdf, to_table
+    from surrogate.surface_tools.export import to_table
 
     data = read(find_surface(args.file))
-    out = args.netcdf or args.csv
-    _write(out, to_netcdf(data) if args.netcdf else to_table(data).encode())
-    print(f'{out}: {data.mask.size} nodes of surface {data.sha256}')
+    _write(args.csv, to_table(data).encode())
+    print(f'{args.csv}: {data.mask.size} nodes of surface {data.sha256}')
     return 0
 
 

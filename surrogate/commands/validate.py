@@ -19,7 +19,7 @@ def add_validate_command(subparsers: Any) -> None:
 
 
 def _validate(args: argparse.Namespace) -> int:
-    from surrogate.validation.page import validation_page, validation_record
+    from surrogate.studies.validation import validation_page, validation_record
 
     record = validation_record()
     if args.out:

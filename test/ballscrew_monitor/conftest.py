@@ -4,7 +4,6 @@
 
 import contextlib
 import dataclasses
-import fcntl
 import ipaddress
 import itertools
 import math
@@ -23,8 +22,7 @@ from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.judgement import Limits, PointSource, PointValidity
 from ballscrew_monitor.core.state import MonitorSettings
-from ballscrew_monitor.cycle import domain as domains
-from ballscrew_monitor.cycle.domain import free_domain, SHARED_MEMORY
+from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.health.records import SpectrumBin
 from ballscrew_monitor.judge import derived_load, full_point, point, step
@@ -282,34 +280,6 @@ def core():
         )
 
 
-@contextlib.contextmanager
-def last_one_cleans(folder, clean):
-    """
-    Call `clean` at the end, unless another process is within this context for the same folder.
-
-    A file of a participant that is just beginning is not locked yet, and nobody finds a free
-    domain while all are held: nothing is removed beside tests that are at work.
-
-    """
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH)
-        yield
-        # Given back first: of two that come to an end at the same time one succeeds.
-        fcntl.flock(descriptor, fcntl.LOCK_UN)
-        with contextlib.suppress(BlockingIOError):
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            clean()
-    finally:
-        os.close(descriptor)
-
-
-def remove_stale_segments():
-    with contextlib.ExitStack() as stack:
-        held = {one for one in domains.DOMAINS if stack.enter_context(domains.held(one))}
-        domains.remove_stale(held)
-
-
 @pytest.fixture(scope='session')
 def filled():
     """Return what makes a message of a type with a value of its own in every field."""
@@ -338,17 +308,6 @@ def _value(kind, numbers):
     if kind.typename == 'octet':
         return bytes([number % 256])
     return bool(number % 2) if kind.typename == 'boolean' else number % 100
-
-
-@pytest.fixture(scope='session', autouse=True)
-def shared_memory():
-    """Leave the shared memory clean at the end; return what that is done with."""
-    parts = types.SimpleNamespace(last_one_cleans=last_one_cleans)
-    if not SHARED_MEMORY.is_dir():
-        yield parts
-        return
-    with last_one_cleans(SHARED_MEMORY, remove_stale_segments):
-        yield parts
 
 
 def content_of(path):

@@ -18,6 +18,7 @@ from ballscrew_monitor.recordings.log_facts import facts_of, LogFacts
 from ballscrew_monitor.recordings.recover import recover
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import read_map
+from ballscrew_monitor.recordings.tables.points import PointColumns, read_points
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
 from ballscrew_monitor.settings.parameters import read_file
 from hypothesis import given
@@ -30,7 +31,6 @@ from rclpy.serialization import serialize_message
 from std_msgs.msg import Float64
 from surrogate.contact.case import load_case
 from surrogate.files import InputError
-from surrogate.identify.data import read_drag_csv
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.raceway.import_file import read_surface
 from surrogate.surface import SurfaceError
@@ -261,7 +261,7 @@ SEEDS = {
     'case': (copy_of('surrogate/data/cases/nominal_smooth.yaml'), load_case),
     'surface': (copy_of('test/data/golden_surface.npz'), read_surface_file),
     'state': (state, read_state),
-    'drag': (drag_log, read_drag_csv),
+    'drag': (drag_log, lambda path: read_points(path, PointColumns(lead=0.01))),
     'profile': (profile, read_surface),
 }
 

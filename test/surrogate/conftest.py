@@ -33,9 +33,9 @@ def table():
 def run(request):
     """Return the function that runs one command line, which begins with COMMAND of the module."""
 
-    def run_line(*words, read_bag=None):
+    def run_line(*words, **readers):
         parser = Parser()
-        add_commands(parser.add_subparsers(required=True), read_bag)
+        add_commands(parser.add_subparsers(required=True), readers)
         args = parser.parse_args([*request.module.COMMAND, *map(str, words)])
         return args.handler(args)
 

@@ -54,8 +54,7 @@ def batches(bag: Bag, topics: Collection[str], *, as_written: bool = False) -> I
     """
     Yield the messages of `topics`, by log time or in the order in which they were written.
 
-    Raises InputError for a damaged bag, unless its intact part is to be salvaged; then the
-    file that holds a damaged chunk has a note on it.
+    Raises InputError for a damaged chunk.
 
     """
     with contextlib.ExitStack() as stack:
@@ -102,14 +101,10 @@ def _by_chunk(chunks: Sequence[_Chunk], names: Sequence[str]) -> Iterator[Batch]
     size = 0
     counts: dict[McapStorage, Counter[str]] = {}
     for number, chunk in enumerate(chunks, 1):
-        try:
-            found = _placed(chunk, names)
-        except ChunkDamage as damage:
-            chunk.storage.miss(chunk.place, damage)
-        else:
-            waiting.append(found)
-            size += len(found.data)
-            counts.setdefault(chunk.storage, Counter()).update(_count(found, names))
+        found = _placed(chunk, names)
+        waiting.append(found)
+        size += len(found.data)
+        counts.setdefault(chunk.storage, Counter()).update(_count(found, names))
         if size >= BATCH or number == len(chunks):
             until = END if number == len(chunks) else chunks[number].place.message_start_time
             yield Batch(topics=_by_topic(waiting, names), until=until, done=number / len(chunks))
@@ -126,7 +121,7 @@ def _count(found: Messages, names: Sequence[str]) -> dict[str, int]:
 
 def _placed(chunk: _Chunk, names: Sequence[str]) -> Messages:
     """Return the messages of a chunk at their places in the bag, as channels their topics."""
-    found = read_chunk(chunk.stream, chunk.place)
+    found = chunk.storage.chunk(chunk.stream, chunk.place)
     numbers = np.full(65536, -1)  # of a topic that is not wanted
     for number, name in chunk.channels.items():
         numbers[number] = names.index(name)

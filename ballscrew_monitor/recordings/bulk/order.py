@@ -47,7 +47,7 @@ def ordered_events(
     Yield the events of `axes` in the order in which they are judged, a tick each `period` [ns].
 
     `notes` keep what they refer to. `on_done` is told how far the bag is judged [-]. Raises
-    InputError for a damaged bag, unless its intact part is to be salvaged.
+    InputError for a damaged bag.
 
     """
     readers = readers_by_topic(axes)

@@ -55,7 +55,7 @@ NEEDS = {
     'mcap': READS,
     'numba': (*SOLVES, *JUDGES),
     'numpy': (POINT, ('doctor',)),
-    'polars': (*REPORTS, ('import', '{csv}', '--guess')),
+    'polars': (*REPORTS, ('import', '{csv}', '--guess'), ('identify', '{csv}')),
     'prometheus_client': PAGES,
     'rclpy': ROS,
     'scipy': SOLVES,
@@ -63,7 +63,6 @@ NEEDS = {
     'starlette': PAGES,
     'uvicorn': PAGES,
     'websockets': PAGES,
-    'xarray': (('surface', 'export', LOOKUP, '--netcdf', '{out}/a.nc'),),
     'yaml': (POINT, ('doctor',)),
     'zstandard': READS[:-1],
 }

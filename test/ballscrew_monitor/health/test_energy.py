@@ -36,9 +36,9 @@ def days(first, count, ratio, **changes):
     return [lost(first + day, ratio * (1 + 0.02 * (-1) ** day), **changes) for day in range(count)]
 
 
-def told(bins, baseline=BASELINE, **options):
+def told(bins, baseline=BASELINE):
     """Return the quantities by name."""
-    return {one.name: one for one in energy_quantities(bins, baseline, TODAY, **options)}
+    return {one.name: one for one in energy_quantities(bins, baseline, TODAY)}
 
 
 @pytest.mark.parametrize('freedom', [2, 3, 5, 10, 100])
@@ -51,21 +51,14 @@ def test_the_factor_of_student(freedom):
 def test_energy_at_equal_motion():
     """A tenth more than the baseline is 1 kWh of 11, whatever the programme was."""
     bins = [*days(FIRST, 10, 1.0, energy=5 * KILOWATT_HOUR), *days(TODAY - 9, 10, 1.1)]
-    found = told(bins, co2_per_kwh=0.4)
+    found = told(bins)
     assert found['energy lost'].value == pytest.approx(11.0)
     assert found['energy against the baseline'].value == pytest.approx(1.1)
     assert found['energy beyond the baseline'].value == pytest.approx(1.0)
-    assert found['CO2 beyond the baseline'].value == pytest.approx(0.4)
     assert found['energy against the baseline'].low > 1.05
     for one in found.values():
         assert one.low <= one.value <= one.high
         assert one.evidence
-
-
-def test_no_co2_without_a_factor(refused):
-    """None is shown, and a negative one is refused."""
-    assert 'CO2 beyond the baseline' not in told(days(TODAY - 9, 10, 1.0))
-    refused('negative_co2', energy_quantities, [], None, TODAY, co2_per_kwh=-0.4)
 
 
 def test_time_without_a_torque_costs_as_much_as_that_with():

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Messages out of pages alone are those that sqlite3 itself has written, of whatever length."""
+"""Bags of a recorder that was killed: SQLite works what it has left into the file."""
 
 from collections import namedtuple
 import contextlib
@@ -10,7 +10,7 @@ import sqlite3
 import tempfile
 
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.sqlite_storage import ends_with_a_page, whole_messages
+from ballscrew_monitor.recordings.sqlite_storage import ends_with_a_page
 import pytest
 
 TABLE = (
@@ -26,62 +26,9 @@ SMALLEST = 512  # [bytes] of a page
 HALF = 100  # messages
 
 
-def content(length):
-    """Return data of a length in which each byte tells its place."""
-    return b''.join(place.to_bytes(3, 'big') for place in range(length // 3 + 1))[:length]
-
-
-def write(path, messages, page_size=SMALLEST):
-    with contextlib.closing(sqlite3.connect(path)) as base, base:
-        base.execute(f'PRAGMA page_size = {page_size}')
-        base.execute(TABLE)
-        rows = enumerate(messages, start=1)
-        base.executemany('INSERT INTO messages VALUES(?, ?, ?, ?)', [(i, *row) for i, row in rows])
-    return path
-
-
-@pytest.mark.parametrize('page_size', [SMALLEST, 1024, 4096])
-def test_data_of_every_length_are_read_on_through_further_pages(tmp_path, page_size):
-    """Each length has its own part in the page itself, up to some further pages."""
-    lengths = range(3 * SMALLEST) if page_size == SMALLEST else range(0, 3 * page_size, 7)
-    messages = [(1, 10**18 + length, content(length)) for length in lengths]
-    path = write(tmp_path / 'all.db3', messages, page_size)
-    assert list(whole_messages(path)) == messages
-
-
-def test_pages_of_64_kib_have_a_size_of_their_own(tmp_path):
-    messages = [(2, 3, content(length)) for length in (65_000, 65_500, 65_536, 200_000)]
-    path = write(tmp_path / 'large.db3', messages, 65536)
-    assert list(whole_messages(path)) == messages
-
-
-@pytest.mark.parametrize('number', [0, 1, 2, 127, 128, 2**15, 2**23, 2**31, 2**47, 2**62, -1])
-def test_integers_of_every_size(tmp_path, number):
-    messages = [(1, number, b'data'), (number, 1, b'')]
-    assert list(whole_messages(write(tmp_path / 'one.db3', messages))) == messages
-
-
-def test_of_a_file_that_is_cut_the_rows_of_whole_pages_are_read(tmp_path):
-    messages = [(1, number, content(100)) for number in range(200)]
-    path = write(tmp_path / 'cut.db3', messages)
-    assert ends_with_a_page(path)
-    os.truncate(path, path.stat().st_size // 2 + 1)
-    assert not ends_with_a_page(path)
-    found = list(whole_messages(path))
-    assert found == messages[: len(found)]
-    assert 80 < len(found) < 120
-
-
-def test_a_message_whose_further_pages_are_lost_is_passed_over(tmp_path):
-    messages = [(1, 1, content(9000)), (1, 2, b'short')]
-    path = write(tmp_path / 'lost.db3', messages)
-    os.truncate(path, 3 * SMALLEST)
-    assert list(whole_messages(path)) == messages[1:]
-
-
 def insert(base, first):
     """Insert half of the messages, whose times are numbered from `first` on."""
-    rows = [(1, 10**18 + number, content(300)) for number in range(first, first + HALF)]
+    rows = [(1, 10**18 + number, bytes(300)) for number in range(first, first + HALF)]
     base.executemany('INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)', rows)
 
 
@@ -152,6 +99,13 @@ def test_messages_in_a_write_ahead_log_are_read_and_the_bag_is_left_as_it_is(
     assert not os.listdir(scratch)
 
 
+def test_a_file_ends_with_a_page(left):
+    path = left('WAL') / 'a_0.db3'
+    assert ends_with_a_page(path)
+    os.truncate(path, path.stat().st_size - 1)
+    assert not ends_with_a_page(path)
+
+
 def test_without_a_journal_nothing_is_copied(left, monkeypatch):
     path = left('WAL')
     (path / 'a_0.db3-wal').write_bytes(b'')
@@ -198,15 +152,22 @@ def test_a_transaction_that_was_not_finished_is_rolled_back(left, says):
 
 
 def test_a_rollback_journal_may_be_finished_or_damaged(left, says):
+    path = left('WAL')
+    file, journal = path / 'a_0.db3', path / 'a_0.db3-journal'
+    (path / 'a_0.db3-wal').unlink()
+    for content, notes in ((b'?', [says('may_be_among', file=file)]), (b'\0', [])):
+        journal.write_bytes(content * 600)
+        bag = Bag(path)
+        assert (times(bag), bag.notes) == ([*range(HALF)], notes)
+
+
+def test_a_transaction_that_cannot_be_rolled_back_is_refused(left, refused):
     path = left('DELETE')
-    file = path / 'a_0.db3'
     damage(path / 'a_0.db3-journal', 0)
-    assert says('may_be_among', file=file) in Bag(path, salvage=True).notes[0]
-    damage(path / 'a_0.db3-journal', 0, bytes(8))
-    assert not [note for note in Bag(path, salvage=True).notes if '-journal' in note]
+    refused('damaged', Bag, path)
 
 
-def test_a_bag_that_is_being_written_is_no_half(left, monkeypatch, refused, says):
+def test_a_bag_that_is_being_written_is_no_half(left, monkeypatch, refused):
     path = left('WAL')
     copyfile = shutil.copyfile
 
@@ -215,11 +176,9 @@ def test_a_bag_that_is_being_written_is_no_half(left, monkeypatch, refused, says
         return copyfile(source, target)
 
     monkeypatch.setattr(shutil, 'copyfile', copied)
-    refused('being_written', Bag, path)
-    os.utime(path / 'a_0.db3', ns=(2, 2))
-    bag = Bag(path, salvage=True)
-    assert times(bag) == [*range(HALF)]
-    assert bag.notes == [says('read_without', file=path / 'a_0.db3')]
+    for salvage in (False, True):
+        os.utime(path / 'a_0.db3', ns=(2, 2))
+        refused('being_written', Bag, path / 'a_0.db3', salvage=salvage)
 
 
 def test_a_copy_takes_half_of_the_free_disk_at_most(left, monkeypatch, refused):

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Files of rosbag2 and rosbags are read, and of damaged ones every intact part."""
+"""Files of rosbag2 and rosbags are read, and those without an end up to there."""
 
 import dataclasses
 import itertools
@@ -9,10 +9,8 @@ import shutil
 
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
-from ballscrew_monitor.recordings.sqlite_storage import strays
 from mcap.reader import make_reader
 from mcap.writer import Writer as McapWriter
-import numpy as np
 import pytest
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import get_typestore, Stores
@@ -165,14 +163,13 @@ def test_intact_parts_of_a_truncated_file_are_read(short_bag, messages, tmp_path
     assert sum(info.count for info in bag.topics.values()) == len(found)
 
 
-def test_a_damaged_chunk_is_left_out(short_bag, messages, tmp_path):
+@pytest.mark.parametrize('salvage', [True, False])
+def test_a_damaged_chunk_is_named_and_what_copies_the_others(
+    salvage, short_bag, tmp_path, refused
+):
     path = shutil.copy(short_bag / 'short.mcap', tmp_path / 'bad.mcap')
     flip(path, int(0.2 * path.stat().st_size))
-    bag = Bag(path, salvage=True)
-    found = content(bag)
-    assert 0 < len(found) < len(messages)
-    assert set(found) < set(plain(messages))
-    assert bag.notes[0].endswith('cannot be read (its checksum is wrong)')
+    refused('damaged_chunk', content, Bag(path, salvage=salvage))
 
 
 def chunks(path, content):
@@ -191,35 +188,51 @@ def chunks(path, content):
     return [index.chunk_start_offset for index in indexes]
 
 
-def test_what_follows_damage_over_the_border_of_chunks_is_read(messages, tmp_path):
+def test_a_chunk_that_is_none_is_named(messages, tmp_path, refused):
+    path = tmp_path / 'bad.mcap'
+    begins = chunks(path, plain(messages))
+    assert len(begins) > 5
+    overwrite(path, begins[2], b'\xff' * 200)
+    with refused('no_chunk', at=begins[2]):
+        content(Bag(path, salvage=True))
+
+
+def test_a_file_without_its_end_is_read_up_to_the_damage(messages, tmp_path, says):
     path, written = tmp_path / 'bad.mcap', plain(messages)
     begins = chunks(path, written)
-    assert len(begins) > 5
-    overwrite(path, begins[2] - 100, b'\xff' * 200)
-    bag = Bag(path, salvage=True)
-    found = content(bag)
-    assert len(written) * (1 - 2 / len(begins)) - 5 < len(found) < len(written)
-    assert found == [one for one in written if one in set(found)]
-    assert content(bag) == found
-    assert plain(bag.as_written()) == found
-    (note,) = bag.notes
-    assert note.endswith('(no chunk stands where there should be one)')
-
-
-def test_a_message_of_the_time_before_the_damage_is_read(messages, tmp_path):
-    path = tmp_path / 'bad.mcap'
-    same = [(topic, 10**18, data) for topic, _, data in plain(messages)]
-    begins = chunks(path, same)
+    size = begins[-1] + 10
+    os.truncate(path, size)
     flip(path, begins[3] + 100)
     bag = Bag(path, salvage=True)
     found = content(bag)
-    assert len(same) * (1 - 1 / len(begins)) - 5 < len(found) < len(same)
-    assert content(bag) == found
+    assert len(written) * 2 / len(begins) < len(found) < len(written) * 4 / len(begins)
+    assert found == written[: len(found)]
+    assert (content(bag), plain(bag.as_written())) == (found, found)
+    (note,) = bag.notes
+    assert says('used', count=len(found)) in note
+    assert note.endswith(says('lost', bytes=size - begins[3], at=begins[3]))
+
+
+def test_a_file_without_chunks_is_refused_where_it_is_damaged(messages, tmp_path, refused):
+    path = tmp_path / 'bad.mcap'
+    with path.open('wb') as stream:
+        writer = McapWriter(stream, use_chunking=False)
+        writer.start('ros2', 'test')
+        channel = writer.register_channel('/a', 'cdr', 0)
+        places = []
+        for one in messages:
+            places.append(stream.tell())
+            writer.add_message(channel, one.log_time, one.data, one.log_time)
+        writer.finish()
+    assert len(content(Bag(path))) == len(messages)
+    overwrite(path, places[1] + 7, b'\xff')
+    with refused('no_record', at=places[1]):
+        content(Bag(path, salvage=True))
 
 
 @pytest.mark.parametrize('part', [0.5, 0.8, 0.95, 0.999])
 @pytest.mark.parametrize('size', [0, 20_000], ids=['short', 'over several pages'])
-def test_intact_parts_of_a_truncated_sqlite3_are_read(size, part, messages, tmp_path, refused):
+def test_a_truncated_sqlite3_file_is_refused(size, part, messages, tmp_path, refused):
     some = [
         dataclasses.replace(one, data=one.data + bytes([number % 256]) * size)
         for number, one in enumerate(messages)
@@ -227,17 +240,8 @@ def test_intact_parts_of_a_truncated_sqlite3_are_read(size, part, messages, tmp_
     path = write(tmp_path / 'bag', some, StoragePlugin.SQLITE3)
     file = next(path.glob('*.db3'))
     os.truncate(file, int(part * file.stat().st_size))
-    refused('truncated_damaged', Bag, path)
-    bag = Bag(path, salvage=True)
-    found = content(bag)
-    # The definitions of the messages come first.
-    assert (part - 0.25) * len(some) < len(found) <= len(some)
-    assert found == plain(some)[: len(found)]
-    assert f'used are the {len(found)} messages of ' in bag.notes[0]
-    assert sum(info.count for info in bag.topics.values()) == len(found)
-    assert (bag.start_time, bag.end_time) == (found[0][1], found[-1][1])
-    only = [one for one in found if one[0] == '/axial_load']
-    assert plain(bag.messages(['/axial_load'])) == only
+    for salvage in (False, True):
+        refused('truncated_damaged_complete', Bag, file, salvage=salvage)
 
 
 @pytest.mark.parametrize('size', [50, 2000, 4096, 20_000])
@@ -246,48 +250,10 @@ def test_a_sqlite3_file_that_ends_before_its_messages_is_one_sentence(size, sqli
     refused('truncated_damaged_complete', Bag, sqlite_file, salvage=True)
 
 
-def test_a_page_of_a_sqlite3_file_that_is_damaged_is_left_out(messages, sqlite_file):
-    overwrite(sqlite_file, sqlite_file.stat().st_size // 8192 * 4096, b'\xff' * 4096)
-    bag = Bag(sqlite_file.parent, salvage=True)
-    found = content(bag)
-    assert 0.8 * len(messages) < len(found) < len(messages)
-    assert set(found) < set(plain(messages))
-    assert bag.notes[0].startswith(f'bag {sqlite_file} is truncated or damaged')
-
-
-@pytest.mark.parametrize('at', [0.5, 0.55, 0.6])
-@pytest.mark.parametrize('kind', ['zeros', 'noise'])
-def test_a_damaged_sqlite3_file_gives_true_messages(at, kind, messages, sqlite_file):
-    begin = int(at * sqlite_file.stat().st_size)
-    if kind == 'zeros':
-        overwrite(sqlite_file, begin, bytes(500))
-    else:
-        for number in range(20):
-            flip(sqlite_file, begin + 150 * number)
-    bag = Bag(sqlite_file.parent, salvage=True)
-    found = content(bag)
-    assert content(bag) == found
-    assert 0.8 * len(messages) < len(found) <= len(messages)
-    assert found == sorted(found, key=lambda one: one[1])
-    assert f'used are the {len(found)} messages of ' in bag.notes[0]
-    assert messages[0].log_time <= bag.start_time < bag.end_time <= messages[-1].log_time
-
-
-def test_a_garbled_time_is_none_but_a_clock_may_be_set():
-    second = 1e9
-    for times, places in (
-        ([50, 51, 52, 7, 53, 54], {3}),
-        ([50, 51, 52, 90, 53, 54], {3}),
-        ([50, 51, 52, 7, 8, 9], set()),
-        ([50, 51, 52, 90, 91, 92], set()),
-        ([50], set()),
-        ([50, 7], set()),
-        ([], set()),
-    ):
-        rows = np.array([[1, time * second] for time in times]).reshape(-1, 2)
-        assert strays(rows) == places
-    mixed = np.array([[1, 50], [2, 9], [1, 50], [2, 9], [1, 51], [2, 10], [1, 52], [2, 11]])
-    assert not strays(mixed * [1, second]) - {1, 6}
+@pytest.mark.parametrize('content', [b'\xff', b'\0'], ids=['ones', 'zeros'])
+def test_a_sqlite3_file_with_a_damaged_page_is_refused(content, sqlite_file, refused):
+    overwrite(sqlite_file, sqlite_file.stat().st_size // 8192 * 4096, content * 4096)
+    refused('truncated_damaged_complete', Bag, sqlite_file, salvage=True)
 
 
 def test_nothing_can_be_had_of_an_empty_file(tmp_path, refused):

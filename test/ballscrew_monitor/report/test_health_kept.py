@@ -4,7 +4,6 @@
 
 import contextlib
 import json
-import math
 import shutil
 
 from ballscrew_monitor.cli import main
@@ -73,7 +72,7 @@ def test_another_speed_is_advised_where_the_parameters_or_the_command_let_it(
     asked = []
     monkeypatch.setattr(health_kept, 'assess_kept', lambda *parts: asked.append(parts[-1]))
     values = defaults(['x']) | {'x.advice.speed': parameter}
-    options = {'over': 600.0, 'days': None, 'co2_per_kwh': math.nan, 'speed_allowed': option}
+    options = {'over': 600.0, 'days': None, 'speed_allowed': option}
     stored = read_health(folder)
     titles = {health_kept.stored_axis(folder, 'x'): 'x'}
     health_kept.kept_healths(folder, stored, titles, values, options)

@@ -76,7 +76,7 @@ def health(folder):
     """Return what is said of the health of an axis over months, and of many logs at once."""
     logs = inputs.months(folder / 'logs')
     out, reports = folder / 'health', folder / 'reports'
-    given = ('--baseline', '2026-01-05', '2026-02-16', '--co2-kg-per-kWh', '0.4')
+    given = ('--baseline', '2026-01-05', '2026-02-16')
     kept = doors.command(folder, 'health', logs, *given, '--out', out, '--json')
     many = doors.command(folder, 'replay', logs, '--out', reports, '--workers', '1')
     return {

@@ -19,8 +19,7 @@ def test_one_figure(run, tmp_path, capsys, says):
     assert said.err.count(' solves, ') == 4
     assert str(tmp_path / 'paper_07_smooth_speed.png') in said.err
     names = {path.name for path in tmp_path.iterdir()}
-    picture = 'paper_07_smooth_speed.png'
-    assert names == {'paper.csv', 'paper.csv.store', 'paper.md', 'paper_fields', picture}
+    assert names == {'paper.csv', 'paper.csv.store', 'paper.md', 'paper_07_smooth_speed.png'}
     assert run('--out', tmp_path, '--only', '7') == 0
     assert ' solves, ' not in capsys.readouterr().err
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The identify command as a user types it."""
 
+import csv
 from datetime import date
 import json
 import math
@@ -21,6 +22,26 @@ TORQUE = np.sign(ROWS) * (
     np.asarray(closed_form.solve(SCREW, OIL, np.abs(ROWS), 0.0, 313.15).friction_torque) + 0.12
 )
 TORQUE = TORQUE + 4e-4 * ROWS + 0.03
+
+
+def read_table(args, lead):
+    """Return the columns of a table of numbers in SI units, whose torque may be a current."""
+    with args.data.open(encoding='utf-8') as file:
+        rows = [{name: float(cell) for name, cell in row.items()} for row in csv.DictReader(file)]
+    torque = next(name for name in ('torque_Nm', 'current_A') if name in rows[0])
+    columns = {
+        'speed': np.array([row['speed_rpm'] * math.pi / 30 for row in rows]),
+        'torque': np.array([row[torque] * (args.torque_constant or 1.0) for row in rows]),
+    }
+    if 'temperature_degC' in rows[0]:
+        columns['temperature'] = np.array([row['temperature_degC'] + 273.15 for row in rows])
+    return columns, ()
+
+
+@pytest.fixture
+def run(run):
+    """Return the function that runs a command line, with a reader of tables unless it has one."""
+    return lambda *words, **readers: run(*words, **({'table': read_table} | readers))
 
 
 @pytest.fixture
@@ -150,10 +171,11 @@ def test_an_onset_that_is_refused_leaves_no_sheet(run, tmp_path, capsys, says):
 
 
 def test_options_that_mean_nothing_are_refused(run, data, tmp_path, refused):
-    """Bag options for a CSV, and the other way round; a temperature that stands twice."""
+    """Bag options for a table, and the other way round; a temperature that stands twice."""
     refused('speed_topic_has', run, data, '--speed-topic', 'joint_states')
     refused('torque_column_has', run, tmp_path, '--torque-column', 'torque_Nm')
     refused('bag_only_command', run, tmp_path)
+    refused('no_constant', run, data, '--torque-constant', 0)
     text = data.read_text(encoding='utf-8').replace('\n', ',40\n')
     data.write_text(text.replace('torque_Nm,40', 'torque_Nm,temperature_degC'), encoding='utf-8')
     refused('holds_temperature_too', run, data, '--temperature-degC', 40)
@@ -169,7 +191,7 @@ def test_a_bag_is_read_by_who_can(run, tmp_path, capsys):
         seen.append((args.data, args.speed_topic, lead))
         return {'speed': ROWS, 'torque': TORQUE}, ('half of it was steady',)
 
-    assert run(tmp_path, '--speed-topic', 'joint_states', read_bag=reader) == 0
+    assert run(tmp_path, '--speed-topic', 'joint_states', bag=reader) == 0
     assert seen == [(tmp_path, 'joint_states', SCREW.lead)]
     assert 'note: half of it was steady' in capsys.readouterr().out
 

@@ -5,7 +5,7 @@
 import json
 
 import pytest
-from surrogate.validation import page
+from surrogate.studies import validation
 
 COMMAND = ('validate',)
 RECORD = {
@@ -33,7 +33,7 @@ RECORD = {
 @pytest.fixture(autouse=True)
 def short(monkeypatch):
     """Compute nothing."""
-    monkeypatch.setattr(page, 'validation_record', lambda: RECORD)
+    monkeypatch.setattr(validation, 'validation_record', lambda: RECORD)
 
 
 def test_the_file_is_what_is_printed(run, tmp_path, capsys):

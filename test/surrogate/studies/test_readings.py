@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from surrogate.asperities.law import AsperityLaw
-from surrogate.paper import trends as judged
-from surrogate.paper.cases import RELIEVED, SMOOTH, STANDING
-from surrogate.paper.rows import StudyRow
 from surrogate.parameters import load_screw
+from surrogate.studies import readings as judged
+from surrogate.studies.rows import nut_rows, StudyRow
+from surrogate.studies.tasks import RELIEVED, SMOOTH, STANDING
 
 SCREW, LAW = load_screw('nominal'), AsperityLaw(onsets={}, deviation=0.16)
 BASE = StudyRow(inputs='a', kind='screw', rpm=5.0, load=0.0, status='CONVERGED')
@@ -88,7 +88,7 @@ def test_nuts_share_the_contacts_under_preload():
         replace(BASE, kind='contact', case=case, load=load)
         for case, load in (('ours', 0.0), ('ours', 9.0), (RELIEVED, 9.0), ('short inlet', 0.0))
     ]
-    assert [len(judged.nut_rows(rows, nut)) for nut in ('loaded', 'relieved')] == [2, 2]
+    assert [len(nut_rows(rows, nut)) for nut in ('loaded', 'relieved')] == [2, 2]
 
 
 def test_table_and_summary():

@@ -8,7 +8,8 @@ import re
 
 import pytest
 from surrogate.files import json_text
-from surrogate.validation.page import span, validation_page
+from surrogate.studies import ours
+from surrogate.studies.validation import PUBLISHED, span, validation_page, verdict
 
 DOCUMENT = Path(__file__).parents[3] / 'docs' / 'theory' / 'validation.md'
 NUMBER = re.compile(r'\d+(?:\.\d+)?')
@@ -56,3 +57,29 @@ def test_more_oil_costs_more_rolling(record):
 def test_spans():
     assert span([0.5, 0.5]) == '0.50'
     assert span([2.0, 0.0581]) == '0.058 to 2.00'
+
+
+@pytest.mark.parametrize('value', PUBLISHED['values'], ids=lambda value: value['what'])
+def test_a_published_value_is_declared_in_full(value):
+    """Source with a year or a standard, what was read of it, a range that rises, a reason."""
+    assert value['source'][-4:].isdigit()
+    assert value['read']
+    assert value['reason']
+    assert 0 <= value['published'][0] <= value['published'][1]
+    assert 0 <= value.get('tolerance', 0.0) < 0.2
+    assert getattr(ours, value['ours']).__doc__
+
+
+def test_no_value_is_declared_twice():
+    assert len({value['what'] for value in PUBLISHED['values']}) == len(PUBLISHED['values'])
+    assert all(sentence.endswith('.') for sentence in PUBLISHED['without_number'])
+
+
+@pytest.mark.parametrize(
+    ('found', 'expected'), [([0.9, 2.2], 'agrees'), ([0.9, 2.21], 'differs'), ([0.89], 'differs')]
+)
+def test_all_of_ours_must_lie_within(found, expected):
+    """The limit itself belongs to the range; what is not comparable stays so."""
+    value = {'published': [1.0, 2.0], 'tolerance': 0.1, 'comparable': True}
+    assert verdict(value, found) == expected
+    assert verdict(value | {'comparable': False}, found) == 'not comparable'

@@ -8,18 +8,17 @@ import re
 import pytest
 from surrogate.asperities.law import law_of
 from surrogate.commands.figures import DRAWS
-from surrogate.paper.cases import NEEDS, StudyTask, tasks
-from surrogate.paper.marks import marks
-from surrogate.paper.report import report
-from surrogate.paper.rows import read_rows
-from surrogate.paper.solve import solve_task
-from surrogate.paper.study import known_inputs
-from surrogate.paper.trends import trends
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.studies.readings import trends
+from surrogate.studies.report import marks, report
+from surrogate.studies.rows import StudyRow
+from surrogate.studies.solve import known_inputs, solve_task
+from surrogate.studies.tasks import FIGURES, StudyTask, tasks
+from surrogate.tasks.table import read_table
 
 TREE = Path(__file__).parents[3]
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
-ROWS = read_rows(TREE / 'test' / 'data' / 'paper.csv')
+ROWS = {row.key: row for row in read_table(TREE / 'test' / 'data' / 'paper.csv', StudyRow)}
 THEORY = TREE / 'docs' / 'theory'
 PAGE = (THEORY / 'validation.md').read_text(encoding='utf-8')
 NUMBERS = (THEORY / 'published_study_numbers.md').read_text(encoding='utf-8')
@@ -47,7 +46,7 @@ def trend(start):
 
 def test_page_of_numbers_is_the_report_of_the_rows_of_the_default_run():
     assert NUMBERS.endswith(report(SCREW, law_of(SCREW), ROWS))
-    wanted = {task.key: task for task in tasks(tuple(NEEDS), DRAWS)}
+    wanted = {task.key: task for task in tasks(FIGURES, DRAWS)}
     assert set(ROWS) == set(wanted)
     known = known_inputs()
     assert all(row.inputs == known[wanted[key].rolls] for key, row in ROWS.items())

@@ -6,7 +6,7 @@ from statistics import NormalDist
 
 import numpy as np
 import pytest
-from surrogate.validation.ours import reduced_peak_height
+from surrogate.studies.ours import reduced_peak_height
 
 SHARES = (np.arange(20000) + 0.5) / 20000
 

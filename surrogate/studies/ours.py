@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.asperities.law import law_of
 from surrogate.asperities.running_in import running_tiles
-from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
+from surrogate.ehl import Condition, Settings, solve_contact
 from surrogate.ehl.moving import march_strip, MarchSettings, strip_at
 from surrogate.formulas.film import (
     central_film_hamrock_dowson_1977,
@@ -27,7 +27,7 @@ from surrogate.formulas.film import (
     minimum_film_hamrock_dowson_1977,
     rolling_force_biboulet_houpert_2010,
 )
-from surrogate.formulas.geometry import Contact, screw_contact
+from surrogate.formulas.geometry import screw_contact
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.line import (
     amplitude_reduction_venner_1997,
@@ -64,109 +64,91 @@ CORE = 0.4
 """Share of the material ratio curve that the secant of the core spans, ISO 25178-2 [-]."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(kw_only=True)
 class ValidationCase:
-    """The screw and the oil that published numbers are compared on."""
+    """The screw and the oil that published numbers are compared on, and what many of them need."""
 
     screw: Screw
     lubricant: Lubricant
 
-    @property
-    def temperature(self) -> float:
-        """Temperature of the oil [K]."""
-        return self.lubricant.reference_temperature
+    def __post_init__(self) -> None:
+        """Take temperature [K], oil and contact at the screw, normal force [N], new raceway."""
+        self.temperature = self.lubricant.reference_temperature
+        self.oil = oil_at(self.lubricant, self.temperature)
+        self.contact = screw_contact(self.screw, 'screw')
+        self.load = float(normal_force(self.screw, self.screw.preload))
+        self.new = with_raceway(self.screw, state='new')
 
     @cached_property
-    def oil(self) -> ContactLubricant:
-        """Return the oil of a contact."""
-        return oil_at(self.lubricant, self.temperature)
+    def onset(self) -> Mapping[str, float]:
+        """Return where contact of a new raceway begins, SI units."""
+        return onset_point(self.new, self.lubricant, 0.0, self.temperature)
 
-    @property
-    def contact(self) -> Contact:
-        """Return the contact of the ball with the screw."""
-        return screw_contact(self.screw, 'screw')
-
-    @cached_property
-    def load(self) -> float:
-        """Return the normal force under preload [N]."""
-        return float(normal_force(self.screw, self.screw.preload))
-
-    def raceway(self, state: str) -> Screw:
-        """Return the screw with its raceway new or run in."""
-        return with_raceway(self.screw, state=state)
-
-    def onset(self, state: str) -> Mapping[str, float]:
-        """Return where contact begins, SI units."""
-        return onset_point(self.raceway(state), self.lubricant, 0.0, self.temperature)
+    def solved(self, rpm: float, settings: ScrewSettings) -> ScrewSolution:
+        """Return the screw at a speed [rev/min]."""
+        return solve_screw(self.screw, self.lubricant, self.point(rpm), settings=settings)
 
     def point(self, rpm: float) -> OperatingPoint:
         """Return the point at a speed [rev/min]."""
         return OperatingPoint(speed=rpm * RPM, load=0.0, temperature=self.temperature)
 
     @cached_property
-    def solved(self) -> ScrewSolution:
-        """Return the screw at the faster speed."""
-        return solve_screw(self.screw, self.lubricant, self.point(FAST), settings=ISOTHERMAL)
-
-    @cached_property
     def rolling(self) -> list[dict[str, float]]:
         """Return rolling forces over load and speed beside the formula, SI units."""
-        return [self._rolling(load, rpm) for load in LOADS for rpm in SPEEDS]
+        return [rolling_force(self, load, rpm) for load in LOADS for rpm in SPEEDS]
 
     @property
     def rolling_over_width(self) -> dict[float, float]:
         """Return rolling forces over that of the formula by the width of the oil [-]."""
-        found = [self._rolling(self.load, FAST, wide(width)) for width in WIDTHS]
-        return {
-            width: one['smooth_over_formula'] for width, one in zip(WIDTHS, found, strict=True)
-        }
+        found = {width: rolling_force(self, self.load, FAST, wide(width)) for width in WIDTHS}
+        return {width: one['smooth_over_formula'] for width, one in found.items()}
 
-    def _rolling(
-        self, load: float, rpm: float, settings: Settings = PRODUCTION
-    ) -> dict[str, float]:
-        """Return the rolling force at a normal force [N] and a screw speed [rev/min]."""
-        speed = no_slip_rates(self.screw).entrainment * rpm * RPM
-        condition = Condition(load=load, entrainment_speed=speed)
-        place = self.contact, condition, self.oil, self.lubricant.film_floor
-        found = solve_contact(self.contact, self.oil, condition, settings=settings)
-        g = self.groups(load, speed)
-        formula = float(rolling_force_biboulet_houpert_2010(self.contact, g))
-        ratio = found.whole_rolling_force / formula
-        return {
-            'load_N': load,
-            'speed_rad_s': rpm * RPM,
-            'moes_load': float(g.moes_load),
-            'domain_over_formula': found.rolling_force / formula,
-            'smooth_over_formula': ratio,
-            'rough_over_formula': law_of(self.screw).contact('screw', *place).loss_factor * ratio,
-        }
+    @cached_property
+    def waves(self) -> list[tuple[float, float]]:
+        """Return what is left of waves by pure rolling, and by the published curve [-]."""
+        return [_wave(self, length) for length in WAVES]
 
     def groups(self, load: float, speed: float) -> Groups:
         """Return the groups of the contact at a normal force [N] and an entrainment [m/s]."""
         oil = self.oil
         return groups(self.contact, load, speed, oil.viscosity, oil.pressure_viscosity)
 
-    @cached_property
-    def waves(self) -> list[tuple[float, float]]:
-        """Return what is left of waves by pure rolling, and by the published curve [-]."""
-        return [self._wave(length) for length in WAVES]
 
-    def _wave(self, length: float) -> tuple[float, float]:
-        """Return the same for one wave, its length over the half length of the contact [-]."""
-        strip = strip_at(self.contact, self.load, 0.0, 1e-5, 4)
-        given = strip.line, WAVE_SPEED, self.oil.viscosity, self.oil.pressure_viscosity
-        height = WAVE_HEIGHT * float(central_film_line(*given))
-        number = 2 * math.pi / (length * strip.semi_axis)
-        march = march_strip(
-            strip,
-            self.oil,
-            WAVE_SPEED,
-            lambda x, y: height * np.cos(number * x) + 0 * y,
-            transits=2.0,
-            settings=MarchSettings(nx=129, places=1, film_floor=1e-10),
-        )
-        curve = amplitude_reduction_venner_1997(length, 1.0, *moes_line(*given))
-        return math.sqrt(2) * float(march.centre_films.std()) / height, float(curve)
+def rolling_force(
+    case: ValidationCase, load: float, rpm: float, settings: Settings = PRODUCTION
+) -> dict[str, float]:
+    """Return the rolling force at a normal force [N] and a screw speed [rev/min]."""
+    speed = no_slip_rates(case.screw).entrainment * rpm * RPM
+    condition = Condition(load=load, entrainment_speed=speed)
+    place = case.contact, condition, case.oil, case.lubricant.film_floor
+    found = solve_contact(case.contact, case.oil, condition, settings=settings)
+    g = case.groups(load, speed)
+    formula = float(rolling_force_biboulet_houpert_2010(case.contact, g))
+    ratio = found.whole_rolling_force / formula
+    return {
+        'load_N': load,
+        'speed_rad_s': rpm * RPM,
+        'moes_load': float(g.moes_load),
+        'domain_over_formula': found.rolling_force / formula,
+        'smooth_over_formula': ratio,
+        'rough_over_formula': law_of(case.screw).contact('screw', *place).loss_factor * ratio,
+    }
+
+
+def _wave(case: ValidationCase, length: float) -> tuple[float, float]:
+    """Return what is left of a wave, its length over the half length of the contact [-]."""
+    strip = strip_at(case.contact, case.load, 0.0, 1e-5, 4)
+    given = strip.line, WAVE_SPEED, case.oil.viscosity, case.oil.pressure_viscosity
+    height = WAVE_HEIGHT * float(central_film_line(*given))
+    number = 2 * math.pi / (length * strip.semi_axis)
+    settings = MarchSettings(nx=129, places=1, film_floor=1e-10)
+
+    def wave(x: Array, y: Array) -> Array:
+        return height * np.cos(number * x) + 0 * y
+
+    march = march_strip(strip, case.oil, WAVE_SPEED, wave, transits=2.0, settings=settings)
+    curve = amplitude_reduction_venner_1997(length, 1.0, *moes_line(*given))
+    return math.sqrt(2) * float(march.centre_films.std()) / height, float(curve)
 
 
 def wide(width: float) -> Settings:
@@ -187,7 +169,7 @@ def short_wave(case: ValidationCase) -> list[float]:
 
 def film_ratio_at_onset(case: ValidationCase) -> list[float]:
     """Return the film ratio at the onset of a new raceway [-]."""
-    return [case.onset('new')['central_film_m'] / case.screw.composite_rms]
+    return [case.onset['central_film_m'] / case.screw.composite_rms]
 
 
 def load_on_film(case: ValidationCase) -> list[float]:
@@ -198,36 +180,33 @@ def load_on_film(case: ValidationCase) -> list[float]:
     wanted = np.log(np.array(THIN_FILMS) * case.screw.composite_rms)
     speed = np.exp(np.interp(wanted, np.log(film), np.log(speeds)))
     place = case.contact, case.load, case.oil, case.lubricant.film_floor
-    return (1 - law_of(case.raceway('new')).touching('screw', *place, speed)[1]).tolist()
+    return (1 - law_of(case.new).touching('screw', *place, speed)[1]).tolist()
 
 
 def run_in_speeds(case: ValidationCase) -> list[float]:
     """Return the onset after running in over that of a new raceway, over its pressures [-]."""
-    pressures = run_in_range(case.screw)
     place = case.lubricant, 0.0, case.temperature
-    found = onset_over_pressure(case.raceway('new'), *place, pressures)
-    return [speed / case.onset('new')['speed_rad_s'] for speed in found]
+    found = onset_over_pressure(case.new, *place, run_in_range(case.screw))
+    return [speed / case.onset['speed_rad_s'] for speed in found]
 
 
 def run_in_height(case: ValidationCase) -> list[float]:
     """Return by which share running in lowers the rms height of the tiles [-]."""
     new, worn = (
-        np.mean([tile.heights.std() for tile in running_tiles(case.raceway(state), 'screw')])
-        for state in ('new', 'run_in')
+        np.mean([tile.heights.std() for tile in running_tiles(screw, 'screw')])
+        for screw in (case.new, with_raceway(case.screw, state='run_in'))
     )
     return [float(1 - worn / new)]
 
 
 def film_parameter_at_onset(case: ValidationCase) -> list[float]:
     """Return (h_m + f h_c)/Spk at the onset of a new raceway for f of 0 and 1 [-]."""
-    g = case.groups(case.load, case.onset('new')['entrainment_speed_m_s'])
-    films = [
-        float(formula(case.contact, g))
-        for formula in (minimum_film_hamrock_dowson_1977, central_film_hamrock_dowson_1977)
-    ]
-    tiles = running_tiles(case.raceway('new'), 'screw')
-    peaks = float(np.mean([reduced_peak_height(tile.heights) for tile in tiles]))
-    return [films[0] / peaks, sum(films) / peaks]
+    g = case.groups(case.load, case.onset['entrainment_speed_m_s'])
+    least = float(minimum_film_hamrock_dowson_1977(case.contact, g))
+    central = float(central_film_hamrock_dowson_1977(case.contact, g))
+    heights = [tile.heights for tile in running_tiles(case.new, 'screw')]
+    peaks = float(np.mean([reduced_peak_height(one) for one in heights]))
+    return [least / peaks, (least + central) / peaks]
 
 
 def reduced_peak_height(heights: Array) -> float:
@@ -258,13 +237,11 @@ def rough_rolling_over_formula(case: ValidationCase) -> list[float]:
 
 def drag_torque(case: ValidationCase) -> list[float]:
     """Return the friction torque of the contacts at the slower speed [N m]."""
-    found = solve_screw(case.screw, case.lubricant, case.point(SLOW), settings=ISOTHERMAL)
-    return [found.friction_torque]
+    return [case.solved(SLOW, ISOTHERMAL).friction_torque]
 
 
 def torque_table(case: ValidationCase) -> dict[str, float]:
     """Return the friction torque at the faster speed under other laws and inlets [N m]."""
-    given, point = ISOTHERMAL, case.point(FAST)
     oils: dict[str, dict[str, Any]] = {
         'Eyring stress 5 MPa, no limit': {},
         'the same, limiting shear stress 0.08 p': {'limiting_shear_share': 0.08},
@@ -274,22 +251,21 @@ def torque_table(case: ValidationCase) -> dict[str, float]:
         'Newtonian up to 0.05 p': {'eyring_stress': NEWTONIAN, 'limiting_shear_share': 0.05},
         'Newtonian up to 0.08 p': {'eyring_stress': NEWTONIAN, 'limiting_shear_share': 0.08},
     }
+    near, far = (
+        replace(ISOTHERMAL, smooth=replace(ISOTHERMAL.smooth, meniscus_length=length))
+        for length in (0.3e-3, 3e-3)
+    )
     inlets = {
-        f'meniscus at {length} mm': replace(
-            given, smooth=replace(given.smooth, meniscus_length=1e-3 * length)
-        )
-        for length in (0.3, 3.0)
-    } | {
-        'oil across the whole groove': replace(given, smooth=wide(WIDTHS[-1])),
-        'inlet heating': replace(given, inlet_heating=True),
+        'meniscus at 0.3 mm': near,
+        'meniscus at 3.0 mm': far,
+        'oil across the whole groove': replace(ISOTHERMAL, smooth=wide(WIDTHS[-1])),
+        'inlet heating': replace(ISOTHERMAL, inlet_heating=True),
     }
+    point, solved = case.point(FAST), case.solved(FAST, ISOTHERMAL)
     found = {
         name: rebalance_screw(
-            case.screw, replace(case.lubricant, **oil), point, case.solved, settings=given
+            case.screw, replace(case.lubricant, **oil), point, solved, settings=ISOTHERMAL
         )
         for name, oil in oils.items()
-    } | {
-        name: solve_screw(case.screw, case.lubricant, point, settings=settings)
-        for name, settings in inlets.items()
-    }
+    } | {name: case.solved(FAST, settings) for name, settings in inlets.items()}
     return {name: solution.friction_torque for name, solution in found.items()}

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Each trend of the published study beside ours: roughness that stands still, and that rolls.
+Each trend of the published study beside ours, for roughness that stands still and that rolls.
 
 A trend is the course of a number over speed or load. Ours agrees where it takes the reported
 course, in part where it takes that among others.
@@ -9,39 +9,42 @@ course, in part where it takes that among others.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
 import math
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from surrogate.asperities.law import AsperityLaw
-from surrogate.paper.cases import (
-    EFFICIENCY_LOAD,
-    MARK_RPM,
-    OURS,
-    PRELOAD,
-    RELIEVED,
-    ROLLING_RPM,
-    ROUGH_SPEEDS,
-    SLOW,
-    STANDING,
-)
-from surrogate.paper.curves import (
+from surrogate.parameters import Screw
+from surrogate.studies.rows import (
     Along,
+    apparent_friction,
+    Array,
+    contact_speeds,
     crossing,
     Curve,
     curve,
     efficiencies,
     mapped,
+    nut_rows,
     paired_change,
+    screw_speeds,
+    StudyRow,
 )
-from surrogate.paper.marks import counted, REPORTED_FILM
-from surrogate.paper.rows import Array, StudyRow
-from surrogate.parameters import Screw
+from surrogate.studies.tasks import (
+    EFFICIENCY_LOAD,
+    MARK_RPM,
+    OURS,
+    PRELOAD,
+    ROLLING_RPM,
+    SLOW,
+    STANDING,
+)
 from surrogate.surface.aims import EFFICIENCY_TOLERANCE, RCS_LIMIT
 from surrogate.units import MILLI, NANO
 
 Agreement = Literal['yes', 'in part', 'no']
+REPORTED_FILM = 153.0
+"""Central film at 502.65 mm/s and preload only, published for the rough surface [nm]."""
 SAME = 0.02
 """Change that counts as none, over the number itself [-]; of efficiencies their tolerance."""
 ERRORS = 2.0
@@ -49,19 +52,16 @@ ERRORS = 2.0
 DETERMINISTIC = (0.6, 1.2)
 """Film ratios at which published deterministic solutions show contact begin [-]."""
 FALLS, RISES, TURNS = ('falls',), ('rises',), ('falls', 'rises')
-ROUGH: dict[str, Any] = {'kind': 'contact', 'rough': True}
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Reading:
+class Reading(NamedTuple):
     """What one model says of a trend, and whether the study says so too."""
 
     said: str
     agrees: Agreement
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Trend:
+class Trend(NamedTuple):
     """A trend: name, what is reported, and both readings; None where the rows do not tell."""
 
     name: str
@@ -102,13 +102,9 @@ def trend_table(found: Iterable[Trend]) -> str:
         '| trend | published | standing roughness | agrees | rolling roughness | agrees |',
         '|---|---|---|---|---|---|',
     ]
-    for one in found:
-        cells = [
-            cell
-            for reading in (one.standing, one.rolling)
-            for cell in ((reading.said, reading.agrees) if reading else ('', ''))
-        ]
-        lines.append(f'| {" | ".join([one.name, one.published, *cells])} |')
+    for name, published, *readings in found:
+        cells = [cell for reading in readings for cell in reading or ('', '')]
+        lines.append(f'| {" | ".join([name, published, *cells])} |')
     return '\n'.join(lines)
 
 
@@ -148,73 +144,41 @@ def read_course(
     turns = course(values, SAME * np.abs(values) if same is None else same)
     words = tuple(word for word, _ in turns)
     path = [f'{word} to {values[i]:.3g} at {at[i]:g}' for word, i in turns] or ['stays']
-    said = f'{values[0]:.3g} at {at[0]:g} {unit}, {", ".join(path)}{note}'
     part: Agreement = 'in part' if set(words) & set(reported) else 'no'
-    return Reading(said=said, agrees='yes' if words == reported else part)
+    said = f'{values[0]:.3g} at {at[0]:g} {unit}, {", ".join(path)}{note}'
+    return Reading(said, 'yes' if words == reported else part)
 
 
-def apparent_friction(rows: Iterable[StudyRow], case: str = OURS) -> Curve:
-    """Return the friction coefficient that would make all losses by sliding, over speed."""
-    friction, torque, sliding = (
-        screw_speeds(rows, name, case)
-        for name in ('friction_coefficient', 'friction_torque', 'sliding_torque')
-    )
-    return replace(friction, mean=friction.mean * torque.mean / sliding.mean)
+def counted(draws: int) -> str:
+    """Return a number of draws in words."""
+    return 'one draw' if draws == 1 else f'{draws} draws'
 
 
-def screw_speeds(rows: Iterable[StudyRow], name: str, case: str = OURS) -> Curve:
-    """Return a column of the screw under preload over speed."""
-    return curve(rows, 'rpm', name, kind='screw', load=PRELOAD, case=case)
-
-
-def contact_speeds(rows: Iterable[StudyRow]) -> Curve:
-    """Return RCS of a contact with the study's roughness, which stands still, over speed."""
-    near = [row for row in rows if row.rpm in ROUGH_SPEEDS]
-    return curve(near, 'rpm', 'rcs', load=PRELOAD, **ROUGH)
-
-
-def nut_rows(rows: Iterable[StudyRow], nut: str) -> list[StudyRow]:
-    """Return contacts of a nut, those under preload for either, as a case of its own."""
-    case = OURS if nut == 'loaded' else RELIEVED
-    return [
-        replace(row, case=OURS)
-        for row in rows
-        if row.kind == 'contact'
-        and (row.case == case or (row.case == OURS and row.load == PRELOAD))
-    ]
-
-
-def _ensemble(
-    rows: list[StudyRow], name: str, rpm: float, reported: tuple[str, ...], factor: float = 1.0
-) -> Reading | None:
+def _ensemble(rows: list[StudyRow], name: str, rpm: float, factor: float = 1.0) -> Reading | None:
     """Return the course of rough contacts over load; errors are those of changes draw by draw."""
     wanted: dict[str, Any] = {'rpm': rpm, 'rough': True}
     found = curve(rows, 'load', name, **wanted)
     errors = [paired_change(rows, name, 'load', PRELOAD, load, **wanted)[1] for load in found.at]
-    same = np.maximum(SAME * np.abs(found.mean), ERRORS * np.nan_to_num(errors))
+    same = factor * np.maximum(SAME * np.abs(found.mean), ERRORS * np.nan_to_num(errors))
     note = f' ({rpm:g} rev/min, one contact, {counted(found.draws)})'
-    return read_course(found.at, factor * found.mean, reported, 'N', factor * same, note)
+    return read_course(found.at, factor * found.mean, RISES, 'N', same, note)
 
 
 def _contact_ends(screw: Screw, law: AsperityLaw, rows: list[StudyRow]) -> Trend:
     """Return the speeds at which contact ends, and the film ratios there."""
-    film, rolling = (screw_speeds(rows, name) for name in ('central_film', 'rcs'))
-    one, whole = contact_speeds(rows), screw_speeds(rows, 'rcs', STANDING)
-    standing = [
-        _end(screw, film, one, ' (one contact, roughness of the study)'),
-        _end(screw, film, whole, ' (screw, Rq by the standard)'),
-    ]
-    known = [reading for reading in standing if reading]
-    both = Reading(
-        said='; '.join(reading.said for reading in known),
-        agrees='yes' if all(reading.agrees == 'yes' for reading in known) else 'no',
+    film, whole = (screw_speeds(rows, name) for name in ('central_film', 'rcs'))
+    stands = (
+        _end(screw, film, contact_speeds(rows), ' (one contact, roughness of the study)'),
+        _end(screw, film, screw_speeds(rows, 'rcs', STANDING), ' (screw, Rq by the standard)'),
     )
+    known = [one for one in stands if one]
+    agrees: Agreement = 'yes' if all(one.agrees == 'yes' for one in known) else 'no'
     return Trend(
-        name=f'contact at higher speeds: RCS passes {RCS_LIMIT:g}, preload only',
-        published='higher; deterministic solutions begin at film ratios of '
+        f'contact at higher speeds: RCS passes {RCS_LIMIT:g}, preload only',
+        'higher; deterministic solutions begin at film ratios of '
         f'{DETERMINISTIC[0]:g} to {DETERMINISTIC[1]:g}',
-        standing=both if known else None,
-        rolling=_end(screw, film, rolling, f', standard deviation {100 * law.deviation:.0f} %'),
+        Reading('; '.join(one.said for one in known), agrees) if known else None,
+        _end(screw, film, whole, f', standard deviation {100 * law.deviation:.0f} %'),
     )
 
 
@@ -226,37 +190,38 @@ def _end(screw: Screw, film: Curve, rcs: Curve, note: str) -> Reading | None:
     ratio = float(np.interp(speed, film.at, film.mean)) / screw.roughness.rms
     inside = DETERMINISTIC[0] <= ratio <= DETERMINISTIC[1]
     said = f'{speed:.3g} rev/min, film ratio {ratio:.3g}{note}'
-    return Reading(said=said, agrees='yes' if inside else 'no')
+    return Reading(said, 'yes' if inside else 'no')
 
 
 def _over_speed(screw: Screw, rows: list[StudyRow]) -> list[Trend]:
     """Return the courses over speed."""
-    contact = contact_speeds(rows)
+    contact, rolling = contact_speeds(rows), screw_speeds(rows, 'rcs')
     note = f' (one contact, {counted(contact.draws)})'
-    rolling = screw_speeds(rows, 'rcs')
     found = [
         Trend(
-            name='RCS, preload only',
-            published='falls',
-            standing=read_course(contact.at, contact.mean, FALLS, 'rev/min', note=note),
-            rolling=read_course(rolling.at, rolling.mean, FALLS, 'rev/min'),
+            'RCS, preload only',
+            'falls',
+            read_course(contact.at, contact.mean, FALLS, 'rev/min', note=note),
+            read_course(rolling.at, rolling.mean, FALLS, 'rev/min'),
         )
     ]
-    for name, column, factor in (
-        ('friction torque [mN m], preload only', 'friction_torque', MILLI),
-        ('friction coefficient of the sliding, preload only', 'friction_coefficient', 1.0),
+    torque, friction = (
+        [screw_speeds(rows, name, case) for case in (STANDING, OURS)]
+        for name in ('friction_torque', 'friction_coefficient')
+    )
+    for name, factor, curves in (
+        ('friction torque [mN m], preload only', MILLI, torque),
+        ('friction coefficient of the sliding, preload only', 1.0, friction),
+        (
+            'friction coefficient, all losses taken as sliding',
+            1.0,
+            [apparent_friction(rows, case) for case in (STANDING, OURS)],
+        ),
     ):
-        curves = [screw_speeds(rows, column, case) for case in (STANDING, OURS)]
-        found.append(_turning(name, [replace(one, mean=factor * one.mean) for one in curves]))
-    apparent = [apparent_friction(rows, case) for case in (STANDING, OURS)]
-    found.append(_turning('friction coefficient, all losses taken as sliding', apparent))
+        both = [read_course(one.at, factor * one.mean, TURNS, 'rev/min') for one in curves]
+        found.append(Trend(name, 'falls, then rises', *both))
     name = f'efficiency over speed, {EFFICIENCY_LOAD:g} N'
     return [*found, _efficiency(screw, rows, name, 'rpm', load=EFFICIENCY_LOAD)]
-
-
-def _turning(name: str, found: list[Curve]) -> Trend:
-    standing, rolling = (read_course(one.at, one.mean, TURNS, 'rev/min') for one in found)
-    return Trend(name=name, published='falls, then rises', standing=standing, rolling=rolling)
 
 
 def _efficiency(
@@ -266,48 +231,31 @@ def _efficiency(
     readings = []
     for case in (STANDING, OURS):
         points = mapped(rows, case=case, **wanted)
-        eta = efficiencies(screw, points)
         at = np.array([getattr(row, along) for row in points])
-        same = np.full(len(eta), EFFICIENCY_TOLERANCE)
+        same = np.full(len(at), EFFICIENCY_TOLERANCE)
         unit = 'rev/min' if along == 'rpm' else 'N'
-        readings.append(read_course(at, eta, RISES, unit, same))
-    return Trend(name=name, published='rises', standing=readings[0], rolling=readings[1])
+        readings.append(read_course(at, efficiencies(screw, points), RISES, unit, same))
+    return Trend(name, 'rises', *readings)
 
 
 def _over_load(screw: Screw, rows: list[StudyRow]) -> list[Trend]:
-    """Return the courses over the axial load."""
-    name = f'efficiency over load, {MARK_RPM:g} rev/min'
-    found = [_efficiency(screw, rows, name, 'load', rpm=MARK_RPM)]
-    for nut in ('loaded', 'relieved'):
-        points = mapped(rows, case=OURS, rpm=ROLLING_RPM)
-        at = np.array([row.load for row in points])
-        rcs = np.array([getattr(row, f'rcs_{nut}') for row in points])
-        found.append(
-            Trend(
-                name=f'RCS over load, {nut} nut',
-                published='rises',
-                standing=_ensemble(nut_rows(rows, nut), 'rcs', SLOW, RISES),
-                rolling=read_course(at, rcs, RISES, 'N', note=f' ({ROLLING_RPM:g} rev/min)'),
-            )
-        )
-    return [*found, *_film_over_load(rows)]
-
-
-def _film_over_load(rows: list[StudyRow]) -> list[Trend]:
-    """Return the film over load; where the roughness rolls it is that of the smooth contact."""
-    found = []
-    for nut in ('loaded', 'relieved'):
+    """Return the courses over load; the film of rolling roughness is that of smooth contacts."""
+    name, nuts = f'efficiency over load, {MARK_RPM:g} rev/min', ('loaded', 'relieved')
+    points, note = mapped(rows, case=OURS, rpm=ROLLING_RPM), f' ({ROLLING_RPM:g} rev/min)'
+    at = np.array([row.load for row in points])
+    shares, films = [], []
+    for nut in nuts:
         some = nut_rows(rows, nut)
+        rcs = np.array([getattr(row, f'rcs_{nut}') for row in points])
+        rolling = read_course(at, rcs, RISES, 'N', note=note)
+        standing = _ensemble(some, 'rcs', SLOW)
+        shares.append(Trend(f'RCS over load, {nut} nut', 'rises', standing, rolling))
         smooth = curve(some, 'load', 'central_film', rpm=MARK_RPM, rough=False)
-        found.append(
-            Trend(
-                name=f'film over load [nm], {nut} nut, 502.65 mm/s',
-                published='rises',
-                standing=_ensemble(some, 'mean_film', MARK_RPM, RISES, NANO),
-                rolling=read_course(smooth.at, NANO * smooth.mean, RISES, 'N'),
-            )
-        )
-    return found
+        rolling = read_course(smooth.at, NANO * smooth.mean, RISES, 'N')
+        standing = _ensemble(some, 'mean_film', MARK_RPM, NANO)
+        title = f'film over load [nm], {nut} nut, 502.65 mm/s'
+        films.append(Trend(title, 'rises', standing, rolling))
+    return [_efficiency(screw, rows, name, 'load', rpm=MARK_RPM), *shares, *films]
 
 
 def _film(rows: list[StudyRow]) -> Trend:
@@ -321,10 +269,6 @@ def _film(rows: list[StudyRow]) -> Trend:
         film, error = NANO * found.mean[0], np.nan_to_num(NANO * found.error[0])
         near = abs(film - REPORTED_FILM) <= max(SAME * REPORTED_FILM, ERRORS * error)
         said = f'{film:.1f}{f" ± {error:.1f}" if error else ""} nm'
-        readings.append(Reading(said=said, agrees='yes' if near else 'no'))
-    return Trend(
-        name='central film, 502.65 mm/s, preload only',
-        published=f'{REPORTED_FILM:.0f} nm',
-        standing=readings[0],
-        rolling=readings[1],
-    )
+        readings.append(Reading(said, 'yes' if near else 'no'))
+    name = 'central film, 502.65 mm/s, preload only'
+    return Trend(name, f'{REPORTED_FILM:.0f} nm', *readings)

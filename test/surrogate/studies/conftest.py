@@ -3,7 +3,7 @@
 """The record of all comparisons, computed once."""
 
 import pytest
-from surrogate.validation.page import validation_record
+from surrogate.studies.validation import validation_record
 
 
 @pytest.fixture(scope='session')

@@ -1,8 +1,9 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Captions and axes of all pictures of the comparison with the published study."""
+"""Captions, axes and lines of all pictures of the comparison with the published study."""
 
 from functools import cache
+from pathlib import Path
 import textwrap
 from typing import Any
 
@@ -11,21 +12,24 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 import numpy as np
 from surrogate.formulas.kinematics import entrainment_speed_paper
-from surrogate.paper.curves import Curve
-from surrogate.paper.rows import Array
+from surrogate.limits import read_text
 from surrogate.parameters import load_screw
+from surrogate.plain_yaml import plain_values
 from surrogate.plotting.style import new_figure, PURPLE
+from surrogate.studies.rows import Curve
 from surrogate.units import MILLI, RPM
 
 WIDTH, CAPTION_LETTERS = 7.2, 118
 """Width [inch] and letters in a line of a caption."""
+DECLARED = plain_values(read_text(Path(__file__).parents[1] / 'data' / 'study_figures.yaml'))
+"""File, height [inch] and caption of each figure by its number."""
 STYLES = ('-', '--', '-.', ':', (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
 
 
-def captioned_figure(height: float, caption: str) -> Figure:
-    """Return an empty figure of a `height` [inch] with a caption below."""
-    figure = new_figure(WIDTH, height)
-    text = textwrap.fill(caption, CAPTION_LETTERS)
+def declared_figure(name: str, **numbers: Any) -> Figure:
+    """Return an empty figure of the study with its caption below, which tells some numbers."""
+    figure = new_figure(WIDTH, DECLARED[name]['height'])
+    text = textwrap.fill(DECLARED[name]['caption'].format(**numbers), CAPTION_LETTERS)
     figure.supxlabel(text, x=0.012, ha='left', fontsize=7.5, color='#333333')
     return figure
 
@@ -42,7 +46,6 @@ def entrainment(rpm: Any) -> Any:
 
 @cache
 def _one_rpm() -> float:
-    """Return the study's entrainment speed [mm/s] of the nominal screw at 1 rev/min."""
     return MILLI * float(entrainment_speed_paper(load_screw('nominal'), RPM))
 
 
@@ -69,22 +72,25 @@ def finish(axes: Axes, letter: str = '', title: str = '', legend: Any = 'best') 
         axes.legend(fontsize=7, loc=legend)
 
 
-def draw_curve(
-    axes: Axes, x: Array, found: Curve, factor: float, *, floor: float = 0.0, **style: Any
+def over_speed(
+    axes: Axes,
+    found: Curve,
+    style: str,
+    colour: str,
+    label: str,
+    *,
+    factor: float = 1.0,
+    floor: float = 0.0,
 ) -> None:
-    """Draw means times a factor, with the standard deviation as a band."""
-    mean = np.maximum(factor * found.mean, floor)
-    axes.plot(x, mean, **style)
+    """Draw means times a factor over speed, the standard deviation as a band; marker and line."""
+    x, mean = entrainment(found.at), np.maximum(factor * found.mean, floor)
+    line: dict[str, Any] = {'marker': style[0], 'linestyle': style[1:], 'markersize': 4}
+    axes.plot(x, mean, color=colour, label=label, **line)
     if np.isfinite(found.deviation).any():
-        low, high = (factor * (found.mean + sign * found.deviation) for sign in (-1, 1))
-        axes.fill_between(
-            x,
-            np.maximum(low, floor),
-            np.maximum(high, floor),
-            color=style.get('color'),
-            alpha=0.15,
-            linewidth=0,
+        low, high = (
+            np.maximum(factor * (found.mean + sign * found.deviation), floor) for sign in (-1, 1)
         )
+        axes.fill_between(x, low, high, color=colour, alpha=0.15, linewidth=0)
 
 
 def limit(axes: Axes, value: float, label: str) -> None:

@@ -1,14 +1,20 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Record of all comparisons in SI units, and its tables in Markdown."""
+"""Published values beside ours: the record of all comparisons, SI units, and its tables."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
+from surrogate.limits import read_text
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.plain_yaml import plain_values
+from surrogate.studies import ours
+from surrogate.studies.ours import FAST, torque_table, ValidationCase
 from surrogate.units import RPM
-from surrogate.validation.ours import FAST, torque_table, ValidationCase
-from surrogate.validation.sources import PUBLISHED, PublishedValue, WITHOUT_NUMBER
+
+PUBLISHED = plain_values(read_text(Path(__file__).parents[1] / 'data' / 'published.yaml'))
+"""Published values, each declared once with its source, and measurements without a number."""
 
 
 def validation_record() -> dict[str, Any]:
@@ -18,27 +24,27 @@ def validation_record() -> dict[str, Any]:
         'screw': case.screw.name,
         'oil': case.lubricant.name,
         'temperature_K': case.temperature,
-        'comparisons': [_compared(case, one) for one in PUBLISHED],
-        'without_number': list(WITHOUT_NUMBER),
+        'comparisons': [_compared(case, value) for value in PUBLISHED['values']],
+        'without_number': PUBLISHED['without_number'],
         'rolling': case.rolling,
         'rolling_over_width': case.rolling_over_width,
         'torque_Nm': torque_table(case),
     }
 
 
-def _compared(case: ValidationCase, one: PublishedValue) -> dict[str, Any]:
-    found = one.ours(case)
-    return {
-        'what': one.what,
-        'source': one.source,
-        'read': one.read,
-        'published': [one.low, one.high],
-        'tolerance': one.tolerance,
-        'ours': found,
-        'unit': one.unit,
-        'verdict': one.verdict(found),
-        'reason': one.reason,
-    }
+def _compared(case: ValidationCase, value: dict[str, Any]) -> dict[str, Any]:
+    found = getattr(ours, value['ours'])(case)
+    whole = {'unit': '', 'tolerance': 0.0, 'comparable': True} | value
+    return whole | {'ours': found, 'verdict': verdict(whole, found)}
+
+
+def verdict(value: Mapping[str, Any], found: Sequence[float]) -> str:
+    """Return whether all of our numbers lie within the published range and its tolerance."""
+    if not value['comparable']:
+        return 'not comparable'
+    low, high = value['published']
+    low, high = low * (1 - value['tolerance']), high * (1 + value['tolerance'])
+    return 'agrees' if all(low <= one <= high for one in found) else 'differs'
 
 
 def validation_page(record: Mapping[str, Any]) -> str:

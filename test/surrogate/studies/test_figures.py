@@ -7,18 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from surrogate.asperities.law import AsperityLaw
-from surrogate.paper.cases import MAP_LOADS, NEEDS, PRELOAD, SMOOTH, SPEEDS, StudyTask, tasks
-from surrogate.paper.marks import marks, table
-from surrogate.paper.report import report
-from surrogate.paper.rows import ContactFields, fields_path, StudyRow, write_fields
-from surrogate.paper.study import Study
-from surrogate.paper.trends import trends
 from surrogate.parameters import load_screw
+from surrogate.studies.readings import trends
+from surrogate.studies.report import marks, report, table
+from surrogate.studies.rows import row_of
+from surrogate.studies.solve import Study
+from surrogate.studies.tasks import FIGURES, MAP_LOADS, PRELOAD, SMOOTH, SPEEDS, StudyTask, tasks
 
-figures = pytest.importorskip('surrogate.paper.figures_set')
-maps = pytest.importorskip('surrogate.paper.figures_map')
-screws = pytest.importorskip('surrogate.paper.figures_screw')
-entrainment = pytest.importorskip('surrogate.paper.figures').entrainment
+figures = pytest.importorskip('surrogate.studies.figures')
+maps = pytest.importorskip('surrogate.studies.map_figures')
+screws = pytest.importorskip('surrogate.studies.screw_figures')
+entrainment = pytest.importorskip('surrogate.studies.drawing').entrainment
 
 SCREW, LAW = load_screw('nominal'), AsperityLaw(onsets={}, deviation=0.16)
 UNITS = ('[-]', '[mm/s]', '[mN m]', '[nm]', '[N]', '[GPa]', '[µm]', '[rev/min]')
@@ -28,14 +27,10 @@ def made_up(task):
     """Return a row with numbers of the right size: friction falls, then rises with speed."""
     slow = 1 / (1 + (task.rpm / 8) ** 4)
     torque = 0.02 + 0.07 * slow + 1e-4 * task.rpm
-    return StudyRow(
-        inputs='made up',
-        kind=task.kind,
-        case=task.case,
-        rpm=task.rpm,
-        load=task.load,
-        draw=task.draw,
-        status='CONVERGED',
+    return row_of(
+        task,
+        'made up',
+        'CONVERGED',
         normal_force=27.6,
         entrainment_speed=1e-3 * float(entrainment(task.rpm)),
         central_film=1e-8 * task.rpm**0.5 * (1 + 0.01 * task.draw),
@@ -59,37 +54,36 @@ def made_up(task):
 
 
 @pytest.fixture(scope='module')
-def study(tmp_path_factory):
+def study():
     """Return a study of six draws with the same small fields for every picture."""
-    folder = tmp_path_factory.mktemp('study')
     x, y = np.linspace(-90e-6, 60e-6, 31), np.linspace(-450e-6, 450e-6, 21)
-    wanted = tasks(tuple(NEEDS), 6)
-    for task in wanted:
-        if task.fields:
-            places = y if task.fields == 'map' else y[10:11]
-            write_fields(fields_path(folder, 'made up', task.key), hump(x, places))
-    rows = {task.key: made_up(task) for task in wanted}
-    return Study(rows=rows, folder=folder, inputs='made up')
+    wanted = tasks(FIGURES, 6)
+    fields = {
+        task.key: hump(x, y if task.fields == 'map' else y[10:11])
+        for task in wanted
+        if task.fields
+    }
+    return Study(rows={task.key: made_up(task) for task in wanted}, fields=fields)
 
 
 def hump(x, y):
     """Return fields of a contact with an asperity in the middle."""
     inside = np.maximum(1 - (x[:, None] / 40e-6) ** 2 - (y[None, :] / 360e-6) ** 2, 0)
-    return ContactFields(
-        x=x,
-        y=y,
-        semi_axis_x=40e-6,
-        semi_axis_y=360e-6,
-        hertz_pressure=0.9e9,
-        film_pressure=0.8e9 * np.sqrt(inside),
-        asperity_pressure=np.where(inside > 0.9, 1e9, 0.0),
-        film=4e-9 + 1e-7 * (1 - inside),
-        heights=1e-7 * inside,
-    )
+    return {
+        'x': x,
+        'y': y,
+        'semi_axis_x': 40e-6,
+        'semi_axis_y': 360e-6,
+        'hertz_pressure': 0.9e9,
+        'film_pressure': 0.8e9 * np.sqrt(inside),
+        'asperity_pressure': np.where(inside > 0.9, 1e9, 0.0),
+        'film': 4e-9 + 1e-7 * (1 - inside),
+        'heights': 1e-7 * inside,
+    }
 
 
-def test_all_pictures_are_written(study):
-    paths = list(figures.draw_figures(study, tuple(NEEDS)))
+def test_all_pictures_are_written(study, tmp_path):
+    paths = list(figures.draw_figures(study, FIGURES, tmp_path))
     assert [path.name for path in paths] == [
         'paper_04_surface.png',
         'paper_06b_torque.png',
@@ -104,29 +98,23 @@ def test_all_pictures_are_written(study):
     ]
     for path in paths:
         assert path.read_bytes().startswith(b'\x89PNG')
-    assert not list(study.folder.glob('*.partial'))
+    assert len(list(tmp_path.iterdir())) == len(paths)
 
 
-@pytest.mark.parametrize('name', tuple(NEEDS))
+@pytest.mark.parametrize('name', FIGURES)
 def test_axes_say_quantity_and_unit(study, name):
-    for draw in figures._pictures(study, name, None).values():
-        figure = draw()
-        labels = [
-            label
-            for axes in figure.axes
-            for label in (axes.get_xlabel(), axes.get_ylabel())
-            if label
-        ]
-        assert len(labels) >= 2
-        for label in labels:
-            assert label.split(',')[0].endswith(UNITS), label
-        assert len(figure.get_supxlabel()) > 60
+    figure = figures.pictures(study)[name]()
+    labels = [
+        label for axes in figure.axes for label in (axes.get_xlabel(), axes.get_ylabel()) if label
+    ]
+    assert len(labels) >= 2
+    for label in labels:
+        assert label.split(',')[0].endswith(UNITS), label
+    assert len(figure.get_supxlabel()) > 60
 
 
 def test_torque_with_measurements(study):
-    measured = screws.MeasuredTorque(
-        rpm=np.array([100.0]), torque=np.array([0.05]), deviation=np.array([0.01])
-    )
+    measured = np.array([100.0]), np.array([0.05]), np.array([0.01])
     axes = screws.figure_torque(list(study.rows.values()), measured).axes[0]
     lines = {line.get_label(): line for line in axes.get_lines()}
     for name in ('rolling', 'standing'):
@@ -151,7 +139,7 @@ def test_stribeck_marks_limit_and_film_and_zone_needs_the_map_alone(study):
 
 def test_measurements_are_read_and_refused():
     found = screws.read_measured([{'speed_rev_min': '60', 'torque_Nm': '0.2'}])
-    assert (found.rpm[0], found.torque[0], found.deviation[0]) == (60.0, 0.2, 0.0)
+    assert [values.tolist() for values in found] == [[60.0], [0.2], [0.0]]
     for line in ({'speed': '60', 'torque_Nm': '0.2'}, {'speed_rev_min': 'x', 'torque_Nm': '1'}):
         with pytest.raises(ValueError, match=r'needs numbers|could not convert'):
             screws.read_measured([line])
@@ -167,14 +155,14 @@ def test_maps_meet_their_nodes_and_a_point_that_failed_leaves_a_gap(study):
     ideal = corner.load * SCREW.lead / (2 * np.pi)
     assert eta[-1, 0] == pytest.approx(ideal / (ideal + corner.friction_torque))
     assert (np.diff(eta, axis=0) > 0).all()
-    assert (speed[-1], load[0]) == (pytest.approx(SPEEDS[-1]), pytest.approx(MAP_LOADS[0]))
+    assert (speed[-1], load[0]) == pytest.approx((entrainment(SPEEDS[-1]), MAP_LOADS[0]))
     failed = [
         StudyTask(kind='contact', rpm=600.0, load=PRELOAD).key,
         StudyTask(kind='screw', rpm=SPEEDS[3], load=MAP_LOADS[0]).key,
     ]
     rows = study.rows | {key: replace(study.rows[key], status='STALLED') for key in failed}
     gap = replace(study, rows=rows)
-    figure = figures._pictures(gap, '7', None)['07_smooth_speed']()
+    figure = figures.pictures(gap)['7']()
     labels = figure.axes[0].get_legend_handles_labels()[1]
     assert len(labels) == 4
     assert not [label for label in labels if '600 rev/min' in label]

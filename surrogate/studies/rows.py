@@ -1,24 +1,99 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Curves of the comparison over speed, load and draws: means, changes, crossings."""
+"""
+Rows of the comparison with the published study, and their curves over speed, load and draws.
+
+`inputs` of a row is the beginning of a hash of the datasheets, and of the version of the asperity
+law where that decides what touches.
+
+"""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+import hashlib
 import math
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from surrogate.formulas.geometry import helix_angle
 from surrogate.formulas.load_sharing import nut_forces
 from surrogate.formulas.torque import efficiency, torque_constant_friction
-from surrogate.paper.cases import OURS, SMOOTH
-from surrogate.paper.rows import Array, StudyRow
-from surrogate.parameters import Screw
+from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.closed_form_record import CONSTANT_FRICTION
+from surrogate.studies.tasks import OURS, PRELOAD, RELIEVED, ROUGH_SPEEDS, SMOOTH, StudyTask
 
+Array = NDArray[np.float64]
 Along = Literal['rpm', 'load']
+TASK = ('kind', 'case', 'rpm', 'load', 'draw')
+VERSION = '2'
+"""Of what a row means; other versions are not read."""
 NO_CONTACT = 1e-6
 """RCS that stands for none on logarithmic scales [-]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StudyRow:
+    """
+    One solve; numbers that its kind does not have, or that did not converge, are NaN.
+
+    Task: kind, case, screw speed [rev/min], axial load [N], draw. Contact or worst contact: normal
+    force [N], entrainment speed [m/s], films at the centre, over the inner half of the ellipse and
+    the least [m], largest pressure [Pa], RCS and asperity share [-], mean distance of
+    the asperity load from the centre over the semi-axes [-].
+    Screw: standard deviation of RCS by that of the law, RCS of loaded and relieved nut [-],
+    friction torque and its sliding and rolling part, the sliding part with the central film in
+    Eyring's law, the torque of friction along the track [N m], friction coefficient and its parts
+    from film and asperities [-]. Processor time [s].
+
+    """
+
+    inputs: str
+    kind: str
+    case: str = OURS
+    rpm: float
+    load: float
+    draw: int = SMOOTH
+    status: str = ''
+    normal_force: float = math.nan
+    entrainment_speed: float = math.nan
+    central_film: float = math.nan
+    mean_film: float = math.nan
+    minimum_film: float = math.nan
+    max_pressure: float = math.nan
+    rcs: float = math.nan
+    asperity_share: float = math.nan
+    asperity_distance: float = math.nan
+    rcs_deviation: float = math.nan
+    rcs_loaded: float = math.nan
+    rcs_relieved: float = math.nan
+    friction_torque: float = math.nan
+    sliding_torque: float = math.nan
+    rolling_torque: float = math.nan
+    central_film_torque: float = math.nan
+    track_torque: float = math.nan
+    friction_coefficient: float = math.nan
+    film_coefficient: float = math.nan
+    asperity_coefficient: float = math.nan
+    seconds: float = math.nan
+
+    @property
+    def key(self) -> str:
+        """Name of the task that the row answers."""
+        task: Any = {name: getattr(self, name) for name in TASK}
+        return StudyTask(**task).key
+
+
+def row_of(task: StudyTask, inputs: str, status: str, **numbers: Any) -> StudyRow:
+    """Return the row of a task."""
+    words: Any = {name: getattr(task, name) for name in TASK}
+    return StudyRow(inputs=inputs, status=status, **words, **numbers)
+
+
+def inputs_hash(screw: Screw, lubricant: Lubricant, law: str = '') -> str:
+    """Return the beginning of the hash of datasheets, version of the law and what a row means."""
+    text = repr((VERSION, screw.stated(), lubricant.stated(), law))
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -77,6 +152,37 @@ def _deviation(values: list[float]) -> float:
     return float(np.std(values, ddof=1)) if len(values) > 1 else math.nan
 
 
+def screw_speeds(rows: Iterable[StudyRow], name: str, case: str = OURS) -> Curve:
+    """Return a column of the screw under preload over speed."""
+    return curve(rows, 'rpm', name, kind='screw', load=PRELOAD, case=case)
+
+
+def contact_speeds(rows: Iterable[StudyRow]) -> Curve:
+    """Return RCS of a contact with the study's roughness, which stands still, over speed."""
+    near = [row for row in rows if row.rpm in ROUGH_SPEEDS]
+    return curve(near, 'rpm', 'rcs', kind='contact', load=PRELOAD, rough=True)
+
+
+def nut_rows(rows: Iterable[StudyRow], nut: str) -> list[StudyRow]:
+    """Return contacts of a nut, those under preload for either, as a case of its own."""
+    case = OURS if nut == 'loaded' else RELIEVED
+    return [
+        replace(row, case=OURS)
+        for row in rows
+        if row.kind == 'contact'
+        and (row.case == case or (row.case == OURS and row.load == PRELOAD))
+    ]
+
+
+def apparent_friction(rows: Iterable[StudyRow], case: str = OURS) -> Curve:
+    """Return the friction coefficient that would make all losses by sliding, over speed."""
+    friction, torque, sliding = (
+        screw_speeds(rows, name, case)
+        for name in ('friction_coefficient', 'friction_torque', 'sliding_torque')
+    )
+    return replace(friction, mean=friction.mean * torque.mean / sliding.mean)
+
+
 def paired_change(
     rows: Iterable[StudyRow], name: str, along: Along, first: float, last: float, **wanted: Any
 ) -> tuple[float, float, int]:
@@ -87,12 +193,11 @@ def paired_change(
 
     """
     rows = list(rows)
-    ends = [
+    before, after = (
         {row.draw: getattr(row, name) for row in pick(rows, **{along: place}, **wanted)}
         for place in (first, last)
-    ]
-    common = sorted(set(ends[0]) & set(ends[1]))
-    changes = [ends[1][draw] - ends[0][draw] for draw in common]
+    )
+    changes = [after[draw] - before[draw] for draw in sorted(before.keys() & after.keys())]
     if not changes:
         return math.nan, math.nan, 0
     return float(np.mean(changes)), _deviation(changes) / math.sqrt(len(changes)), len(changes)
@@ -112,12 +217,6 @@ def crossing(found: Curve, limit: float) -> float:
     high, low = np.log(np.maximum(found.mean[[i, i + 1]], NO_CONTACT))
     part = (high - math.log(limit)) / (high - low)
     return float(found.at[i] * (found.at[i + 1] / found.at[i]) ** part)
-
-
-def lowest(found: Curve) -> tuple[float, float]:
-    """Return place and value of the least mean."""
-    i = int(np.argmin(found.mean))
-    return float(found.at[i]), float(found.mean[i])
 
 
 def efficiencies(screw: Screw, rows: Iterable[StudyRow], column: str = 'friction_torque') -> Array:

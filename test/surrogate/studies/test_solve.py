@@ -5,7 +5,7 @@
 from dataclasses import replace
 
 import pytest
-from surrogate.paper.raceway import published_patch
+from surrogate.studies.solve import published_patch
 
 
 def test_the_patch_belongs_to_the_draw_and_stays_where_the_preload_vanishes(screw):

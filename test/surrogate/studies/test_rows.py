@@ -8,11 +8,12 @@ import math
 import numpy as np
 import pytest
 from surrogate.asperities.law import VERSION
-from surrogate.paper import curves
-from surrogate.paper.cases import NEEDS, SHORT, SMOOTH, STANDING, StudyTask, tasks
-from surrogate.paper.rows import inputs_hash, read_rows, StudyRow, write_rows
-from surrogate.paper.study import known_inputs, run_study
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.studies import rows as curves
+from surrogate.studies.rows import inputs_hash, StudyRow
+from surrogate.studies.solve import known_inputs, run_study
+from surrogate.studies.tasks import FIGURES, SHORT, SMOOTH, STANDING, StudyTask, tasks
+from surrogate.tasks.table import read_table, write_table
 from surrogate.tasks.workers import open_pool
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
@@ -21,7 +22,7 @@ BASE = StudyRow(inputs='a', kind='contact', rpm=5.0, load=0.0, draw=0, status='C
 
 def test_every_task_is_asked_once_and_more_draws_are_more_rough_contacts(refused):
     """Figures share their solves; the whole screw rolls without draws, but for one."""
-    wanted = tasks(tuple(NEEDS), 6)
+    wanted = tasks(FIGURES, 6)
     assert len({task.key for task in wanted}) == len(wanted)
     first = next(task for task in wanted if (task.rpm, task.load, task.draw) == (5.0, 0.0, 0))
     assert first.fields == 'map'
@@ -37,20 +38,17 @@ def test_every_task_is_asked_once_and_more_draws_are_more_rough_contacts(refused
 
 
 def test_rows_come_back_by_their_key_and_broken_tables_are_refused(tmp_path, refused):
-    """NaN, negative draws and names with blanks included; rows of other inputs are left."""
-    rows = [BASE, replace(BASE, draw=SMOOTH, case=SHORT, load=500.0), replace(BASE, inputs='b')]
-    write_rows(tmp_path / 'paper.csv', rows)
-    found = read_rows(tmp_path / 'paper.csv', {'a'})
-    assert list(found) == [BASE.key, rows[1].key]
-    first = found[BASE.key]
+    """NaN, negative draws and names with blanks included."""
+    rows, path = [BASE, replace(BASE, draw=SMOOTH, case=SHORT, load=500.0)], tmp_path / 'paper.csv'
+    write_table(path, StudyRow, rows, digits=6)
+    first, second = read_table(path, StudyRow)
+    assert (first.key, second.key) == (BASE.key, rows[1].key)
     assert (first.rcs, first.draw, first.status) == (0.1, 0, 'CONVERGED')
     assert math.isnan(first.friction_torque)
-    assert [path.name for path in tmp_path.iterdir()] == ['paper.csv']
     task = StudyTask(kind='contact', rpm=5.0, load=0.0, draw=0)
     assert task.key == BASE.key == 'contact_ours_5rpm_0N_draw0'
-    (tmp_path / 'paper.csv').write_text('inputs,kind,rpm\na,contact,fast\n')
-    refused('paper_cannot_read', read_rows, tmp_path / 'paper.csv')
-    assert read_rows(tmp_path / 'none.csv') == {}
+    path.write_text('inputs,kind,rpm\na,contact,fast\n')
+    refused('paper_cannot_read', read_table, path, StudyRow)
 
 
 def test_another_screw_is_another_study():
@@ -64,24 +62,21 @@ def test_another_screw_is_another_study():
 
 
 def test_a_study_goes_on_where_it_stopped(tmp_path):
-    """What is kept is not solved again; fields that were removed are written again."""
+    """What is kept is not solved again, and has its fields."""
     wanted = tasks(('7',), 1)
     told = []
     with open_pool(1) as pool:
-        run_study(tmp_path, wanted[:2], pool, lambda *now: told.append(now[:3]))
-        assert told == [(1, 2, 0.5), (2, 2, 1.0)]
+        run_study(tmp_path, wanted[:2], pool, lambda *now: told.append(now))
+        assert told == [(1, 2), (2, 2)]
         told.clear()
         study = run_study(tmp_path, wanted[:2], pool, lambda *now: told.append(now))
         assert not told
         assert list(study.rows) == [task.key for task in wanted[:2]]
-        assert study.fields(wanted[0].key).film.shape == (257, 1)
-        next(tmp_path.rglob('*.npz')).unlink()
-        run_study(tmp_path, wanted[:2], pool, lambda *now: told.append(now))
-        assert not told
-        assert len(list(tmp_path.rglob('*.npz'))) == 2
+        assert np.shape(study.fields[wanted[0].key]['film']) == (257, 1)
         run_study(tmp_path, wanted[1:3], pool, lambda *now: told.append(now))
         assert len(told) == 1
-    assert list(read_rows(tmp_path / 'paper.csv')) == [task.key for task in wanted[:3]]
+    rows = read_table(tmp_path / 'paper.csv', StudyRow)
+    assert [row.key for row in rows] == [task.key for task in wanted[1:3]]
 
 
 def test_mean_and_spread_over_draws():
@@ -114,7 +109,6 @@ def test_crossing_by_logarithms_and_the_map_is_a_grid():
     assert curves.crossing(line([10.0, 40.0], [0.01, 0.0]), 0.01) == pytest.approx(10.0)
     assert math.isnan(curves.crossing(line([10.0, 40.0], [0.1, 0.02]), 0.01))
     assert math.isnan(curves.crossing(line([10.0, 40.0], [0.001, 0.0]), 0.01))
-    assert curves.lowest(line([1.0, 2.0, 3.0], [5.0, 4.0, 6.0])) == (2.0, 4.0)
     rows = [
         replace(BASE, kind='screw', load=load, rpm=rpm, rcs=load * rpm)
         for load in (50.0, 100.0)

@@ -1,0 +1,243 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of the screw beside the study: torque (6b), Stribeck and film (11), trends."""
+
+from collections.abc import Sequence
+import math
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+import numpy as np
+from surrogate.asperities.law import AsperityLaw
+from surrogate.parameters import Screw
+from surrogate.plotting.style import BLUE, GREEN, GREY, PURPLE, VERMILION
+from surrogate.studies.drawing import (
+    declared_figure,
+    entrainment,
+    finish,
+    limit,
+    over_speed,
+    speed_axis,
+)
+from surrogate.studies.readings import REPORTED_FILM
+from surrogate.studies.rows import (
+    apparent_friction,
+    Array,
+    constant_friction_efficiency,
+    contact_speeds,
+    curve,
+    efficiencies,
+    mapped,
+    NO_CONTACT,
+    nut_rows,
+    pick,
+    screw_speeds,
+    StudyRow,
+)
+from surrogate.studies.tasks import (
+    EFFICIENCY_LOAD,
+    MARK_RPM,
+    OURS,
+    PRELOAD,
+    ROLLING_RPM,
+    SHORT,
+    SLOW,
+    STANDING,
+)
+from surrogate.surface.aims import EFFICIENCY_LIMIT, RCS_LIMIT
+from surrogate.units import MILLI, NANO
+
+ROUGHNESS = 120.0
+"""Rq of the published screw [nm]."""
+MARK_SPEED = 502.65
+"""Entrainment speed of the published central film [mm/s]."""
+ROLLS: dict[str, Any] = {'color': 'black', 'marker': 'o', 'markersize': 4}
+STANDS: dict[str, Any] = {'color': GREY, 'marker': 'v', 'ls': '--', 'markersize': 4}
+STUDY: dict[str, Any] = {'color': GREEN, 'marker': 's', 'markersize': 4}
+STATISTICAL: dict[str, Any] = {'color': VERMILION, 'ls': '-.'}
+Rows = Sequence[StudyRow]
+Measured = tuple[Array, Array, Array]
+"""Measured speeds [rev/min], torque and its standard deviation [N m]."""
+
+
+def read_measured(lines: Sequence[dict[str, str]]) -> Measured:
+    """
+    Return measurements from the lines of a CSV.
+
+    Columns speed_rev_min, torque_Nm and, if known, deviation_Nm; raises KeyError or ValueError.
+
+    """
+    names = ('speed_rev_min', 'torque_Nm', 'deviation_Nm')
+    rpm, torque, deviation = (
+        np.array([float(line.get(name) or 'nan') for line in lines]) for name in names
+    )
+    if not len(lines) or not (np.isfinite([rpm, torque]).all() and (rpm > 0).all()):
+        raise ValueError('needs numbers in speed_rev_min, above 0, and torque_Nm')
+    return rpm, torque, np.nan_to_num(deviation)
+
+
+def figure_torque(rows: Rows, measured: Measured | None = None) -> Figure:
+    """Return the friction torque over entrainment speed, with measurements if given (6b)."""
+    torque = screw_speeds(rows, 'friction_torque')
+    least = int(np.argmin(torque.mean))
+    figure = declared_figure('6b', least=MILLI * torque.mean[least], rpm=torque.at[least])
+    axes = figure.subplots()
+    for column, case, *style in (
+        ('friction_torque', OURS, 'o-', 'black', 'friction torque, rolling roughness'),
+        ('sliding_torque', OURS, 's--', VERMILION, 'sliding'),
+        ('rolling_torque', OURS, '^-.', BLUE, 'rolling losses'),
+        ('friction_torque', STANDING, 'v:', GREY, 'friction torque, standing roughness'),
+    ):
+        over_speed(axes, screw_speeds(rows, column, case), *style, factor=MILLI)
+    if measured is not None:
+        rpm, mean, deviation = measured
+        bar: dict[str, Any] = {'yerr': MILLI * deviation, 'capsize': 3, 'markersize': 4}
+        x, y = entrainment(rpm), MILLI * mean
+        axes.errorbar(x, y, fmt='D', color=GREEN, label='measured', **bar)
+    axes.set(ylabel='friction torque [mN m]', ylim=(0, None))
+    speed_axis(axes)
+    finish(axes)
+    return figure
+
+
+def figure_stribeck(law: AsperityLaw, rows: Rows) -> Figure:
+    """Return Stribeck curve, load shares and film over entrainment speed (11)."""
+    figure = declared_figure('11')
+    first, second, third = figure.subplots(3, 1, sharex=True)
+    friction, standing = (
+        screw_speeds(rows, 'friction_coefficient', case) for case in (OURS, STANDING)
+    )
+    for found, *style in (
+        (friction, 'o-', 'black', 'friction coefficient'),
+        (screw_speeds(rows, 'asperity_coefficient'), 's--', VERMILION, 'asperity share'),
+        (screw_speeds(rows, 'film_coefficient'), '^-.', BLUE, 'film share'),
+        (apparent_friction(rows), 'D:', PURPLE, 'all losses taken as sliding'),
+        (standing, 'v:', GREY, 'friction coefficient, standing'),
+    ):
+        over_speed(first, found, *style)
+    first.set(ylabel='friction coefficient [-]', ylim=(0, 0.2))
+    _draw_shares(second, law, rows)
+    film = screw_speeds(rows, 'central_film')
+    over_speed(third, film, 'o-', 'black', 'central film', factor=NANO)
+    _mark_films(third)
+    for axes, letter in zip((first, second, third), 'abc', strict=True):
+        speed_axis(axes, label=axes is third, top=axes is first)
+        finish(axes, letter)
+    return figure
+
+
+def _draw_shares(axes: Axes, law: AsperityLaw, rows: Rows) -> None:
+    """Draw RCS where the roughness rolls, and where it stands still."""
+    rolling = screw_speeds(rows, 'rcs')
+    speed, spread = entrainment(rolling.at), math.exp(law.deviation)
+    share = np.maximum(rolling.mean, NO_CONTACT)
+    axes.fill_betweenx(share, speed / spread, speed * spread, color='0.85', linewidth=0)
+    standing, contact = screw_speeds(rows, 'rcs', STANDING), contact_speeds(rows)
+    for found, *style in (
+        (rolling, 'o-', 'black', 'RCS, rolling roughness'),
+        (standing, 'v:', GREY, 'RCS, standing roughness'),
+        (contact, 's--', GREEN, 'RCS, one contact, standing roughness of the study'),
+    ):
+        over_speed(axes, found, *style, floor=NO_CONTACT)
+    limit(axes, RCS_LIMIT, f'limit {RCS_LIMIT:g}')
+    axes.set(ylabel='share of the load [-]', yscale='log', ylim=(NO_CONTACT, 1.3))
+
+
+def _mark_films(axes: Axes) -> None:
+    """Mark the published film, and film ratios of the published roughness."""
+    label = f'reported, rough: {REPORTED_FILM:.0f} nm at {MARK_SPEED} mm/s'
+    axes.plot(MARK_SPEED, REPORTED_FILM, 'D', color=VERMILION, label=label)
+    for ratio in (1, 3):
+        film = ratio * ROUGHNESS
+        axes.axhline(film, color='0.4', linestyle=':', linewidth=1.0)
+        place: dict[str, Any] = {'xycoords': ('axes fraction', 'data'), 'ha': 'right'}
+        axes.annotate(f'Λ = {ratio}', (0.985, film), fontsize=8, va='bottom', **place)
+    axes.set(ylabel='film [nm]', yscale='log', ylim=(1, 1000))
+
+
+def figure_trends(screw: Screw, rows: Rows) -> Figure:
+    """Return efficiency, film and RCS of rolling and standing roughness and other assumptions."""
+    figure = declared_figure('trends', load=EFFICIENCY_LOAD)
+    panels = figure.subplots(2, 2)
+    _draw_losses(panels[0, 0], screw, rows)
+    _draw_films(panels[0, 1], rows)
+    _draw_speeds(panels[1, 0], rows)
+    _draw_loads(panels[1, 1], rows)
+    return figure
+
+
+def _draw_losses(axes: Axes, screw: Screw, rows: Rows) -> None:
+    """Draw 1 - efficiency over speed; a logarithm shows all rules of friction at once."""
+    rolling, standing = (
+        mapped(rows, load=EFFICIENCY_LOAD, case=case) for case in (OURS, STANDING)
+    )
+    formulas = sorted(pick(rows, kind='formulas', load=EFFICIENCY_LOAD), key=lambda row: row.rpm)
+    for label, found, column, style in (
+        ('rolling', rolling, 'friction_torque', ROLLS),
+        ('standing', standing, 'friction_torque', STANDS),
+        ('rolling, no rolling losses', rolling, 'sliding_torque', {'color': BLUE, 'ls': '--'}),
+        ('statistical, no rolling losses', formulas, 'sliding_torque', STATISTICAL),
+        ('friction along the track', rolling, 'track_torque', {'color': GREEN, 'ls': ':'}),
+    ):
+        speed = entrainment([row.rpm for row in found])
+        axes.plot(speed, 1 - efficiencies(screw, found, column), label=label, **style)
+    constant = 1 - constant_friction_efficiency(screw, EFFICIENCY_LOAD)
+    axes.axhline(constant, color='0.75', linewidth=1.0, label='constant friction 0.005')
+    limit(axes, 1 - EFFICIENCY_LIMIT, 'limit, efficiency 0.85')
+    axes.set(ylabel='1 - efficiency [-]', yscale='log', ylim=(0.008, 30))
+    speed_axis(axes, top=False)
+    finish(axes, 'a', 'losses over speed', legend='upper right')
+
+
+def _draw_films(axes: Axes, rows: Rows) -> None:
+    wanted: dict[str, Any] = {'kind': 'contact', 'rpm': MARK_RPM}
+    for label, column, more, style in (
+        ('smooth, as where it rolls', 'central_film', {'rough': False}, ROLLS),
+        ('standing, inner half, study', 'mean_film', {'rough': True}, STANDS),
+        ('inlet 1.5 half-widths, 0.113 Pa s', 'central_film', {'case': SHORT}, {'color': BLUE}),
+        ('Hamrock-Dowson', 'central_film', {'kind': 'formulas'}, STATISTICAL),
+    ):
+        found = curve(rows, 'load', column, **(wanted | more))
+        axes.plot(found.at, NANO * found.mean, label=label, **style)
+    axes.plot(0, REPORTED_FILM, 'D', color=GREEN, label=f'reported {REPORTED_FILM:.0f} nm')
+    axes.set(ylabel='central film [nm]', xlabel='axial load [N]', ylim=(120, 220))
+    finish(axes, 'b', 'film over load', legend='upper left')
+
+
+def _draw_speeds(axes: Axes, rows: Rows) -> None:
+    for label, found, style in (
+        ('rolling', screw_speeds(rows, 'rcs'), ROLLS),
+        ('standing', screw_speeds(rows, 'rcs', STANDING), STANDS),
+        ('standing, study', contact_speeds(rows), STUDY | {'ls': ':'}),
+        ('statistical', curve(rows, 'rpm', 'rcs', kind='formulas', load=PRELOAD), STATISTICAL),
+    ):
+        axes.plot(entrainment(found.at), np.maximum(found.mean, NO_CONTACT), label=label, **style)
+    limit(axes, RCS_LIMIT, 'limit 0.01')
+    axes.set(ylabel='RCS [-]', yscale='log', ylim=(NO_CONTACT, 2))
+    speed_axis(axes, top=False)
+    finish(axes, 'c', 'RCS over speed', legend='lower left')
+
+
+def _draw_loads(axes: Axes, rows: Rows) -> None:
+    """Draw RCS over that at the least load, which differs by orders between the lines."""
+    rolls: dict[str, Any] = {'kind': 'screw', 'rpm': ROLLING_RPM}
+    stands: dict[str, Any] = {'rpm': SLOW, 'rough': True}
+    formulas: dict[str, Any] = {'kind': 'formulas', 'rpm': MARK_RPM}
+    relieved = {'ls': ':', 'mfc': 'none'}
+    rolling = f'rolling, {ROLLING_RPM:g} rev/min, loaded nut'
+    standing = f'standing, study, {SLOW:g} rev/min, loaded nut'
+    statistical = f'statistical, {MARK_RPM:g} rev/min, loaded nut'
+    same = 'the same, relieved nut'
+    for label, some, column, wanted, style in (
+        (rolling, rows, 'rcs_loaded', rolls, ROLLS),
+        (same, rows, 'rcs_relieved', rolls, ROLLS | relieved),
+        (standing, nut_rows(rows, 'loaded'), 'rcs', stands, STUDY | {'ls': '--'}),
+        (same, nut_rows(rows, 'relieved'), 'rcs', stands, STUDY | relieved),
+        (statistical, rows, 'rcs_loaded', formulas, STATISTICAL),
+    ):
+        found = curve(some, 'load', column, **wanted)
+        axes.plot(found.at, found.mean / found.mean[0], label=label, **style)
+    label = 'RCS over that of the least load [-]'
+    axes.set(ylabel=label, ylim=(0.5, 2.2), xlabel='axial load [N]')
+    finish(axes, 'd', 'RCS over load', legend='upper left')

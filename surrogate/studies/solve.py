@@ -1,0 +1,343 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Tasks of the comparison with the published study, solved and kept.
+
+Contacts are those of the screw side, with the study's entrainment w r_m / 2; the whole screw takes
+the exact one. Every finished task is kept at once in a store beside the table of rows, so that an
+interrupted study goes on where it stopped.
+
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+import math
+from pathlib import Path
+import time
+from typing import Any
+
+import numpy as np
+from surrogate.asperities.law import VERSION
+from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
+from surrogate.ehl.domain import nodes_on_waves
+from surrogate.ehl.friction import contact_friction, ContactFriction
+from surrogate.formulas.film import asperity_share_aihara_1987
+from surrogate.formulas.geometry import hertz, screw_contact
+from surrogate.formulas.kinematics import entrainment_speed_paper
+from surrogate.formulas.load_sharing import normal_force, nut_forces, UNLOADING_RATIO
+from surrogate.parameters import load_lubricant, load_screw, Lubricant, OperatingPoint, Screw
+from surrogate.raceway.fractal import fractal_surface, FractalSurface, PublishedRoughness
+from surrogate.raceway.patch import take_patch, Window
+from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
+from surrogate.screw import closed_form
+from surrogate.screw.ball_motion import slip_floor
+from surrogate.screw.contacts import ACROSS, ScrewSettings
+from surrogate.screw.nut import contact_slip, ScrewContact
+from surrogate.screw.solve import ScrewSolution, solve_screw
+from surrogate.studies.rows import inputs_hash, row_of, StudyRow
+from surrogate.studies.tasks import CASES, SMOOTH, STANDING, StudyTask
+from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
+from surrogate.tasks.store import TaskStore
+from surrogate.tasks.table import read_table, write_table
+from surrogate.units import RPM
+
+SCREW, OIL = 'nominal', 'iso_vg_68'
+"""Datasheets of the published screw."""
+TABLE = 'paper.csv'
+"""Name of the table of rows in the output folder."""
+WORK = 'surrogate.studies.solve 1'
+"""Solver and version of the kept results."""
+WINDOW_SHARE = 0.05
+"""Least axial load whose Hertz rectangle is the window of the patch, over the rating [-]."""
+PUBLISHED = PublishedRoughness()
+"""Constants of the study."""
+NX, NY = 129, 257
+"""Nodes of a rough contact along and least across the track [-]."""
+SHORTEST_ON_GRID = 16e-6
+"""Waves below that raise the film floor [m]."""
+OUTLET, SIDE = 1.5, 1.5
+"""Edges of a domain with a short inlet over the semi-axes [-]."""
+INNER = 0.5
+"""Size of the inner ellipse whose film is averaged, over the Hertz ellipse [-]."""
+Fields = dict[str, Any]
+"""What a picture of a contact needs, SI units: x, y, semi-axes, pressures, film and heights."""
+Numbers = dict[str, float]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Study:
+    """Rows of the asked tasks by key, in their order, and the fields of those that keep them."""
+
+    rows: dict[str, StudyRow]
+    fields: dict[str, Fields]
+
+
+def run_study(
+    folder: Path,
+    wanted: Sequence[StudyTask],
+    pool: Pool,
+    report: Callable[[int, int], None] = lambda done, total: None,
+) -> Study:
+    """
+    Solve the tasks whose results `folder` does not keep yet; return all that were wanted.
+
+    `report` is told after each solve how many are done and how many there are.
+
+    """
+    known = known_inputs()
+    inputs = {task.key: asdict(task) | {'inputs': known[task.rolls]} for task in wanted}
+    left, done = len(wanted), 0
+
+    def count(outcome: TaskOutcome) -> None:  # those that were kept come first
+        nonlocal left, done
+        left -= 1
+        if not outcome.stored:
+            done += 1
+            report(done, done + left)
+
+    with TaskStore(folder / TABLE, WORK) as store:
+        outcomes = run_tasks(pool, solve_plain, inputs, store=store, report=count)
+    rows = [
+        row_of(task, known[task.rolls], outcomes[task.key].sentence)
+        if (result := outcomes[task.key].result) is None
+        else StudyRow(**result['row'])
+        for task in wanted
+    ]
+    write_table(folder / TABLE, StudyRow, rows, digits=6)
+    return Study(
+        # As they stand in the table, so that a report is the same from either.
+        rows={row.key: row for row in read_table(folder / TABLE, StudyRow)},
+        fields={key: one.result['fields'] for key, one in outcomes.items() if one.result},
+    )
+
+
+def known_inputs() -> dict[bool, str]:
+    """Return `inputs` of the rows that the asperity law decides, and of those it does not."""
+    screw, oil = load_screw(SCREW), load_lubricant(OIL)
+    return {True: inputs_hash(screw, oil, VERSION), False: inputs_hash(screw, oil)}
+
+
+def solve_plain(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Solve a task in plain JSON; return its row and, where they are kept, its fields."""
+    words = dict(inputs)
+    known = words.pop('inputs')
+    row, fields = solve_task(load_screw(SCREW), load_lubricant(OIL), StudyTask(**words), known)
+    plain = {name: np.asarray(value).tolist() for name, value in fields.items()}
+    return {'row': asdict(row), 'fields': plain}
+
+
+def solve_task(
+    screw: Screw, lubricant: Lubricant, task: StudyTask, inputs: str
+) -> tuple[StudyRow, Fields]:
+    """Solve one task; return its row and, for a contact that keeps them, its fields."""
+    began = time.process_time()
+    speed = float(entrainment_speed_paper(screw, task.rpm * RPM))
+    fields: Fields = {}
+    if task.kind == 'contact':
+        status, numbers, fields = _contact(screw, lubricant, task, speed)
+    elif task.kind == 'screw':
+        status, numbers = _screw(screw, lubricant, task)
+    else:
+        status, numbers = 'CONVERGED', _formulas(screw, lubricant, task)
+    numbers |= {'entrainment_speed': speed, 'seconds': time.process_time() - began}
+    return row_of(task, inputs, status, **numbers), fields
+
+
+def _taken(found: Any, names: str) -> Numbers:
+    return {name: float(getattr(found, name)) for name in names.split()}
+
+
+def _contact(
+    screw: Screw, lubricant: Lubricant, task: StudyTask, speed: float
+) -> tuple[str, Numbers, Fields]:
+    forces = nut_forces(task.load, screw.preload)
+    force = float(normal_force(screw, forces[CASES[task.case].nut == 'relieved']))
+    solution, surface = solve_patch(screw, lubricant, task, force, speed)
+    numbers: Numbers = {'normal_force': force}
+    if not solution.converged:
+        return solution.status.name, numbers, {}
+    numbers |= _taken(solution, 'central_film minimum_film max_pressure rcs asperity_share')
+    if task.draw == SMOOTH and not math.isnan(solution.extrapolated_film):
+        numbers['central_film'] = solution.extrapolated_film
+    numbers['mean_film'] = float(np.mean(solution.film[solution.distance < INNER]))
+    numbers['asperity_distance'] = asperity_distance(solution)
+    return solution.status.name, numbers, _fields(solution, surface, task.fields)
+
+
+def published_patch(screw: Screw, draw: int) -> FractalSurface:
+    """
+    Return one draw of the published raceway, rescaled once over a window that no load moves.
+
+    The window is the Hertz rectangle on the screw side under the load that relieves the other nut,
+    or under `WINDOW_SHARE` of the static rating where that is larger.
+
+    """
+    force = max(UNLOADING_RATIO * screw.preload, WINDOW_SHARE * screw.static_rating)
+    ellipse = hertz(screw_contact(screw, 'screw'), float(normal_force(screw, force)))
+    window = Window(
+        length_x=2 * float(ellipse.semi_axis_x), length_y=2 * float(ellipse.semi_axis_y)
+    )
+    return take_patch(fractal_surface(PUBLISHED, draw), 'rescaled', window, PUBLISHED.rms)
+
+
+def solve_patch(
+    screw: Screw, lubricant: Lubricant, task: StudyTask, force: float, speed: float
+) -> tuple[ContactSolution, FractalSurface | None]:
+    """
+    Solve the contact of a task under a normal `force` [N] at an entrainment `speed` [m/s].
+
+    Waves of the draw that are too short for the grid raise the film floor, as where the roughness
+    of a screw stands still.
+
+    """
+    case, contact = CASES[task.case], screw_contact(screw, 'screw')
+    oil = ContactLubricant(
+        viscosity=case.viscosity or lubricant.viscosity,
+        pressure_viscosity=lubricant.pressure_viscosity,
+        eyring_stress=lubricant.eyring_stress,
+    )
+    settings = Settings(film_floor=lubricant.film_floor)
+    if case.inlet is not None:
+        domain = (-case.inlet, OUTLET, SIDE)
+        settings = replace(settings, domain=domain, open_inlet=False)
+    condition = Condition(load=force, entrainment_speed=speed)
+    if task.draw == SMOOTH:
+        return solve_contact(contact, oil, condition, settings=settings), None
+    whole = published_patch(screw, task.draw)
+    surface = without_short_waves(whole, SHORTEST_ON_GRID)
+    width = ACROSS * float(hertz(contact, force).semi_axis_y)
+    settings = replace(
+        settings,
+        nx=NX,
+        ny=max(NY, nodes_on_waves(width, surface.shortest_wavelength)),
+        film_floor=settings.film_floor + subgrid_floor(whole, SHORTEST_ON_GRID),
+        error_estimate=False,
+    )
+    found = solve_contact(contact, oil, condition, roughness=surface.heights, settings=settings)
+    return found, surface
+
+
+def asperity_distance(solution: ContactSolution) -> float:
+    """
+    Return the mean distance of the asperity load from the centre over the semi-axes [-].
+
+    NaN without asperity load; 2/3 for an even load over the ellipse, 0.589 for Hertz's.
+
+    """
+    carried = solution.asperity_pressure
+    if not carried.any():
+        return math.nan
+    return float(np.sum(carried * solution.distance) / np.sum(carried))
+
+
+def _fields(solution: ContactSolution, surface: FractalSurface | None, kind: str) -> Fields:
+    """Return all nodes, those of the centre line, or nothing."""
+    if not kind:
+        return {}
+    middle = int(np.argmin(np.abs(solution.y)))
+    columns = slice(None) if kind == 'map' else slice(middle, middle + 1)
+    x, y = solution.x, solution.y[columns]
+    heights = np.zeros((len(x), len(y))) if surface is None else surface.heights(x, y)
+    arrays = {
+        name: getattr(solution, name)[:, columns]
+        for name in ('film_pressure', 'asperity_pressure', 'film')
+    }
+    sizes = _taken(solution, 'semi_axis_x semi_axis_y hertz_pressure')
+    return {'x': x, 'y': y, 'heights': heights} | arrays | sizes
+
+
+def _screw(screw: Screw, lubricant: Lubricant, task: StudyTask) -> tuple[str, Numbers]:
+    """Solve the whole screw in the full tier; the published study is isothermal."""
+    temperature = lubricant.reference_temperature
+    point = OperatingPoint(speed=task.rpm * RPM, load=task.load, temperature=temperature)
+    settings = ScrewSettings(
+        kinematics='standing' if task.case == STANDING else 'rolling', inlet_heating=False
+    )
+    found = solve_screw(screw, lubricant, point, settings=settings)
+    if not found.converged:
+        return found.status, {}
+    touching: dict[str, list[float]] = {'loaded': [], 'relieved': []}
+    for contact in found.contacts:
+        if contact.solved is not None:
+            touching[contact.nut].append(contact.solved.asperities.rcs)
+    names = 'central_film minimum_film rcs asperity_share rcs_deviation friction_torque'
+    return 'CONVERGED', _taken(found, names) | _frictions(screw, found, point.speed) | {
+        'normal_force': found.normal_forces[0],
+        'rcs_loaded': max(touching['loaded']),
+        'rcs_relieved': max(touching['relieved'], default=0.0),
+    }
+
+
+def _frictions(screw: Screw, found: ScrewSolution, speed: float) -> Numbers:
+    """Return the parts of torque and friction coefficient, and both other ways to a torque."""
+    pressed = [contact for contact in found.contacts if contact.motion is not None]
+    local = [_friction(screw, contact, 'local') for contact in pressed]
+    central = [_friction(screw, contact, 'central') for contact in pressed]
+    forces = np.array([contact.ball.normal_force for contact in pressed])
+    balls = screw.loaded_balls_per_nut
+    film, asperity, mean = (
+        float(np.sum(forces * [getattr(one, name) for one in local]) / forces.sum())
+        for name in ('film_coefficient', 'asperity_coefficient', 'coefficient')
+    )
+    on_screw = [
+        force * one.coefficient
+        for force, one, contact in zip(forces, local, pressed, strict=True)
+        if contact.side == 'screw'
+    ]
+    return {
+        'sliding_torque': balls * sum(one.ball.slip_power for one in pressed) / speed,
+        'rolling_torque': balls * sum(one.ball.rolling_power for one in pressed) / speed,
+        'central_film_torque': balls * sum(one.power for one in central) / speed,
+        'track_torque': balls * screw.pitch_radius * float(sum(on_screw)),
+        'friction_coefficient': mean,
+        'film_coefficient': film,
+        'asperity_coefficient': asperity,
+    }
+
+
+def _friction(screw: Screw, contact: ScrewContact, film: Any) -> ContactFriction:
+    """Return the friction of a balanced contact, Eyring's law with the local or central film."""
+    assert contact.solved is not None
+    assert contact.motion is not None
+    pressed = contact.solved.pressed
+    slip_x, slip_y = contact_slip(screw, pressed, contact.side, contact.motion)
+    return contact_friction(
+        pressed,
+        slip_x=slip_x,
+        slip_y=slip_y,
+        asperity_friction=screw.roughness.asperity_friction,
+        asperity_share=contact.solved.friction_share,
+        film=film,
+        slip_floor=slip_floor(screw, contact.motion.screw_speed),
+    )
+
+
+def _formulas(screw: Screw, lubricant: Lubricant, task: StudyTask) -> Numbers:
+    """Take the screw by published formulas, asperities by a statistical share."""
+    found = closed_form.solve(
+        screw,
+        lubricant,
+        task.rpm * RPM,
+        task.load,
+        lubricant.reference_temperature,
+        share_of=asperity_share_aihara_1987,
+        inlet_heating=False,
+    )
+    loaded = found.contacts[0]
+    drag = sum(
+        float(one.friction_coefficient * one.normal_force)
+        for one in found.contacts
+        if one.side == 'screw'
+    )
+    numbers = _taken(found, 'rcs asperity_share friction_torque friction_coefficient')
+    return (
+        numbers
+        | _taken(loaded, 'normal_force central_film minimum_film')
+        | {
+            'rcs_loaded': float(loaded.asperity_share),
+            'rcs_relieved': float(found.contacts[2].asperity_share),
+            'sliding_torque': sum(float(one.sliding_torque) for one in found.contacts),
+            'rolling_torque': sum(float(one.rolling_torque) for one in found.contacts),
+            'track_torque': screw.loaded_balls_per_nut * screw.pitch_radius * drag,
+        }
+    )
