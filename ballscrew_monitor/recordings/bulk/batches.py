@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 import contextlib
 import dataclasses
+import functools
 import itertools
 import operator
 from typing import BinaryIO
@@ -38,6 +39,27 @@ class Batch:
     until: int
     done: float
 
+    def messages(self) -> Iterator[Message]:
+        """Yield the messages in the order of their log times, published when they were logged."""
+        if not self.topics:
+            return
+        names, found = zip(*self.topics.items())
+        which = np.repeat(np.arange(len(found)), [len(each) for each in found])
+        times, place, sequence = (
+            np.concatenate([getattr(each, name) for each in found])
+            for name in ('log_time', 'place', 'sequence')
+        )
+        contents = [content for each in found for content in each.contents()]
+        for at in np.lexsort((place, times)).tolist():
+            time = int(times[at])
+            yield Message(
+                topic=names[which[at]],
+                data=contents[at],
+                log_time=time,
+                publish_time=time,
+                sequence=int(sequence[at]),
+            )
+
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class _Chunk:
@@ -50,6 +72,7 @@ class _Chunk:
     channels: dict[int, str]
 
 
+@functools.singledispatch
 def batches(bag: Bag, topics: Collection[str], *, as_written: bool = False) -> Iterator[Batch]:
     """
     Yield the messages of `topics`, by log time or in the order in which they were written.

@@ -78,6 +78,11 @@ def some(events: Events, which: NDArray[Any]) -> Events:
     return _raw(events)[which].view(EVENT)
 
 
+def repeated(events: Events, count: int) -> Events:
+    """Return events `count` times, one after the other."""
+    return np.tile(_raw(events), count).view(EVENT)
+
+
 def _raw(events: Events) -> NDArray[Any]:
     """Return events as bytes, which numpy copies at once, and fields one after the other."""
     return events.view(np.dtype((np.void, EVENT.itemsize)))

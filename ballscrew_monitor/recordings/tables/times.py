@@ -118,6 +118,11 @@ class Times:
         return int(self._stamps(np.array([self._begin]))[0])
 
     @property
+    def end(self) -> int:
+        """Return the stamp of the last row [ns]."""
+        return int(self._stamps(np.array([self._end]))[0])
+
+    @property
     def usual_period(self) -> float:
         """Return the time between rows [s] that half of them keep."""
         return self._steps.median / SECOND

@@ -20,14 +20,14 @@ def sentence(path, **how):
 
 
 def test_a_bag_is_opened_and_what_is_whole_of_a_damaged_one(short_bag, tmp_path):
-    with opened_log(short_bag) as bag:
-        whole = list(bag.messages())
-        assert not bag.notes
+    bag = opened_log(short_bag)
+    whole = list(bag.messages())
+    assert not bag.notes
     data = (short_bag / 'short.mcap').read_bytes()
     (tmp_path / 'cut.mcap').write_bytes(data[: 3 * len(data) // 4])
-    with opened_log(tmp_path / 'cut.mcap') as bag:
-        assert 0 < len(list(bag.messages())) < len(whole)
-        assert 'is truncated or damaged: used are the' in bag.notes[0]
+    bag = opened_log(tmp_path / 'cut.mcap')
+    assert 0 < len(list(bag.messages())) < len(whole)
+    assert 'is truncated or damaged: used are the' in bag.notes[0]
 
 
 def test_a_table_needs_a_map_and_a_bag_none(short_bag, tmp_path):
@@ -40,10 +40,10 @@ def test_a_table_needs_a_map_and_a_bag_none(short_bag, tmp_path):
     )
     assert 'a table needs a map: ballscrew import' in sentence(table)
     assert 'is a bag, a map is for tables' in sentence(short_bag, mapping=mapping)
-    with opened_log(table, mapping=mapping) as bag:
-        assert bag.path == table
-        assert len(list(bag.messages())) == 4
-        file = bag.files[0]
+    bag = opened_log(table, mapping=mapping)
+    assert bag.path == table
+    assert len(list(bag.messages())) == 4
+    file = bag.files[0]
     assert not file.exists()
 
 
@@ -87,5 +87,5 @@ def test_no_log_at_all(tmp_path, says):
 
 def test_an_unfinished_recording_is_a_log(short_bag, tmp_path):
     shutil.copy(short_bag / 'short.mcap', tmp_path / 'run.mcap.active')
-    with opened_log(tmp_path) as bag:
-        assert len(list(bag.messages())) == len(list(Bag(short_bag).messages()))
+    bag = opened_log(tmp_path)
+    assert len(list(bag.messages())) == len(list(Bag(short_bag).messages()))
