@@ -94,14 +94,15 @@ class AxisRun:
 
     def _state(self, log_time: int, row: records.Row, *, states: bool) -> Iterator[TimedState]:
         """Yield the state of a row if states are wanted, and keep the event that it tells of."""
-        state = self.axis.monitor.state(row)
-        event = state.event
+        monitor = self.axis.monitor
+        event = monitor.event if row.edge else None
         if event is not None:
             self._note(event)
-        elif states:
+        if not states:
+            return
+        if event is None:
             event, self._ended = self._ended, None
-        if states:
-            yield TimedState(log_time, self.axis, state, event)
+        yield TimedState(log_time, self.axis, monitor.state(row), event)
 
     def change(self, axis: Axis) -> None:
         """Go on with an axis as it is described now; an event may have been ended meanwhile."""
@@ -163,9 +164,10 @@ class AxisRun:
     def _hear_others(self, events: Events) -> None:
         """Keep the joints that messages have named since the last good sample of an input."""
         named, others = self.axis.monitor.joints.named, self.axis.monitor.memory.others
-        about = (events['kind'] == records.REFUSAL) & (events['why'] == Why.OTHER_JOINTS)
+        refused = np.flatnonzero(events['kind'] == records.REFUSAL)
+        about = refused[events['why'][refused] == Why.OTHER_JOINTS]
         for source in Source:
-            at = np.flatnonzero(about & (events['source'] == source))
+            at = about[events['source'][about] == source]
             first = max(len(at) - others[source], 0)
             if others[source] <= len(at):
                 named[source].clear()

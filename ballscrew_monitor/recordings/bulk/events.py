@@ -83,6 +83,11 @@ def repeated(events: Events, count: int) -> Events:
     return np.tile(_raw(events), count).view(EVENT)
 
 
+def inserted(events: Events, at: NDArray[np.intp], others: Events) -> Events:
+    """Return events with others before those at some places, which rise."""
+    return np.insert(_raw(events), at, _raw(others)).view(EVENT)
+
+
 def _raw(events: Events) -> NDArray[Any]:
     """Return events as bytes, which numpy copies at once, and fields one after the other."""
     return events.view(np.dtype((np.void, EVENT.itemsize)))

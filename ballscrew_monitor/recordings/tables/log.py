@@ -23,6 +23,7 @@ from ballscrew_monitor.recordings.bulk.decode import refuse
 from ballscrew_monitor.recordings.bulk.events import (
     event_of,
     Events,
+    inserted,
     joined,
     Notes,
     repeated,
@@ -119,11 +120,9 @@ class TableLog(Bag):
         row = joined([self._event(one, notes, axis=number) for number, one in inputs])
         order, done = EventOrder(period), 0
         for rows in _together(self._blocks(), most=max(AT_ONCE // len(row), 1)):
-            events = self._events(rows, row, [one for _, one in inputs])
             due = order.ticks(rows.stamps)
             at = len(row) * np.searchsorted(rows.stamps, due['stamp'], 'right')
-            places = np.insert(np.arange(len(events)), at, len(events) + np.arange(len(due)))
-            yield some(joined([events, due]), places)
+            yield inserted(self._events(rows, row, [one for _, one in inputs]), at, due)
             done += len(rows.stamps)
             on_done(done / self.count)
 
@@ -176,19 +175,21 @@ def _(
 
 
 def _together(blocks: Iterable[Rows], most: int) -> Iterator[Rows]:
-    """Yield rows in blocks of about `most`, those of one stamp in the same."""
-    held: list[Rows] = []
+    """Yield rows in blocks of at most so many, or more if these are of one stamp."""
+    held: Rows | None = None
     for block in blocks:
         for begin in range(0, len(block.stamps), most):
             end = begin + most
-            held.append(block[begin:end])
-            if held[0].stamps[0] != held[-1].stamps[-1]:
-                rows = times.joined(held)
-                last = int(np.searchsorted(rows.stamps, rows.stamps[-1]))
-                yield rows[:last]
-                held = [rows[last:]]
-    if held:
-        yield times.joined(held)
+            rows = block[begin:end]
+            if held is not None:
+                same = int(np.searchsorted(rows.stamps, held.stamps[-1], 'right'))
+                held, rows = times.joined([held, rows[:same]]) if same else held, rows[same:]
+                if not len(rows.stamps):
+                    continue
+                yield held
+            held = rows
+    if held is not None:
+        yield held
 
 
 def _facts_of(path: Path, stated: TableMap, series: Series) -> LogFacts:

@@ -202,7 +202,7 @@ def _narrow(path: Path, size: int) -> bytes:
 
 def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     with text.stream() as stream:
-        _check_lines(path, stream, text.line_end.encode())
+        plain, comments = _look_at_lines(path, stream, text.line_end.encode())
     found = layout or Layout()
     with text.lines() as lines:
         head = _named(path, lines, found)
@@ -214,8 +214,9 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
         skip_lines=head.lines,
         skip_rows_after_header=found.header_rows - 1,
         infer_schema=False,
-        encoding='utf8-lossy',
-        comment_prefix=heads.COMMENT,
+        # What it holds none of is not looked for, which takes as long as the cells themselves.
+        encoding='utf8' if plain else 'utf8-lossy',
+        comment_prefix=heads.COMMENT if comments else None,
         truncate_ragged_lines=True,
         eol_char=text.line_end,
     )
@@ -250,10 +251,18 @@ def _check_columns(path: Path, count: int) -> None:
         raise InputError(f'log {path} has {count} columns, allowed are {limits.COLUMNS}')
 
 
-def _check_lines(path: Path, stream: BinaryIO, line_end: bytes) -> None:
-    """Raise InputError if a line is longer than allowed, those within quotes counted as one."""
+def _look_at_lines(path: Path, stream: BinaryIO, line_end: bytes) -> tuple[bool, bool]:
+    """
+    Return whether a text is of ASCII alone, and whether it may hold comments.
+
+    Raises InputError if a line is longer than allowed, those within quotes counted as one.
+
+    """
     length, quoted = 0, False  # of the line so far [bytes]
+    plain, comments = True, False
     while block := stream.read(limits.MEGA):
+        plain &= block.isascii()
+        comments |= heads.COMMENT.encode() in block
         first, last = _line_ends(block, line_end, quoted)
         length += len(block) if first < 0 else first
         if length > limits.LINE:
@@ -264,6 +273,7 @@ def _check_lines(path: Path, stream: BinaryIO, line_end: bytes) -> None:
         if first >= 0:
             length = len(block) - last - 1
         quoted ^= block.count(b'"') % 2 == 1
+    return plain, comments
 
 
 def _line_ends(block: bytes, line_end: bytes, quoted: bool) -> tuple[int, int]:

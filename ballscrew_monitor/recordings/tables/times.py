@@ -159,11 +159,10 @@ class Times:
             row += len(times)
             show(row / self._table.rows)
             known = np.isfinite(times)
-            if known.any():
-                yield Rows(
-                    stamps=self._stamps(times[known]),
-                    columns={name: values[known] for name, values in columns.items()},
-                )
+            if known.all():
+                yield Rows(stamps=self._stamps(times), columns=columns)
+            elif known.any():
+                yield Rows(stamps=self._stamps(times), columns=columns)[np.flatnonzero(known)]
 
     def _look(self, shown: Shown) -> TimeGate:
         """Look through the times of all rows."""
@@ -284,8 +283,8 @@ class Steps:
         steps = np.diff(np.concatenate([self._last, stamps]))
         if len(steps):
             bins = _bins(steps)
-            self._counts += np.bincount(bins, minlength=_BINS)
-            self._sums += np.bincount(bins, weights=steps, minlength=_BINS)
+            np.add.at(self._counts, bins, 1)
+            np.add.at(self._sums, bins, steps)
             at = int(steps.argmax())
             if steps[at] > self.longest:
                 self.longest = float(steps[at])
