@@ -11,7 +11,7 @@ chunks are larger, so that fewer are to be remembered.
 """
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
 import enum
@@ -23,7 +23,13 @@ from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.bag_files import OWN
 from ballscrew_monitor.recordings.bulk.batches import Batch
-from ballscrew_monitor.recordings.mcap_file import McapFile, message_definition, type_hash
+from ballscrew_monitor.recordings.mcap_file import (
+    Integers,
+    McapFile,
+    message_definition,
+    type_hash,
+)
+import numpy as np
 from surrogate.files import InputError, replace_file
 import yaml
 
@@ -145,19 +151,45 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
             publish_time=publish_time,
             sequence=self._counts[topic] if sequence is None else sequence,
         )
-        self.first = min(self.first, log_time) if self._counts else log_time
-        self.last = max(self.last, log_time)
-        self._counts[topic] += 1
+        self._note(topic, 1, log_time, log_time)
         self._chunk += len(data)
         if self._chunk >= CHUNK_SIZE:
             self._file.flush()
             self._chunk = 0
 
     def write_batch(self, batch: Batch) -> None:
-        """Append the messages of a batch in the order of their log times, and number them."""
-        for message in batch.messages():
-            time = message.log_time
-            self.write(message.topic, message.data, log_time=time, publish_time=time)
+        """Append the messages of a batch in the order of their log times; see `write_many`."""
+        found, order = list(batch.topics.values()), batch.order()
+        if not len(order):
+            return
+        which = np.repeat(np.arange(len(found)), [len(each) for each in found])[order]
+        times = np.concatenate([each.log_time for each in found])[order]
+        contents = [content for each in found for content in each.contents()]
+        self.write_many(list(batch.topics), which, [contents[at] for at in order], times)
+
+    def write_many(
+        self, topics: Sequence[str], which: Integers, contents: Sequence[bytes], times: Integers
+    ) -> None:
+        """
+        Append serialised messages, each of one `which` of the `topics`, and number them.
+
+        `times` [ns] are those at which they were logged and count as published.
+
+        """
+        sequence = np.empty(len(which), np.int64)
+        for number, topic in enumerate(topics):
+            own = np.flatnonzero(which == number)
+            if len(own):
+                sequence[own] = np.arange(self._counts[topic], self._counts[topic] + len(own))
+                self._note(topic, len(own), int(times[own].min()), int(times[own].max()))
+        channels = np.array([self._channels[topic] for topic in topics])
+        self._writer.add_messages(channels[which], contents, log_time=times, sequence=sequence)
+
+    def _note(self, topic: str, count: int, first: int, last: int) -> None:
+        """Count messages and widen the span of log times [ns]."""
+        self.first = min(self.first, first) if self._counts else first
+        self.last = max(self.last, last)
+        self._counts[topic] += count
 
     @property
     def total(self) -> int:

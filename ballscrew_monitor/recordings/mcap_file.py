@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Writes an MCAP file in chunks: one message, many or rows at once; and text and hash of its types.
+Writes an MCAP file in chunks, one message or many at once; and text and hash of its types.
 
 All ways give the bytes that the writer of the package `mcap` gives, which knows only the first.
 The records are those of that package, but for messages and their indexes, of which there are many.
@@ -137,6 +137,23 @@ class McapFile:
         self._count(channel, 1, PAIR.pack(log_time, len(self._data)), log_time, log_time)
         self._grow(head + data)
 
+    def add_messages(
+        self,
+        channel: Integers,
+        contents: Sequence[bytes],
+        *,
+        log_time: Integers,
+        sequence: Integers,
+    ) -> None:
+        """Append messages, published when they are logged."""
+        size = np.fromiter(map(len, contents), np.int64, len(contents))
+        heads = _heads(channel, size, log_time, sequence)
+        packed, step = heads.tobytes(), MESSAGE.size
+        parts = [b''] * (2 * len(contents))
+        parts[::2] = [packed[slice(at, at + step)] for at in range(0, len(packed), step)]
+        parts[1::2] = contents
+        self._add_records(heads, memoryview(b''.join(parts)))
+
     def finish(self) -> None:
         """End the file; what it is made of stands once more behind the data."""
         self._end_chunk()
@@ -151,6 +168,29 @@ class McapFile:
         raw += b''.join(map(_bytes, offsets))
         crc = zlib.crc32(struct.pack('<BQQQ', Opcode.FOOTER, 20, begin, at), zlib.crc32(raw))
         self._stream.write(raw + _bytes(records.Footer(begin, at, crc)) + MCAP0_MAGIC)
+
+    def _add_records(self, heads: NDArray[np.void], raw: memoryview) -> None:
+        """Append messages as they stand in a file, by their heads, chunk by chunk."""
+        ends = np.cumsum(heads['length'].astype(np.int64) + BEFORE_LENGTH)
+        first, done = 0, 0
+        while first < len(heads):
+            room = done + self._chunk_size - len(self._data)
+            exceeding = int(np.searchsorted(ends, room, side='right'))
+            last = min(exceeding + 1, len(heads))
+            begins = np.concatenate(([done], ends[first:last]))
+            end = int(begins[-1])
+            self._index(heads[first:last], begins[:-1] - done + len(self._data))
+            self._grow(raw[done:end])
+            first, done = last, end
+
+    def _index(self, heads: NDArray[np.void], places: Integers) -> None:
+        """Note messages that go into the chunk at some places [bytes]."""
+        pairs = np.column_stack((heads['log_time'], places.astype('<u8')))
+        numbers, firsts = np.unique(heads['channel'], return_index=True)
+        for number in numbers[np.argsort(firsts)]:
+            own = pairs[heads['channel'] == number]
+            times = own[:, 0]
+            self._count(int(number), len(own), own.tobytes(), int(times.min()), int(times.max()))
 
     def _count(self, channel: int, count: int, pairs: bytes, first: int, last: int) -> None:
         """Note messages, at the places `pairs`, that go into the chunk."""
@@ -226,6 +266,17 @@ class McapFile:
             (Opcode.ATTACHMENT_INDEX, []),
             (Opcode.METADATA_INDEX, self._metadata),
         )
+
+
+def _heads(
+    channel: Integers, size: Integers, log_time: Integers, sequence: Integers
+) -> NDArray[np.void]:
+    """Return what stands before messages of some sizes [bytes]."""
+    heads = np.empty(len(sequence), MESSAGE_FIELDS)
+    heads['code'], heads['length'] = Opcode.MESSAGE, size + MESSAGE.size - BEFORE_LENGTH
+    heads['channel'], heads['sequence'] = channel, sequence
+    heads['log_time'] = heads['publish_time'] = log_time
+    return heads
 
 
 def _bytes(record: records.McapRecord) -> bytes:

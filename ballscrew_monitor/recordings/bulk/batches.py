@@ -19,7 +19,7 @@ from typing import BinaryIO
 from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_monitor.recordings.bag_files import ZSTD
 from ballscrew_monitor.recordings.bulk import chunks as bulk_chunks
-from ballscrew_monitor.recordings.bulk.chunks import ChunkDamage, Messages, read_chunk
+from ballscrew_monitor.recordings.bulk.chunks import ChunkDamage, Integers, Messages, read_chunk
 from ballscrew_monitor.recordings.storages import damage_is_input, McapStorage
 from mcap.records import ChunkIndex
 import numpy as np
@@ -29,6 +29,7 @@ BATCH = 4 * 1024 * 1024  # [bytes] of chunks that are looked at together
 MESSAGES = 16384  # of a bag without chunks that are looked at together
 PLACES = 32  # bits for the place of a message in its chunk
 END = 2**63 - 1
+ORDER = ('place', 'log_time')  # the last counts first
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -39,26 +40,25 @@ class Batch:
     until: int
     done: float
 
-    def messages(self) -> Iterator[Message]:
-        """Yield the messages in the order of their log times, published when they were logged."""
-        if not self.topics:
-            return
-        names, found = zip(*self.topics.items())
-        which = np.repeat(np.arange(len(found)), [len(each) for each in found])
-        times, place, sequence = (
-            np.concatenate([getattr(each, name) for each in found])
-            for name in ('log_time', 'place', 'sequence')
+    def order(self) -> Integers:
+        """Return the places of the messages, topic by topic, in the order of their log times."""
+        found = list(self.topics.values())
+        if not found:
+            return np.arange(0)
+        return np.lexsort(
+            [np.concatenate([getattr(each, name) for each in found]) for name in ORDER]
         )
-        contents = [content for each in found for content in each.contents()]
-        for at in np.lexsort((place, times)).tolist():
-            time = int(times[at])
-            yield Message(
-                topic=names[which[at]],
-                data=contents[at],
-                log_time=time,
-                publish_time=time,
-                sequence=int(sequence[at]),
+
+    def messages(self) -> Iterator[Message]:
+        """Yield the messages in the order of their log times, as published when logged."""
+        every = [
+            Message(topic=topic, data=data, log_time=time, publish_time=time, sequence=number)
+            for topic, found in self.topics.items()
+            for data, time, number in zip(
+                found.contents(), found.log_time.tolist(), found.sequence.tolist(), strict=True
             )
+        ]
+        yield from (every[at] for at in self.order().tolist())
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

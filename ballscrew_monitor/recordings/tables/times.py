@@ -159,10 +159,11 @@ class Times:
             row += len(times)
             show(row / self._table.rows)
             known = np.isfinite(times)
-            if known.all():
+            if not known.all():
+                times = times[known]
+                columns = {name: values[known] for name, values in columns.items()}
+            if len(times):
                 yield Rows(stamps=self._stamps(times), columns=columns)
-            elif known.any():
-                yield Rows(stamps=self._stamps(times), columns=columns)[np.flatnonzero(known)]
 
     def _look(self, shown: Shown) -> TimeGate:
         """Look through the times of all rows."""
