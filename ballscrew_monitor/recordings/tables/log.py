@@ -56,7 +56,7 @@ SLOW = 0.5  # of the timeout: rows that far apart leave no room for a late one
 SAME = 1e-6  # part by which two leads may differ
 NAMES_NONE = 'the map names none'
 PASSES = 2  # over a table, at most, before it is judged, of which each is shown
-AT_ONCE = 131072  # events that are made at a time
+AT_ONCE = 32768  # events that are made at a time: they stay in the cache
 
 
 class TableLog(Bag):
