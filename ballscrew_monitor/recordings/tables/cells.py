@@ -169,7 +169,7 @@ class Cells:
         """Count cells as numbers with a point and with a comma; return True if one reads all."""
         numbers, commaed = _finite(_points, cells), np.zeros(len(cells), np.bool_)
         unread = np.isnan(numbers)
-        if unread.any():  # a number with a comma is none with a point
+        if unread.any():  # only a cell without a number with a point may have a comma
             commaed = unread & _holds(cells, ',')
             if commaed.any():
                 numbers = _finite(_points, _with_points(cells))
