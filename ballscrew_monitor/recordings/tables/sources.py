@@ -232,7 +232,7 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
         line = head.separator.join(map(str, range(len(source.names())))) + text.line_end
         with text.stream() as stream:
             layout_of_part = first
-            for part in _parts(stream, text.line_end.encode(), line.encode()):
+            for part in _parts(stream, text.line_end.encode(), line.encode(), head.first):
                 yield scanned(part, **layout_of_part).select(names).collect()
                 layout_of_part = {}
 
@@ -247,19 +247,21 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     return source
 
 
-def _parts(stream: BinaryIO, line_end: bytes, line: bytes) -> Iterator[bytes]:
+def _parts(stream: BinaryIO, line_end: bytes, line: bytes, first: int) -> Iterator[bytes]:
     """
     Yield a text in parts that end with a line, and begin with another one from the second on.
 
-    Of a whole text, polars would read much ahead.
+    The first has as many lines as the row `first`. Of a whole text, polars would read much ahead.
 
     """
-    held, quoted, block = [b''], False, stream.read(PART)
+    held, quoted, block, lines = [b''], False, stream.read(PART), 0
     while block:
         following = stream.read(PART)
         end = _line_ends(block, line_end, quoted)[1] + 1 if following else len(block)
         quoted ^= _is_odd(block)
-        if end:
+        if lines < first:
+            lines += block.count(line_end)
+        if end and (lines >= first or not following):
             yield b''.join([*held, memoryview(block)[:end]])
             held = [line, block[end:]]
         else:
