@@ -174,9 +174,9 @@ def _read_bag(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tu
     if args.temperature_topic:
         field = args.temperature_field or 'temperature'
         channels.append(no_load.temperature_channel(args.temperature_topic, field))
-    with opened_log(args.data) as bag:
-        columns, notes = no_load.read_no_load(bag, channels)
-        return columns, (*bag.notes, *notes)
+    bag = opened_log(args.data)
+    columns, notes = no_load.read_no_load(bag, channels)
+    return columns, (*bag.notes, *notes)
 
 
 def _read_table(args: argparse.Namespace, lead: float) -> tuple[dict[str, Any], tuple[str, ...]]:

@@ -7,14 +7,16 @@ Usage: python bench/replay.py [--seconds S] [--long L] [--repeats N]. Makes a re
 at 1 kHz of S seconds and one at 100 Hz of L seconds in a temporary folder, and prints duration
 over processor time, which other work on the machine changes little: judged alone, with the load
 out of the torque, with the speed out of positions, of the recording that a node makes of itself,
-and end to end as `ballscrew replay --out` does it, with table, page and judged bag; and how fast a
-CSV of the same signals becomes a bag. Beside them the time of one Python call, measured in the
-same run, and of a lookup all over the surface.
+and end to end as `ballscrew replay --out` does it, with table, page and judged bag; a CSV and a
+Parquet of the same signals, L seconds long, over their floor, which is reading by polars and the
+bare step; and how fast a CSV becomes a bag. Beside them the time of one Python call, measured in
+the same run, and of a lookup all over the surface.
 
 """
 
 import argparse
 from collections.abc import Callable, Iterable, Iterator
+import contextlib
 import os
 from pathlib import Path
 import tempfile
@@ -22,11 +24,17 @@ import time
 import timeit
 from typing import Any, NamedTuple
 
+from ballscrew_monitor.core.conversions import nanoseconds
+from ballscrew_monitor.judge.many import ManyJudge
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.bulk.events import Notes
+from ballscrew_monitor.recordings.bulk.order import ordered_events
+from ballscrew_monitor.recordings.log_facts import parameters_of
 from ballscrew_monitor.recordings.own_recording import recorded_values
-from ballscrew_monitor.recordings.replay import replay, replay_parts
+from ballscrew_monitor.recordings.replay import axes_for, ignore, replay, replay_parts
 from ballscrew_monitor.recordings.tables.convert import convert
+from ballscrew_monitor.recordings.tables.log import TableLog
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.report.log_report import LogResult, report_log
 from ballscrew_monitor.report.parameters import LogParameters
@@ -137,11 +145,41 @@ def report(bag: Bag, out: Path) -> LogResult:
     return report_log(bag, out, LogParameters(values=values(0.1), origin='the bench'))
 
 
-def write_table(folder: Path, duration: float, rate: float) -> Path:
-    """Return a CSV of the signals at a rate [Hz]."""
-    log = folder / 'table.csv'
-    pl.DataFrame(signals(duration, rate)).write_csv(log)
-    return log
+def write_tables(folder: Path, duration: float, rate: float) -> tuple[Path, Path]:
+    """Return a CSV and a Parquet of the signals at a rate [Hz]."""
+    text, packed = folder / 'table.csv', folder / 'table.parquet'
+    frame = pl.DataFrame(signals(duration, rate))
+    frame.write_csv(text)
+    frame.write_parquet(packed)
+    return text, packed
+
+
+@contextlib.contextmanager
+def unseen(total: float, unit: str) -> Iterator[Callable[[float], None]]:
+    """Show nothing."""
+    yield lambda share: None
+
+
+def judge_table(path: Path) -> Iterator[object]:
+    """Yield what a table comes to by its own parameters."""
+    log = TableLog(path, make_map(TABLE), unseen)
+    return replay_parts(log, parameters_of(log) or {}, states=False)
+
+
+def floor_of(path: Path) -> Callable[[], Iterable[object]]:
+    """Return what judges a table at least: polars reads it, and the step takes its events."""
+    log = TableLog(path, make_map(TABLE), unseen)
+    given = parameters_of(log) or {}
+    axes, period = axes_for(log, given), nanoseconds(given['tick_period'])
+    events = list(ordered_events(log, axes, period, Notes(), on_done=ignore))
+
+    def run() -> Iterator[object]:
+        yield pl.read_csv(path) if path.suffix == '.csv' else pl.read_parquet(path)
+        judge = ManyJudge(axes_for(log, given)[0].monitor)
+        for part in events:
+            yield from judge.judge(part)
+
+    return run
 
 
 def lookups(repeats: int) -> float:
@@ -171,7 +209,9 @@ def rows_of(asked: argparse.Namespace, folder: Path) -> list[Row]:
     long = write(folder / 'long', asked.long, 100.0)
     own = record_alone(folder / 'own', values(0.1), bursts(asked.seconds, 1000.0))
     recorded = recorded_values(own)
-    table, made = write_table(folder, asked.seconds, 1000.0), folder / 'of_table'
+    table, packed = write_tables(folder, asked.long, 1000.0)
+    made = folder / 'of_table'
+    text, fast = (TableLog(path, make_map(TABLE), unseen) for path in (table, packed))
     torque, position = values(0.1, **TORQUE), values(0.1, **POSITION)
     return [
         Row('1 kHz, columns', 2000, quick, lambda: replay_parts(quick, values(0.1), states=False)),
@@ -187,7 +227,16 @@ def rows_of(asked: argparse.Namespace, folder: Path) -> list[Row]:
             quick,
             lambda: replay_parts(quick, position, states=False),
         ),
-        Row('1 kHz, a CSV to a bag', 0, quick, lambda: [convert(table, make_map(TABLE), made)]),
+        Row('1 kHz, CSV', 1000, text, lambda: judge_table(table)),
+        Row('1 kHz, CSV, its floor', 0, text, floor_of(table)),
+        Row('1 kHz, Parquet', 0, fast, lambda: judge_table(packed)),
+        Row('1 kHz, Parquet, its floor', 0, fast, floor_of(packed)),
+        Row(
+            '1 kHz, a CSV to a bag',
+            0,
+            text,
+            lambda: [convert(table, make_map(TABLE), made, shown=unseen)],
+        ),
         Row('1 kHz, own recording', 500, own, lambda: replay_parts(own, recorded, states=False)),
     ]
 
@@ -197,11 +246,14 @@ def measure(asked: argparse.Namespace, folder: Path) -> None:
     rows = rows_of(asked, folder)
     print(f'first run, which compiles: {spent(1, rows[0].run):.1f} s')
     print(f'{"":28} {"x real time":>12} {"aim":>6} {"us a sample":>12}')
+    costs: dict[str, float] = {}
     for row in rows:
         run_through(row.run())
-        cost = spent(asked.repeats, row.run)
+        cost = costs[row.name] = spent(asked.repeats, row.run)
         each = 1e6 * cost / row.bag.topics['/joint_states'].count
         print(f'{row.name:28} {row.bag.duration / cost:12.0f} {row.aim or "":>6} {each:12.2f}')
+    ratio = costs['1 kHz, Parquet'] / costs['1 kHz, Parquet, its floor']
+    print(f'a Parquet takes {ratio:.2f} times its floor, aim 1.6')
     call = min(timeit.repeat(lambda: None, number=100_000, repeat=7)) / 100_000
     print(f'one Python call takes {1e6 * call:.3f} us')
     run_through([lookups(1)])
@@ -212,7 +264,12 @@ def main() -> None:
     """Measure in a temporary folder."""
     parser = argparse.ArgumentParser(description=__doc__.split('\n\n')[0].strip())
     parser.add_argument('--seconds', type=float, default=60.0, help='of the one at 1 kHz [s]')
-    parser.add_argument('--long', type=float, default=900.0, help='of the one at 100 Hz [s]')
+    parser.add_argument(
+        '--long',
+        type=float,
+        default=900.0,
+        help='of the one at 100 Hz, and of tables at 1 kHz [s]',
+    )
     parser.add_argument('--repeats', type=int, default=3, help='runs, the best counts')
     with tempfile.TemporaryDirectory() as folder:
         measure(parser.parse_args(), Path(folder))

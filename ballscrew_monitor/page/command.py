@@ -69,12 +69,12 @@ Begin = Callable[[Hub], Source]
 
 def _begin_log(args: argparse.Namespace, nominal: Path) -> Begin:
     """Judge the recording; return what plays it."""
-    with opened_log(args.log, mapping=args.map) as bag:
-        parameters = parameters_for(bag, args.params, nominal)
-        say(f'parameters: {parameters.origin}', *parameters.sentences)
-        with shown_progress(bag.duration) as on_done:
-            axes = recorded_axes(bag, parameters, on_done)
-        say(*parameters.notes, *bag.notes)
+    bag = opened_log(args.log, mapping=args.map)
+    parameters = parameters_for(bag, args.params, nominal)
+    say(f'parameters: {parameters.origin}', *parameters.sentences)
+    with shown_progress(bag.duration) as on_done:
+        axes = recorded_axes(bag, parameters, on_done)
+    say(*parameters.notes, *bag.notes)
     return lambda hub: Recording(hub, axes)
 
 

@@ -169,9 +169,10 @@ class AxisRun:
     def _hear_others(self, events: Events) -> None:
         """Keep the joints that messages have named since the last good sample of an input."""
         named, others = self.axis.monitor.joints.named, self.axis.monitor.memory.others
-        about = (events['kind'] == records.REFUSAL) & (events['why'] == Why.OTHER_JOINTS)
+        refused = np.flatnonzero(events['kind'] == records.REFUSAL)
+        about = refused[events['why'][refused] == Why.OTHER_JOINTS]
         for source in Source:
-            at = np.flatnonzero(about & (events['source'] == source))
+            at = about[events['source'][about] == source]
             first = max(len(at) - others[source], 0)
             if others[source] <= len(at):
                 named[source].clear()

@@ -22,6 +22,7 @@ import tempfile
 from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.bag_files import OWN
+from ballscrew_monitor.recordings.bulk.batches import Batch
 from ballscrew_monitor.recordings.mcap_file import (
     Integers,
     McapFile,
@@ -29,7 +30,6 @@ from ballscrew_monitor.recordings.mcap_file import (
     type_hash,
 )
 import numpy as np
-from numpy.typing import NDArray
 from surrogate.files import InputError, replace_file
 import yaml
 
@@ -157,6 +157,16 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
             self._file.flush()
             self._chunk = 0
 
+    def write_batch(self, batch: Batch) -> None:
+        """Append the messages of a batch in the order of their log times; see `write_many`."""
+        found, order = list(batch.topics.values()), batch.order()
+        if not len(order):
+            return
+        which = np.repeat(np.arange(len(found)), [len(each) for each in found])[order]
+        times = np.concatenate([each.log_time for each in found])[order]
+        contents = [content for each in found for content in each.contents()]
+        self.write_many(list(batch.topics), which, [contents[at] for at in order], times)
+
     def write_many(
         self, topics: Sequence[str], which: Integers, contents: Sequence[bytes], times: Integers
     ) -> None:
@@ -174,19 +184,6 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
                 self._note(topic, len(own), int(times[own].min()), int(times[own].max()))
         channels = np.array([self._channels[topic] for topic in topics])
         self._writer.add_messages(channels[which], contents, log_time=times, sequence=sequence)
-
-    def write_rows(self, contents: Mapping[str, NDArray[np.void]], times: Integers) -> None:
-        """
-        Append row after row a serialised message of each topic, of one size each, and number them.
-
-        `times` [ns] are those at which the rows were logged and count as published.
-
-        """
-        channels = [self._channels[topic] for topic in contents]
-        first = [self._counts[topic] for topic in contents]
-        self._writer.add_rows(channels, [*contents.values()], log_time=times, first=first)
-        for topic in contents:
-            self._note(topic, len(times), int(times.min()), int(times.max()))
 
     def _note(self, topic: str, count: int, first: int, last: int) -> None:
         """Count messages and widen the span of log times [ns]."""

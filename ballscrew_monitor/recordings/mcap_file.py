@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Writes an MCAP file in chunks: one message, many or rows at once; and text and hash of its types.
+Writes an MCAP file in chunks, one message or many at once; and text and hash of its types.
 
 All ways give the bytes that the writer of the package `mcap` gives, which knows only the first.
 The records are those of that package, but for messages and their indexes, of which there are many.
@@ -154,29 +154,6 @@ class McapFile:
         parts[1::2] = contents
         self._add_records(heads, memoryview(b''.join(parts)))
 
-    def add_rows(
-        self,
-        channels: Sequence[int],
-        contents: Sequence[NDArray[np.void]],
-        *,
-        log_time: Integers,
-        first: Sequence[int],
-    ) -> None:
-        """
-        Append row after row a message of each channel, published when they are logged.
-
-        Those of a channel have one size and are numbered from its `first` on.
-
-        """
-        kinds = [[('head', MESSAGE_FIELDS), ('content', each.dtype)] for each in contents]
-        rows = np.empty(len(log_time), [(str(at), kind) for at, kind in enumerate(kinds)])
-        sizes = np.array([each.itemsize for each in contents])
-        sequence = np.arange(len(log_time))[:, None] + first
-        heads = _heads(np.array(channels), sizes, log_time[:, None], sequence)
-        for at, content in enumerate(contents):
-            rows[str(at)]['head'], rows[str(at)]['content'] = heads[:, at], content
-        self._add_records(heads.ravel(), rows.view(np.uint8).data)
-
     def finish(self) -> None:
         """End the file; what it is made of stands once more behind the data."""
         self._end_chunk()
@@ -294,8 +271,8 @@ class McapFile:
 def _heads(
     channel: Integers, size: Integers, log_time: Integers, sequence: Integers
 ) -> NDArray[np.void]:
-    """Return what stands before messages of some sizes [bytes], in the shape of `sequence`."""
-    heads = np.empty(sequence.shape, MESSAGE_FIELDS)
+    """Return what stands before messages of some sizes [bytes]."""
+    heads = np.empty(len(sequence), MESSAGE_FIELDS)
     heads['code'], heads['length'] = Opcode.MESSAGE, size + MESSAGE.size - BEFORE_LENGTH
     heads['channel'], heads['sequence'] = channel, sequence
     heads['log_time'] = heads['publish_time'] = log_time

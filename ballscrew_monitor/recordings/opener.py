@@ -2,10 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Any log as a bag: a bag of whatever storage, or a table and the map of its columns."""
 
-from collections.abc import Iterator
-import contextlib
 from pathlib import Path
-import tempfile
 
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_files import ACTIVE, is_bag, is_table
@@ -13,31 +10,19 @@ from ballscrew_monitor.recordings.words import Shown, shown_progress
 from surrogate.files import InputError
 
 
-@contextlib.contextmanager
-def opened_log(
-    path: Path, *, mapping: Path | None = None, shown: Shown = shown_progress
-) -> Iterator[Bag]:
+def opened_log(path: Path, *, mapping: Path | None = None, shown: Shown = shown_progress) -> Bag:
     """
-    Yield the log at `path` as a bag; one that has lost its end is read up to there.
+    Return the log at `path` as a bag; one that has lost its end is read up to there.
 
-    A table is read by the map in the file `mapping` into a bag that goes when the block ends; how
-    far that is, is shown.
-    Raises InputError when there is no log, or a map is missing or too much.
+    A table is looked through by the map in the file `mapping`; how far that is, is shown. Raises
+    InputError when there is no log, or a map is missing or too much.
 
     """
-    with contextlib.ExitStack() as made:
-        bag = Bag(_bag_of(path, mapping, made, shown), salvage=True)
-        bag.path = path  # what is said is said of the log
-        yield bag
-
-
-def _bag_of(path: Path, mapping: Path | None, made: contextlib.ExitStack, shown: Shown) -> Path:
-    """Return where the log at `path` is as a bag: itself, or made of a table until `made` ends."""
     if not path.exists():
         raise InputError(f'log {path} does not exist, it must be a bag or a table')
     if path.is_dir() or is_bag(path):
         _check_bag(path, mapping)
-        return path
+        return Bag(path, salvage=True)
     if not is_table(path):
         raise InputError(
             f'log {path} is neither a bag nor a table, it must be of MCAP, sqlite3, CSV, Parquet '
@@ -48,13 +33,10 @@ def _bag_of(path: Path, mapping: Path | None, made: contextlib.ExitStack, shown:
             f'log {path} is no bag, a table needs a map: ballscrew import {path} --guess > '
             f'map.yaml, then --map map.yaml'
         )
-    from ballscrew_monitor.recordings.tables.convert import convert
+    from ballscrew_monitor.recordings.tables.log import TableLog
     from ballscrew_monitor.recordings.tables.mapping import read_map
 
-    folder = made.enter_context(tempfile.TemporaryDirectory(prefix='ballscrew_log_'))
-    bag = Path(folder) / (path.stem or 'log')
-    convert(path, read_map(mapping), bag, shown=shown)
-    return bag
+    return TableLog(path, read_map(mapping), shown)
 
 
 def _check_bag(path: Path, mapping: Path | None) -> None:

@@ -97,13 +97,13 @@ def _print_one(
     args: argparse.Namespace, nominal: Path, log: Path, mapping: Path | None
 ) -> tuple[Records, int]:
     """Judge a recording and print what it comes to, unless that is to be JSON."""
-    with opened_log(log, mapping=mapping) as bag:
-        parameters = parameters_for(bag, args.params, nominal)
-        _say_origin(parameters)
-        with shown_progress(bag.duration) as on_done:
-            found = judge_log(bag, parameters, on_share=on_done)
-        _say_notes(found.notes, parameters)
-        say(*_silences(bag, parameters.values, found))
+    bag = opened_log(log, mapping=mapping)
+    parameters = parameters_for(bag, args.params, nominal)
+    _say_origin(parameters)
+    with shown_progress(bag.duration) as on_done:
+        found = judge_log(bag, parameters, on_share=on_done)
+    _say_notes(found.notes, parameters)
+    say(*_silences(bag, parameters.values, found))
     if not args.json:
         print(printable('\n'.join(log_lines(found))))
     return printed_records(summary_record(found)), DONE if found.judged else FAILED
@@ -113,11 +113,11 @@ def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Rec
     """Write the report of a recording."""
     from ballscrew_monitor.report.log_report import report_log
 
-    with opened_log(log, mapping=args.map) as bag:
-        parameters = parameters_for(bag, args.params, nominal)
-        _say_origin(parameters)
-        with shown_progress(bag.duration) as on_done:
-            result = report_log(bag, args.out, parameters, on_share=on_done)
+    bag = opened_log(log, mapping=args.map)
+    parameters = parameters_for(bag, args.params, nominal)
+    _say_origin(parameters)
+    with shown_progress(bag.duration) as on_done:
+        result = report_log(bag, args.out, parameters, on_share=on_done)
     _say_notes(result.notes, parameters)
     if result.unjudged:
         say(f'nothing was judged on axis {", ".join(result.unjudged)}')

@@ -108,13 +108,13 @@ def _histories(
             bar.show(number, len(logs))
             try:
                 mapping = map_for(log, args.map, alone=len(logs) == 1)
-                with opened_log(log, mapping=mapping) as bag:
-                    case = judge_log(
-                        bag,
-                        parameters_for(bag, args.params, nominal),
-                        on_share=functools.partial(_show, bar, number, len(logs)),
-                        health=HistoryMaker,
-                    )
+                bag = opened_log(log, mapping=mapping)
+                case = judge_log(
+                    bag,
+                    parameters_for(bag, args.params, nominal),
+                    on_share=functools.partial(_show, bar, number, len(logs)),
+                    health=HistoryMaker,
+                )
                 say(*(f'{log}: {note}' for note in case.notes))
                 say(*(f'{log}: check {hint}' for hint in hints_on(case.axes)))
                 yield from (axis.history for axis in case.axes if axis.history is not None)

@@ -15,11 +15,10 @@ from ballscrew_monitor.messages.diagnostics import statuses, summaries
 from ballscrew_monitor.recordings.axis_run import TimedState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, whole_bag
-from ballscrew_monitor.recordings.bulk.batches import Batch, batches, END
+from ballscrew_monitor.recordings.bulk.batches import batches, END
 from ballscrew_monitor.recordings.recorder import DIAGNOSTICS, recorded_topics
 from ballscrew_monitor.settings.parameters import input_topics, NODE_NAME, output, with_types
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-import numpy as np
 
 NAME = 'judged'
 PERIOD = SECOND  # [ns] of log time after which diagnostics come again
@@ -65,22 +64,8 @@ class _Growing:
     def copy_inputs(self, log_time: int) -> None:
         """Add all inputs up to a log time [ns]."""
         while self._until <= log_time and (batch := next(self._inputs, None)) is not None:
-            _copy(batch, self._writer)
+            self._writer.write_batch(batch)
             self._until = batch.until
-
-
-def _copy(batch: Batch, writer: BagWriter) -> None:
-    """Write the messages of a batch in the order of their log times."""
-    found = list(batch.topics.values())
-    if not found:
-        return
-    which = np.repeat(np.arange(len(found)), [len(one) for one in found])
-    times = np.concatenate([one.log_time for one in found])
-    order = np.lexsort((np.concatenate([one.place for one in found]), times))
-    contents = [content for one in found for content in one.contents()]
-    writer.write_many(
-        list(batch.topics), which[order], [contents[at] for at in order.tolist()], times[order]
-    )
 
 
 class Answers:

@@ -11,7 +11,7 @@ import threading
 from typing import Any
 
 from ballscrew_monitor.recordings.opener import opened_log
-from ballscrew_monitor.recordings.tables.convert import PASSES
+from ballscrew_monitor.recordings.tables.log import PASSES
 from ballscrew_monitor.report.log_report import AxisLine, LogResult, remove_left, report_log
 from ballscrew_monitor.report.logs import folder_names, map_for
 from ballscrew_monitor.report.overview import LogEntry, overview_page
@@ -140,9 +140,9 @@ def _outcomes(
 def report_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Report one recording in a worker; plain data in, the `LogResult` as plain data out."""
     reading = ReadingShare()
-    with opened_log(Path(inputs['log']), mapping=_path(inputs['map']), shown=reading) as bag:
-        parameters = parameters_for(bag, _path(inputs['params']), Path(inputs['nominal']))
-        result = report_log(bag, Path(inputs['out']), parameters, on_share=reading.tell_judged)
+    bag = opened_log(Path(inputs['log']), mapping=_path(inputs['map']), shown=reading)
+    parameters = parameters_for(bag, _path(inputs['params']), Path(inputs['nominal']))
+    result = report_log(bag, Path(inputs['out']), parameters, on_share=reading.tell_judged)
     record: dict[str, Any] = to_json(dataclasses.asdict(result))
     return record
 

@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 import contextlib
 import dataclasses
+import functools
 import itertools
 import operator
 from typing import BinaryIO
@@ -18,7 +19,7 @@ from typing import BinaryIO
 from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_monitor.recordings.bag_files import ZSTD
 from ballscrew_monitor.recordings.bulk import chunks as bulk_chunks
-from ballscrew_monitor.recordings.bulk.chunks import ChunkDamage, Messages, read_chunk
+from ballscrew_monitor.recordings.bulk.chunks import ChunkDamage, Integers, Messages, read_chunk
 from ballscrew_monitor.recordings.storages import damage_is_input, McapStorage
 from mcap.records import ChunkIndex
 import numpy as np
@@ -28,6 +29,7 @@ BATCH = 4 * 1024 * 1024  # [bytes] of chunks that are looked at together
 MESSAGES = 16384  # of a bag without chunks that are looked at together
 PLACES = 32  # bits for the place of a message in its chunk
 END = 2**63 - 1
+ORDER = ('place', 'log_time')  # the last counts first
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -37,6 +39,26 @@ class Batch:
     topics: dict[str, Messages]
     until: int
     done: float
+
+    def order(self) -> Integers:
+        """Return the places of the messages, topic by topic, in the order of their log times."""
+        found = list(self.topics.values())
+        if not found:
+            return np.arange(0)
+        return np.lexsort(
+            [np.concatenate([getattr(each, name) for each in found]) for name in ORDER]
+        )
+
+    def messages(self) -> Iterator[Message]:
+        """Yield the messages in the order of their log times, as published when logged."""
+        every = [
+            Message(topic=topic, data=data, log_time=time, publish_time=time, sequence=number)
+            for topic, found in self.topics.items()
+            for data, time, number in zip(
+                found.contents(), found.log_time.tolist(), found.sequence.tolist(), strict=True
+            )
+        ]
+        yield from (every[at] for at in self.order().tolist())
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -50,6 +72,7 @@ class _Chunk:
     channels: dict[int, str]
 
 
+@functools.singledispatch
 def batches(bag: Bag, topics: Collection[str], *, as_written: bool = False) -> Iterator[Batch]:
     """
     Yield the messages of `topics`, by log time or in the order in which they were written.

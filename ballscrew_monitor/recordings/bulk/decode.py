@@ -193,7 +193,7 @@ class TopicDecoder:
             (outcome == Outcome.TOO_SHORT, Why.TOO_SHORT, walked['bits'], layout.array),
             (others, Why.OTHER_JOINTS, math.nan, math.nan),
         ):
-            _refuse(events, which, why, first, second)
+            refuse(events, which, why, first, second)
         for at in np.flatnonzero(others).tolist():
             names = slice(int(walked['names_begin'][at]), int(walked['names_end'][at]))
             events['note'][at] = self._note(messages, at, messages.data[names], source)
@@ -226,7 +226,7 @@ class TopicDecoder:
         return joined(events)
 
 
-def _refuse(events: Events, which: NDArray[np.bool_], why: Why, first: Any, second: Any) -> None:
+def refuse(events: Events, which: NDArray[np.bool_], why: Why, first: Any, second: Any) -> None:
     """Turn some events into refusals with two numbers, each an array or one for all."""
     if not which.any():
         return

@@ -78,6 +78,16 @@ def some(events: Events, which: NDArray[Any]) -> Events:
     return _raw(events)[which].view(EVENT)
 
 
+def repeated(events: Events, count: int) -> Events:
+    """Return events `count` times, one after the other."""
+    return np.tile(_raw(events), count).view(EVENT)
+
+
+def inserted(events: Events, at: NDArray[np.intp], others: Events) -> Events:
+    """Return events with others before those at some places, which rise."""
+    return np.insert(_raw(events), at, _raw(others)).view(EVENT)
+
+
 def _raw(events: Events) -> NDArray[Any]:
     """Return events as bytes, which numpy copies at once, and fields one after the other."""
     return events.view(np.dtype((np.void, EVENT.itemsize)))

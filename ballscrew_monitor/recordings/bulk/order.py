@@ -10,6 +10,7 @@ time, after the samples of equal stamp.
 """
 
 from collections.abc import Callable, Iterator
+import functools
 import heapq
 from typing import Any, NamedTuple
 
@@ -40,6 +41,7 @@ OnDone = Callable[[float], None]
 """Told which share of a bag is done [-]."""
 
 
+@functools.singledispatch
 def ordered_events(
     bag: Bag, axes: list[Axis], period: int, notes: Notes, *, on_done: OnDone
 ) -> Iterator[Events]:
@@ -105,7 +107,7 @@ class EventOrder:
             return events
         arrival = np.lexsort((events['place'], events['log_time']))
         times = events['log_time'][arrival]
-        due, before = self._ticks(times), len(self._waiting)
+        due, before = self.ticks(times), len(self._waiting)
         everything = joined([self._waiting, events, due])
         at = np.searchsorted(times, due['stamp'], 'right')
         arrived = np.insert(arrival, at, len(events) + np.arange(len(due)))
@@ -172,7 +174,7 @@ class EventOrder:
         later = (stamp > past) | ((stamp == past) & (keys.source >= source))
         return bool((later & ((gone == 0) | (stamp > largest[gone - 1]))).all())
 
-    def _ticks(self, times: Integers) -> Events:
+    def ticks(self, times: Integers) -> Events:
         """Return the ticks up to the last of some log times, but few in a long hole."""
         first = int(times[0]) if self._passed is None else self._passed
         self._passed = int(times[-1])

@@ -11,6 +11,7 @@ point, numbers with a decimal comma, times of ISO 8601 or of the German form, or
 from collections.abc import Callable, Iterator
 import contextlib
 import dataclasses
+import functools
 import math
 from pathlib import Path
 import re
@@ -71,9 +72,10 @@ class _Count:
         missing = int(bad.sum())
         if missing:
             self._miss(cells, int(bad.argmax()), missing, row)
-        self.good += len(cells) - missing
-        self.least = float(np.min(numbers[~bad], initial=self.least))
-        self.most = float(np.max(numbers[~bad], initial=self.most))
+            numbers = numbers[~bad]
+        self.good += len(numbers)
+        self.least = float(np.min(numbers, initial=self.least))
+        self.most = float(np.max(numbers, initial=self.most))
         return not missing
 
     def pass_over(self, cells: pl.Series, row: int) -> None:
@@ -165,16 +167,22 @@ class Cells:
 
     def _count_numbers(self, cells: pl.Series, points: _Count, commas: _Count) -> bool:
         """Count cells as numbers with a point and with a comma; return True if one reads all."""
-        commaed, pointed = (_holds(cells, mark) for mark in ',.')
-        numbers = _finite(_points, _with_points(cells) if commaed.any() else cells)
-        self.signs.look(cells, {'.': pointed, ',': commaed}, np.isnan(numbers), self._row)
+        numbers, commaed = _finite(_points, cells), np.zeros(len(cells), np.bool_)
+        unread = np.isnan(numbers)
+        if unread.any():  # only a cell without a number with a point may have a comma
+            commaed = unread & _holds(cells, ',')
+            if commaed.any():
+                numbers = _finite(_points, _with_points(cells))
+                unread = np.isnan(numbers)
+        pointed = functools.cache(lambda: _holds(cells, '.'))
+        self.signs.look(cells, {'.': pointed, ',': lambda: commaed}, unread, self._row)
         if self._decimal:
             read = points.add(cells, self._row)
             return commas.add(cells, self._row) or read
         read = points.take(np.where(commaed, math.nan, numbers), cells, self._row)
         thousands = self._separator == ',' and points.good  # which a comma may part there
         if not thousands:
-            read |= commas.take(np.where(pointed, math.nan, numbers), cells, self._row)
+            read |= commas.take(np.where(pointed(), math.nan, numbers), cells, self._row)
         return read
 
     def _chosen(self) -> _Count:
@@ -199,9 +207,9 @@ class Cells:
 
 def _finite(form: Form, cells: pl.Series) -> Array:
     """Return cells as numbers, NaN where a form makes none or no finite one of them."""
-    numbers = np.array(form(cells).fill_null(math.nan).to_numpy(), dtype=np.float64)
-    numbers[~np.isfinite(numbers)] = math.nan
-    return numbers
+    numbers = form(cells).to_numpy()  # NaN for null
+    known = np.isfinite(numbers)
+    return numbers if known.all() else np.where(known, numbers, math.nan)
 
 
 def _plain(numbers: pl.Series) -> pl.Series:

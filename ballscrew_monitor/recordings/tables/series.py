@@ -21,8 +21,9 @@ from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import open_table, Table
 from ballscrew_monitor.recordings.tables.time_gate import INSTEAD
-from ballscrew_monitor.recordings.tables.times import joined, line, Rows, Stamps, Times
+from ballscrew_monitor.recordings.tables.times import joined, line, Rows, Times
 from ballscrew_monitor.recordings.words import short, Shown, shown_progress
+from ballscrew_monitor.settings.parameters import MOTOR_TORQUE
 import numpy as np
 from surrogate.files import InputError
 from surrogate.units import TURN
@@ -33,53 +34,49 @@ ALIKE = 0.9  # squared correlation from which a speed and its position are of on
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class AxisSeries:
-    """
-    One axis by rows, NaN where a quantity is not known.
-
-    Speed [rad/s], position [rad] and torque [N m] of the screw, force on the nut [N] and oil
-    temperature [degC], machine frame; None for what the log does not hold, but for the speed, and
-    for a load that the node works out.
-
-    """
-
-    name: str
-    speed: Array
-    load: Array | None
-    position: Array | None
-    torque: Array | None
-    temperature: Array | None
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Block:
-    """Some rows in the order of their stamps [ns], and the axes."""
-
-    stamps: Stamps
-    axes: tuple[AxisSeries, ...]
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Series:
     """
     A log by rows: their number, the usual time between them [s], and what was wrong with it.
 
-    `mapping` is that by which it is read, without the columns that hold nothing. The rows
-    themselves are read when they are asked for.
+    `mapping` is that by which it is read, without the columns that hold nothing; `begin` and `end`
+    are the first and the last stamp [ns]. The rows themselves are read when they are asked for.
 
     """
 
     count: int
     usual_period: float
+    begin: int
+    end: int
     notes: tuple[str, ...]
     mapping: TableMap
     _times: Times
 
-    def blocks(self) -> Iterator[Block]:
-        """Yield the rows in blocks."""
-        for rows, part in _with_neighbours(self._times.rows()):
-            axes = tuple(_axis(axis, rows, part, self._times.begin) for axis in self.mapping.axes)
-            yield Block(stamps=rows.stamps[part], axes=axes)
+    def blocks(self) -> Iterator[Rows]:
+        """
+        Yield the rows in blocks, the columns by axis and quantity, such as `x.load`.
+
+        Speed [rad/s], position [rad] and torque [N m] of the screw, load on the nut [N] and oil
+        temperature [degC], machine frame, NaN where not known: those of `quantities_of`.
+
+        """
+        blocks: Iterable[tuple[Rows, slice]] = ((rows, slice(None)) for rows in self._times.rows())
+        if any('speed' not in axis.columns for axis in self.mapping.axes):
+            blocks = _with_neighbours(self._times.rows())
+        for rows, part in blocks:
+            columns: dict[str, Array] = {}
+            for axis in self.mapping.axes:
+                quantities = _axis(axis, rows, part, self.begin)
+                columns |= {f'{axis.name}.{kind}': one for kind, one in quantities.items()}
+            yield Rows(stamps=rows.stamps[part], columns=columns)
+
+
+def quantities_of(axis: AxisMap) -> set[str]:
+    """Return what is known of an axis by rows: its speed, and what the log holds otherwise."""
+    held = {'speed', *({'position', 'temperature'} & set(axis.columns))}
+    motor = {kind for kind in ('torque', 'current') if kind in axis.columns}
+    if 'torque' in motor or (motor and math.isfinite(axis.motor_torque('current'))):
+        held.add('torque')
+    return held if axis.load_from == MOTOR_TORQUE else held | {'load'}
 
 
 def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) -> Series:
@@ -108,6 +105,8 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     return Series(
         count=times.count,
         usual_period=times.usual_period,
+        begin=times.begin,
+        end=times.end,
         notes=(*_losses(mapping, table.left_out), *table.notes, *times.notes()),
         mapping=held,
         _times=times,
@@ -167,49 +166,40 @@ def _with_neighbours(blocks: Iterable[Rows]) -> Iterator[tuple[Rows, slice]]:
         now = later
 
 
-def _axis(axis: AxisMap, rows: Rows, part: slice, begin: int) -> AxisSeries:
-    """Return a part of the rows of an axis, by a log that begins at a stamp [ns]."""
+def _axis(axis: AxisMap, rows: Rows, part: slice, begin: int) -> dict[str, Array]:
+    """Return the quantities of an axis in a part of the rows, by a log that begins at [ns]."""
 
-    def column(kind: str, factor: float, part: slice = part) -> Array | None:
-        found = axis.columns.get(kind)
-        return None if found is None else line(rows.columns[found.name][part], found, factor)
+    def column(kind: str, factor: float, part: slice = part) -> Array:
+        found = axis.columns[kind]
+        return line(rows.columns[found.name][part], found, factor)
 
     def unit(kind: str) -> str:
         return axis.columns[kind].unit if kind in axis.columns else ''
 
+    held, known = axis.columns.keys(), quantities_of(axis)
     linear, rotary = conversions.LINEAR_POSITION_UNITS, conversions.ROTARY_POSITION_UNITS
     turned = _turned(unit('position'), linear, rotary, TURN / axis.lead)
-    speed = column('speed', speed_factor(unit('speed'), axis.lead))
-    if speed is None:
+    found: dict[str, Array] = {}
+    if 'position' in known:
+        found['position'] = column('position', turned)
+    if 'speed' in held:
+        found['speed'] = column('speed', speed_factor(unit('speed'), axis.lead))
+    else:
         position = column('position', turned, slice(None))
-        assert position is not None  # the map has one of them
-        speed = _slope(position, (rows.stamps - begin) / SECOND)[part]
-    motor = {kind: axis.motor_torque(kind) for kind in ('torque', 'current') if unit(kind)}
-    torque = column('torque', motor.get('torque', 1.0))
-    if torque is None and math.isfinite(per_unit := motor.get('current', math.nan)):
-        torque = column('current', per_unit)
-    load = column('load', conversions.LOAD_UNITS.get(unit('load'), 1.0))
-    if load is None:
-        load = _load_without_column(axis, torque, len(speed))
-    warmth = column('temperature', 1.0)
-    zero = conversions.TEMPERATURE_UNITS.get(unit('temperature'), 0.0)
-    return AxisSeries(
-        name=axis.name,
-        speed=speed,
-        load=load,
-        position=column('position', turned),
-        torque=torque,
-        temperature=None if warmth is None else warmth + zero + conversions.celsius(0.0),
-    )
-
-
-def _load_without_column(axis: AxisMap, torque: Array | None, count: int) -> Array | None:
-    """Return the load of an axis as the map says, None if the node is to work it out."""
-    if axis.load_from == 'motor_torque':
-        return None
-    if not axis.load_from or torque is None:
-        return np.full(count, math.nan)
-    return force_of(torque, lead=axis.lead, efficiency=axis.efficiency)
+        found['speed'] = _slope(position, (rows.stamps - begin) / SECOND)[part]
+    if 'torque' in known:
+        kind = 'torque' if 'torque' in held else 'current'
+        found['torque'] = column(kind, axis.motor_torque(kind))
+    if 'load' in held:
+        found['load'] = column('load', conversions.LOAD_UNITS[unit('load')])
+    elif axis.load_from in ('torque', 'current') and 'torque' in known:
+        found['load'] = force_of(found['torque'], lead=axis.lead, efficiency=axis.efficiency)
+    elif 'load' in known:
+        found['load'] = np.full(len(found['speed']), math.nan)
+    if 'temperature' in known:
+        zero = conversions.TEMPERATURE_UNITS[unit('temperature')]
+        found['temperature'] = column('temperature', 1.0) + zero + conversions.celsius(0.0)
+    return found
 
 
 def force_of(torque: Array, *, lead: float, efficiency: float) -> Array:
@@ -251,8 +241,8 @@ def fits_of(mapping: TableMap, usual_period: float) -> list['Fit']:
 
     """
     return [
-        Fit(axis, number, LONG * usual_period)
-        for number, axis in enumerate(mapping.axes)
+        Fit(axis, LONG * usual_period)
+        for axis in mapping.axes
         if {'speed', 'position'} <= set(axis.columns)
     ]
 
@@ -260,17 +250,17 @@ def fits_of(mapping: TableMap, usual_period: float) -> list['Fit']:
 class Fit:
     """How far an axis moves by its position, over how far by its speed, by least squares."""
 
-    def __init__(self, axis: AxisMap, number: int, longest: float) -> None:
+    def __init__(self, axis: AxisMap, longest: float) -> None:
         """Begin with no row of an axis; rows `longest` [s] apart have no gap between them."""
-        self._axis, self._number, self._longest = axis, number, longest
+        self._axis, self._longest = axis, longest
         self._across = self._by_speed = self._by_position = 0.0
 
-    def add(self, block: Block) -> None:
+    def add(self, rows: Rows) -> None:
         """Take further rows."""
-        axis, steps = block.axes[self._number], np.diff(block.stamps) / SECOND
-        assert axis.position is not None  # the map has a column of it
-        expected = (axis.speed[1:] + axis.speed[:-1]) / 2 * steps
-        moved = np.diff(axis.position)
+        steps, name = np.diff(rows.stamps) / SECOND, self._axis.name
+        speed, position = (rows.columns[f'{name}.{kind}'] for kind in MOTION)
+        expected = (speed[1:] + speed[:-1]) / 2 * steps
+        moved = np.diff(position)
         good = np.isfinite(expected) & np.isfinite(moved) & (steps <= self._longest)
         moved, expected = moved[good], expected[good]
         with np.errstate(over='ignore', invalid='ignore'):

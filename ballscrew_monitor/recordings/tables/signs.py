@@ -7,7 +7,7 @@ In 5.400 the point may be either. A cell such as 12.35 or 1,234.5 shows which it
 
 """
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 import dataclasses
 import re
 
@@ -68,7 +68,7 @@ class Signs:
     def look(
         self,
         texts: pl.Series,
-        holding: Mapping[str, NDArray[np.bool_]],
+        holding: Mapping[str, Callable[[], NDArray[np.bool_]]],
         unread: NDArray[np.bool_],
         row: int,
     ) -> None:
@@ -81,7 +81,9 @@ class Signs:
         for sign, other in OTHER_SIGN.items():
             if sign in self._sure:
                 continue
-            places = np.flatnonzero(holding[sign] | (holding[other] & unread))
+            places = np.flatnonzero(holding[sign]())
+            if unread.any():
+                places = np.union1d(places, np.flatnonzero(holding[other]() & unread))
             if not len(places):
                 continue
             some = texts.gather(places)

@@ -8,7 +8,7 @@ line feed, a carriage return or both. All is bounded before it is read.
 
 """
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 import contextlib
 import csv
 import dataclasses
@@ -16,7 +16,7 @@ import functools
 import io
 import math
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.tables import heads
 from ballscrew_monitor.recordings.tables.cells import first_line, readable
@@ -32,6 +32,7 @@ HEAD = 65536  # [bytes] of a file that tell what it is
 LINES = 200  # of a table that tell where its names stand
 SHORT = 4096  # [bytes] of a block, in which a line usually ends
 BLOCK = 32768  # rows that are read at a time
+PART = 4 * limits.MEGA  # [bytes] of a text that are read at a time
 ZIP, PARQUET = b'PK\3\4', b'PAR1'
 WIDE_MARKS = (b'\xff\xfe', b'\xfe\xff')
 NARROW_MARK = b'\xef\xbb\xbf'
@@ -47,6 +48,7 @@ class Source:
     Its first cells stand in the row `first` of the file; lines that begin with # do not count.
     The columns that are read may come to `most` [bytes]: those at rest take next to no room in a
     file of Parquet, so that all of them together tell nothing.
+    `parts` reads some columns of a text part by part.
 
     """
 
@@ -56,6 +58,7 @@ class Source:
     rows: int
     first: int = 1
     most: float = math.inf
+    parts: Callable[[list[str]], Iterator[pl.DataFrame]] | None = None
 
     def names(self) -> list[str]:
         """Return the names of all columns."""
@@ -77,8 +80,9 @@ class Source:
                 'the file'
             )
         with readable(f'log {self.path} cannot be read'):
-            batches = self.frame.select(list(names)).collect_batches(chunk_size=BLOCK, lazy=True)
-            for batch in batches:
+            chosen = self.frame.select(list(names))
+            batches = chosen.collect_batches(chunk_size=BLOCK, lazy=True)
+            for batch in self.parts(list(names)) if self.parts else batches:
                 yield from batch.iter_slices(BLOCK) if batch.height else ()
 
 
@@ -202,26 +206,72 @@ def _narrow(path: Path, size: int) -> bytes:
 
 def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     with text.stream() as stream:
-        _check_lines(path, stream, text.line_end.encode())
+        plain, comments = _look_at_lines(path, stream, text.line_end.encode())
     found = layout or Layout()
     with text.lines() as lines:
         head = _named(path, lines, found)
     _check_columns(path, len(head.names))
-    frame = pl.scan_csv(
-        path if text.content is None else io.BytesIO(text.content),
+    options: dict[str, Any] = {
+        'separator': head.separator,
+        # What it holds none of is not looked for, which takes as long as the cells themselves.
+        'encoding': 'utf8' if plain else 'utf8-lossy',
+        'comment_prefix': heads.COMMENT if comments else None,
+        'truncate_ragged_lines': True,
+        'eol_char': text.line_end,
+        'infer_schema': False,
+        'raise_if_empty': False,
+    }
+    first = {'skip_lines': head.lines, 'skip_rows_after_header': found.header_rows - 1}
+
+    def scanned(content: Path | bytes, **more: Any) -> pl.LazyFrame:
+        renamed = functools.partial(_renamed, head.names)
+        return pl.scan_csv(content, with_column_names=renamed, **options, **more)
+
+    def parts(names: list[str]) -> Iterator[pl.DataFrame]:
+        # Names for as many columns stand before each part but the first.
+        line = head.separator.join(map(str, range(len(source.names())))) + text.line_end
+        with text.stream() as stream:
+            layout_of_part = first
+            for part in _parts(stream, text.line_end.encode(), line.encode(), head.first):
+                yield scanned(part, **layout_of_part).select(names).collect()
+                layout_of_part = {}
+
+    source = Source(
+        path=path,
+        frame=scanned(path if text.content is None else text.content, **first),
         separator=head.separator,
-        with_column_names=functools.partial(_renamed, head.names),
-        skip_lines=head.lines,
-        skip_rows_after_header=found.header_rows - 1,
-        infer_schema=False,
-        encoding='utf8-lossy',
-        comment_prefix=heads.COMMENT,
-        truncate_ragged_lines=True,
-        eol_char=text.line_end,
+        rows=text.lines_about,
+        first=head.first,
+        parts=parts,
     )
-    return Source(
-        path=path, frame=frame, separator=head.separator, rows=text.lines_about, first=head.first
-    )
+    return source
+
+
+def _parts(stream: BinaryIO, line_end: bytes, line: bytes, first: int) -> Iterator[bytes]:
+    """
+    Yield a text in parts that end with a line, and begin with another one from the second on.
+
+    The first has as many lines as the row `first`. Of a whole text, polars would read much ahead.
+
+    """
+    held, quoted, block, lines = [b''], False, stream.read(PART), 0
+    while block:
+        following = stream.read(PART)
+        end = _line_ends(block, line_end, quoted)[1] + 1 if following else len(block)
+        quoted ^= _is_odd(block)
+        if lines < first:
+            lines += block.count(line_end)
+        if end and (lines >= first or not following):
+            yield b''.join([*held, memoryview(block)[:end]])
+            held = [line, block[end:]]
+        else:
+            held.append(block)
+        block = following
+
+
+def _is_odd(block: bytes) -> bool:
+    """Return True if a text has an odd number of quotes."""
+    return b'"' in block and block.count(b'"') % 2 == 1
 
 
 def _renamed(names: Sequence[str], held: Sequence[str]) -> list[str]:
@@ -250,10 +300,18 @@ def _check_columns(path: Path, count: int) -> None:
         raise InputError(f'log {path} has {count} columns, allowed are {limits.COLUMNS}')
 
 
-def _check_lines(path: Path, stream: BinaryIO, line_end: bytes) -> None:
-    """Raise InputError if a line is longer than allowed, those within quotes counted as one."""
+def _look_at_lines(path: Path, stream: BinaryIO, line_end: bytes) -> tuple[bool, bool]:
+    """
+    Return whether a text is of ASCII alone, and whether it may hold comments.
+
+    Raises InputError if a line is longer than allowed, those within quotes counted as one.
+
+    """
     length, quoted = 0, False  # of the line so far [bytes]
+    plain, comments = True, False
     while block := stream.read(limits.MEGA):
+        plain &= block.isascii()
+        comments |= heads.COMMENT.encode() in block
         first, last = _line_ends(block, line_end, quoted)
         length += len(block) if first < 0 else first
         if length > limits.LINE:
@@ -263,7 +321,8 @@ def _check_lines(path: Path, stream: BinaryIO, line_end: bytes) -> None:
             )
         if first >= 0:
             length = len(block) - last - 1
-        quoted ^= block.count(b'"') % 2 == 1
+        quoted ^= _is_odd(block)
+    return plain, comments
 
 
 def _line_ends(block: bytes, line_end: bytes, quoted: bool) -> tuple[int, int]:

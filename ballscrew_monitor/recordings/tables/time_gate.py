@@ -67,6 +67,10 @@ class TimeGate:
         carried = len(times) - len(late)
         rising = times[1:] >= times[:-1]
         self._rising += int(rising.sum())
+        if not late.any():
+            self._streak = 0
+            self._caught_up |= self._first_fall is not None
+            return
         rising = rising if carried else np.append(False, rising)
         follows = late & np.append(self._streak > 0, late[:-1]) & rising
         places = np.arange(len(late))
@@ -79,7 +83,7 @@ class TimeGate:
                 self._again = self._fall
         self._streak = int(lengths[-1])
         first = 0
-        if self._first_fall is None and late.any():
+        if self._first_fall is None:
             first = int(late.argmax())
             self._first_fall = _pair(times, rows, first + carried - 1)
         self._caught_up |= self._first_fall is not None and not late[first:].all()

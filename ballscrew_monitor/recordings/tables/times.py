@@ -118,6 +118,11 @@ class Times:
         return int(self._stamps(np.array([self._begin]))[0])
 
     @property
+    def end(self) -> int:
+        """Return the stamp of the last row [ns]."""
+        return int(self._stamps(np.array([self._end]))[0])
+
+    @property
     def usual_period(self) -> float:
         """Return the time between rows [s] that half of them keep."""
         return self._steps.median / SECOND
@@ -154,11 +159,11 @@ class Times:
             row += len(times)
             show(row / self._table.rows)
             known = np.isfinite(times)
-            if known.any():
-                yield Rows(
-                    stamps=self._stamps(times[known]),
-                    columns={name: values[known] for name, values in columns.items()},
-                )
+            if not known.all():
+                times = times[known]
+                columns = {name: values[known] for name, values in columns.items()}
+            if len(times):
+                yield Rows(stamps=self._stamps(times), columns=columns)
 
     def _look(self, shown: Shown) -> TimeGate:
         """Look through the times of all rows."""
@@ -279,8 +284,8 @@ class Steps:
         steps = np.diff(np.concatenate([self._last, stamps]))
         if len(steps):
             bins = _bins(steps)
-            self._counts += np.bincount(bins, minlength=_BINS)
-            self._sums += np.bincount(bins, weights=steps, minlength=_BINS)
+            np.add.at(self._counts, bins, 1)
+            np.add.at(self._sums, bins, steps)
             at = int(steps.argmax())
             if steps[at] > self.longest:
                 self.longest = float(steps[at])

@@ -27,7 +27,6 @@ TIMES = np.sort(RNG.integers(10**18, 10**18 + 10**9, COUNT))
 CONTENTS = [RNG.bytes(int(size)) for size in RNG.integers(0, 300, COUNT)]
 SEQUENCE = np.arange(COUNT)
 TOPICS = ('/a', '/b', '/c')
-SIZES = (1, 120, 31)  # [bytes] of the messages of each in a row
 
 
 def theirs(compress, *, count=COUNT):
@@ -49,9 +48,9 @@ def theirs(compress, *, count=COUNT):
     return stream.getvalue()
 
 
-def ours(compress, add, *, chunk_size=CHUNK_SIZE):
+def ours(compress, add):
     stream = io.BytesIO()
-    file = McapFile(stream, chunk_size=chunk_size, compress=compress)
+    file = McapFile(stream, chunk_size=CHUNK_SIZE, compress=compress)
     file.add_metadata('before', {'a': 'b', 'ü': 'ö'})
     for topic in TOPICS:
         file.add_channel(topic=topic, kind='Kind', definition=bytes(800), metadata={'of': topic})
@@ -93,42 +92,6 @@ def test_both_ways_know_one_layout_and_a_file_without_a_message():
 @pytest.mark.parametrize('add', [one_by_one, at_once, taking_turns])
 def test_each_way_gives_the_bytes_of_the_package(add, compress):
     assert ours(compress, add) == theirs(compress)
-
-
-def rows_of(order):
-    """Return channels and messages of each row, the latter as arrays, for channels in an order."""
-    contents = [np.array([RNG.bytes(SIZES[at]) for _ in TIMES], f'V{SIZES[at]}') for at in order]
-    return [at + 1 for at in order], contents
-
-
-def as_rows(file, channels, contents, part=slice(None)):
-    contents = [content[part] for content in contents]
-    first = [part.start or 0] * len(channels)
-    file.add_rows(channels, contents, log_time=TIMES[part], first=first)
-
-
-def row_by_row(file, channels, contents, part=slice(None)):
-    for row in range(COUNT)[part]:
-        time = int(TIMES[row])
-        for channel, content in zip(channels, contents):
-            data = content[row].tobytes()
-            file.add_message(channel, data, log_time=time, publish_time=time, sequence=row)
-
-
-@pytest.mark.parametrize('compress', [True, False])
-@pytest.mark.parametrize('order', [[0, 1, 2], [2, 0], [1]])
-@pytest.mark.parametrize('chunk_size', [1, CHUNK_SIZE, 10**6])
-def test_rows_give_the_bytes_of_their_messages(order, compress, chunk_size):
-    rows = rows_of(order)
-    expected = ours(compress, lambda file: row_by_row(file, *rows), chunk_size=chunk_size)
-    assert ours(compress, lambda file: as_rows(file, *rows), chunk_size=chunk_size) == expected
-
-    def in_parts(file):
-        for at in range(0, COUNT, 70):
-            as_rows(file, *rows, slice(at, at + 35))
-            row_by_row(file, *rows, slice(at + 35, at + 70))
-
-    assert ours(compress, in_parts, chunk_size=chunk_size) == expected
 
 
 def test_it_reads_back():

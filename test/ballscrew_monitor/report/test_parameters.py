@@ -39,8 +39,8 @@ def table(tmp_path):
 def test_a_table_says_what_its_load_is_worked_out_from(table):
     from ballscrew_monitor.recordings.opener import opened_log
 
-    with opened_log(table / 'log.csv', mapping=table / 'map.yaml') as bag:
-        found = parameters_for(bag, None, table / 'none.yaml')
+    bag = opened_log(table / 'log.csv', mapping=table / 'map.yaml')
+    found = parameters_for(bag, None, table / 'none.yaml')
     assert found.axes['x'].load_from == 'current'
     assert found.axes['x'].stated >= {'speed.column', 'current.unit', 'screw', 'oil'}
     assert not found.axes['x'].stated & set(found.axes['x'].assumed)
@@ -84,8 +84,8 @@ def found_with(table, params=None, **changes):
     for before, after in changes.values():
         text = text.replace(before, after)
     (table / 'map.yaml').write_text(text)
-    with opened_log(table / 'log.csv', mapping=table / 'map.yaml') as bag:
-        return parameters_for(bag, params, table / 'none.yaml')
+    bag = opened_log(table / 'log.csv', mapping=table / 'map.yaml')
+    return parameters_for(bag, params, table / 'none.yaml')
 
 
 def is_stated(found):

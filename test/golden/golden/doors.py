@@ -202,8 +202,8 @@ def packed(value):
 
 def page_frames(log, parameters, shares):
     """Yield what browsers are sent of a recording at some shares of it [-]: records and arrays."""
-    with opened_log(log) as bag:
-        axes = recorded_axes(bag, parameters_for(bag, parameters, parameters), lambda share: None)
+    bag = opened_log(log)
+    axes = recorded_axes(bag, parameters_for(bag, parameters, parameters), lambda share: None)
 
     async def frames():
         found, hub = [], Hub()

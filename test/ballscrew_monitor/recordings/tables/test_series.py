@@ -24,20 +24,13 @@ AXIS = {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'mm/s'}}
 
 def joined(series):
     blocks = list(series.blocks())
-    axes = [
-        types.SimpleNamespace(
-            speed=np.concatenate([block.axes[number].speed for block in blocks]),
-            **{
-                name: np.concatenate([getattr(block.axes[number], name) for block in blocks])
-                for name in ('load', 'position', 'torque', 'temperature')
-                if getattr(axis, name) is not None
-            },
-        )
-        for number, axis in enumerate(blocks[0].axes)
-    ]
+    columns = {
+        name.removeprefix('x.'): np.concatenate([block.columns[name] for block in blocks])
+        for name in blocks[0].columns
+    }
     stamps = np.concatenate([block.stamps for block in blocks])
     return types.SimpleNamespace(
-        stamps=stamps, axes=axes, notes=series.notes, usual_period=series.usual_period
+        stamps=stamps, notes=series.notes, usual_period=series.usual_period, **columns
     )
 
 
@@ -72,37 +65,36 @@ def test_quantities_are_those_of_the_screw(read):
     }
     columns = {'t': [5, 6], 'v': [10, -20], 'p': [0, 5], 'i': [2000, 0], 'w': [313.15, 293.15]}
     made = read(columns, axis)
-    (found,) = made.axes
     assert made.stamps.tolist() == [EPOCH, EPOCH + 10**9]
-    assert found.speed == pytest.approx([2 * math.pi, -4 * math.pi])
-    assert found.position == pytest.approx([0, math.pi])
-    assert found.torque == pytest.approx([1.0, 0.0])
+    assert made.speed == pytest.approx([2 * math.pi, -4 * math.pi])
+    assert made.position == pytest.approx([0, math.pi])
+    assert made.torque == pytest.approx([1.0, 0.0])
     # A torque that drives forward holds a force that pushes back.
-    assert found.load == pytest.approx([-2 * math.pi * 0.8 * 1.0 / 0.01, 0.0])
-    assert found.temperature == pytest.approx([40.0, 20.0])
+    assert made.load == pytest.approx([-2 * math.pi * 0.8 * 1.0 / 0.01, 0.0])
+    assert made.temperature == pytest.approx([40.0, 20.0])
 
 
 @pytest.mark.parametrize('kind', ['torque', 'current'])
 def test_a_part_of_the_rated_torque_is_a_torque(read, kind):
     axis = AXIS | {kind: {'column': 'part', 'unit': '%'}, 'torque_rated_Nm': 8.0}
     made = read({'t': [0, 1], 'v': [0, 30], 'part': [-25, 100]}, axis)
-    assert made.axes[0].torque == pytest.approx([-2.0, 8.0])
+    assert made.torque == pytest.approx([-2.0, 8.0])
 
 
 def test_rotary_units_need_no_lead_and_scale_and_offset_come_first(read):
     speed = {'column': 'v', 'unit': 'rev/min', 'scale': 2.0, 'offset': 60.0}
     made = read({'t': [0, 1], 'v': [0, 30]}, AXIS | {'speed': speed})
-    assert made.axes[0].speed == pytest.approx([2 * math.pi, 4 * math.pi])
+    assert made.speed == pytest.approx([2 * math.pi, 4 * math.pi])
 
 
 def test_an_unknown_load_is_no_zero_and_speed_may_be_the_slope_of_position(read):
     made = read({'t': [0, 1], 'v': [1, 1]}, AXIS | {'load': {'unknown': 'no sensor'}})
-    assert np.isnan(made.axes[0].load).all()
+    assert np.isnan(made.load).all()
     assert math.copysign(1.0, force_of(np.zeros(1), lead=0.01, efficiency=0.9)[0]) == 1.0
     axis = {'lead_mm': 10.0, 'position': {'column': 'p', 'unit': 'm'}}
     made = read({'t': [0, 1, 2, 2], 'p': [0.0, 0.01, 0.02, 0.02]}, axis)
-    assert made.axes[0].speed[:2] == pytest.approx([2 * math.pi] * 2)
-    assert np.isnan(made.axes[0].speed[-1])
+    assert made.speed[:2] == pytest.approx([2 * math.pi] * 2)
+    assert np.isnan(made.speed[-1])
 
 
 def test_a_rate_makes_stamps_and_a_time_of_the_universal_clock_stays(read):
@@ -127,10 +119,10 @@ def test_huge_times_are_refused_in_one_sentence(times, epoch, read, refused):
 
 def test_rows_out_of_order_without_a_time_or_after_a_gap_are_said(read, says, refused):
     made = read({'t': [0, 2, 1, 3], 'v': [0, 2, 1, 3]})
-    assert made.axes[0].speed == pytest.approx(np.arange(4) * 0.2 * math.pi)
+    assert made.speed == pytest.approx(np.arange(4) * 0.2 * math.pi)
     assert made.notes[0].endswith(says('1_rows_earlier'))
     made = read({'t': ['0', '', '2'], 'v': [1, 2, 3]})
-    assert len(made.stamps) == len(made.axes[0].speed) == 2
+    assert len(made.stamps) == len(made.speed) == 2
     assert made.notes[-1].endswith('1 rows without a time are left out')
     refused('holds_1_rows', read, {'t': ['0', '', ''], 'v': [1, 2, 3]})
     made = read({'t': [0, 0.1, 0.2, 3600, 3600.1], 'v': [1] * 5})
@@ -144,7 +136,7 @@ def test_rows_far_out_of_order_are_sorted_too(read, spread):
     times = np.arange(200) // 3 * 0.1 + random.integers(0, spread, 200) * 0.1
     made = read({'t': 1.7e9 + times, 'v': np.arange(200.0)}, column='t', unit='s')
     order = np.argsort(times.round(1), kind='stable')
-    assert made.axes[0].speed == pytest.approx(order * 0.2 * math.pi)
+    assert made.speed == pytest.approx(order * 0.2 * math.pi)
     assert (np.diff(made.stamps) >= 0).all()
     assert made.usual_period == pytest.approx(np.median(np.diff(made.stamps)) * 1e-9)
 
@@ -153,7 +145,7 @@ def test_a_time_of_day_goes_on_through_midnight(read):
     clocks = [f'{hour:02d}:30:00' for hour in (22, 23, 0, 1)]
     made = read({'t': clocks, 'v': [1, 2, 3, 4]})
     np.testing.assert_array_equal(made.stamps - EPOCH, np.arange(4) * 3600 * 10**9)
-    assert made.axes[0].speed == pytest.approx(np.arange(1, 5) * 0.2 * math.pi)
+    assert made.speed == pytest.approx(np.arange(1, 5) * 0.2 * math.pi)
 
 
 def test_few_rows_wait_for_one_that_is_a_little_late(small_reads, tmp_path, write_csv):

@@ -5,6 +5,7 @@
 import io
 import zipfile
 
+from ballscrew_monitor.recordings.tables import sources
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.read import column_names, open_table
 from ballscrew_monitor.recordings.tables.sources import layout_of
@@ -170,3 +171,31 @@ def test_a_parquet_file_of_an_axis_at_rest_is_read(tmp_path, monkeypatch):
     monkeypatch.setattr(limits, 'WORKBOOK', 0)
     assert 8 * len(rest) * len(columns) > limits.most_unpacked(path.stat().st_size)
     assert open_table(path, ['t', *names[:3]]).rows == len(rest)
+
+
+@pytest.mark.parametrize('end', ['\n', '\r\n', '\r'])
+@pytest.mark.parametrize('last', [True, False])
+def test_parts_of_a_text_leave_no_trace(tmp_path, monkeypatch, end, last):
+    lines = [
+        '# of a mill',
+        'a;b',
+        '1;2',
+        '"x;',
+        'y";3',
+        '',
+        '4',
+        '5;6;7',
+        '# a note',
+        ';8',
+        '9;"10"',
+    ]
+    path = tmp_path / 'log.csv'
+    path.write_bytes((end.join(lines) + end * last).encode())
+    found = []
+    for size in (1, 2, 7, 1000):
+        monkeypatch.setattr(sources, 'PART', size)
+        found.append(pl.concat(list(sources.source_of(path).blocks(['a', 'b']))).rows())
+    whole = sources.source_of(path).frame.select('a', 'b').collect().rows()
+    assert found == [whole] * 4
+    assert whole[0] == ('1', '2')
+    assert whole[-1] == ('9', '10')

@@ -1,0 +1,286 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+A table and the map of its columns as a log: rows are events at once, and messages if asked for.
+
+Topics are `joint_states` with speed, position and torque of each screw, `<axis>/axial_load` and
+`<axis>/oil_temperature`. Parameters of the node, map, assumptions and notes are in the metadata.
+
+"""
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+import math
+from pathlib import Path
+from typing import Any
+
+from ballscrew_monitor.core.fields import type_name_of
+from ballscrew_monitor.core.inputs import Input, Why
+from ballscrew_monitor.messages.reasons import enough_timeout
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bulk.batches import Batch, batches, END
+from ballscrew_monitor.recordings.bulk.chunks import Messages
+from ballscrew_monitor.recordings.bulk.decode import refuse
+from ballscrew_monitor.recordings.bulk.events import (
+    event_of,
+    Events,
+    inserted,
+    joined,
+    Notes,
+    repeated,
+    some,
+)
+from ballscrew_monitor.recordings.bulk.order import EventOrder, OnDone, ordered_events
+from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
+from ballscrew_monitor.recordings.storages import Message, TopicInfo
+from ballscrew_monitor.recordings.tables import times
+from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
+from ballscrew_monitor.recordings.tables.messages import (
+    column_of,
+    JOINTS,
+    patterns_of,
+    serialised,
+    STAMP,
+)
+from ballscrew_monitor.recordings.tables.series import fits_of, read_series, Series
+from ballscrew_monitor.recordings.tables.times import Rows
+from ballscrew_monitor.recordings.words import Shown, shown_progress
+from ballscrew_monitor.settings import parameters
+from ballscrew_monitor.settings.axis import Axis, load_surface
+from ballscrew_monitor.settings.parameters import absolute, MOTOR_TORQUE
+import numpy as np
+from sensor_msgs.msg import JointState
+from surrogate.files import InputError
+from surrogate.units import MILLI
+
+SLOW = 0.5  # of the timeout: rows that far apart leave no room for a late one
+SAME = 1e-6  # part by which two leads may differ
+NAMES_NONE = 'the map names none'
+PASSES = 2  # over a table, at most, before it is judged, of which each is shown
+AT_ONCE = 32768  # events that are made at a time: they stay in the cache
+
+
+class TableLog(Bag):
+    """A table read by a map; what its rows say of the map is a remark once all are read."""
+
+    def __init__(self, path: Path, mapping: TableMap, shown: Shown = shown_progress) -> None:
+        """
+        Look through the table at `path`, and show how far that is.
+
+        Raises InputError when it cannot be read by the map.
+
+        """
+        self._series = read_series(path, mapping, shown)
+        self.facts = _facts_of(path, mapping, self._series)
+        self._patterns, self._columns = patterns_of(self._series.mapping)
+        self.path, self.files, self.metadata = path, [path], self.facts.texts()
+        self.count = self._series.count
+        self.topics = {
+            name: TopicInfo(type_name=type_name_of(pattern), encoding='cdr', count=self.count)
+            for name, pattern in self._patterns.items()
+        }
+        self.start_time, self.end_time = self._series.begin, self._series.end
+        self.storages, self.refused, self.remarks, self._missing = [], {}, [], []
+
+    def messages(self, topics: Collection[str] | None = None) -> Iterator[Message]:
+        """Yield messages of `topics` (None: all) by log time."""
+        for batch in self.batches(self.topics if topics is None else topics):
+            yield from batch.messages()
+
+    def batches(self, topics: Collection[str]) -> Iterator[Batch]:
+        """Yield the messages of `topics` that the rows are."""
+        wanted = [name for name in self._patterns if name in topics]
+        begin = 0
+        for rows in self._blocks():
+            count = len(rows.stamps)
+            row = np.arange(begin, begin + count)
+            found = {}
+            for number, name in enumerate(wanted):
+                messages = serialised(self._patterns[name], self._columns, rows)
+                found[name] = Messages(
+                    data=messages.tobytes(),
+                    channel=np.zeros(count, np.int64),
+                    begin=np.arange(count) * messages.itemsize,
+                    size=np.full(count, messages.itemsize),
+                    log_time=rows.stamps,
+                    place=row * len(wanted) + number,
+                    sequence=row,
+                )
+            begin += count
+            until = END if begin == self.count else int(rows.stamps[-1])
+            yield Batch(topics=found, until=until, done=begin / self.count)
+
+    def events(
+        self, axes: list[Axis], period: int, notes: Notes, on_done: OnDone
+    ) -> Iterator[Events]:
+        """Yield the events of `axes` as `ordered_events` does."""
+        inputs = sorted(
+            [(number, one) for number, axis in enumerate(axes) for one in axis.inputs],
+            key=lambda each: (each[1].source, each[0]),
+        )
+        row = joined([self._event(one, notes, axis=number) for number, one in inputs])
+        order, done = EventOrder(period), 0
+        for rows in _together(self._blocks(), most=max(AT_ONCE // len(row), 1)):
+            due = order.ticks(rows.stamps)
+            at = len(row) * np.searchsorted(rows.stamps, due['stamp'], 'right')
+            yield inserted(self._events(rows, row, [one for _, one in inputs]), at, due)
+            done += len(rows.stamps)
+            on_done(done / self.count)
+
+    def _event(self, one: Input, notes: Notes, *, axis: int) -> Events:
+        """Return what an input of an axis reads of any row, but for its time and number."""
+        read = one.read(self._patterns[absolute(one.topic)], now=STAMP, max_future=0)
+        return event_of(read, notes, axis=axis, log_time=STAMP, place=0)
+
+    def _events(self, rows: Rows, row: Events, inputs: Sequence[Input]) -> Events:
+        """Return the events of some rows by stamp and source; those of any `row` are alike."""
+        events = repeated(row, len(rows.stamps))
+        by_row = events.reshape(-1, len(row))
+        for name in ('log_time', 'stamp', 'arrival'):
+            by_row[name] = rows.stamps[:, None]
+        for at, one in enumerate(inputs):
+            number = one.read_field(self._patterns[absolute(one.topic)])
+            name = column_of(number, self._columns) if isinstance(number, float) else ''
+            if not name:
+                continue
+            raw = rows.columns[name]
+            with np.errstate(invalid='ignore', over='ignore'):
+                value = raw * one.scaling.factor + one.scaling.shift
+            by_row['value'][:, at] = value
+            refuse(by_row[:, at], ~np.isfinite(value), Why.NOT_A_NUMBER, raw, math.nan)
+        if len(row) > 1 and (np.diff(rows.stamps) == 0).any():
+            events = some(events, np.lexsort((events['source'], events['stamp'])))
+        return events
+
+    def _blocks(self) -> Iterator[Rows]:
+        """Yield the rows in blocks, and compare the speeds with the positions beside them."""
+        fits = fits_of(self._series.mapping, self._series.usual_period)
+        for rows in self._series.blocks():
+            for fit in fits:
+                fit.add(rows)
+            yield rows
+        for note in filter(None, (fit.note() for fit in fits)):
+            self.remark(note)
+
+
+@batches.register
+def _(bag: TableLog, topics: Collection[str], *, as_written: bool = False) -> Iterator[Batch]:
+    return bag.batches(topics)
+
+
+@ordered_events.register
+def _(
+    bag: TableLog, axes: list[Axis], period: int, notes: Notes, *, on_done: OnDone
+) -> Iterator[Events]:
+    return bag.events(axes, period, notes, on_done)
+
+
+def _together(blocks: Iterable[Rows], most: int) -> Iterator[Rows]:
+    """Yield rows in blocks of at most so many, or more if these are of one stamp."""
+    held: Rows | None = None
+    for block in blocks:
+        for begin in range(0, len(block.stamps), most):
+            end = begin + most
+            rows = block[begin:end]
+            if held is not None:
+                same = int(np.searchsorted(rows.stamps, held.stamps[-1], 'right'))
+                held, rows = times.joined([held, rows[:same]]) if same else held, rows[same:]
+                if not len(rows.stamps):
+                    continue
+                yield held
+            held = rows
+    if held is not None:
+        yield held
+
+
+def _facts_of(path: Path, stated: TableMap, series: Series) -> LogFacts:
+    """Return what is known of a table that is read by a map."""
+    mapping, notes = series.mapping, [*series.notes, *_unknown(stated)]
+    return LogFacts(
+        source=path.name,
+        parameters=_parameters(mapping, series, notes),
+        mapping=mapping.content,
+        assumptions=(*mapping.assumptions, *_derived(mapping)),
+        notes=tuple(notes),
+    )
+
+
+def _parameters(mapping: TableMap, series: Series, notes: list[str]) -> dict[str, Any]:
+    """Return what the node is to be told; add a note about each thing that does not fit."""
+    names = [axis.name for axis in mapping.axes]
+    values: dict[str, Any] = {'axes': names}
+    for axis in mapping.axes:
+        values |= _axis_parameters(axis)
+    every = parameters.defaults(names)
+    period = series.usual_period
+    for name, default in every.items():
+        if name.endswith('.timeout') and period > SLOW * default:
+            values[name] = enough_timeout(period)
+    if any(name.endswith('.timeout') for name in values):
+        notes.append(f'rows are {period:.3g} s apart: timeouts are longer than usual')
+    values |= mapping.parameters
+    parameters.check(parameters.table(names), values)
+    notes += [note for axis in mapping.axes if (note := _lead_note(axis, every | values))]
+    return values
+
+
+def _axis_parameters(axis: AxisMap) -> dict[str, Any]:
+    values: dict[str, Any] = dict(axis.texts)
+    by_node = axis.load_from == MOTOR_TORQUE
+    if by_node:
+        values |= {
+            'load.source': MOTOR_TORQUE,
+            'torque.uncertainty': axis.torque_uncertainty,
+            'inertia': axis.inertia,
+            'health.free_load': axis.free_load,
+            'health.always_free': axis.always_free,
+        }
+    else:
+        values['load.topic'] = f'{axis.name}/axial_load'
+    if 'temperature' in axis.columns:
+        values['temperature.topic'] = f'{axis.name}/oil_temperature'
+    elif math.isfinite(axis.temperature):
+        values['temperature.default'] = axis.temperature
+    # A torque that the load was worked out from has nothing to be compared with.
+    if by_node or ('torque' in axis.columns and axis.load_from != 'torque'):
+        joint = {'topic': JOINTS, 'type': type_name_of(JointState())}
+        joint['field'] = f'effort[{axis.name}_axis]'
+        values |= {f'torque.{key}': value for key, value in joint.items()}
+    return {f'{axis.name}.{key}': value for key, value in values.items()}
+
+
+def _lead_note(axis: AxisMap, values: dict[str, Any]) -> str:
+    """Return what is to be said about the surface that an axis is judged with, if anything."""
+    try:
+        lead = load_surface(axis.name, values).lead
+    except InputError as error:
+        return f'{error}: the bag cannot be judged before there is a surface'
+    if abs(lead / axis.lead - 1.0) <= SAME:
+        return ''
+    return (
+        f'axis {axis.name}: the lead is {axis.lead * MILLI:g} mm, that of the surface '
+        f'{lead * MILLI:g} mm: build the surface of this screw'
+    )
+
+
+def _derived(mapping: TableMap) -> list[Assumption]:
+    """Return what the import itself works out."""
+    found = []
+    for axis in mapping.axes:
+        if 'speed' not in axis.columns:
+            why = 'the map names no column of the speed'
+            key = f'{axis.name}.speed'
+            found.append(Assumption(key=key, value='slope of the position', reason=why))
+        if 'load' not in axis.columns and not axis.load_from:
+            why = axis.unknown.get('load', NAMES_NONE)
+            found.append(Assumption(key=f'{axis.name}.load', value='unknown', reason=why))
+    return found
+
+
+def _unknown(mapping: TableMap) -> list[str]:
+    """Return of which axis the map says no load, and what to write there."""
+    return [
+        f'axis {axis.name}: the load is unknown ({axis.unknown.get("load", NAMES_NONE)}), '
+        f'name a column of a force, torque or current for axes.{axis.name} in the map'
+        for axis in mapping.axes
+        if 'load' not in axis.columns and not axis.load_from
+    ]

@@ -1,0 +1,202 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""A table as a log: its rows are judged as the messages of the bag that `import` writes."""
+
+from pathlib import Path
+import tempfile
+import tracemalloc
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.inputs import Source, Why
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, joined
+from ballscrew_monitor.recordings.log_facts import parameters_of
+from ballscrew_monitor.recordings.replay import replay, replay_parts
+from ballscrew_monitor.recordings.tables import log as table_log
+from ballscrew_monitor.recordings.tables import sources
+from ballscrew_monitor.recordings.tables.convert import convert
+from ballscrew_monitor.recordings.tables.log import TableLog
+from ballscrew_monitor.recordings.tables.mapping import make_map
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+import numpy as np
+import polars as pl
+import pytest
+
+TIME = {'column': 't', 'unit': 'ms', 'epoch': '2000-01-01T00:00:00Z'}
+BEGIN = 946_684_800 * SECOND  # [ns]
+LOAD = {'column': 'F', 'unit': 'N'}
+TORQUE = {'column': 'M', 'unit': 'N m'}
+WARM = {'column': 'T', 'unit': 'degC'}
+SPEED = {'column': 'v', 'unit': 'mm/s'}
+CURRENT = {'torque_constant_Nm_per_A': 0.2, 'efficiency': 0.9, 'load': {'from': 'current'}}
+MAPS = [
+    {'x': {'speed': SPEED, 'load': LOAD}},
+    {'x': {'speed': SPEED, 'position': {'column': 'p', 'unit': 'mm'}, 'torque': TORQUE}},
+    {
+        'x': {'position': {'column': 'p', 'unit': 'mm'}, 'load': LOAD, 'temperature': WARM},
+        'y': {'speed': SPEED, 'current': {'column': 'M', 'unit': 'A'}, **CURRENT},
+    },
+    {
+        'x': {
+            'speed': SPEED,
+            'torque': TORQUE,
+            'load': {'from': 'motor_torque'},
+            'torque_uncertainty_Nm': 0.02,
+            'inertia_kg_m2': 1e-4,
+        },
+        'y': {'speed': {'column': 'p', 'unit': 'rev/min'}, 'load': LOAD, 'temperature': WARM},
+    },
+]
+"""Axes with all kinds of inputs: measured, derived, unknown, of rates of their own."""
+
+
+def map_of(axes):
+    """Return a map of some axes."""
+    known = {
+        name: {'load': {'unknown': 'no sensor'}, 'lead_mm': 10.0} | axes[name] for name in axes
+    }
+    return make_map({'time': TIME, 'axes': known})
+
+
+def judged(log, values):
+    """Return the rows of each axis as bytes, column by column, and what it comes to."""
+    blocks, outcomes = {}, []
+    for part in replay_parts(log, values, states=False):
+        if isinstance(part, AxisOutcome):
+            outcomes.append(part)
+        else:
+            blocks.setdefault(part.axis, []).append(part)
+    rows = {axis: joined(found) for axis, found in blocks.items()}
+    return {
+        axis: {name: getattr(found, name).tobytes() for name in COLUMNS}
+        for axis, found in rows.items()
+    }, outcomes
+
+
+def write(folder, columns):
+    """Return a CSV of columns, without numbers where they are None."""
+    path = Path(folder) / 'log.csv'
+    pl.DataFrame(columns).write_csv(path)
+    return path
+
+
+STEP = st.sampled_from([0, 1, 10, 50, 400, 70_000])  # [ms]
+CELL = st.none() | st.floats(-2000.0, 2000.0)
+ROW = st.tuples(STEP, CELL, CELL, CELL, CELL, st.none() | st.floats(10.0, 70.0))
+WHOLE = (10, 100.0, -500.0, 0.7, 3.0, 40.0)
+MOVED = (10, 110.0, -400.0, 0.8, 4.0, None)
+
+
+@given(
+    axes=st.sampled_from(MAPS),
+    rows=st.lists(ROW, max_size=60),
+    block=st.sampled_from([1, 3, 1000]),
+    events=st.sampled_from([1, 7, 100_000]),
+)
+@example(axes=MAPS[2], rows=[(0, *MOVED[1:])] * 9, block=3, events=7)
+@settings(max_examples=25, deadline=None)
+def test_a_table_and_the_bag_of_it_are_judged_to_the_same_bits(axes, rows, block, events):
+    """Steps are of zero and of more than a minute, and any cell may be empty."""
+    rows = [WHOLE, MOVED, *rows, *[MOVED] * len(rows)]  # most times rise
+    steps, speed, load, torque, position, warmth = zip(*rows)
+    columns = {'t': np.cumsum(steps), 'v': speed, 'F': load, 'M': torque}
+    columns |= {'p': position, 'T': warmth}
+    with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+        path = write(folder, columns)
+        bag = Path(folder) / 'bag'
+        convert(path, map_of(axes), bag)
+        patch.setattr(sources, 'BLOCK', block)
+        patch.setattr(table_log, 'AT_ONCE', events)
+        log = TableLog(path, map_of(axes))
+        bag = Bag(bag)
+        values = parameters_of(log)
+        assert values == parameters_of(bag)
+        assert judged(log, values) == judged(bag, values)
+        assert (log.start_time, log.end_time) == (bag.start_time, bag.end_time)
+
+
+@pytest.mark.parametrize(
+    'changes',
+    [
+        {'x.speed.field': 'velocity[0]', 'x.load.scale': -2.0},
+        {'x.speed.field': 'velocity[w_axis]'},
+        {'x.speed.field': 'position[x_axis]', 'x.speed.unit': 'rad'},
+        {'x.torque.topic': 'joint_states', 'x.torque.field': 'effort[1]'},
+        {'x.load.field': 'wrench.torque.z', 'x.load.topic': 'y/axial_load'},
+        {'axes': ['y'], 'y.speed.field': 'velocity[x_axis]', 'y.load.topic': 'x/axial_load'},
+    ],
+)
+def test_any_parameters_read_a_table_as_they_read_its_bag(tmp_path, changes):
+    count = np.arange(60.0)
+    columns = {'t': 20 * count, 'v': 90 * np.sin(count), 'p': count, 'F': 9 * count - 300}
+    path = write(tmp_path, columns)
+    mapping = map_of({axis: {'speed': SPEED, 'load': LOAD} for axis in 'xy'})
+    convert(path, mapping, tmp_path / 'bag')
+    log, bag = TableLog(path, mapping), Bag(tmp_path / 'bag')
+    values = parameters_of(log)
+    values |= {'x.torque.type': 'sensor_msgs/msg/JointState'} | changes
+    assert judged(log, values) == judged(bag, values)
+    states = [[str(state) for state, _ in replay(each, values)] for each in (log, bag)]
+    assert states[0] == states[1]
+
+
+def test_an_empty_cell_is_refused_once_and_the_last_load_stays(tmp_path):
+    columns = {
+        't': [0, 10, 20, 30],
+        'v': [100.0, 100.0, None, 100.0],
+        'F': [-5.0, None, -6.0, None],
+    }
+    log = TableLog(write(tmp_path, columns), map_of(MAPS[0]))
+    *blocks, outcome = replay_parts(log, parameters_of(log), states=False)
+    rows = joined(blocks)
+    at = ~rows.tick
+    assert (rows.stamp[at] - BEGIN).tolist() == [0, 10_000_000, 30_000_000]
+    assert rows.axial_load[at].tolist() == [-5.0, -5.0, -6.0]
+    refused = outcome.refused
+    assert refused[Source.SPEED][Why.NOT_A_NUMBER] == 1
+    assert refused[Source.LOAD][Why.NOT_A_NUMBER] == 2
+
+
+@pytest.mark.parametrize('block', [1, 2, 1000])
+def test_rows_of_one_time_are_judged_with_the_last_load_of_them(tmp_path, block, monkeypatch):
+    monkeypatch.setattr(sources, 'BLOCK', block)
+    monkeypatch.setattr(table_log, 'AT_ONCE', 1)
+    columns = {'t': [0, 10, 10, 10, 20, 30], 'v': [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]}
+    columns['F'] = [-1.0, -2.0, -3.0, -4.0, -5.0, -6.0]
+    log = TableLog(write(tmp_path, columns), map_of(MAPS[0]))
+    *blocks, _ = replay_parts(log, parameters_of(log), states=False)
+    rows = joined(blocks)
+    assert rows.axial_load[~rows.tick].tolist() == [-1.0, -4.0, -4.0, -4.0, -5.0, -6.0]
+
+
+def test_what_the_rows_say_of_the_map_is_known_once_they_are_read(tmp_path):
+    count = np.arange(400) / 50.0
+    columns = {'t': 20 * np.arange(400), 'v': 6.0 * np.sin(count), 'p': 1.0 - np.cos(count)}
+    columns['M'] = 0.0 * count
+    axis = MAPS[1]['x'] | {'position': {'column': 'p', 'unit': 'mm'}}
+    log = TableLog(write(tmp_path, columns), map_of({'x': axis}))
+    assert log.notes == []
+    values = parameters_of(log)
+    for _ in range(2):
+        judged(log, values)
+        (note,) = log.notes
+        assert note.startswith('axis x: its position moves 0.1667 times as far')
+
+
+def test_memory_does_not_grow_with_the_rows(tmp_path, monkeypatch):
+    monkeypatch.setattr(sources, 'BLOCK', 1000)
+    monkeypatch.setattr(table_log, 'AT_ONCE', 2000)
+    peaks = []
+    for count in (5_000, 5_000, 40_000):  # the first run makes what is made once
+        path = tmp_path / f'{count}.parquet'
+        time = np.arange(count)
+        speed = 100.0 * np.sin(time / 500.0)
+        pl.DataFrame({'t': time, 'v': speed, 'F': -speed}).write_parquet(path)
+        tracemalloc.start()
+        log = TableLog(path, map_of(MAPS[0]))
+        for _ in replay_parts(log, parameters_of(log), states=False):
+            pass
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[2] - peaks[1] < 500_000  # 35 000 rows are 840 000 bytes, their events 5 million
