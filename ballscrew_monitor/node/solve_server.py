@@ -26,7 +26,7 @@ from ballscrew_monitor.core.estimate import (
 from ballscrew_monitor.core.full_point import compare, Comparison, request_of, solved_at
 from ballscrew_monitor.messages.state_messages import fill_result, read_point, TIERS
 from ballscrew_monitor.node.axis_publisher import AxisPublisher
-from ballscrew_monitor.node.solver_process import Done, End, Job, MOST_WAITING, Solver, Step
+from ballscrew_monitor.node.solver import Done, End, Job, MOST_WAITING, Solver, Step
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import PointResult
 from rclpy.action import ActionServer, CancelResponse, GoalResponse

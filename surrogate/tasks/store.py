@@ -23,6 +23,7 @@ from typing import Any, Self
 
 from surrogate.files import canonical_json
 from surrogate.surface.file import SurfaceError
+from surrogate.worker import plain_result
 
 FORMAT = 'ballscrew_task_store'
 FORMAT_VERSION = 1
@@ -59,16 +60,6 @@ def clear(out: str | Path) -> bool:
     except OSError as error:
         raise SurfaceError(f'{path}: cannot be removed, {error.strerror}') from None
     return True
-
-
-def plain_result(result: Any) -> Any:
-    """
-    Return a result as it comes back from a store: dicts, lists, numbers, words.
-
-    Raises TypeError for anything that is not plain JSON, such as an array.
-
-    """
-    return _unpack(_pack(result))
 
 
 class TaskStore:

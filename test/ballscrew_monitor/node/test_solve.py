@@ -19,7 +19,7 @@ from ballscrew_msgs.srv import EvaluateOperatingPoint
 import pytest
 from rclpy.action import ActionClient
 from std_srvs.srv import Trigger
-from surrogate.on_demand.solve import solve_point
+from surrogate.on_demand import solve_point
 from surrogate.surface import FIELDS, shipped_surface, Surface
 
 AHEAD = {'x__max_future': 3600.0}  # the stamps of a test run ahead of the clock

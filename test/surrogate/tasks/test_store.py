@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.surface.file import SurfaceError
-from surrogate.tasks.store import clear, plain_result, store_path, task_key, TaskStore
+from surrogate.tasks.store import clear, store_path, task_key, TaskStore
+from surrogate.worker import plain_result
 
 WORK = 'test 1'
 WORDS = st.text(max_size=8).filter(lambda word: not word.startswith('$'))

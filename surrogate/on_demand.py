@@ -10,19 +10,25 @@ same law of asperity contact, so that what both differ by is the error of the su
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 import math
+import resource
+import time
 from typing import Any
 
 from surrogate.builder.full.chain import solved_point
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.ehl.watch import Iteration, watched
+from surrogate.files import InputError
 from surrogate.parameters import OperatingPoint
 from surrogate.screw import solve_screw
 from surrogate.surface import FIELDS, SolvedPoint
+from surrogate.worker import cancelled, tell
 
 CONTACTS = 4
 """Contacts of a point: both nuts with screw and nut [-]."""
+PAUSE = 0.2
+"""Shortest time between two steps that a worker tells [s]: nobody reads faster."""
 Progress = Callable[[Mapping[str, Any]], None]
 
 
@@ -112,13 +118,24 @@ class _Watcher:
         )
 
 
-def solved_frame(found: PointOnDemand) -> dict[str, Any]:
-    """Return a solved point as plain JSON."""
-    return {
-        'converged': found.converged,
-        'status': found.status,
-        'worst_contact': found.worst_contact,
-        'means': dict(found.means),
-        'deviations': dict(found.deviations),
-        'standard_errors': dict(found.standard_errors),
-    }
+def solve(request: Mapping[str, Any]) -> dict[str, Any]:
+    """
+    Solve the point of a request in a worker, which tells its steps and may be asked to end.
+
+    The result is a `PointOnDemand` as plain JSON. Raises InputError where memory runs out.
+
+    """
+    last = -PAUSE
+
+    def report(step: Mapping[str, Any]) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if now - last >= PAUSE:
+            last = now
+            tell(step)
+
+    try:
+        return asdict(solve_point(request, progress=report, cancel=cancelled.is_set))
+    except MemoryError:
+        most = resource.getrlimit(resource.RLIMIT_DATA)[0]
+        raise InputError(f'the solve needs more than {most / 2**30:g} GiB of memory') from None
