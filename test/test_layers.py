@@ -26,6 +26,7 @@ LOOKUP = {
     'surrogate.files',
     'surrogate.limits',
     'surrogate.plain_yaml',
+    'surrogate.store',
     'surrogate.surface',
     'surrogate.surface.compiled',
     'surrogate.surface.records',
@@ -45,7 +46,7 @@ FLOORS = (
 """Folders of the online half, the lowest first; those beside each other do not meet."""
 OFFLINE_FLOORS = (
     ('units', 'files', 'progress', 'child'),
-    ('worker',),
+    ('worker', 'store'),
     ('limits',),
     ('plain_yaml',),
     ('datasheet', 'plotting'),
@@ -72,6 +73,7 @@ STANDS_ON = {
         'surrogate.child',
         'surrogate.files',
         'surrogate.progress',
+        'surrogate.store',
         'surrogate.surface.file',
         'surrogate.worker',
     },
@@ -287,7 +289,11 @@ def test_what_must_start_quickly_loads_nothing_heavy(module, heavy):
 def test_node_loads_of_surrogate_what_the_lookup_needs():
     """The process that watches the machine holds nothing of the solver, plots or recordings."""
     laws = 'surrogate.formulas.grades, surrogate.formulas.life'
-    needed = loaded_by(f'import surrogate.child, surrogate.plain_yaml, surrogate.surface, {laws}')
+    rooms = ('child', 'plain_yaml', 'store', 'surface')
+    offline = ', '.join(f'surrogate.{room}' for room in rooms)
+    rooms = ('child', 'plain_yaml', 'store', 'surface')
+    offline = ', '.join(f'surrogate.{room}' for room in rooms)
+    needed = loaded_by(f'import {offline}, {laws}')
     loaded = loaded_by('import ballscrew_monitor.node.run')
     assert not {name for name in loaded - needed if name.split('.')[0] == 'surrogate'}
     assert not loaded & {'matplotlib', 'mcap', 'scipy'}

@@ -21,7 +21,6 @@ import sqlite3
 import struct
 from typing import BinaryIO
 
-from ballscrew_monitor.core.sqlite_file import size_of
 from ballscrew_monitor.recordings import storages
 from ballscrew_monitor.recordings.storages import Message, Storage, TopicInfo
 from ballscrew_monitor.recordings.unpacking import scratch_folder
@@ -29,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate import limits
 from surrogate.files import InputError
+from surrogate.store import size_of
 
 HEADER = 100  # [bytes] of a file
 LEAF = 0x0D  # a page of rows begins so

@@ -206,6 +206,7 @@ def test_a_killed_process_leaves_a_commit_and_the_baseline(make, motion, baselin
     [
         ('PRAGMA user_version = 7', 'is of another version (7, known is 1)'),
         ('DROP TABLE spectrum', 'is damaged (no such table: spectrum)'),
+        ('ALTER TABLE points DROP COLUMN days', 'is damaged (table points has other columns)'),
     ],
 )
 def test_what_no_node_has_left_is_kept_aside(make, motion, tmp_path, statement, why):
@@ -257,6 +258,25 @@ def test_rows_that_cannot_be_read_are_counted_and_the_others_stand(
     assert kept.notes == (says('bad_rows', place=tmp_path / FILE),)
 
 
+def test_a_damaged_text_hides_no_other_row(make, motion, baseline, tmp_path):
+    store = make()
+    points = [motion.point(first_day=motion.today - age) for age in range(3)]
+    store.add('x', points, [a_bin(1)])
+    store.keep_baseline('x', baseline)
+    store.close()
+    spoil(
+        tmp_path,
+        f"UPDATE points SET surface = CAST(x'61e5' AS TEXT) WHERE first_day = {motion.today - 1}",
+        "UPDATE baselines SET screw = CAST(x'61e5' AS TEXT)",
+    )
+    store = make()
+    assert store.said == []
+    for kept in (store.read('x'), read_health(tmp_path)['x']):
+        assert set(kept.points) == {points[0], points[2]}
+        assert (kept.baselines, len(kept.spectrum)) == ((), 1)
+        assert '2 rows of axis x cannot be read' in kept.notes[0]
+
+
 @pytest.mark.parametrize(
     ('column', 'value'),
     [
@@ -264,7 +284,7 @@ def test_rows_that_cannot_be_read_are_counted_and_the_others_stand(
         ('axial_load', 'NULL'),
         ('motor_torque', '9e999'),
         ('load_source', '7'),
-        ('direction_band', '0'),
+        ('place_direction', '0'),
         ('temperature_measured', '2'),
         ('days', '0'),
         ('surface', 'NULL'),

@@ -7,7 +7,6 @@ import math
 from pathlib import Path
 import re
 
-from ballscrew_monitor.core import sqlite_file
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.estimate import PointValidity
 from ballscrew_monitor.core.fault_codes import Fault
@@ -21,6 +20,7 @@ from ballscrew_monitor.messages.diagnostics import ERROR, OK, STALE, WARN
 from ballscrew_monitor.messages.state_messages import plain_values
 from ballscrew_monitor.node import restart_state, state_database
 import pytest
+from surrogate import store
 
 START = 1000 * SECOND
 WALL = 1_800_000_000 * SECOND
@@ -416,7 +416,7 @@ SENTENCES = [
     diagnostics.KEPT,
     'the program failed at',
     *(state_database.UNWRITABLE, state_database.IN_USE),
-    *(sqlite_file.DAMAGED, sqlite_file.OTHER_VERSION, restart_state.SILENT),
+    *(store.DAMAGED, store.OTHER_VERSION, restart_state.SILENT),
 ]
 BEGINNINGS = [
     diagnostics.CLOCK_STANDS,

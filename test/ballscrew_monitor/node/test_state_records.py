@@ -8,7 +8,14 @@ import types
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.node.state_records import Corrections, Entry, entry_of, event_facts, Kind
+from ballscrew_monitor.node.state_records import (
+    CORRECTIONS,
+    Corrections,
+    Entry,
+    entry_of,
+    event_facts,
+    Kind,
+)
 import pytest
 
 SOLVE = types.SimpleNamespace(
@@ -36,7 +43,7 @@ def test_an_entry_with_damaged_facts_keeps_the_rest(facts, says):
 
 def test_corrections_come_back_bit_for_bit_and_say_their_units():
     kept = Corrections.of('x', 'abc', [SOLVE])
-    (solve,) = Corrections.read(kept.row()).read_solves()
+    (solve,) = CORRECTIONS.read(CORRECTIONS.row(kept)).read_solves()
     assert (kept.axis, kept.surface) == ('x', 'abc')
     assert all(getattr(solve, name) == value for name, value in vars(SOLVE).items())
     (row,) = json.loads(kept.solves)
@@ -47,4 +54,4 @@ def test_corrections_come_back_bit_for_bit_and_say_their_units():
 @pytest.mark.parametrize('solves', ['', '[1', '3', '[{}]', '[{"speed_rad_s": "fast"}]'])
 def test_what_is_no_correction_is_refused(solves):
     with pytest.raises((ValueError, KeyError, TypeError)):
-        Corrections.read({'axis': 'x', 'surface': 'abc', 'solves': solves})
+        CORRECTIONS.read({'axis': 'x', 'surface': 'abc', 'solves': solves})
