@@ -10,8 +10,7 @@ same law of asperity contact, so that what both differ by is the error of the su
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field
-import math
+from dataclasses import asdict
 import resource
 import time
 from typing import Any
@@ -22,7 +21,7 @@ from surrogate.ehl.watch import Iteration, watched
 from surrogate.files import InputError
 from surrogate.parameters import OperatingPoint
 from surrogate.screw import solve_screw
-from surrogate.surface import FIELDS, SolvedPoint
+from surrogate.surface import SolvedPoint
 from surrogate.worker import cancelled, tell
 
 CONTACTS = 4
@@ -36,30 +35,12 @@ class Cancelled(Exception):
     """The solve was taken back."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PointOnDemand:
-    """
-    A solved point: values, deviations and standard errors of the fields of a surface [SI].
-
-    Deviations are those between strips of the raceway. `worst_contact` numbers the contact as a
-    surface does, -1 without contact. Numbers are NaN unless `converged`; `status` says why.
-
-    """
-
-    converged: bool
-    status: str
-    worst_contact: int = -1
-    means: Mapping[str, float] = field(default_factory=dict)
-    deviations: Mapping[str, float] = field(default_factory=dict)
-    standard_errors: Mapping[str, float] = field(default_factory=dict)
-
-
 def solve_point(
     request: Mapping[str, Any],
     *,
     progress: Progress = lambda step: None,
     cancel: Callable[[], bool] = lambda: False,
-) -> PointOnDemand:
+) -> SolvedPoint:
     """
     Solve the point of a request by the full tier.
 
@@ -76,22 +57,7 @@ def solve_point(
     )
     screw, oil = screw_and_oil(header['inputs'])
     with watched(_Watcher(progress, cancel)):
-        found = solve_screw(screw, oil, point)
-    return _answer(solved_point(found))
-
-
-def _answer(found: SolvedPoint) -> PointOnDemand:
-    if not found.converged:
-        return PointOnDemand(converged=False, status=found.status)
-    nothing = dict.fromkeys(FIELDS, math.nan)
-    return PointOnDemand(
-        converged=True,
-        status=found.status,
-        worst_contact=found.worst_contact,
-        means={name: getattr(found, name) for name in FIELDS},
-        deviations=nothing | {'rcs': found.rcs_deviation},
-        standard_errors=nothing | {'rcs': found.rcs_deviation},
-    )
+        return solved_point(solve_screw(screw, oil, point))
 
 
 class _Watcher:
@@ -122,7 +88,7 @@ def solve(request: Mapping[str, Any]) -> dict[str, Any]:
     """
     Solve the point of a request in a worker, which tells its steps and may be asked to end.
 
-    The result is a `PointOnDemand` as plain JSON. Raises InputError where memory runs out.
+    The result is a `SolvedPoint` as plain JSON. Raises InputError where memory runs out.
 
     """
     last = -PAUSE

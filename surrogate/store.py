@@ -111,7 +111,7 @@ class Table:
         return row
 
     def read(self, row: sqlite3.Row | Mapping[str, Any]) -> Any:
-        """Return the record of a row; raises ValueError, KeyError or TypeError if it is none."""
+        """Return the record of a row; raises ValueError, KeyError or TypeError without one."""
         # A row looks for a name from column to column.
         cells = row if isinstance(row, dict) else dict(zip(row.keys(), row, strict=True))
         values = {name: self._value(name, kind, cells) for name, kind in self.fields.items()}
@@ -187,7 +187,7 @@ class Store:
             raise sqlite3.OperationalError(f'{self.file} is not open')
         return self._database
 
-    def open(self) -> None:
+    def connect(self) -> None:
         """
         Open the file, made where there is none.
 
@@ -196,7 +196,8 @@ class Store:
         """
         self.let_go()
         self.file.parent.mkdir(parents=True, exist_ok=True)
-        database = self._database = connected(self.file, self.limit, alone=self._alone)
+        database = connected(self.file, self.limit, alone=self._alone)
+        self.use(database)
         if is_empty(database, self._version):
             statements = [line for table in self._tables for line in table.schema]
             with database:
@@ -205,18 +206,24 @@ class Store:
                     database.execute(statement)
         check_tables(database, self._tables)
 
+    def use(self, database: sqlite3.Connection) -> None:
+        """Take a connection; a letter that is damaged stays as it is, and hides no other row."""
+        database.row_factory = sqlite3.Row
+        database.text_factory = lambda raw: raw.decode('utf-8', 'surrogateescape')
+        self._database = database
+
     def recovered(
         self, read: Callable[[], Loaded], rescue: Callable[[], Any] = lambda: None
     ) -> tuple[Loaded, str]:
         """
         Open the file; return what is read of it, and a sentence on what was set aside.
 
-        What can be had of a bad file is the business of `rescue`. Raises as `open` does if the
+        What can be had of a bad file is the business of `rescue`. Raises as `connect` does if the
         file only cannot be had now.
 
         """
         try:
-            self.open()
+            self.connect()
             return read(), ''
         except BAD as error:
             if is_passing(error):
@@ -225,7 +232,7 @@ class Store:
             rescue()
             self.let_go()
             sentence = set_file_aside(self.file, error)
-        self.open()
+        self.connect()
         return read(), sentence
 
     @contextlib.contextmanager
@@ -248,7 +255,8 @@ class Store:
 
     def rows(self, table: Table, which: str = '', values: Iterable[Any] = ()) -> list[Any]:
         """Return rows of a table; `which` is what follows its name in SQL."""
-        return select(self.database, table, which, values)
+        statement = f'SELECT * FROM {table.name} {which}'
+        return self.database.execute(statement, tuple(values)).fetchall()
 
     @property
     def used(self) -> int:
@@ -313,14 +321,7 @@ def _set_up(file: Path, size: int, *journal: str) -> sqlite3.Connection:
     except sqlite3.Error:
         database.close()
         raise
-    _let_read(database)
     return database
-
-
-def _let_read(database: sqlite3.Connection) -> None:
-    """Give rows names; a letter that is damaged stays as it is, and hides no other row."""
-    database.row_factory = sqlite3.Row
-    database.text_factory = lambda raw: raw.decode('utf-8', 'surrogateescape')
 
 
 def is_empty(database: sqlite3.Connection, version: int) -> bool:
@@ -343,13 +344,6 @@ def check_tables(database: sqlite3.Connection, tables: Iterable[Table]) -> None:
             raise ValueError(f'no such table: {table.name}')
         if {column[1]: column[2] for column in info} != table.columns:
             raise ValueError(f'table {table.name} has other columns')
-
-
-def select(
-    database: sqlite3.Connection, table: Table, which: str = '', values: Iterable[Any] = ()
-) -> list[Any]:
-    """Return rows of a table; `which` is what follows its name in SQL."""
-    return database.execute(f'SELECT * FROM {table.name} {which}', tuple(values)).fetchall()
 
 
 def readable(table: Table, rows: Iterable[Any]) -> list[tuple[Any, Any]]:
@@ -376,14 +370,14 @@ def set_file_aside(file: Path, why: Exception) -> str:
 @contextlib.contextmanager
 def opened_to_read(
     folder: Path, name: str, tables: Iterable[Table], version: int
-) -> Iterator[sqlite3.Connection]:
+) -> Iterator[Store]:
     """
-    Yield a connection that only reads, whether or not a node has the file.
+    Yield a store that is only read, whether or not a node has the file.
 
     Raises InputError if there is none, or none that can be read.
 
     """
-    file = folder / name
+    file, tables = folder / name, tuple(tables)
     if not file.is_file():
         raise InputError(f'{folder} has no {name}: name the state_dir of a node')
     try:
@@ -396,8 +390,9 @@ def opened_to_read(
                 check_tables(database, tables)
             except ValueError as error:
                 raise InputError(f'{file} {DAMAGED} ({error})') from None
-            _let_read(database)
-            yield database
+            store = Store(file, tables, version=version, limit=0)
+            store.use(database)
+            yield store
     except sqlite3.Error as error:
         raise InputError(f'{file} cannot be read, {error}') from None
 

@@ -85,7 +85,7 @@ SLOW = (
     'surrogate/screw',
     'surrogate/surface_tools/test_figures.py',
     'surrogate/tasks/test_pool.py',
-    'surrogate/tasks/test_spawned.py',
+    'surrogate/test_child.py',
     'surrogate/tasks/test_store.py',
     'surrogate/test_cli.py',
     'surrogate/validation/test_page.py',

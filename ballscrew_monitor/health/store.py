@@ -11,7 +11,6 @@ had not written. The directory belongs to the node by the lock of its state.
 from collections.abc import Iterable
 import dataclasses
 from pathlib import Path
-import sqlite3
 import threading
 from typing import Any
 
@@ -20,7 +19,7 @@ from ballscrew_monitor.health.points import aged, by_place
 from ballscrew_monitor.health.records import Baseline, ComparablePoint, KeptHealth, SpectrumBin
 from ballscrew_monitor.health.spectrum import merged_bins
 from surrogate.files import InputError
-from surrogate.store import opened_to_read, readable, select, SHARE, Store, Table
+from surrogate.store import opened_to_read, readable, SHARE, Store, Table
 
 FILE = 'health.sqlite3'
 VERSION = 1
@@ -96,7 +95,7 @@ class HealthStore(Store):
 
     def read(self, axis: str) -> KeptHealth:
         """Return what is kept of an axis; sqlite3.Error if it cannot be had."""
-        return _read(self.database, axis, str(self.file))
+        return _read(self, axis)
 
     def add(
         self,
@@ -185,17 +184,17 @@ def read_health(folder: Path) -> dict[str, KeptHealth]:
     Raises InputError if there is nothing, or nothing that can be read.
 
     """
-    with opened_to_read(folder, FILE, TABLES, VERSION) as database:
-        axes = database.execute(
+    with opened_to_read(folder, FILE, TABLES, VERSION) as store:
+        axes = store.database.execute(
             'SELECT axis FROM points UNION SELECT axis FROM spectrum ORDER BY axis'
         ).fetchall()
-        return {axis: _read(database, axis, str(folder / FILE)) for (axis,) in axes}
+        return {axis: _read(store, axis) for (axis,) in axes}
 
 
-def _read(database: sqlite3.Connection, axis: str, place: str) -> KeptHealth:
+def _read(store: Store, axis: str) -> KeptHealth:
     """Return what can be read of an axis, and how many rows cannot."""
     rows = {
-        table.name: select(database, table, f'WHERE axis = ? ORDER BY {order}', (axis,))
+        table.name: store.rows(table, f'WHERE axis = ? ORDER BY {order}', (axis,))
         for table, order in (
             (POINTS, 'first_day, rowid'),
             (SPECTRUM, 'first_day, rowid'),
@@ -207,7 +206,7 @@ def _read(database: sqlite3.Connection, axis: str, place: str) -> KeptHealth:
     for row, point in read['points']:
         points.setdefault(row['baseline'], []).append(point)
     bad = sum(len(rows[name]) - len(read[name]) for name in rows)
-    note = f'{place}: {bad} rows of axis {axis} cannot be read, they do not count'
+    note = f'{store.file}: {bad} rows of axis {axis} cannot be read, they do not count'
     return KeptHealth(
         points=tuple(points.get(HISTORY, ())),
         spectrum=tuple(one for _, one in read['spectrum']),

@@ -29,7 +29,7 @@ from ballscrew_monitor.node.state_records import (
     TABLES,
 )
 from surrogate.files import InputError
-from surrogate.store import opened_to_read, plain_text, select, SHARE, size_of, Store
+from surrogate.store import opened_to_read, plain_text, SHARE, size_of, Store
 
 FILE = 'state.sqlite3'
 VERSION = 1
@@ -134,9 +134,9 @@ def read_entries(folder: Path) -> list[Entry]:
     Raises InputError if there is none, or none that can be read.
 
     """
-    with opened_to_read(folder, FILE, [EVENTS], VERSION) as database:
+    with opened_to_read(folder, FILE, [EVENTS], VERSION) as store:
         # At once: somebody who reads on and on keeps the journal from being cleared.
-        rows = select(database, EVENTS, 'ORDER BY number')
+        rows = store.rows(EVENTS, 'ORDER BY number')
         return [Entry(*(_shown(cell) for cell in row[1:])) for row in rows]
 
 

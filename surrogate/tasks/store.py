@@ -153,7 +153,7 @@ class TaskStore:
             with self._store.transaction():
                 self._store.put(RESULTS, [kept])
         except sqlite3.Error as error:
-            self._store.open()
+            self._store.connect()
             raise SurfaceError(
                 f'{self.path}: a result cannot be written, {error}; {len(self)} results are kept'
             ) from None
@@ -161,7 +161,7 @@ class TaskStore:
     def _open(self) -> None:
         clean = f'`ballscrew surface clean {self._out}` removes'
         try:
-            self._store.open()
+            self._store.connect()
         except BAD as error:
             code = getattr(error, 'sqlite_errorcode', sqlite3.SQLITE_ERROR) & 0xFF
             if code == sqlite3.SQLITE_BUSY:
@@ -191,6 +191,6 @@ class TaskStore:
                 found += [kept for _, kept in readable(RESULTS, [row]) if kept.work == self.work]
         self._store.let_go()
         print(set_file_aside(self.path, error), file=sys.stderr)
-        self._store.open()
+        self._store.connect()
         with self._store.transaction():
             self._store.put(RESULTS, found)

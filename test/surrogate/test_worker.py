@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a worker does with a task: its name, its result bit for bit, how far it is."""
+"""A task in a worker: its name, its result bit for bit, how far it is."""
 
 import json
 import math

@@ -5,6 +5,7 @@
 import contextlib
 import dataclasses
 import math
+from pathlib import Path
 import sqlite3
 import subprocess
 import sys
@@ -12,11 +13,14 @@ import sys
 from ballscrew_monitor.health import store as stores
 from ballscrew_monitor.health.bands import period_of
 from ballscrew_monitor.health.points import aged, by_place
-from ballscrew_monitor.health.records import Baseline, LoadSource, SpectrumBin
+from ballscrew_monitor.health.records import Baseline, LoadSource, Place, SpectrumBin
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.store import FILE, HealthStore, LIMIT, read_health
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
 from surrogate.files import InputError
+from surrogate.store import Store
 
 YEARS = 10
 PLACES = {1: 60, 7: 120, 28: 240}
@@ -89,6 +93,40 @@ def test_what_is_written_is_found_again(make, motion, baseline, tmp_path):
         assert kept.baseline == kept.baselines[1]
         assert kept.notes == ()
     assert make().read('z').baseline is None
+
+
+@given(st.data())
+def test_every_record_of_health_comes_back_from_its_row(data):
+    """Whatever is gathered; of a zero SQLite keeps no sign."""
+    numbers = st.integers(1, 2**31)
+    values = {
+        int: numbers,
+        bool: st.booleans(),
+        float: st.floats(min_value=1e-300, allow_infinity=False, allow_nan=False),
+        str: st.text(max_size=5),
+        LoadSource: st.sampled_from(LoadSource),
+        tuple[float, ...]: st.lists(st.floats(0.0, 1e9), max_size=9).map(tuple),
+        Place: st.builds(Place, numbers, numbers, numbers, st.sampled_from([-1, 1])),
+    }
+    unknown = values[float] | st.just(math.nan)
+    named = dict.fromkeys(
+        ('residual', 'axial_load', 'energy_measured', 'energy_expected'), unknown
+    )
+    for table in stores.TABLES:
+        parts = {name: values[kind] for name, kind in table.fields.items()}
+        if table is not stores.BASELINES:
+            parts |= {name: one for name, one in named.items() if name in parts}
+        if table is stores.POINTS:
+            parts['axial_load'] = values[float]
+        record = data.draw(st.builds(table.kind, **parts))
+        with contextlib.closing(sqlite3.connect(':memory:')) as database:
+            store = Store(Path('none'), [table], version=1, limit=0)
+            store.use(database)
+            for statement in table.schema:
+                database.execute(statement)
+            store.put(table, [record], axis='x')
+            (row,) = store.rows(table)
+            assert repr(table.read(row)) == repr(record)
 
 
 def test_what_is_added_is_pooled_with_its_period_and_others_stand(make, motion):

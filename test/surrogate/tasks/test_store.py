@@ -133,7 +133,8 @@ def test_results_on_whole_pages_outlive_a_damaged_one(tmp_path, capsys):
     out = tmp_path / 'map.npz'
     damaged = bytearray(filled(out, 400))
     page = damaged.index(b'"rcs": 100.0}') // 4096 * 4096
-    damaged[page : page + 8] = b'\xff' * 8
+    end = page + 8
+    damaged[page:end] = b'\xff' * 8
     store_path(out).write_bytes(damaged)
     with TaskStore(out, WORK) as store:
         found = [store.get(f'key{number}') for number in range(400)]
