@@ -26,10 +26,9 @@ from typing import Any
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
 from ballscrew_monitor.health.points import add, model_torque
-from ballscrew_monitor.health.records import Stretch
+from ballscrew_monitor.health.records import KeptHealth, Stretch
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import HealthStore, read_health
-from ballscrew_monitor.health.store_rows import KeptHealth
 from ballscrew_monitor.node.state_database import read_entries
 from ballscrew_msgs.msg import BallScrewState
 from geometry_msgs.msg import WrenchStamped

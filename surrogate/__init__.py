@@ -20,7 +20,6 @@ contact        a contact as a file: case, record, pictures
 screw          one point of the full tier: contacts, balance of the balls, torque
 builder        datasheet to surface: tiers, sweeps; full: nodes, errors
 surface        all that the node loads: lookup and file, numpy alone
-on_demand      a full solve for the running node, by a process of its own
 surface_tools  what people do with a surface file: check, query, compare, draw
 plotting       the one style of all pictures
 tasks          solves kept by content, on processes or a cluster
@@ -30,7 +29,8 @@ commands       the offline subcommands
 data           datasheets, contact cases, shipped surfaces
 =============  ====================================================================
 
-Beside them: parameters, datasheet and datasheet_writer (checked inputs), units, files, progress,
-cli. Nothing here imports ROS.
+Beside them: parameters, datasheet and datasheet_writer (checked inputs), child and worker (other
+processes), on_demand (a full solve for the running node), store (tables on disk), units, files,
+progress, cli. Nothing here imports ROS.
 
 """

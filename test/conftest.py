@@ -86,7 +86,7 @@ SLOW = (
     'surrogate/studies/test_validation.py',
     'surrogate/surface_tools/test_figures.py',
     'surrogate/tasks/test_pool.py',
-    'surrogate/tasks/test_spawned.py',
+    'surrogate/test_child.py',
     'surrogate/tasks/test_store.py',
     'surrogate/test_cli.py',
     'test_conftest.py',

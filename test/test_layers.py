@@ -19,12 +19,14 @@ MODULES = {
 # What the offline half stands on, and where it is forbidden to be heavy.
 NUMERICAL = set('distributed matplotlib numba numpy scipy SurfaceTopography yaml'.split())
 PLOTTING = {'surrogate.plotting.style'}  # for the picture of a page alone
-TASKS = {'surrogate.tasks.pool', 'surrogate.tasks.worker', 'surrogate.tasks.workers'}
+TASKS = {'surrogate.tasks.pool', 'surrogate.tasks.workers', 'surrogate.worker'}
 LOOKUP = {
     'surrogate',
+    'surrogate.child',
     'surrogate.files',
     'surrogate.limits',
     'surrogate.plain_yaml',
+    'surrogate.store',
     'surrogate.surface',
     'surrogate.surface.compiled',
     'surrogate.surface.records',
@@ -43,7 +45,8 @@ FLOORS = (
 )
 """Folders of the online half, the lowest first; those beside each other do not meet."""
 OFFLINE_FLOORS = (
-    ('units', 'files', 'progress'),
+    ('units', 'files', 'progress', 'child'),
+    ('worker', 'store'),
     ('limits',),
     ('plain_yaml',),
     ('datasheet', 'plotting'),
@@ -66,7 +69,14 @@ STANDS_ON = {
         'surrogate.limits',
         'surrogate.units',
     },
-    'tasks': {'surrogate.files', 'surrogate.progress', 'surrogate.surface.file'},
+    'tasks': {
+        'surrogate.child',
+        'surrogate.files',
+        'surrogate.progress',
+        'surrogate.store',
+        'surrogate.surface.file',
+        'surrogate.worker',
+    },
 }
 """Folders that import these modules alone: what the node loads, and what knows no physics."""
 
@@ -311,7 +321,11 @@ def test_what_must_start_quickly_loads_nothing_heavy(module, heavy):
 def test_node_loads_of_surrogate_what_the_lookup_needs():
     """The process that watches the machine holds nothing of the solver, plots or recordings."""
     laws = 'surrogate.formulas.grades, surrogate.formulas.life'
-    needed = loaded_by(f'import surrogate.plain_yaml, surrogate.surface, {laws}')
+    rooms = ('child', 'plain_yaml', 'store', 'surface')
+    offline = ', '.join(f'surrogate.{room}' for room in rooms)
+    rooms = ('child', 'plain_yaml', 'store', 'surface')
+    offline = ', '.join(f'surrogate.{room}' for room in rooms)
+    needed = loaded_by(f'import {offline}, {laws}')
     loaded = loaded_by('import ballscrew_monitor.node.run')
     assert not {name for name in loaded - needed if name.split('.')[0] == 'surrogate'}
     assert not loaded & {'matplotlib', 'mcap', 'scipy'}

@@ -3,7 +3,6 @@
 """Memory of an axis over restarts: sums, last event and shelving; also as a plain record."""
 
 import collections
-from collections.abc import Mapping
 import dataclasses
 import math
 import operator
@@ -14,7 +13,6 @@ from ballscrew_monitor.core.state import Event, NOT_SHELVED, Shelving, TIMES, To
 
 RESTARTED = 'ended by a restart of the node'
 MOST_EVENTS = 2**32 - 1  # what a message holds
-LARGEST = 2**63 - 1  # what a database holds
 NAN = math.nan
 
 
@@ -71,11 +69,6 @@ class AxisRecord:
     until_ns: int = 0
     reason: str = ''
 
-    def row(self) -> dict[str, Any]:
-        """Return the values by name, None for what is not known."""
-        values = {name: getattr(self, name) for name in TYPES}
-        return {name: None if value != value else value for name, value in values.items()}
-
 
 TYPES: dict[str, Any] = {field.name: field.type for field in dataclasses.fields(AxisRecord)}
 SUMS = {'angle_rad': 'totals.angle', 'energy_lost_J': 'totals.energy_lost'}
@@ -92,29 +85,15 @@ PLACES = {
 """Values of a record, and where a memory holds them as they are."""
 
 
-def read_record(row: Mapping[str, Any]) -> AxisRecord:
-    """
-    Return the record of a row, in which None is a number that is not known.
-
-    Raises ValueError, KeyError or TypeError for a row that no node has written.
-
-    """
-    record = AxisRecord(**{name: _read(name, kind, row[name]) for name, kind in TYPES.items()})
+def check_record(record: AxisRecord) -> None:
+    """Raise ValueError or KeyError for a record that no node has written."""
+    for name, kind in TYPES.items():
+        value = getattr(record, name)
+        if (kind is int or name in SUMS) and value < 0:
+            raise ValueError(f'{name} is {value!r}')
     if record.event > MOST_EVENTS:
         raise ValueError(f'event {record.event} is above {MOST_EVENTS}')
     Code[record.cause], Severity[record.severity]
-    return record
-
-
-def _read(name: str, kind: Any, value: Any) -> Any:
-    if kind is float:
-        value = NAN if value is None else float(value)
-    elif kind is bool:
-        value = bool(value)
-    limited = kind is int or name in SUMS
-    if type(value) is not kind or (limited and not 0 <= value <= LARGEST):
-        raise ValueError(f'{name} is {value!r}')
-    return value
 
 
 def record_of(axis: str, memory: Memory) -> AxisRecord:

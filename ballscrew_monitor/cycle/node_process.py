@@ -2,20 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The monitor node as a child process that never outlives its parent."""
 
-import contextlib
-import ctypes
 import os
 from pathlib import Path
 import resource
 import signal
 import subprocess
-import sys
 
-from ballscrew_monitor.node.solver_process import path_to_this_code, WHEEL_VARIABLES
 from ballscrew_monitor.settings.middleware import loopback
+from surrogate.child import path_to_this_code, start, stop, WHEEL_VARIABLES
 
 PATIENCE = ((signal.SIGINT, 30.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0))  # [s] after each
-PR_SET_PDEATHSIG = 1
 
 
 class NodeProcess:
@@ -24,24 +20,16 @@ class NodeProcess:
     def __init__(self, params: Path, log: Path, *, domain: int) -> None:
         """Start the node on simulated time in `domain`; call this from the main thread."""
         self.log = log
-        command = [
-            # This very code, whatever lies in the working directory.
-            *(sys.executable, '-P', '-m', 'ballscrew_monitor.node', '--ros-args'),
-            *('--params-file', str(params), '-p', 'use_sim_time:=true'),
-            # Every run is the same: none takes up what solves of an earlier one have corrected.
-            *('-p', "state_dir:=''"),
-        ]
-        libc = ctypes.CDLL(None)
         with log.open('wb') as stream:
-            self._process = subprocess.Popen(
-                command,
+            self._process = start(
+                *('ballscrew_monitor.node', '--ros-args', '--params-file', str(params)),
+                *('-p', 'use_sim_time:=true'),
+                # Every run is the same: none takes up what solves of an earlier one corrected.
+                *('-p', "state_dir:=''"),
                 stdin=subprocess.DEVNULL,
                 stdout=stream,
                 stderr=subprocess.STDOUT,
                 env=child_environment(domain) | {'PYTHONPATH': path_to_this_code()},
-                start_new_session=True,
-                # The kernel kills the child when this process dies, whatever kills it.
-                preexec_fn=lambda: libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL),
             )
 
     @property
@@ -56,14 +44,7 @@ class NodeProcess:
 
     def stop(self) -> int:
         """End the node and all it started: asked, then told, then killed; return its code."""
-        for number, patience in PATIENCE:
-            if self._process.poll() is not None:
-                break
-            self._signal(number)
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                self._process.wait(patience)
-        self._signal(signal.SIGKILL)  # what is left of its group
-        return self._process.wait()
+        return stop(self._process, PATIENCE)
 
     @property
     def cpu_time(self) -> float:
@@ -75,10 +56,6 @@ class NodeProcess:
         """Return the last line of the log, empty if there is none."""
         lines = self.log.read_text(errors='replace').strip().splitlines()
         return lines[-1].strip() if lines else ''
-
-    def _signal(self, number: signal.Signals) -> None:
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(self._process.pid, number)
 
 
 def child_environment(domain: int) -> dict[str, str]:

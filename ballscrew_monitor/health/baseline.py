@@ -14,9 +14,14 @@ import math
 
 from ballscrew_monitor.core.conversions import clock_text, TIME_UNITS
 from ballscrew_monitor.health.bands import FIRST_DAY
-from ballscrew_monitor.health.records import Baseline, ComparablePoint, LoadSource, SpectrumBin
+from ballscrew_monitor.health.records import (
+    Baseline,
+    ComparablePoint,
+    KeptHealth,
+    LoadSource,
+    SpectrumBin,
+)
 from ballscrew_monitor.health.rows import DAY
-from ballscrew_monitor.health.store_rows import KeptHealth
 from surrogate.files import InputError
 from surrogate.units import MINUTE
 

@@ -11,10 +11,15 @@ from ballscrew_monitor.health.baseline import HOUR, in_force, motion_by_day, nam
 from ballscrew_monitor.health.collect import Collected
 from ballscrew_monitor.health.companions import Companions
 from ballscrew_monitor.health.points import add, clock_objection
-from ballscrew_monitor.health.records import Baseline, ComparablePoint, Health, SpectrumBin
+from ballscrew_monitor.health.records import (
+    Baseline,
+    ComparablePoint,
+    Health,
+    KeptHealth,
+    SpectrumBin,
+)
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.store import HealthStore
-from ballscrew_monitor.health.store_rows import KeptHealth
 from surrogate.files import InputError
 from surrogate.surface import Surface
 

@@ -15,6 +15,8 @@ import enum
 import math
 from typing import NamedTuple
 
+from surrogate.store import MAY_BE_NAN
+
 NAN = math.nan
 TOLERANCE = 0.03
 """Change of the drag, or loss of preload, that counts as normal [-]."""
@@ -188,7 +190,7 @@ class SpectrumBin:
     first_day: int
     days: int = 1
     load_band: int
-    axial_load: float
+    axial_load: float = dataclasses.field(metadata=MAY_BE_NAN)
     angle: float
     speed: float
     time: float
@@ -196,6 +198,25 @@ class SpectrumBin:
     energy_lost: float = 0.0
     energy_measured: float = NAN
     energy_expected: float = NAN
+
+
+class KeptHealth(NamedTuple):
+    """
+    What is kept of one axis.
+
+    The baseline in force is the last one; `notes` say what could not be read.
+
+    """
+
+    points: tuple[ComparablePoint, ...] = ()
+    spectrum: tuple[SpectrumBin, ...] = ()
+    baselines: tuple[Baseline, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def baseline(self) -> Baseline | None:
+        """Return the baseline in force."""
+        return self.baselines[-1] if self.baselines else None
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

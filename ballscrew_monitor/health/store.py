@@ -1,51 +1,25 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Database of health: `health.sqlite3` in the directory of a node.
+Store of health: `health.sqlite3` in the directory of a node.
 
-Points, spectrum and baselines of every axis. What is written at a time is one transaction, so that
-a node that is killed loses at most what it had not written. Others read meanwhile. The directory
-belongs to the node by the lock of its state.
+Points, spectrum and baselines of every axis, so that a node that is killed loses at most what it
+had not written. The directory belongs to the node by the lock of its state.
 
 """
 
 from collections.abc import Iterable
-import contextlib
 import dataclasses
 from pathlib import Path
-import sqlite3
 import threading
 from typing import Any
 
-from ballscrew_monitor.core.sqlite_file import (
-    BAD,
-    connected,
-    has_room,
-    is_empty,
-    is_passing,
-    let_go,
-    opened_to_read,
-    set_file_aside,
-    SHARE,
-    USED,
-)
 from ballscrew_monitor.health.bands import period_of
 from ballscrew_monitor.health.points import aged, by_place
-from ballscrew_monitor.health.records import Baseline, ComparablePoint, SpectrumBin
+from ballscrew_monitor.health.records import Baseline, ComparablePoint, KeptHealth, SpectrumBin
 from ballscrew_monitor.health.spectrum import merged_bins
-from ballscrew_monitor.health.store_rows import (
-    BASELINE_COLUMNS,
-    baseline_of,
-    baseline_row,
-    bin_of,
-    bin_row,
-    KeptHealth,
-    POINT_COLUMNS,
-    point_of,
-    point_row,
-    SPECTRUM_COLUMNS,
-)
 from surrogate.files import InputError
+from surrogate.store import opened_to_read, readable, SHARE, Store, Table
 
 FILE = 'health.sqlite3'
 VERSION = 1
@@ -55,19 +29,42 @@ MOST_BASELINES = 20
 """Baselines of an axis that are kept, the newest ones."""
 HISTORY = 0
 """Number that points of no baseline have in place of one."""
-WHICH = {'points': f'baseline = {HISTORY} AND', 'spectrum': ''}
-"""Tables of the history, and what tells its rows from those of baselines."""
-READ: dict[str, Any] = {'points': point_of, 'spectrum': bin_of, 'baselines': baseline_of}
-ORDERS = {'points': 'first_day, rowid', 'spectrum': 'first_day, rowid', 'baselines': 'number'}
-DAYS = 'SELECT DISTINCT first_day, days '
-TABLES = f"""
-CREATE TABLE points (axis TEXT, baseline INTEGER, {POINT_COLUMNS});
-CREATE INDEX points_of ON points (axis, baseline, first_day);
-CREATE TABLE spectrum (axis TEXT, {SPECTRUM_COLUMNS});
-CREATE INDEX spectrum_of ON spectrum (axis, first_day);
-CREATE TABLE baselines (number INTEGER PRIMARY KEY, axis TEXT, {BASELINE_COLUMNS});
-PRAGMA user_version = {VERSION}
-"""
+
+
+def _check_point(point: ComparablePoint) -> None:
+    if min(point.stretches, point.days) < 1 or abs(point.place.direction) != 1:
+        raise ValueError(f'a point of {point.stretches} stretches')
+
+
+def _check_bin(one: SpectrumBin) -> None:
+    if one.time <= 0.0 or not all(time >= 0.0 for time in one.wear_time):
+        raise ValueError(f'a bin of {one.time} s')
+
+
+POINTS = Table(
+    name='points',
+    kind=ComparablePoint,
+    beside={'axis': str, 'baseline': int},
+    index='axis, baseline, first_day',
+    check=_check_point,
+)
+SPECTRUM = Table(
+    name='spectrum',
+    kind=SpectrumBin,
+    beside={'axis': str},
+    index='axis, first_day',
+    check=_check_bin,
+)
+BASELINES = Table(
+    name='baselines',
+    kind=Baseline,
+    beside={'number': int, 'axis': str},
+    key='number',
+    without=('points',),
+)
+TABLES = (POINTS, SPECTRUM, BASELINES)
+OF_HISTORY = {'points': f'baseline = {HISTORY} AND', 'spectrum': ''}
+"""What tells the rows of the history from those of baselines."""
 OLDEST = """
 SELECT axis, min(first_day), max(first_day), count(*) AS places FROM points
     WHERE baseline = 0 GROUP BY axis ORDER BY places DESC LIMIT 1
@@ -78,19 +75,13 @@ SELECT number FROM baselines WHERE axis = ? ORDER BY number DESC LIMIT -1 OFFSET
 """
 
 
-class HealthStore:
+class HealthStore(Store):
     """The health of the axes of one node, in a `folder`."""
 
     def __init__(self, folder: Path, *, limit: int = LIMIT) -> None:
         """Open nothing yet; an axis may have a `limit` [B]."""
-        self.file, self.limit = folder / FILE, limit
+        super().__init__(folder / FILE, TABLES, version=VERSION, limit=limit)
         self.lock = threading.RLock()  # for threads that share the store
-        self._database: Any = None
-
-    @property
-    def is_open(self) -> bool:
-        """Tell whether the file is open, and still there."""
-        return self._database is not None and self.file.exists()
 
     def load(self) -> list[str]:
         """
@@ -99,22 +90,12 @@ class HealthStore:
         Raises OSError and sqlite3.Error if it cannot be had now.
 
         """
-        self.close()
-        self.file.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            self._open()
-        except BAD as error:
-            if is_passing(error):
-                raise
-            self.close()
-            said = set_file_aside(self.file, error)
-            self._open()
-            return [said]
-        return []
+        _, sentence = self.recovered(lambda: None)
+        return [sentence] if sentence else []
 
     def read(self, axis: str) -> KeptHealth:
         """Return what is kept of an axis; sqlite3.Error if it cannot be had."""
-        return _read(self._database, axis, str(self.file))
+        return _read(self, axis)
 
     def add(
         self,
@@ -129,63 +110,71 @@ class HealthStore:
         sqlite3.Error.
 
         """
-        if not has_room(self._database, self.file, self.limit):
+        if not self.has_room:
             raise InputError(f'{self.file} takes no more: somebody has been reading it for long')
-        with self._database as database:
-            database.execute('BEGIN IMMEDIATE')
-            _add(database, axis, list(points), list(spectrum))
-            self._make_room(database)
+        points, spectrum = list(points), list(spectrum)
+        with self.transaction():
+            held, bins = (
+                self._take_periods(table, axis, [(one.first_day, one.days) for one in records])
+                for table, records in ((POINTS, points), (SPECTRUM, spectrum))
+            )
+            pooled = by_place([*held, *points]).values()
+            self.put(POINTS, pooled, axis=axis, baseline=HISTORY)
+            self.put(SPECTRUM, merged_bins([*bins, *spectrum]), axis=axis)
+            self._make_room()
 
     def keep_baseline(self, axis: str, baseline: Baseline) -> None:
         """Add a baseline, which is the one in force from now on."""
-        with self._database as database:
-            database.execute('BEGIN IMMEDIATE')
-            row = {'axis': axis, **baseline_row(baseline)}
-            number = _insert(database, 'baselines', [row])
-            _insert(database, 'points', _point_rows(axis, number, baseline.points))
+        with self.transaction() as database:
+            number = self.put(BASELINES, [baseline], axis=axis)
+            self.put(POINTS, baseline.points, axis=axis, baseline=number)
             for (gone,) in database.execute(OLD_BASELINES, (axis, MOST_BASELINES)).fetchall():
                 database.execute('DELETE FROM baselines WHERE number = ?', (gone,))
                 database.execute('DELETE FROM points WHERE baseline = ?', (gone,))
 
     def age(self, axis: str, today: int) -> tuple[str, ...]:
         """Merge older days of an axis, `today` in days since 1970; return what is to be said."""
-        with self._database as database:
-            database.execute('BEGIN IMMEDIATE')
-            found = aged(_taken(database, 'points', axis, today), today)
-            bins = merged_bins(_taken(database, 'spectrum', axis, today), today)
-            _insert(database, 'points', _point_rows(axis, HISTORY, found.points + found.future))
-            _insert(database, 'spectrum', [{'axis': axis, **bin_row(one)} for one in bins])
+        with self.transaction():
+            found = aged(self._take_ageing(POINTS, axis, today), today)
+            bins = merged_bins(self._take_ageing(SPECTRUM, axis, today), today)
+            self.put(POINTS, found.points + found.future, axis=axis, baseline=HISTORY)
+            self.put(SPECTRUM, bins, axis=axis)
         return found.notes
 
-    def close(self) -> None:
-        """Leave one file, which anybody can read."""
-        let_go(self._database, alone=True)
-        self._database = None
+    def _take_ageing(self, table: Table, axis: str, today: int) -> list[Any]:
+        """Take the records of the periods that age changes out of a table, and those to come."""
+        days = f'SELECT DISTINCT first_day, days FROM {table.name} WHERE'
+        rows = self.database.execute(f'{days} {OF_HISTORY[table.name]} axis = ?', (axis,))
+        periods = {(first, days) for first, days in rows}
+        aim = {period: period_of(*period, today) for period in periods}
+        changed = {period for period in periods if aim[period] != period}
+        changed |= {aim[period] for period in changed}
+        changed |= {period for period in periods if period[0] > today}
+        return self._take_periods(table, axis, changed)
 
-    def _open(self) -> None:
-        database = self._database = connected(self.file, self.limit)
-        if is_empty(database, VERSION):
-            with database:
-                database.execute('BEGIN IMMEDIATE')
-                for statement in TABLES.split(';'):
-                    database.execute(statement)
-        for table in READ:
-            database.execute(f'SELECT * FROM {table} LIMIT 1').fetchall()
+    def _take_periods(
+        self, table: Table, axis: str, periods: Iterable[tuple[int, int]]
+    ) -> list[Any]:
+        """Take the records of periods, first days and lengths, out of a table."""
+        which = f'WHERE {OF_HISTORY[table.name]} axis = ? AND first_day = ? AND days = ?'
+        rows: list[Any] = []
+        for period in sorted(set(periods)):
+            rows += self.rows(table, which, (axis, *period))
+            self.database.execute(f'DELETE FROM {table.name} {which}', (axis, *period))
+        return [record for _, record in readable(table, rows)]
 
-    def _make_room(self, database: sqlite3.Connection) -> None:
+    def _make_room(self) -> None:
         """Remove the oldest points until the database is within the limit of its axes."""
-        axes = database.execute('SELECT count(DISTINCT axis) FROM points').fetchone()[0]
-        limit = SHARE * self.limit * max(axes, 1)
-        while database.execute(USED).fetchone()[0] > limit:
-            oldest = database.execute(OLDEST).fetchone()
+        axes = self.database.execute('SELECT count(DISTINCT axis) FROM points').fetchone()[0]
+        while self.used > SHARE * self.limit * max(axes, 1):
+            oldest = self.database.execute(OLDEST).fetchone()
             if oldest is None:
                 return
             axis, first, last, _ = oldest
             until = first + (last - first) // 16
-            for table, which in WHICH.items():
-                database.execute(
-                    f'DELETE FROM {table} WHERE {which} axis = ? AND first_day <= ?', (axis, until)
-                )
+            for table, which in OF_HISTORY.items():
+                statement = f'DELETE FROM {table} WHERE {which} axis = ? AND first_day <= ?'
+                self.database.execute(statement, (axis, until))
 
 
 def read_health(folder: Path) -> dict[str, KeptHealth]:
@@ -195,100 +184,35 @@ def read_health(folder: Path) -> dict[str, KeptHealth]:
     Raises InputError if there is nothing, or nothing that can be read.
 
     """
-    with opened_to_read(folder, FILE, VERSION) as database:
-        axes = database.execute(
+    with opened_to_read(folder, FILE, TABLES, VERSION) as store:
+        axes = store.database.execute(
             'SELECT axis FROM points UNION SELECT axis FROM spectrum ORDER BY axis'
         ).fetchall()
-        return {axis: _read(database, axis, str(folder / FILE)) for (axis,) in axes}
+        return {axis: _read(store, axis) for (axis,) in axes}
 
 
-def _read(database: sqlite3.Connection, axis: str, place: str) -> KeptHealth:
+def _read(store: Store, axis: str) -> KeptHealth:
     """Return what can be read of an axis, and how many rows cannot."""
-    points: dict[int, list[ComparablePoint]] = {}
-    found = {
-        table: database.execute(
-            f'SELECT * FROM {table} WHERE axis = ? ORDER BY {order}', (axis,)
-        ).fetchall()
-        for table, order in ORDERS.items()
+    rows = {
+        table.name: store.rows(table, f'WHERE axis = ? ORDER BY {order}', (axis,))
+        for table, order in (
+            (POINTS, 'first_day, rowid'),
+            (SPECTRUM, 'first_day, rowid'),
+            (BASELINES, 'number'),
+        )
     }
-    read = {table: _readable(READ[table], rows) for table, rows in found.items()}
+    read = {table.name: readable(table, rows[table.name]) for table in TABLES}
+    points: dict[int, list[ComparablePoint]] = {}
     for row, point in read['points']:
         points.setdefault(row['baseline'], []).append(point)
-    baselines = [
-        dataclasses.replace(one, points=tuple(points.get(row['number'], ())))
-        for row, one in read['baselines']
-    ]
-    bad = sum(len(found[table]) - len(read[table]) for table in found)
+    bad = sum(len(rows[name]) - len(read[name]) for name in rows)
+    note = f'{store.file}: {bad} rows of axis {axis} cannot be read, they do not count'
     return KeptHealth(
         points=tuple(points.get(HISTORY, ())),
         spectrum=tuple(one for _, one in read['spectrum']),
-        baselines=tuple(baselines),
-        notes=(f'{place}: {bad} rows of axis {axis} cannot be read, they do not count',)
-        if bad
-        else (),
+        baselines=tuple(
+            dataclasses.replace(one, points=tuple(points.get(row['number'], ())))
+            for row, one in read['baselines']
+        ),
+        notes=(note,) if bad else (),
     )
-
-
-def _readable(read_row: Any, rows: Iterable[Any]) -> list[tuple[Any, Any]]:
-    """Return rows with what they say, those that say something."""
-    found = []
-    for row in rows:
-        with contextlib.suppress(ValueError, KeyError, TypeError):
-            found.append((row, read_row(row)))
-    return found
-
-
-def _taken(database: sqlite3.Connection, table: str, axis: str, today: int) -> list[Any]:
-    """Take the records of the periods that age changes out of a table, and those to come."""
-    kept = f'FROM {table} WHERE {WHICH[table]} axis = ?'
-    periods = {(one, days) for one, days in database.execute(DAYS + kept, (axis,)).fetchall()}
-    aim = {period: period_of(*period, today) for period in periods}
-    changed = {period for period in periods if aim[period] != period}
-    changed |= {aim[period] for period in changed}
-    changed |= {period for period in periods if period[0] > today}
-    return _take_periods(database, table, axis, changed)
-
-
-def _take_periods(
-    database: sqlite3.Connection, table: str, axis: str, periods: Iterable[tuple[int, int]]
-) -> list[Any]:
-    """Take the records of periods, first days and lengths, out of a table."""
-    kept = f'FROM {table} WHERE {WHICH[table]} axis = ? AND first_day = ? AND days = ?'
-    rows: list[Any] = []
-    for period in sorted(set(periods)):
-        rows += database.execute(f'SELECT * {kept}', (axis, *period))
-        database.execute(f'DELETE {kept}', (axis, *period))
-    return [record for _, record in _readable(READ[table], rows)]
-
-
-def _add(
-    database: sqlite3.Connection,
-    axis: str,
-    points: list[ComparablePoint],
-    spectrum: list[SpectrumBin],
-) -> None:
-    """Add to the periods of points and of bins, in a transaction that has begun."""
-    held, bins = (
-        _take_periods(database, table, axis, [(one.first_day, one.days) for one in records])
-        for table, records in (('points', points), ('spectrum', spectrum))
-    )
-    pooled = by_place([*held, *points]).values()
-    _insert(database, 'points', _point_rows(axis, HISTORY, pooled))
-    merged = merged_bins([*bins, *spectrum])
-    _insert(database, 'spectrum', [{'axis': axis, **bin_row(one)} for one in merged])
-
-
-def _point_rows(axis: str, number: int, points: Iterable[ComparablePoint]) -> list[dict[str, Any]]:
-    return [{'axis': axis, 'baseline': number, **point_row(one)} for one in points]
-
-
-def _insert(database: sqlite3.Connection, table: str, rows: list[dict[str, Any]]) -> int:
-    """Insert rows of one kind; return the number of the last one."""
-    if not rows:
-        return 0
-    names = ', '.join(f'"{name}"' for name in rows[0])
-    values = ', '.join(f':{name}' for name in rows[0])
-    statement = f'INSERT OR REPLACE INTO {table} ({names}) VALUES ({values})'
-    for row in rows[:-1]:
-        database.execute(statement, row)
-    return int(database.execute(statement, rows[-1]).lastrowid or 0)

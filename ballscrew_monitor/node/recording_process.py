@@ -11,13 +11,12 @@ import os
 from pathlib import Path
 import select
 import subprocess
-import sys
 import time
 from typing import Any
 
 from ballscrew_monitor.node.restart_state import AUTO
-from ballscrew_monitor.node.solver_process import worker_environment
 from ballscrew_monitor.recordings.frames import Frame, FrameSender
+from surrogate.child import one_thread_environment, start
 from surrogate.files import InputError
 
 MODULE = 'ballscrew_monitor.recordings.retention'
@@ -115,13 +114,12 @@ class RecordingProcess:
 
 
 def _started(folder: Path, settings: Mapping[str, Any]) -> Any:
-    process: Any = subprocess.Popen(
-        [sys.executable, '-P', '-m', MODULE, str(folder), json.dumps(dict(settings))],
+    process: Any = start(
+        *(MODULE, str(folder), json.dumps(dict(settings))),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         bufsize=0,
-        env=worker_environment(),
-        start_new_session=True,
+        env=one_thread_environment(),
     )
     with contextlib.suppress(OSError):  # the limit of this machine may be lower
         fcntl.fcntl(process.stdin, fcntl.F_SETPIPE_SZ, PIPE_SIZE)

@@ -18,7 +18,14 @@ import time
 from typing import TypeVar
 
 from ballscrew_monitor.node.state_database import at_limit, StateDatabase, UNWRITABLE
-from ballscrew_monitor.node.state_records import by_key, Corrections, Entry, Record, Records
+from ballscrew_monitor.node.state_records import (
+    by_key,
+    Corrections,
+    Entry,
+    Record,
+    Records,
+    TABLES,
+)
 from surrogate.files import InputError
 
 AUTO = 'auto'
@@ -96,7 +103,8 @@ class RestartState:
                 self._entries.append(entry)
             if record is not None:
                 ((key, _),) = by_key([record]).items()
-                if key not in self._latest or self._latest[key].row() != record.row():
+                row, last = TABLES[key[0]].row, self._latest.get(key)
+                if last is None or row(last) != row(record):
                     self._latest[key] = self._changed[key] = record
         self._wake.set()
 
@@ -204,7 +212,7 @@ class RestartState:
                 database.write(entries, records.values())
         except Exception as error:
             if not isinstance(error, InputError):  # what it left is read before all else
-                database.disconnect()
+                database.let_go()
             raise
         written = set(map(id, entries))
         with self._lock:

@@ -27,7 +27,7 @@ from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.messages.state_messages import fill_result, read_point, TIERS
 from ballscrew_monitor.messages.unjudged import reason_of
 from ballscrew_monitor.node.axis_publisher import AxisPublisher
-from ballscrew_monitor.node.solver_process import Done, End, Job, MOST_WAITING, Solver, Step
+from ballscrew_monitor.node.solver import Done, End, Job, MOST_WAITING, Solver, Step
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import PointResult
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
@@ -35,7 +35,7 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
-from surrogate.surface import solved_point, SurfacePoint
+from surrogate.surface import FIELDS, solved_point, SurfacePoint
 
 DEFAULT_TIMEOUT, LONGEST_TIMEOUT = 300.0, 3600.0  # [s]
 POLL = 0.1  # [s]
@@ -245,14 +245,13 @@ def result_message(axis: AxisPublisher, row: Row, done: Done) -> Any:
     return result
 
 
-def read_solved(frame: Mapping[str, Any], *, opposing_load: float, lead: float) -> SurfacePoint:
-    """Return the point [N, m] that a frame of the solver holds; JSON knows no NaN."""
-    groups = [
-        {name: math.nan if value is None else float(value) for name, value in frame[part].items()}
-        for part in ('means', 'deviations', 'standard_errors')
-    ]
-    worst = int(frame['worst_contact'])
-    return solved_point(*groups, worst_contact=worst, opposing_load=opposing_load, lead=lead)
+def read_solved(solved: Mapping[str, Any], *, opposing_load: float, lead: float) -> SurfacePoint:
+    """Return the point [N, m] that the solver has found, a `SolvedPoint` as plain JSON."""
+    spread = dict.fromkeys(FIELDS, math.nan) | {'rcs': solved['rcs_deviation']}
+    worst, means = solved['worst_contact'], {name: solved[name] for name in FIELDS}
+    return solved_point(
+        *(means, spread, spread), worst_contact=worst, opposing_load=opposing_load, lead=lead
+    )
 
 
 def _fill_full(result: Any, axis: AxisPublisher, full: SurfacePoint, answer: Row) -> None:

@@ -3,19 +3,21 @@
 """Records of what outlives the node: entries of the event log, axes, corrections."""
 
 from collections.abc import Iterable, Mapping
+import dataclasses
 import datetime
 import enum
 import json
-from typing import Any, NamedTuple
+from typing import Any
 
 from ballscrew_monitor.core.conversions import celsius, seconds
 from ballscrew_monitor.core.fault_codes import cause_code
-from ballscrew_monitor.core.memory import AxisRecord, Memory, record_of
+from ballscrew_monitor.core.memory import AxisRecord, check_record, Memory, record_of
 from ballscrew_monitor.core.state import Event, TIMES, Totals
 from ballscrew_monitor.judge.full_point import KeptSolve, Solve
 from ballscrew_monitor.judge.records import Row
 from surrogate.files import InputError, to_json
 from surrogate.limits import read_json
+from surrogate.store import Table
 
 EVENT = tuple('event start_ns worst_value cause severity value limit unit text ending'.split())
 """What an entry says of an event, by the names of its record."""
@@ -48,7 +50,8 @@ class Kind(enum.StrEnum):
     CLOCK_STEP = 'clock_step'
 
 
-class Entry(NamedTuple):
+@dataclasses.dataclass(frozen=True, slots=True)
+class Entry:
     """
     An entry of the event log, a row of its table.
 
@@ -64,14 +67,15 @@ class Entry(NamedTuple):
 
     def record(self) -> dict[str, Any]:
         """Return the entry as one record; of a damaged one what is left, and that it is."""
-        record = self._asdict()
+        record = dataclasses.asdict(self)
         try:
             return record | dict(read_json(str(record.pop('facts'))))
         except (InputError, TypeError, ValueError):
             return record | {'text': UNREADABLE}
 
 
-class Corrections(NamedTuple):
+@dataclasses.dataclass(frozen=True, slots=True)
+class Corrections:
     """Full solves that correct the surface of an axis, by its hash: a row of their table."""
 
     axis: str
@@ -84,17 +88,6 @@ class Corrections(NamedTuple):
         rows = [{key: getattr(one, name) for name, key in SOLVE.items()} for one in solves]
         return cls(axis, surface, json.dumps(rows))
 
-    @classmethod
-    def read(cls, row: Mapping[str, Any]) -> 'Corrections':
-        """Return the corrections of a row; raises as `read_solves` does."""
-        kept = cls(*(str(row[name]) for name in cls._fields))
-        kept.read_solves()
-        return kept
-
-    def row(self) -> dict[str, Any]:
-        """Return the values by name."""
-        return self._asdict()
-
     def read_solves(self) -> list[KeptSolve]:
         """Return the solves; ValueError, KeyError or TypeError for what no node has written."""
         return [
@@ -106,7 +99,13 @@ class Corrections(NamedTuple):
         ]
 
 
+AXES = Table(name='axes', kind=AxisRecord, key='axis', check=check_record)
+CORRECTIONS = Table(
+    name='corrections', kind=Corrections, key='axis', check=Corrections.read_solves
+)
+EVENTS = Table(name='events', kind=Entry, key='number', beside={'number': int})
 Record = AxisRecord | Corrections
+TABLES: dict[type, Table] = {AxisRecord: AXES, Corrections: CORRECTIONS, Entry: EVENTS}
 Records = dict[tuple[type, str], Any]
 """Records by what they are and their axis."""
 

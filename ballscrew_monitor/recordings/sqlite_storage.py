@@ -14,12 +14,12 @@ from pathlib import Path
 import shutil
 import sqlite3
 
-from ballscrew_monitor.core.sqlite_file import size_of
 from ballscrew_monitor.recordings import storages
 from ballscrew_monitor.recordings.storages import Message, Storage, TopicInfo
 from ballscrew_monitor.recordings.unpacking import scratch_folder
 from surrogate import limits
 from surrogate.files import InputError
+from surrogate.store import size_of
 
 HEADER = 100  # [bytes] of a file, with the size of its pages
 MESSAGES = f"""

@@ -12,9 +12,8 @@ from ballscrew_monitor.health.baseline import in_force, motion_by_day, named_or_
 from ballscrew_monitor.health.companions import companions_beside
 from ballscrew_monitor.health.keeper import assess_kept
 from ballscrew_monitor.health.points import surface_id
-from ballscrew_monitor.health.records import Health
+from ballscrew_monitor.health.records import Health, KeptHealth
 from ballscrew_monitor.health.rows import DAY
-from ballscrew_monitor.health.store_rows import KeptHealth
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.report.machines import MachineAxis
 from ballscrew_monitor.settings.axis import load_surface, settings_of, surface_file

@@ -19,8 +19,8 @@ from ballscrew_monitor.report.parameters import parameters_for
 from surrogate.files import replace_file, to_json
 from surrogate.progress import Progress
 from surrogate.tasks.pool import run_tasks, TaskOutcome
-from surrogate.tasks.worker import tell_share
 from surrogate.tasks.workers import open_pool
+from surrogate.worker import tell_share
 
 INDEX = 'index.html'
 READING = 0.5  # of the work on a table, before it is judged

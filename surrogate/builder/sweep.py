@@ -29,8 +29,8 @@ from surrogate.files import InputError
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, NAME, Screw
 from surrogate.surface.file import from_bytes, SurfaceData, SurfaceError, to_bytes, write
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
-from surrogate.tasks.worker import describe_failure, worker_name
 from surrogate.units import RPM, ZERO_CELSIUS
+from surrogate.worker import describe_failure, worker_name
 
 RANGES = {
     'speed_range_rpm': ('speed_range', RPM, 0.0),

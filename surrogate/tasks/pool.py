@@ -10,16 +10,13 @@ by another.
 
 """
 
-from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import BrokenExecutor, CancelledError, Future
-import contextlib
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-import queue
 from typing import Any, Protocol, Self
 
-from surrogate.surface.file import SurfaceError
+from surrogate.child import Frame, Task
 from surrogate.tasks.store import task_key, TaskStore
-from surrogate.tasks.worker import describe_failure, Task
+from surrogate.worker import task_name
 
 MOST_TRIES = 3
 """How often a task is begun whose worker is lost each time [-]."""
@@ -55,11 +52,11 @@ class Pool(Protocol):
     def __exit__(self, *error: object) -> None:
         """Stop all workers, also those at work."""
 
-    def submit(self, task: Task, name: str, inputs: Mapping[str, Any]) -> Future[dict[str, Any]]:
-        """Hand a task over; its future fails with BrokenExecutor when its worker is lost."""
+    def submit(self, name: str, task: str, inputs: Mapping[str, Any]) -> None:
+        """Hand a task over, `module:function`."""
 
-    def begun(self) -> list[tuple[str, str]]:
-        """Return names of tasks and workers that have begun them, since the last call."""
+    def wait(self, seconds: float) -> list[tuple[str, Frame]]:
+        """Return what is heard of tasks within a time [s], as `Workers.wait` does."""
 
 
 def run_tasks(
@@ -80,94 +77,45 @@ def run_tasks(
     lost or the store cannot be written.
 
     """
-    run = _Run(pool, task, inputs, store, waiting)
-    found = {}
-    for outcome in run.outcomes():
-        found[outcome.name] = outcome
+    outcomes: dict[str, TaskOutcome] = {}
+
+    def end(outcome: TaskOutcome) -> None:
+        outcomes[outcome.name] = outcome
         report(outcome)
-    return {name: found[name] for name in inputs}
+
+    for name, given in inputs.items():
+        if store is not None and (kept := store.get(task_key(store.work, given))) is not None:
+            end(TaskOutcome(name=name, result=kept, stored=True))
+    begun: dict[str, list[str]] = {name: [] for name in inputs if name not in outcomes}
+    function = task_name(task)
+    for name in begun:
+        pool.submit(name, function, inputs[name])
+    while len(outcomes) < len(inputs):
+        heard = pool.wait(ATTENTION)
+        if not heard:
+            waiting()
+        for name, frame in heard:
+            if name not in begun or name in outcomes:  # of an earlier run on this pool
+                continue
+            if 'begun' in frame:
+                begun[name].append(frame['begun'])
+            elif 'lost' in frame and len(begun[name]) < MOST_TRIES:
+                pool.submit(name, function, inputs[name])
+            elif 'lost' in frame or 'result' in frame:
+                outcome = _outcome(name, frame, begun[name])
+                if store is not None and outcome.result is not None:
+                    store.put(task_key(store.work, inputs[name]), outcome.result)
+                end(outcome)
+    return {name: outcomes[name] for name in inputs}
 
 
-class _Run:
-    """The tasks that are left, and which workers have begun each."""
-
-    def __init__(
-        self,
-        pool: Pool,
-        task: Task,
-        inputs: Mapping[str, Mapping[str, Any]],
-        store: TaskStore | None,
-        waiting: Callable[[], None],
-    ) -> None:
-        self._pool, self._task, self._store, self._waiting = pool, task, store, waiting
-        self._left = dict(inputs)
-        self._begun: dict[str, list[str]] = {name: [] for name in inputs}
-        self._names: dict[Future[dict[str, Any]], str] = {}
-        self._done: queue.SimpleQueue[Future[dict[str, Any]]] = queue.SimpleQueue()
-
-    def outcomes(self) -> Iterator[TaskOutcome]:
-        """Yield outcomes as they come, those of the store first."""
-        yield from self._kept()
-        for name in self._left:
-            self._submit(name)
-        while self._left:
-            future = self._next()
-            name, error = self._names.pop(future), _error(future)
-            for begun, worker in self._pool.begun():
-                if begun in self._begun:  # not told late by an earlier run on this pool
-                    self._begun[begun].append(worker)
-            if isinstance(error, BrokenExecutor) and len(self._begun[name]) < MOST_TRIES:
-                self._submit(name)
-            else:
-                yield self._finish(name, future, error)
-
-    def _next(self) -> Future[dict[str, Any]]:
-        """Return the next that is done; an endless wait may be one that Ctrl-C does not end."""
-        while True:
-            with contextlib.suppress(queue.Empty):
-                return self._done.get(timeout=ATTENTION)
-            self._waiting()
-
-    def _kept(self) -> Iterator[TaskOutcome]:
-        if self._store is None:
-            return
-        for name, inputs in tuple(self._left.items()):
-            result = self._store.get(task_key(self._store.work, inputs))
-            if result is not None:
-                del self._left[name]
-                yield TaskOutcome(name=name, result=result, stored=True)
-
-    def _submit(self, name: str) -> None:
-        future = self._pool.submit(self._task, name, self._left[name])
-        self._names[future] = name
-        future.add_done_callback(self._done.put)
-
-    def _finish(
-        self, name: str, future: Future[dict[str, Any]], error: BaseException | None
-    ) -> TaskOutcome:
-        inputs, lost = self._left.pop(name), list(dict.fromkeys(self._begun[name]))
-        if error is not None:
-            sentence = describe_failure(error)
-            if isinstance(error, BrokenExecutor):
-                sentence = f'its worker was lost {len(lost)} times'
-            worker = lost[-1] if lost else ''
-            return TaskOutcome(
-                name=name, result=None, sentence=sentence, lost=tuple(lost), worker=worker
-            )
-        done = future.result()
-        if self._store is not None and done['result'] is not None:
-            self._store.put(task_key(self._store.work, inputs), done['result'])
-        return TaskOutcome(
-            name=name, lost=tuple(worker for worker in lost if worker != done['worker']), **done
-        )
-
-
-def _error(future: Future[dict[str, Any]]) -> BaseException | None:
-    """Return what a future failed with; raises SurfaceError when the whole cluster is gone."""
-    try:
-        return future.exception()
-    except CancelledError:
-        raise SurfaceError(
-            'the scheduler was lost; run the command again, results that were kept are not '
-            'solved again'
-        ) from None
+def _outcome(name: str, frame: Frame, begun: list[str]) -> TaskOutcome:
+    """Return what became of a task that workers have `begun`, by the frame of its end."""
+    workers = tuple(dict.fromkeys(begun))
+    if 'lost' in frame:
+        sentence = f'its worker was lost {len(workers)} times'
+        worker = workers[-1] if workers else ''
+        return TaskOutcome(name=name, result=None, sentence=sentence, lost=workers, worker=worker)
+    worker = frame['worker'] or (workers[-1] if workers else '')
+    lost = tuple(one for one in workers if one != frame['worker'])
+    return TaskOutcome(**{'name': name, **frame, 'worker': worker, 'lost': lost})

@@ -1,19 +1,25 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Pools of workers: spawned processes of this machine, or those of a Dask cluster."""
+"""Pools of workers: processes of this machine, or those of a Dask cluster."""
 
 import asyncio
-from collections import deque
-from collections.abc import Mapping
-from concurrent.futures import Future
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import CancelledError, Future
+import contextlib
+import functools
+from multiprocessing import resource_tracker
 import os
+import queue
+import signal
+import sys
 from typing import Any, Self
 import uuid
 
+from surrogate.child import Frame, one_thread_environment, path_to_this_code, Worker, Workers
 from surrogate.files import InputError
+from surrogate.surface.file import SurfaceError
 from surrogate.tasks.pool import Pool
-from surrogate.tasks.spawned import apart, SpawnedWorkers
-from surrogate.tasks.worker import OnShare, run_task, ShareTeller, Task, teller, worker_name
+from surrogate.worker import describe_failure, listener, run_task, ShareTeller, worker_name
 
 LOCAL = 'local'
 """The word for a Dask cluster on this machine."""
@@ -26,6 +32,8 @@ Of Dask's events: on one that begins so workers say what they begin, and how far
 Each pool has a topic of its own: a topic is heard by all clients of a scheduler.
 
 """
+OnShare = Callable[[str, float], None]
+"""Told the name of a task at work and which share of it is done [-]."""
 
 
 def ignore(name: str, share: float) -> None:
@@ -58,34 +66,24 @@ def open_pool(
     return DaskPool(dask, workers or usable_cores(), on_share)
 
 
-class ProcessPool:
-    """Spawned processes of this machine."""
+class ProcessPool(Workers):
+    """Processes of this machine, which find the modules that this process finds."""
 
     def __init__(self, workers: int, on_share: OnShare) -> None:
-        """Prepare for `workers` processes; each starts with the first task it is needed for."""
-        self._events: deque[tuple[str, str]] = deque()
-        self._executor = SpawnedWorkers(
-            workers, self._note, lambda arguments, share: on_share(arguments[1], share)
-        )
+        """Prepare for `workers` processes."""
+        environment = one_thread_environment(wheels=True) | {
+            'PYTHONPATH': path_to_this_code(sys.path)
+        }
+        super().__init__(workers, functools.partial(Worker, environment=environment))
+        self._on_share = on_share
 
-    def __enter__(self) -> Self:
-        """Return the pool."""
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        """End all workers, also those at work."""
-        self._executor.shutdown()
-
-    def submit(self, task: Task, name: str, inputs: Mapping[str, Any]) -> Future[dict[str, Any]]:
-        """Hand a task over."""
-        return self._executor.submit(run_task, task, name, inputs)
-
-    def begun(self) -> list[tuple[str, str]]:
-        """Return names of tasks and workers that have begun them, since the last call."""
-        return [self._events.popleft() for _ in range(len(self._events))]
-
-    def _note(self, arguments: tuple[Any, ...], worker: str) -> None:
-        self._events.append((arguments[1], worker))
+    def wait(self, seconds: float) -> list[tuple[str, Frame]]:
+        """Return what is heard of tasks within a time [s], but for how far they are."""
+        heard = super().wait(seconds)
+        for name, frame in heard:
+            if 'step' in frame:
+                self._on_share(name, frame['step'])
+        return heard
 
 
 class DaskPool:
@@ -96,12 +94,12 @@ class DaskPool:
         import distributed
 
         self._on_share = on_share
-        self._events: deque[tuple[str, str]] = deque()
-        with apart():
+        self._heard: queue.SimpleQueue[tuple[str, Frame | Future[Frame]]] = queue.SimpleQueue()
+        with _deaf_to_ctrl_c():
             self._cluster = _local_cluster(distributed, workers) if address == LOCAL else None
             self._client = _client(distributed, self._cluster or address)
         self._topic = f'{TOPIC}-{uuid.uuid4()}'
-        self._client.subscribe_topic(self._topic, self._note)
+        self._client.subscribe_topic(self._topic, lambda event: self._heard.put(event[1]))
         self._executor = self._client.get_executor()
 
     def __enter__(self) -> Self:
@@ -115,34 +113,64 @@ class DaskPool:
         if self._cluster is not None:
             self._cluster.close()
 
-    def submit(self, task: Task, name: str, inputs: Mapping[str, Any]) -> Future[dict[str, Any]]:
+    def submit(self, name: str, task: str, inputs: Mapping[str, Any]) -> None:
         """Hand a task over."""
-        return self._executor.submit(run_told, self._topic, task, name, inputs)
+        future = self._executor.submit(run_told, self._topic, name, task, inputs)
+        future.add_done_callback(lambda done: self._heard.put((name, done)))
 
-    def begun(self) -> list[tuple[str, str]]:
-        """Return names of tasks and workers that have begun them, since the last call."""
-        return [self._events.popleft() for _ in range(len(self._events))]
+    def wait(self, seconds: float) -> list[tuple[str, Frame]]:
+        """Return what is heard of a task within a time [s], but for how far it is."""
+        try:
+            name, heard = self._heard.get(timeout=seconds)
+        except queue.Empty:
+            return []
+        frame = _end_of(heard) if isinstance(heard, Future) else heard
+        if 'step' in frame:
+            self._on_share(name, frame['step'])
+        return [(name, frame)]
 
-    def _note(self, event: tuple[float, Mapping[str, Any]]) -> None:
-        note = event[1]
-        if 'share' in note:
-            self._on_share(note['task'], note['share'])
-        else:
-            self._events.append((note['task'], note['process']))
+
+def _end_of(future: 'Future[Frame]') -> Frame:
+    """Return what became of a task; raises SurfaceError when the whole cluster is gone."""
+    try:
+        return future.result()
+    except CancelledError:
+        raise SurfaceError(
+            'the scheduler was lost; run the command again, results that were kept are not '
+            'solved again'
+        ) from None
+    except Exception as error:  # such as that its worker was lost too often
+        return {'result': None, 'sentence': describe_failure(error), 'worker': ''}
 
 
-def run_told(topic: str, task: Task, name: str, inputs: Mapping[str, Any]) -> dict[str, Any]:
+def run_told(topic: str, name: str, task: str, inputs: Mapping[str, Any]) -> Frame:
     """Run a task in a worker of a Dask cluster; tell a topic that it is begun, and how far."""
     import distributed
 
     worker = distributed.get_worker()
-    note = {'task': name, 'process': worker_name()}
+    note = name, {'begun': worker_name()}
     # Waits until the scheduler has it: a worker that is killed at once has said what it began.
     distributed.utils.sync(worker.loop, worker.scheduler.log_event, topic=topic, msg=note)
-    teller.set(
-        ShareTeller(lambda share: worker.log_event(topic, {'task': name, 'share': float(share)}))
-    )
-    return run_task(task, name, inputs)
+    listener.set(ShareTeller(lambda step: worker.log_event(topic, (name, {'step': step}))))
+    return run_task(task, inputs)
+
+
+@contextlib.contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """
+    Let processes and threads that start meanwhile not see Ctrl-C.
+
+    It is inherited, so there is no moment in which a new process would be hit. Ctrl-C is for the
+    main thread alone, which then ends its workers.
+
+    """
+    # Started with the first process, the tracker would unblock what is blocked here.
+    resource_tracker.ensure_running()
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
 def _local_cluster(distributed: Any, workers: int) -> Any:

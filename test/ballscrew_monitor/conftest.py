@@ -29,7 +29,6 @@ from ballscrew_monitor.judge import derived_load, full_point, point, step
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.messages.state_messages import empty_state, fill_state
-from ballscrew_monitor.node.solver_process import MODULE, path_to_this_code
 from ballscrew_monitor.settings.qos import started_node
 from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticArray
@@ -43,6 +42,7 @@ from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 from rosidl_parser import definition
 from sensor_msgs.msg import JointState
+from surrogate.child import path_to_this_code, WORKER
 from surrogate.surface import file as surface_file
 from surrogate.surface import Found, shipped_surface
 import yaml
@@ -524,11 +524,11 @@ class NodeProcess:
 
     def solvers(self):
         """Return the numbers of the processes that solve for the node."""
-        command = f'-m\0{MODULE}\0{self.process.pid}\0'.encode()
+        command = f'-m\0{WORKER}\0'.encode()
         return [
             int(path.parent.name)
             for path in pathlib.Path('/proc').glob('[0-9]*/cmdline')
-            if command in content_of(path)
+            if command in content_of(path) and parent_of(path.parent) == self.process.pid
         ]
 
     def stop(self, number=signal.SIGINT):
@@ -546,6 +546,12 @@ class NodeProcess:
                 self.process.wait(DEADLINE)
             finally:
                 self.process.kill()
+
+
+def parent_of(process):
+    """Return the number of the parent of a process, 0 for one that is gone."""
+    stat = content_of(process / 'stat').rpartition(b')')[2].split()
+    return int(stat[1]) if stat else 0
 
 
 def day_of_motion(day):

@@ -7,8 +7,8 @@ from pathlib import Path
 import signal
 import subprocess
 
-from ballscrew_monitor.node.solver_process import path_to_this_code
 import pytest
+from surrogate.child import path_to_this_code
 
 TREE = Path(__file__).resolve().parents[2]
 DEADLINE = 600.0  # [s] which only ends a hang

@@ -19,13 +19,13 @@ from surrogate.builder.full.march import march_task, march_tasks
 from surrogate.builder.full.ratios import Results
 from surrogate.builder.full.settings import FullSettings
 from surrogate.builder.tiers import screw_and_oil
+from surrogate.child import Task
 from surrogate.parameters import Lubricant, Screw
 from surrogate.progress import Progress
 from surrogate.surface import SolvedPoint
 from surrogate.surface.file import SurfaceData
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.tasks.store import TaskStore
-from surrogate.tasks.worker import Task
 from surrogate.units import RPM, ZERO_CELSIUS
 
 

@@ -13,9 +13,9 @@ from types import SimpleNamespace
 
 from ballscrew_monitor.clients import solve
 from ballscrew_monitor.clients.solve import _Conversation, Question
-from ballscrew_monitor.node.solver_process import worker_environment
 import pytest
 from rclpy.task import Future
+from surrogate.child import one_thread_environment
 
 SCRIPT = Path(sys.executable).with_name('ballscrew')
 DEADLINE = 600.0  # [s] which only ends a hang
@@ -62,7 +62,7 @@ def said(node, words):
 def test_all_four_pairs_of_signs_are_those_of_point(node):
     reference = subprocess.Popen(
         [sys.executable, '-c', POINTS, *(f'{speed},{load}' for speed, load in SIGNS)],
-        env=worker_environment(),
+        env=one_thread_environment(),
         stdout=subprocess.PIPE,
         text=True,
     )

@@ -5,6 +5,7 @@
 import contextlib
 import dataclasses
 import math
+from pathlib import Path
 import sqlite3
 import subprocess
 import sys
@@ -12,11 +13,14 @@ import sys
 from ballscrew_monitor.health import store as stores
 from ballscrew_monitor.health.bands import period_of
 from ballscrew_monitor.health.points import aged, by_place
-from ballscrew_monitor.health.records import Baseline, LoadSource, SpectrumBin
+from ballscrew_monitor.health.records import Baseline, LoadSource, Place, SpectrumBin
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.store import FILE, HealthStore, LIMIT, read_health
+from hypothesis import given
+from hypothesis import strategies as st
 import pytest
 from surrogate.files import InputError
+from surrogate.store import Store
 
 YEARS = 10
 PLACES = {1: 60, 7: 120, 28: 240}
@@ -89,6 +93,40 @@ def test_what_is_written_is_found_again(make, motion, baseline, tmp_path):
         assert kept.baseline == kept.baselines[1]
         assert kept.notes == ()
     assert make().read('z').baseline is None
+
+
+@given(st.data())
+def test_every_record_of_health_comes_back_from_its_row(data):
+    """Whatever is gathered; of a zero SQLite keeps no sign."""
+    numbers = st.integers(1, 2**31)
+    values = {
+        int: numbers,
+        bool: st.booleans(),
+        float: st.floats(min_value=1e-300, allow_infinity=False, allow_nan=False),
+        str: st.text(max_size=5),
+        LoadSource: st.sampled_from(LoadSource),
+        tuple[float, ...]: st.lists(st.floats(0.0, 1e9), max_size=9).map(tuple),
+        Place: st.builds(Place, numbers, numbers, numbers, st.sampled_from([-1, 1])),
+    }
+    unknown = values[float] | st.just(math.nan)
+    named = dict.fromkeys(
+        ('residual', 'axial_load', 'energy_measured', 'energy_expected'), unknown
+    )
+    for table in stores.TABLES:
+        parts = {name: values[kind] for name, kind in table.fields.items()}
+        if table is not stores.BASELINES:
+            parts |= {name: one for name, one in named.items() if name in parts}
+        if table is stores.POINTS:
+            parts['axial_load'] = values[float]
+        record = data.draw(st.builds(table.kind, **parts))
+        with contextlib.closing(sqlite3.connect(':memory:')) as database:
+            store = Store(Path('none'), [table], version=1, limit=0)
+            store.use(database)
+            for statement in table.schema:
+                database.execute(statement)
+            store.put(table, [record], axis='x')
+            (row,) = store.rows(table)
+            assert repr(table.read(row)) == repr(record)
 
 
 def test_what_is_added_is_pooled_with_its_period_and_others_stand(make, motion):
@@ -206,6 +244,7 @@ def test_a_killed_process_leaves_a_commit_and_the_baseline(make, motion, baselin
     [
         ('PRAGMA user_version = 7', 'is of another version (7, known is 1)'),
         ('DROP TABLE spectrum', 'is damaged (no such table: spectrum)'),
+        ('ALTER TABLE points DROP COLUMN days', 'is damaged (table points has other columns)'),
     ],
 )
 def test_what_no_node_has_left_is_kept_aside(make, motion, tmp_path, statement, why):
@@ -257,6 +296,25 @@ def test_rows_that_cannot_be_read_are_counted_and_the_others_stand(
     assert kept.notes == (says('bad_rows', place=tmp_path / FILE),)
 
 
+def test_a_damaged_text_hides_no_other_row(make, motion, baseline, tmp_path):
+    store = make()
+    points = [motion.point(first_day=motion.today - age) for age in range(3)]
+    store.add('x', points, [a_bin(1)])
+    store.keep_baseline('x', baseline)
+    store.close()
+    spoil(
+        tmp_path,
+        f"UPDATE points SET surface = CAST(x'61e5' AS TEXT) WHERE first_day = {motion.today - 1}",
+        "UPDATE baselines SET screw = CAST(x'61e5' AS TEXT)",
+    )
+    store = make()
+    assert store.said == []
+    for kept in (store.read('x'), read_health(tmp_path)['x']):
+        assert set(kept.points) == {points[0], points[2]}
+        assert (kept.baselines, len(kept.spectrum)) == ((), 1)
+        assert '2 rows of axis x cannot be read' in kept.notes[0]
+
+
 @pytest.mark.parametrize(
     ('column', 'value'),
     [
@@ -264,7 +322,7 @@ def test_rows_that_cannot_be_read_are_counted_and_the_others_stand(
         ('axial_load', 'NULL'),
         ('motor_torque', '9e999'),
         ('load_source', '7'),
-        ('direction_band', '0'),
+        ('place_direction', '0'),
         ('temperature_measured', '2'),
         ('days', '0'),
         ('surface', 'NULL'),

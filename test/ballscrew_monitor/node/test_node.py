@@ -16,7 +16,6 @@ from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.judge import views
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.messages import diagnostics
-from ballscrew_monitor.node import recording_process
 from ballscrew_monitor.node.alarm import Alarm
 from ballscrew_monitor.node.axis_publisher import AxisPublisher, NEWS_INTERVAL
 from ballscrew_monitor.node.journal import Journal
@@ -36,6 +35,7 @@ from rclpy.clock import ClockType
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
+from surrogate import child
 from surrogate.surface import shipped_surface, Surface
 
 FAST, SLOW = 100.0, 0.8  # [rad/s] optimal and outside at 1 kN and 40 degC
@@ -500,7 +500,7 @@ DEFECTS = {
 @pytest.mark.parametrize(('owner', 'name', 'use', 'place'), DEFECTS.values(), ids=DEFECTS)
 def test_a_defect_is_of_its_axis(monkeypatch, tmp_path, capfd, owner, name, use, place):
     """Each part of the judgement of x fails wherever it is used, and y goes on."""
-    monkeypatch.setattr(recording_process.sys, 'executable', '/no/python')
+    monkeypatch.setattr(child.sys, 'executable', '/no/python')
     part, told = getattr(owner, name), []
     with started(axes=['x', 'y'], record='always', state_dir=str(tmp_path)) as node:
         broken, sound = (node._axis_publishers[name] for name in 'xy')

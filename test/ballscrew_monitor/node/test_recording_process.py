@@ -11,6 +11,7 @@ from ballscrew_monitor.node import recording_process
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
 from ballscrew_monitor.recordings.frames import Frame, FrameKind
 from ballscrew_monitor.settings import parameters
+from surrogate import child
 
 SETTINGS = {
     'always': True,
@@ -36,7 +37,7 @@ def test_a_recording_is_made_where_it_is_wished_has_a_place_and_leaves_room(tmp_
 
 
 def test_what_cannot_be_started_is_told_and_takes_nothing(tmp_path, monkeypatch, says):
-    monkeypatch.setattr(recording_process.sys, 'executable', '/no/python')
+    monkeypatch.setattr(child.sys, 'executable', '/no/python')
     process = RecordingProcess(tmp_path, SETTINGS)
     assert process.lost
     assert not process.put(FRAME)

@@ -6,11 +6,12 @@ from pathlib import Path
 import threading
 
 from ballscrew_monitor.core.memory import AxisRecord
-from ballscrew_monitor.node import restart_state, state_database
+from ballscrew_monitor.node import restart_state
 from ballscrew_monitor.node.restart_state import PAUSE, RestartState, RETRY, state_directory
 from ballscrew_monitor.node.state_database import FILE, read_entries, StateDatabase
 from ballscrew_monitor.node.state_records import Corrections, entry_of, Kind
 import pytest
+from surrogate import store
 
 SOLVES = '[' + ' ' * 998 + ']'
 
@@ -161,7 +162,7 @@ def test_what_was_left_is_read_before_anything_is_written(state, monkeypatch, sa
     state.keep(record(41))
     state.close()
     with monkeypatch.context() as broken:
-        broken.setattr(state_database.sqlite_file, 'is_empty', fail)
+        broken.setattr(store, 'is_empty', fail)
         again = RestartState(state.folder)
         again.keep(record(1))
         assert again.flush() == says('cannot_written_runtimeerror', folder=state.folder)
@@ -208,7 +209,7 @@ def test_a_file_that_is_gone_or_damaged_is_written_once_more(state, content):
     (state.folder / FILE).unlink()
     if content:
         (state.folder / FILE).write_bytes(content)
-        state._database.disconnect()
+        state._database.let_go()
     assert state.flush() == ''
     assert kept(state) == ([], [7])
     assert state.recall(Corrections('x')).surface == 'abc'

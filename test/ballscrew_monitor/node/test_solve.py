@@ -19,7 +19,7 @@ from ballscrew_msgs.srv import EvaluateOperatingPoint
 import pytest
 from rclpy.action import ActionClient
 from std_srvs.srv import Trigger
-from surrogate.on_demand.solve import solve_point
+from surrogate.on_demand import solve_point
 from surrogate.surface import FIELDS, shipped_surface, Surface
 
 AHEAD = {'x__max_future': 3600.0}  # the stamps of a test run ahead of the clock
@@ -96,7 +96,7 @@ def test_a_solve_is_told_beside_the_surface(node):
     alone = solve_point(request_of(surface, read_point(PLACE, default_temperature=math.nan)))
     for name in FIELDS:
         # The node solves on one thread; sums over several differ in their last digits.
-        assert getattr(result.full, name) == pytest.approx(alone.means[name], rel=1e-5), name
+        assert getattr(result.full, name) == pytest.approx(getattr(alone, name), rel=1e-5), name
         assert getattr(result.surface, name) == getattr(answer, name), name
     assert (result.full.tier, result.surface.tier) == (PointResult.TIER_FULL,) * 2
     assert result.surface.efficiency == answer.efficiency
@@ -111,7 +111,7 @@ def test_a_solve_is_told_beside_the_surface(node):
         )
     ]
     differences = result.efficiency_difference, result.rcs_difference
-    own = 0.0, alone.standard_errors['rcs']
+    own = 0.0, alone.rcs_deviation
     within = all(
         abs(one) <= most + known for one, most, known in zip(differences, stated, own, strict=True)
     )

@@ -35,6 +35,7 @@ from rclpy.subscription import Subscription
 from rclpy.time import Time
 from rclpy.timer import Timer
 from rclpy.waitable import Waitable
+from surrogate.child import WORKER
 
 SECOND = 10**9  # [ns]
 DEADLINE = 600.0  # [s] which only ends a hang
@@ -472,6 +473,13 @@ class ScriptedWorker:
     def close(self):
         """Do nothing: there is no pipe."""
 
+    def __enter__(self):
+        """Return what is read."""
+        return self
+
+    def __exit__(self, *error):
+        """Do nothing."""
+
 
 def _stand_ins(world):
     """Yield owner, name and what takes its place."""
@@ -561,7 +569,7 @@ class PatientProcess(subprocess.Popen):
 
 def _process(world):
     def process(command, *args, **options):
-        if world.worker is not None and 'surrogate.on_demand.worker' in command:
+        if world.worker is not None and WORKER in command:
             return ScriptedWorker(world.worker)
         made = PatientProcess(command, *args, **options)
         world.processes.append(made)

@@ -16,7 +16,7 @@ from surrogate.builder.tiers import TIERS
 from surrogate.parameters import DATA
 from surrogate.surface import Surface
 from surrogate.surface.file import read
-from surrogate.tasks.worker import worker_name
+from surrogate.worker import worker_name
 
 COMMAND = ('surface', 'sweep')
 

@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A pool of workers that is this process."""
 
-from concurrent.futures import Future
 import math
 
 import pytest
-from surrogate.tasks.worker import run_task
+from surrogate.worker import run_task
 
 
 @pytest.fixture
@@ -20,6 +19,7 @@ class Here:
 
     def __init__(self, most=math.inf):
         self.most, self.solved = most, 0
+        self.heard = []
 
     def __enter__(self):
         return self
@@ -27,18 +27,14 @@ class Here:
     def __exit__(self, *error):
         pass
 
-    def submit(self, task, name, inputs):
+    def submit(self, name, task, inputs):
         """Solve at once."""
         if self.solved == self.most:
             raise KeyboardInterrupt
         self.solved += 1
-        future = Future()
-        future.set_result(run_task(task, name, inputs))
-        return future
+        self.heard.append((name, run_task(task, inputs)))
 
-    def begun(self):
-        """Tell of nothing."""
-        return []
-
-    def renew(self):
-        """Lose no worker."""
+    def wait(self, seconds):
+        """Tell of what is solved."""
+        heard, self.heard = self.heard, []
+        return heard

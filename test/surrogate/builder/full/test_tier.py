@@ -8,6 +8,7 @@ import re
 
 import pytest
 from surrogate.builder import tiers
+from surrogate.builder.full import chain
 from surrogate.builder.full import tier as full_tier
 from surrogate.builder.full.settings import default_full_settings, FullSettings
 from surrogate.files import InputError
@@ -24,12 +25,19 @@ SETTINGS = FullSettings(
     held_out=3,
 )
 CHAINS = 15
+SOLVE_CHAIN = chain.solve_chain
 
 
 @pytest.fixture(autouse=True)
 def fast(monkeypatch, stand_in):
     """Let chains be those of the stand-in."""
     monkeypatch.setattr(full_tier, 'solve_chain', stand_in.chain)
+
+
+def let_fail(monkeypatch, failing):
+    """Let a function solve chains, which workers find by the name of the task."""
+    monkeypatch.setattr(full_tier, 'solve_chain', SOLVE_CHAIN)
+    monkeypatch.setattr(chain, 'solve_chain', failing)
 
 
 def build(screw, oil, out, pool, settings=SETTINGS):
@@ -98,7 +106,7 @@ def test_failed_tasks_are_named_and_counted(
             raise InputError('no luck')
         return stand_in.chain(inputs)
 
-    monkeypatch.setattr(full_tier, 'solve_chain', failing)
+    let_fail(monkeypatch, failing)
     data = build(screw, oil, tmp_path / 'a.npz', here())
     assert data.provenance['failed_tasks'] == 3
     assert data.mask[:, [0, -1]].all()
@@ -121,7 +129,7 @@ def test_missing_nodes_are_told_with_their_place(
 
     build(screw, oil, tmp_path / 'a.npz', here())
     assert 'missing' not in capsys.readouterr().err
-    monkeypatch.setattr(full_tier, 'solve_chain', failing)
+    let_fail(monkeypatch, failing)
     data = build(screw, oil, tmp_path / 'b.npz', here())
     told = re.search(r'(\d+) of \d+ nodes are missing.*', capsys.readouterr().err)
     assert 0 < int(told[1]) <= data.mask.sum()

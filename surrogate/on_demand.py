@@ -10,19 +10,24 @@ same law of asperity contact, so that what both differ by is the error of the su
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-import math
+from dataclasses import asdict
+import resource
+import time
 from typing import Any
 
 from surrogate.builder.full.chain import solved_point
 from surrogate.builder.tiers import screw_and_oil
 from surrogate.ehl.watch import Iteration, watched
+from surrogate.files import InputError
 from surrogate.parameters import OperatingPoint
 from surrogate.screw import solve_screw
-from surrogate.surface import FIELDS, SolvedPoint
+from surrogate.surface import SolvedPoint
+from surrogate.worker import cancelled, tell
 
 CONTACTS = 4
 """Contacts of a point: both nuts with screw and nut [-]."""
+PAUSE = 0.2
+"""Shortest time between two steps that a worker tells [s]: nobody reads faster."""
 Progress = Callable[[Mapping[str, Any]], None]
 
 
@@ -30,30 +35,12 @@ class Cancelled(Exception):
     """The solve was taken back."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PointOnDemand:
-    """
-    A solved point: values, deviations and standard errors of the fields of a surface [SI].
-
-    Deviations are those between strips of the raceway. `worst_contact` numbers the contact as a
-    surface does, -1 without contact. Numbers are NaN unless `converged`; `status` says why.
-
-    """
-
-    converged: bool
-    status: str
-    worst_contact: int = -1
-    means: Mapping[str, float] = field(default_factory=dict)
-    deviations: Mapping[str, float] = field(default_factory=dict)
-    standard_errors: Mapping[str, float] = field(default_factory=dict)
-
-
 def solve_point(
     request: Mapping[str, Any],
     *,
     progress: Progress = lambda step: None,
     cancel: Callable[[], bool] = lambda: False,
-) -> PointOnDemand:
+) -> SolvedPoint:
     """
     Solve the point of a request by the full tier.
 
@@ -70,22 +57,7 @@ def solve_point(
     )
     screw, oil = screw_and_oil(header['inputs'])
     with watched(_Watcher(progress, cancel)):
-        found = solve_screw(screw, oil, point)
-    return _answer(solved_point(found))
-
-
-def _answer(found: SolvedPoint) -> PointOnDemand:
-    if not found.converged:
-        return PointOnDemand(converged=False, status=found.status)
-    nothing = dict.fromkeys(FIELDS, math.nan)
-    return PointOnDemand(
-        converged=True,
-        status=found.status,
-        worst_contact=found.worst_contact,
-        means={name: getattr(found, name) for name in FIELDS},
-        deviations=nothing | {'rcs': found.rcs_deviation},
-        standard_errors=nothing | {'rcs': found.rcs_deviation},
-    )
+        return solved_point(solve_screw(screw, oil, point))
 
 
 class _Watcher:
@@ -112,13 +84,24 @@ class _Watcher:
         )
 
 
-def solved_frame(found: PointOnDemand) -> dict[str, Any]:
-    """Return a solved point as plain JSON."""
-    return {
-        'converged': found.converged,
-        'status': found.status,
-        'worst_contact': found.worst_contact,
-        'means': dict(found.means),
-        'deviations': dict(found.deviations),
-        'standard_errors': dict(found.standard_errors),
-    }
+def solve(request: Mapping[str, Any]) -> dict[str, Any]:
+    """
+    Solve the point of a request in a worker, which tells its steps and may be asked to end.
+
+    The result is a `SolvedPoint` as plain JSON. Raises InputError where memory runs out.
+
+    """
+    last = -PAUSE
+
+    def report(step: Mapping[str, Any]) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if now - last >= PAUSE:
+            last = now
+            tell(step)
+
+    try:
+        return asdict(solve_point(request, progress=report, cancel=cancelled.is_set))
+    except MemoryError:
+        most = resource.getrlimit(resource.RLIMIT_DATA)[0]
+        raise InputError(f'the solve needs more than {most / 2**30:g} GiB of memory') from None

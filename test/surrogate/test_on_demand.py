@@ -3,17 +3,16 @@
 """A solve on demand: the model itself, told step by step, and taken back at any of them."""
 
 from dataclasses import asdict, replace
-import json
-import math
+import re
 
 import pytest
 from surrogate.builder.full.tier import solve_full
-from surrogate.files import to_json
-from surrogate.on_demand.solve import Cancelled, solve_point, solved_frame
+from surrogate.on_demand import Cancelled, solve, solve_point
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import ScrewSettings, solve_screw
 from surrogate.screw.onset import with_raceway
 from surrogate.surface import FIELDS
+from surrogate.worker import cancelled, listener, plain_result, run_task
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
 HEADER = {'tier': 'full', 'inputs': {'screw': asdict(SCREW), 'lubricant': asdict(OIL)}}
@@ -38,7 +37,7 @@ def test_it_is_solved_as_the_surface_was(load):
     assert found.converged
     # A surface solves both senses of a load on contacts of one of them.
     for name in FIELDS:
-        assert found.means[name] == pytest.approx(getattr(whole, name), rel=1e-4)
+        assert getattr(found, name) == pytest.approx(getattr(whole, name), rel=1e-4)
 
 
 def test_a_surface_of_formulas_is_solved_as_its_screw_is():
@@ -46,29 +45,21 @@ def test_a_surface_of_formulas_is_solved_as_its_screw_is():
     point = OperatingPoint(speed=6.0, load=500.0, temperature=313.15)
     alone = solve_screw(SCREW, OIL, point)
     expected = {name: getattr(alone, name) for name in FIELDS}
-    assert {name: found.means[name] for name in FIELDS} == expected
+    assert {name: getattr(found, name) for name in FIELDS} == expected
     assert found.worst_contact == alone.worst_contact
     assert found.status == alone.status
     run_in = HEADER['inputs'] | {'screw': asdict(with_raceway(SCREW, state='run_in'))}
-    assert found.means['rcs'] > solve_point(request({'inputs': run_in})).means['rcs'] > 0
+    assert found.rcs > solve_point(request({'inputs': run_in})).rcs > 0
 
 
-def test_what_is_uncertain_is_the_rcs_between_strips_in_strict_json(solved):
+def test_what_is_uncertain_is_the_rcs_between_strips(solved):
     found, _ = solved
-    assert found.deviations['rcs'] > 0
-    assert found.standard_errors['rcs'] == found.deviations['rcs']
-    for name in set(FIELDS) - {'rcs'}:
-        assert math.isnan(found.deviations[name])
-        assert math.isnan(found.standard_errors[name])
-    frame = json.loads(json.dumps(to_json(solved_frame(found)), allow_nan=False))
-    assert frame['means']['rcs'] == found.means['rcs']
-    assert set(frame['standard_errors']) == set(FIELDS)
-    assert frame['standard_errors']['friction_torque'] is None
+    assert 0.0 < found.rcs_deviation < found.rcs
 
 
 def test_draws_are_ignored_and_steps_name_every_contact_from_begin_to_end(solved):
     found, _ = solved
-    assert solve_point(request() | {'draws': 16}).means == found.means
+    assert solve_point(request() | {'draws': 16}) == found
     _, steps = solved
     fractions = [step['fraction'] for step in steps]
     assert fractions == sorted(fractions)
@@ -91,6 +82,28 @@ def test_a_solve_that_does_not_converge_is_a_status(monkeypatch):
     point = OperatingPoint(speed=6.0, load=500.0, temperature=313.15)
     alone = solve_screw(SCREW, OIL, point, settings=ScrewSettings(kinematics='smooth'))
     stalled = replace(alone, converged=False, status='Stalled.')
-    monkeypatch.setattr('surrogate.on_demand.solve.solve_screw', lambda *given, **how: stalled)
+    monkeypatch.setattr('surrogate.on_demand.solve_screw', lambda *given, **how: stalled)
     found = solve_point(request())
-    assert (found.converged, found.status, found.means) == (False, 'Stalled.', {})
+    assert (found.converged, found.status) == (False, 'Stalled.')
+
+
+def test_a_worker_tells_its_steps_and_is_taken_back_in_the_middle(monkeypatch):
+    """The result is what a surface reads, as plain JSON; a want of memory is a sentence."""
+    told = []
+    token = listener.set(told.append)
+    try:
+        result = solve(request())
+    finally:
+        listener.reset(token)
+    assert result == plain_result(result)
+    assert result == asdict(solve_point(request()))
+    assert told[0]['fraction'] == 0.0
+    monkeypatch.setattr(cancelled, 'is_set', lambda: True)
+    assert run_task('surrogate.on_demand:solve', request())['sentence'].startswith('Cancelled')
+
+    def starve(*given, **how):
+        raise MemoryError
+
+    monkeypatch.setattr('surrogate.on_demand.solve_screw', starve)
+    sentence = run_task('surrogate.on_demand:solve', request())['sentence']
+    assert re.fullmatch(r'the solve needs more than \S+ GiB of memory', sentence)
