@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
-from ballscrew_monitor.recordings.own_recording import recorded_values
+from ballscrew_monitor.recordings.recorded_events import recorded_values
 from ballscrew_monitor.recordings.replay import replay, replay_parts
 from ballscrew_monitor.recordings.tables.convert import convert
 from ballscrew_monitor.recordings.tables.mapping import make_map

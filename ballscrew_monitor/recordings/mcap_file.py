@@ -177,6 +177,11 @@ class McapFile:
             rows[str(at)]['head'], rows[str(at)]['content'] = heads[:, at], content
         self._add_records(heads.ravel(), rows.view(np.uint8).data)
 
+    def flush(self) -> None:
+        """End the chunk, and let the system have all that was written."""
+        self._end_chunk()
+        self._stream.flush()
+
     def finish(self) -> None:
         """End the file; what it is made of stands once more behind the data."""
         self._end_chunk()
