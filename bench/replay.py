@@ -8,8 +8,9 @@ at 1 kHz of S seconds and one at 100 Hz of L seconds in a temporary folder, and 
 over processor time, which other work on the machine changes little: judged alone, with the load
 out of the torque, with the speed out of positions, of the recording that a node makes of itself,
 and end to end as `ballscrew replay --out` does it, with table, page and judged bag; and how fast a
-CSV of the same signals becomes a bag. Beside them the time of one Python call, measured in the
-same run, and of a lookup all over the surface.
+CSV of the same signals becomes a bag. The bare step over the same events, measured in turns with
+the recording of a node, tells what reading that costs. Beside them the time of one Python call,
+measured in the same run, of a lookup all over the surface, and how large recordings of a node are.
 
 """
 
@@ -22,9 +23,11 @@ import time
 import timeit
 from typing import Any, NamedTuple
 
+from ballscrew_monitor.judge.many import ManyJudge
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
-from ballscrew_monitor.recordings.recorded_events import recorded_values
+from ballscrew_monitor.recordings.bulk.events import joined, Notes
+from ballscrew_monitor.recordings.recorded_events import recorded_values, RecordedEvents
 from ballscrew_monitor.recordings.replay import replay, replay_parts
 from ballscrew_monitor.recordings.tables.convert import convert
 from ballscrew_monitor.recordings.tables.mapping import make_map
@@ -170,7 +173,6 @@ def rows_of(asked: argparse.Namespace, folder: Path) -> list[Row]:
     quick = write(folder / 'quick', asked.seconds, 1000.0)
     long = write(folder / 'long', asked.long, 100.0)
     own = record_alone(folder / 'own', values(0.1), bursts(asked.seconds, 1000.0))
-    recorded = recorded_values(own)
     table, made = write_table(folder, asked.seconds, 1000.0), folder / 'of_table'
     torque, position = values(0.1, **TORQUE), values(0.1, **POSITION)
     return [
@@ -188,8 +190,34 @@ def rows_of(asked: argparse.Namespace, folder: Path) -> list[Row]:
             lambda: replay_parts(quick, position, states=False),
         ),
         Row('1 kHz, a CSV to a bag', 0, quick, lambda: [convert(table, make_map(TABLE), made)]),
-        Row('1 kHz, own recording', 500, own, lambda: replay_parts(own, recorded, states=False)),
+        Row('1 kHz, own recording', 2500, own, lambda: replay_own(own)),
+        Row('1 kHz, the bare step', 0, own, bare_step(own)),
     ]
+
+
+def replay_own(own: Bag) -> Iterable[object]:
+    """Return the parts of the recording of a node."""
+    return replay_parts(own, recorded_values(own), states=False)
+
+
+def bare_step(own: Bag) -> Callable[[], Iterable[object]]:
+    """Return what judges the events of the recording of a node, which are in memory already."""
+    recorded = RecordedEvents(own, Notes(), recorded_values(own))
+    events = joined(list(recorded.events(lambda share: None)))
+    monitor = recorded.runs[0].axis.monitor
+    return lambda: ManyJudge(monitor).judge(events)
+
+
+def print_recordings(folder: Path, seconds: float, own: Bag, repeats: int) -> None:
+    """Print what reading the recording of a node costs beside the step, and its size."""
+    ways = [lambda: replay_own(own), bare_step(own)]
+    turns = [[spent(1, way) for way in ways] for _ in range(10 * repeats)]
+    replayed, bare = (min(times) for times in zip(*turns, strict=True))
+    print(f'own recording: {replayed / bare:.2f} times the time of the bare step')
+    alone = record_alone(folder / 'alone', values(0.1), bursts(seconds, 1000.0), raw=False)
+    for name, bag in (('with the messages of its inputs', own), ('without them', alone)):
+        size = sum(file.stat().st_size for file in bag.files)
+        print(f'own recording {name}: {3600 * size / seconds / 1e6:.0f} MB an hour')
 
 
 def measure(asked: argparse.Namespace, folder: Path) -> None:
@@ -204,6 +232,7 @@ def measure(asked: argparse.Namespace, folder: Path) -> None:
         print(f'{row.name:28} {row.bag.duration / cost:12.0f} {row.aim or "":>6} {each:12.2f}')
     call = min(timeit.repeat(lambda: None, number=100_000, repeat=7)) / 100_000
     print(f'one Python call takes {1e6 * call:.3f} us')
+    print_recordings(folder, asked.seconds, rows[-1].bag, asked.repeats)
     run_through([lookups(1)])
     print(f'one lookup takes {1e6 / lookups(asked.repeats):.2f} us, aim 1')
 

@@ -39,6 +39,23 @@ COUNT = struct.Struct('<I')
 EACH = ('kind', 'axis', 'source', 'stamp', 'arrival')
 OF_SAMPLE, OF_REFUSAL = ('value', 'stamp_source'), ('why', 'first', 'second')
 """Fields of an event that the message holds of each, of samples and of refusals."""
+ARRAYS: dict[str, Any] = {
+    **{name: EVENT[name] for name in EACH},
+    **{'turn_events': np.dtype(np.uint32), 'turn_steady': np.dtype(np.int64)},
+    **{'lost_place': np.dtype(np.uint32), 'lost': EVENT['lost']},
+    **{name: EVENT[name] for name in (*OF_SAMPLE, *OF_REFUSAL, 'note')},
+}
+"""The arrays of the message in their order."""
+ALLOWED = {
+    'kind': (SAMPLE, TICK),
+    'source': (0, TICK_SOURCE),
+    'stamp_source': (0, max(StampSource)),
+    'why': (0, max(Why)),
+    'stamp': (EARLIEST, LATEST),
+    'arrival': (EARLIEST, LATEST),
+    'lost': (NOT_KNOWN, 2**62),
+}
+"""What numbers may be, by the names of arrays."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -56,18 +73,6 @@ class EventMessage:
     snapshots: tuple[str, ...]
     body: bytes
     place: int
-
-    def events(self, notes: Notes) -> Events:
-        """
-        Return the events; `notes` keep the joints that they refer to.
-
-        Raises InputError for what no node has written.
-
-        """
-        try:
-            return _events(_Reader(self.body, self.place), notes)
-        except (ValueError, TypeError, IndexError, struct.error) as error:
-            raise InputError(f'message {self.number} of events is damaged: {error}') from None
 
 
 def packed(
@@ -123,34 +128,64 @@ def note_text(joints: OtherJoints) -> str:
     return json.dumps([joints.array, joints.joint, *joints.names], separators=(',', ':'))
 
 
-def _events(reader: '_Reader', notes: Notes) -> Events:
-    columns = {name: reader.array(EVENT[name]) for name in EACH}
-    turns, steady = reader.array(np.uint32), reader.array(np.int64)
-    places, lost = reader.array(np.uint32), reader.array(np.int64)
-    samples = {name: reader.array(EVENT[name]) for name in OF_SAMPLE}
-    refusals = {name: reader.array(EVENT[name]) for name in OF_REFUSAL}
-    named, texts = reader.array(np.int16), reader.texts()
-    count, kind = len(columns['kind']), columns['kind']
-    sample, refusal = kind == SAMPLE, kind == REFUSAL
-    _check(columns, samples, refusals)
-    if int(turns.sum()) != count or lost.size and int(lost.min()) < NOT_KNOWN:
+def events_of(messages: Sequence[EventMessage], notes: Notes) -> Events:
+    """
+    Return the events of messages in their order; `notes` keep the joints that they refer to.
+
+    Raises InputError for what no node has written.
+
+    """
+    try:
+        return _events([_arrays(message) for message in messages], notes)
+    except (ValueError, TypeError, IndexError, struct.error) as error:
+        if len(messages) == 1:
+            number = messages[0].number
+            raise InputError(f'message {number} of events is damaged: {error}') from None
+    for message in messages:  # to name the one that is
+        events_of([message], notes)
+    raise InputError('messages of events are damaged')
+
+
+def _arrays(message: EventMessage) -> tuple[dict[str, NDArray[Any]], list[str]]:
+    """Return the arrays of a message by name, and the texts of its notes."""
+    reader = _Reader(message.body, message.place)
+    arrays = {name: reader.array(kind) for name, kind in ARRAYS.items()}
+    count, places = len(arrays['kind']), arrays['lost_place']
+    if int(arrays['turn_events'].sum()) != count or places.size and int(places.max()) >= count:
         raise ValueError('its turns or losses are not those of its events')
-    events = blank(count, **columns, log_time=columns['arrival'])
-    events['steady'] = np.repeat(steady, turns)
-    events['lost'][places] = lost
-    whole = sample.all()
-    for name, values in samples.items():
-        events[name][slice(None) if whole else sample] = values
-    if refusals['why'].size:
-        numbers = [notes.number(OtherJoints(*_joints(text))) for text in texts]
-        lookup = np.array([*numbers, NOT_KNOWN], np.int16)
-        for name, values in refusals.items():
-            events[name][refusal] = values
-        events['note'][refusal] = lookup[named]
-    if not whole:
-        tick = kind == TICK
-        events['log_time'][tick] = events['stamp'][tick]
+    return arrays, reader.texts()
+
+
+def _events(parts: Sequence[tuple[dict[str, NDArray[Any]], list[str]]], notes: Notes) -> Events:
+    if not parts:
+        return blank(0)
+    column = {name: np.concatenate([arrays[name] for arrays, _ in parts]) for name in ARRAYS}
+    _check(column)
+    kind = column['kind']
+    events = blank(len(kind), **{name: column[name] for name in EACH}, log_time=column['arrival'])
+    events['steady'] = np.repeat(column['turn_steady'], column['turn_events'])
+    counts = [len(arrays['kind']) for arrays, _ in parts]
+    losses = [len(arrays['lost']) for arrays, _ in parts]
+    shift = np.repeat(np.cumsum([0, *counts[:-1]]), losses)
+    events['lost'][column['lost_place'] + shift] = column['lost']
+    sample = np.flatnonzero(kind == SAMPLE)
+    for name in OF_SAMPLE:
+        events[name][sample] = column[name]
+    refusal = np.flatnonzero(kind == REFUSAL)
+    for name in OF_REFUSAL:
+        events[name][refusal] = column[name]
+    events['note'][refusal] = np.concatenate([_notes(*part, notes) for part in parts])
+    tick = np.flatnonzero(kind == TICK)
+    events['log_time'][tick] = events['stamp'][tick]
     return events
+
+
+def _notes(
+    arrays: Mapping[str, NDArray[Any]], texts: Sequence[str], notes: Notes
+) -> NDArray[np.int16]:
+    """Return the notes of the refusals of a message by the numbers that `notes` give them."""
+    numbers = [notes.number(OtherJoints(*_joints(text))) for text in texts]
+    return np.array([*numbers, NOT_KNOWN], np.int16)[arrays['note']]
 
 
 def _joints(text: str) -> tuple[str, str, tuple[str, ...]]:
@@ -160,27 +195,16 @@ def _joints(text: str) -> tuple[str, str, tuple[str, ...]]:
     return array, joint, tuple(names)
 
 
-def _check(
-    columns: Mapping[str, NDArray[Any]],
-    samples: Mapping[str, NDArray[Any]],
-    refusals: Mapping[str, NDArray[Any]],
-) -> None:
+def _check(column: Mapping[str, NDArray[Any]]) -> None:
     """Raise ValueError for numbers that the step would take for places or times."""
-    allowed = {
-        'kind': (columns['kind'], SAMPLE, TICK),
-        'source': (columns['source'], 0, TICK_SOURCE),
-        'stamp_source': (samples['stamp_source'], 0, max(StampSource)),
-        'why': (refusals['why'], 0, max(Why)),
-        'stamp': (columns['stamp'], EARLIEST, LATEST),
-        'arrival': (columns['arrival'], EARLIEST, LATEST),
-    }
-    for name, (values, low, high) in allowed.items():
+    for name, (low, high) in ALLOWED.items():
+        values = column[name]
         if values.size and not low <= int(values.min()) <= int(values.max()) <= high:
             raise ValueError(f'{name} is from {values.min()} to {values.max()}')
-    is_tick = columns['kind'] == TICK
-    if ((columns['source'] > max(Source)) != is_tick).any():
+    is_tick = column['kind'] == TICK
+    if ((column['source'] > max(Source)) != is_tick).any():
         raise ValueError('an event that is no tick has the source of one')
-    if ((columns['axis'] == ALL_AXES) & ~is_tick).any():
+    if ((column['axis'] == ALL_AXES) & ~is_tick).any():
         raise ValueError('a sample is of all axes')
 
 
@@ -224,7 +248,7 @@ class _Reader:
         return int(count)
 
     def array(self, kind: Any) -> NDArray[Any]:
-        count, kind = self._count(), np.dtype(kind)
+        count = self._count()
         if not count:
             return np.empty(0, kind)
         begin = self.place + -self.place % kind.itemsize

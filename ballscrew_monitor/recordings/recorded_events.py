@@ -9,9 +9,10 @@ are asked for, it begins with a fresh memory.
 
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 import dataclasses
 from typing import Any
+import weakref
 
 from ballscrew_monitor.core.full_point import corrected, KeptSolve
 from ballscrew_monitor.core.inputs import Source
@@ -21,9 +22,9 @@ from ballscrew_monitor.recordings.axis_run import AxisRun
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import EVENTS
 from ballscrew_monitor.recordings.bulk.batches import batches
-from ballscrew_monitor.recordings.bulk.events import Events, joined, Notes, some, TICK_SOURCE
+from ballscrew_monitor.recordings.bulk.events import Events, Notes, some, TICK_SOURCE
 from ballscrew_monitor.recordings.bulk.order import OnDone
-from ballscrew_monitor.recordings.event_messages import EventMessage, read
+from ballscrew_monitor.recordings.event_messages import EventMessage, events_of, read
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import Axis, build_axis, load_surface, settings_of
 import numpy as np
@@ -61,6 +62,10 @@ SHAPE: dict[str, Any] = {
 }
 """What a snapshot holds."""
 Snapshot = Mapping[str, Any]
+_FIRST: weakref.WeakKeyDictionary[Bag, tuple[EventMessage, dict[str, Snapshot]]] = (
+    weakref.WeakKeyDictionary()
+)
+"""The first snapshots of bags in use."""
 
 
 def events_topic(bag: Bag) -> str:
@@ -116,7 +121,10 @@ def _objection(
             own, other = (_comparable(name, one) for one in (recorded, asked))
             if own != other and not _is_unused(name, axis, asked):
                 return f'{name} was {own!r} and {other!r} is asked for, which reads other numbers'
-        if load_surface(axis, values).lead != load_surface(axis, recorded).lead:
+        surface = [f'{axis}.{leaf}' for leaf in ('surface', 'screw', 'oil')]
+        if any(values[name] != recorded[name] for name in surface) and (
+            load_surface(axis, values).lead != load_surface(axis, recorded).lead
+        ):
             return f'axis {axis} had a screw of another lead'
     return ''
 
@@ -135,16 +143,13 @@ def _is_unused(name: str, axis: str, values: Mapping[str, Any]) -> bool:
 
 def _first(bag: Bag) -> tuple[EventMessage, dict[str, Snapshot]]:
     """Return the first message with snapshots, and these by axis; raises InputError without."""
-    for message in _messages(bag, events_topic(bag)):
-        if message.snapshots:
-            return message, _snapshots(message)
-    raise InputError(f'bag {bag.path}: its events hold no snapshot of an axis')
-
-
-def _messages(bag: Bag, topic: str) -> Iterator[EventMessage]:
-    """Yield the messages of events in the order of the file."""
-    for batch in batches(bag, [topic], as_written=True):
-        yield from _of_batch(batch.topics, topic)
+    if bag not in _FIRST:
+        messages = (read(one.data) for one in bag.as_written([events_topic(bag)]))
+        message = next((one for one in messages if one.snapshots), None)
+        if message is None:
+            raise InputError(f'bag {bag.path}: its events hold no snapshot of an axis')
+        _FIRST[bag] = message, _snapshots(message)
+    return _FIRST[bag]
 
 
 def _of_batch(topics: Mapping[str, Any], topic: str) -> list[EventMessage]:
@@ -198,7 +203,7 @@ class RecordedEvents:
 
         """
         for batch in batches(self._bag, [self._topic], as_written=True):
-            parts: list[Events] = []
+            parts: list[EventMessage] = []
             for message in _of_batch(batch.topics, self._topic):
                 if self._next is not None and message.number != self._next:
                     self._miss(message)
@@ -208,13 +213,13 @@ class RecordedEvents:
                 ):
                     continue
                 if changed := [one for one in snapshots.values() if self._changes(one)]:
-                    yield joined(parts)  # judged before the axes change
+                    yield self._of_runs(parts)  # judged before the axes change
                     parts = []
                     for one in changed:
                         self._take_up(one)
                 self._next = message.number + 1
-                parts.append(self._of_runs(message.events(self._notes)))
-            yield joined(parts)
+                parts.append(message)
+            yield self._of_runs(parts)
             on_done(min(max(batch.done, 0.0), 1.0))
 
     def _miss(self, message: EventMessage) -> None:
@@ -275,8 +280,9 @@ class RecordedEvents:
             axis.monitor.settings = settings
         return axis
 
-    def _of_runs(self, events: Events) -> Events:
+    def _of_runs(self, messages: Sequence[EventMessage]) -> Events:
         """Return the events of the axes that are judged, with the numbers of their runs."""
+        events = events_of(messages, self._notes)
         numbers = self._numbers[events['axis']]
         events['axis'] = np.maximum(numbers, 0)
         wanted = numbers >= 0

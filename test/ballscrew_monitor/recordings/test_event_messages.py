@@ -18,7 +18,7 @@ from ballscrew_monitor.judge.records import (
     TICK,
 )
 from ballscrew_monitor.recordings.bulk.events import blank, joined, Notes, TICK_SOURCE
-from ballscrew_monitor.recordings.event_messages import note_text, packed, read
+from ballscrew_monitor.recordings.event_messages import events_of, note_text, packed, read
 from ballscrew_msgs.msg import JudgeEvents
 from hypothesis import given
 from hypothesis import strategies as st
@@ -90,7 +90,7 @@ def test_what_is_read_is_what_was_written(made, number, snapshots):
     message = read(packed(number, made, TEXTS, snapshots))
     assert (message.number, message.snapshots) == (number, tuple(snapshots))
     assert (message.events_version, message.memory_version) == (EVENTS_VERSION, MEMORY_VERSION)
-    found = message.events(notes())
+    found = events_of([message], notes())
     expected = made.copy()
     is_tick = made['kind'] == TICK
     expected['log_time'] = np.where(is_tick, made['stamp'], made['arrival'])
@@ -120,7 +120,7 @@ def test_a_byte_that_is_another_or_gone_is_read_or_refused(made, data):
     else:
         del whole[place:]
     with contextlib.suppress(InputError):
-        found = read(bytes(whole)).events(notes())
+        found = events_of([read(bytes(whole))], notes())
         is_tick = found['kind'] == TICK
         assert (found['source'][~is_tick] <= max(Source)).all()
         assert (found['why'] <= max(Why)).all()
@@ -144,7 +144,7 @@ def test_a_number_that_no_event_has_is_refused(column, value, says):
     made = blank(2, kind=SAMPLE, source=int(Source.SPEED), axis=0)
     made[column][1] = value
     with pytest.raises(InputError) as caught:
-        read(packed(4, made, {})).events(notes())
+        events_of([read(packed(4, made, {}))], notes())
     assert says('message_damaged') in str(caught.value)
 
 

@@ -11,7 +11,7 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import EVENTS
 from ballscrew_monitor.recordings.bulk.chunks import chunk_indexes
 from ballscrew_monitor.recordings.bulk.events import blank, Notes
-from ballscrew_monitor.recordings.event_messages import read
+from ballscrew_monitor.recordings.event_messages import events_of, read
 from ballscrew_monitor.recordings.frames import Frame, FrameKind
 from ballscrew_monitor.recordings.recover import recover
 from ballscrew_monitor.recordings.retention import KeepSettings, Retention
@@ -144,8 +144,8 @@ def test_events_are_on_the_disk_within_a_second_in_chunks_of_their_own(tmp_path)
     recover(file)
     (path,) = tmp_path.iterdir()
     bag = Bag(path)
-    found = [read(one.data).events(Notes()) for one in bag.as_written(['/e'])]
-    stamps = np.concatenate(found)['stamp'] - EPOCH
+    messages = [read(one.data) for one in bag.as_written(['/e'])]
+    stamps = events_of(messages, Notes())['stamp'] - EPOCH
     assert len(stamps) >= 3 * 20
     assert sorted(stamps) == stamps.tolist()
     with path.joinpath(bag.files[0].name).open('rb') as stream:
