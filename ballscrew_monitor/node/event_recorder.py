@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-What the node hands to the process that records it: each turn of events before it is judged.
+Recorder of the node: it hands each turn of events to a process before they are judged.
 
 Beside the events go the messages of the inputs and of the node itself, and snapshots of the axes:
 at activation, every ten seconds, after a hole, and whenever something else than an event has
@@ -15,6 +15,7 @@ from pathlib import Path
 import struct
 from typing import Any
 
+from ballscrew_monitor.core.cdr import serialized
 from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.fields import OtherJoints, type_name_of
 from ballscrew_monitor.core.inputs import InputSample, Refusal
@@ -24,16 +25,13 @@ from ballscrew_monitor.judge.snapshot import snapshot
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
 from ballscrew_monitor.node.topic import Arrival
-from ballscrew_monitor.recordings.bag_writer import EVENTS
 from ballscrew_monitor.recordings.bulk.events import MOST_NAMED, TICK_SOURCE
 from ballscrew_monitor.recordings.event_messages import note_text
-from ballscrew_monitor.recordings.frames import Frame, FrameKind
-from ballscrew_monitor.recordings.recorded_events import BEGIN, HOLE, PERIODIC
+from ballscrew_monitor.recordings.frames import BEGIN, EVENTS, Frame, FrameKind, HOLE, PERIODIC
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_msgs.msg import AxisHealth, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
-from rclpy.serialization import serialize_message
 
 LATCHED = (AxisHealth, OutOfZone, SurfaceInfo)
 CORRECTION = ('speed', 'opposing_load', 'temperature', 'solved')  # of a full solve
@@ -120,7 +118,7 @@ class EventRecorder:
     def say(self, topic: str, message: Any, now: int) -> None:
         """Take a message that the node publishes at `now` [ns] of its clock."""
         offer = 'LATCHED' if isinstance(message, LATCHED) else 'RELIABLE'
-        self._put(topic, type_name_of(message), offer, serialize_message(message), now)
+        self._put(topic, type_name_of(message), offer, serialized(message), now)
 
     def trigger(self, now: int) -> None:
         """Let a recording around events show what has just happened."""

@@ -23,6 +23,7 @@ import tempfile
 from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.bag_files import OWN
+from ballscrew_monitor.recordings.frames import EVENTS
 from ballscrew_monitor.recordings.mcap_file import (
     Integers,
     McapFile,
@@ -35,7 +36,6 @@ from surrogate.files import InputError, replace_file
 import yaml
 
 ACTIVE = '.active'
-EVENTS = 'ballscrew_msgs/msg/JudgeEvents'
 METADATA, VERSION = 'metadata.yaml', 9
 CHUNK_SIZE = 64 * 1024  # [bytes] of what grows while others read it
 WHOLE_CHUNK_SIZE = 1024 * 1024  # [bytes] of what is complete or not there

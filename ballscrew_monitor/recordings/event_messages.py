@@ -39,13 +39,14 @@ COUNT = struct.Struct('<I')
 EACH = ('kind', 'axis', 'source', 'stamp', 'arrival')
 OF_SAMPLE, OF_REFUSAL = ('value', 'stamp_source'), ('why', 'first', 'second')
 """Fields of an event that the message holds of each, of samples and of refusals."""
-ARRAYS: dict[str, Any] = {
+ARRAYS: dict[str, np.dtype[Any]] = {
     **{name: EVENT[name] for name in EACH},
     **{'turn_events': np.dtype(np.uint32), 'turn_steady': np.dtype(np.int64)},
     **{'lost_place': np.dtype(np.uint32), 'lost': EVENT['lost']},
     **{name: EVENT[name] for name in (*OF_SAMPLE, *OF_REFUSAL, 'note')},
 }
 """The arrays of the message in their order."""
+EMPTY = {kind: np.empty(0, kind) for kind in ARRAYS.values()}
 ALLOWED = {
     'kind': (SAMPLE, TICK),
     'source': (0, TICK_SOURCE),
@@ -149,7 +150,7 @@ def events_of(messages: Sequence[EventMessage], notes: Notes) -> Events:
 def _arrays(message: EventMessage) -> tuple[dict[str, NDArray[Any]], list[str]]:
     """Return the arrays of a message by name, and the texts of its notes."""
     reader = _Reader(message.body, message.place)
-    arrays = {name: reader.array(kind) for name, kind in ARRAYS.items()}
+    arrays = reader.arrays(ARRAYS)
     count, places = len(arrays['kind']), arrays['lost_place']
     if int(arrays['turn_events'].sum()) != count or places.size and int(places.max()) >= count:
         raise ValueError('its turns or losses are not those of its events')
@@ -247,13 +248,20 @@ class _Reader:
             raise ValueError('it is cut off')
         return int(count)
 
-    def array(self, kind: Any) -> NDArray[Any]:
-        count = self._count()
-        if not count:
-            return np.empty(0, kind)
-        begin = self.place + -self.place % kind.itemsize
-        found = np.frombuffer(self._data, kind, count, begin)
-        self.place = begin + found.nbytes
+    def arrays(self, kinds: Mapping[str, np.dtype[Any]]) -> dict[str, NDArray[Any]]:
+        """Return the next arrays by their names, each of a kind."""
+        found, data, place, unpack = {}, self._data, self.place, COUNT.unpack_from
+        for name, kind in kinds.items():
+            place += -place % COUNT.size
+            (count,) = unpack(data, place)
+            place += COUNT.size
+            if not count:
+                found[name] = EMPTY[kind]
+                continue
+            place += -place % kind.itemsize
+            found[name] = np.frombuffer(data, kind, count, place)
+            place += count * kind.itemsize
+        self.place = place
         return found
 
     def texts(self) -> list[str]:

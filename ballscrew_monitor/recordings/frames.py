@@ -20,6 +20,9 @@ HEAD = struct.Struct('<BHqqII')  # kind, topic, log time, publish time, sequence
 MOST_BACKLOG = 16 * 2**20  # [B]
 LONGEST_BODY = 64 * 2**20  # [B]
 MOST_SEQUENCE = 2**32
+EVENTS = 'ballscrew_msgs/msg/JudgeEvents'  # type of the topic of events
+BEGIN, PERIODIC, HOLE = 'begin', 'time', 'hole'
+"""Reasons for snapshots of all axes; any other tells what has changed some."""
 
 
 class FrameKind(enum.IntEnum):

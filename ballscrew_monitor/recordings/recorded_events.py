@@ -20,11 +20,11 @@ from ballscrew_monitor.judge.records import ALL_AXES, EVENTS_VERSION, MEMORY_VER
 from ballscrew_monitor.judge.snapshot import restored
 from ballscrew_monitor.recordings.axis_run import AxisRun
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bag_writer import EVENTS
 from ballscrew_monitor.recordings.bulk.batches import batches
 from ballscrew_monitor.recordings.bulk.events import Events, Notes, some, TICK_SOURCE
 from ballscrew_monitor.recordings.bulk.order import OnDone
 from ballscrew_monitor.recordings.event_messages import EventMessage, events_of, read
+from ballscrew_monitor.recordings.frames import EVENTS, HOLE, PERIODIC
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import Axis, build_axis, load_surface, settings_of
 import numpy as np
@@ -50,8 +50,6 @@ OTHERS = (
     'the parameters are not those of the node: its events are judged with a fresh memory, and '
     'without what people did meanwhile'
 )
-BEGIN, PERIODIC, HOLE = 'begin', 'time', 'hole'
-"""Reasons for snapshots of all axes; any other tells what has changed some."""
 DROPPED = (
     'the recording has a hole, in which the node could not hand over its events: the replay goes '
     'on at the next snapshots'
@@ -158,7 +156,7 @@ def _of_batch(topics: Mapping[str, Any], topic: str) -> list[EventMessage]:
 
 
 def _snapshots(message: EventMessage) -> dict[str, Snapshot]:
-    """Return the snapshots of a message by axis; raises InputError for what is none."""
+    """Return the snapshots of a message by axis; raises InputError for any other text."""
     found: dict[str, Snapshot] = {}
     for text in message.snapshots:
         one = read_json(text)

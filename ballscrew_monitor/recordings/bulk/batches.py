@@ -18,7 +18,7 @@ from typing import BinaryIO
 from ballscrew_monitor.recordings.bag import Bag, Message
 from ballscrew_monitor.recordings.bag_files import ZSTD
 from ballscrew_monitor.recordings.bulk import chunks as bulk_chunks
-from ballscrew_monitor.recordings.bulk.chunks import ChunkDamage, Messages, read_chunk
+from ballscrew_monitor.recordings.bulk.chunks import ChunkDamage, Integers, Messages, read_chunk
 from ballscrew_monitor.recordings.storages import damage_is_input, McapStorage
 from mcap.records import ChunkIndex
 import numpy as np
@@ -41,13 +41,18 @@ class Batch:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class _Chunk:
-    """A chunk, the rank that orders messages of equal log time, and where it is read."""
+    """
+    A chunk, the rank that orders messages of equal log time, and where it is read.
+
+    `topics` are the numbers of the wanted topics by channel, -1 of any other one.
+
+    """
 
     place: ChunkIndex
     rank: int
     storage: McapStorage
     stream: BinaryIO
-    channels: dict[int, str]
+    topics: Integers
 
 
 def batches(bag: Bag, topics: Collection[str], *, as_written: bool = False) -> Iterator[Batch]:
@@ -81,8 +86,11 @@ def _chunks(stack: contextlib.ExitStack, bag: Bag, topics: Collection[str]) -> l
             if channels and (not places or _is_packed(stream, places[0])):
                 return None
         places.sort(key=operator.attrgetter('chunk_start_offset'))
+        numbers, names = np.full(65536, -1), list(topics)
+        for channel, name in channels.items():
+            numbers[channel] = names.index(name)
         found += [
-            _Chunk(place=place, rank=rank, storage=storage, stream=stream, channels=channels)
+            _Chunk(place=place, rank=rank, storage=storage, stream=stream, topics=numbers)
             for rank, place in enumerate(places, len(found))
         ]
     return sorted(found, key=lambda each: (each.place.message_start_time, each.rank))
@@ -103,7 +111,7 @@ def _by_chunk(chunks: Sequence[_Chunk], names: Sequence[str]) -> Iterator[Batch]
     counts: dict[McapStorage, Counter[str]] = {}
     for number, chunk in enumerate(chunks, 1):
         try:
-            found = _placed(chunk, names)
+            found = _placed(chunk)
         except ChunkDamage as damage:
             chunk.storage.miss(chunk.place, damage)
         else:
@@ -124,14 +132,11 @@ def _count(found: Messages, names: Sequence[str]) -> dict[str, int]:
     return dict(zip(names, count.tolist(), strict=True))
 
 
-def _placed(chunk: _Chunk, names: Sequence[str]) -> Messages:
+def _placed(chunk: _Chunk) -> Messages:
     """Return the messages of a chunk at their places in the bag, as channels their topics."""
     found = read_chunk(chunk.stream, chunk.place)
-    numbers = np.full(65536, -1)  # of a topic that is not wanted
-    for number, name in chunk.channels.items():
-        numbers[number] = names.index(name)
     place = (chunk.rank << PLACES) + found.begin
-    return dataclasses.replace(found, channel=numbers[found.channel], place=place)
+    return dataclasses.replace(found, channel=chunk.topics[found.channel], place=place)
 
 
 def _by_topic(parts: Sequence[Messages], names: Sequence[str]) -> dict[str, Messages]:

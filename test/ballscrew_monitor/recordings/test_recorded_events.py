@@ -496,22 +496,24 @@ def test_other_limits_judge_the_events_with_a_fresh_memory(tmp_path, raw):
 
 
 @pytest.mark.parametrize(
-    ('change', 'key'),
+    ('change', 'instead', 'refusal'),
     [
-        ({'x.load.scale': 2.0}, 'scale'),
-        ({'z.speed.field': 'velocity[x_axis]'}, 'field'),
-        ({'x.handedness': 'left'}, 'handedness'),
-        ({'x.max_future': 1.0}, 'max_future'),
-        ({'tick_period': 0.2}, 'tick_period'),
+        ({'x.load.scale': 2.0}, 'reads_scale', 'refused_scale'),
+        ({'z.speed.field': 'velocity[x_axis]'}, 'reads_field', 'refused_field'),
+        ({'x.handedness': 'left'}, 'reads_handedness', 'refused_handedness'),
+        ({'x.max_future': 1.0}, 'reads_max_future', 'refused_max_future'),
+        ({'tick_period': 0.2}, 'reads_tick_period', 'refused_tick_period'),
     ],
 )
-def test_other_readings_need_the_messages_of_the_inputs(tmp_path, change, key, says, refused):
+def test_other_readings_need_the_messages_of_the_inputs(
+    tmp_path, change, instead, refusal, says, refused
+):
     bag, _ = recorded(tmp_path / 'with')
     *_, outcome, _ = replay_parts(bag, recorded_values(bag) | change, states=False)
     assert outcome.judged > 100
-    assert bag.notes == [says(f'reads_{key}')]
+    assert bag.notes == [says(instead)]
     bag, _ = recorded(tmp_path / 'without', raw=False)
-    with refused(f'refused_{key}'):
+    with refused(refusal):
         replay_parts(bag, recorded_values(bag) | change, states=False)
 
 

@@ -8,11 +8,10 @@ import os
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bag_writer import EVENTS
 from ballscrew_monitor.recordings.bulk.chunks import chunk_indexes
 from ballscrew_monitor.recordings.bulk.events import blank, Notes
 from ballscrew_monitor.recordings.event_messages import events_of, read
-from ballscrew_monitor.recordings.frames import Frame, FrameKind
+from ballscrew_monitor.recordings.frames import EVENTS, Frame, FrameKind
 from ballscrew_monitor.recordings.recover import recover
 from ballscrew_monitor.recordings.retention import KeepSettings, Retention
 import numpy as np
