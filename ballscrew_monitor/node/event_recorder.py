@@ -127,7 +127,7 @@ class EventRecorder:
 
     def snapshot(self, axes: Mapping[str, Mapping[str, Any]], because: str, now: int) -> None:
         """
-        Take how some axes stand, by their names, and what has changed them.
+        Take snapshots of some axes, by their names, and what has changed these.
 
         Until the first `/clock` simulated time stands at 0, which is no time: a recording begins
         after that.
@@ -140,11 +140,12 @@ class EventRecorder:
             self._axes.setdefault(name, len(self._axes))
         texts = [
             json.dumps(
-                {'axis': name, 'number': self._axes[name], 'because': because, **stated},
+                {'axis': name, 'number': self._axes[name], 'because': because, **taken},
                 allow_nan=False,
                 separators=(',', ':'),
             )
-            for name, stated in axes.items()
+            for name, taken in axes.items()
+            if name in self._axes
         ]
         kind = FrameKind.BEGIN if whole else FrameKind.SNAPSHOT
         if (number := self._number(self._topic, EVENTS, 'RELIABLE')) is not None:
@@ -282,20 +283,20 @@ class NodeRecorder:
 
     def snapshot(self, axes: Iterable[str], because: str) -> None:
         """Record how some axes stand now, and what has changed them."""
-        stated = {}
+        snapshots = {}
         for name in axes if self.events.on else ():
             publisher = self._publishers[name]
-            if found := publisher.guarded('its snapshot', self._stated, publisher.axis):
-                stated[name] = found
-        if stated:
-            self.events.snapshot(stated, because, self._now)
+            if taken := publisher.guarded('its snapshot', self._snapshot_of, publisher.axis):
+                snapshots[name] = taken
+        if snapshots:
+            self.events.snapshot(snapshots, because, self._now)
 
-    def _stated(self, axis: Axis) -> Mapping[str, Any]:
+    def _snapshot_of(self, axis: Axis) -> Mapping[str, Any]:
         topics = {
             source.name.lower(): self._node.resolve_topic_name(topic)
             for source, topic in axis.topics.items()
         }
-        return stated(axis, self._values, topics)
+        return axis_snapshot(axis, self._values, topics)
 
     def record(self, topic: str, message: Any) -> None:
         """Let a recording show what the node publishes; a warning is an event of it."""
@@ -314,7 +315,9 @@ class NodeRecorder:
         return self._node.get_clock().now().nanoseconds
 
 
-def stated(axis: Axis, values: Mapping[str, Any], topics: Mapping[str, str]) -> dict[str, Any]:
+def axis_snapshot(
+    axis: Axis, values: Mapping[str, Any], topics: Mapping[str, str]
+) -> dict[str, Any]:
     """Return the settings of an axis, of parameters `values` and full names, and its memory."""
     mine = {name: one for name, one in values.items() if name.startswith(f'{axis.name}.')}
     return {

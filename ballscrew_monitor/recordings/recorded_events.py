@@ -223,8 +223,8 @@ class RecordedEvents:
     def _miss(self, message: EventMessage) -> None:
         """Wait for snapshots: messages before this one are lost."""
         self._bag.remark(
-            f'{message.number - (self._next or 0)} messages of events are lost: the replay goes '
-            'on at the next snapshots'
+            f'messages of events before number {message.number} are lost: the replay goes on at '
+            'the next snapshots'
         )
         self._next = None
 

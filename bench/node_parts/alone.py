@@ -8,7 +8,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from ballscrew_monitor.core.inputs import ordered
-from ballscrew_monitor.node.event_recorder import EventRecorder, stated
+from ballscrew_monitor.node.event_recorder import axis_snapshot, EventRecorder
 from ballscrew_monitor.node.intake import _events
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.recordings.bag import Bag
@@ -73,7 +73,7 @@ def record_alone(
     }
     for stamp, messages in bursts:
         if not begun:
-            recorder.snapshot({'x': stated(axis, values, names)}, 'begin', stamp)
+            recorder.snapshot({'x': axis_snapshot(axis, values, names)}, 'begin', stamp)
             begun = True
         heard = [
             (Arrival(stamp, message, 0, topics[name], serialize_message(message)), stamp, 0)
@@ -88,7 +88,7 @@ def record_alone(
             recorder.tick(stamp, stamp, stamp)
             axis.monitor.tick(stamp)
             if because := recorder.due(stamp, stamp):
-                recorder.snapshot({'x': stated(axis, values, names)}, because, stamp)
+                recorder.snapshot({'x': axis_snapshot(axis, values, names)}, because, stamp)
     recorder.close()
     (path,) = folder.iterdir()
     return Bag(path)

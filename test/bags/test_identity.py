@@ -10,7 +10,7 @@ import types
 
 from ballscrew_monitor.core.conversions import nanoseconds, SECOND
 from ballscrew_monitor.core.inputs import ordered
-from ballscrew_monitor.node.event_recorder import EventRecorder, stated
+from ballscrew_monitor.node.event_recorder import axis_snapshot, EventRecorder
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.recordings.axis_run import TimedState
 from ballscrew_monitor.recordings.bag import Bag
@@ -65,7 +65,7 @@ class Listener:
 
     def snapshot(self, because, now):
         topics = {one.source.name.lower(): topic for topic, one in self.readers.items()}
-        found = {AXIS: stated(self.axis, self.values, topics)}
+        found = {AXIS: axis_snapshot(self.axis, self.values, topics)}
         self.recorder.snapshot(found, because, now)
 
     def hear(self, messages):

@@ -465,7 +465,7 @@ DEFECTS = {
     'late': (Monitor, 'take_up', lambda node: node._kept.restore(['x', 'y']), 'what was kept of '),
     'a snapshot': (
         event_recorder,
-        'stated',
+        'axis_snapshot',
         lambda node: node._recording.snapshot('xy', ''),
         'its snapshot',
     ),

@@ -19,7 +19,7 @@ from ballscrew_monitor.core.inputs import InputSample, ordered, Source
 from ballscrew_monitor.core.memory import Memory
 from ballscrew_monitor.core.state import Event, Shelving, Totals
 from ballscrew_monitor.judge.records import EVENT, EVENTS_VERSION, MEMORY_VERSION
-from ballscrew_monitor.node.event_recorder import EventRecorder, stated
+from ballscrew_monitor.node.event_recorder import axis_snapshot, EventRecorder
 from ballscrew_monitor.node.intake import _events
 from ballscrew_monitor.node.sources import Reading
 from ballscrew_monitor.node.topic import Arrival
@@ -42,13 +42,15 @@ from ballscrew_monitor.recordings.replay import replay, replay_parts
 from ballscrew_monitor.recordings.retention import KeepSettings, Retention
 from ballscrew_monitor.report.inputs_seen import inputs_seen
 from ballscrew_monitor.report.judging import judge_log
+from ballscrew_monitor.report.log_report import report_log
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axis
 from geometry_msgs.msg import WrenchStamped
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 import numpy as np
+import polars as pl
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import JointState
@@ -103,7 +105,7 @@ class SmallNode:
         self.snapshot('begin')
 
     def snapshot(self, because, names=('x', 'z')):
-        found = {name: stated(self.axes[name], self.values, TOPICS) for name in names}
+        found = {name: axis_snapshot(self.axes[name], self.values, TOPICS) for name in names}
         self.recorder.snapshot(found, because, self.now)
 
     def hear(self, *messages, lost=0):
@@ -306,10 +308,10 @@ def test_changes_of_parameters_and_acknowledgements_are_followed(tmp_path):
 
 
 def test_a_recording_around_events_begins_at_snapshots(tmp_path):
-    settings = dataclasses.replace(ALWAYS, always=False, before=25.0, after=3.0)
+    around = dataclasses.replace(ALWAYS, always=False, before=25.0, after=3.0)
     wide = {f'{axis}.limits.efficiency': 0.01 for axis in 'xz'}
     wide |= {f'{axis}.limits.rcs': 0.999 for axis in 'xz'}
-    node = SmallNode(tmp_path, settings, **wide)
+    node = SmallNode(tmp_path, around, **wide)
     live(node, seconds=47)
     assert not any('event=Event' in state for state in node.said)
     node.values = node.values | {'x.limits.efficiency': 0.9, 'x.limits.rcs': 0.01}
@@ -382,7 +384,7 @@ def test_after_a_lost_message_the_replay_goes_on_at_the_next_snapshots(tmp_path,
 
     bag = copy_bag(whole, tmp_path / 'part', without)
     states, said = again(bag), masked(node.said)
-    assert bag.remarks == [says('messages_lost')]
+    assert bag.remarks == [says('messages_lost', number=gone + 1)]
     cut = next(at for at, (one, other) in enumerate(zip(states, said)) if one != other)
     assert states[cut:] == said[slice(cut - len(states), None)]
     assert 0 < cut < len(states) < len(said)
@@ -562,6 +564,40 @@ def whole(tmp_path_factory):
     folder = tmp_path_factory.mktemp('whole')
     bag, node = recorded(folder)
     return bag.files[0].read_bytes(), masked(node.said)
+
+
+@settings(max_examples=5)
+@given(seed=st.integers(0, 2**32 - 1), raw=st.booleans())
+def test_cut_at_any_snapshots_the_rest_is_judged_the_same(seed, raw, copy_bag):
+    with tempfile.TemporaryDirectory() as folder:
+        node = SmallNode(Path(folder) / 'whole', raw=raw)
+        live(node, seconds=23, seed=seed)
+        node.close()
+        bag, said = bag_in(Path(folder) / 'whole'), masked(node.said)
+        begins = [one.number for one in messages_of(bag) if one.snapshots]
+        assert len(begins) == 3
+        for begin in begins:
+
+            def rest(message, begin=begin):
+                is_before = message.topic == EVENTS and read(message.data).number < begin
+                return None if is_before else message.data
+
+            part = copy_bag(bag, Path(folder) / f'from_{begin}', rest)
+            states = again(part)
+            assert states == said[slice(len(said) - len(states), None)]
+            assert part.remarks == []
+            assert len(states) > 100
+
+
+def test_the_report_of_a_recording_without_messages_of_inputs_has_the_same_rows(tmp_path):
+    rows = {}
+    for raw in (True, False):
+        bag, _ = recorded(tmp_path / str(raw), raw=raw)
+        made = tmp_path / f'report_{raw}'
+        report_log(bag, made, LogParameters(values=recorded_values(bag), origin='own'))
+        rows[raw] = pl.read_parquet(made / 'states.parquet')
+        assert Bag(made / 'judged').topics['/ballscrew_monitor/x/state'].count > 100
+    assert rows[True].equals(rows[False], null_equal=True)
 
 
 GONE = object()
