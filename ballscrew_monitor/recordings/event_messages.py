@@ -72,7 +72,7 @@ class EventMessage:
     memory_version: int
     number: int
     snapshots: tuple[str, ...]
-    body: bytes
+    body: memoryview
     place: int
 
 
@@ -108,7 +108,7 @@ def read(data: bytes) -> EventMessage:
     try:
         if data[: len(ENCAPSULATION)] != ENCAPSULATION:
             raise ValueError('it is not little-endian CDR')
-        body = data[len(ENCAPSULATION) :]
+        body = memoryview(data)[slice(len(ENCAPSULATION), None)]
         events_version, memory_version, number = HEAD.unpack_from(body)
         reader = _Reader(body, HEAD.size)
         snapshots = tuple(reader.texts())
@@ -237,7 +237,7 @@ class _Writer:
 class _Reader:
     """Reads what `_Writer` writes; raises ValueError for what ends too soon."""
 
-    def __init__(self, data: bytes, place: int) -> None:
+    def __init__(self, data: memoryview, place: int) -> None:
         self._data, self.place = data, place
 
     def _count(self) -> int:
@@ -269,6 +269,6 @@ class _Reader:
         for _ in range(self._count()):
             length = self._count()
             begin, end = self.place, self.place + length
-            found.append(self._data[slice(begin, end - 1)].decode())
+            found.append(bytes(self._data[slice(begin, end - 1)]).decode())
             self.place = end
         return found
