@@ -9,8 +9,10 @@ over processor time, which other work on the machine changes little: judged alon
 out of the torque, with the speed out of positions, of the recording that a node makes of itself,
 and end to end as `ballscrew replay --out` does it, with table, page and judged bag; a CSV and a
 Parquet of the same signals, L seconds long, over their floor, which is reading by polars and the
-bare step; and how fast a CSV becomes a bag. Beside them the time of one Python call, measured in
-the same run, and of a lookup all over the surface.
+bare step; and how fast a CSV becomes a bag. The bare step over the same events, measured in turns
+with the recording of a node, tells what reading that costs. Beside them the time of one Python
+call, measured in the same run, of a lookup all over the surface, and how large recordings of a
+node are.
 
 """
 
@@ -28,10 +30,10 @@ from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.judge.many import ManyJudge
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
-from ballscrew_monitor.recordings.bulk.events import Notes
+from ballscrew_monitor.recordings.bulk.events import joined, Notes
 from ballscrew_monitor.recordings.bulk.order import ordered_events
 from ballscrew_monitor.recordings.log_facts import parameters_of
-from ballscrew_monitor.recordings.own_recording import recorded_values
+from ballscrew_monitor.recordings.recorded_events import recorded_values, RecordedEvents
 from ballscrew_monitor.recordings.replay import axes_for, ignore, replay, replay_parts
 from ballscrew_monitor.recordings.tables.convert import convert
 from ballscrew_monitor.recordings.tables.log import TableLog
@@ -208,7 +210,6 @@ def rows_of(asked: argparse.Namespace, folder: Path) -> list[Row]:
     quick = write(folder / 'quick', asked.seconds, 1000.0)
     long = write(folder / 'long', asked.long, 100.0)
     own = record_alone(folder / 'own', values(0.1), bursts(asked.seconds, 1000.0))
-    recorded = recorded_values(own)
     table, packed = write_tables(folder, asked.long, 1000.0)
     made = folder / 'of_table'
     text, fast = (TableLog(path, make_map(TABLE), unseen) for path in (table, packed))
@@ -237,8 +238,34 @@ def rows_of(asked: argparse.Namespace, folder: Path) -> list[Row]:
             text,
             lambda: [convert(table, make_map(TABLE), made, shown=unseen)],
         ),
-        Row('1 kHz, own recording', 500, own, lambda: replay_parts(own, recorded, states=False)),
+        Row('1 kHz, own recording', 2500, own, lambda: replay_own(own)),
+        Row('1 kHz, the bare step', 0, own, bare_step(own)),
     ]
+
+
+def replay_own(own: Bag) -> Iterable[object]:
+    """Return the parts of the recording of a node."""
+    return replay_parts(own, recorded_values(own), states=False)
+
+
+def bare_step(own: Bag) -> Callable[[], Iterable[object]]:
+    """Return what judges the events of the recording of a node, which are in memory already."""
+    recorded = RecordedEvents(own, Notes(), recorded_values(own))
+    events = joined(list(recorded.events(lambda share: None)))
+    monitor = recorded.runs[0].axis.monitor
+    return lambda: ManyJudge(monitor).judge(events)
+
+
+def print_recordings(folder: Path, seconds: float, own: Bag, repeats: int) -> None:
+    """Print what reading the recording of a node costs beside the step, and its size."""
+    ways = [lambda: replay_own(own), bare_step(own)]
+    turns = [[spent(1, way) for way in ways] for _ in range(10 * repeats)]
+    replayed, bare = (min(times) for times in zip(*turns, strict=True))
+    print(f'own recording: {replayed / bare:.2f} times the time of the bare step')
+    alone = record_alone(folder / 'alone', values(0.1), bursts(seconds, 1000.0), raw=False)
+    for name, bag in (('with the messages of its inputs', own), ('without them', alone)):
+        size = sum(file.stat().st_size for file in bag.files)
+        print(f'own recording {name}: {3600 * size / seconds / 1e6:.0f} MB an hour')
 
 
 def measure(asked: argparse.Namespace, folder: Path) -> None:
@@ -256,6 +283,7 @@ def measure(asked: argparse.Namespace, folder: Path) -> None:
     print(f'a Parquet takes {ratio:.2f} times its floor, aim 1.6')
     call = min(timeit.repeat(lambda: None, number=100_000, repeat=7)) / 100_000
     print(f'one Python call takes {1e6 * call:.3f} us')
+    print_recordings(folder, asked.seconds, rows[-1].bag, asked.repeats)
     run_through([lookups(1)])
     print(f'one lookup takes {1e6 / lookups(asked.repeats):.2f} us, aim 1')
 

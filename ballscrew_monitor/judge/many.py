@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.advice import Criterion, Nearest, nearest
 from ballscrew_monitor.judge.monitor import Monitor
-from ballscrew_monitor.judge.records import Event, Memory, Row, Settings
+from ballscrew_monitor.judge.records import EVENT, Memory, Row, Settings
 from ballscrew_monitor.judge.slopes import SlopeRing
 from ballscrew_monitor.judge.step import step_many
 import numpy as np
@@ -17,7 +17,7 @@ from surrogate.surface import Found, look_up_many, shipped_surface, Surface
 from surrogate.surface.compiled import compiled
 from surrogate.surface.records import as_array, dtype_of, from_array
 
-EVENT, MEMORY, ROW = dtype_of(Event), dtype_of(Memory), dtype_of(Row)
+MEMORY, ROW = dtype_of(Memory), dtype_of(Row)
 AT_ONCE = 16384
 """Events that are judged in one go."""
 MOST_MEMORIES = 2048

@@ -68,6 +68,7 @@ def fill(record: EventRecord, event: InputSample | Refusal) -> None:
     if isinstance(event, Refusal):
         record.kind, record.why = REFUSAL, int(event.why)
         record.first, record.second = event.first, event.second
+        record.stamp = record.arrival
         return
     record.kind, record.value = SAMPLE, float(event.value)
     record.stamp, record.stamp_source = within(event.stamp), int(event.stamp_source)

@@ -15,7 +15,7 @@ import math
 from ballscrew_monitor.core.inputs import Source, Why
 import numpy as np
 from surrogate.surface import Found
-from surrogate.surface.records import many, small
+from surrogate.surface.records import dtype_of, many, small
 
 NAN = math.nan
 INPUTS = len(Source)
@@ -26,6 +26,8 @@ SHOWN = 10_000_000_000
 """Time for which a loss or a refusal is shown, and over which the share of these is taken [ns]."""
 COLUMNS = 5
 """Quantities of a window: speed, axial load, efficiency, RCS, film ratio."""
+EVENTS_VERSION = 1
+"""Version of the events in files, and of the message that holds them."""
 MEMORY_VERSION = 2
 """Version of `Memory` and `SlopeRing` in files."""
 MEMORY_LAYOUT = 'df634f0de83e3629'
@@ -86,11 +88,12 @@ class Event:
     """
     A sample, a refused message, or a tick.
 
-    `value` [SI, machine frame]; stamp and arrival [ns], of a tick its grid stamp; `stamp_source`
-    is a StampSource; `lost` messages were sent just before and never arrived. A refusal has a
-    `why` and up to two numbers for its sentence. In a recording, `axis` is the number of the axis,
-    `log_time` [ns] and `place` tell where the message lies, and `note` is the number of the words
-    that belong to it.
+    `value` [SI, machine frame]; stamp and arrival [ns], of a tick its grid stamp, of a refusal its
+    arrival; `steady` [ns] is when the node took it, 0 where no node did; `stamp_source` is a
+    StampSource; `lost` messages were sent just before and never arrived. A refusal has a `why` and
+    up to two numbers for its sentence. In a recording, `axis` is the number of the axis,
+    `log_time` [ns] and `place` tell where the message lies, and `note` is the number of the joints
+    that the message names.
 
     """
 
@@ -102,12 +105,17 @@ class Event:
     note: int = small(np.int16, NOT_KNOWN)
     stamp: int = 0
     arrival: int = 0
+    steady: int = 0
     lost: int = 0
     value: float = NAN
     first: float = NAN
     second: float = NAN
     log_time: int = 0
     place: int = 0
+
+
+EVENT = dtype_of(Event)
+"""Type of an array of events."""
 
 
 @dataclasses.dataclass(slots=True)

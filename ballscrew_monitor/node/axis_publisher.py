@@ -18,8 +18,8 @@ from ballscrew_monitor.messages import diagnostics, state_messages
 from ballscrew_monitor.messages.state_messages import plain_values, TIERS
 from ballscrew_monitor.messages.unjudged import point_or_reason, reason_of
 from ballscrew_monitor.node.alarm import Alarm, LatchedTopics, quiet_publishers
+from ballscrew_monitor.node.event_recorder import NodeRecorder
 from ballscrew_monitor.node.freeze_frame import FreezeFrame
-from ballscrew_monitor.node.journal import NodeJournal
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import Corrections, Kind, point_facts
 from ballscrew_monitor.settings.axis import Axis
@@ -57,7 +57,7 @@ class AxisPublisher:
         *,
         latched: LatchedTopics,
         kept: KeptAxes,
-        recording: NodeJournal,
+        recording: NodeRecorder,
     ) -> None:
         """
         Make the publishers, which stay silent until the node is active; `latched` are there.
@@ -250,7 +250,7 @@ class AxisPublisher:
         """Judge with another surface from now on, and say so."""
         self.axis.use_surface(surface, self._values)
         self.publish_info()
-        self._recording.describe([self.name], 'surface')
+        self._recording.snapshot([self.name], 'surface')
 
     def evaluate(
         self, points: Sequence[OperatingPoint], response: Any, meanwhile: Callable[[], None]

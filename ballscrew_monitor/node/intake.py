@@ -31,7 +31,7 @@ from ballscrew_monitor.core.inputs import (
 )
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.tick_grid import ClockSteps, LEAST_STEP
-from ballscrew_monitor.node.journal import Heard, Journal, SILENT
+from ballscrew_monitor.node.event_recorder import AxisEvent, EventRecorder, Heard, SILENT
 from ballscrew_monitor.node.sources import READING, Reading
 from ballscrew_monitor.node.topic import Apart, Arrival, link_of, open_topic, Topic
 from ballscrew_monitor.settings.axis import Axis
@@ -52,7 +52,6 @@ MOST_AHEAD = SECOND  # [ns] by which the steps of `/clock` let stamps be ahead
 LONG_STEP = 10  # usual steps of `/clock` in one that is a leap
 MOST_LOOKS = 10  # at all topics, while messages come faster than they are looked at
 
-AxisEvent = tuple[Axis, InputSample | Refusal]
 Take = Callable[[Axis, InputSample | Refusal], None]
 
 
@@ -72,14 +71,14 @@ class Intake(Waitable):
         node: Node,
         axes: Iterable[Axis],
         take: Take,
-        journal: Journal = SILENT,
+        recorder: EventRecorder = SILENT,
         guard: Callable[..., Any] = _call,
         worked: Callable[[float, int], None] = _forget,
         stepped: Callable[[int, int], None] = _forget,
         left_out: Callable[[Axis, int], None] = _forget,
     ) -> None:
         """
-        Subscribe once to each topic, however many inputs read it; the journal hears all.
+        Subscribe once to each topic, however many inputs read it; `recorder` gets all.
 
         `guard` calls what reads for an axis, and returns None if the program fails in it; `worked`
         takes for how long [s] messages were at work, and how many. `stepped` takes by how much
@@ -87,7 +86,7 @@ class Intake(Waitable):
 
         """
         super().__init__(node.default_callback_group)
-        self._node, self._take, self._journal, self._guard = node, take, journal, guard
+        self._node, self._take, self._recorder, self._guard = node, take, recorder, guard
         self._worked, self._apart = worked, Apart()
         self._stepped, self._left_out = stepped, left_out
         self._system_steps = ClockSteps()
@@ -131,7 +130,7 @@ class Intake(Waitable):
         """Subscribe to the topic of an input, unless another input has done so."""
         name = self._node.resolve_topic_name(source.topic)
         if name not in self.topics:
-            kind, raw = source.message_type, self._journal.on
+            kind, raw = source.message_type, self._recorder.raw
             self.topics[name] = open_topic(
                 self._node, name, kind, self._apart, overridable=True, raw=raw
             )
@@ -271,7 +270,7 @@ class Intake(Waitable):
             self._hand_over([], step)
             return False
         now, wall = self.now, time.time_ns()
-        self._learn(now)
+        self._learn()
         heard: list[Heard] = []
         for arrival in arrivals:
             if arrival.topic is self._clock:
@@ -297,27 +296,25 @@ class Intake(Waitable):
         return self._system_steps.take(time.time_ns(), before, time.monotonic_ns())
 
     def _hand_over(self, heard: list[Heard], step: int) -> None:
-        """Hand over what was heard as one burst, and begin the next one; note a step after it."""
+        """Hand over what was heard as one turn, and begin the next one; note a step after it."""
         if heard:
-            if self._clock_steps:  # first, so that the journal says it before these messages
-                events = [event for one in heard for event in self._judged(one)]
-                self._leave_out_steps(events)
-                self._journal.hear(heard)
-            else:
-                self._journal.hear(heard)
-                events = [event for one in heard for event in self._judged(one)]
-            for axis, event in ordered(events):
+            turn = ordered([event for one in heard for event in self._judged(one)])
+            self._leave_out_steps(turn)
+            self._recorder.hear(heard)
+            self._recorder.take(turn, heard[-1][1], time.monotonic_ns())
+            self._recorder.flush()  # whatever becomes of the node with these events
+            for axis, event in turn:
                 self._take(axis, event)
-            self._journal.flush()
+            self._recorder.flush()
             heard.clear()
         if step:
             for axis in self._axes:
                 self._clock_steps[axis.name] = self._clock_steps.get(axis.name, 0) + step
             self._stepped(step, self.now)
 
-    def _leave_out_steps(self, events: list[AxisEvent]) -> None:
+    def _leave_out_steps(self, turn: list[AxisEvent]) -> None:
         """Leave steps of the clock out of what has begun, where the speed has come again."""
-        for axis, event in ordered(events):
+        for axis, event in turn if self._clock_steps else ():
             if isinstance(event, InputSample) and event.source is Source.SPEED:
                 step = self._clock_steps.pop(axis.name, 0)
                 # Back: the stamps alone tell the judgement.
@@ -337,7 +334,7 @@ class Intake(Waitable):
             self._steps.append(step)
         return 0
 
-    def _learn(self, now: int) -> None:
+    def _learn(self) -> None:
         """
         Read from now on as the messages so far suggest, one burst like the other.
 
@@ -355,7 +352,6 @@ class Intake(Waitable):
             if counter.several
         )
         self._reading = Reading(ahead, several)
-        self._journal.read(self._reading, now)
 
     def _judged(self, heard: Heard) -> list[AxisEvent]:
         """Return what a message says of each axis, and count of which inputs it gives samples."""

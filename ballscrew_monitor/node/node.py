@@ -16,9 +16,9 @@ from ballscrew_monitor.node.alarm import LatchedTopics
 from ballscrew_monitor.node.axis_healths import AxisHealths
 from ballscrew_monitor.node.axis_publisher import AxisPublisher, end_all, STATE_QOS
 from ballscrew_monitor.node.axis_services import AxisServices, not_built
+from ballscrew_monitor.node.event_recorder import NodeRecorder
 from ballscrew_monitor.node.heartbeat import Heartbeat
 from ballscrew_monitor.node.intake import Intake
-from ballscrew_monitor.node.journal import NodeJournal
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.parameter_store import is_kept, ParameterStore
 from ballscrew_monitor.node.restart_state import RestartState, state_directory
@@ -69,7 +69,7 @@ class BallscrewMonitor(LifecycleNode):
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._store = ParameterStore(self, self._on_parameters)
         self._values = self._store.values
-        self._recording = NodeJournal(self, self._values, self._axis_publishers)
+        self._recording = NodeRecorder(self, self._values, self._axis_publishers)
         self._grid = TickGrid(nanoseconds(self._values['tick_period']))
         self._heartbeat = Heartbeat(self, clock=self._steady)
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', STATE_QOS)
@@ -118,7 +118,7 @@ class BallscrewMonitor(LifecycleNode):
         for name in groups & self._axis_publishers.keys():
             publisher = self._axis_publishers[name]
             publisher.guarded('new parameters', publisher.adapt)
-            self._recording.describe([name], 'parameters')
+            self._recording.snapshot([name], 'parameters')
 
     @_reported
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -183,13 +183,12 @@ class BallscrewMonitor(LifecycleNode):
             publisher.publish_info()
             publisher.guarded('its activation', publisher.alarm.publish)
         axes = [publisher.axis for publisher in self._axis_publishers.values()]
-        self._recording.describe(self._axis_publishers, 'begin')
         self._healths.begin()
         self._intake = Intake(
             self,
             axes,
             self._on_event,
-            self._recording.journal,
+            self._recording.events,
             self._guard,
             self._heartbeat.vitals.work,
             self._on_step,
@@ -241,12 +240,12 @@ class BallscrewMonitor(LifecycleNode):
 
     def _on_kept(self, axes: Iterable[str]) -> None:
         """Say what has changed by itself in what is kept of some axes."""
-        self._recording.describe(axes, 'kept')
+        self._recording.snapshot(axes, 'kept')
         self._publish_diagnostics(list(axes))
 
     def _on_service(self, axes: Iterable[str], name: str) -> str:
         """Keep what a service has changed at once; return why that failed, or nothing."""
-        self._recording.describe(axes, name)
+        self._recording.snapshot(axes, name)
         self._publish_diagnostics(list(axes))
         return self._kept.state.flush()
 
@@ -288,7 +287,7 @@ class BallscrewMonitor(LifecycleNode):
 
     def _on_left_out(self, axis: Axis, step: int) -> None:
         """Let a recording know that a step [ns] was left out of what has begun."""
-        self._recording.describe([axis.name], 'clock')
+        self._recording.snapshot([axis.name], 'clock')
 
     def _guard(
         self, axis: Axis, place: str, call: Callable[..., Any], *args: Any, **named: Any
@@ -325,13 +324,12 @@ class BallscrewMonitor(LifecycleNode):
         grid = self._grid.tick(now)
         if grid is None:
             return
-        journal = self._recording.journal
-        journal.tick(grid, now)
+        steady = self._steady.now().nanoseconds
+        self._recording.events.tick(grid, now, steady)
+        self._recording.events.flush()
         for publisher in self._axis_publishers.values():
             self._judge(publisher, publisher.axis.monitor.tick, grid)
-        steady = self._steady.now().nanoseconds
-        due = journal.due(self._axis_publishers, steady, now)
-        self._recording.describe(due, 'time')
+        self._recording.renew(steady, now)
 
     def _publish(self, publisher: AxisPublisher, row: Row | None) -> None:
         """Publish a state, and diagnostics for what it changes, though these not in a flood."""

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """One axis through a recording: rows, states and what they come to."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 import operator
 from typing import Any, NamedTuple
 
@@ -13,7 +13,7 @@ from ballscrew_monitor.judge.many import Judged, ManyJudge
 from ballscrew_monitor.judge.monitor import MOST_OTHERS
 from ballscrew_monitor.messages.state_messages import empty_state, fill_state, out_of_zone_message
 from ballscrew_monitor.messages.unjudged import reason_of
-from ballscrew_monitor.recordings.bulk.events import CHECK, Events, Notes, places_of_axis, some
+from ballscrew_monitor.recordings.bulk.events import Events, Notes, places_of_axis, some
 from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns
 from ballscrew_monitor.recordings.summary import event_record
 from ballscrew_monitor.settings.axis import Axis
@@ -53,22 +53,12 @@ def columns_of(axis: str, rows: NDArray[Any]) -> JudgedColumns:
     )
 
 
-OnCheck = Callable[[int], None]
-"""Told the place of an element of kind CHECK."""
-
-
-def unexpected(place: int) -> None:
-    """Refuse a check in a recording that has none."""
-    raise ValueError(f'no check is expected at {place}')
-
-
 class AxisRun:
     """Judges the ordered events of one axis and collects what they come to."""
 
-    def __init__(self, axis: Axis, notes: Notes, on_check: OnCheck = unexpected) -> None:
+    def __init__(self, axis: Axis, notes: Notes) -> None:
         """Begin with what the monitor of `axis` remembers; events refer to `notes`."""
-        self.axis = axis
-        self._notes, self._on_check = notes, on_check
+        self.axis, self._notes = axis, notes
         self._judge = ManyJudge(axis.monitor)
         self._events: dict[int, tuple[Event, int]] = {}  # and until when it is known
         self._rows = self._states = self._first = self._last = 0
@@ -77,24 +67,17 @@ class AxisRun:
 
     def take(self, events: Events, *, states: bool = True) -> Iterator[JudgedColumns | Due]:
         """Judge events; yield their rows as columns, and the states that are due."""
-        begin = 0
-        for end in [*np.flatnonzero(events['kind'] == CHECK).tolist(), len(events)]:
-            for made in self._take(events[begin:end], states=states):
-                yield made if isinstance(made, JudgedColumns) else (made[0] + begin, made[1])
-            if end < len(events):
-                self._on_check(int(events['place'][end]))
-            begin = end + 1
-
-    def _take(self, events: Events, *, states: bool) -> Iterator[JudgedColumns | Due]:
+        notes = _notes_by_source(events)
         for judged in self._judge.judge(events, states=states):
             for place, row in self._told(judged):
+                self._hear_others(notes, place)
                 log_time = int(events['log_time'][place])
                 yield from ((place, one) for one in self._state(log_time, row, states=states))
             if len(judged.rows):
                 self._count(judged.rows)
                 yield columns_of(self.axis.name, judged.rows)
         self._judge.give_back()
-        self._hear_others(events)
+        self._hear_others(notes, len(events))
 
     def _state(self, log_time: int, row: records.Row, *, states: bool) -> Iterator[TimedState]:
         """Yield the state of a row if states are wanted, and keep the event that it tells of."""
@@ -166,19 +149,28 @@ class AxisRun:
             self._states += len(published)
         self._last_row = from_array(records.Row, rows[-1])
 
-    def _hear_others(self, events: Events) -> None:
-        """Keep the joints that messages have named since the last good sample of an input."""
+    def _hear_others(self, notes: Mapping[Source, tuple[Any, Any]], end: int) -> None:
+        """Keep the joints that messages before a place have named since the last good sample."""
         named, others = self.axis.monitor.joints.named, self.axis.monitor.memory.others
-        refused = np.flatnonzero(events['kind'] == records.REFUSAL)
-        about = refused[events['why'][refused] == Why.OTHER_JOINTS]
-        for source in Source:
-            at = about[events['source'][about] == source]
-            first = max(len(at) - others[source], 0)
-            if others[source] <= len(at):
+        for source, (places, numbers) in notes.items():
+            count = int(np.searchsorted(places, end))
+            first = max(count - others[source], 0)
+            if others[source] <= count:
                 named[source].clear()
-            for joints in self._notes.named(events['note'][at[first:]]):
+            for joints in self._notes.named(numbers[first:count]):
                 if len(named[source]) < MOST_OTHERS:
                     named[source][joints] = None
+
+
+def _notes_by_source(events: Events) -> dict[Source, tuple[Any, Any]]:
+    """Return where messages about other joints lie and their notes, of each input that has any."""
+    about = (events['kind'] == records.REFUSAL) & (events['why'] == Why.OTHER_JOINTS)
+    places = np.flatnonzero(about)
+    found = {}
+    for source in Source if len(places) else ():
+        mine = places[events['source'][places] == source]
+        found[source] = mine, events['note'][mine]
+    return found
 
 
 def judged_parts(runs: Sequence[AxisRun], events: Events, *, states: bool) -> Iterator[Part]:

@@ -6,7 +6,8 @@ Writes a bag that rosbag2 accepts: one MCAP file and the `metadata.yaml` beside 
 The file grows as `<name>.mcap.active`, in small chunks that are flushed, so that a crash costs
 little; it gets its name, and the metadata, when it is closed. Serialised messages go in as they
 are. A product of a command is a `whole_bag`, which appears when it is complete or not at all; its
-chunks are larger, so that fewer are to be remembered.
+chunks are larger, so that fewer are to be remembered. Events of a judgement have chunks of their
+own: a replay unpacks nothing else.
 
 """
 
@@ -23,6 +24,7 @@ from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.bag_files import OWN
 from ballscrew_monitor.recordings.bulk.batches import Batch
+from ballscrew_monitor.recordings.frames import EVENTS
 from ballscrew_monitor.recordings.mcap_file import (
     Integers,
     McapFile,
@@ -88,6 +90,7 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
         self.path = directory / f'{name}.mcap'
         self._topics: dict[str, dict[str, Any]] = {}  # as the metadata name them
         self._channels: dict[str, int] = {}
+        self._apart: set[str] = set()  # topics whose messages have chunks of their own
         self._counts: Counter[str] = Counter()
         self._custom: dict[str, str] = {}
         self.first = self.last = 0
@@ -126,6 +129,8 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
         self._channels[name] = self._writer.add_channel(
             topic=name, kind=type_name, definition=definition, metadata=metadata
         )
+        if type_name == EVENTS:
+            self._apart.add(name)
         self._topics[name] = {
             'name': name,
             'type': type_name,
@@ -144,6 +149,8 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
         sequence: int | None = None,
     ) -> None:
         """Append a serialised message of an announced topic, by default numbered; times [ns]."""
+        if topic in self._apart:
+            self._writer.flush()
         self._writer.add_message(
             self._channels[topic],
             data,
@@ -152,6 +159,8 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
             sequence=self._counts[topic] if sequence is None else sequence,
         )
         self._note(topic, 1, log_time, log_time)
+        if topic in self._apart:
+            self._writer.flush()
         self._chunk += len(data)
         if self._chunk >= CHUNK_SIZE:
             self._file.flush()
@@ -235,8 +244,8 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
         }
 
     def sync(self) -> None:
-        """Let the disk have what was written; a chunk that still grows is not."""
-        self._file.flush()
+        """Let the disk have all that was written; it ends the chunk."""
+        self._writer.flush()
         os.fsync(self._file.fileno())
 
     def abandon(self) -> None:

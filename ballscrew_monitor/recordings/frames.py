@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Frames from a node to the process that writes its recording: topics, messages, triggers.
+Frames from a node to the process that writes its recording: topics, messages, events.
 
 A frame is a head of fixed length and a body. The way from the node never blocks: what the pipe
 does not take waits in a backlog of bounded size, and beyond that frames are dropped.
@@ -20,8 +20,9 @@ HEAD = struct.Struct('<BHqqII')  # kind, topic, log time, publish time, sequence
 MOST_BACKLOG = 16 * 2**20  # [B]
 LONGEST_BODY = 64 * 2**20  # [B]
 MOST_SEQUENCE = 2**32
-VERSION = 3  # of the entries in the journal
-STRING = 'std_msgs/msg/String'  # type of its topic
+EVENTS = 'ballscrew_msgs/msg/JudgeEvents'  # type of the topic of events
+BEGIN, PERIODIC, HOLE = 'begin', 'time', 'hole'
+"""Reasons for snapshots of all axes; any other tells what has changed some."""
 
 
 class FrameKind(enum.IntEnum):
@@ -30,6 +31,10 @@ class FrameKind(enum.IntEnum):
     TOPIC = 0  # body: JSON of name, type and offer; its number is that of the frame
     MESSAGE = 1  # body: the serialised message
     TRIGGER = 2  # something has happened that a recording around events is to show
+    EVENTS = 3  # body: the events of a turn, an array of EVENT, for the topic of events
+    NOTE = 4  # body: the text of a note of events, whose number is that of the frame
+    SNAPSHOT = 5  # body: JSON, a list of snapshots; its topic is that of events
+    BEGIN = 6  # the same of all axes: a recording may begin here
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from typing import Any
 
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.declared import plain
-from ballscrew_monitor.recordings.own_recording import journal_of, recorded_values
+from ballscrew_monitor.recordings.recorded_events import events_topic, recorded_values
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.parameter_row import BARE_LETTERS
 from surrogate.files import InputError
@@ -150,7 +150,7 @@ def values_for(bag: Bag, given: Path | None, nominal: Path) -> ChosenValues:
     if own is not None:
         said = parameters.names_in_text(bag.metadata[f'{PREFIX}parameters'], f'bag {bag.path}')
         return ChosenValues(values=own, origin=f'those of {bag.path}', said=said)
-    if journal_of(bag):
+    if events_topic(bag):
         values = recorded_values(bag)
         origin = f'those that the node recorded in {bag.path}'
         return ChosenValues(values=values, origin=origin, said=_not_default(values))

@@ -154,6 +154,11 @@ class McapFile:
         parts[1::2] = contents
         self._add_records(heads, memoryview(b''.join(parts)))
 
+    def flush(self) -> None:
+        """End the chunk, and let the system have all that was written."""
+        self._end_chunk()
+        self._stream.flush()
+
     def finish(self) -> None:
         """End the file; what it is made of stands once more behind the data."""
         self._end_chunk()

@@ -6,8 +6,8 @@ Replays a bag through the same pure pipeline as the node, without DDS, faster th
 Samples are taken in the order of their stamps, equal stamps in the fixed order of the sources.
 Log times stand for the clock of the node: ticks fall on the same grid of it as online, whatever
 the stamps say, and are taken after the samples of equal stamp. The judgement is the one of the
-node, compiled, so its states are those of the node to the last bit. The recording that a node made
-of itself, judged with its own parameters, is taken in the order in which the node took it.
+node, compiled, so its states are those of the node to the last bit. Of the recording that a node
+made of itself, the events themselves are judged.
 
 """
 
@@ -21,7 +21,7 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk.decode import decode, named_instead, readers_by_topic
 from ballscrew_monitor.recordings.bulk.events import Events, Notes
 from ballscrew_monitor.recordings.bulk.order import OnDone, ordered_events
-from ballscrew_monitor.recordings.own_recording import is_as_recorded, OwnRecording
+from ballscrew_monitor.recordings.recorded_events import judged_by_events, RecordedEvents
 from ballscrew_monitor.settings.axis import Axis, build_axis
 from ballscrew_monitor.settings.parameters import absolute, input_topics, with_types
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
@@ -84,9 +84,9 @@ def replay_parts(
 
     """
     notes = Notes()
-    if is_as_recorded(bag, values):
-        own = OwnRecording(bag, notes)
-        return _parts(own.events(on_done), own.runs, states=states)
+    if judged_by_events(bag, values):
+        recorded = RecordedEvents(bag, notes, values)
+        return _parts(recorded.events(on_done), recorded.runs, states=states)
     axes, period = axes_for(bag, values), nanoseconds(values['tick_period'])
     batches = ordered_events(bag, axes, period, notes, on_done=on_done)
     return _parts(batches, [AxisRun(axis, notes) for axis in axes], states=states)

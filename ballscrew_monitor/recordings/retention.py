@@ -10,12 +10,13 @@ Ctrl-C, finishes its recording when the node is gone, however that ended, and kn
 
 Always: everything, in recordings of limited length. Around events: the last seconds before each
 trigger, from memory, and those after it. Either way the oldest recordings make room for new ones.
-Each recording is a bag of its own. Time is an argument.
+Each recording is a bag of its own, which begins with snapshots of all axes. Events are gathered
+into messages, and once a second the disk has all that came. Time is an argument.
 
 """
 
 import collections
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 import dataclasses
 import datetime
 import json
@@ -27,8 +28,18 @@ import sys
 import time
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.recordings.bag_writer import ACTIVE, BagWriter, Offer, Topic
-from ballscrew_monitor.recordings.frames import Frame, FrameKind, read_frames
+from ballscrew_monitor.judge.records import EVENT
+from ballscrew_monitor.recordings.bag_writer import (
+    ACTIVE,
+    BagWriter,
+    Offer,
+    Topic,
+    WHOLE_CHUNK_SIZE,
+)
+from ballscrew_monitor.recordings.bulk.events import Events
+from ballscrew_monitor.recordings.event_messages import packed
+from ballscrew_monitor.recordings.frames import Frame, FrameKind, MOST_SEQUENCE, read_frames
+import numpy as np
 from surrogate.files import InputError
 
 NAME = re.compile(r'\d{8}T\d{6}Z(?:_\d+)?')
@@ -37,6 +48,7 @@ MOST_RING = 64 * 2**20  # [B] of frames in memory
 SYNC = 1.0  # [s] between two times that the disk is made to have all
 RETRY = 10.0  # [s] after which writing is tried again
 NICENESS = 5
+NO_EVENTS = np.empty(0, EVENT)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -56,6 +68,60 @@ class KeepSettings:
     total: float
 
 
+class EventGatherer:
+    """Makes messages of the events of many turns, each behind the last snapshots."""
+
+    def __init__(self) -> None:
+        """Begin with nothing gathered."""
+        self._notes: dict[int, str] = {}
+        self._turns: list[Frame] = []
+        self._number = 0
+
+    def take(self, frame: Frame) -> list[Frame]:
+        """Take a frame; return the messages that are complete with it."""
+        if frame.kind is FrameKind.NOTE:
+            self._notes[frame.topic] = frame.body.decode()
+        elif frame.kind is FrameKind.EVENTS:
+            self._turns.append(frame)
+        else:
+            return [*self.flush(), self._message(frame, NO_EVENTS, json.loads(frame.body))]
+        return []
+
+    def flush(self) -> list[Frame]:
+        """Return the message of what was gathered, if there is anything."""
+        if not self._turns:
+            return []
+        turns, self._turns = self._turns, []
+        events = np.frombuffer(b''.join(turn.body for turn in turns), EVENT)
+        return [self._message(turns[-1], events)]
+
+    def clear(self) -> None:
+        """Forget what was gathered."""
+        self._turns.clear()
+
+    def _message(self, last: Frame, events: Events, snapshots: Sequence[str] = ()) -> Frame:
+        """Return the frame of a message that ends with the frame `last`, numbered."""
+        number, self._number = self._number, self._number + 1
+        body = packed(number, events, self._notes, snapshots)
+        kind = FrameKind.BEGIN if last.kind is FrameKind.BEGIN else FrameKind.MESSAGE
+        sequence = number % MOST_SEQUENCE
+        return Frame(kind, last.topic, last.log_time, last.log_time, sequence, body)
+
+
+class Segment:
+    """The frames of a message from snapshots of all axes up to the next such snapshots."""
+
+    def __init__(self, begin: float) -> None:
+        """Begin at a time [s]."""
+        self.begin, self.size = begin, 0
+        self.frames: list[Frame] = []
+
+    def add(self, frame: Frame) -> None:
+        """Add a frame."""
+        self.frames.append(frame)
+        self.size += len(frame.body)
+
+
 class Retention:
     """Keeps what is to be kept of the frames that it takes."""
 
@@ -64,21 +130,25 @@ class Retention:
         self._folder = folder
         self._settings = settings
         self._topics: dict[int, Topic] = {}
-        self._ring: collections.deque[tuple[float, Frame]] = collections.deque()
-        self._ring_size = 0
+        self._gatherer = EventGatherer()
+        self._segments: collections.deque[Segment] = collections.deque()
         self._writer: BagWriter | None = None
         self._opened = 0.0
         self._synced = 0.0
         self._size = 0
+        self._part = 0.0, 0  # when the last snapshots were written [s], and the size then
         self._until = 0.0  # when a recording around an event is complete
         self._retry = 0.0
         self.problem = ''
 
     def take(self, frame: Frame, now: float) -> None:
-        """Take a frame at `now` [s] of a clock that only runs on."""
-        if now < self._retry:
-            if frame.kind is FrameKind.TOPIC:
-                self._announce(frame)
+        """
+        Take a frame at `now` [s] of a clock that only runs on.
+
+        Where the disk refuses, recording is tried again later, from the next snapshots on.
+
+        """
+        if now < self._retry and frame.kind not in (FrameKind.TOPIC, FrameKind.NOTE):
             return
         try:
             self._take(frame, now)
@@ -86,27 +156,39 @@ class Retention:
             text = error.strerror if isinstance(error, OSError) else error
             self.problem = f'nothing is recorded in {self._folder}: {text}'
             self._retry = now + RETRY
-            self._ring.clear()  # what follows does not go on from there
-            self._ring_size = 0
+            self._segments.clear()  # what follows does not go on from there
+            self._gatherer.clear()
             self._finish(BagWriter.abandon)
 
     def close(self) -> None:
         """Finish the recording that grows."""
         try:
+            self._flush(self._synced)
             self._finish()
-        except OSError as error:
-            self.problem = f'the last recording in {self._folder} is unfinished: {error.strerror}'
+        except (OSError, InputError) as error:
+            text = error.strerror if isinstance(error, OSError) else error
+            self.problem = f'the last recording in {self._folder} is unfinished: {text}'
 
     def _take(self, frame: Frame, now: float) -> None:
         if frame.kind is FrameKind.TOPIC:
             self._announce(frame)
         elif frame.kind is FrameKind.TRIGGER:
             self._trigger(frame, now)
-        elif self._settings.always:
-            self._write_always(frame, now)
+        elif frame.kind is FrameKind.MESSAGE:
+            self._keep(frame, now)
         else:
-            self._write_around(frame, now)
-        self._sync(now)
+            for message in self._gatherer.take(frame):
+                self._keep(message, now)
+        if now - self._synced >= SYNC:
+            self._flush(now)
+
+    def _flush(self, now: float) -> None:
+        """Let the disk have all: a machine that loses its power loses what follows."""
+        for message in self._gatherer.flush():
+            self._keep(message, now)
+        if self._writer is not None:
+            self._writer.sync()
+        self._synced = now
 
     def _announce(self, frame: Frame) -> None:
         stated = json.loads(frame.body)
@@ -115,39 +197,62 @@ class Retention:
         if self._writer is not None:
             self._writer.add_topic(topic)
 
+    def _keep(self, frame: Frame, now: float) -> None:
+        if self._settings.always:
+            self._write_always(frame, now)
+        else:
+            self._write_around(frame, now)
+
     def _write_always(self, frame: Frame, now: float) -> None:
-        full = self._size >= self._settings.largest
-        if self._writer is not None and (full or now - self._opened >= self._settings.longest):
-            self._finish()
-        if self._writer is None:
-            self._open(frame.log_time, now)
-        self._write(frame)
+        """Write a message; a recording ends at the snapshots after which it would be too long."""
+        if frame.kind is FrameKind.BEGIN:
+            begun, size = self._part
+            longest = 2.0 * now - begun - self._opened > self._settings.longest
+            if self._writer is not None and (
+                longest or 2 * self._size - size > self._settings.largest
+            ):
+                self._finish()
+            if self._writer is None:
+                self._open(frame.log_time, now)
+            self._part = now, self._size
+        if self._writer is not None:
+            self._write(frame)
 
     def _write_around(self, frame: Frame, now: float) -> None:
         if self._writer is not None:
             self._write(frame)
             if now >= self._until or self._size >= self._settings.largest:
                 self._finish()
-        self._ring.append((now, frame))
-        self._ring_size += len(frame.body)
-        while self._ring_size > MOST_RING or now - self._ring[0][0] > self._settings.before:
-            self._ring_size -= len(self._ring.popleft()[1].body)
+        if frame.kind is FrameKind.BEGIN:
+            self._segments.append(Segment(now))
+            self._forget(now)
+        if self._segments:
+            self._segments[-1].add(frame)
+
+    def _forget(self, now: float) -> None:
+        """Forget the oldest segments that are not needed to reach back far enough."""
+        segments = self._segments
+        while len(segments) > 1 and (
+            now - segments[1].begin >= self._settings.before
+            or sum(one.size for one in segments) > MOST_RING
+        ):
+            segments.popleft()
 
     def _trigger(self, frame: Frame, now: float) -> None:
-        if self._settings.always:
+        if self._settings.always or not self._segments:
             return
         self._until = now + self._settings.after
         if self._writer is None:
-            first = self._ring[0][1].log_time if self._ring else frame.log_time
-            self._open(first, now)
-            for _, kept in self._ring:
+            self._forget(now)
+            self._open(self._segments[0].frames[0].log_time, now)
+            for kept in [one for segment in self._segments for one in segment.frames]:
                 self._write(kept)
             self._size = 0  # of what is to come
 
     def _open(self, log_time: int, now: float) -> None:
         self._make_room()
         directory = self._free_folder(log_time)
-        self._writer = BagWriter(directory, directory.name)
+        self._writer = BagWriter(directory, directory.name, chunk_size=WHOLE_CHUNK_SIZE)
         for topic in self._topics.values():
             self._writer.add_topic(topic)
         self._opened, self._size, self.problem = now, 0, ''
@@ -162,12 +267,6 @@ class Retention:
             sequence=frame.sequence,
         )
         self._size += len(frame.body)
-
-    def _sync(self, now: float) -> None:
-        """Let the disk have it now and then: a machine that loses its power loses what follows."""
-        if self._writer is not None and now - self._synced >= SYNC:
-            self._writer.sync()
-            self._synced = now
 
     def _finish(self, end: Callable[[BagWriter], None] = BagWriter.close) -> None:
         """End the recording that grows; one that is abandoned stays to be recovered."""

@@ -40,7 +40,8 @@ def judged_bag(
         if metadata:
             writer.add_metadata(metadata)
         for topic in recorded_topics(values):
-            writer.add_topic(topic)
+            if topic.type_name:  # of the recording of a node without the messages of its inputs
+                writer.add_topic(topic)
         growing = _Growing(bag, values, writer)
         yield growing.add
         growing.copy_inputs(END)

@@ -20,7 +20,7 @@ from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.recordings.axis_run import TimedState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
-from ballscrew_monitor.recordings.own_recording import is_as_recorded
+from ballscrew_monitor.recordings.recorded_events import judged_by_events
 from ballscrew_monitor.recordings.replay import ignore, replay_parts
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.recordings.words import feed_first
@@ -330,7 +330,7 @@ def judge_log(
             makers[part.axis].add(part)
             if rows is not None:
                 rows.add(part)
-    numbered = is_as_recorded(bag, parameters.values)
+    numbered = judged_by_events(bag, parameters.values)
     return LogCase(
         name=bag.path.name,
         parameters=parameters.short_origin,

@@ -41,7 +41,11 @@ NODE_ROWS = (
         'Period of /diagnostics; a change is published at once.'
     ),
     ParameterRow('record', 'off', choices=('off', 'around_events', 'always')).says(
-        'What the node records of itself: inputs, states, warnings and all a replay needs.'
+        'What the node records of itself: the events that it judges, states and warnings.'
+    ),
+    ParameterRow('record_inputs', True).says(
+        'Record the messages of the inputs too, for other tools; a replay needs them only to '
+        'read them in another way.'
     ),
     ParameterRow('record_dir', 'auto').says(
         'Directory of the recordings; auto: recordings in state_dir.'

@@ -8,8 +8,8 @@ from types import SimpleNamespace
 from typing import Any
 
 from ballscrew_monitor.core.inputs import ordered
+from ballscrew_monitor.node.event_recorder import axis_snapshot, EventRecorder
 from ballscrew_monitor.node.intake import _events
-from ballscrew_monitor.node.journal import Journal
 from ballscrew_monitor.node.topic import Arrival
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.frames import Frame
@@ -48,12 +48,21 @@ class KeptFrames:
 
 
 def record_alone(
-    folder: Path, values: dict[str, Any], bursts: Iterable[tuple[int, list[tuple[str, Any]]]]
+    folder: Path,
+    values: dict[str, Any],
+    bursts: Iterable[tuple[int, list[tuple[str, Any]]]],
+    *,
+    raw: bool = True,
 ) -> Bag:
-    """Return what a node of the axis x records of bursts, stamps [ns] and messages by topic."""
+    """
+    Return what a node of the axis x records of bursts, stamps [ns] and messages by topic.
+
+    The messages of the inputs are recorded too if they are wanted `raw`.
+
+    """
     axis = build_axis('x', values)
     process: Any = KeptFrames(folder)
-    journal = Journal('/ballscrew_monitor/journal', lambda: process)
+    recorder = EventRecorder('/ballscrew_monitor/judge_events', lambda: process, raw=raw)
     begun = False
     names = {one.source.name.lower(): absolute(one.topic) for one in axis.inputs}
     topics: dict[str, Any] = {
@@ -64,20 +73,22 @@ def record_alone(
     }
     for stamp, messages in bursts:
         if not begun:
-            journal.describe(axis, values, names, 'begin', stamp)
+            recorder.snapshot({'x': axis_snapshot(axis, values, names)}, 'begin', stamp)
             begun = True
         heard = [
             (Arrival(stamp, message, 0, topics[name], serialize_message(message)), stamp, 0)
             for name, message in messages
         ]
-        journal.hear(heard)
-        for _, event in ordered([event for one in heard for event in _events(*one)]):
+        turn = ordered([event for one in heard for event in _events(*one)])
+        recorder.hear(heard)
+        recorder.take(turn, stamp, stamp)
+        for _, event in turn:
             axis.monitor.update(event)
         if stamp % TICK == 0:
-            journal.tick(stamp, stamp)
+            recorder.tick(stamp, stamp, stamp)
             axis.monitor.tick(stamp)
-            for _ in journal.due(['x'], stamp, stamp):
-                journal.describe(axis, values, names, 'time', stamp)
-    journal.close()
+            if because := recorder.due(stamp, stamp):
+                recorder.snapshot({'x': axis_snapshot(axis, values, names)}, because, stamp)
+    recorder.close()
     (path,) = folder.iterdir()
     return Bag(path)

@@ -63,13 +63,18 @@ class Batch:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class _Chunk:
-    """A chunk, the rank that orders messages of equal log time, and where it is read."""
+    """
+    A chunk, the rank that orders messages of equal log time, and where it is read.
+
+    `topics` are the numbers of the wanted topics by channel, -1 of any other one.
+
+    """
 
     place: ChunkIndex
     rank: int
     storage: McapStorage
     stream: BinaryIO
-    channels: dict[int, str]
+    topics: Integers
 
 
 @functools.singledispatch
@@ -103,8 +108,11 @@ def _chunks(stack: contextlib.ExitStack, bag: Bag, topics: Collection[str]) -> l
             if channels and (not places or _is_packed(stream, places[0])):
                 return None
         places.sort(key=operator.attrgetter('chunk_start_offset'))
+        numbers, names = np.full(65536, -1), list(topics)
+        for channel, name in channels.items():
+            numbers[channel] = names.index(name)
         found += [
-            _Chunk(place=place, rank=rank, storage=storage, stream=stream, channels=channels)
+            _Chunk(place=place, rank=rank, storage=storage, stream=stream, topics=numbers)
             for rank, place in enumerate(places, len(found))
         ]
     return sorted(found, key=lambda each: (each.place.message_start_time, each.rank))
@@ -124,7 +132,7 @@ def _by_chunk(chunks: Sequence[_Chunk], names: Sequence[str]) -> Iterator[Batch]
     size = 0
     counts: dict[McapStorage, Counter[str]] = {}
     for number, chunk in enumerate(chunks, 1):
-        found = _placed(chunk, names)
+        found = _placed(chunk)
         waiting.append(found)
         size += len(found.data)
         counts.setdefault(chunk.storage, Counter()).update(_count(found, names))
@@ -142,14 +150,11 @@ def _count(found: Messages, names: Sequence[str]) -> dict[str, int]:
     return dict(zip(names, count.tolist(), strict=True))
 
 
-def _placed(chunk: _Chunk, names: Sequence[str]) -> Messages:
+def _placed(chunk: _Chunk) -> Messages:
     """Return the messages of a chunk at their places in the bag, as channels their topics."""
     found = chunk.storage.chunk(chunk.stream, chunk.place)
-    numbers = np.full(65536, -1)  # of a topic that is not wanted
-    for number, name in chunk.channels.items():
-        numbers[number] = names.index(name)
     place = (chunk.rank << PLACES) + found.begin
-    return dataclasses.replace(found, channel=numbers[found.channel], place=place)
+    return dataclasses.replace(found, channel=chunk.topics[found.channel], place=place)
 
 
 def _by_topic(parts: Sequence[Messages], names: Sequence[str]) -> dict[str, Messages]:

@@ -128,16 +128,11 @@ def readers_by_topic(axes: Iterable[Axis]) -> dict[str, list[Reader]]:
 class TopicDecoder:
     """Decodes the messages of one topic for all inputs that read it."""
 
-    def __init__(self, bag: Bag, readers: list[Reader], notes: Notes, *, ahead: int = 0) -> None:
-        """
-        Lay out the messages; `bag` counts what does not decode, `notes` keep what is named.
-
-        Stamps may be `ahead` [ns] of the clock beside what an axis allows.
-
-        """
+    def __init__(self, bag: Bag, readers: list[Reader], notes: Notes) -> None:
+        """Lay out the messages; `bag` counts what does not decode, `notes` keep what is named."""
         self._bag, self._readers, self._notes = bag, readers, notes
         self._topic = absolute(readers[0][2].topic)
-        self._type, self._ahead = readers[0][2].message_type, ahead
+        self._type = readers[0][2].message_type
         self._named: dict[Any, int] = {}
         self._layouts: list[Layout] | None = None
         with contextlib.suppress(NoLayout):
@@ -182,7 +177,7 @@ class TopicDecoder:
             value=value,
             stamp_source=np.where(stamp != 0, StampSource.HEADER, StampSource.RECEIVE),
         )
-        limit = axis.max_future + self._ahead
+        limit = axis.max_future
         early = (now != 0) & (stamp - now > limit)
         others = outcome == Outcome.OTHER_JOINTS
         for which, why, first, second in (
@@ -220,7 +215,7 @@ class TopicDecoder:
             )
             decoded = decode(self._bag, message, self._type)
             for number, axis, source in readers or self._readers:
-                limit = axis.max_future + self._ahead
+                limit = axis.max_future
                 read = source.read(decoded, now=now, max_future=limit)
                 events.append(event_of(read, self._notes, axis=number, log_time=now, place=place))
         return joined(events)

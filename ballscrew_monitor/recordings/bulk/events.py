@@ -7,17 +7,14 @@ from typing import Any
 
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source
-from ballscrew_monitor.judge.many import EVENT
 from ballscrew_monitor.judge.monitor import fill
-from ballscrew_monitor.judge.records import ALL_AXES, Event, NOT_KNOWN, TICK
+from ballscrew_monitor.judge.records import ALL_AXES, EVENT, Event, NOT_KNOWN, TICK
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.surface.records import as_array
 
 Events = NDArray[Any]
 """An array of EVENT."""
-CHECK = TICK + 1
-"""Kind of an element that is no event: a place at which somebody is called."""
 TICK_SOURCE = max(Source) + 1
 """Place of a tick among the sources: after the samples of equal stamp."""
 MOST_NAMED = 4096

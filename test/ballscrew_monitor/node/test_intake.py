@@ -217,7 +217,7 @@ def held(bench, count):
     )
 
 
-def test_what_comes_with_a_time_of_the_clock_is_one_burst(bench, monkeypatch):
+def test_what_comes_with_a_time_of_the_clock_is_one_turn(bench, monkeypatch):
     """The speed is judged last, whichever came first."""
     bench.publish('speed', 1)
     bench.publish('load', 2)
@@ -226,14 +226,14 @@ def test_what_comes_with_a_time_of_the_clock_is_one_burst(bench, monkeypatch):
     clock = types.SimpleNamespace(topic=object(), message=shown)
     monkeypatch.setattr(bench.intake, '_clock', clock.topic)
     monkeypatch.setattr(bench.intake, '_waiting', lambda: [clock, *found])
-    bursts = []
-    monkeypatch.setattr(bench.intake._journal, 'hear', lambda batch: bursts.append(len(batch)))
+    turns = []
+    monkeypatch.setattr(bench.intake._recorder, 'take', lambda turn, *_: turns.append(len(turn)))
     bench.intake.drain()
-    assert bursts == [2]
+    assert turns == [2]
     assert [event.source for event in bench.taken] == [Source.LOAD, Source.SPEED]
 
 
-def test_messages_before_and_after_a_step_are_two_bursts(bench, monkeypatch):
+def test_messages_before_and_after_a_step_are_two_turns(bench, monkeypatch):
     steady = intake_module.time.monotonic_ns
     bench.axis.monitor = SteppedMonitor()
     bench.intake.drain()
@@ -244,11 +244,11 @@ def test_messages_before_and_after_a_step_are_two_bursts(bench, monkeypatch):
     old = dataclasses.replace(found[0], received=found[0].received - step)
     monkeypatch.setattr(bench.intake, '_waiting', lambda: [old, found[1]])
     monkeypatch.setattr(intake_module.time, 'monotonic_ns', lambda: steady() - step)
-    bursts = []
-    monkeypatch.setattr(bench.intake._journal, 'hear', lambda batch: bursts.append(len(batch)))
+    turns = []
+    monkeypatch.setattr(bench.intake._recorder, 'take', lambda turn, *_: turns.append(len(turn)))
     bench.intake.drain()
     assert [event.value for event in bench.taken] == [1.0, 2.0]
-    assert bursts == [1, 1]
+    assert turns == [1, 1]
     assert [value for _, value in bench.axis.monitor.steps] == [2.0]
 
 

@@ -16,9 +16,9 @@ from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.judge import views
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.messages import diagnostics
+from ballscrew_monitor.node import event_recorder
 from ballscrew_monitor.node.alarm import Alarm
 from ballscrew_monitor.node.axis_publisher import AxisPublisher, NEWS_INTERVAL
-from ballscrew_monitor.node.journal import Journal
 from ballscrew_monitor.node.kept_axes import LOOK, PERIOD
 from ballscrew_monitor.node.node import BallscrewMonitor
 from ballscrew_monitor.node.topic import Arrival
@@ -464,7 +464,12 @@ DEFECTS = {
     'sums': (views, 'totals_of', looks, 'what is kept of it'),
     'shelving': (Alarm, 'end_shelving', looks, 'its shelving'),
     'late': (Monitor, 'take_up', lambda node: node._kept.restore(['x', 'y']), 'what was kept of '),
-    'a record': (Journal, 'describe', lambda node: node._recording.describe('xy', ''), 'its rec'),
+    'a snapshot': (
+        event_recorder,
+        'axis_snapshot',
+        lambda node: node._recording.snapshot('xy', ''),
+        'its snapshot',
+    ),
     'parameters': (Axis, 'adapt', lambda node: node._on_parameters({'x', 'y'}), 'new parameters'),
     'the end': (Monitor, 'acknowledge', lambda node: node._stop('why'), 'the end of its event'),
     'activation': (

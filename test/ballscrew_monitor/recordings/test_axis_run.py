@@ -10,8 +10,8 @@ from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.core.fields import OtherJoints, stamp_of
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import PointSource, Reason
-from ballscrew_monitor.judge.dump import dump, restored
 from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.judge.snapshot import restored, snapshot
 from ballscrew_monitor.messages.state_messages import empty_state, fill_state
 from ballscrew_monitor.recordings.axis_run import AxisRun
 from ballscrew_monitor.recordings.bag import Bag
@@ -218,7 +218,7 @@ def test_states_and_outcome_are_those_of_a_monitor_alone(happened, cut):
         assert repr(axis.monitor.input_status(now)) == repr(other.input_status(now))
         assert axis.monitor.kept == other.kept
         changed = alone()
-        changed.monitor = restored(dump(axis.monitor), AXIS.surface, AXIS.monitor.settings)
+        changed.monitor = restored(snapshot(axis.monitor), AXIS.surface, AXIS.monitor.settings)
         ended = [one.acknowledge(now, 'seen') for one in (changed.monitor, other)]
         assert repr(ended[0]) == repr(ended[1])
         run.change(changed)

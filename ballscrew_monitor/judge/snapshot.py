@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""All that a monitor remembers as JSON and back, bit for bit, for recordings."""
+"""Snapshot of all that a monitor remembers as JSON, and back, bit for bit, for recordings."""
 
 import base64
 import binascii
@@ -14,7 +14,7 @@ from ballscrew_monitor.core.inputs import Source, StampSource, Why
 from ballscrew_monitor.core.judgement import Code, Level, Zone
 from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.judge.monitor import Monitor
-from ballscrew_monitor.judge.records import Memory, MEMORY_VERSION
+from ballscrew_monitor.judge.records import Memory
 from ballscrew_monitor.judge.slopes import MOST, SlopeRing
 import numpy as np
 from surrogate.files import InputError
@@ -33,11 +33,10 @@ CODES: dict[str, type[enum.IntEnum]] = {
 """Codes in a memory and what they are numbers of."""
 
 
-def dump(monitor: Monitor) -> dict[str, Any]:
+def snapshot(monitor: Monitor) -> dict[str, Any]:
     """Return all that a monitor remembers, as JSON takes it; every bit of a number is kept."""
     parts = {name: getattr(monitor, name) for name in ('memory', 'speeds', 'positions')}
     return {
-        'version': MEMORY_VERSION,
         'records': {
             name: base64.b64encode(as_array(part).tobytes()).decode()
             for name, part in parts.items()
@@ -53,27 +52,24 @@ def dump(monitor: Monitor) -> dict[str, Any]:
     }
 
 
-def restored(dumped: Mapping[str, Any], surface: Surface, settings: MonitorSettings) -> Monitor:
+def restored(taken: Mapping[str, Any], surface: Surface, settings: MonitorSettings) -> Monitor:
     """
-    Return the monitor that remembers what was dumped.
+    Return the monitor that remembers what a snapshot holds.
 
-    Raises InputError for another version, and for what no monitor has dumped.
+    Raises InputError for what no monitor has remembered.
 
     """
-    version = dumped.get('version')
-    if version != MEMORY_VERSION:
-        raise InputError(f'the memory is of version {version!r}, known is {MEMORY_VERSION}')
     monitor = Monitor(surface, settings)
     try:
-        records = dumped['records']
+        records = taken['records']
         monitor.memory = _record(Memory, records['memory'])
         for name in {'speeds', 'positions'} & {*records}:
             setattr(monitor, name, _record(SlopeRing, records[name]))
-        for name, heard in dumped['joints'].items():
+        for name, heard in taken['joints'].items():
             others = (OtherJoints(array, joint, tuple(names)) for array, joint, *names in heard)
             monitor.joints.named[Source[name]] = dict.fromkeys(others)
-        monitor.shelve_reason = str(dumped['shelve_reason'])
-        monitor.ending = str(dumped['ending'])
+        monitor.shelve_reason = str(taken['shelve_reason'])
+        monitor.ending = str(taken['ending'])
         _check(monitor)
     except (AttributeError, KeyError, TypeError, ValueError, binascii.Error) as error:
         raise InputError(f'the memory is damaged: {error}') from None

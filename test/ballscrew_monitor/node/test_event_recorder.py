@@ -5,18 +5,18 @@
 from types import SimpleNamespace
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.node.journal import Journal, LONGEST_RESTART, RESTART
+from ballscrew_monitor.node.event_recorder import EventRecorder, LONGEST_RESTART, RESTART
 import pytest
 
 STEP = SECOND // 10
 
 
 class Bench:
-    """A journal whose process is lost when a test says so, on a steady clock of its own."""
+    """A recorder whose process is lost when a test says so, on a steady clock of its own."""
 
     def __init__(self):
         self.now, self.started = 0, []
-        self.journal = Journal('/journal', self._start)
+        self.recorder = EventRecorder('/judge_events', self._start)
 
     def _start(self):
         process = SimpleNamespace(lost=False, problem='', close=lambda: None)
@@ -29,7 +29,7 @@ class Bench:
         end = self.now + duration
         while self.now < end:
             self.now += STEP
-            self.journal.due([], self.now, 1)
+            self.recorder.due(self.now, 1)
 
     def lose(self):
         """Lose the process; return after which time [ns] it was started again."""

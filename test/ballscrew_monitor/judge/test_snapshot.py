@@ -10,9 +10,9 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.state import LoadDerivation, PositionSettings, Shelving
-from ballscrew_monitor.judge.dump import dump, restored
 from ballscrew_monitor.judge.records import Memory, MEMORY_LAYOUT
 from ballscrew_monitor.judge.slopes import SlopeRing
+from ballscrew_monitor.judge.snapshot import restored, snapshot
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import pytest
@@ -42,7 +42,7 @@ def test_another_layout_of_the_memory_is_another_version():
 
 
 def through_json(monitor):
-    text = json.dumps(dump(monitor), allow_nan=False)
+    text = json.dumps(snapshot(monitor), allow_nan=False)
     return restored(json.loads(text), monitor.surface, monitor.settings)
 
 
@@ -91,14 +91,12 @@ def test_the_monitor_goes_on_as_if_nothing_had_happened(core, stream, derived, d
         assert repr([state.message for state in again]) == repr([state.message for state in said])
         if any(state.event for state in said):
             assert repr(second.event.advice) == repr(first.event.advice)
-    assert dump(second) == dump(first)
+    assert snapshot(second) == snapshot(first)
 
 
 @pytest.mark.parametrize(
     ('change', 'text'),
     [
-        ({'version': 0}, 'memory_version_0'),
-        ({'version': None}, 'memory_version_none'),
         ({'records': {}}, 'memory_damaged_memory'),
         ({'records': {'memory': 'AAAA'}}, 'memory_damaged_buffer'),
         ({'records': {'memory': ''}}, 'memory_damaged_2'),
@@ -110,14 +108,14 @@ def test_the_monitor_goes_on_as_if_nothing_had_happened(core, stream, derived, d
         ({'joints': None}, 'memory_damaged_2'),
     ],
 )
-def test_what_no_monitor_has_dumped_is_refused(core, change, text, refused):
+def test_what_no_monitor_has_remembered_is_refused(core, change, text, refused):
     monitor = core.monitor()
-    refused(text, restored, dump(monitor) | change, monitor.surface, monitor.settings)
+    refused(text, restored, snapshot(monitor) | change, monitor.surface, monitor.settings)
 
 
-def test_a_dump_that_lacks_a_part_or_repeats_a_record_is_refused(core, refused):
+def test_a_snapshot_that_lacks_a_part_is_refused(core, refused):
     monitor = core.monitor()
-    whole = dump(monitor)
+    whole = snapshot(monitor)
     for name in whole:
         refused(
             'memory_2',
@@ -128,9 +126,9 @@ def test_a_dump_that_lacks_a_part_or_repeats_a_record_is_refused(core, refused):
         )
 
 
-def test_a_sign_that_no_dump_has_is_damage(core, refused):
+def test_a_sign_that_no_snapshot_has_is_damage(core, refused):
     monitor = core.monitor()
-    whole = dump(monitor)
+    whole = snapshot(monitor)
     whole['records']['memory'] = '~' + whole['records']['memory']
     refused('memory_damaged_2', restored, whole, monitor.surface, monitor.settings)
 
@@ -146,7 +144,7 @@ def test_a_number_that_no_judgement_has_is_damage(core, name, number, refused):
         value[-1] = number
     else:
         setattr(monitor.memory, name, number)
-    refused('memory_damaged', restored, dump(monitor), core.surface(), monitor.settings)
+    refused('memory_damaged', restored, snapshot(monitor), core.surface(), monitor.settings)
 
 
 @pytest.mark.parametrize('name', ['speeds', 'positions'])
@@ -159,8 +157,8 @@ def test_a_window_beyond_its_ring_is_damage(core, name, count, begin, damaged, s
     setattr(monitor, name, SlopeRing(count=count, begin=begin))
     if damaged:
         with pytest.raises(InputError) as caught:
-            restored(dump(monitor), core.surface(), monitor.settings)
+            restored(snapshot(monitor), core.surface(), monitor.settings)
         assert str(caught.value) == says('window_of_samples', count=count, begin=begin)
     else:
-        again = restored(dump(monitor), core.surface(), monitor.settings)
+        again = restored(snapshot(monitor), core.surface(), monitor.settings)
         assert getattr(again, name) == getattr(monitor, name)
