@@ -192,6 +192,4 @@ def _unwind(number: int, frame: Any) -> None:
 
 if __name__ == '__main__':
     # As the module that tasks import, so that there is one listener.
-    from surrogate.worker import main as serve
-
-    serve()
+    importlib.import_module('surrogate.worker').main()
