@@ -158,12 +158,19 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
             self._chunk = 0
 
     def write_many(
-        self, topics: Sequence[str], which: Integers, contents: Sequence[bytes], times: Integers
+        self,
+        topics: Sequence[str],
+        which: Integers,
+        times: Integers,
+        data: bytes,
+        begin: Integers,
+        size: Integers,
     ) -> None:
         """
         Append serialised messages, each of one `which` of the `topics`, and number them.
 
-        `times` [ns] are those at which they were logged and count as published.
+        They lie in `data` [bytes]; `times` [ns] are those at which they were logged and count as
+        published.
 
         """
         sequence = np.empty(len(which), np.int64)
@@ -173,7 +180,9 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
                 sequence[own] = np.arange(self._counts[topic], self._counts[topic] + len(own))
                 self._note(topic, len(own), int(times[own].min()), int(times[own].max()))
         channels = np.array([self._channels[topic] for topic in topics])
-        self._writer.add_messages(channels[which], contents, log_time=times, sequence=sequence)
+        self._writer.add_messages(
+            channels[which], data, begin, size, log_time=times, sequence=sequence
+        )
 
     def write_rows(self, contents: Mapping[str, NDArray[np.void]], times: Integers) -> None:
         """

@@ -76,7 +76,9 @@ def replay(bag: Bag, values: Mapping[str, Any]) -> Iterator[Judged]:
 def answer(one: TimedState, writers: dict[str, StateWriter]) -> Judged:
     """Return what the node publishes with a state; `writers` are those of the axes by name."""
     name, tier, event = one.axis.name, TIERS[one.axis.surface.tier], None
-    writer = writers.setdefault(name, StateWriter(name, tier))
+    if name not in writers:  # a message of many parts
+        writers[name] = StateWriter(name, tier)
+    writer = writers[name]
     writer.tier = tier  # the node may have taken another one
     if one.event is not None:
         shelved = one.state.shelving.until != 0

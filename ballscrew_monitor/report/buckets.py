@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 import polars as pl
 import polars.selectors as cs
 
-NUMBERS, CODES = cs.by_dtype(pl.Float64) - cs.by_name('time'), cs.by_dtype(pl.UInt8)
+NUMBERS, CODES = cs.float() - cs.by_name('time', require_all=False), cs.by_dtype(pl.UInt8)
 """Columns of rows beside their `time` [s]: numbers, NaN for none, and codes."""
 EVEN = 0.05  # [-] of a step, by which samples of an even rate are early or late
 
@@ -39,11 +39,11 @@ def bucketed(
     """
     width = max(span, 1e-9) / count
     place = over(pl.col('time'), width).cast(pl.Int64).clip(0, count - 1).alias('place')
-    known = NUMBERS.filter(NUMBERS.is_finite())
-    ends = (known.min().name.prefix('low_'), known.max().name.prefix('high_'), CODES.max())
+    known = pl.when(NUMBERS.is_finite()).then(NUMBERS)
+    ends = (NUMBERS.min().name.prefix('low_'), NUMBERS.max().name.prefix('high_'), CODES.max())
 
     def query(part: pl.LazyFrame) -> pl.LazyFrame:
-        return part.select(*columns).group_by(place).agg(*ends)
+        return part.select(*columns).select(place, known, CODES).group_by('place').agg(*ends)
 
     parts = (
         table.collect(query)

@@ -72,16 +72,18 @@ class _Growing:
 
 def _copy(batch: Batch, writer: BagWriter) -> None:
     """Write the messages of a batch in the order of their log times."""
-    found = list(batch.topics.values())
-    if not found:
+    parts = list(batch.topics.values())
+    if not parts:
         return
-    which = np.repeat(np.arange(len(found)), [len(one) for one in found])
-    times = np.concatenate([one.log_time for one in found])
-    order = np.lexsort((np.concatenate([one.place for one in found]), times))
-    contents = [content for one in found for content in one.contents()]
-    writer.write_many(
-        list(batch.topics), which[order], [contents[at] for at in order.tolist()], times[order]
+    which = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
+    times, places, begins, sizes = (
+        np.concatenate([getattr(part, name) for part in parts])
+        for name in ('log_time', 'place', 'begin', 'size')
     )
+    order = np.lexsort((places, times))
+    data = parts[0].data  # that of all topics of a batch
+    columns = (which[order], times[order], data, begins[order], sizes[order])
+    writer.write_many(list(batch.topics), *columns)
 
 
 class Answers:

@@ -136,7 +136,10 @@ def _columns(
     _, stretches = _worst_stretches(case, fine_bytes / _bytes_per_second(case))
     if not stretches:
         return coarse, coarse.clear(), width
-    near = table.collect(lambda part: part.select(*columns).filter(buckets.between(stretches)))
+    is_near = buckets.between(stretches)
+    near = table.collect(
+        lambda part: part.with_columns(columns[0]).filter(is_near).select('time', *columns[1:])
+    )
     return coarse, near.sort('time', maintain_order=True), width
 
 
@@ -182,7 +185,7 @@ def row_columns(case: AxisCase, numbers: Iterable[str]) -> list[pl.Expr]:
         'measured_torque': _unless(~measured, pl.col('motor_torque')),
         'machine_torque': _unless(still, pl.col('machine_torque')),
     }
-    ranks = {name: pl.col(name).replace_strict(table) for name, table in RANKS.items()}
+    ranks = {name: _rank(name) for name in RANKS}
     ranks['regime'] = pl.when(still).then(0).otherwise(ranks['regime'])
     ranks['zone'] = pl.when(still).then(1).otherwise(ranks['zone'])
     return [
@@ -190,6 +193,14 @@ def row_columns(case: AxisCase, numbers: Iterable[str]) -> list[pl.Expr]:
         *(known[name].alias(name) for name in numbers),
         *(rank.cast(pl.UInt8).alias(name) for name, rank in ranks.items()),
     ]
+
+
+def _rank(name: str) -> pl.Expr:
+    """Return how bad a code is."""
+    return pl.sum_horizontal(
+        (pl.col(name) == code).cast(pl.UInt8) * pl.lit(rank, pl.UInt8)
+        for code, rank in RANKS[name].items()
+    )
 
 
 def _is_held(name: str) -> pl.Expr:
