@@ -3,7 +3,7 @@
 """
 The rows of one axis on disk: an Arrow file of the columns that pages and tables ask for.
 
-Rows come as they are judged, and each array of them becomes a record batch, so that a recording
+Rows come as they are judged, and some arrays of them become a record batch, so that a recording
 larger than memory becomes one file. No library here appends to such a file, and the form is
 simple: the schema, the batches, and a footer that lists where each of them lies. polars writes
 each batch; the footer of the first of them is kept, with the list of all in the place of its own.
@@ -32,6 +32,8 @@ from surrogate.surface import Regime
 
 PART = 65_536
 """Rows of a part, of 120 bytes each."""
+BATCH = 32_768
+"""Rows from which on a record batch is written: to find a part, polars looks at every batch."""
 MAGIC = b'ARROW1'
 END = struct.pack('<iI', -1, 0)
 """First and last bytes of an Arrow file, and what ends its batches."""
@@ -106,13 +108,21 @@ class RowTable:
         """Begin the file with the first rows."""
         self.rows = 0
         self._path, self._size = path, 0
+        self._waiting: list[pl.DataFrame] = []
         self._blocks: list[bytes] = []
         self._footer = b''
 
     def add(self, rows: NDArray[Any]) -> None:
-        """Write rows, an array of ROW with at least one."""
+        """Write rows, an array of ROW with at least one, as soon as they make a batch."""
+        self.rows += len(rows)
+        self._waiting.append(frame_of(rows))
+        if sum(map(len, self._waiting)) >= BATCH:
+            self._add_batch()
+
+    def _add_batch(self) -> None:
         written = io.BytesIO()
-        frame_of(rows).write_ipc(written)
+        pl.concat(self._waiting, rechunk=True).write_ipc(written, record_batch_size=self.rows)
+        self._waiting.clear()
         file = written.getbuffer()
         footer, place = _footer_of(file)
         begin, head, body = BLOCK.unpack_from(footer, place)
@@ -122,10 +132,11 @@ class RowTable:
         self._blocks.append(BLOCK.pack(self._size, head, body))
         end = begin + head + body
         self._write(file[begin:end])
-        self.rows += len(rows)
 
     def end(self) -> None:
-        """Write the list of the batches; nothing can be added afterwards."""
+        """Write the rest, and the list of the batches; nothing can be added afterwards."""
+        if self._waiting:
+            self._add_batch()
         footer = _with_blocks(self._footer, self._blocks)
         self._write(b''.join([END, footer, struct.pack('<i', len(footer)), MAGIC]))
 
@@ -201,7 +212,7 @@ class RowStore:
         """Write all rows as Parquet, those of an axis after those of the one before."""
         schema = _named('', frame_of(np.empty(0, ROW))).schema
         frames = register_io_source(lambda *_: self._frames(), schema=schema)
-        frames.sink_parquet(path, compression='zstd')
+        frames.sink_parquet(path, compression='zstd', row_group_size=PART)
 
     def _frames(self) -> Iterator[pl.DataFrame]:
         for axis, table in self._tables.items():

@@ -13,9 +13,12 @@ import pytest
 @pytest.fixture
 def small_parts(monkeypatch):
     monkeypatch.setattr(row_table, 'PART', 30)
+    monkeypatch.setattr(row_table, 'BATCH', 45)
 
 
-def test_a_table_is_an_arrow_file_of_all_rows(judged, tmp_path):
+@pytest.mark.parametrize('batch', [1, 71, 1000])
+def test_a_table_is_an_arrow_file_of_all_rows(judged, tmp_path, monkeypatch, batch):
+    monkeypatch.setattr(row_table, 'BATCH', batch)
     blocks = [
         judged.rows(0, 70, zone=np.arange(70) % 3, tick=np.arange(70) % 2 == 0),
         judged.rows(70, 1, event_id=3),
