@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What health reads of the rows of the judgement, whether they come one by one or as arrays."""
+"""Motion and torque of a row of the judgement, one by one or in an array."""
 
 import math
 from typing import Any

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What health reads of a row of the judgement."""
+"""Motion and torque of a row of the judgement."""
 
 from ballscrew_monitor.health.rows import has_torque, moves
 from ballscrew_monitor.judge.records import Row
