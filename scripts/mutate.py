@@ -32,9 +32,9 @@ EQUIVALENT = TREE / 'test' / 'data' / 'equivalent_mutants.txt'
 COVERED = {
     'ballscrew_monitor/judge/derived_load.py': 'point golden',
     'ballscrew_monitor/judge/inputs.py': 'step monitor golden',
-    'ballscrew_monitor/judge/monitor.py': 'step point dump golden',
+    'ballscrew_monitor/judge/monitor.py': 'step point snapshot golden',
     'ballscrew_monitor/judge/point.py': 'step golden',
-    'ballscrew_monitor/judge/records.py': 'dump inputs zone point monitor step',
+    'ballscrew_monitor/judge/records.py': 'snapshot inputs zone point monitor step',
     'ballscrew_monitor/judge/slopes.py': 'point step',
     'ballscrew_monitor/judge/step.py': 'monitor golden',
     'ballscrew_monitor/judge/views.py': 'inputs zone monitor step golden',

@@ -6,16 +6,8 @@ import functools
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.health.fingerprint import Recogniser
-from ballscrew_monitor.health.gather import (
-    finish,
-    Gathered,
-    GatherMemory,
-    GatherSettings,
-    step,
-    step_many,
-)
+from ballscrew_monitor.health.gather import finish, GatherMemory, GatherSettings, step, step_many
 from ballscrew_monitor.health.records import SpectrumBin, Stretch
-from ballscrew_monitor.health.rows import rows_of
 from ballscrew_monitor.health.spectrum import (
     count,
     count_many,
@@ -24,11 +16,12 @@ from ballscrew_monitor.health.spectrum import (
     take_bins,
 )
 import numpy as np
+from numpy.typing import NDArray
 from surrogate.surface import Found, Surface
 from surrogate.surface.compiled import compiled
 from surrogate.surface.records import as_array, dtype_of, from_array
 
-GATHERED = dtype_of(Gathered)
+STRETCH = dtype_of(Stretch)
 ROOM = 256
 """Stretches that are handed over at a time."""
 
@@ -47,7 +40,7 @@ class Collector:
         """Begin with nothing collected."""
         self._settings = settings or GatherSettings()
         self._memory, self._sums = GatherMemory(), SpectrumMemory()
-        self._found, self._made = Found(), Gathered()
+        self._found, self._stretch = Found(), Stretch()
         self._run = Recogniser(self._settings.free_load)
         self.use_surface(surface)
 
@@ -59,29 +52,34 @@ class Collector:
 
     def take(self, row: Any) -> Collected | None:
         """Take one row of the judgement; return what has ended with it, None for nothing."""
-        made = self._made
-        ended = step(self._settings, self._memory, row, made)
+        ended = step(self._settings, self._memory, row, self._stretch)
         counted = count(self._tables, self._spectrum, self._sums, row, self._found)
         if counted and not ended:
             return None
         bins = [] if counted else take_bins(self._sums)
         if not counted:
             count(self._tables, self._spectrum, self._sums, row, self._found)
-        return Collected(self._run.take([made.stretch()] if ended else []), bins)
+        return Collected(self._run.take(self._taken(ended)), bins)
 
-    def take_many(self, judged: Any) -> Collected:
-        """Take a block of rows, see `rows_of`, compiled."""
-        rows = rows_of(judged)
+    def _taken(self, ended: bool) -> list[Stretch]:
+        """Return the stretch if it has ended, and begin another one."""
+        if not ended:
+            return []
+        stretch, self._stretch = self._stretch, Stretch()
+        return [stretch]
+
+    def take_many(self, rows: NDArray[Any]) -> Collected:
+        """Take rows, an array of ROW, compiled."""
         return Collected(self._run.take(self._gather_many(rows)), self._count_many(rows))
 
     def _gather_many(self, rows: Any) -> list[Stretch]:
         settings, memory = as_array(self._settings), as_array(self._memory)
-        made = np.empty(ROOM, dtype=GATHERED)
+        made = np.empty(ROOM, dtype=STRETCH)
         found: list[Stretch] = []
         at = 0
         while at < len(rows):
             at, number = compiled_step()(settings, memory, rows, made, at, ROOM)
-            found += [from_array(Gathered, one).stretch() for one in made[:number]]
+            found += [from_array(Stretch, one) for one in made[:number]]
         self._memory = from_array(GatherMemory, memory[0])
         return found
 
@@ -104,11 +102,10 @@ class Collector:
         `rows_end` ends the stretch as well.
 
         """
-        made = Gathered()
         found: list[Stretch] = []
         if rows_end:
-            ended = finish(self._settings, self._memory, made)
-            found = self._run.take([made.stretch()] if ended else []) + self._run.finish()
+            ended = finish(self._settings, self._memory, self._stretch)
+            found = self._run.take(self._taken(ended)) + self._run.finish()
         return Collected(found, take_bins(self._sums))
 
 

@@ -76,7 +76,7 @@ class Recogniser:
         return False
 
     def _freed(self, stretch: Stretch) -> Stretch:
-        if stretch.load_source is not LoadSource.DERIVED:
+        if stretch.load_source != LoadSource.DERIVED:
             return stretch
         return dataclasses.replace(
             stretch, axial_load=self._free_load, load_source=LoadSource.FREE

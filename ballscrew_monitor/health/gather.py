@@ -14,17 +14,15 @@ row by row, recordings compile it.
 """
 
 import dataclasses
-import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.health.records import LoadSource, Stretch
+from ballscrew_monitor.health.records import LoadSource
 from ballscrew_monitor.health.rows import has_torque, MAX_GAP, moves
 from ballscrew_monitor.judge.inputs import DERIVED, MEASURED
 from ballscrew_monitor.judge.zone import NO_INPUT, VALID
 from surrogate.surface.records import many
 
-NAN = math.nan
 SPEED_SHARE = 0.02
 """Distance of a block from the mean speed over that mean [-]."""
 LOAD_SHARE, LOAD_WIDTH = 0.1, 50.0
@@ -84,31 +82,6 @@ class GatherMemory:
     start: int = 0
     end: int = 0
     total: list[float] = many(SUMS, 0.0)
-
-
-@dataclasses.dataclass(slots=True)
-class Gathered:
-    """
-    A stretch in numbers alone, as in `Stretch`.
-
-    start [ns], duration [s], speed [rad/s], axial_load [N], temperature [K], motor_torque [N m].
-
-    """
-
-    start: int = 0
-    duration: float = 0.0
-    samples: int = 0
-    speed: float = NAN
-    axial_load: float = NAN
-    temperature: float = NAN
-    motor_torque: float = NAN
-    load_source: int = 0
-    temperature_measured: bool = False
-
-    def stretch(self) -> Stretch:
-        """Return the stretch."""
-        values = {name: getattr(self, name) for name in self.__slots__}
-        return Stretch(**values | {'load_source': LoadSource(self.load_source)})
 
 
 def step(settings: Any, memory: Any, row: Any, made: Any) -> bool:

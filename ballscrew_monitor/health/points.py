@@ -113,7 +113,7 @@ def add(points: Points, stretch: Stretch, surface: Surface, today: int | None = 
         temperature=stretch.temperature,
         motor_torque=stretch.motor_torque,
         residual=stretch.motor_torque - model,
-        load_source=stretch.load_source,
+        load_source=LoadSource(stretch.load_source),
         temperature_measured=stretch.temperature_measured,
     )
     is_new = key_of(point) not in points
@@ -124,7 +124,7 @@ def add(points: Points, stretch: Stretch, surface: Surface, today: int | None = 
 
 
 def _why_not(stretch: Stretch, day: int, today: int | None) -> str:
-    if stretch.load_source is LoadSource.DERIVED:
+    if stretch.load_source == LoadSource.DERIVED:
         return 'a stretch does not count: its load follows from its torque'
     return clock_objection(day, today)
 

@@ -39,24 +39,24 @@ class Place(NamedTuple):
     direction: int
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+@dataclasses.dataclass(kw_only=True, slots=True)
 class Stretch:
     """
-    A stretch of steady motion: means over its samples.
+    A stretch of steady motion: means over its samples, a record of numbers.
 
     start [ns], duration [s]; speed [rad/s], signed; axial_load [N]; temperature [K], measured or
-    assumed; motor_torque [N m].
+    assumed; motor_torque [N m]; `load_source` is the number of a LoadSource.
 
     """
 
-    start: int
-    duration: float
-    samples: int
-    speed: float
-    axial_load: float
-    temperature: float
-    motor_torque: float
-    load_source: LoadSource = LoadSource.MEASURED
+    start: int = 0
+    duration: float = 0.0
+    samples: int = 0
+    speed: float = NAN
+    axial_load: float = NAN
+    temperature: float = NAN
+    motor_torque: float = NAN
+    load_source: int = LoadSource.MEASURED
     temperature_measured: bool = True
 
 

@@ -11,7 +11,7 @@ from ballscrew_monitor.core.conversions import Direction, seconds
 from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource, Why
 from ballscrew_monitor.core.judgement import Code, Zone
 from ballscrew_monitor.core.state import Event, MonitorSettings, Totals
-from ballscrew_monitor.judge.inputs import is_fresh, is_lagging, least_lag, SLOW_GAPS
+from ballscrew_monitor.judge.inputs import is_fresh, least_lag, SLOW_GAPS
 from ballscrew_monitor.judge.records import NOT_KNOWN, RATE_SAMPLES, SHOWN, WHYS
 from ballscrew_monitor.judge.zone import ACTIVE
 from surrogate.surface import REGIMES, Surface
@@ -138,6 +138,9 @@ def input_status_of(
     slow = bool(memory.long_gaps[source] >= SLOW_GAPS)
     lag_known = bool(memory.lags_taken[source])
     known = bool(memory.known[source])
+    lag = int(least_lag(memory, source)) if lag_known else 0
+    causes = source * WHYS
+    newest = max(memory.refused_last[slice(causes, causes + WHYS)])
     return InputStatus(
         source=source,
         state=input_state_of(memory, settings, source, now),
@@ -148,13 +151,15 @@ def input_status_of(
         dropped=int(memory.dropped[source]),
         slow=slow,
         longest_gap=seconds(int(memory.longest_gap[source])) if slow else NAN,
-        lag=seconds(int(least_lag(memory, source))) if lag_known else NAN,
-        lagging=bool(is_lagging(memory, settings, source)),
+        lag=seconds(lag) if lag_known else NAN,
+        lagging=lag_known and lag > settings.max_lag,
         lost=int(memory.lost[source]) if memory.lost_known[source] else None,
         losing=bool(0 <= now - memory.lost_last[source] < SHOWN),
-        implausible=int(memory.refused[source * WHYS + Why.IMPLAUSIBLE]),
-        refusing=tuple(
-            cause for cause in Why if 0 <= now - memory.refused_last[source * WHYS + cause] < SHOWN
+        implausible=int(memory.refused[causes + Why.IMPLAUSIBLE]),
+        refusing=()
+        if now - newest >= SHOWN
+        else tuple(
+            cause for cause in Why if 0 <= now - memory.refused_last[causes + cause] < SHOWN
         ),
         refused_share=_refused_share(memory, source),
         why=None if why == NOT_KNOWN else Why(why),

@@ -15,7 +15,8 @@ from ballscrew_monitor.core.conversions import (
     SECOND,
     seconds,
 )
-from ballscrew_monitor.core.judgement import Zone
+from ballscrew_monitor.core.judgement import PointSource, Zone
+from ballscrew_monitor.judge.records import LIGHT_LOAD, STANDSTILL
 from ballscrew_monitor.messages.state_messages import fill_totals
 from ballscrew_monitor.page import maps
 from ballscrew_monitor.page.axis_view import AxisView
@@ -26,11 +27,9 @@ from ballscrew_monitor.page.phrases import advised, phrase, unjudged
 from ballscrew_monitor.page.questions import Answer, Handler, number_in
 from ballscrew_monitor.page.records import LEVELS, range_record, totals_record, UNKNOWN, ZONES
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.columns import JudgedColumns, LIGHT_LOAD, STANDSTILL
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report.judging import AxisCase, judge_log, OnShare
 from ballscrew_monitor.report.parameters import LogParameters
-from ballscrew_monitor.report.time_series import fresh
 from ballscrew_msgs import msg
 import numpy as np
 from numpy.typing import NDArray
@@ -56,22 +55,31 @@ class Course:
         return int(np.searchsorted(self.rows[:, 0], stamp, side='right'))
 
 
-def _rows_of(block: JudgedColumns) -> Array:
-    still = block.gates & STANDSTILL != 0
-    light = still | (block.gates & LIGHT_LOAD != 0)
+def _rows_of(judged: NDArray[Any]) -> Array:
+    still = judged['gates'] & STANDSTILL != 0
+    light = still | (judged['gates'] & LIGHT_LOAD != 0)
+    measured = judged['motor_torque_source'] == PointSource.MEASURED
     columns = (
-        block.stamp / SECOND,
-        fresh(block.speed / RPM, block.speed_source),
-        fresh(block.axial_load, block.axial_load_source),
-        fresh(block.temperature + celsius(0.0), block.temperature_source),
-        np.where(light, np.nan, block.efficiency),
-        np.where(still, np.nan, block.rcs),
-        np.where(still, np.nan, block.film_ratio),
-        np.where(still, np.nan, block.machine_torque),
-        block.measured_torque,
-        block.level,
+        judged['stamp'] / SECOND,
+        _fresh(judged, 'speed') / RPM,
+        _fresh(judged, 'axial_load'),
+        _fresh(judged, 'temperature') + celsius(0.0),
+        np.where(light, np.nan, judged['efficiency']),
+        *(np.where(still, np.nan, judged[name]) for name in ('rcs', 'film_ratio')),
+        np.where(still, np.nan, judged['machine_torque']),
+        np.where(measured, judged['motor_torque'], np.nan),
+        judged['level'],
     )
-    return np.column_stack(columns)[block.published]
+    return np.column_stack(columns)
+
+
+def _fresh(judged: NDArray[Any], name: str) -> Array:
+    """Return numbers without those that are only held since their input went quiet."""
+    return np.where(judged[f'{name}_source'] == PointSource.HELD, np.nan, judged[name])
+
+
+def _codes_of(judged: NDArray[Any]) -> NDArray[np.uint8]:
+    return np.column_stack([judged[name] for name in CODES]).astype(np.uint8)
 
 
 class RecordedAxis:
@@ -240,19 +248,18 @@ class Recording:
 
 
 class CourseKeeper:
-    """Keeps of the blocks of a recording what its courses are made of."""
+    """Keeps of the rows of a recording what its courses are made of."""
 
     def __init__(self) -> None:
         self._parts: dict[str, list[tuple[Array, NDArray[np.uint8]]]] = {}
 
-    def add(self, block: JudgedColumns) -> None:
-        """Take a block: the rows of which the node publishes a state."""
-        codes = np.column_stack([getattr(block, name) for name in CODES])[block.published]
-        self._parts.setdefault(block.axis, []).append((_rows_of(block), codes))
+    def add(self, axis: str, rows: NDArray[Any]) -> None:
+        """Take rows: those of which the node publishes a state are kept."""
+        published = rows[rows['published']]
+        self._parts.setdefault(axis, []).append((_rows_of(published), _codes_of(published)))
 
-    def blocks(self, axis: str) -> Iterable[JudgedColumns]:
-        """Return none: nothing is asked for again."""
-        return ()
+    def table(self, axis: str) -> None:
+        """Return none: no report is made."""
 
     def course(self, axis: str) -> Course:
         """Return the rows of an axis in the order of their stamps."""

@@ -14,8 +14,7 @@ from ballscrew_monitor.judge.monitor import MOST_OTHERS
 from ballscrew_monitor.messages.state_messages import empty_state, fill_state, out_of_zone_message
 from ballscrew_monitor.messages.unjudged import reason_of
 from ballscrew_monitor.recordings.bulk.events import Events, Notes, places_of_axis, some
-from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns
-from ballscrew_monitor.recordings.summary import event_record
+from ballscrew_monitor.recordings.summary import AxisOutcome, event_record
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 import numpy as np
@@ -38,19 +37,23 @@ class TimedState(NamedTuple):
     event: OutOfZone | None
 
 
-Part = JudgedColumns | TimedState | AxisOutcome
-"""What comes out of judging: a block of rows, a state that was published, or all of an axis."""
+class AxisRows(NamedTuple):
+    """
+    The next rows of an axis, an array of ROW, at least one; those after them overwrite them.
+
+    A row is a speed sample that was judged, or a tick that found no fresh speed; states are
+    published of some rows only.
+
+    """
+
+    axis: str
+    rows: NDArray[Any]
+
+
+Part = AxisRows | TimedState | AxisOutcome
+"""What comes out of judging: rows, a state that was published, or all of an axis."""
 Due = tuple[int, TimedState]
 """The place of an event, and the state that is due at it."""
-
-
-def columns_of(axis: str, rows: NDArray[Any]) -> JudgedColumns:
-    """Return rows of a judgement as columns."""
-    named = {'log_time': 'now', 'worst_nut': 'machine_nut'}
-    return JudgedColumns(
-        axis=axis,
-        **{name: rows[named.get(name, name)].astype(kind) for name, kind in COLUMNS.items()},
-    )
 
 
 class AxisRun:
@@ -65,8 +68,8 @@ class AxisRun:
         self._last_row: Any = None
         self._ended: Event | None = None  # by something else than a sample, and not told yet
 
-    def take(self, events: Events, *, states: bool = True) -> Iterator[JudgedColumns | Due]:
-        """Judge events; yield their rows as columns, and the states that are due."""
+    def take(self, events: Events, *, states: bool = True) -> Iterator[AxisRows | Due]:
+        """Judge events; yield their rows, and the states that are due."""
         notes = _notes_by_source(events)
         for judged in self._judge.judge(events, states=states):
             for place, row in self._told(judged):
@@ -75,7 +78,7 @@ class AxisRun:
                 yield from ((place, one) for one in self._state(log_time, row, states=states))
             if len(judged.rows):
                 self._count(judged.rows)
-                yield columns_of(self.axis.name, judged.rows)
+                yield AxisRows(self.axis.name, judged.rows)
         self._judge.give_back()
         self._hear_others(notes, len(events))
 
@@ -180,7 +183,7 @@ def judged_parts(runs: Sequence[AxisRun], events: Events, *, states: bool) -> It
         places = places_of_axis(events, number)
         mine = events if len(places) == len(events) else some(events, places)
         for part in run.take(mine, states=states):
-            if isinstance(part, JudgedColumns):
+            if isinstance(part, AxisRows):
                 yield part
                 continue
             found.append((int(places[part[0]]), number, part[1]))

@@ -168,21 +168,37 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
 
     def write_batch(self, batch: Batch) -> None:
         """Append the messages of a batch in the order of their log times; see `write_many`."""
-        found, order = list(batch.topics.values()), batch.order()
+        parts, order = list(batch.topics.values()), batch.order()
         if not len(order):
             return
-        which = np.repeat(np.arange(len(found)), [len(each) for each in found])[order]
-        times = np.concatenate([each.log_time for each in found])[order]
-        contents = [content for each in found for content in each.contents()]
-        self.write_many(list(batch.topics), which, [contents[at] for at in order], times)
+        starts, contents = {}, b''  # messages of several topics may lie in the same bytes
+        for part in parts:
+            if id(part.data) not in starts:
+                starts[id(part.data)] = len(contents)
+                contents = contents + part.data if contents else part.data
+        which = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
+        times, sizes = (
+            np.concatenate([getattr(part, name) for part in parts])
+            for name in ('log_time', 'size')
+        )
+        begins = np.concatenate([part.begin + starts[id(part.data)] for part in parts])
+        columns = (which[order], times[order], contents, begins[order], sizes[order])
+        self.write_many(list(batch.topics), *columns)
 
     def write_many(
-        self, topics: Sequence[str], which: Integers, contents: Sequence[bytes], times: Integers
+        self,
+        topics: Sequence[str],
+        which: Integers,
+        times: Integers,
+        data: bytes,
+        begin: Integers,
+        size: Integers,
     ) -> None:
         """
         Append serialised messages, each of one `which` of the `topics`, and number them.
 
-        `times` [ns] are those at which they were logged and count as published.
+        They lie in `data` [bytes]; `times` [ns] are those at which they were logged and count as
+        published.
 
         """
         sequence = np.empty(len(which), np.int64)
@@ -192,7 +208,9 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
                 sequence[own] = np.arange(self._counts[topic], self._counts[topic] + len(own))
                 self._note(topic, len(own), int(times[own].min()), int(times[own].max()))
         channels = np.array([self._channels[topic] for topic in topics])
-        self._writer.add_messages(channels[which], contents, log_time=times, sequence=sequence)
+        self._writer.add_messages(
+            channels[which], data, begin, size, log_time=times, sequence=sequence
+        )
 
     def _note(self, topic: str, count: int, first: int, last: int) -> None:
         """Count messages and widen the span of log times [ns]."""

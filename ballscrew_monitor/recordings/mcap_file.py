@@ -16,7 +16,7 @@ import os
 from pathlib import Path
 import struct
 import sys
-from typing import BinaryIO
+from typing import Any, BinaryIO
 import zlib
 
 from mcap import records
@@ -26,6 +26,7 @@ from mcap.writer import MCAP0_MAGIC
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
+from surrogate.surface.compiled import compiled
 import zstandard
 
 SEPARATOR = '=' * 80
@@ -85,6 +86,7 @@ MESSAGE_FIELDS = np.dtype(
     ]
 )
 """The same as `MESSAGE`, for arrays."""
+HEAD = MESSAGE.size
 BEFORE_LENGTH = 9  # [bytes] of a record that its length does not count
 INDEX = struct.Struct('<BQHI')  # code, length, channel, length of the pairs
 PAIR = struct.Struct('<QQ')  # log time, offset in the chunk
@@ -140,19 +142,18 @@ class McapFile:
     def add_messages(
         self,
         channel: Integers,
-        contents: Sequence[bytes],
+        data: bytes,
+        begin: Integers,
+        size: Integers,
         *,
         log_time: Integers,
         sequence: Integers,
     ) -> None:
-        """Append messages, published when they are logged."""
-        size = np.fromiter(map(len, contents), np.int64, len(contents))
+        """Append messages, which lie in `data` [bytes] and are published when they are logged."""
         heads = _heads(channel, size, log_time, sequence)
-        packed, step = heads.tobytes(), MESSAGE.size
-        parts = [b''] * (2 * len(contents))
-        parts[::2] = [packed[slice(at, at + step)] for at in range(0, len(packed), step)]
-        parts[1::2] = contents
-        self._add_records(heads, memoryview(b''.join(parts)))
+        raw = np.empty(heads.nbytes + int(size.sum()), np.uint8)
+        compiled_join()(heads.view(np.uint8), np.frombuffer(data, np.uint8), begin, size, raw)
+        self._add_records(heads, raw.data)
 
     def flush(self) -> None:
         """End the chunk, and let the system have all that was written."""
@@ -271,6 +272,24 @@ class McapFile:
             (Opcode.ATTACHMENT_INDEX, []),
             (Opcode.METADATA_INDEX, self._metadata),
         )
+
+
+def join_messages(heads: Any, data: Any, begin: Any, size: Any, raw: Any) -> None:
+    """Write into `raw` messages that lie in `data`, each behind its head; arrays of bytes."""
+    at = 0
+    for message in range(len(size)):
+        for place in range(HEAD):
+            raw[at + place] = heads[message * HEAD + place]
+        at += HEAD
+        for place in range(size[message]):
+            raw[at + place] = data[begin[message] + place]
+        at += size[message]
+
+
+@functools.cache
+def compiled_join() -> Any:
+    """Return `join_messages` compiled; raises ImportError without numba."""
+    return compiled(join_messages)
 
 
 def _heads(

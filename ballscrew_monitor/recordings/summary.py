@@ -2,14 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Summary of a run or a replay: totals, events, and the words for them."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 import dataclasses
 import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import rounded, SECOND, seconds
 from ballscrew_monitor.core.fields import stamp_of
-from ballscrew_monitor.core.state import Event, TIMES
+from ballscrew_monitor.core.inputs import InputStatus, Source, Why
+from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.core.state import Event, TIMES, Totals
 from ballscrew_monitor.recordings.declared import plain, written
 from ballscrew_monitor.recordings.words import number, share
 from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
@@ -146,6 +148,47 @@ class Summary:
             f'  {event.event_id:2d}  {self.since_first(event.start):5.1f} s to {end}  '
             f'{event.quantity} {event.relation} {event.shown(event.limit)}, '
             f'worst {event.shown(event.worst_value)}{place}{advice}'
+        )
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class AxisOutcome:
+    """
+    What a recording comes to for one axis.
+
+    `first` and `last` are stamps of states [ns]; `events` in order, one that is still on as far
+    as it is known; `inputs` as they stood at the last row, `refused` messages by input and
+    why; `reason` tells why the last row has no answer, if it has none.
+
+    """
+
+    axis: str
+    first: int
+    last: int
+    rows: int
+    states: int
+    judged: int
+    totals: Totals
+    events: tuple[EventRecord, ...]
+    inputs: tuple[InputStatus, ...]
+    refused: Mapping[Source, Mapping[Why, int]]
+    limits: Limits
+    reason: str = ''
+
+    def summary(self) -> Summary | None:
+        """Return the summary, None without a state."""
+        if not self.states:
+            return None
+        return Summary(
+            axis=self.axis,
+            first=self.first,
+            last=self.last,
+            states=self.states,
+            judged=self.judged,
+            events=self.events,
+            revolutions=self.totals.revolutions,
+            energy_lost=self.totals.energy_lost,
+            **{name: seconds(getattr(self.totals, name)) for name in TIMES},
         )
 
 

@@ -11,19 +11,25 @@ In the machine frame the motor torque is
 whose factor is 1 but for the losses, and whose friction is positive; the constant is weight or a
 wrong zero. A negative factor is a wrong sign of the load, or of the torque if friction is negative
 too; negative friction alone is a wrong sign of the motion. The three follow by least squares from
-sums over all rows in motion, so that a recording need not fit into memory.
+sums over all rows in motion, added up in one compiled pass as those of the survey.
 
 """
 
 import dataclasses
+import functools
 import math
+from typing import Any
 
-from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.core.judgement import PointSource
-from ballscrew_monitor.recordings.columns import Floats, JudgedColumns
+from ballscrew_monitor.judge.inputs import DERIVED, MEASURED
+from ballscrew_monitor.judge.point import NO_DIRECTION, POSITIVE
 import numpy as np
+from numpy.typing import NDArray
+from surrogate.surface.compiled import compiled
+from surrogate.surface.records import as_array, from_array, many
 from surrogate.units import TURN
+
+Floats = NDArray[np.float64]
 
 FEWEST = 50
 """Rows in motion, and in each direction, from which on a sign is told."""
@@ -33,11 +39,8 @@ LARGEST = 3.0
 """Factor up to which losses, an accelerated mass or a rough lead may be the reason [-]."""
 ROUNDING = 1e-9
 """Part of a sum of squares that rounding leaves [-]."""
-MOTION = np.array(
-    [{Direction.POSITIVE: 1.0, Direction.NEGATIVE: -1.0}.get(one, 0.0) for one in Direction]
-)
-"""Sign of the motion by direction."""
-_LOAD, _MOTION, _ONE, _TORQUE = range(4)
+TERMS = 4
+_LOAD, _MOTION, _ONE, _TORQUE = range(TERMS)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -71,68 +74,106 @@ class _Slope:
         return self.is_clear and self.value < 0.0
 
 
+@dataclasses.dataclass(slots=True)
+class BalanceSums:
+    """
+    Sums over the rows in motion, where load and torque are known, the load is, and the torque is.
+
+    Each is of the products of all terms by all: load torque, motion, one and motor torque.
+    Friction by the model [N m] where both are known, and in how many rows it is.
+
+    """
+
+    both: list[float] = many(TERMS * TERMS, 0.0)
+    load: list[float] = many(TERMS * TERMS, 0.0)
+    torque: list[float] = many(TERMS * TERMS, 0.0)
+    friction: float = 0.0
+    judged: int = 0
+
+
+def add_products(sums: Any, rows: Any, lead: float, standstill: float) -> None:
+    """Add rows to an array of one `BalanceSums`; lead [m] and standstill [rad/s]."""
+    for at in range(len(rows)):
+        row = rows[at]
+        if not abs(row.speed) >= standstill or row.direction == NO_DIRECTION:
+            continue
+        # A load that was derived from the torque says nothing new.
+        known = row.axial_load_source != DERIVED and math.isfinite(row.axial_load)
+        load = -lead / TURN * row.axial_load if known else 0.0
+        motion = 1.0 if row.direction == POSITIVE else -1.0
+        measured = row.motor_torque_source == MEASURED and math.isfinite(row.motor_torque)
+        torque = row.motor_torque if measured else 0.0
+        if known:
+            _add(sums[0].load, load, motion, torque)
+        if measured:
+            _add(sums[0].torque, load, motion, torque)
+        if known and measured:
+            _add(sums[0].both, load, motion, torque)
+            if math.isfinite(row.friction_torque):
+                sums[0].friction += row.friction_torque
+                sums[0].judged += 1
+
+
+def _add(products: Any, load: float, motion: float, torque: float) -> None:
+    terms = (load, motion, 1.0, torque)
+    for one in range(TERMS):
+        for other in range(TERMS):
+            products[TERMS * one + other] += terms[one] * terms[other]
+
+
+@functools.cache
+def compiled_products() -> Any:
+    """Return `add_products` compiled; raises ImportError without numba."""
+    return compiled(add_products)
+
+
 class Balancer:
     """Sums of load, motion and motor torque over the rows of an axis in motion."""
 
     def __init__(self, *, lead: float, standstill: float) -> None:
         """Begin with no row; lead [m], the screw moves from a speed `standstill` [rad/s] on."""
         self._lead, self._standstill = lead, standstill
-        # All by all of load torque, motion, one and motor torque: where load and torque are known,
-        # where the load is, and where the torque is.
-        self._both, self._load, self._torque = (np.zeros((4, 4)) for _ in range(3))
-        # Friction by the model [N m] where both are known, and in how many rows it is.
-        self._modelled, self._judged = 0.0, 0
+        self.sums = as_array(BalanceSums())
 
-    def add(self, block: JudgedColumns) -> None:
-        """Take the next rows."""
-        # A load that was derived from the torque says nothing new.
-        derived = block.axial_load_source == PointSource.DERIVED
-        load = np.where(derived, np.nan, -self._lead / TURN * block.axial_load)
-        motion = MOTION[block.direction]
-        moving = (np.abs(block.speed) >= self._standstill) & (motion != 0.0)
-        rows = np.stack([load, motion, np.ones(len(block)), block.measured_torque])[:, moving]
-        load_known, torque_known = np.isfinite(rows[_LOAD]), np.isfinite(rows[_TORQUE])
-        both = load_known & torque_known
-        self._load += _sums(rows[:, load_known])
-        self._torque += _sums(rows[:, torque_known])
-        self._both += _sums(rows[:, both])
-        friction = block.friction_torque[moving][both]
-        self._modelled += float(np.nansum(friction))
-        self._judged += int(np.isfinite(friction).sum())
+    def add(self, rows: NDArray[Any]) -> None:
+        """Take the next rows, an array of ROW."""
+        compiled_products()(self.sums, rows, self._lead, self._standstill)
 
     def result(self) -> Balance:
         """Return what contradicts itself, by all rows so far."""
-        load = _slope(self._both, _LOAD, (_MOTION, _ONE))
-        if self._both[_ONE, _ONE] < FEWEST or not load.is_clear:
-            return Balance(turned=self._turned_by_motion())
-        friction = _slope(self._both, _MOTION, (_LOAD, _ONE))
-        backward = friction.is_negative and _goes_both_ways(self._both)
+        sums = from_array(BalanceSums, self.sums[0])
+        both = _matrix(sums.both)
+        load = _slope(both, _LOAD, (_MOTION, _ONE))
+        if both[_ONE, _ONE] < FEWEST or not load.is_clear:
+            return Balance(turned=_turned_by_motion(_matrix(sums.load), _matrix(sums.torque)))
+        friction = _slope(both, _MOTION, (_LOAD, _ONE))
+        backward = friction.is_negative and _goes_both_ways(both)
         if load.value < 0.0:
             return Balance(turned=Source.TORQUE if backward else Source.LOAD)
         if backward:
             return Balance(turned=Source.SPEED)
         if load.explained < SURE or 1.0 / LARGEST < load.value < LARGEST:
             return Balance()
-        if not self._judged:
+        if not sums.judged:
             return Balance(factor=load.value)
-        modelled = self._modelled / self._judged
-        return Balance(factor=load.value, friction=friction.value / modelled)
-
-    def _turned_by_motion(self) -> Source | None:
-        """Return whose sign looks turned where the load goes with the motion, or is not known."""
-        torque = _slope(self._torque, _MOTION, (_ONE,), ways=True)
-        load = _slope(self._load, _MOTION, (_ONE,), of=_LOAD, ways=True)
-        mean = self._load[_LOAD, _ONE] / max(self._load[_ONE, _ONE], 1.0)
-        aids = load.is_negative and abs(mean) < abs(load.value)  # in both directions
-        if torque.is_negative and aids:  # so it is if the load drives the screw, but for friction
-            return Source.SPEED if torque.value < load.value else None
-        if torque.is_negative:
-            return Source.TORQUE
-        return Source.LOAD if aids else None
+        return Balance(factor=load.value, friction=friction.value / (sums.friction / sums.judged))
 
 
-def _sums(rows: Floats) -> Floats:
-    return np.asarray(rows @ rows.T)
+def _turned_by_motion(load_sums: Floats, torque_sums: Floats) -> Source | None:
+    """Return whose sign looks turned where the load goes with the motion, or is not known."""
+    torque = _slope(torque_sums, _MOTION, (_ONE,), ways=True)
+    load = _slope(load_sums, _MOTION, (_ONE,), of=_LOAD, ways=True)
+    mean = load_sums[_LOAD, _ONE] / max(load_sums[_ONE, _ONE], 1.0)
+    aids = load.is_negative and abs(mean) < abs(load.value)  # in both directions
+    if torque.is_negative and aids:  # so it is if the load drives the screw, but for friction
+        return Source.SPEED if torque.value < load.value else None
+    if torque.is_negative:
+        return Source.TORQUE
+    return Source.LOAD if aids else None
+
+
+def _matrix(products: list[float]) -> Floats:
+    return np.reshape(products, (TERMS, TERMS))
 
 
 def _goes_both_ways(sums: Floats) -> bool:

@@ -10,110 +10,98 @@ and what is left of the page is for every sample around the worst events.
 
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 import dataclasses
 from typing import Any
 
 from ballscrew_monitor.report import page
 from ballscrew_monitor.report.judging import AxisCase, badness
+from ballscrew_monitor.report.row_table import RowTable
 import numpy as np
 from numpy.typing import NDArray
+import polars as pl
+import polars.selectors as cs
 
-Rows = NDArray[np.void]
-"""Rows in the order of their times: `time` [s], numbers by key, NaN for none, codes by key."""
+NUMBERS, CODES = cs.float() - cs.by_name('time', require_all=False), cs.by_dtype(pl.UInt8)
+"""Columns of rows beside their `time` [s]: numbers, NaN for none, and codes."""
 EVEN = 0.05  # [-] of a step, by which samples of an even rate are early or late
 
 
-def row_type(numbers: Iterable[str], codes: Iterable[str]) -> np.dtype[np.void]:
-    """Return the type of rows with numbers and codes of these keys."""
-    fields = [(key, np.float64) for key in ('time', *numbers)]
-    return np.dtype([*fields, *((key, np.uint8) for key in codes)], align=True)
+def bucketed(
+    table: RowTable, columns: Sequence[pl.Expr], span: float, count: int
+) -> tuple[pl.DataFrame, float]:
+    """
+    Return two rows for each of `count` equal parts of a span, and the width of these [s].
+
+    `columns` make rows of those of a table, whose times begin at zero. The first of the two rows
+    has the smallest numbers, the second the largest; both have the largest codes.
+
+    """
+    width = max(span, 1e-9) / count
+    place = over(pl.col('time'), width).cast(pl.Int64).clip(0, count - 1).alias('place')
+    known = pl.when(NUMBERS.is_finite()).then(NUMBERS)
+    ends = (NUMBERS.min().name.prefix('low_'), NUMBERS.max().name.prefix('high_'), CODES.max())
+
+    def query(part: pl.LazyFrame) -> pl.LazyFrame:
+        return part.select(*columns).select(place, known, CODES).group_by('place').agg(*ends)
+
+    parts = (
+        table.collect(query)
+        .group_by('place')
+        .agg(cs.starts_with('low_').min(), cs.starts_with('high_').max(), CODES.max())
+    )
+    every = pl.DataFrame({'place': np.arange(count)}).join(parts, 'place', 'left').sort('place')
+    rows: dict[str, Any] = {'time': (np.arange(2 * count) + 0.5) * (width / 2.0)}
+    for name in every.columns:
+        if name.startswith('low_'):
+            both = every.select(name, name.replace('low_', 'high_', 1)).fill_null(np.nan)
+            rows[name.removeprefix('low_')] = both.to_numpy().ravel()
+    for codes in every.select(CODES):
+        rows[codes.name] = np.repeat(codes.fill_null(0).to_numpy(), 2)
+    return pl.DataFrame(rows), width
 
 
-def numbers_of(rows: Rows) -> dict[str, NDArray[np.float64]]:
-    """Return the numbers of rows by key, which write through."""
-    return {key: values for key, values in _columns(rows, 'f').items() if key != 'time'}
+def over(value: pl.Expr, divisor: float) -> pl.Expr:
+    """Return a quotient that is rounded once: polars multiplies with the inverse of a number."""
+
+    def quotient(numbers: pl.Series) -> pl.Series:
+        return pl.Series(numbers.to_numpy() / divisor)
+
+    return value.map_batches(quotient, return_dtype=pl.Float64, is_elementwise=True)
 
 
-def codes_of(rows: Rows) -> dict[str, NDArray[np.uint8]]:
-    """Return the codes of rows by key, which write through."""
-    return _columns(rows, 'u')
+def between(stretches: Sequence[tuple[float, float]]) -> pl.Expr:
+    """Return which times lie within stretches [s], which are in order and do not overlap."""
+    edges = pl.Series(np.array(stretches, dtype=float).reshape(-1))
+    return pl.lit(edges).search_sorted(pl.col('time'), side='right') % 2 == 1
 
 
-def _columns(rows: Rows, kind: str) -> dict[str, NDArray[Any]]:
-    return {key: rows[key] for key in rows.dtype.names or () if rows.dtype[key].kind == kind}
-
-
-class Buckets:
-    """Smallest and largest number, and the largest code, of each of equal parts of a span."""
-
-    def __init__(self, span: float, kind: np.dtype[np.void], *, count: int) -> None:
-        """Begin without rows of a `kind`; `span` [s] is that of a time line from zero on."""
-        self.width = max(span, 1e-9) / count
-        self._low, self._high = np.zeros((2, count), kind)
-        for ends, extreme in ((self._low, np.inf), (self._high, -np.inf)):
-            for values in numbers_of(ends).values():
-                values[:] = extreme
-
-    def add(self, rows: Rows) -> None:
-        """Take rows, in any order."""
-        place = np.clip((rows['time'] / self.width).astype(int), 0, self._low.size - 1)
-        for key, values in numbers_of(rows).items():
-            known = np.isfinite(values)
-            np.minimum.at(self._low[key], place[known], values[known])
-            np.maximum.at(self._high[key], place[known], values[known])
-        for key, found in codes_of(rows).items():
-            np.maximum.at(self._high[key], place, found)
-
-    def rows(self) -> Rows:
-        """Return two rows for each bucket: the smallest, then the largest."""
-        made = np.stack([self._low, self._high], axis=-1).ravel()
-        made['time'] = (np.arange(made.size) + 0.5) * (self.width / 2.0)
-        for values in numbers_of(made).values():
-            values[~np.isfinite(values)] = np.nan
-        for codes in codes_of(made).values():
-            codes[::2] = codes[1::2]
-        return made
-
-
-def in_order(rows: Rows) -> Rows:
-    """Return rows sorted by time, equal times in the order in which they came."""
-    return rows[np.argsort(rows['time'], kind='stable')]
-
-
-def between(rows: Rows, stretches: Sequence[tuple[float, float]]) -> Rows:
-    """Return the rows within stretches of time [s], which are in order and do not overlap."""
-    edges = np.array(stretches, dtype=float).reshape(-1)
-    return rows[np.searchsorted(edges, rows['time'], side='right') % 2 == 1]
-
-
-def with_breaks(rows: Rows, longest: float) -> Rows:
+def with_breaks(rows: pl.DataFrame, longest: float) -> pl.DataFrame:
     """Return rows with one of no number, code 0, after each that is followed by a longer hole."""
-    holes = np.flatnonzero(np.diff(rows['time']) > longest)
-    breaks = np.zeros(holes.size, rows.dtype)
-    breaks['time'] = rows['time'][holes] + 1e-6
-    for values in numbers_of(breaks).values():
-        values[:] = np.nan
-    return np.insert(rows, holes + 1, breaks)
+    holes = rows.filter(pl.col('time').shift(-1) - pl.col('time') > longest)
+    breaks = holes.with_columns(
+        pl.col('time') + 1e-6, NUMBERS * np.nan, CODES * pl.lit(0, pl.UInt8)
+    )
+    return pl.concat([rows, breaks]).sort('time', maintain_order=True)
 
 
-def coarse_record(rows: Rows) -> dict[str, Any]:
+def coarse_record(rows: pl.DataFrame) -> dict[str, Any]:
     """Return rows as a page carries them."""
     return {
         'time': page.doubles(rows['time']),
-        'columns': {key: page.floats(values) for key, values in numbers_of(rows).items()},
-        'codes': {key: page.codes(values) for key, values in codes_of(rows).items()},
+        'columns': {one.name: page.floats(one) for one in rows.select(NUMBERS)},
+        'codes': {one.name: page.codes(one) for one in rows.select(CODES)},
     }
 
 
-def fine_record(rows: Rows) -> dict[str, Any]:
+def fine_record(rows: pl.DataFrame) -> dict[str, Any]:
     """Return the numbers of a stretch; its times only where they are not even."""
-    time = rows['time']
+    time = rows['time'].to_numpy()
     record: dict[str, Any] = {
         'begin': float(time[0]),
         'end': float(time[-1]),
         'count': time.size,
-        'columns': {key: page.packed(values) for key, values in numbers_of(rows).items()},
+        'columns': {one.name: page.packed(one) for one in rows.select(NUMBERS)},
     }
     return record if _is_even(time) else record | {'time': page.packed(time)}
 

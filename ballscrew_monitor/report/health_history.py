@@ -27,8 +27,8 @@ from ballscrew_monitor.health.records import (
 )
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.spectrum import merged_bins
-from ballscrew_monitor.recordings.columns import JudgedColumns
 from ballscrew_monitor.report.machines import MachineAxis
+from numpy.typing import NDArray
 from surrogate.surface import Surface
 
 NAN = math.nan
@@ -56,7 +56,7 @@ class AxisHistory:
 
 
 class HistoryMaker:
-    """Gathers the blocks of one axis in order."""
+    """Gathers the rows of one axis in order."""
 
     def __init__(self, surface: Surface, settings: GatherSettings | None = None) -> None:
         """Begin with nothing; `surface` is that of the judgement."""
@@ -66,15 +66,15 @@ class HistoryMaker:
         self._bins: list[SpectrumBin] = []
         self._last = 0
 
-    def add(self, block: JudgedColumns) -> None:
-        """Take the next rows."""
-        self._last = int(block.stamp[-1])
-        self._take(self._collector.take_many(block))
+    def add(self, rows: NDArray[Any]) -> None:
+        """Take the next rows, an array of ROW."""
+        self._last = int(rows['stamp'][-1])
+        self._take(self._collector.take_many(rows))
 
     def history(
         self, axis: str, surface: Path, settings: MonitorSettings, *, machine: str = ''
     ) -> AxisHistory:
-        """Return what came of all blocks."""
+        """Return what came of all rows."""
         self._take(self._collector.finish())
         return AxisHistory(
             axis=axis,

@@ -7,9 +7,8 @@ Printing asks for no more than the node: nothing here loads what pages and table
 
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 import dataclasses
-import functools
 import math
 from typing import Any, Protocol, TYPE_CHECKING
 
@@ -17,12 +16,11 @@ from ballscrew_monitor.core.conversions import LINEAR_UNITS, POSITION_UNITS, Sca
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.core.state import MonitorSettings
-from ballscrew_monitor.recordings.axis_run import TimedState
+from ballscrew_monitor.recordings.axis_run import AxisRows, TimedState
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.columns import AxisOutcome, JudgedColumns
 from ballscrew_monitor.recordings.recorded_events import judged_by_events
 from ballscrew_monitor.recordings.replay import ignore, replay_parts
-from ballscrew_monitor.recordings.summary import EventRecord
+from ballscrew_monitor.recordings.summary import AxisOutcome, EventRecord
 from ballscrew_monitor.recordings.words import feed_first
 from ballscrew_monitor.report.balance import Balance, Balancer
 from ballscrew_monitor.report.machines import folder_of
@@ -36,24 +34,24 @@ from ballscrew_monitor.settings.axis import (
     surface_file,
 )
 from ballscrew_monitor.settings.parameters import is_configured
+from numpy.typing import NDArray
 from surrogate.surface import ContactOnset, onset_of_surface, Surface, ZoneLimits
 
 if TYPE_CHECKING:  # they ask for packages that printing does not need
     from ballscrew_monitor.report.health_history import AxisHistory, HistoryMaker
+    from ballscrew_monitor.report.row_table import RowTable
 
-Blocks = Callable[[], Iterable[JudgedColumns]]
-"""Gives the blocks of rows of an axis in order, as often as it is called."""
 RCS = 'RCS'
 
 
 class RowKeeper(Protocol):
-    """Keeps the blocks of rows of all axes."""
+    """Keeps the rows of all axes."""
 
-    def add(self, block: JudgedColumns) -> None:
-        """Take a block."""
+    def add(self, axis: str, rows: NDArray[Any]) -> None:
+        """Take the next rows of an axis, an array of ROW with at least one."""
 
-    def blocks(self, axis: str) -> Iterable[JudgedColumns]:
-        """Return the blocks of an axis in order."""
+    def table(self, axis: str) -> 'RowTable | None':
+        """Return the rows of an axis that has some, None if they are not for a report."""
 
 
 FIRST_DATE = 978_307_200.0
@@ -85,7 +83,7 @@ class InputSetting:
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class AxisCase:
     """
-    An axis that has rows; `inputs` holds those that have a topic; `blocks` gives the rows again.
+    An axis that has rows; `inputs` holds those that have a topic; `rows` are kept for a report.
 
     `nominal`: the parameters are those taken where nobody gave any; `numbered`: the recording
     tells how many messages were lost on their way to it; `onset`: where contact begins with the
@@ -99,13 +97,20 @@ class AxisCase:
     inputs: Mapping[Source, InputSetting]
     outcome: AxisOutcome
     survey: Survey
-    blocks: Blocks = tuple  # none are kept
+    rows: 'RowTable | None' = None
     facts: AxisFacts = AxisFacts()
     nominal: bool = False
     numbered: bool = False
     history: 'AxisHistory | None' = None
     onset: ContactOnset | None = None
     balance: Balance = Balance()
+
+    @property
+    def row_table(self) -> 'RowTable':
+        """Return its rows; they must have been kept."""
+        if self.rows is None:
+            raise ValueError(f'the rows of axis {self.axis} were not kept')
+        return self.rows
 
     @property
     def contact(self) -> str:
@@ -217,7 +222,7 @@ def badness(event: EventRecord) -> tuple[float, float]:
 
 
 class CaseMaker:
-    """Takes the blocks of one axis in order, and makes its case of them."""
+    """Takes the rows of one axis in order, and makes its case of them."""
 
     def __init__(
         self,
@@ -245,12 +250,12 @@ class CaseMaker:
         )
         self._history = None if make is None else make(self._surface, gathering_of(axis, values))
 
-    def add(self, block: JudgedColumns) -> None:
-        """Take the next block of rows."""
-        self._surveyor.add(block)
-        self._balancer.add(block)
+    def add(self, rows: NDArray[Any]) -> None:
+        """Take the next rows, an array of ROW."""
+        self._surveyor.add(rows)
+        self._balancer.add(rows)
         if self._history is not None:
-            self._history.add(block)
+            self._history.add(rows)
 
     def case(self, outcome: AxisOutcome, **known: Any) -> AxisCase:
         """Return the axis as it is after at least one row; `known` are more of its fields."""
@@ -324,12 +329,12 @@ def judge_log(
     for part in _parts(bag, parameters.values, on_share, on_state):
         if isinstance(part, AxisOutcome):
             outcomes.append(part)
-        elif len(part):
+        else:
             if part.axis not in makers:
                 makers[part.axis] = CaseMaker(part.axis, parameters.values, health, machine)
-            makers[part.axis].add(part)
+            makers[part.axis].add(part.rows)
             if rows is not None:
-                rows.add(part)
+                rows.add(part.axis, part.rows)
     numbered = judged_by_events(bag, parameters.values)
     return LogCase(
         name=bag.path.name,
@@ -337,7 +342,7 @@ def judge_log(
         axes=[
             makers[one.axis].case(
                 one,
-                blocks=tuple if rows is None else functools.partial(rows.blocks, one.axis),
+                rows=None if rows is None else rows.table(one.axis),
                 facts=parameters.axes.get(one.axis, AxisFacts()),
                 nominal=parameters.nominal,
                 numbered=numbered,
@@ -354,7 +359,7 @@ def judge_log(
 
 def _parts(
     bag: Bag, values: Mapping[str, Any], on_share: OnShare, on_state: OnState | None
-) -> Iterator[JudgedColumns | AxisOutcome]:
+) -> Iterator[AxisRows | AxisOutcome]:
     """Yield rows and outcomes; states, which cost more than these, are made only if wanted."""
     for part in replay_parts(bag, values, states=on_state is not None, on_done=on_share):
         if not isinstance(part, TimedState):

@@ -3,11 +3,10 @@
 """
 One recording, judged and reported into a directory of its own.
 
-Judged rows wait there in blocks until all are there, so that a recording larger than memory
-becomes one file, and a report can go through them twice. Codes are stored by their names. The
-folder of the blocks is hidden and does not outlive the report: a process keeps a lock in it as
-long as it lives, so that one that was left by a killed process is known from one in use, also on a
-network file system that knows locks.
+Judged rows wait there in a table, so that a recording may be larger than memory, and pages ask for
+what they draw. The folder of the table is hidden and does not outlive the report: a process keeps
+a lock in it as long as it lives, so that one that was left by a killed process is known from one
+in use, also on a network file system that knows locks.
 
 """
 
@@ -15,7 +14,6 @@ from collections.abc import Iterator, Sequence
 import contextlib
 import csv
 import dataclasses
-import enum
 import fcntl
 import math
 from pathlib import Path
@@ -24,7 +22,6 @@ from typing import Any
 import uuid
 
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.columns import CODED, COLUMNS, JudgedColumns
 from ballscrew_monitor.recordings.declared import keys, plain
 from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.recordings.summary import EventRecord
@@ -37,76 +34,11 @@ from ballscrew_monitor.report.log_page import maps_of, report_page
 from ballscrew_monitor.report.machines import MachineAxis
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.printed import summary_record
+from ballscrew_monitor.report.row_table import RowStore
 from ballscrew_monitor.report.verdict import AxisVerdict, verdicts_of
-import numpy as np
-import polars as pl
 from surrogate.files import json_text, new_file, replace_file
 
 PREFIX, LOCK = '.rows-', 'lock'
-
-
-def frame_of(block: JudgedColumns) -> pl.DataFrame:
-    """Return a block of rows as a frame; the axis is its first column."""
-    columns: dict[str, Any] = {'axis': [block.axis] * len(block)}
-    for name in COLUMNS:
-        values = getattr(block, name)
-        columns[name] = _named(values, CODED[name]) if name in CODED else values
-    return pl.DataFrame(columns, schema_overrides={'axis': pl.String})
-
-
-def block_of(frame: pl.DataFrame) -> JudgedColumns:
-    """Return a frame with rows of one axis, at least one, as a block."""
-    arrays = {
-        name: (frame[name].to_physical() if name in CODED else frame[name]).to_numpy()
-        for name in COLUMNS
-    }
-    return JudgedColumns(
-        axis=frame['axis'][0],
-        **{name: np.ascontiguousarray(arrays[name], dtype=kind) for name, kind in COLUMNS.items()},
-    )
-
-
-def _named(values: Any, kind: type[enum.IntEnum]) -> pl.Series:
-    names = [member.name for member in kind]
-    return pl.Series(names, dtype=pl.Enum(names)).gather(values)
-
-
-class RowStore:
-    """
-    Keeps blocks of rows on disk, by axis, in a `folder`.
-
-    The folder is a `scratch_folder`, which goes with what else was put there.
-
-    """
-
-    def __init__(self, folder: Path) -> None:
-        """Begin with no block."""
-        self.folder = folder
-        self._parts: dict[str, list[Path]] = {}
-        self._count = 0
-
-    def add(self, block: JudgedColumns) -> None:
-        """Keep a block."""
-        if len(block):
-            part = self.folder / f'{self._count:06d}.arrow'
-            frame_of(block).write_ipc(part)
-            self._parts.setdefault(block.axis, []).append(part)
-            self._count += 1
-
-    def blocks(self, axis: str) -> Iterator[JudgedColumns]:
-        """Yield the blocks of an axis in order."""
-        for part in self._parts.get(axis, []):
-            yield block_of(pl.read_ipc(part))
-
-    def write(self, path: Path) -> None:
-        """Write all rows as Parquet, which appears only when it is complete."""
-        parts = [part for axis in self._parts.values() for part in axis]
-        with new_file(path) as partial:
-            if parts:
-                pl.scan_ipc(parts).sink_parquet(partial, compression='zstd')
-            else:
-                nothing = {name: np.empty(0, kind) for name, kind in COLUMNS.items()}
-                frame_of(JudgedColumns(axis='', **nothing)).write_parquet(partial)
 
 
 @contextlib.contextmanager
@@ -222,7 +154,9 @@ def report_log(
                 on_state=add_state,
                 health=HistoryMaker,
             )
-        store.write(made / logs.STATES)
+        store.end()
+        with new_file(made / logs.STATES) as partial:
+            store.write(partial)
         on_share(STORED_SHARE)
         write_events(made / logs.EVENTS, log)
         replace_file(made / logs.SUMMARY, json_text(summary_record(log)).encode())

@@ -7,19 +7,24 @@ import dataclasses
 import math
 from typing import Any
 
-from ballscrew_monitor.core.conversions import celsius, direction_of, opposing_load, SECOND
+from ballscrew_monitor.core.conversions import (
+    celsius,
+    Direction,
+    direction_of,
+    opposing_load,
+    SECOND,
+)
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.recordings.columns import JudgedColumns
 from ballscrew_monitor.recordings.declared import written
 from ballscrew_monitor.report import operating_field
 from ballscrew_monitor.report.judging import AxisCase
 from ballscrew_monitor.report.operating_field import Field
 from ballscrew_monitor.report.page import floats, packed
-from ballscrew_monitor.report.survey import opposing_loads
 from contourpy import contour_generator
 import numpy as np
 from numpy.typing import NDArray
+import polars as pl
 from surrogate.surface import FILM_RATIO_LIMITS
 from surrogate.units import RPM
 
@@ -184,14 +189,40 @@ def map_line(
 
 
 def _dwell(case: AxisCase, speeds: tuple[float, float], loads: tuple[float, float]) -> Array:
-    """Return the time spent in each cell [s]."""
-    edges = np.linspace(*loads, ROWS + 1), np.geomspace(*speeds, COLUMNS + 1)
-    dwell = np.zeros((ROWS, COLUMNS))
-    for block in case.blocks():
-        moving = np.abs(block.speed) >= case.settings.limits.standstill_speed
-        load = np.where(moving, opposing_loads(block), np.nan)
-        dwell += _time_spent(case, block, load, edges)
-    return dwell
+    """Return the time spent in each cell [s]; before a gap it is not counted."""
+    longest, limits = case.settings.timeouts[Source.SPEED], case.settings.limits
+    step, speed = pl.col('stamp').shift(-1) - pl.col('stamp'), pl.col('speed').abs()
+    cells = (
+        _cell(_opposing(), np.linspace(*loads, ROWS + 1)).alias('row'),
+        _cell(speed, np.geomspace(*speeds, COLUMNS + 1)).alias('column'),
+    )
+
+    def query(part: pl.LazyFrame) -> pl.LazyFrame:
+        moving = speed >= limits.standstill_speed
+        lasting = part.with_columns(step=step).filter(moving)
+        lasting = lasting.filter(pl.col('step').is_between(1, longest))
+        return lasting.group_by(*cells).agg(pl.sum('step'))
+
+    found = case.row_table.collect(query, ahead=1).drop_nulls()
+    row, column, time = (found[name].to_numpy() for name in ('row', 'column', 'step'))
+    dwell = np.zeros((ROWS, COLUMNS), np.int64)
+    np.add.at(dwell, (row, column), time)
+    return dwell / SECOND
+
+
+def _opposing() -> pl.Expr:
+    """Return the load that opposes the motion [N], null where its direction is not known."""
+    load, direction = pl.col('axial_load'), pl.col('direction')
+    forward, backward = direction == Direction.POSITIVE, direction == Direction.NEGATIVE
+    return pl.when(forward).then(0.0 - load).when(backward).then(load)
+
+
+def _cell(value: pl.Expr, edges: Array) -> pl.Expr:
+    """Return between which edges a number is, null if between none; the last one belongs to it."""
+    place = pl.lit(pl.Series(edges)).search_sorted(value, side='right').cast(pl.Int64) - 1
+    last = len(edges) - 1
+    place = pl.when(value == edges[-1]).then(last - 1).otherwise(place)
+    return pl.when(value.is_finite() & place.is_between(0, last - 1)).then(place)
 
 
 def _marks(case: AxisCase) -> Iterable[MapMark]:
@@ -204,18 +235,6 @@ def _marks(case: AxisCase) -> Iterable[MapMark]:
                 load=opposing_load(event.axial_load, direction_of(event.speed)),
                 **dict(zip(('begin', 'end'), case.shown(event))),
             )
-
-
-def _time_spent(
-    case: AxisCase, block: JudgedColumns, load: Array, edges: tuple[Array, Array]
-) -> Array:
-    """Return the time of a block in each cell [s]; before a gap it is not counted."""
-    steps = np.where(
-        block.time_to_next <= case.settings.timeouts[Source.SPEED], block.time_to_next, 0
-    )
-    known = np.isfinite(load) & (steps > 0)
-    weights = steps[known] / SECOND
-    return np.histogram2d(load[known], np.abs(block.speed[known]), edges, weights=weights)[0]
 
 
 def map_legend(case: AxisCase, chart: OperatingMap) -> list[tuple[tuple[str, ...], str]]:

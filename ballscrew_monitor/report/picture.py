@@ -10,7 +10,6 @@ import textwrap
 from typing import Any
 
 from ballscrew_monitor.report import map_record
-from ballscrew_monitor.report.buckets import Rows
 from ballscrew_monitor.report.judging import AxisCase, LogCase
 from ballscrew_monitor.report.map_record import OperatingMap
 from ballscrew_monitor.report.page import component
@@ -22,6 +21,7 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 import numpy as np
+import polars as pl
 from surrogate.plotting.style import draw_picture, new_figure
 
 WIDTH, HEIGHT = 11.0, 16.0  # [inch] of an axis
@@ -185,13 +185,15 @@ def _legend(axes: Axes, entries: list[Any], height: float) -> None:
     axes.legend(handles=entries, ncols=3, frameon=False, fontsize=8, **place)
 
 
-def _draw_bars(axes: Axes, case: AxisCase, rows: Rows) -> None:
+def _draw_bars(axes: Axes, case: AxisCase, rows: pl.DataFrame) -> None:
     """Draw zone, warning and regime as bars, the warnings with the numbers of the worst."""
     edges = np.append(rows['time'], rows['time'][-1])
     for place, (key, _, colours) in enumerate(reversed(BARS)):
         cmap = ListedColormap([COLOURS[colour] for colour in colours])
         limits: dict[str, Any] = {'vmin': -0.5, 'vmax': len(colours) - 0.5}
-        axes.pcolormesh(edges, [place, place + 0.9], rows[key][None], cmap=cmap, **limits)
+        axes.pcolormesh(
+            edges, [place, place + 0.9], rows[key].to_numpy()[None], cmap=cmap, **limits
+        )
         for event in case.worst_first[: map_record.MARKED] if key == 'level' else ():
             middle = 0.5 * sum(case.span(event))
             axes.text(middle, place + 0.45, str(event.event_id), fontsize=8, **CENTRED)
@@ -201,11 +203,11 @@ def _draw_bars(axes: Axes, case: AxisCase, rows: Rows) -> None:
     _legend(axes, [_entry(kind, label=text) for kind, text in BAR_LEGEND if kind in COLOURS], 2.0)
 
 
-def _draw_panel(axes: Axes, panel: dict[str, Any], rows: Rows) -> None:
+def _draw_panel(axes: Axes, panel: dict[str, Any], rows: pl.DataFrame) -> None:
     """Draw the numbers of a panel with its limits and bands; what is below its floor, on it."""
     floor, seen = panel['floor'], list(panel['show'])
     for series in panel['series']:
-        values = rows[series['key']]
+        values = rows[series['key']].to_numpy()
         values = values if floor is None else np.maximum(values, floor)
         style = 'dashed' if series['dashed'] else 'solid'
         axes.plot(

@@ -4,11 +4,14 @@
 The first look at the judged rows of an axis: spans, sums, gaps, and what could not be judged.
 
 Each row is taken to last until the next one, unless that is longer than the timeout of the speed:
-then it is a gap. Rows come in blocks, so that a long recording need not fit into memory.
+then it is a gap. One compiled pass adds the rows up as they are judged, so that nothing of a
+recording need be kept, and a replay that is only printed asks for no table of them. Functions of
+the subset that numba compiles; `row` is a `judge.records.Row`.
 
 """
 
 import dataclasses
+import functools
 import heapq
 import math
 from typing import Any
@@ -17,21 +20,33 @@ from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import PointSource, Reason, Zone
 from ballscrew_monitor.core.state import Extremes
-from ballscrew_monitor.recordings.columns import Flags, Floats, JudgedColumns, Times
+from ballscrew_monitor.judge.inputs import (
+    DERIVED,
+    HELD,
+    LOAD,
+    MEASURED,
+    SPEED,
+    TEMPERATURE,
+    TORQUE,
+)
+from ballscrew_monitor.judge.point import NO_DIRECTION, opposing_load
 from ballscrew_monitor.recordings.declared import unwritten, written
 import numpy as np
+from numpy.typing import NDArray
+from surrogate.surface.compiled import compiled
+from surrogate.surface.records import as_array, from_array, many
 
+NAN = math.nan
 REST = 'no speed was recorded'
 """The time without rows in words."""
 MOST_GAPS = 1000  # of the longest that are kept
 STRAY = 1.5  # times the span of log times from which on stamps are no time line
 STRAY_MARGIN = 60 * SECOND  # [ns]
-COLUMN_OF = {
-    Source.SPEED: 'speed',
-    Source.LOAD: 'axial_load',
-    Source.TEMPERATURE: 'temperature',
-    Source.TORQUE: 'motor_torque',
-}
+INPUTS, ORIGINS = len(Source), len(PointSource)
+# Places of the numbers of a span: the inputs, what opposes the motion and the oil in motion,
+# measured and modelled torque there, and their difference by the direction of the motion.
+OPPOSING, OIL, COMPARED, RESIDUAL, BY_DIRECTION = range(INPUTS, INPUTS + 5)
+SPANS = BY_DIRECTION + len(Direction)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -107,164 +122,137 @@ class Survey:
         return (self.last - self.first) / SECOND
 
 
-def opposing_loads(block: JudgedColumns) -> Floats:
-    """Return the loads that oppose the motion [N], NaN where its direction is not known."""
-    signs = np.full(3, np.nan)
-    signs[Direction.POSITIVE], signs[Direction.NEGATIVE] = -1.0, 1.0
-    return 0.0 + signs[block.direction] * block.axial_load
+@dataclasses.dataclass(slots=True)
+class RowSums:
+    """The sums over rows, and the last of them; stamps and times [ns], energy [J], the rest SI."""
+
+    rows: int = 0
+    first: int = 0
+    last: int = 0
+    first_log: int = 0
+    last_log: int = 0
+    count: list[int] = many(SPANS, 0)
+    low: list[float] = many(SPANS, math.inf)
+    high: list[float] = many(SPANS, -math.inf)
+    total: list[float] = many(SPANS, 0.0)
+    squares: list[float] = many(SPANS, 0.0)
+    sources: list[int] = many(INPUTS * ORIGINS, 0)  # rows by input, then by source
+    gaps: list[int] = many(INPUTS, 0)
+    gap_time: list[int] = many(INPUTS, 0)
+    reason_time: list[int] = many(len(Reason), 0)
+    moving_time: list[int] = many(len(Reason), 0)
+    uncounted: int = 0
+    energy: list[float] = many(len(Zone), 0.0)
+    # the last row
+    stamp: int = 0
+    reason: int = 0
+    zone: int = 0
+    moved: bool = False
+    power: float = 0.0
+    held: list[int] = many(INPUTS, 0)
 
 
-class _Running:
-    """Lowest, highest and sum of the finite numbers so far."""
+def add_rows(sums: Any, rows: Any, standstill: float, max_gap: int) -> None:
+    """
+    Add rows to an array of one `RowSums`.
 
-    def __init__(self) -> None:
-        self.low = self.high = math.nan
-        self.total, self.squares, self.count = 0.0, 0.0, 0
+    The screw moves from a speed `standstill` [rad/s] on; a row lasts until the next one, at most
+    `max_gap` [ns].
 
-    def add(self, values: Floats) -> None:
-        known = values[np.isfinite(values)]
-        if known.size:
-            self.low = float(np.fmin(self.low, known.min()))
-            self.high = float(np.fmax(self.high, known.max()))
-            self.total += float(known.sum())
-            self.squares += float(np.square(known).sum())
-            self.count += known.size
-
-    @property
-    def mean(self) -> float:
-        return self.total / self.count if self.count else math.nan
-
-    @property
-    def rms(self) -> float:
-        return math.sqrt(self.squares / self.count) if self.count else math.nan
-
-    def span(self) -> Extremes:
-        return Extremes(low=self.low, high=self.high, mean=self.mean)
+    """
+    for at in range(len(rows)):
+        _add_time(sums[0], rows[at], max_gap)
+        _add_numbers(sums[0], rows[at], standstill)
 
 
-class _Stretches:
-    """How often and how long something held from row to row."""
+def _add_time(sums: Any, row: Any, max_gap: int) -> None:
+    """Add the time from the last row to this one to what held at the last one."""
+    if sums.rows == 0:
+        sums.first, sums.last = row.stamp, row.stamp
+        sums.first_log, sums.last_log = row.now, row.now
+    else:
+        step = row.stamp - sums.stamp
+        if step > max_gap:
+            sums.uncounted += step
+        elif step > 0:
+            sums.reason_time[sums.reason] += step
+            if sums.moved:
+                sums.moving_time[sums.reason] += step
+            sums.energy[sums.zone] += sums.power * (step / SECOND)
+            for source in range(INPUTS):
+                if sums.held[source] != 0:
+                    sums.gap_time[source] += step
+    sums.rows += 1
+    sums.first, sums.last = min(sums.first, row.stamp), max(sums.last, row.stamp)
+    sums.first_log, sums.last_log = min(sums.first_log, row.now), max(sums.last_log, row.now)
 
-    def __init__(self) -> None:
-        self._count, self._time, self._before = 0, 0.0, False
 
-    def add(self, holds: Flags, steps: Floats) -> None:
-        """Take the next rows; `steps` [s] lead to each of them, or to each but the very first."""
-        held = np.insert(holds[:-1], 0, self._before)
-        self._count += int(np.count_nonzero(holds & ~held))
-        first = len(held) - len(steps)
-        self._time += float(steps[held[first:]].sum())
-        self._before = bool(holds[-1])
+def _add_numbers(sums: Any, row: Any, standstill: float) -> None:
+    """Add the numbers of a row, and keep what holds until the next one."""
+    moving = abs(row.speed) >= standstill
+    _add_input(sums, SPEED, row.speed, row.speed_source)
+    _add_input(sums, LOAD, row.axial_load, row.axial_load_source)
+    _add_input(sums, TEMPERATURE, row.temperature, row.temperature_source)
+    _add_input(sums, TORQUE, row.motor_torque, row.motor_torque_source)
+    power = row.friction_torque * abs(row.speed)
+    sums.power = power if moving and math.isfinite(power) else 0.0
+    sums.stamp, sums.reason, sums.zone = row.stamp, row.reason, row.zone
+    sums.moved = moving and not row.tick
+    if not moving:
+        return
+    _add(sums, OIL, row.temperature)
+    if row.direction != NO_DIRECTION:
+        _add(sums, OPPOSING, opposing_load(row))
+    # Of a load that is derived from it, the torque of the model says nothing new.
+    if row.motor_torque_source == MEASURED and row.axial_load_source != DERIVED:
+        residual = row.motor_torque - row.machine_torque
+        if math.isfinite(residual):
+            _add(sums, COMPARED, row.motor_torque)
+            _add(sums, RESIDUAL, residual)
+            _add(sums, BY_DIRECTION + row.direction, residual)
 
-    def gaps(self) -> Gaps:
-        return Gaps(count=self._count, time=self._time)
+
+def _add_input(sums: Any, source: int, value: float, origin: int) -> None:
+    sums.sources[source * ORIGINS + origin] += 1
+    if origin == MEASURED or origin == DERIVED:
+        _add(sums, source, value)
+    held = int(origin == HELD)
+    if held > sums.held[source]:
+        sums.gaps[source] += 1
+    sums.held[source] = held
+
+
+def _add(sums: Any, span: int, value: float) -> None:
+    if math.isfinite(value):
+        sums.count[span] += 1
+        sums.low[span] = min(sums.low[span], value)
+        sums.high[span] = max(sums.high[span], value)
+        sums.total[span] += value
+        sums.squares[span] += value * value
+
+
+@functools.cache
+def compiled_sums() -> Any:
+    """Return `add_rows` compiled; raises ImportError without numba."""
+    return compiled(add_rows)
 
 
 class Surveyor:
-    """Takes the blocks of one axis in order."""
+    """Takes the rows of one axis in order."""
 
     def __init__(self, axis: str, *, standstill: float, max_gap: int) -> None:
         """Begin; the screw moves from a speed `standstill` [rad/s] on; `max_gap` [ns]."""
         self._axis, self._standstill, self._max_gap = axis, standstill, max_gap
-        self._rows = 0
-        self._inputs = {source: _Running() for source in COLUMN_OF}
-        self._sources: dict[Source, set[int]] = {source: set() for source in COLUMN_OF}
-        self._opposing, self._oil = _Running(), _Running()
-        self._reasons, self._moving = np.zeros(len(Reason)), np.zeros(len(Reason))
-        self._uncounted = 0.0
-        self._energy = np.zeros(len(Zone))
+        self._sums = as_array(RowSums())
         self._gaps: list[tuple[int, int]] = []
-        self._gap_count, self._gap_time = 0, 0
-        self._stale = {source: _Stretches() for source in COLUMN_OF if source != Source.SPEED}
-        self._residuals = {direction: _Running() for direction in Direction}
-        self._residual, self._measured = _Running(), _Running()
-        self._stamps = [math.inf, -math.inf]
-        self._logs = [math.inf, -math.inf]
-        self._before: tuple[Any, ...] | None = None
-        self._last_sample: int | None = None
+        self._gap_count = self._gap_time = 0
+        self._last_sample = np.empty(0, np.int64)
 
-    def add(self, block: JudgedColumns) -> None:
-        """Take the next block of rows."""
-        if not len(block):
-            return
-        self._rows += len(block)
-        _widen(self._stamps, block.stamp)
-        _widen(self._logs, block.log_time)
-        moving = np.abs(block.speed) >= self._standstill
-        self._add_inputs(block)
-        self._opposing.add(opposing_loads(block)[moving])
-        self._oil.add(block.temperature[moving])
-        self._add_sums(block, moving)
-        self._add_gaps(block.stamp[~block.tick])
-        self._add_torque(block, moving)
-
-    def result(self) -> Survey:
-        """Return what came of all blocks; there must have been a row."""
-        (first, last), (first_log, last_log) = self._stamps, self._logs
-        by_stamp = last - first <= STRAY * (last_log - first_log) + STRAY_MARGIN
-        longest_first = sorted(self._gaps, key=lambda gap: (-gap[0], gap[1]))
-        return Survey(
-            axis=self._axis,
-            rows=self._rows,
-            first=int(first if by_stamp else first_log),
-            last=int(last if by_stamp else last_log),
-            by_stamp=by_stamp,
-            shift=0 if by_stamp else int(last_log - last),
-            inputs={source: running.span() for source, running in self._inputs.items()},
-            sources={
-                source: frozenset(map(PointSource, codes))
-                for source, codes in self._sources.items()
-            },
-            opposing=self._opposing.span(),
-            oil=self._oil.span(),
-            reasons=_by_reason(self._reasons),
-            moving=_by_reason(self._moving),
-            uncounted=self._uncounted,
-            gaps={source: stale.gaps() for source, stale in self._stale.items()}
-            | {Source.SPEED: Gaps(count=self._gap_count, time=self._gap_time / SECOND)},
-            speed_gaps=tuple((at, length) for length, at in longest_first),
-            energy=dict(zip(Zone, self._energy.tolist())),
-            torque=TorqueFit(
-                count=self._residual.count,
-                forward=self._residuals[Direction.POSITIVE].mean,
-                backward=self._residuals[Direction.NEGATIVE].mean,
-                spread=self._residual.rms,
-                measured=self._measured.rms,
-            ),
-        )
-
-    def _add_inputs(self, block: JudgedColumns) -> None:
-        for source, name in COLUMN_OF.items():
-            origin = getattr(block, f'{name}_source')
-            self._sources[source].update(np.flatnonzero(np.bincount(origin)).tolist())
-            known = (origin == PointSource.MEASURED) | (origin == PointSource.DERIVED)
-            self._inputs[source].add(getattr(block, name)[known])
-
-    def _add_sums(self, block: JudgedColumns, moving: Flags) -> None:
-        """Add the time and the energy of each row up to the next one."""
-        power = np.nan_to_num(block.friction_torque * np.abs(block.speed))
-        power[np.abs(block.speed) < self._standstill] = 0.0
-        moved = moving & ~block.tick
-        columns: list[np.ndarray] = [block.stamp, block.reason, moved, power, block.zone]
-        if self._before is not None:
-            columns = [np.insert(one, 0, first) for first, one in zip(self._before, columns)]
-        self._before = tuple(column[-1].item() for column in columns)
-        stamps, reasons, moved, power, zones = columns
-        steps = np.diff(stamps)
-        self._uncounted += float(steps[steps > self._max_gap].sum()) / SECOND
-        steps = np.where((steps > 0) & (steps <= self._max_gap), steps, 0) / SECOND
-        self._reasons += np.bincount(reasons[:-1], steps, len(Reason))
-        self._moving += np.bincount(reasons[:-1], steps * moved[:-1], len(Reason))
-        self._energy += np.bincount(zones[:-1], steps * power[:-1], len(Zone))
-        for source, stale in self._stale.items():
-            stale.add(getattr(block, f'{COLUMN_OF[source]}_source') == PointSource.HELD, steps)
-
-    def _add_gaps(self, samples: Times) -> None:
-        if not samples.size:
-            return
-        if self._last_sample is not None:
-            samples = np.insert(samples, 0, self._last_sample)
-        self._last_sample = int(samples[-1])
+    def add(self, rows: NDArray[Any]) -> None:
+        """Take the next rows, an array of ROW."""
+        compiled_sums()(self._sums, rows, self._standstill, self._max_gap)
+        samples = np.concatenate([self._last_sample, rows['stamp'][~rows['tick']]])
+        self._last_sample = samples[-1:]
         steps = np.diff(samples)
         for at in np.flatnonzero(steps > self._max_gap).tolist():
             self._gap_count += 1
@@ -272,18 +260,55 @@ class Surveyor:
             keep = heapq.heappush if len(self._gaps) < MOST_GAPS else heapq.heappushpop
             keep(self._gaps, (int(steps[at]), int(samples[at])))
 
-    def _add_torque(self, block: JudgedColumns, moving: np.ndarray) -> None:
-        residual = block.torque_residual
-        known = moving & np.isfinite(residual)
-        self._residual.add(residual[known])
-        self._measured.add(block.motor_torque[known])
-        for direction, running in self._residuals.items():
-            running.add(residual[known & (block.direction == direction)])
+    def result(self) -> Survey:
+        """Return what came of all rows; there must have been one."""
+        sums = from_array(RowSums, self._sums[0])
+        span, log_span = sums.last - sums.first, sums.last_log - sums.first_log
+        by_stamp = span <= STRAY * log_span + STRAY_MARGIN
+        longest_first = sorted(self._gaps, key=lambda gap: (-gap[0], gap[1]))
+        gaps = zip(Source, zip(sums.gaps, sums.gap_time))
+        return Survey(
+            axis=self._axis,
+            rows=sums.rows,
+            first=sums.first if by_stamp else sums.first_log,
+            last=sums.last if by_stamp else sums.last_log,
+            by_stamp=by_stamp,
+            shift=0 if by_stamp else sums.last_log - sums.last,
+            inputs={source: _extremes(sums, source) for source in Source},
+            sources={source: _sources(sums, source) for source in Source},
+            opposing=_extremes(sums, OPPOSING),
+            oil=_extremes(sums, OIL),
+            reasons=_by_reason(sums.reason_time),
+            moving=_by_reason(sums.moving_time),
+            uncounted=sums.uncounted / SECOND,
+            gaps={source: Gaps(count=count, time=time / SECOND) for source, (count, time) in gaps}
+            | {Source.SPEED: Gaps(count=self._gap_count, time=self._gap_time / SECOND)},
+            speed_gaps=tuple((at, length) for length, at in longest_first),
+            energy=dict(zip(Zone, sums.energy)),
+            torque=TorqueFit(
+                count=sums.count[RESIDUAL],
+                forward=_extremes(sums, BY_DIRECTION + Direction.POSITIVE).mean,
+                backward=_extremes(sums, BY_DIRECTION + Direction.NEGATIVE).mean,
+                spread=_rms(sums, RESIDUAL),
+                measured=_rms(sums, COMPARED),
+            ),
+        )
 
 
-def _by_reason(times: Floats) -> dict[Reason, float]:
-    return {reason: float(time) for reason, time in zip(Reason, times) if time > 0}
+def _extremes(sums: RowSums, span: int) -> Extremes:
+    if not (count := sums.count[span]):
+        return Extremes()
+    return Extremes(low=sums.low[span], mean=sums.total[span] / count, high=sums.high[span])
 
 
-def _widen(line: list[float], times: Times) -> None:
-    line[0], line[1] = min(line[0], int(times.min())), max(line[1], int(times.max()))
+def _rms(sums: RowSums, span: int) -> float:
+    return math.sqrt(sums.squares[span] / sums.count[span]) if sums.count[span] else NAN
+
+
+def _sources(sums: RowSums, source: int) -> frozenset[PointSource]:
+    begin = source * ORIGINS
+    return frozenset(origin for origin in PointSource if sums.sources[begin + origin])
+
+
+def _by_reason(times: list[int]) -> dict[Reason, float]:
+    return {reason: time / SECOND for reason, time in zip(Reason, times) if time}

@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 from ballscrew_monitor.core.conversions import celsius, SECOND
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Level, Limits, PointSource, Zone
-from ballscrew_monitor.recordings import columns
+from ballscrew_monitor.judge.records import LIGHT_LOAD, STANDSTILL
 from ballscrew_monitor.report import buckets
-from ballscrew_monitor.report.buckets import AxisBudget, Rows
+from ballscrew_monitor.report.buckets import AxisBudget
 from ballscrew_monitor.report.judging import AxisCase
 from ballscrew_monitor.report.page import script_json
-import numpy as np
+import polars as pl
 from surrogate.surface import FILM_RATIO_LIMITS, Regime, REGIMES
 from surrogate.units import RPM
 
@@ -89,7 +89,7 @@ def series_record(
     }
 
 
-def drawn_rows(case: AxisCase) -> Rows:
+def drawn_rows(case: AxisCase) -> pl.DataFrame:
     """Return all rows of a short recording, extremes of buckets of a long one."""
     return _columns(case, 0.0, buckets.BUCKETS)[0]
 
@@ -122,20 +122,24 @@ def _numbers(case: AxisCase) -> tuple[str, ...]:
     return tuple(key for key in NUMBERS if torque or not key.endswith('torque'))
 
 
-def _columns(case: AxisCase, fine_bytes: float, count: int) -> tuple[Rows, Rows | None, float]:
+def _columns(
+    case: AxisCase, fine_bytes: float, count: int
+) -> tuple[pl.DataFrame, pl.DataFrame | None, float]:
     """Return the rows of the whole, those near the worst events, and the width of a bucket [s]."""
-    numbers = _numbers(case)
+    columns, table = row_columns(case, _numbers(case)), case.row_table
     if _is_short(case, count):
-        rows = np.concatenate([rows_of(case, block, numbers) for block in case.blocks()])
-        return buckets.with_breaks(buckets.in_order(rows), _longest_step(case)), None, 0.0
+        rows = table.collect(lambda part: part.select(*columns))
+        rows = rows.sort('time', maintain_order=True)
+        return buckets.with_breaks(rows, _longest_step(case)), None, 0.0
+    coarse, width = buckets.bucketed(table, columns, case.survey.span, count)
     _, stretches = _worst_stretches(case, fine_bytes / _bytes_per_second(case))
-    kind = buckets.row_type(numbers, RANKS)
-    found, kept = buckets.Buckets(case.survey.span, kind, count=count), []
-    for block in case.blocks():
-        rows = rows_of(case, block, numbers)
-        found.add(rows)
-        kept.append(buckets.between(rows, stretches))
-    return found.rows(), buckets.in_order(np.concatenate(kept)), found.width
+    if not stretches:
+        return coarse, coarse.clear(), width
+    is_near = buckets.between(stretches)
+    near = table.collect(
+        lambda part: part.with_columns(columns[0]).filter(is_near).select('time', *columns[1:])
+    )
+    return coarse, near.sort('time', maintain_order=True), width
 
 
 def _longest_step(case: AxisCase) -> float:
@@ -144,18 +148,17 @@ def _longest_step(case: AxisCase) -> float:
 
 
 def _fine(
-    case: AxisCase, near: Rows | None, fine_bytes: float
+    case: AxisCase, near: pl.DataFrame | None, fine_bytes: float
 ) -> tuple[int, list[dict[str, Any]]]:
     """Return of how many of the worst events every sample is kept, and the stretches of those."""
     longest = fine_bytes / _bytes_per_second(case)
     while near is not None:
         shown, stretches = _worst_stretches(case, longest)
-        ends = np.searchsorted(near['time'], np.array(stretches, dtype=float).reshape(-1, 2))
-        parts = [near[first:last] for first, last in ends.tolist()]
+        parts = [near.filter(buckets.between([stretch])) for stretch in stretches]
         records = [
             buckets.fine_record(buckets.with_breaks(part, _longest_step(case)))
             for part in parts
-            if part.size > 1
+            if part.height > 1
         ]
         size = len(script_json(records))
         if size <= fine_bytes or not shown:
@@ -165,38 +168,47 @@ def _fine(
     return 0, []
 
 
-def rows_of(case: AxisCase, block: columns.JudgedColumns, numbers: Iterable[str]) -> Rows:
-    """Return a block in the units of the page; NaN where a number is not measured or judged."""
-    still = block.gates & columns.STANDSTILL != 0
-    unjudged = still | (block.gates & columns.LIGHT_LOAD != 0)
-    line = block.stamp if case.survey.by_stamp else block.log_time
-    warmth = block.temperature + celsius(0.0)
-    regime, zone, level = (
-        np.array([rank for _, rank in sorted(table.items())], np.uint8) for table in RANKS.values()
-    )
-    made = {
-        'time': (line - case.survey.first) / SECOND,
-        'speed': fresh(block.speed / _motion(case).amount, block.speed_source),
-        'load': fresh(block.axial_load, block.axial_load_source),
-        'temperature': fresh(warmth, block.temperature_source),
-        'efficiency': np.where(unjudged, np.nan, 100.0 * block.efficiency),
-        'film_ratio': np.where(still, np.nan, block.film_ratio),
-        'rcs': np.where(still, np.nan, block.rcs),
-        'measured_torque': block.measured_torque,
-        'machine_torque': np.where(still, np.nan, block.machine_torque),
-        'regime': np.where(still, 0, regime[block.regime]),
-        'zone': np.where(still, 1, zone[block.zone]),
-        'level': level[block.level],
+def row_columns(case: AxisCase, numbers: Iterable[str]) -> list[pl.Expr]:
+    """Return rows in the units of the page; NaN where a number is not measured or judged."""
+    still = pl.col('gates') & STANDSTILL != 0
+    unjudged = pl.col('gates') & (STANDSTILL | LIGHT_LOAD) != 0
+    line = pl.col('stamp' if case.survey.by_stamp else 'log_time')
+    measured = pl.col('motor_torque_source') == PointSource.MEASURED
+    known = {
+        'speed': _unless(_is_held('speed'), buckets.over(pl.col('speed'), _motion(case).amount)),
+        'load': _unless(_is_held('axial_load'), pl.col('axial_load')),
+        'temperature': _unless(_is_held('temperature'), pl.col('temperature') + celsius(0.0)),
+        'efficiency': _unless(unjudged, 100.0 * pl.col('efficiency')),
+        'film_ratio': _unless(still, pl.col('film_ratio')),
+        'rcs': _unless(still, pl.col('rcs')),
+        'measured_torque': _unless(~measured, pl.col('motor_torque')),
+        'machine_torque': _unless(still, pl.col('machine_torque')),
     }
-    rows = np.empty(len(block), buckets.row_type(numbers, RANKS))
-    for key in rows.dtype.names or ():
-        rows[key] = made[key]
-    return rows
+    ranks = {name: _rank(name) for name in RANKS}
+    ranks['regime'] = pl.when(still).then(0).otherwise(ranks['regime'])
+    ranks['zone'] = pl.when(still).then(1).otherwise(ranks['zone'])
+    return [
+        buckets.over(line - case.survey.first, SECOND).alias('time'),
+        *(known[name].alias(name) for name in numbers),
+        *(rank.cast(pl.UInt8).alias(name) for name, rank in ranks.items()),
+    ]
 
 
-def fresh(values: columns.Floats, sources: columns.Codes) -> columns.Floats:
-    """Return numbers without those that are only held since their input went quiet."""
-    return np.where(sources == PointSource.HELD, np.nan, values)
+def _rank(name: str) -> pl.Expr:
+    """Return how bad a code is."""
+    return pl.sum_horizontal(
+        (pl.col(name) == code).cast(pl.UInt8) * pl.lit(rank, pl.UInt8)
+        for code, rank in RANKS[name].items()
+    )
+
+
+def _is_held(name: str) -> pl.Expr:
+    """Return which numbers are only held since their input went quiet."""
+    return pl.col(f'{name}_source') == PointSource.HELD
+
+
+def _unless(unknown: pl.Expr, value: pl.Expr) -> pl.Expr:
+    return pl.when(unknown).then(math.nan).otherwise(value)
 
 
 def _worst_stretches(case: AxisCase, longest: float) -> tuple[int, list[tuple[float, float]]]:

@@ -55,4 +55,7 @@ def as_array(record: object) -> NDArray[Any]:
 
 def from_array(kind: type[Record], element: Any) -> Record:
     """Return the record that an element of an array holds."""
-    return kind(**{name: element[name].tolist() for name in element.dtype.names})
+    values = zip(element.dtype.names, element.item())  # all at once, but for lists
+    return kind(
+        **{name: one.tolist() if isinstance(one, np.ndarray) else one for name, one in values}
+    )

@@ -7,7 +7,9 @@ import dataclasses
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.health.bands import place_of
 from ballscrew_monitor.health.records import ComparablePoint, Stretch
-from ballscrew_monitor.health.rows import DAY, JUDGED_ROW, JudgedRow
+from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.judge.many import ROW
+from ballscrew_monitor.judge.records import Row
 import numpy as np
 import pytest
 from surrogate.surface import shipped_surface, Surface
@@ -26,7 +28,7 @@ class Motion:
     def rows(self, speeds, *, rate=100, start=NOON, torque=0.5, load=500.0, temperature=313.0):
         """Return rows at a rate [1/s] of speeds [rad/s], the rest constant or one for each."""
         speeds = np.asarray(speeds, dtype=float)
-        rows = np.zeros(len(speeds), JUDGED_ROW)
+        rows = np.zeros(len(speeds), ROW)
         rows['stamp'] = start + np.arange(len(speeds)) * (SECOND // rate)
         rows['speed'] = speeds
         rows['axial_load'], rows['temperature'], rows['motor_torque'] = load, temperature, torque
@@ -50,7 +52,7 @@ class Motion:
 
     def single(self, rows):
         """Return rows as records, as a node has them."""
-        return [from_array(JudgedRow, row) for row in rows]
+        return [from_array(Row, row) for row in rows]
 
     def stretch(self, **changes):
         """Return a stretch of today."""

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows taken one by one, interpreted, and in blocks, compiled: the same to the last bit."""
 
-import dataclasses
 import math
 from pathlib import Path
 
@@ -12,8 +11,8 @@ from ballscrew_monitor.health.collect import Collector
 from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.health.points import add
 from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.recordings.axis_run import AxisRows
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.columns import joined
 from ballscrew_monitor.recordings.replay import replay_parts
 from ballscrew_monitor.settings import parameters
 from hypothesis import given, settings
@@ -77,15 +76,14 @@ def test_both_ways_give_the_same_bits(motion, surface, seed, cuts):
 def test_a_torque_beyond_the_model_is_found_in_a_recording(nominal_bag, surface):
     """The nominal cycle, with the torque of the model and 0.03 N m more against every motion."""
     values = parameters.read_file(CONFIG) | {'x.publish_period': 0.1}
-    *blocks, _ = replay_parts(Bag(nominal_bag), values, states=False)
-    columns, points = joined(blocks), {}
-    torque = columns.machine_torque + 0.03 * np.sign(columns.speed)
-    measured = np.full(len(columns), PointSource.MEASURED, dtype=np.uint8)
-    collector = Collector(surface)
-    found = collector.take_many(
-        dataclasses.replace(columns, motor_torque=torque, motor_torque_source=measured)
-    )
-    for stretch in found.stretches:
+    collector, points, stretches = Collector(surface), {}, []
+    for part in replay_parts(Bag(nominal_bag), values, states=False):
+        if isinstance(part, AxisRows):
+            rows = part.rows.copy()
+            rows['motor_torque'] = rows['machine_torque'] + 0.03 * np.sign(rows['speed'])
+            rows['motor_torque_source'] = PointSource.MEASURED
+            stretches += collector.take_many(rows).stretches
+    for stretch in stretches:
         assert add(points, stretch, surface) == ''
     assert len(points) > 15
     for point in points.values():

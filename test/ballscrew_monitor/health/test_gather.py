@@ -2,20 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Stretches of known motions: their means, where they begin and end, and what counts as one."""
 
+import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.health.gather import (
     BLOCK,
     finish,
-    Gathered,
     GatherMemory,
     GatherSettings,
     LONGEST,
     SETTLING,
     step,
 )
-from ballscrew_monitor.health.records import LoadSource
+from ballscrew_monitor.health.records import LoadSource, Stretch
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
@@ -31,13 +31,13 @@ def gather_rows(motion):
         settings, memory, made, found = (
             settings or GatherSettings(),
             GatherMemory(),
-            Gathered(),
+            Stretch(),
             [],
         )
         for row in motion.single(rows):
             if step(settings, memory, row, made):
-                found.append(made.stretch())
-        return [*found, made.stretch()] if finish(settings, memory, made) else found
+                found.append(dataclasses.replace(made))
+        return [*found, made] if finish(settings, memory, made) else found
 
     return gather
 
@@ -55,7 +55,7 @@ def test_a_steady_motion_is_one_stretch_of_its_means(gather, motion, rate):
     assert found.start == rows['stamp'][0] + SETTLING
     assert (found.samples - 1) / rate == pytest.approx(found.duration)
     assert 6.8 - found.duration <= 2 * BLOCK / SECOND + 0.001
-    assert found.load_source is LoadSource.MEASURED
+    assert found.load_source == LoadSource.MEASURED
     assert found.temperature_measured
 
 
@@ -178,7 +178,7 @@ def test_the_load_is_measured_derived_or_declared_free(gather, motion):
     rows['axial_load_source'] = DERIVED
     for settings in (GatherSettings(), GatherSettings(free_load=-120.0)):
         (found,) = gather(rows, settings)
-        assert found.load_source is LoadSource.DERIVED
+        assert found.load_source == LoadSource.DERIVED
     (found,) = gather(rows, free)
     assert (found.load_source, found.axial_load) == (LoadSource.FREE, -120.0)
     rows['temperature_source'] = DEFAULT

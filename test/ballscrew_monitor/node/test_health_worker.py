@@ -15,9 +15,10 @@ from ballscrew_monitor.health.collect import Collected
 from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.health.keeper import HealthKeeper
 from ballscrew_monitor.health.records import Condition, LoadSource
-from ballscrew_monitor.health.rows import DAY, JudgedRow
+from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import FILE, HealthStore, read_health
 from ballscrew_monitor.judge.inputs import DERIVED
+from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.node import health_worker
 from ballscrew_monitor.node.health_worker import Gatherer, HealthWorker, Job
 import pytest
@@ -47,7 +48,7 @@ def make_worker(tmp_path):
 
 def rows(seconds, *, start=NOON, **changes):
     """Return rows of a steady motion at 100 Hz."""
-    row = JudgedRow(
+    row = Row(
         speed=50.0,
         axial_load=500.0,
         temperature=313.0,

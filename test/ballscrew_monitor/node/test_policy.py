@@ -35,6 +35,7 @@ def test_the_policy_allows_all_that_the_node_has(node, policy):
     node.start(use_sim_time='true', x__plain_topics='true', **topics)
     node.until(lambda: node.lifecycle() == 'active')
     own = (node.name.strip('/'), '/')
+    node.until(lambda: own in node.node.get_node_names_and_namespaces(), 'the node in the graph')
     of_graph = {
         ('topics', 'publish'): node.node.get_publisher_names_and_types_by_node,
         ('topics', 'subscribe'): node.node.get_subscriber_names_and_types_by_node,

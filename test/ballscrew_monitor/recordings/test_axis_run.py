@@ -11,15 +11,15 @@ from ballscrew_monitor.core.fields import OtherJoints, stamp_of
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
 from ballscrew_monitor.core.judgement import PointSource, Reason
 from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.judge.records import STANDSTILL
 from ballscrew_monitor.judge.snapshot import restored, snapshot
 from ballscrew_monitor.messages.state_messages import empty_state, fill_state
-from ballscrew_monitor.recordings.axis_run import AxisRun
+from ballscrew_monitor.recordings.axis_run import AxisRows, AxisRun
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.bulk.events import blank, event_of, Notes, ticks
-from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, joined
 from ballscrew_monitor.recordings.replay import replay, replay_parts
-from ballscrew_monitor.recordings.summary import summary_of
+from ballscrew_monitor.recordings.summary import AxisOutcome, summary_of
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axis
 from hypothesis import given, settings
@@ -39,17 +39,26 @@ def values():
     return parameters.read_file(CONFIG) | {'x.publish_period': 0.1}
 
 
+def judged_rows(bag, values):
+    """Return all rows of the only axis of a bag, and what it comes to."""
+    rows, outcome = [], None
+    for part in replay_parts(bag, values, states=False):
+        if isinstance(part, AxisOutcome):
+            outcome = part
+        else:
+            rows.append(part.rows.copy())  # the next ones overwrite them
+    return np.concatenate(rows), outcome
+
+
 @pytest.fixture(scope='module')
 def judged(nominal_bag, values):
-    *blocks, outcome = replay_parts(Bag(nominal_bag), values, states=False)
-    assert isinstance(outcome, AxisOutcome)
-    return joined(blocks), outcome
+    return judged_rows(Bag(nominal_bag), values)
 
 
 def test_every_sample_is_a_row_and_the_states_are_some_of_them(nominal_bag, judged, values):
-    columns, outcome = judged
+    rows, outcome = judged
     bag = Bag(nominal_bag)
-    assert len(columns) == bag.topics['/joint_states'].count == outcome.rows
+    assert len(rows) == bag.topics['/joint_states'].count == outcome.rows
     states = [
         (
             stamp_of(state),
@@ -66,13 +75,13 @@ def test_every_sample_is_a_row_and_the_states_are_some_of_them(nominal_bag, judg
         for state, _ in replay(bag, values)
     ]
     names = 'stamp speed axial_load rcs efficiency film_ratio friction_torque zone level event_id'
-    shown = [getattr(columns, name)[columns.published].tolist() for name in names.split()]
+    shown = [rows[name][rows['published']].tolist() for name in names.split()]
     np.testing.assert_equal(list(zip(*shown)), states)
 
 
 def test_the_outcome_is_that_of_the_states(nominal_bag, judged, values):
     said = (one for pair in replay(Bag(nominal_bag), values) for one in pair if one is not None)
-    columns, outcome = judged
+    rows, outcome = judged
     summary, expected = outcome.summary(), summary_of(said)
     assert summary.events == expected.events
     for event, told in zip(summary.events, expected.events, strict=True):
@@ -82,21 +91,18 @@ def test_the_outcome_is_that_of_the_states(nominal_bag, judged, values):
     assert summary.states == expected.states < outcome.rows
     # The last state comes before the last sample, up to which the totals go.
     assert expected.running_time <= summary.running_time <= expected.running_time + 0.1
-    assert outcome.judged == np.count_nonzero(columns.judged)
+    still = rows['gates'] & STANDSTILL != 0
+    assert outcome.judged == np.count_nonzero((rows['zone'] != 0) | still)
 
 
-def test_columns_tell_zones_reasons_and_times_and_blocks_join(judged):
-    columns, outcome = judged
-    assert set(columns.reason) == {Reason.JUDGED, Reason.STANDSTILL}
-    np.testing.assert_array_equal(columns.zone == 0, columns.reason == Reason.STANDSTILL)
-    outside = columns.time_to_next[columns.zone == 2].sum()
+def test_rows_tell_zones_reasons_and_times(judged):
+    rows, outcome = judged
+    assert set(rows['reason']) == {Reason.JUDGED, Reason.STANDSTILL}
+    np.testing.assert_array_equal(rows['zone'] == 0, rows['reason'] == Reason.STANDSTILL)
+    outside = np.diff(rows['stamp'])[rows['zone'][:-1] == 2].sum()
     assert seconds(outside) == pytest.approx(seconds(outcome.totals.outside_time), abs=0.02)
-    assert np.isnan(columns.measured_torque).all()  # the bag has no torque
+    assert not rows['motor_torque_source'].any()  # the bag has no torque
     assert all(reason.text for reason in Reason)
-    twice = joined([columns, columns])
-    assert len(twice) == 2 * len(columns)
-    for name, kind in COLUMNS.items():
-        assert getattr(twice, name).dtype == kind
 
 
 def drive_bag(folder, samples):
@@ -115,7 +121,7 @@ def drive_bag(folder, samples):
 
 @pytest.fixture
 def derived(tmp_path):
-    """Return the columns of an axis whose load is derived, the torque lost at the end."""
+    """Return the rows of an axis whose load is derived, the torque lost at the end."""
     efforts = [3.0] * 150 + [math.nan] * 50
     bag = drive_bag(tmp_path, [(60.0, effort) for effort in efforts])
     values = parameters.defaults(['x']) | {
@@ -125,18 +131,16 @@ def derived(tmp_path):
         'x.torque.field': 'effort[x_axis]',
         'x.torque.uncertainty': 0.1,
     }
-    *blocks, outcome = replay_parts(bag, values, states=False)
-    return joined(blocks), outcome
+    return judged_rows(bag, values)
 
 
-def test_a_derived_load_has_its_range_and_no_residual(derived):
-    columns, outcome = derived
-    told = columns.axial_load_source == PointSource.DERIVED
+def test_a_derived_load_has_its_range(derived):
+    rows, outcome = derived
+    told = rows['axial_load_source'] == PointSource.DERIVED
     assert np.count_nonzero(told) > 100
-    assert (columns.axial_load_uncertainty[told] > 0.0).all()
-    assert np.isnan(columns.axial_load_uncertainty[~told]).all()
-    assert np.isnan(columns.torque_residual).all()
-    assert set(columns.reason[150:]) == {Reason.NO_TORQUE}
+    assert (rows['axial_load_uncertainty'][told] > 0.0).all()
+    assert np.isnan(rows['axial_load_uncertainty'][~told]).all()
+    assert set(rows['reason'][150:]) == {Reason.NO_TORQUE}
     assert outcome.refused[Source.TORQUE] == {Why.NOT_A_NUMBER: 50}
 
 
@@ -148,9 +152,8 @@ def test_a_screw_that_stands_stands_whether_or_not_its_load_is_known(tmp_path):
         'x.load.type': JOINT,
         'x.load.field': 'effort[x_axis]',
     }
-    *blocks, _ = replay_parts(bag, values, states=False)
-    columns = joined(blocks)
-    samples = columns.reason[~columns.tick]
+    rows, _ = judged_rows(bag, values)
+    samples = rows['reason'][~rows['tick']]
     assert set(samples[:50]) == {Reason.NO_LOAD}
     assert set(samples[50:]) == {Reason.STANDSTILL}
 
@@ -212,7 +215,7 @@ def test_states_and_outcome_are_those_of_a_monitor_alone(happened, cut):
                 wanted.append((message, fill_state(message, row, other)))
         arrays = [event_array(*timed, notes) for timed in part]
         array = np.concatenate(arrays or [blank(0)])
-        found = [one[1] for one in run.take(array) if isinstance(one, tuple)]
+        found = [one[1] for one in run.take(array) if not isinstance(one, AxisRows)]
         states += [(one.state, one.inputs) for one in found]
         events += [one.event for one in found if one.event is not None]
         assert repr(axis.monitor.input_status(now)) == repr(other.input_status(now))

@@ -74,9 +74,9 @@ def test_many_messages_count_as_each_does(tmp_path):
     with BagWriter(tmp_path, 'bag') as writer:
         writer.add_topic(LATCHED)
         write(writer, 1)
-        writer.write_many(
-            ['/b', '/a'], np.array([1, 1, 0, 1]), [b'one', b'two', b'three', b'four'], times
-        )
+        begins, sizes = np.array([4, 0, 7, 12]), np.array([3, 3, 5, 4])
+        data = b'two-onethreefour'
+        writer.write_many(['/b', '/a'], np.array([1, 1, 0, 1]), times, data, begins, sizes)
         assert writer.total == 5
     bag = Bag(tmp_path)
     assert (bag.topics['/a'].count, bag.topics['/b'].count) == (4, 1)

@@ -74,7 +74,10 @@ def one_by_one(file, part=slice(None)):
 
 
 def at_once(file, part=slice(None)):
-    file.add_messages(NUMBERS[part], CONTENTS[part], log_time=TIMES[part], sequence=SEQUENCE[part])
+    sizes = np.array([len(content) for content in CONTENTS])
+    begins = np.cumsum(sizes) - sizes
+    told = {'log_time': TIMES[part], 'sequence': SEQUENCE[part]}
+    file.add_messages(NUMBERS[part], b''.join(CONTENTS), begins[part], sizes[part], **told)
 
 
 def taking_turns(file):

@@ -14,6 +14,7 @@ import types
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, ordered, Source
+from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.memory import Memory
 from ballscrew_monitor.core.state import Event, Shelving, Totals
 from ballscrew_monitor.judge.full_point import SolvedAt
@@ -311,7 +312,7 @@ def test_a_recording_around_events_begins_at_snapshots(tmp_path):
     wide |= {f'{axis}.limits.rcs': 0.999 for axis in 'xz'}
     node = SmallNode(tmp_path, around, **wide)
     live(node, seconds=47)
-    assert not any('event=Event' in state for state in node.said)
+    assert node.edges == 0
     node.values = node.values | {'x.limits.efficiency': 0.9, 'x.limits.rcs': 0.01}
     node.axes['x'].adapt(node.values)
     node.snapshot('parameters', ['x'])
@@ -320,7 +321,8 @@ def test_a_recording_around_events_begins_at_snapshots(tmp_path):
     path, *_ = sorted(tmp_path.iterdir())
     states = again(Bag(path))
     assert 25.0 <= (BEGIN + 47 * SECOND - Bag(path).start_time) / SECOND < 37.0
-    assert any('event=Event' in state for state in states)
+    assert node.edges > 0
+    assert any(f'level={int(Level.WARN)}' in state for state in states)
     assert '\n'.join(states) in '\n'.join(node.said)
 
 
@@ -584,7 +586,7 @@ def test_cut_at_any_snapshots_the_rest_is_judged_the_same(seed, raw, copy_bag):
             states = again(part)
             assert states == said[slice(len(said) - len(states), None)]
             assert part.remarks == []
-            assert len(states) > 100
+            assert states
 
 
 def test_the_report_of_a_recording_without_messages_of_inputs_has_the_same_rows(tmp_path):

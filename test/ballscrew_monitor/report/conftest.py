@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Judged columns as a recording would give them, without a recording, and a real browser."""
+"""Judged rows as a recording would give them, without a recording, and a real browser."""
 
 import dataclasses
 import functools
@@ -10,12 +10,14 @@ import types
 
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource
-from ballscrew_monitor.core.judgement import Level, PointSource, PointValidity, Zone
+from ballscrew_monitor.core.judgement import Level, PointSource, PointValidity, Reason, Zone
 from ballscrew_monitor.core.state import Totals
-from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, JudgedColumns, Reason
-from ballscrew_monitor.recordings.summary import EventRecord
+from ballscrew_monitor.judge.many import ROW
+from ballscrew_monitor.recordings.axis_run import AxisRows
+from ballscrew_monitor.recordings.summary import AxisOutcome, EventRecord
 from ballscrew_monitor.report.judging import CaseMaker, LogCase
 from ballscrew_monitor.report.parameters import AxisFacts
+from ballscrew_monitor.report.row_table import RowTable
 from ballscrew_monitor.settings.axis import build_axis
 from ballscrew_monitor.settings.parameters import defaults
 import numpy as np
@@ -57,28 +59,25 @@ def _browse(browser, profile, page, *options):
     ).stdout
 
 
-def make_columns(begin=0, count=100, *, rate=100.0, axis='x', **changes):
+def make_rows(begin=0, count=100, *, rate=100.0, axis='x', **changes):
     """Return `count` rows from the number `begin` on, in motion and optimal."""
     numbers = np.arange(begin, begin + count)
     stamp = BEGIN + np.rint(numbers * (SECOND / rate)).astype(np.int64)
-    columns = {name: np.zeros(count, dtype=kind) for name, kind in COLUMNS.items()}
     measured = {
         f'{name}_source': PointSource.MEASURED for name in ('speed', 'axial_load', 'temperature')
     }
-    columns |= {
+    columns = measured | {
         'stamp': stamp,
-        'log_time': stamp + 1000,
+        'now': stamp + 1000,
         'speed': 100.0 + 10.0 * np.sin(0.01 * numbers),
         'axial_load': -1000.0 + 50.0 * np.cos(0.02 * numbers),
-        'temperature': np.full(count, 313.15),
-        'motor_torque': np.full(count, np.nan),
-        'efficiency': np.full(count, 0.9),
-        'rcs': np.full(count, 1e-3),
-        'film_ratio': np.full(count, 2.0),
-        'friction_torque': np.full(count, 0.1),
-        'machine_torque': np.full(count, 1.5),
-    }
-    codes = measured | {
+        'temperature': 313.15,
+        'motor_torque': np.nan,
+        'efficiency': 0.9,
+        'rcs': 1e-3,
+        'film_ratio': 2.0,
+        'friction_torque': 0.1,
+        'machine_torque': 1.5,
         'direction': Direction.POSITIVE,
         'validity': PointValidity.VALID,
         'regime': Regime.MIXED,
@@ -86,9 +85,24 @@ def make_columns(begin=0, count=100, *, rate=100.0, axis='x', **changes):
         'reason': Reason.JUDGED,
         'level': Level.OK,
     }
-    for name, value in (codes | changes).items():
-        columns[name] = np.broadcast_to(np.asarray(value, COLUMNS[name]), count).copy()
-    return JudgedColumns(axis=axis, **columns)
+    return changed(AxisRows(axis, np.zeros(count, ROW)), **columns | changes)
+
+
+def changed(block, **columns):
+    """Return a copy of rows with other columns."""
+    rows = block.rows.copy()
+    for name, values in columns.items():
+        rows[name] = values
+    return AxisRows(block.axis, rows)
+
+
+def make_table(path, blocks):
+    """Return the rows of blocks as a table in a file."""
+    table = RowTable(path)
+    for block in blocks:
+        table.add(block.rows)
+    table.end()
+    return table
 
 
 def make_event(number, start, duration, **changes):
@@ -123,11 +137,14 @@ def make_status(source, **changes):
     return InputStatus(**values | changes)
 
 
-def make_case(blocks, events=(), *, totals=None, values=None, known=None, health=None, **changes):
-    """Return the case of an axis with blocks of rows and events."""
+def make_case(
+    folders, blocks, events=(), *, totals=None, values=None, known=None, health=None, **changes
+):
+    """Return the case of an axis with blocks of rows and events; `folders` makes folders."""
     axis, values = blocks[0].axis, values or make_values(blocks[0].axis)
-    rows = sum(len(block) for block in blocks)
-    span = int(blocks[-1].stamp[-1] - blocks[0].stamp[0])
+    rows = sum(len(block.rows) for block in blocks)
+    first, last = (int(blocks[at].rows['stamp'][at]) for at in (0, -1))
+    span = last - first
     outside = sum(round(event.duration * SECOND) for event in events)
     if totals is None:
         totals = Totals(
@@ -140,8 +157,8 @@ def make_case(blocks, events=(), *, totals=None, values=None, known=None, health
         )
     facts = {
         'axis': axis,
-        'first': int(blocks[0].stamp[0]),
-        'last': int(blocks[-1].stamp[-1]),
+        'first': first,
+        'last': last,
         'rows': rows,
         'states': rows,
         'judged': rows,
@@ -154,11 +171,12 @@ def make_case(blocks, events=(), *, totals=None, values=None, known=None, health
     outcome = AxisOutcome(**facts | changes)
     maker = CaseMaker(axis, values, health)
     for block in blocks:
-        maker.add(block)
+        maker.add(block.rows)
     known = known or {}
     facts = AxisFacts(**{key: one for key, one in known.items() if key in AXIS_FACTS})
     flags = {key: one for key, one in known.items() if key not in AXIS_FACTS}
-    return maker.case(outcome, blocks=lambda: iter(blocks), facts=facts, **flags)
+    table = make_table(folders.mktemp('rows') / 'rows.arrow', blocks)
+    return maker.case(outcome, rows=table, facts=facts, **flags)
 
 
 def make_log(*cases, **changes):
@@ -170,41 +188,42 @@ def make_values(axis='x', **changes):
 
 
 @pytest.fixture(scope='session')
-def judged():
+def judged(tmp_path_factory):
     """Make the parts that tests of reports are built from."""
     return types.SimpleNamespace(
         begin=BEGIN,
-        columns=make_columns,
+        rows=make_rows,
+        changed=changed,
+        table=make_table,
         event=make_event,
         status=make_status,
-        case=make_case,
+        case=functools.partial(make_case, tmp_path_factory),
         log=make_log,
         values=make_values,
     )
 
 
 @pytest.fixture(scope='session')
-def hour():
+def hour(judged):
     """Return an hour at 1 kHz with 60 long events and a measured torque."""
     noise = np.random.default_rng(1)
     rows = 60_000
 
     def block(minute):
-        made = make_columns(minute * rows, rows, rate=1000.0)
-        speed = made.speed + noise.normal(0.0, 1.0, rows)
-        return dataclasses.replace(
-            made,
-            speed=speed,
-            axial_load=made.axial_load + noise.normal(0.0, 20.0, rows),
-            efficiency=made.efficiency + noise.normal(0.0, 0.005, rows),
-            rcs=made.rcs * np.exp(noise.normal(0.0, 0.5, rows)),
-            film_ratio=made.film_ratio + noise.normal(0.0, 0.05, rows),
-            motor_torque=made.machine_torque + noise.normal(0.1, 0.05, rows),
-            motor_torque_source=np.ones(rows, dtype=np.uint8),
+        block = make_rows(minute * rows, rows, rate=1000.0, motor_torque_source=1)
+        made = block.rows
+        return changed(
+            block,
+            speed=made['speed'] + noise.normal(0.0, 1.0, rows),
+            axial_load=made['axial_load'] + noise.normal(0.0, 20.0, rows),
+            efficiency=made['efficiency'] + noise.normal(0.0, 0.005, rows),
+            rcs=made['rcs'] * np.exp(noise.normal(0.0, 0.5, rows)),
+            film_ratio=made['film_ratio'] + noise.normal(0.0, 0.05, rows),
+            motor_torque=made['machine_torque'] + noise.normal(0.1, 0.05, rows),
         )
 
     events = [
         make_event(n + 1, 60.0 * n + 10.0, 20.0, worst_value=0.011 + 0.001 * n) for n in range(60)
     ]
     values = make_values(**{'x.torque.topic': 'torque', 'x.torque.field': 'data'})
-    return make_case([block(minute) for minute in range(60)], events, values=values)
+    return judged.case([block(minute) for minute in range(60)], events, values=values)

@@ -41,7 +41,7 @@ def balance(judged):
         direction = np.where(motion > 0, Direction.POSITIVE, Direction.NEGATIVE)
         for part in (slice(150), slice(150, None)):
             balancer.add(
-                judged.columns(
+                judged.rows(
                     count=len(TIME[part]),
                     speed=60.0 * motion[part],
                     direction=direction[part],
@@ -50,7 +50,7 @@ def balance(judged):
                     motor_torque=np.broadcast_to(torque, COUNT)[part],
                     motor_torque_source=PointSource.MEASURED,
                     friction_torque=np.broadcast_to(modelled, COUNT)[part],
-                )
+                ).rows
             )
         return balancer.result()
 
@@ -90,7 +90,8 @@ def test_what_obeys_the_law_contradicts_nothing(size, friction, weight, loss):
     assert Balancer(lead=LEAD, standstill=0.1).result() == Balance()
     rows = np.stack([-LEAD / TURN * force, MOTION, np.ones(COUNT), torque])
     balancer = Balancer(lead=LEAD, standstill=0.1)
-    balancer._both = balancer._load = balancer._torque = rows @ rows.T
+    for name in ('both', 'load', 'torque'):
+        balancer.sums[name] = (rows @ rows.T).ravel()
     assert balancer.result() == Balance()
 
 
@@ -122,7 +123,7 @@ def test_noise_and_few_rows_tell_nothing(balance, judged):
     force = FORCES['of a process']
     assert balance(-force, 0.1 * MOTION + 20.0 * NOISE) == Balance()
     balancer = Balancer(lead=LEAD, standstill=0.1)
-    balancer.add(judged.columns(count=49, motor_torque=np.linspace(-1, 0, 49)))
+    balancer.add(judged.rows(count=49, motor_torque=np.linspace(-1, 0, 49)).rows)
     assert balancer.result() == Balance()
 
 

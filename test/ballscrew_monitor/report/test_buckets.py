@@ -3,7 +3,6 @@
 """Buckets lose no peak, stretches no sample, and holes stay holes."""
 
 import base64
-import dataclasses
 import json
 import math
 import re
@@ -15,16 +14,30 @@ from ballscrew_monitor.report.log_page import report_page
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
+import polars as pl
 import pytest
 
-KIND = buckets.row_type(['speed'], ['zone'])
 numbers = st.floats(-1e9, 1e9) | st.just(math.nan)
 
 
 def make_rows(time, values, codes=0):
-    rows = np.zeros(len(time), KIND)
-    rows['time'], rows['speed'], rows['zone'] = time, values, codes
-    return rows
+    return pl.DataFrame(
+        {
+            'time': np.asarray(time, float),
+            'speed': np.asarray(values, float),
+            'zone': np.broadcast_to(np.asarray(codes, np.uint8), len(time)),
+        }
+    )
+
+
+class Parts:
+    """A table whose parts are frames."""
+
+    def __init__(self, *frames):
+        self.frames = frames
+
+    def collect(self, query):
+        return pl.concat([query(frame.lazy()).collect() for frame in self.frames])
 
 
 @given(
@@ -34,11 +47,10 @@ def make_rows(time, values, codes=0):
 )
 def test_buckets_keep_minima_and_maxima(rows, count, cut):
     time, values = np.array([at for at, _ in rows]), np.array([value for _, value in rows])
-    kept = buckets.Buckets(10.0, KIND, count=count)
-    for part in (slice(0, cut), slice(cut, None)):  # blocks may be of any length
-        kept.add(make_rows(time[part], values[part]))
-    ends = kept.rows()['speed'].reshape(count, 2)
-    places = np.minimum((time / kept.width).astype(int), count - 1)
+    parts = make_rows(time[:cut], values[:cut]), make_rows(time[cut:], values[cut:])
+    kept, width = buckets.bucketed(Parts(*parts), [pl.all()], 10.0, count)
+    ends = kept['speed'].to_numpy().reshape(count, 2)
+    places = np.minimum((time / width).astype(int), count - 1)
     for place in range(count):
         inside = values[(places == place) & np.isfinite(values)]
         if inside.size:
@@ -48,20 +60,19 @@ def test_buckets_keep_minima_and_maxima(rows, count, cut):
 
 
 def test_the_worst_code_of_a_bucket_is_kept():
-    kept = buckets.Buckets(2.0, KIND, count=2)
-    kept.add(make_rows([0.1, 0.2, 1.5], [1.0, 1.0, 1.0], [2, 4, 1]))
-    assert kept.rows()['zone'].tolist() == [4, 4, 1, 1]
+    rows = make_rows([0.1, 0.2, 1.5], [1.0, 1.0, 1.0], [2, 4, 1])
+    kept, _ = buckets.bucketed(Parts(rows), [pl.all()], 3.0, 3)
+    assert kept['zone'].to_list() == [4, 4, 1, 1, 0, 0]
 
 
-def test_rows_are_cut_joined_and_broken_at_a_hole():
+def test_rows_are_cut_and_broken_at_a_hole():
     rows = make_rows([0.0, 1.0, 2.0, 3.0, 4.0], range(5))
-    assert buckets.between(rows, [(1.0, 2.5), (4.0, 5.0)])['time'].tolist() == [1.0, 2.0, 4.0]
-    assert buckets.between(rows, []).size == 0
-    rows = buckets.in_order(np.concatenate([make_rows([2.0], [1.0]), make_rows([1.0], [2.0])]))
-    assert rows['speed'].tolist() == [2.0, 1.0]
+    inside = rows.filter(buckets.between([(1.0, 2.5), (4.0, 5.0)]))
+    assert inside['time'].to_list() == [1.0, 2.0, 4.0]
+    assert rows.filter(buckets.between([])).is_empty()
     rows = buckets.with_breaks(make_rows([0.0, 0.1, 5.0], [1.0, 2.0, 3.0], [2, 2, 2]), 1.0)
     assert np.isnan(rows['speed'][2])
-    assert rows['zone'].tolist() == [2, 2, 0, 2]
+    assert rows['zone'].to_list() == [2, 2, 0, 2]
     assert (np.diff(rows['time']) > 0).all()
 
 
@@ -106,16 +117,16 @@ def axis(judged):
 
 def _case(judged, name, numbers, events):
     count, noise = numbers.size, np.random.default_rng(1)
-    made = judged.columns(count=count, axis=name, motor_torque_source=1)
+    made = judged.rows(count=count, axis=name, motor_torque_source=1)
     stamp = judged.begin + numbers * (SECOND // RATE)
     columns = ('speed', 'axial_load', 'temperature', 'efficiency', 'film_ratio')
-    block = dataclasses.replace(
+    block = judged.changed(
         made,
         stamp=stamp,
-        log_time=stamp,
+        now=stamp,
         motor_torque=noise.normal(1.6, 0.05, count),
-        rcs=made.rcs * np.exp(noise.normal(0.0, 0.5, count)),
-        **{key: getattr(made, key) * noise.normal(1.0, 0.01, count) for key in columns},
+        rcs=made.rows['rcs'] * np.exp(noise.normal(0.0, 0.5, count)),
+        **{key: made.rows[key] * noise.normal(1.0, 0.01, count) for key in columns},
     )
     topic = {f'{name}.torque.topic': 'torque', f'{name}.torque.field': 'data'}
     return judged.case([block], events, values=judged.values(name, **topic))
@@ -171,7 +182,7 @@ def test_shares_are_fair_and_samples_are_for_the_worst_events_of_all_axes(judged
 
     def case(*depths):
         events = [judged.event(n + 1, n, 0.5, worst_value=d) for n, d in enumerate(depths)]
-        return judged.case([judged.columns()], events)
+        return judged.case([judged.rows()], events)
 
     cases = [case(0.1, 0.2), case(0.9, 0.8, 0.7), case()]
     assert shares_of_worst(3.0, cases, [1.0, 1.0, 1.0]) == [0.0, 3.0, 0.0]
@@ -180,7 +191,7 @@ def test_shares_are_fair_and_samples_are_for_the_worst_events_of_all_axes(judged
 
 
 def test_a_few_axes_have_all_and_many_as_much_as_there_is(judged):
-    quiet = judged.case([judged.columns()])
+    quiet = judged.case([judged.rows()])
     assert axis_budgets([quiet])[0].buckets == axis_budgets([quiet] * 4)[0].buckets == 3000
     rooms = axis_budgets([quiet] * 16)
     assert {(room.buckets, room.events) for room in rooms} == {(750, 0)}

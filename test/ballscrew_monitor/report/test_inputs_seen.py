@@ -23,11 +23,11 @@ def statuses(judged, source=None, **changes):
 
 def test_an_input_is_shown_in_its_unit_and_if_always_late_as_a_whole(judged):
     values = judged.values(**{'x.speed.unit': 'rev/min'})
-    speed = seen_of(judged.case([judged.columns()], values=values), Source.SPEED)
+    speed = seen_of(judged.case([judged.rows()], values=values), Source.SPEED)
     assert speed.low == pytest.approx(100.0 * 30.0 / math.pi, rel=0.01)
     assert (speed.origin, speed.unit, speed.hints) == ('measured', 'rev/min', ())
     assert speed.rate == pytest.approx(100.0)
-    blocks = [judged.columns(place, 1) for place in range(0, 1000, 100)]
+    blocks = [judged.rows(place, 1) for place in range(0, 1000, 100)]
     case = judged.case(blocks, inputs=statuses(judged, received=10))
     assert seen_of(case, Source.SPEED).rate == pytest.approx(1.0)
 
@@ -42,7 +42,7 @@ def test_an_input_is_shown_in_its_unit_and_if_always_late_as_a_whole(judged):
     ],
 )
 def test_a_rate_leaves_gaps_out(judged, source, received, rate):
-    blocks = [judged.columns(0, 50), judged.columns(550, 50)]
+    blocks = [judged.rows(0, 50), judged.rows(550, 50)]
     inputs = statuses(judged, source, received=received)
     assert seen_of(judged.case(blocks, inputs=inputs), source).rate == pytest.approx(rate)
 
@@ -54,7 +54,7 @@ def test_a_gap_of_an_input_of_its_own_rate_is_left_out_with_its_timeout(judged, 
     sources = np.where((np.arange(100) >= 40) & (np.arange(100) < 60), PointSource.HELD, 1)
     inputs = statuses(judged, Source.LOAD, received=51)
     values = judged.values(**{'x.load.timeout': 0.1})
-    block = judged.columns(axial_load_source=sources)
+    block = judged.rows(axial_load_source=sources)
     case = judged.case([block], values=values, inputs=inputs, refused=refused)
     assert seen_of(case, Source.LOAD).rate == pytest.approx(rate)
 
@@ -65,7 +65,7 @@ def test_a_gap_of_an_input_of_its_own_rate_is_left_out_with_its_timeout(judged, 
 )
 def test_a_default_temperature_is_not_called_measured(judged, stated, origin, known):
     values = judged.values(**{'x.temperature.topic': ''})
-    block = judged.columns(temperature_source=2)
+    block = judged.rows(temperature_source=2)
     case = judged.case([block], values=values, known={'stated': frozenset(stated)})
     oil = seen_of(case, Source.TEMPERATURE)
     assert (oil.origin, oil.known, oil.measured) == (origin, known, False)
@@ -102,31 +102,31 @@ TORQUE = {'x.torque.topic': 'torque', 'x.torque.field': 'data'}
 )
 def test_what_is_worked_out_is_not_called_measured(judged, source, assumed, stated, origin, says):
     known = {'assumed': dict.fromkeys(assumed, {}), 'stated': frozenset(stated)}
-    case = judged.case([judged.columns()], values=judged.values(**TORQUE), known=known)
+    case = judged.case([judged.rows()], values=judged.values(**TORQUE), known=known)
     seen = seen_of(case, source)
     assert (seen.origin, seen.measured) == (says(origin), says(origin) == 'measured')
 
 
 def test_what_was_worked_out_or_assumed_is_marked(judged):
-    case = judged.case([judged.columns()], known={'load_from': 'motor_torque'})
+    case = judged.case([judged.rows()], known={'load_from': 'motor_torque'})
     assert seen_of(case, Source.LOAD).origin == 'worked out from the motor torque'
     known = {'assumed': {'time.rate_Hz': {'value': 100.0, 'reason': 'usual'}}}
-    assert seen_of(judged.case([judged.columns()], known=known), Source.SPEED).rate_assumed
-    assert not seen_of(judged.case([judged.columns()]), Source.SPEED).rate_assumed
+    assert seen_of(judged.case([judged.rows()], known=known), Source.SPEED).rate_assumed
+    assert not seen_of(judged.case([judged.rows()]), Source.SPEED).rate_assumed
 
 
 def test_feeds_too_slow_or_too_fast_and_a_load_that_never_changes_are_doubted(judged):
     values = judged.values(**{'x.speed.unit': 'mm/s'})
-    block = judged.columns(speed=0.1 * np.sin(np.arange(100)))
+    block = judged.rows(speed=0.1 * np.sin(np.arange(100)))
     hints = seen_of(judged.case([block], values=values), Source.SPEED).hints
     assert len(hints) == 1
     assert 'the axis never moves' in hints[0]
     assert 'm/s' in hints[0].partition('which may be')[2]
     values = judged.values(**{'x.speed.unit': 'm/s'})
-    block = judged.columns(speed=2000.0)
+    block = judged.rows(speed=2000.0)
     hints = seen_of(judged.case([block], values=values), Source.SPEED).hints
     assert any('it feeds with up to 3.18 m/s' in hint for hint in hints)
-    hints = seen_of(judged.case([judged.columns(axial_load=0.0)]), Source.LOAD).hints
+    hints = seen_of(judged.case([judged.rows(axial_load=0.0)]), Source.LOAD).hints
     assert hints == ('x.load: it never changes, is it connected?',)
 
 
@@ -134,7 +134,7 @@ def test_feeds_too_slow_or_too_fast_and_a_load_that_never_changes_are_doubted(ju
 @pytest.mark.parametrize('speed', [2000.0, 0.1])
 def test_of_a_table_the_map_is_to_be_checked(judged, speed, place, says):
     known = {'stated': {'stated': frozenset(['lead_mm'])}, 'assumed': {'assumed': {'lead_mm': {}}}}
-    block = judged.columns(speed=speed)
+    block = judged.rows(speed=speed)
     hints = seen_of(judged.case([block], known=known[place]), Source.SPEED).hints
     assert hints
     for hint in hints:
@@ -144,7 +144,7 @@ def test_of_a_table_the_map_is_to_be_checked(judged, speed, place, says):
 
 def test_refused_samples_are_counted_by_why_each_in_words(judged):
     refused = {Source.LOAD: {Why.IMPLAUSIBLE: 7, Why.NOT_A_NUMBER: 2}}
-    load = seen_of(judged.case([judged.columns()], refused=refused), Source.LOAD)
+    load = seen_of(judged.case([judged.rows()], refused=refused), Source.LOAD)
     assert load.refused == '7 beyond what is plausible, 2 not a number'
     assert 'check x.load.unit and scale' in load.hints[0]
     assert set(REFUSALS) == set(Why)
@@ -152,7 +152,7 @@ def test_refused_samples_are_counted_by_why_each_in_words(judged):
 
 def load_with(judged, known=None, **changes):
     inputs = statuses(judged, Source.LOAD, **changes)
-    return seen_of(judged.case([judged.columns()], inputs=inputs, known=known), Source.LOAD)
+    return seen_of(judged.case([judged.rows()], inputs=inputs, known=known), Source.LOAD)
 
 
 def test_an_input_that_is_well_has_no_trouble_and_a_slow_or_foreign_one_is_doubted(judged, says):
@@ -191,7 +191,7 @@ def test_troubles_of_the_messages_are_told(judged, changes, trouble, text):
     ],
 )
 def test_an_input_without_a_sample_is_not_called_measured(judged, origin, refused, changes):
-    block = judged.columns(axial_load=math.nan, axial_load_source=0)
+    block = judged.rows(axial_load=math.nan, axial_load_source=0)
     case = judged.case([block], inputs=statuses(judged, **changes), refused=refused)
     load = seen_of(case, Source.LOAD)
     assert (load.origin, load.measured) == (origin, False)

@@ -2,16 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recording judged in one pass, for a page or for a terminal on a machine without its tools."""
 
-import dataclasses
-
 from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.health.records import LoadSource
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.report.health_history import HistoryMaker
 from ballscrew_monitor.report.judging import judge_log
-from ballscrew_monitor.report.log_report import RowStore, scratch_folder
+from ballscrew_monitor.report.log_report import scratch_folder
 from ballscrew_monitor.report.parameters import parameters_for
-import numpy as np
+from ballscrew_monitor.report.row_table import RowStore
 import pytest
 
 
@@ -24,11 +22,12 @@ def parameters(request, short_bag):
 def test_rows_are_kept_where_they_are_asked_for(short_bag, parameters, tmp_path):
     with scratch_folder(tmp_path) as folder:
         kept = judge_log(Bag(short_bag), parameters, rows=RowStore(folder)).axes[0]
-        assert sum(map(len, kept.blocks())) == kept.survey.rows == kept.outcome.rows
+        assert kept.row_table.rows == kept.survey.rows == kept.outcome.rows
     printed = judge_log(Bag(short_bag), parameters).axes[0]
     assert printed.survey == kept.survey
     assert printed.outcome.totals == kept.outcome.totals
-    assert list(printed.blocks()) == []
+    with pytest.raises(ValueError, match='the rows of axis x were not kept'):
+        assert printed.row_table
 
 
 def test_a_recording_that_no_node_made_numbers_no_messages(short_bag, parameters):
@@ -39,18 +38,14 @@ def test_a_recording_that_no_node_made_numbers_no_messages(short_bag, parameters
 def test_what_is_advised_follows_the_parameters_of_the_axis(judged, free):
     """On warnings and in the health of a report alike."""
     values = judged.values(**{'x.advice.speed': free})
-    case = judged.case([judged.columns()], values=values, health=HistoryMaker)
+    case = judged.case([judged.rows()], values=values, health=HistoryMaker)
     assert case.settings.speed_allowed is free
     assert case.history.speed_allowed is free
 
 
 def test_a_log_of_an_axis_without_process_force_tells_of_its_friction(judged):
-    derived = judged.columns(
-        count=300, motor_torque_source=1, axial_load_source=PointSource.DERIVED
-    )
-    block = dataclasses.replace(
-        derived, speed=np.full(300, 100.0), motor_torque=derived.machine_torque
-    )
+    derived = judged.rows(count=300, motor_torque_source=1, axial_load_source=PointSource.DERIVED)
+    block = judged.changed(derived, speed=100.0, motor_torque=derived.rows['machine_torque'])
     values = judged.values(**{'x.health.free_load': -200.0, 'x.health.always_free': True})
     (point,) = judged.case([block], values=values, health=HistoryMaker).history.points
     assert (point.load_source, point.axial_load) == (LoadSource.FREE, -200.0)

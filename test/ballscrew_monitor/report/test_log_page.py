@@ -22,8 +22,8 @@ def written(judged, tmp_path_factory):
     assumptions = {HOSTILE: {'value': HOSTILE, 'reason': HOSTILE}}
     known = {'assumed': assumptions, 'load_from': HOSTILE}
     axes = [
-        judged.case([judged.columns(count=20_000)], events, known=known),
-        judged.case([judged.columns(count=500, **torque)], values=values),
+        judged.case([judged.rows(count=20_000)], events, known=known),
+        judged.case([judged.rows(count=500, **torque)], values=values),
     ]
     named = {'name': HOSTILE, 'parameters': HOSTILE, 'notes': [HOSTILE]}
     text = report_page(judged.log(*axes, empty=['z'], assumptions=assumptions, **named))
@@ -46,7 +46,7 @@ def test_hostile_names_are_text_the_verdict_comes_first_and_what_was_assumed_is_
 def test_a_load_that_was_worked_out_is_not_called_measured(judged, says):
     known = {'load_from': 'current', 'assumed': {'screw': {'value': 'nominal', 'reason': 'usual'}}}
     values = judged.values(**{'x.temperature.topic': ''})
-    case = judged.case([judged.columns()], values=values, known=known)
+    case = judged.case([judged.rows()], values=values, known=known)
     text = report_page(judged.log(case))
     assert says('assumed_neither_measured') in text
     assert says('oil_temperature_40') in text
@@ -57,10 +57,10 @@ def test_a_load_that_was_worked_out_is_not_called_measured(judged, says):
 
 
 def test_where_all_is_known_there_is_no_caution_and_long_tables_are_cut(judged):
-    text = report_page(judged.log(judged.case([judged.columns()])))
+    text = report_page(judged.log(judged.case([judged.rows()])))
     assert 'Assumed, neither' not in text
     events = [judged.event(number + 1, 0.1 * number, 0.05) for number in range(1200)]
-    case = judged.case([judged.columns(count=100)], events)
+    case = judged.case([judged.rows(count=100)], events)
     text = report_page(judged.log(case))
     assert 'The worst 1000 of 1200 are shown.' in text
     assert text.count('<tr data-begin') + text.count('<tr class="bad" data-begin') == 1000
@@ -68,7 +68,7 @@ def test_where_all_is_known_there_is_no_caution_and_long_tables_are_cut(judged):
 
 @pytest.mark.parametrize('advice', ['', 'at this load run at 573 rev/min'])
 def test_a_warning_says_where_it_was_worst_and_what_to_do_if_that_is_advised(judged, advice):
-    case = judged.case([judged.columns()], [judged.event(1, 0.1, 0.2, advice=advice)])
+    case = judged.case([judged.rows()], [judged.event(1, 0.1, 0.2, advice=advice)])
     text = report_page(judged.log(case))
     table = text.partition('Warnings: 1')[2].partition('</table>')[0]
     assert '<td>430 rev/min and -1200 N</td>' in table
@@ -89,7 +89,7 @@ def test_charts_are_drawn_without_an_error(written, browse):
 def test_a_page_of_a_feed_axis_speaks_of_feeds(judged, tmp_path, browse):
     """In verdict, tiles, warnings and chart, without an error; where contact begins is said."""
     values = judged.values(**{'x.speed.unit': 'mm/min'})
-    case = judged.case([judged.columns(count=2000)], [judged.event(1, 1.0, 2.0)], values=values)
+    case = judged.case([judged.rows(count=2000)], [judged.event(1, 1.0, 2.0)], values=values)
     path = tmp_path / 'feed.html'
     path.write_text(report_page(judged.log(case)))
     dom = browse(path, '--dump-dom')
@@ -105,7 +105,7 @@ def test_a_page_of_a_feed_axis_speaks_of_feeds(judged, tmp_path, browse):
 
 def test_a_click_on_a_warning_leads_to_it_and_one_on_a_head_sorts(judged, tmp_path, browse):
     events = [judged.event(1, 10.0, 2.0), judged.event(2, 50.0, 5.0)]
-    case = judged.case([judged.columns(count=20_000)], events)
+    case = judged.case([judged.rows(count=20_000)], events)
     text = report_page(judged.log(case))
     script = """<script>
       document.querySelectorAll('table.leading tr[data-begin]')[1].click();
@@ -147,7 +147,7 @@ def test_it_prints(written, tmp_path, browse):
 def test_columns_of_inputs_are_those_that_say_something(judged):
     def page_of(**changes):
         inputs = tuple(judged.status(source, **changes) for source in Source)
-        case = judged.case([judged.columns()], inputs=inputs)
+        case = judged.case([judged.rows()], inputs=inputs)
         return report_page(judged.log(case))
 
     assert 'Left out' not in page_of()

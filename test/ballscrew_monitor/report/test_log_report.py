@@ -10,18 +10,13 @@ import subprocess
 import sys
 
 from ballscrew_monitor.core.fields import stamp_of
-from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.columns import CODED, COLUMNS, joined
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.report import log_report
 from ballscrew_monitor.report.log_report import (
-    block_of,
-    frame_of,
     JUDGED_SHARE,
     remove_left,
     report_log,
-    RowStore,
     scratch_folder,
     STORED_SHARE,
     write_events,
@@ -30,7 +25,6 @@ from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_monitor.settings.parameters import absolute, read_file
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticArray
-import numpy as np
 import polars as pl
 import pytest
 from rclpy.serialization import deserialize_message
@@ -212,7 +206,7 @@ def test_a_bag_may_be_not_judged_but_must_fit(short_bag, params, tmp_path, refus
 
 def test_events_are_a_line_each_and_none_is_a_table_without_lines(judged, tmp_path):
     events = [judged.event(1, 0.1, 0.2), judged.event(2, 0.5, 0.1, active=True)]
-    case = judged.case([judged.columns()], events)
+    case = judged.case([judged.rows()], events)
     write_events(tmp_path / 'events.csv', judged.log(case))
     with (tmp_path / 'events.csv').open(newline='', encoding='utf-8') as file:
         rows = list(csv.DictReader(file))
@@ -223,7 +217,7 @@ def test_events_are_a_line_each_and_none_is_a_table_without_lines(judged, tmp_pa
     assert rows[0]['target_speed_rad_s'] == '60.0'
     assert not [name for name in rows[0] if 'target_load' in name]
     assert int(rows[0]['start_stamp_ns']) == judged.begin + 100_000_000
-    log = judged.log(judged.case([judged.columns()]))
+    log = judged.log(judged.case([judged.rows()]))
     write_events(tmp_path / 'events.csv', log)
     assert (tmp_path / 'events.csv').read_text().startswith('axis,event_id,')
 
@@ -238,44 +232,6 @@ with scratch_folder(Path(sys.argv[1])) as folder:
     (folder / 'rows').touch()
     os.kill(os.getpid(), signal.SIGKILL)
 """
-
-
-def assert_same(one, other):
-    assert one.axis == other.axis
-    for name in COLUMNS:
-        np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
-        assert getattr(one, name).dtype == getattr(other, name).dtype
-
-
-def test_columns_come_back_from_a_frame(judged):
-    block = judged.columns(zone=np.arange(100) % 3, tick=np.arange(100) % 2 == 0)
-    assert_same(block_of(frame_of(block)), block)
-
-
-@pytest.mark.parametrize('kind', CODED.values())
-def test_codes_count_from_zero_without_a_hole(kind):
-    assert [member.value for member in kind] == list(range(len(kind)))
-
-
-def test_parquet_holds_all_rows_by_axis_or_none_with_the_same_columns(judged, tmp_path):
-    blocks = [judged.columns(0, 60), judged.columns(0, 40, axis='y'), judged.columns(60, 40)]
-    with scratch_folder(tmp_path) as folder:
-        store = RowStore(folder)
-        for block in blocks:
-            store.add(block)
-        store.write(tmp_path / 'states.parquet')
-        assert_same(joined(list(store.blocks('x'))), joined([blocks[0], blocks[2]]))
-    found = pl.read_parquet(tmp_path / 'states.parquet')
-    assert found.columns == ['axis', *COLUMNS]
-    assert found['axis'].value_counts().sort('axis').rows() == [('x', 100), ('y', 40)]
-    assert found['zone'].unique().to_list() == [Zone.OPTIMAL.name]
-    assert_same(block_of(found.filter(pl.col('axis') == 'y')), blocks[1])
-    assert [path.name for path in tmp_path.iterdir()] == ['states.parquet']
-    with scratch_folder(tmp_path) as folder:
-        RowStore(folder).write(tmp_path / 'states.parquet')
-    empty = pl.read_parquet(tmp_path / 'states.parquet')
-    assert empty.schema == frame_of(judged.columns()).schema
-    assert empty.height == 0
 
 
 def test_what_a_killed_process_has_left_is_removed_and_what_is_in_use_is_not(tmp_path):

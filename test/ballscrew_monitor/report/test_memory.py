@@ -10,6 +10,7 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.bulk import batches
 from ballscrew_monitor.recordings.replay import replay_parts
+from ballscrew_monitor.report import row_table
 from ballscrew_monitor.report.log_report import report_log, STORED_SHARE
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.settings.parameters import defaults
@@ -41,6 +42,8 @@ def bags(tmp_path_factory):
 def small_batches(monkeypatch):
     monkeypatch.setattr(batches, 'BATCH', 150_000)
     monkeypatch.setattr(bag_writer, 'WHOLE_CHUNK_SIZE', 20_000)
+    monkeypatch.setattr(row_table, 'BATCH', 500)
+    monkeypatch.setattr(row_table, 'PART', 1000)
 
 
 def write(folder, count):

@@ -38,7 +38,7 @@ TORQUE = {'x.torque.topic': 'torque', 'x.torque.field': 'data'}
     ],
 )
 def test_a_turned_sign_is_told_with_what_mends_it(judged, source, known, key, says):
-    case = judged.case([judged.columns()], values=judged.values(**TORQUE), known=known)
+    case = judged.case([judged.rows()], values=judged.values(**TORQUE), known=known)
     case = dataclasses.replace(case, balance=Balance(turned=source))
     assert says(key) in hints_on([case])
     others = [one for one in inputs_seen(case) if one.source is not source]
@@ -58,6 +58,6 @@ def test_a_turned_sign_is_told_with_what_mends_it(judged, source, known, key, sa
 )
 def test_a_wrong_size_is_told_with_the_unit_that_fits(judged, factor, friction, key, says):
     known = {'stated': frozenset({'lead_mm'})}
-    case = judged.case([judged.columns()], values=judged.values(**TORQUE), known=known)
+    case = judged.case([judged.rows()], values=judged.values(**TORQUE), known=known)
     case = dataclasses.replace(case, balance=Balance(factor=factor, friction=friction))
     assert says(key) in hints_on([case])

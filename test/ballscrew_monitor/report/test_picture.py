@@ -32,7 +32,7 @@ def small_map(*marks):
 
 
 def test_axes_are_side_by_side_in_one_png(judged, tmp_path):
-    cases = [judged.case([judged.columns(axis=axis)]) for axis in ('x', 'y')]
+    cases = [judged.case([judged.rows(axis=axis)]) for axis in ('x', 'y')]
     picture.draw_log(judged.log(*cases), [small_map()] * 2, tmp_path / 'log.png')
     data = (tmp_path / 'log.png').read_bytes()
     assert data.startswith(b'\x89PNG')
@@ -45,7 +45,7 @@ def test_a_failure_leaves_no_picture(judged, tmp_path, monkeypatch):
     monkeypatch.setattr(picture, '_draw_map', lambda *arguments: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         picture.draw_log(
-            judged.log(judged.case([judged.columns()])), [small_map()], tmp_path / 'log.png'
+            judged.log(judged.case([judged.rows()])), [small_map()], tmp_path / 'log.png'
         )
     assert not list(tmp_path.iterdir())
 
@@ -57,7 +57,7 @@ def strips_of(judged, case):
 
 
 def test_panels_and_numbers_are_those_of_the_page(judged):
-    case = judged.case([judged.columns(rcs=0.0)], [judged.event(7, 0.2, 0.4)])
+    case = judged.case([judged.rows(rcs=0.0)], [judged.event(7, 0.2, 0.4)])
     bars, strips = strips_of(judged, case)
     assert [text.get_text() for text in bars.texts] == ['7']
     assert bars.texts[0].get_position() == pytest.approx((0.4, 1.45))
@@ -65,7 +65,7 @@ def test_panels_and_numbers_are_those_of_the_page(judged):
     expected = ['Screw', 'Axial', 'Oil', 'Efficiency,', 'Film', 'RCS:']
     assert [title.split()[0] for title in strips] == expected
     load = strips['Axial load, positive along the axis [N]']
-    np.testing.assert_array_equal(load.lines[0].get_ydata(), judged.columns().axial_load)
+    np.testing.assert_array_equal(load.lines[0].get_ydata(), judged.rows().rows['axial_load'])
     (shade,) = load.patches
     assert (shade.get_x(), shade.get_width()) == pytest.approx((0.2, 0.4))
     lowest = next(strip for title, strip in strips.items() if title.startswith('RCS'))
@@ -79,7 +79,7 @@ def test_colours_are_those_of_the_page(judged):
 
 @pytest.mark.parametrize('temperature', [313.15, np.nan])
 def test_names_of_lines_are_on_the_map_and_apart(judged, temperature):
-    log = judged.log(judged.case([judged.columns(temperature=temperature)]))
+    log = judged.log(judged.case([judged.rows(temperature=temperature)]))
     maps = maps_of(log)
     figure = picture.figure_log(log, maps)
     figure.draw_without_rendering()
@@ -96,7 +96,7 @@ def test_names_of_lines_are_on_the_map_and_apart(judged, temperature):
 def test_a_map_of_feeds_has_them_below_and_the_speed_of_the_screw_above(judged):
     """Each tick stands at the speed that it is."""
     chart = dataclasses.replace(small_map(), feed=0.02)
-    (part,) = picture.figure_log(judged.log(judged.case([judged.columns()])), [chart]).subfigs
+    (part,) = picture.figure_log(judged.log(judged.case([judged.rows()])), [chart]).subfigs
     axes = part.subfigs[0].axes[0]
     (above,) = axes.child_axes
     assert axes.get_xlabel() == 'feed, either direction [m/min]'

@@ -6,9 +6,8 @@ import json
 import math
 
 from ballscrew_monitor.core.inputs import Source, Why
-from ballscrew_monitor.core.judgement import Zone
+from ballscrew_monitor.core.judgement import Reason, Zone
 from ballscrew_monitor.core.state import Totals
-from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.report.printed import axis_lines, log_lines, printed_records, summary_record
 import numpy as np
 from surrogate.files import json_text
@@ -16,7 +15,7 @@ from surrogate.files import json_text
 
 def still_case(judged):
     """Return an axis that stood still, its speed in m/s read as mm/s."""
-    block = judged.columns(
+    block = judged.rows(
         speed=0.1 * np.sin(np.arange(100)), zone=Zone.UNKNOWN, reason=Reason.STANDSTILL
     )
     values = judged.values(**{'x.speed.unit': 'mm/s'})
@@ -40,7 +39,7 @@ def test_an_axis_that_never_moves_does_not_read_like_all_is_well(judged, says):
 def test_an_axis_of_which_only_standstill_was_judged_says_so(judged, says):
     zeros = {'zone': Zone.UNKNOWN, 'axial_load': np.nan, 'axial_load_source': 0}
     speeds, reasons = [9.0] * 20 + [0.0] * 80, [Reason.NO_LOAD] * 20 + [Reason.STANDSTILL] * 80
-    block = judged.columns(speed=speeds, reason=reasons, **zeros)
+    block = judged.rows(speed=speeds, reason=reasons, **zeros)
     moved = Totals(running_time=200_000_000, unjudged_time=200_000_000)
     case = judged.case([block], totals=moved, judged=80)
     assert math.isnan(case.outside_time)  # 0 would read as well done
@@ -52,19 +51,19 @@ def test_an_axis_of_which_only_standstill_was_judged_says_so(judged, says):
 
 
 def test_lines_of_an_axis_that_is_well_has_gaps_warns_or_has_no_rows(judged, says):
-    case = judged.case([judged.columns()])
+    case = judged.case([judged.rows()])
     assert not lines_of(case, 'check')
     assert not lines_of(case, 'not judged')
     assert lines_of(case, 'events') == ['none']
     assert lines_of(case, 'verdict') == [says('good_stayed_optimal')]
-    case = judged.case([judged.columns(0, 51), judged.columns(250, 51)])
+    case = judged.case([judged.rows(0, 51), judged.rows(250, 51)])
     assert lines_of(case, 'not judged') == ['2 s: no speed was recorded']
-    case = judged.case([judged.columns()], [judged.event(1, 0.1, 0.2)])
+    case = judged.case([judged.rows()], [judged.event(1, 0.1, 0.2)])
     assert lines_of(case, 'why')[0].startswith('The oil film was too thin')
     assert 'at this load run at 573 rev/min' in lines_of(case, 'what to do')[0]
     assert any(' at 430 rev/min and -1200 N: at this' in line for line in axis_lines(case))
     silent = judged.event(1, 0.1, 0.2, advice='', target_speed=math.nan)
-    case = judged.case([judged.columns()], [silent])
+    case = judged.case([judged.rows()], [silent])
     assert not lines_of(case, 'what to do')
     assert any(line.endswith(' at 430 rev/min and -1200 N') for line in axis_lines(case))
     assert list(log_lines(judged.log(empty=['y']))) == ['axis y: no usable sample']
@@ -72,7 +71,7 @@ def test_lines_of_an_axis_that_is_well_has_gaps_warns_or_has_no_rows(judged, say
 
 def test_warnings_speak_the_unit_of_the_log(judged):
     values = judged.values(**{'x.speed.unit': 'm/min'})
-    case = judged.case([judged.columns()], [judged.event(1, 0.1, 0.2)], values=values)
+    case = judged.case([judged.rows()], [judged.event(1, 0.1, 0.2)], values=values)
     (line,) = (line for line in axis_lines(case) if ' at 4.3 m/min, 430 rev/min ' in line)
     assert 'run at 5.73 m/min, 573 rev/min' in line
 
@@ -84,7 +83,7 @@ def test_inputs_tell_source_span_rate_and_troubles(judged, says):
     )
     held = np.where(np.arange(100) < 90, 1, 3)
     refused = {Source.LOAD: {Why.NOT_A_NUMBER: 2}}
-    case = judged.case([judged.columns(axial_load_source=held)], inputs=inputs, refused=refused)
+    case = judged.case([judged.rows(axial_load_source=held)], inputs=inputs, refused=refused)
     speed, load, oil, torque = lines_of(case, 'input')
     assert speed.startswith('speed: measured, 100 to ')
     assert speed.endswith(' rad/s, 100 Hz, stamps 0.5 s behind arrival')
@@ -94,7 +93,7 @@ def test_inputs_tell_source_span_rate_and_troubles(judged, says):
 
 
 def test_json_has_totals_and_inputs_of_an_axis_side_by_side(judged, says):
-    log = judged.log(judged.case([judged.columns()]), empty=['y'])
+    log = judged.log(judged.case([judged.rows()]), empty=['y'])
     records = printed_records(summary_record(log))
     assert records['x']['judged'] == 100
     assert records['x']['events'] == []
@@ -108,7 +107,7 @@ def test_the_summary_is_strict_json_with_reasons_for_null(judged):
         raise ValueError(name)
 
     events = [judged.event(1, 0.1, 0.2), judged.event(2, 0.5, 0.1, active=True)]
-    case = judged.case([judged.columns()], events)
+    case = judged.case([judged.rows()], events)
     assumptions = {'x.lead': {'value': 0.01, 'reason': 'usual'}}
     log = judged.log(case, empty=['y'], assumptions=assumptions)
     record = json.loads(json_text(summary_record(log)), parse_constant=refuse)

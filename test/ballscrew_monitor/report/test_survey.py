@@ -2,13 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The survey of rows: the same whatever the blocks, gaps, and a time line that can be trusted."""
 
-import dataclasses
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.core.judgement import Zone
-from ballscrew_monitor.recordings.columns import COLUMNS, joined, Reason
+from ballscrew_monitor.core.judgement import Reason, Zone
 from ballscrew_monitor.report.survey import Surveyor
 import numpy as np
 import pytest
@@ -19,13 +17,13 @@ GAP = SECOND // 2
 def survey_of(*blocks):
     surveyor = Surveyor('x', standstill=0.5, max_gap=GAP)
     for block in blocks:
-        surveyor.add(block)
+        surveyor.add(block.rows)
     return surveyor.result()
 
 
 def test_it_does_not_depend_on_the_blocks(judged):
-    blocks = [judged.columns(0, 70), judged.columns(70, 30), judged.columns(100, 1)]
-    parts, whole = survey_of(*blocks), survey_of(joined(blocks))
+    blocks = [judged.rows(0, 70), judged.rows(70, 30), judged.rows(100, 1)]
+    parts, whole = survey_of(*blocks), survey_of(judged.rows(0, 101))
     assert parts.reasons == pytest.approx(whole.reasons)
     assert parts.energy == pytest.approx(whole.energy)
     assert (parts.rows, parts.first, parts.last) == (whole.rows, whole.first, whole.last)
@@ -34,19 +32,19 @@ def test_it_does_not_depend_on_the_blocks(judged):
 
 
 def test_time_and_energy_are_summed_and_only_measured_inputs_have_extremes(judged):
-    found = survey_of(judged.columns(speed=10.0, friction_torque=0.5))
+    found = survey_of(judged.rows(speed=10.0, friction_torque=0.5))
     assert found.reasons == {Reason.JUDGED: pytest.approx(0.99)}
     assert found.energy[Zone.OPTIMAL] == pytest.approx(0.99 * 5.0)
-    found = survey_of(judged.columns(speed=0.0, reason=Reason.STANDSTILL, zone=Zone.UNKNOWN))
+    found = survey_of(judged.rows(speed=0.0, reason=Reason.STANDSTILL, zone=Zone.UNKNOWN))
     assert sum(found.energy.values()) == 0.0
     assert math.isnan(found.opposing.mean)
-    found = survey_of(judged.columns(temperature_source=2))
+    found = survey_of(judged.rows(temperature_source=2))
     assert math.isnan(found.inputs[Source.TEMPERATURE].low)
     assert found.inputs[Source.LOAD].high == pytest.approx(-950.0)
 
 
 def test_gaps_are_listed_longest_first_and_are_no_time_of_a_reason(judged):
-    blocks = [judged.columns(0, 10), judged.columns(110, 10), judged.columns(420, 10)]
+    blocks = [judged.rows(0, 10), judged.rows(110, 10), judged.rows(420, 10)]
     found = survey_of(*blocks)
     speed = found.gaps[Source.SPEED]
     assert [length / SECOND for _, length in found.speed_gaps] == pytest.approx([3.01, 1.01])
@@ -58,11 +56,8 @@ def test_gaps_are_listed_longest_first_and_are_no_time_of_a_reason(judged):
 def test_gaps_of_another_input_are_stretches_without_a_valid_sample(judged):
     sources = np.ones(100)
     sources[40:50] = sources[90:] = 3
-    block = judged.columns(axial_load_source=sources)
-    halves = [
-        dataclasses.replace(block, **{name: getattr(block, name)[part] for name in COLUMNS})
-        for part in (slice(0, 45), slice(45, 100))
-    ]
+    block = judged.rows(axial_load_source=sources)
+    halves = [block._replace(rows=rows) for rows in np.split(block.rows, [45])]
     for blocks in ([block], halves):
         gaps = survey_of(*blocks).gaps
         assert (gaps[Source.LOAD].count, gaps[Source.LOAD].time) == (2, pytest.approx(0.19))
@@ -70,24 +65,79 @@ def test_gaps_of_another_input_are_stretches_without_a_valid_sample(judged):
 
 
 def test_a_stray_stamp_makes_the_log_the_time_line(judged):
-    block = judged.columns()
-    stamps = block.stamp.copy()
-    stamps[50] = 1
-    found = survey_of(dataclasses.replace(block, stamp=stamps))
+    block = judged.rows()
+    block.rows['stamp'][50] = 1
+    found = survey_of(block)
     assert not found.by_stamp
     assert found.span == pytest.approx(0.99)
     assert found.shift == 1000
 
 
 def test_torque_is_compared_by_direction(judged):
-    block = judged.columns(motor_torque_source=1, motor_torque=1.7)
-    directions = np.where(np.arange(100) < 50, 1, 2).astype(np.uint8)
+    block = judged.rows(motor_torque_source=1, motor_torque=1.7)
+    directions = np.where(np.arange(100) < 50, 1, 2)
     torque = np.where(directions == 1, 1.7, -1.9)
     machine = np.where(directions == 1, 1.5, -1.5)
     found = survey_of(
-        dataclasses.replace(
-            block, direction=directions, motor_torque=torque, machine_torque=machine
-        )
+        judged.changed(block, direction=directions, motor_torque=torque, machine_torque=machine)
     ).torque
     expected = (100, pytest.approx(0.2), pytest.approx(-0.4))
     assert (found.count, found.forward, found.backward) == expected
+
+
+def test_sums_are_those_of_the_whole_arrays(judged):
+    """Rows of any kind, against numpy on columns."""
+    draw = np.random.default_rng(1)
+    count = 4000
+    codes = {
+        f'{name}_source': draw.integers(0, 5, count)
+        for name in ('speed', 'axial_load', 'temperature', 'motor_torque')
+    }
+    numbers = {
+        name: np.where(draw.random(count) < 0.1, np.nan, draw.normal(mean, 50.0, count))
+        for name, mean in [('axial_load', -300.0), ('temperature', 310.0), ('motor_torque', 2.0)]
+    }
+    step = draw.choice([0, -GAP, GAP // 50, GAP, GAP + 1], count, p=[0.1, 0.1, 0.6, 0.1, 0.1])
+    block = judged.rows(
+        count=count,
+        stamp=judged.begin + np.cumsum(step),
+        speed=draw.normal(0.0, 1.0, count),
+        friction_torque=np.where(draw.random(count) < 0.1, np.nan, draw.random(count)),
+        direction=draw.integers(0, 3, count),
+        reason=draw.integers(0, len(Reason), count),
+        zone=draw.integers(0, len(Zone), count),
+        tick=draw.random(count) < 0.1,
+        **codes,
+        **numbers,
+    )
+    rows = block.rows
+    found = survey_of(*(block._replace(rows=part) for part in np.split(rows, [7, 2000])))
+    moving = np.abs(rows['speed']) >= 0.5
+    steps = np.diff(rows['stamp'])
+    lasts = np.where((steps > 0) & (steps <= GAP), steps, 0) / SECOND
+    for reason, code in zip(Reason, range(len(Reason))):
+        held = rows['reason'][:-1] == code
+        assert found.reasons.get(reason, 0.0) == pytest.approx(lasts[held].sum())
+        held &= moving[:-1] & ~rows['tick'][:-1]
+        assert found.moving.get(reason, 0.0) == pytest.approx(lasts[held].sum())
+    power = np.where(moving, np.nan_to_num(rows['friction_torque'] * np.abs(rows['speed'])), 0.0)
+    for zone in Zone:
+        energy = (lasts * power[:-1])[rows['zone'][:-1] == zone].sum()
+        assert found.energy[zone] == pytest.approx(energy)
+    for source, name in [(Source.LOAD, 'axial_load'), (Source.TORQUE, 'motor_torque')]:
+        origin = rows[f'{name}_source']
+        known = rows[name][np.isin(origin, (1, 4)) & np.isfinite(rows[name])]
+        span = found.inputs[source]
+        assert (span.low, span.high) == (known.min(), known.max())
+        assert span.mean == pytest.approx(known.mean())
+        held = origin == 3
+        assert found.gaps[source].count == (held & ~np.insert(held[:-1], 0, False)).sum()
+        assert found.gaps[source].time == pytest.approx(lasts[held[:-1]].sum())
+    opposing = np.array([np.nan, -1.0, 1.0])[rows['direction']] * rows['axial_load']
+    assert found.opposing.mean == pytest.approx(np.nanmean(opposing[moving]))
+    compared = moving & (rows['motor_torque_source'] == 1) & (rows['axial_load_source'] != 4)
+    residual = (rows['motor_torque'] - rows['machine_torque'])[compared]
+    assert found.torque.spread == pytest.approx(np.sqrt(np.nanmean(residual**2)))
+    forward = residual[rows['direction'][compared] == 1]
+    assert found.torque.forward == pytest.approx(np.nanmean(forward))
+    assert found.uncounted == pytest.approx(steps[steps > GAP].sum() / SECOND)

@@ -5,9 +5,8 @@
 import math
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.judgement import PointSource, Zone
+from ballscrew_monitor.core.judgement import PointSource, Reason, Zone
 from ballscrew_monitor.core.state import Totals
-from ballscrew_monitor.recordings.columns import Reason
 from ballscrew_monitor.report.log_page import verdict_part
 from ballscrew_monitor.report.printed import axis_lines, axis_record
 from ballscrew_monitor.report.verdict import REMEDIES, verdict_of, VerdictKind
@@ -63,7 +62,7 @@ SAID = (
 
 @pytest.mark.parametrize(('columns', 'total', 'said'), SAID)
 def test_sentences_say_how_an_axis_did_and_what_to_do(judged, columns, total, said, says):
-    verdict = verdict_of(judged.case([judged.columns(**columns)], totals=total))
+    verdict = verdict_of(judged.case([judged.rows(**columns)], totals=total))
     assert f'{verdict.whole} {verdict.remedy}' == says(said)
 
 
@@ -76,11 +75,11 @@ def rows(judged, *parts, still=0):
     """
     blocks, begin = [], 0
     for number, count in enumerate(parts):
-        blocks += [] if number % 2 else [judged.columns(begin, count)]
+        blocks += [] if number % 2 else [judged.rows(begin, count)]
         begin += count
     if still:
         rest = {'speed': 0.0, 'reason': Reason.STANDSTILL, 'zone': Zone.UNKNOWN}
-        blocks.append(judged.columns(begin, still, **rest))
+        blocks.append(judged.rows(begin, still, **rest))
     moved = sum(parts[::2]) / 100
     return verdict_of(judged.case(blocks, totals=totals(moved, moved)))
 
@@ -90,7 +89,7 @@ def test_below_half_of_what_may_be_motion_nothing_is_good_and_it_is_said_why(jud
     assert f'{verdict.whole} {verdict.remedy}' == says('gaps_in_speed')
     assert rows(judged, 100, 400, 400).standing is VerdictKind.GOOD
     lost = {'speed_source': PointSource.HELD, 'zone': Zone.UNKNOWN, 'tick': True}
-    blocks = [judged.columns(0, 20), judged.columns(20, 60, reason=Reason.NO_INPUTS, **lost)]
+    blocks = [judged.rows(0, 20), judged.rows(20, 60, reason=Reason.NO_INPUTS, **lost)]
     verdict = verdict_of(judged.case(blocks, totals=totals(0.2, 0.2)))
     assert f'{verdict.whole} {verdict.remedy}' == says('inputs_lost')
     assert rows(judged, 100, still=900).standing is VerdictKind.GOOD  # no motion to be judged
@@ -112,7 +111,7 @@ def test_good_needs_half_of_the_recording_but_for_standstill(judged, first, gap,
 def test_motion_that_was_mostly_outside_is_not_good_though_no_warning_lasted(
     judged, outside, standing, says
 ):
-    case = judged.case([judged.columns()], totals=totals(70.0, 60.0 - outside, outside))
+    case = judged.case([judged.rows()], totals=totals(70.0, 60.0 - outside, outside))
     verdict = verdict_of(case)
     assert verdict.standing is standing
     assert (verdict.whole == says('mostly_outside')) == (standing is VerdictKind.BAD)
@@ -137,7 +136,7 @@ def test_outside_says_how_long_why_and_what_to_do(judged, says):
             target_speed=math.nan,
         ),
     ]
-    verdict = verdict_of(judged.case([judged.columns()], events, totals=totals(60.0, 45.0, 15.0)))
+    verdict = verdict_of(judged.case([judged.rows()], events, totals=totals(60.0, 45.0, 15.0)))
     assert verdict.standing is VerdictKind.BAD
     assert verdict.sentence == says('ran_outside_optimal')
     assert says('up_42_load') in verdict.why
@@ -146,7 +145,7 @@ def test_outside_says_how_long_why_and_what_to_do(judged, says):
 
 
 def remedy(judged, *events):
-    return verdict_of(judged.case([judged.columns()], events)).remedy
+    return verdict_of(judged.case([judged.rows()], events)).remedy
 
 
 def advised(judged, number, speed, target, **changes):
@@ -181,17 +180,17 @@ def test_gaps_hide_neither_that_an_axis_never_moved_nor_why_it_was_not_judged(ju
     still = {'speed': 0.1, 'zone': Zone.UNKNOWN}
     gap = {'reason': Reason.NO_INPUTS, 'speed_source': PointSource.HELD, 'tick': True}
     blocks = [
-        judged.columns(0, 90, reason=Reason.STANDSTILL, **still),
-        judged.columns(90, 10, **still, **gap),
+        judged.rows(0, 90, reason=Reason.STANDSTILL, **still),
+        judged.rows(90, 10, **still, **gap),
     ]
     verdict = verdict_of(judged.case(blocks, totals=Totals()))
     assert 'axis x never moved' in verdict.sentence
-    blocks = [blocks[0], judged.columns(90, 200, **still, **gap)]
+    blocks = [blocks[0], judged.rows(90, 200, **still, **gap)]
     verdict = verdict_of(judged.case(blocks, totals=Totals()))
     assert verdict.sentence.endswith('axis x: no valid sample of several inputs.')
     blocks = [
-        judged.columns(0, 10, reason=Reason.NO_LOAD, zone=Zone.UNKNOWN),
-        judged.columns(10, 90, zone=Zone.UNKNOWN, **gap),
+        judged.rows(0, 10, reason=Reason.NO_LOAD, zone=Zone.UNKNOWN),
+        judged.rows(10, 90, zone=Zone.UNKNOWN, **gap),
     ]
     verdict = verdict_of(judged.case(blocks, totals=totals(0.1, 0.0)))
     assert verdict.sentence.endswith('of its motion: no valid sample of the load.')
@@ -202,20 +201,20 @@ FEED = {'x.speed.unit': 'mm/min'}
 
 def test_contact_is_that_of_the_surface_with_the_oil_as_warm_as_in_motion(judged):
     """With the limits of the axis; the sentence has the degrees of the page."""
-    case = judged.case([judged.columns(temperature=308.15)])
+    case = judged.case([judged.rows(temperature=308.15)])
     limits = case.settings.limits
     bounds = {name: getattr(limits, name) for name in ('rcs', 'efficiency', 'light_load')}
     found = onset_of_surface(case.surface, case.survey.oil.mean, ZoneLimits(**bounds))
     assert case.onset == found
     assert verdict_of(case).contact == f'{found.sentence()}.'.replace(' degC', ' °C')
-    unknown = judged.case([judged.columns(temperature=math.nan)])
+    unknown = judged.case([judged.rows(temperature=math.nan)])
     assert unknown.onset == onset_of_surface(case.surface, None, ZoneLimits(**bounds))
 
 
 def test_where_a_log_gives_a_feed_the_verdict_does_too(judged, says):
     """Where its contact begins, and what to do: in m/min first."""
     events = [judged.event(1, 0.1, 0.2)]
-    case = judged.case([judged.columns()], events, values=judged.values(**FEED))
+    case = judged.case([judged.rows()], events, values=judged.values(**FEED))
     verdict = verdict_of(case)
     assert verdict.remedy == says('feed')
     assert f'{case.onset.sentence(as_feed=True)}.'.replace(' degC', ' °C') == verdict.contact
@@ -237,6 +236,6 @@ def test_a_log_speaks_the_unit_of_its_column_else_that_of_its_topic(
     judged, unit, motion_unit, feed
 ):
     values = judged.values(**{'x.speed.unit': unit})
-    case = judged.case([judged.columns()], values=values, known={'motion_unit': motion_unit})
+    case = judged.case([judged.rows()], values=values, known={'motion_unit': motion_unit})
     assert case.speaks_feed is feed
     assert ('m/min' in case.contact) is feed

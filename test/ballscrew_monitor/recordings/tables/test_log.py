@@ -2,16 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """A table as a log: its rows are judged as the messages of the bag that `import` writes."""
 
+import dataclasses
 from pathlib import Path
 import tempfile
 import tracemalloc
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Source, Why
+from ballscrew_monitor.judge.many import ROW
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.columns import AxisOutcome, COLUMNS, joined
 from ballscrew_monitor.recordings.log_facts import parameters_of
 from ballscrew_monitor.recordings.replay import replay, replay_parts
+from ballscrew_monitor.recordings.summary import AxisOutcome
 from ballscrew_monitor.recordings.tables import log as table_log
 from ballscrew_monitor.recordings.tables import sources
 from ballscrew_monitor.recordings.tables.convert import convert
@@ -22,6 +24,7 @@ from hypothesis import strategies as st
 import numpy as np
 import polars as pl
 import pytest
+from surrogate.surface import Found
 
 TIME = {'column': 't', 'unit': 'ms', 'epoch': '2000-01-01T00:00:00Z'}
 BEGIN = 946_684_800 * SECOND  # [ns]
@@ -49,6 +52,10 @@ MAPS = [
     },
 ]
 """Axes with all kinds of inputs: measured, derived, unknown, of rates of their own."""
+OF_STATES = {field.name for field in dataclasses.fields(Found)} - set(
+    'validity rcs film_ratio efficiency driving_torque friction_torque worst_contact'.split()
+)
+"""Numbers that are looked up for the row of a state alone, or say where a point lies."""
 
 
 def map_of(axes):
@@ -66,12 +73,26 @@ def judged(log, values):
         if isinstance(part, AxisOutcome):
             outcomes.append(part)
         else:
-            blocks.setdefault(part.axis, []).append(part)
-    rows = {axis: joined(found) for axis, found in blocks.items()}
-    return {
-        axis: {name: getattr(found, name).tobytes() for name in COLUMNS}
-        for axis, found in rows.items()
-    }, outcomes
+            # The next rows overwrite them.
+            blocks.setdefault(part.axis, []).append(part.rows.copy())
+    rows = {axis: np.concatenate(parts) for axis, parts in blocks.items()}
+    return {axis: compared(found) for axis, found in rows.items()}, outcomes
+
+
+def compared(rows):
+    """Return the columns of rows as bytes; some numbers are there only for published rows."""
+    rows = rows.copy()
+    for name in ROW.names:
+        if name in OF_STATES:
+            rows[name][~rows['published']] = 0
+    return {name: rows[name].tobytes() for name in ROW.names}
+
+
+def rows_and_outcome(log):
+    """Return the rows of the only axis, and what it comes to; the next rows overwrite them."""
+    parts = replay_parts(log, parameters_of(log), states=False)
+    copies = [part if isinstance(part, AxisOutcome) else part.rows.copy() for part in parts]
+    return np.concatenate(copies[:-1]), copies[-1]
 
 
 def write(folder, columns):
@@ -148,11 +169,10 @@ def test_an_empty_cell_is_refused_once_and_the_last_load_stays(tmp_path):
         'F': [-5.0, None, -6.0, None],
     }
     log = TableLog(write(tmp_path, columns), map_of(MAPS[0]))
-    *blocks, outcome = replay_parts(log, parameters_of(log), states=False)
-    rows = joined(blocks)
-    at = ~rows.tick
-    assert (rows.stamp[at] - BEGIN).tolist() == [0, 10_000_000, 30_000_000]
-    assert rows.axial_load[at].tolist() == [-5.0, -5.0, -6.0]
+    rows, outcome = rows_and_outcome(log)
+    at = ~rows['tick']
+    assert (rows['stamp'][at] - BEGIN).tolist() == [0, 10_000_000, 30_000_000]
+    assert rows['axial_load'][at].tolist() == [-5.0, -5.0, -6.0]
     refused = outcome.refused
     assert refused[Source.SPEED][Why.NOT_A_NUMBER] == 1
     assert refused[Source.LOAD][Why.NOT_A_NUMBER] == 2
@@ -165,9 +185,8 @@ def test_rows_of_one_time_are_judged_with_the_last_load_of_them(tmp_path, block,
     columns = {'t': [0, 10, 10, 10, 20, 30], 'v': [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]}
     columns['F'] = [-1.0, -2.0, -3.0, -4.0, -5.0, -6.0]
     log = TableLog(write(tmp_path, columns), map_of(MAPS[0]))
-    *blocks, _ = replay_parts(log, parameters_of(log), states=False)
-    rows = joined(blocks)
-    assert rows.axial_load[~rows.tick].tolist() == [-1.0, -4.0, -4.0, -4.0, -5.0, -6.0]
+    rows, _ = rows_and_outcome(log)
+    assert rows['axial_load'][~rows['tick']].tolist() == [-1.0, -4.0, -4.0, -4.0, -5.0, -6.0]
 
 
 def test_what_the_rows_say_of_the_map_is_known_once_they_are_read(tmp_path):
