@@ -9,7 +9,7 @@ import tracemalloc
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Source, Why
-from ballscrew_monitor.judge.many import ROW
+from ballscrew_monitor.judge import many
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import parameters_of
 from ballscrew_monitor.recordings.replay import replay, replay_parts
@@ -82,10 +82,10 @@ def judged(log, values):
 def compared(rows):
     """Return the columns of rows as bytes; some numbers are there only for published rows."""
     rows = rows.copy()
-    for name in ROW.names:
+    for name in many.ROW.names:
         if name in OF_STATES:
             rows[name][~rows['published']] = 0
-    return {name: rows[name].tobytes() for name in ROW.names}
+    return {name: rows[name].tobytes() for name in many.ROW.names}
 
 
 def rows_and_outcome(log):
