@@ -279,7 +279,24 @@ class OperatingPoint(Checked):
 
 def load_screw(name_or_path: str) -> Screw:
     """Load a screw by shipped name or file; raises InputError."""
-    return read_sheet(Screw, find_sheet(name_or_path, 'screws'))
+    path = find_sheet(name_or_path, 'screws')
+    screw = read_sheet(Screw, path)
+    check_waves(screw.roughness, str(path))
+    return screw
+
+
+def check_waves(roughness: Roughness, where: str) -> None:
+    """Raise InputError, which says `where`, if no waves have the stated slope."""
+    if roughness.rms_slope is None:
+        return
+    # Only a stated slope is worth the time that scipy takes to load.
+    from surrogate.raceway.scaling import scale_spectrum
+
+    try:
+        scale_spectrum(roughness)
+    except InputError as error:
+        name = f'{where.rpartition(": ")[2].split()[0]}: '
+        raise InputError(f'{where}: {str(error).removeprefix(name)}') from None
 
 
 def load_lubricant(name_or_path: str) -> Lubricant:

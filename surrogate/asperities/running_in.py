@@ -26,7 +26,6 @@ from surrogate.parameters import Screw
 from surrogate.raceway.ball import ball_of
 from surrogate.raceway.dry_contact import run_in
 from surrogate.raceway.scaling import scale_spectrum, ScaledSpectrum
-from surrogate.raceway.stated import spectrum_of
 from surrogate.raceway.tile import draw_tile, Tile
 from surrogate.units import GIGA
 
@@ -93,7 +92,7 @@ def running_tiles(screw: Screw, side: Side, *, shortest: float = 0.0) -> list[Ti
 
 def waves_of(screw: Screw) -> dict[int, ScaledSpectrum]:
     """Return the waves of raceway and ball by their field, 0 and 1; a smooth one has none."""
-    raceway = scale_spectrum(spectrum_of(screw.roughness))
+    raceway = scale_spectrum(screw.roughness)
     ball = ball_of(screw.roughness, screw.ball_roughness)
     fields = {0: raceway if screw.roughness.rms else None, 1: ball}
     return {field: waves for field, waves in fields.items() if waves is not None}

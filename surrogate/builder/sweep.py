@@ -26,7 +26,7 @@ from surrogate.builder.tiers import (
 )
 from surrogate.datasheet import changed_sheet, read_yaml
 from surrogate.files import InputError
-from surrogate.parameters import load_lubricant, load_screw, Lubricant, NAME, Screw
+from surrogate.parameters import check_waves, load_lubricant, load_screw, Lubricant, NAME, Screw
 from surrogate.surface.file import from_bytes, SurfaceData, SurfaceError, to_bytes, write
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.tasks.worker import describe_failure, worker_name
@@ -140,6 +140,7 @@ def _with_roughness(path: Path, screw: Screw, name: str, changes: dict[str, Any]
     if not changes:
         return screw
     roughness = changed_sheet(screw.roughness, changes, where)
+    check_waves(roughness, where)
     return replace(screw, name=f'{screw.name}-{name}', roughness=roughness)
 
 

@@ -9,7 +9,6 @@ optional. The roughness stands still in the contact, or rolls through it.
 """
 
 from dataclasses import dataclass, replace
-import math
 from typing import Literal
 
 from surrogate.datasheet import (
@@ -21,16 +20,18 @@ from surrogate.datasheet import (
     quantities,
     quantity,
     read_sheet,
+    same,
     text,
 )
 from surrogate.ehl import Condition, ContactLubricant
 from surrogate.ehl.interface import LARGEST_GRID, Law
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
-from surrogate.raceway.fractal import Lay
+from surrogate.raceway.fractal import Lay, PublishedRoughness
 from surrogate.raceway.measured import Outside
 from surrogate.raceway.patch import Patch
-from surrogate.raceway.standards import BALL_RA
+from surrogate.raceway.spectrum import RoughnessSpectrum
+from surrogate.raceway.stated import BallRoughness, Roughness
 
 CONSTANTS = (
     'fractal_dimension',
@@ -80,30 +81,30 @@ class CaseRoughness(Checked):
 
     """
 
-    rms: float | None = quantity('um', 1e-6, 0.0, 10.0, default=None)
+    rms: float | None = same(RoughnessSpectrum, 'rms')
     file: str | None = text(default=None)
     outside: Outside = choice('refuse', 'mirror', default='refuse')
     seed: int | None = count(0, 2**32 - 1, default=None)
     patch: Patch | Literal['standard'] | None = choice('rescaled', 'cut', 'standard', default=None)
-    lay: Lay | None = choice('isotropic', 'longitudinal', 'transverse', default=None)
-    shortest_wavelength: float | None = quantity('um', 1e-6, 0.1, 1000.0, default=None)
+    lay: Lay | None = same(RoughnessSpectrum, 'lay')
+    shortest_wavelength: float | None = same(PublishedRoughness, 'shortest_wavelength')
     grid_wavelength: float | None = quantity('um', 1e-6, 0.1, 1000.0, default=None)
-    fractal_dimension: float | None = quantity('', 1.0, 2.01, 2.99, default=None)
-    fractal_roughness: float | None = quantity('nm', 1e-9, 1e-6, 1e3, default=None)
-    sample_length: float | None = quantity('mm', 1e-3, 0.01, 100.0, default=None)
-    scale_ratio: float | None = quantity('', 1.0, 1.01, 10.0, default=None)
-    ridges: int | None = count(1, 1000, default=None)
+    fractal_dimension: float | None = same(RoughnessSpectrum, 'fractal_dimension')
+    fractal_roughness: float | None = same(PublishedRoughness, 'fractal_roughness')
+    sample_length: float | None = same(PublishedRoughness, 'sample_length')
+    scale_ratio: float | None = same(RoughnessSpectrum, 'scale_ratio')
+    ridges: int | None = same(RoughnessSpectrum, 'ridges')
     position_x: float | None = quantity('mm', 1e-3, -1e3, 1e3, default=None)
     position_y: float | None = quantity('mm', 1e-3, -1e3, 1e3, default=None)
     window_x: float | None = quantity('mm', 1e-3, 1e-3, 100.0, default=None)
     window_y: float | None = quantity('mm', 1e-3, 1e-3, 100.0, default=None)
-    cutoff_long: float | None = quantity('mm', 1e-3, 0.001, 100.0, default=None)
-    cutoff_short: float | None = quantity('um', 1e-6, 0.1, 1000.0, default=None)
-    rms_slope: float | None = quantity('deg', math.pi / 180, 0.001, 45.0, default=None)
-    fan_angle: float | None = quantity('deg', math.pi / 180, 0.0, 90.0, default=None)
-    ball_rms: float | None = quantity('um', 1e-6, 0.0, 10.0, default=None)
-    ball_grade: str | None = choice(*BALL_RA, default=None)
-    asperity_friction: float = quantity('', 1.0, 0.0, 1.0, default=0.1)
+    cutoff_long: float | None = same(RoughnessSpectrum, 'cutoff_long')
+    cutoff_short: float | None = same(RoughnessSpectrum, 'cutoff_short')
+    rms_slope: float | None = same(RoughnessSpectrum, 'rms_slope')
+    fan_angle: float | None = same(RoughnessSpectrum, 'fan_angle')
+    ball_rms: float | None = same(BallRoughness, 'rms')
+    ball_grade: str | None = same(BallRoughness, 'grade')
+    asperity_friction: float = same(Roughness, 'asperity_friction', default=0.1)
 
     def __post_init__(self) -> None:
         """Check ranges, and that the keys of one kind of surface do not mix with another's."""

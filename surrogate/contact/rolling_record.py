@@ -7,7 +7,7 @@ import math
 from typing import TypedDict
 
 from surrogate.contact.case import CaseRoughness, ContactCase
-from surrogate.contact.surface import composite_rms, raceway_spectrum, roughness_words
+from surrogate.contact.surface import composite_rms, raceway_waves, roughness_words
 from surrogate.ehl.moving import Mean, MovingSolution, StripContact
 from surrogate.ehl.moving.interface import HARDNESS, THIN_FILMS
 from surrogate.formulas.geometry import hertz
@@ -146,7 +146,7 @@ def hertz_of(solution: MovingSolution) -> tuple[float, float, float]:
 
 
 def _roughness_record(rough: CaseRoughness, surface: Raceway) -> RoughnessRecord:
-    standard = raceway_spectrum(rough) if rough.patch == 'standard' else None
+    standard = raceway_waves(rough) if rough.patch == 'standard' else None
     return {
         'sentence': roughness_words(rough, surface),
         'rms_m': composite_rms(rough),

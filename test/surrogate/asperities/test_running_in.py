@@ -19,7 +19,6 @@ from surrogate.formulas.geometry import hertz, screw_contact, SIDES
 from surrogate.formulas.load_sharing import normal_force, nut_forces
 from surrogate.parameters import BallRoughness
 from surrogate.raceway.scaling import scale_spectrum
-from surrogate.raceway.stated import spectrum_of
 from surrogate.raceway.tile import draw_tile
 from surrogate.screw.onset import with_raceway
 
@@ -59,7 +58,7 @@ def test_a_profile_traced_after_running_in_is_cut_at_the_hardness_alone(screw):
 def test_a_softer_cut_lowers_the_summits_more(screw):
     """A prototype on this spectrum lost 0.3 % of Sq at 7 GPa, and 5 % at 3 GPa."""
     size, shape = tile_size(screw, 'screw')
-    waves = scale_spectrum(spectrum_of(screw.roughness))
+    waves = scale_spectrum(screw.roughness)
     whole = rms([draw_tile(waves, draw, size=size, shape=shape) for draw in range(TILES)])
     new, run = (
         rms(running_tiles(with_raceway(screw, state=state), 'screw'))
