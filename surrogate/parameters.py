@@ -7,7 +7,8 @@ Temperatures are kelvin inside and degC on file.
 
 """
 
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
 import math
 from typing import Any, ClassVar
 
@@ -37,6 +38,7 @@ __all__ = [
     'OperatingPoint',
     'Roughness',
     'Screw',
+    'screw_and_oil',
 ]
 
 NAME = (r'[A-Za-z0-9][A-Za-z0-9_.-]*', 'letters, digits and _ . - (it becomes a file name)')
@@ -275,6 +277,26 @@ class OperatingPoint(Checked):
     def opposing_load(self) -> float:
         """Load [N], positive when it opposes the motion."""
         return -self.load if self.speed < 0 else self.load
+
+
+def screw_and_oil(inputs: Mapping[str, Any]) -> tuple[Screw, Lubricant]:
+    """
+    Rebuild the datasheets from the `inputs` of a header, so that a file needs no other.
+
+    Raises InputError if these are not all values of both.
+
+    """
+    try:
+        screw, lubricant = (dict(inputs[kind]) for kind in ('screw', 'lubricant'))
+        for spec in fields(Screw):
+            if 'block' in spec.metadata and screw[spec.name] is not None:
+                screw[spec.name] = spec.metadata['block'](**screw[spec.name])
+        return Screw(**screw), Lubricant(**lubricant)
+    except (KeyError, TypeError, AttributeError, OverflowError) as error:
+        raise InputError(
+            f'the header of the surface states no whole screw and oil ({error}): build the '
+            'surface again'
+        ) from None
 
 
 def load_screw(name_or_path: str) -> Screw:

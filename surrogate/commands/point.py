@@ -3,6 +3,7 @@
 """The subcommand `point`: solve the screw at one operating point."""
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 import sys
 import time
@@ -124,7 +125,7 @@ def _point(args: argparse.Namespace) -> int:
         prepare(args.plot)
     if args.sensitivity:
         return _sensitivity(args, screw, lubricant, point)
-    solution = None
+    solution: Any = None
     if args.tier == 'full':
         solution, record = _full(args, screw, lubricant, point)
     else:
@@ -132,7 +133,9 @@ def _point(args: argparse.Namespace) -> int:
     onset = onset_of_sheets(screw, lubricant, kelvin)
     show(record | {'contact_onset': onset.record()}, page, json=args.json)
     if args.plot:
-        picture(args.plot, 'figures', 'draw_point', screw, solution, record)
+        from surrogate.screw.figures import draw_point
+
+        picture(args.plot, lambda folder: draw_point(folder, screw, solution, record))
     return 0 if record.get('converged', True) else 1
 
 
@@ -163,7 +166,9 @@ def _sensitivity(
         progress.close()
     show(record, sensitivity_page, json=args.json)
     if args.plot:
-        picture(args.plot, 'sensitivity_figure', 'draw_sensitivity', record)
+        from surrogate.screw.sensitivity_figure import draw_sensitivity
+
+        picture(args.plot, lambda folder: draw_sensitivity(folder, record))
     return 0
 
 
@@ -199,12 +204,9 @@ def prepare(folder: Path) -> None:
         raise InputError(f'--plot: {folder} cannot be made, {error.strerror}') from None
 
 
-def picture(folder: Path, module: str, function: str, *results: Any) -> None:
-    """Draw by a function of a module of `surrogate.screw`; only this needs matplotlib."""
-    from surrogate.builder.tiers import load_function
-
-    draw = load_function(f'surrogate.screw.{module}:{function}')
+def picture(folder: Path, draw: Callable[[Path], Path]) -> None:
+    """Draw into a folder, and print the path of the picture; raises InputError."""
     try:
-        print(draw(folder, *results), file=sys.stderr)
+        print(draw(folder), file=sys.stderr)
     except OSError as error:
         raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None

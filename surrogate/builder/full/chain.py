@@ -14,9 +14,8 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from surrogate.asperities.law import VERSION
-from surrogate.builder.tiers import screw_and_oil
 from surrogate.ehl import Settings
-from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.parameters import Lubricant, OperatingPoint, Screw, screw_and_oil
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.surface import FIELDS, SolvedPoint

@@ -17,13 +17,12 @@ from typing import Any
 from surrogate.asperities.onset import LAG_FACTOR, NODE_FACTOR, TopographyOnset
 from surrogate.asperities.running_in import running_tiles, shortest_wave, TILES
 from surrogate.asperities.topography import acting_roughness
-from surrogate.builder.tiers import screw_and_oil
 from surrogate.ehl.kernels.fft import good_length
 from surrogate.ehl.moving import MarchSettings, ramp_strip, strip_at
 from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.formulas.load_sharing import normal_force, working_preload
-from surrogate.parameters import Lubricant, Screw
+from surrogate.parameters import Lubricant, Screw, screw_and_oil
 from surrogate.screw.contacts import oil_at
 
 SHORTEST = 0.25
