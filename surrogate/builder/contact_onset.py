@@ -30,7 +30,7 @@ def onset_of_sheets(screw: Screw, lubricant: Lubricant, temperature: float) -> C
 
     """
     settings = default_settings(screw)
-    (slowest, fastest), band = settings.speed_range, band_of(screw)
+    (slowest, fastest), band = settings.speed_range, band_of(screw.roughness)
     speeds, loads = grid_of((slowest, fastest), settings.load_range)
 
     def has(heat: float, limits: ZoneLimits) -> bool:

@@ -49,11 +49,11 @@ def _figures(args: argparse.Namespace) -> int:
     """Solve what is missing, draw, print the numbers; exit code 1 when a solve failed."""
     figures = tuple(args.only or NEEDS)
     wanted = tasks(figures, args.draws)
-    from surrogate.asperities.law import law_of
     from surrogate.paper import figures_set
     from surrogate.paper.report import report, write_report
     from surrogate.paper.study import run_study
     from surrogate.parameters import load_screw
+    from surrogate.screw.opened import Contacts
     from surrogate.tasks.workers import open_pool
 
     measured = _measured(args.measured) if args.measured else None
@@ -71,7 +71,7 @@ def _figures(args: argparse.Namespace) -> int:
     for path in figures_set.draw_figures(study, figures, measured):
         print(path, file=sys.stderr)
     screw = load_screw('nominal')
-    text = report(screw, law_of(screw), study.rows)
+    text = report(screw, Contacts.of(screw).law, study.rows)
     print(write_report(args.out, text), file=sys.stderr)
     print(text, end='')
     return 1 if failed else 0

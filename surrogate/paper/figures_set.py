@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from matplotlib.figure import Figure
-from surrogate.asperities.law import law_of
 from surrogate.paper.cases import (
     LOADS,
     MARK_RPM,
@@ -34,6 +33,7 @@ from surrogate.paper.study import SCREW, Study
 from surrogate.parameters import load_screw
 from surrogate.plotting.style import draw_picture
 from surrogate.raceway.short_waves import without_short_waves
+from surrogate.screw.opened import Contacts
 
 SHOWN_LOADS = tuple(LOADS[i] for i in (0, 2, 4, 5))
 """Axial loads whose profiles are drawn [N]."""
@@ -53,7 +53,7 @@ def _pictures(
 ) -> dict[str, Callable[[], Figure]]:
     """Return the pictures of one figure of the study by file name."""
     rows, screw = study.rows, load_screw(SCREW)
-    law = law_of(screw)
+    law = Contacts.of(screw).law
     every = list(rows.values())
     pictures: dict[str, dict[str, Callable[[], Figure]]] = {
         '4': {'04_surface': lambda: _fractal(study)},

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.files import new_file
+from surrogate.files import canonical_json, new_file
 from surrogate.paper.cases import OURS, SMOOTH, StudyTask
 from surrogate.parameters import Lubricant, Screw
 from surrogate.tasks.table import read_table, write_table
@@ -111,8 +111,8 @@ class ContactFields:
 
 def inputs_hash(screw: Screw, lubricant: Lubricant, law: str = '') -> str:
     """Return the beginning of the hash of datasheets, version of the law and what a row means."""
-    text = repr((VERSION, screw.stated(), lubricant.stated(), law))
-    return hashlib.sha256(text.encode()).hexdigest()[:12]
+    text = canonical_json([VERSION, screw.stated(), lubricant.stated(), law])
+    return hashlib.sha256(text).hexdigest()[:12]
 
 
 def read_rows(path: Path, inputs: Collection[str] = ()) -> dict[str, StudyRow]:

@@ -19,7 +19,7 @@ from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings
 from surrogate.ehl.domain import nodes_on_waves
 from surrogate.ehl.friction import contact_friction, ContactFriction
 from surrogate.formulas.film import asperity_share_aihara_1987
-from surrogate.formulas.geometry import hertz, screw_contact
+from surrogate.formulas.geometry import hertz
 from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.formulas.load_sharing import normal_force, nut_forces
 from surrogate.paper.cases import CASES, SMOOTH, STANDING, StudyTask
@@ -32,6 +32,7 @@ from surrogate.screw import closed_form
 from surrogate.screw.ball_motion import slip_floor
 from surrogate.screw.contacts import ACROSS, Kinematics, ScrewSettings
 from surrogate.screw.nut import contact_slip, ScrewContact
+from surrogate.screw.opened import Contacts
 from surrogate.screw.solve import ScrewSolution, solve_screw
 from surrogate.units import RPM
 
@@ -96,7 +97,7 @@ def solve_patch(
     of a screw stands still.
 
     """
-    case, contact = CASES[task.case], screw_contact(screw, 'screw')
+    case, contact = CASES[task.case], Contacts.of(screw).geometry['screw']
     oil = ContactLubricant(
         viscosity=case.viscosity or lubricant.viscosity,
         pressure_viscosity=lubricant.pressure_viscosity,

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from surrogate.asperities.law import law_of
 from surrogate.formulas.film import (
     central_film_hamrock_dowson_1977,
     film_ratio,
@@ -23,14 +22,14 @@ from surrogate.formulas.film import (
     minimum_film_hamrock_dowson_1977,
     rolling_force_biboulet_houpert_2010,
 )
-from surrogate.formulas.geometry import Hertz, hertz, screw_contact, Side, SIDES
+from surrogate.formulas.geometry import Hertz, hertz, Side, SIDES
 from surrogate.formulas.inlet import inlet_speed
-from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force, nut_forces, NutName
 from surrogate.formulas.lubricant import lubricant_state, LubricantState
 from surrogate.formulas.sliding import sliding_friction
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.contacts import oil_at
+from surrogate.screw.opened import Contacts
 
 Array = NDArray[np.float64]
 Touching = tuple[Array, Array, Array]
@@ -112,8 +111,8 @@ def solve(
     speed, load, temperature = np.broadcast_arrays(
         *(np.asarray(value, dtype=float) for value in (speed, load, temperature))
     )
-    oil = lubricant_state(lubricant, temperature)
-    entrained = no_slip_rates(screw).entrainment * speed
+    opened, oil = Contacts.of(screw), lubricant_state(lubricant, temperature)
+    entrained = opened.rates.entrainment * speed
     forces = nut_forces(load, screw.preload)
     nuts: tuple[tuple[NutName, Array], ...] = (('loaded', forces[0]), ('relieved', forces[1]))
 
@@ -124,20 +123,20 @@ def solve(
 
     def touching(side: Side, force: Array, slow: Array, ratio: Array) -> Touching:
         if share_of is None:
-            return asperities_at(screw, lubricant, side, force, temperature, slow)
+            return asperities_at(opened, lubricant, side, force, temperature, slow)
         share = np.where(force > 0, share_of(ratio), 0.0)
         return share, share, np.ones_like(share)
 
     contacts = tuple(
-        _solve_contact(screw, nut, side, normal_force(screw, force), oil, speed, inlet, touching)
+        _solve_contact(opened, nut, side, normal_force(screw, force), oil, speed, inlet, touching)
         for nut, force in nuts
         for side in SIDES
     )
-    return _combine(screw, contacts, speed)
+    return _combine(opened, contacts, speed)
 
 
 def _solve_contact(
-    screw: Screw,
+    opened: Contacts,
     nut: NutName,
     side: Side,
     force: Array,
@@ -146,8 +145,8 @@ def _solve_contact(
     inlet: Callable[[Side, Array], Array],
     touching: Callable[[Side, Array, Array, Array], Touching],
 ) -> ContactResult:
-    contact, balls = screw_contact(screw, side), screw.loaded_balls_per_nut
-    arm = no_slip_rates(screw).entrainment
+    screw, contact = opened.sheet, opened.geometry[side]
+    balls, arm = screw.loaded_balls_per_nut, opened.rates.entrainment
     ellipse = hertz(contact, force)
     pressed = np.where(force > 0, force, np.nan)
     slow = inlet(side, force)
@@ -176,10 +175,15 @@ def _solve_contact(
 
 
 def asperities_at(
-    screw: Screw, lubricant: Lubricant, side: Side, force: Array, temperature: Array, speed: Array
+    opened: Contacts,
+    lubricant: Lubricant,
+    side: Side,
+    force: Array,
+    temperature: Array,
+    speed: Array,
 ) -> Touching:
     """Return what asperities do at entrainment speeds [m/s]; nothing without load."""
-    law, contact = law_of(screw), screw_contact(screw, side)
+    law, contact = opened.law, opened.geometry[side]
     rcs, share, loss = np.zeros(force.shape), np.zeros(force.shape), np.ones(force.shape)
     for load, heat in np.unique(np.stack([force.ravel(), temperature.ravel()], axis=1), axis=0):
         here = (force == load) & (temperature == heat)
@@ -190,7 +194,8 @@ def asperities_at(
     return rcs, share, loss
 
 
-def _combine(screw: Screw, contacts: tuple[ContactResult, ...], speed: Array) -> ScrewResult:
+def _combine(opened: Contacts, contacts: tuple[ContactResult, ...], speed: Array) -> ScrewResult:
+    screw = opened.sheet
     ratio = np.stack([contact.film_ratio for contact in contacts])
     # The thinnest film where none touches. An unpressed contact is never the worst; with nothing
     # pressed at all the first one answers.
@@ -221,6 +226,6 @@ def _combine(screw: Screw, contacts: tuple[ContactResult, ...], speed: Array) ->
         ),
         max_pressure=np.max([contact.ellipse.max_pressure for contact in contacts], axis=0),
         worst_contact=worst,
-        entrainment_speed=no_slip_rates(screw).entrainment * speed,
+        entrainment_speed=opened.rates.entrainment * speed,
         contacts=contacts,
     )

@@ -15,13 +15,14 @@ from surrogate.formulas.film import (
     outside_range,
     rolling_force_biboulet_houpert_2010,
 )
-from surrogate.formulas.geometry import helix_angle, screw_contact
+from surrogate.formulas.geometry import helix_angle
 from surrogate.formulas.inlet import heating_factor, starved_speed
 from surrogate.formulas.load_sharing import nut_forces, UNLOADING_RATIO
 from surrogate.formulas.sliding import mean_sliding_speed
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.ball import roughness_sentence
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 from surrogate.surface import regime_of
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -162,7 +163,7 @@ def _comparators(
     if point.speed:
         film = float(
             central_film_nijenbanning_1994(
-                screw_contact(screw, loaded_screw.side), loaded_screw.film_groups
+                Contacts.of(screw).geometry[loaded_screw.side], loaded_screw.film_groups
             )
         )
     driving = torque.torque_constant_friction(

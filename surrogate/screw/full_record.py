@@ -196,7 +196,7 @@ def law_sentence(screw: Screw, settings: ScrewSettings) -> str:
     if not screw.composite_rms:
         return 'no roughness'
     state = 'new' if sheet.state == 'new' else 'run in'
-    band = f'onset by the topography, within {band_of(screw):g} of nine of ten marches'
+    band = f'onset by the topography, within {band_of(sheet):g} of nine of ten marches'
     return (
         f'roughness that rolls, {state}, summits cut at {GIGA * sheet.cutting_pressure:g} GPa; '
         f'{sheet.calibration or band}'

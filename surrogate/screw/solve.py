@@ -16,7 +16,6 @@ from surrogate.ehl.watch import at
 from surrogate.files import InputError
 from surrogate.formulas.film import film_ratio
 from surrogate.formulas.geometry import SIDES
-from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import IDLE_SHARE, normal_force, nut_forces
 from surrogate.formulas.torque import driving_torque, efficiency, is_back_driving
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
@@ -31,6 +30,7 @@ from surrogate.screw.contacts import (
     with_oil_of,
 )
 from surrogate.screw.nut import load_change, make_nut, NutLoad, ScrewContact, solve_nut, SolvedNut
+from surrogate.screw.opened import Contacts
 
 TIER = 'full'
 SOLVED = (
@@ -137,7 +137,7 @@ def solve_screw(
     near = [(found.smooth, found.pressed) for found in start.contacts] if start else []
     contacts: tuple[RollingContact, ...] = ()
     if any(nut.force for nut in nuts):
-        contacts = make_contacts(screw, lubricant, point, settings)
+        contacts = make_contacts(Contacts.of(screw), lubricant, point, settings)
     loaded, relieved = (float(normal_force(screw, nut.force)) for nut in nuts)
     with at(nut=1):
         pairs = [solve_sides(contacts, (loaded, loaded), near[:2])]
@@ -170,7 +170,7 @@ def rebalance_screw(
 
     """
     _check_same_load(screw, point, found)
-    sides = make_contacts(screw, lubricant, point, settings or ScrewSettings())
+    sides = make_contacts(Contacts.of(screw), lubricant, point, settings or ScrewSettings())
     loaded, relieved = (
         tuple(
             with_oil_of(side, contact.solved)
@@ -235,7 +235,7 @@ def _combine(screw: Screw, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> 
         ),
         converged=not any(nut.failure for nut in nuts),
         contacts=nuts[0].contacts + nuts[1].contacts,
-        entrainment_speed=no_slip_rates(screw).entrainment * speed,
+        entrainment_speed=Contacts.of(screw).rates.entrainment * speed,
         normal_forces=(
             float(normal_force(screw, nuts[0].force)),
             float(normal_force(screw, nuts[1].force)),

@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.asperities.law import law_of
 from surrogate.asperities.running_in import running_tiles
 from surrogate.ehl import Condition, ContactLubricant, Settings, solve_contact
 from surrogate.ehl.moving import march_strip, MarchSettings, strip_at
@@ -27,7 +26,7 @@ from surrogate.formulas.film import (
     minimum_film_hamrock_dowson_1977,
     rolling_force_biboulet_houpert_2010,
 )
-from surrogate.formulas.geometry import Contact, screw_contact
+from surrogate.formulas.geometry import Contact
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.line import (
     amplitude_reduction_venner_1997,
@@ -37,8 +36,10 @@ from surrogate.formulas.line import (
 )
 from surrogate.formulas.load_sharing import normal_force
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.raceway.tile import Tile
 from surrogate.screw.contacts import oil_at, ScrewSettings
 from surrogate.screw.onset import onset_over_pressure, onset_point, run_in_range, with_raceway
+from surrogate.screw.opened import Contacts
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.units import RPM
 
@@ -84,7 +85,7 @@ class ValidationCase:
     @property
     def contact(self) -> Contact:
         """Return the contact of the ball with the screw."""
-        return screw_contact(self.screw, 'screw')
+        return Contacts.of(self.screw).geometry['screw']
 
     @cached_property
     def load(self) -> float:
@@ -94,6 +95,10 @@ class ValidationCase:
     def raceway(self, state: str) -> Screw:
         """Return the screw with its raceway new or run in."""
         return with_raceway(self.screw, state=state)
+
+    def tiles(self, state: str) -> list[Tile]:
+        """Return tiles of the raceway on the screw, new or run in."""
+        return running_tiles(Contacts.of(self.raceway(state)).running['screw'])
 
     def onset(self, state: str) -> Mapping[str, float]:
         """Return where contact begins, SI units."""
@@ -132,13 +137,14 @@ class ValidationCase:
         g = self.groups(load, speed)
         formula = float(rolling_force_biboulet_houpert_2010(self.contact, g))
         ratio = found.whole_rolling_force / formula
+        rough = Contacts.of(self.screw).law.contact('screw', *place)
         return {
             'load_N': load,
             'speed_rad_s': rpm * RPM,
             'moes_load': float(g.moes_load),
             'domain_over_formula': found.rolling_force / formula,
             'smooth_over_formula': ratio,
-            'rough_over_formula': law_of(self.screw).contact('screw', *place).loss_factor * ratio,
+            'rough_over_formula': rough.loss_factor * ratio,
         }
 
     def groups(self, load: float, speed: float) -> Groups:
@@ -198,7 +204,7 @@ def load_on_film(case: ValidationCase) -> list[float]:
     wanted = np.log(np.array(THIN_FILMS) * case.screw.composite_rms)
     speed = np.exp(np.interp(wanted, np.log(film), np.log(speeds)))
     place = case.contact, case.load, case.oil, case.lubricant.film_floor
-    return (1 - law_of(case.raceway('new')).touching('screw', *place, speed)[1]).tolist()
+    return (1 - Contacts.of(case.raceway('new')).law.touching('screw', *place, speed)[1]).tolist()
 
 
 def run_in_speeds(case: ValidationCase) -> list[float]:
@@ -212,8 +218,7 @@ def run_in_speeds(case: ValidationCase) -> list[float]:
 def run_in_height(case: ValidationCase) -> list[float]:
     """Return by which share running in lowers the rms height of the tiles [-]."""
     new, worn = (
-        np.mean([tile.heights.std() for tile in running_tiles(case.raceway(state), 'screw')])
-        for state in ('new', 'run_in')
+        np.mean([tile.heights.std() for tile in case.tiles(state)]) for state in ('new', 'run_in')
     )
     return [float(1 - worn / new)]
 
@@ -225,8 +230,7 @@ def film_parameter_at_onset(case: ValidationCase) -> list[float]:
         float(formula(case.contact, g))
         for formula in (minimum_film_hamrock_dowson_1977, central_film_hamrock_dowson_1977)
     ]
-    tiles = running_tiles(case.raceway('new'), 'screw')
-    peaks = float(np.mean([reduced_peak_height(tile.heights) for tile in tiles]))
+    peaks = float(np.mean([reduced_peak_height(tile.heights) for tile in case.tiles('new')]))
     return [films[0] / peaks, sum(films) / peaks]
 
 

@@ -6,7 +6,6 @@ from pathlib import Path
 import re
 
 import pytest
-from surrogate.asperities.law import law_of
 from surrogate.commands.figures import DRAWS
 from surrogate.paper.cases import NEEDS, StudyTask, tasks
 from surrogate.paper.marks import marks
@@ -16,6 +15,7 @@ from surrogate.paper.solve import solve_task
 from surrogate.paper.study import known_inputs
 from surrogate.paper.trends import trends
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.screw.opened import Contacts
 
 TREE = Path(__file__).parents[3]
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
@@ -24,7 +24,7 @@ THEORY = TREE / 'docs' / 'theory'
 PAGE = (THEORY / 'published_study.md').read_text(encoding='utf-8')
 NUMBERS = (THEORY / 'published_study_numbers.md').read_text(encoding='utf-8')
 MARKS = marks(SCREW, ROWS)
-TRENDS = trends(SCREW, law_of(SCREW), ROWS.values())
+TRENDS = trends(SCREW, Contacts.of(SCREW).law, ROWS.values())
 
 
 def task_of(kind, rpm, load, **more):
@@ -46,7 +46,7 @@ def trend(start):
 
 
 def test_page_of_numbers_is_the_report_of_the_rows_of_the_default_run():
-    assert NUMBERS.endswith(report(SCREW, law_of(SCREW), ROWS))
+    assert NUMBERS.endswith(report(SCREW, Contacts.of(SCREW).law, ROWS))
     wanted = {task.key: task for task in tasks(tuple(NEEDS), DRAWS)}
     assert set(ROWS) == set(wanted)
     known = known_inputs()

@@ -30,6 +30,7 @@ from surrogate.screw.full_record import (
 )
 from surrogate.screw.nut import contact_slip
 from surrogate.screw.onset import with_raceway
+from surrogate.screw.opened import Contacts
 from surrogate.screw.solve import solve_screw
 from surrogate.surface import onset_of_surface, shipped_surface, Surface
 
@@ -96,8 +97,10 @@ def test_the_heating_factor_is_that_by_which_a_starved_contact_is_slowed():
     told = full_record(SCREW, starved, point, settings)
     assert told['inlet_heating'] is False
     loads = (told['normal_force_loaded_N'], told['normal_force_relieved_N'])
-    contacts = make_contacts(SCREW, starved, point, settings)
-    heated = make_contacts(SCREW, starved, point, replace(settings, inlet_heating=True))
+    contacts = make_contacts(Contacts.of(SCREW), starved, point, settings)
+    heated = make_contacts(
+        Contacts.of(SCREW), starved, point, replace(settings, inlet_heating=True)
+    )
     slowed = min(
         hot.entrainment(load) / cold.entrainment(load)
         for cold, hot in zip(contacts, heated, strict=True)

@@ -9,7 +9,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from surrogate.asperities import law as asperity_law
-from surrogate.asperities.law import law_of
 from surrogate.ehl import Settings
 from surrogate.files import InputError
 from surrogate.formulas.geometry import SIDES
@@ -29,6 +28,7 @@ from surrogate.screw.contacts import (
     shortest_on_grid,
 )
 from surrogate.screw.nut import CREEP, load_change, NutLoad, rolling_force, SolvedNut
+from surrogate.screw.opened import Contacts
 from surrogate.screw.solve import (
     _check_same_load,
     _nut_loads,
@@ -270,7 +270,7 @@ def test_the_raceway_belongs_to_the_draw():
     assert np.array_equal(first.heights(x, y), again.heights(x, y))
     assert not np.allclose(first.heights(x, y), other.heights(x, y))
     point = OperatingPoint(speed=1.0, load=0.0, temperature=313.15)
-    sides = make_contacts(SCREW, OIL, point, replace(STANDING, draw=3))
+    sides = make_contacts(Contacts.of(SCREW), OIL, point, replace(STANDING, draw=3))
     assert sides[0].raceway is sides[1].raceway
     assert sides[0].raceway.shortest_wavelength > GRID_WAVELENGTH
     assert {side.film_floor for side in sides} == {OIL.film_floor}
@@ -280,10 +280,10 @@ def test_smooth_raceway_and_ball_have_no_draw():
     """Rq 0 is the smooth contact, whatever the draw; a rough ball alone is not."""
     bare = replace(SCREW, roughness=replace(SCREW.roughness, rms=0.0))
     point = OperatingPoint(speed=1.0, load=0.0, temperature=313.15)
-    assert make_contacts(bare, OIL, point, STANDING)[0].raceway is None
+    assert make_contacts(Contacts.of(bare), OIL, point, STANDING)[0].raceway is None
     assert shortest_on_grid(bare, STANDING) == math.inf
     rough = replace(bare, ball_roughness=BallRoughness(grade='G10'))
-    assert make_contacts(rough, OIL, point, STANDING)[0].raceway is not None
+    assert make_contacts(Contacts.of(rough), OIL, point, STANDING)[0].raceway is not None
     assert at(5, 500.0, ROLLING, bare).rcs == 0.0
     assert at(5, 500.0, ROLLING, rough).rcs > 0.0
 
@@ -293,7 +293,10 @@ def test_a_starved_contact_is_taken_at_a_slower_entrainment():
     point = OperatingPoint(speed=10.0, load=0.0, temperature=313.15)
     full, half = (
         make_contacts(
-            SCREW, replace(OIL, film_factor=factor), point, ScrewSettings(inlet_heating=False)
+            Contacts.of(SCREW),
+            replace(OIL, film_factor=factor),
+            point,
+            ScrewSettings(inlet_heating=False),
         )[0]
         for factor in (1.0, 0.5)
     )
@@ -354,7 +357,7 @@ def test_rolling_roughness_is_the_smooth_contact_with_the_law():
     for contact in found.contacts:
         solved = contact.solved
         assert solved.pressed is solved.smooth
-        law = law_of(SCREW).contact(
+        law = Contacts.of(SCREW).law.contact(
             contact.side,
             solved.smooth.contact,
             solved.smooth.condition,
@@ -437,7 +440,9 @@ def test_waves_off_the_grid_raise_the_floor_of_the_oil():
     (floor,) = {contact.pressed.settings.film_floor for contact in found.contacts}
     point = OperatingPoint(speed=60 * math.pi / 30, load=500.0, temperature=WARM)
     cut, whole = (
-        make_contacts(SCREW, OIL, point, replace(STANDING, grid_wavelength=wave))[0].raised
+        make_contacts(Contacts.of(SCREW), OIL, point, replace(STANDING, grid_wavelength=wave))[
+            0
+        ].raised
         for wave in (GRID_WAVELENGTH, None)
     )
     assert floor == OIL.film_floor + cut
