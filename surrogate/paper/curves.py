@@ -14,7 +14,7 @@ from surrogate.formulas.torque import efficiency, torque_constant_friction
 from surrogate.paper.cases import OURS, SMOOTH
 from surrogate.paper.rows import Array, StudyRow
 from surrogate.parameters import Screw
-from surrogate.screw.closed_form_record import CONSTANT_FRICTION
+from surrogate.screw.record import CONSTANT_FRICTION
 
 Along = Literal['rpm', 'load']
 NO_CONTACT = 1e-6

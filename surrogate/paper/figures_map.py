@@ -22,7 +22,7 @@ from surrogate.paper.figures import captioned_figure, entrainment, finish, shade
 from surrogate.paper.rows import Array, StudyRow
 from surrogate.parameters import Screw
 from surrogate.plotting.style import BLUE, GREY, PURPLE, VERMILION
-from surrogate.screw.closed_form_record import CONSTANT_FRICTION
+from surrogate.screw.record import CONSTANT_FRICTION
 from surrogate.surface.aims import EFFICIENCY_LIMIT, RCS_LIMIT
 
 SHOWN = (5.0, 50.0, 200.0, 1000.0)
