@@ -43,7 +43,7 @@ FLOORS = (
 )
 """Folders of the online half, the lowest first; those beside each other do not meet."""
 OFFLINE_FLOORS = (
-    ('units', 'files', 'progress'),
+    ('units', 'files', 'progress', 'results'),
     ('limits',),
     ('plain_yaml',),
     ('datasheet', 'plotting'),
@@ -64,6 +64,7 @@ STANDS_ON = {
         'surrogate.files',
         'surrogate.formulas.torque',
         'surrogate.limits',
+        'surrogate.results',
         'surrogate.units',
     },
     'tasks': {'surrogate.files', 'surrogate.progress', 'surrogate.surface.file'},

@@ -3,7 +3,6 @@
 """A point of the full tier as a record: plain numbers for JSON, beside the classical formulas."""
 
 import math
-import time
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from surrogate.screw import closed_form
 from surrogate.screw.contacts import ScrewSettings, shortest_on_grid
 from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.record import point_record, rating_warnings
-from surrogate.screw.solve import ScrewSolution, solve_screw, TIER
+from surrogate.screw.solve import ScrewSolution, TIER
 from surrogate.units import GIGA
 
 LOAD_CHANGE = 0.01
@@ -24,25 +23,6 @@ FEWEST_NODES = 4.0
 """Nodes per shortest wave below which a rough contact is warned about [-]."""
 
 
-def full_record(
-    screw: Screw,
-    lubricant: Lubricant,
-    point: OperatingPoint,
-    settings: ScrewSettings | None = None,
-) -> dict[str, Any]:
-    """
-    Solve one point in the full tier and return it as plain numbers, SI units, NaN where unknown.
-
-    The keys are those of the closed-form record, with its warnings about ratings and its
-    comparators.
-
-    """
-    started, settings = time.perf_counter(), settings or ScrewSettings()
-    found = solve_screw(screw, lubricant, point, settings=settings)
-    record = solution_record(screw, lubricant, point, found, settings)
-    return record | {'wall_s': time.perf_counter() - started}
-
-
 def solution_record(
     screw: Screw,
     lubricant: Lubricant,
@@ -50,7 +30,13 @@ def solution_record(
     found: ScrewSolution,
     settings: ScrewSettings,
 ) -> dict[str, Any]:
-    """Return a solved point as plain numbers, SI units, NaN where unknown."""
+    """
+    Return a point of the full tier as plain numbers, SI units, NaN where unknown.
+
+    The keys are those of the closed-form record, with its warnings about ratings and its
+    comparators.
+
+    """
     heated, place = settings.inlet_heating, (abs(point.speed), point.opposing_load)
     record = point_record(
         screw,

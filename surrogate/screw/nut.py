@@ -20,13 +20,13 @@ from surrogate.formulas.geometry import opposite_flank_approach, Side, SIDES
 from surrogate.formulas.load_sharing import NutName
 from surrogate.formulas.sliding import hysteresis_force
 from surrogate.parameters import OperatingPoint, Screw
+from surrogate.results import number
 from surrogate.screw.ball_balance import balance_ball
 from surrogate.screw.ball_motion import Array, BallMotion, Flank, slip_field, slip_floor
 from surrogate.screw.ball_result import BallBalance, BallContact
 from surrogate.screw.ball_traction import solved_traction
 from surrogate.screw.contacts import RollingContact, smooth_film, solve_sides, SolvedContact
 from surrogate.screw.point import PointContact
-from surrogate.surface.solved import number
 
 CREEP = 1e-3
 """Screw speed of the limit of slow motion [rad/s]."""

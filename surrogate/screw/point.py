@@ -1,15 +1,15 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Result of a point of the screw and of its contacts, whatever the tier, and its record."""
+"""Result of a point of the screw and of its contacts, whatever the tier."""
 
-from dataclasses import dataclass, fields
-from typing import Any, Generic
+from dataclasses import dataclass
+from typing import Generic
 
-from surrogate.datasheet import key_of
 from surrogate.formulas.film import Groups
 from surrogate.formulas.geometry import Side
 from surrogate.formulas.load_sharing import NutName
-from surrogate.surface.solved import Number, number, SolvedPoint
+from surrogate.results import number
+from surrogate.surface.solved import Number, SolvedPoint
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -56,12 +56,3 @@ class ScrewPoint(SolvedPoint[Number], Generic[Number]):
     contacts: tuple[PointContact[Number], ...]
     entrainment_speed: Number = number('m_s')
     normal_forces: tuple[Number, Number]
-
-
-def declared(result: Any) -> dict[str, Any]:
-    """Return the numbers of a result by the keys of their declaration, as plain values."""
-    numbers = [spec for spec in fields(result) if 'unit' in spec.metadata]
-    values = {key_of(spec): getattr(result, spec.name) for spec in numbers}
-    return {
-        key: value if isinstance(value, bool) else float(value) for key, value in values.items()
-    }

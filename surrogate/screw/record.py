@@ -21,8 +21,9 @@ from surrogate.formulas.inlet import heating_factor, starved_speed
 from surrogate.formulas.load_sharing import nut_forces, UNLOADING_RATIO
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.ball import roughness_sentence
+from surrogate.results import declared
 from surrogate.screw.opened import Contacts
-from surrogate.screw.point import declared, PointContact, ScrewPoint
+from surrogate.screw.point import PointContact, ScrewPoint
 from surrogate.surface import regime_of
 from surrogate.units import RPM, ZERO_CELSIUS
 

@@ -9,7 +9,7 @@ screw and, apart from it, the power that it loses.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 import math
 
 from surrogate.ehl.watch import at
@@ -19,6 +19,7 @@ from surrogate.formulas.geometry import SIDES
 from surrogate.formulas.load_sharing import IDLE_SHARE, normal_force, nut_forces
 from surrogate.formulas.torque import driving_torque, efficiency, is_back_driving
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.results import number
 from surrogate.screw.ball_motion import Flank
 from surrogate.screw.contacts import (
     make_contacts,
@@ -31,7 +32,6 @@ from surrogate.screw.contacts import (
 from surrogate.screw.nut import load_change, make_nut, NutLoad, ScrewContact, solve_nut, SolvedNut
 from surrogate.screw.opened import Contacts
 from surrogate.screw.point import ScrewPoint
-from surrogate.surface.solved import number
 
 TIER = 'full'
 SOLVED = (
@@ -63,7 +63,7 @@ class ScrewSolution(ScrewPoint[float]):
     driving_torque: float = number('Nm')
     energy_error: float = number()
     efficiency: float = number()
-    back_driving: bool = field(default=False, metadata={'unit': ''})
+    back_driving: bool = number(default=False)
     load_change: float = number()
 
     @property

@@ -2,20 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Solution of an operating point, whatever the tier: surfaces are made of these."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 import math
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.results import number
 
 Number = TypeVar('Number', float, NDArray[np.float64])
 """A number of one point, or an array over many."""
-
-
-def number(unit: str = '') -> Any:
-    """Declare a number of a result with its unit in a record; NaN where it is not known."""
-    return field(default=math.nan, metadata={'unit': unit})
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -24,14 +24,13 @@ from surrogate.screw.full_record import (
     _moved_forces,
     _third_contacts,
     _uncertain_films,
-    full_record,
     law_sentence,
     solution_record,
 )
 from surrogate.screw.nut import contact_slip
-from surrogate.screw.onset import with_raceway
 from surrogate.screw.opened import Contacts
 from surrogate.screw.record import most_wear, with_wear
+from surrogate.screw.screw_onset import with_raceway
 from surrogate.screw.solve import solve_screw
 from surrogate.surface import onset_of_surface, shipped_surface, Surface
 
@@ -44,6 +43,11 @@ STANDING = ScrewSettings(
     rough=Settings(nx=65, ny=129, error_estimate=False),
     nodes_per_wave=3.0,
 )
+
+
+def full_record(screw, oil, point, settings):
+    found = solve_screw(screw, oil, point, settings=settings)
+    return solution_record(screw, oil, point, found, settings)
 
 
 def record(rpm, load, settings=SETTINGS):
