@@ -30,8 +30,8 @@ from surrogate.identify.onset import FITTED, onset_speeds
 from surrogate.identify.table import formula_model
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.screw import closed_form
-from surrogate.screw.onset import onset_point, with_raceway
 from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import onset_point, with_raceway
 from surrogate.units import RPM
 
 MARCHES = Path(__file__).parent / 'results' / 'asperity_marches.csv'

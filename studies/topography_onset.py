@@ -19,8 +19,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from surrogate.asperities.onset import LAG_FACTOR, NODE_FACTOR, TopographyOnset
 from surrogate.asperities.topography import acting_roughness
+from surrogate.asperities.topography_onset import LAG_FACTOR, NODE_FACTOR, TopographyOnset
 from surrogate.ehl import ContactLubricant
 from surrogate.ehl.kernels.fft import good_length
 from surrogate.ehl.moving import MarchSettings, ramp_strip, StripContact

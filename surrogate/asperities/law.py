@@ -16,8 +16,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import expit, logit
-from surrogate.asperities.onset import onset_of, PRESSURE, TopographyOnset
 from surrogate.asperities.running_in import RunningContact
+from surrogate.asperities.topography_onset import onset_of, PRESSURE, TopographyOnset
 from surrogate.ehl import Condition, ContactLubricant
 from surrogate.formulas.geometry import Contact, Side
 from surrogate.formulas.line import Line, line_at

@@ -26,7 +26,7 @@ from surrogate.formulas.sliding import largest_sliding
 from surrogate.parameters import Lubricant, Screw, screw_and_oil
 from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
-from surrogate.screw.onset import onset_speeds
+from surrogate.screw.screw_onset import onset_speeds
 from surrogate.surface import FIELDS, SolvedPoint, Surface
 from surrogate.surface.file import FORMAT, FORMAT_VERSION, SurfaceData
 from surrogate.units import ZERO_CELSIUS

@@ -112,7 +112,7 @@ def add_temperature(parser: argparse.ArgumentParser) -> None:
 
 def _point(args: argparse.Namespace) -> int:
     """Solve a point; exit code 1 when it is not converged."""
-    from surrogate.builder.contact_onset import onset_of_sheets
+    from surrogate.builder.sheets_onset import onset_of_sheets
     from surrogate.formulas.shaft import shaft_doubts
     from surrogate.screw.closed_form_record import closed_form_record, page
 

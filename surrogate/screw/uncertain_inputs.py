@@ -10,8 +10,8 @@ from typing import Any, Literal
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.standards import long_cutoff_iso_21920, RA_OVER_RQ
 from surrogate.raceway.stated import Roughness
-from surrogate.screw.onset import ABOVE, onset_point, run_in_at, run_in_range, with_raceway
 from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import ABOVE, onset_point, run_in_at, run_in_range, with_raceway
 
 Part = Literal['point', 'lubricant', 'screw', 'roughness']
 Ends = tuple[float, float]

@@ -38,8 +38,13 @@ from surrogate.formulas.load_sharing import normal_force
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.tile import Tile
 from surrogate.screw.contacts import oil_at, ScrewSettings
-from surrogate.screw.onset import onset_over_pressure, onset_point, run_in_range, with_raceway
 from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import (
+    onset_over_pressure,
+    onset_point,
+    run_in_range,
+    with_raceway,
+)
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.units import RPM
 

@@ -14,9 +14,9 @@ from dataclasses import asdict
 import math
 from typing import Any
 
-from surrogate.asperities.onset import LAG_FACTOR, NODE_FACTOR, TopographyOnset
 from surrogate.asperities.running_in import running_tiles, TILES
 from surrogate.asperities.topography import acting_roughness
+from surrogate.asperities.topography_onset import LAG_FACTOR, NODE_FACTOR, TopographyOnset
 from surrogate.ehl.kernels.fft import good_length
 from surrogate.ehl.moving import MarchSettings, ramp_strip, strip_at
 from surrogate.files import InputError

@@ -20,8 +20,8 @@ from surrogate.asperities.law import (
     share_at,
     SLOWEST,
 )
-from surrogate.asperities.onset import TopographyOnset
 from surrogate.asperities.topography import ActingRoughness
+from surrogate.asperities.topography_onset import TopographyOnset
 from surrogate.ehl import Condition, ContactLubricant
 from surrogate.formulas.geometry import screw_contact, SIDES
 from surrogate.formulas.line import line_at

@@ -20,7 +20,7 @@ from surrogate.formulas.load_sharing import normal_force, nut_forces
 from surrogate.parameters import BallRoughness
 from surrogate.raceway.scaling import scale_spectrum
 from surrogate.raceway.tile import draw_tile
-from surrogate.screw.onset import with_raceway
+from surrogate.screw.screw_onset import with_raceway
 
 
 def rms(tiles):

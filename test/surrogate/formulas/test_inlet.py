@@ -20,8 +20,8 @@ from surrogate.formulas.inlet import (
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import make_contacts, ScrewSettings
-from surrogate.screw.onset import onset_point
 from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import onset_point
 from surrogate.screw.solve import solve_screw
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')

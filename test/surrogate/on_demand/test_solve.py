@@ -12,7 +12,7 @@ from surrogate.files import to_json
 from surrogate.on_demand.solve import Cancelled, solve_point, solved_frame
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import ScrewSettings, solve_screw
-from surrogate.screw.onset import with_raceway
+from surrogate.screw.screw_onset import with_raceway
 from surrogate.surface import FIELDS
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')

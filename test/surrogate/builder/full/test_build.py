@@ -20,8 +20,8 @@ from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import idle_load, normal_force, nut_forces
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import oil_at
-from surrogate.screw.onset import with_raceway
 from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import with_raceway
 from surrogate.screw.sensitivity import surface_bands
 from surrogate.surface import FIELDS, Surface, Validity
 from surrogate.surface import file as surface_file

@@ -26,7 +26,7 @@ from surrogate.parameters import (
 )
 from surrogate.screw import contacts as screw_contacts
 from surrogate.screw.contacts import ScrewSettings
-from surrogate.screw.onset import with_raceway
+from surrogate.screw.screw_onset import with_raceway
 from surrogate.screw.solve import solve_screw
 from surrogate.surface import FIELDS
 

@@ -13,8 +13,8 @@ from surrogate.formulas.inlet import inlet_speed, SPEED_EXPONENT
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import idle_load, normal_force
 from surrogate.screw.contacts import oil_at
-from surrogate.screw.onset import onset_speeds, SMOOTH_ONSET
 from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import onset_speeds, SMOOTH_ONSET
 
 WARM = 313.15
 

@@ -15,7 +15,9 @@ from surrogate.formulas.load_sharing import normal_force
 from surrogate.parameters import BallRoughness
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import oil_at
-from surrogate.screw.onset import (
+from surrogate.screw.onset_figure import figure_onset
+from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import (
     extrapolated,
     onset_over_working_load,
     onset_page,
@@ -26,8 +28,6 @@ from surrogate.screw.onset import (
     run_in_range,
     with_raceway,
 )
-from surrogate.screw.onset_figure import figure_onset
-from surrogate.screw.opened import Contacts
 from surrogate.units import RPM
 
 KELVIN = 313.15

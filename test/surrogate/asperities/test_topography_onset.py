@@ -5,12 +5,12 @@
 import math
 
 import pytest
-from surrogate.asperities.onset import film_at_onset, onset_of
 from surrogate.asperities.running_in import RunningContact
+from surrogate.asperities.topography_onset import film_at_onset, onset_of
 from surrogate.ehl import ContactLubricant
 from surrogate.formulas.geometry import screw_contact
 from surrogate.formulas.load_sharing import normal_force
-from surrogate.screw.onset import with_raceway
+from surrogate.screw.screw_onset import with_raceway
 
 FLOOR = 3e-9
 OIL = ContactLubricant(viscosity=0.06, pressure_viscosity=2e-8)

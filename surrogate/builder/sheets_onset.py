@@ -8,7 +8,7 @@ from surrogate.builder.closed_form import default_settings
 from surrogate.formulas.torque import efficiency
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw import closed_form
-from surrogate.screw.onset import onset_point
+from surrogate.screw.screw_onset import onset_point
 from surrogate.surface.contact_onset import (
     contact_onset,
     ContactOnset,
