@@ -6,7 +6,6 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 import sys
-import time
 from typing import Any
 
 from surrogate.commands.output import add_json, show, tell
@@ -177,16 +176,12 @@ def _full(
 ) -> tuple[Any, dict[str, Any]]:
     """Return a point of the full tier and its record; only this loads the contact solver."""
     from surrogate.screw.contacts import ScrewSettings
-    from surrogate.screw.full_record import solution_record
-    from surrogate.screw.solve import solve_screw
+    from surrogate.screw.full_record import full_record
 
-    started = time.perf_counter()
     settings = ScrewSettings(
         kinematics=args.kinematics or 'rolling', inlet_heating=not args.isothermal
     )
-    found = solve_screw(screw, lubricant, point, settings=settings)
-    record = solution_record(screw, lubricant, point, found, settings)
-    return found, record | {'wall_s': time.perf_counter() - started}
+    return full_record(screw, lubricant, point, settings)
 
 
 def oil_temperature(args: argparse.Namespace, lubricant: Lubricant) -> float:

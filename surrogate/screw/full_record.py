@@ -3,6 +3,7 @@
 """A point of the full tier as a record: plain numbers for JSON, beside the classical formulas."""
 
 import math
+import time
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from surrogate.screw import closed_form
 from surrogate.screw.contacts import ScrewSettings, shortest_on_grid
 from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.record import point_record, rating_warnings
-from surrogate.screw.solve import ScrewSolution, TIER
+from surrogate.screw.solve import ScrewSolution, solve_screw, TIER
 from surrogate.units import GIGA
 
 LOAD_CHANGE = 0.01
@@ -21,6 +22,16 @@ FILM_ERROR = 0.1
 """Estimated error of a central film that is warned about [-]."""
 FEWEST_NODES = 4.0
 """Nodes per shortest wave below which a rough contact is warned about [-]."""
+
+
+def full_record(
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint, settings: ScrewSettings
+) -> tuple[ScrewSolution, dict[str, Any]]:
+    """Solve one point in the full tier; return it with its record."""
+    started = time.perf_counter()
+    found = solve_screw(screw, lubricant, point, settings=settings)
+    record = solution_record(screw, lubricant, point, found, settings)
+    return found, record | {'wall_s': time.perf_counter() - started}
 
 
 def solution_record(

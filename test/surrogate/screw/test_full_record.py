@@ -24,6 +24,7 @@ from surrogate.screw.full_record import (
     _moved_forces,
     _third_contacts,
     _uncertain_films,
+    full_record,
     law_sentence,
     solution_record,
 )
@@ -45,15 +46,15 @@ STANDING = ScrewSettings(
 )
 
 
-def full_record(screw, oil, point, settings):
-    found = solve_screw(screw, oil, point, settings=settings)
-    return solution_record(screw, oil, point, found, settings)
+def record_at(screw, oil, point, settings):
+    """Return the record of a point."""
+    return full_record(screw, oil, point, settings)[1]
 
 
 def record(rpm, load, settings=SETTINGS):
     """Solve a point at 40 degC."""
     point = OperatingPoint(speed=rpm * math.pi / 30, load=load, temperature=313.15)
-    return point, full_record(SCREW, OIL, point, settings)
+    return point, record_at(SCREW, OIL, point, settings)
 
 
 def test_warnings_begin_beyond_their_limits():
@@ -96,7 +97,7 @@ def test_the_heating_factor_is_that_by_which_a_starved_contact_is_slowed():
     starved = replace(OIL, film_factor=0.5)
     settings = replace(SETTINGS, kinematics='smooth', inlet_heating=False)
     point = OperatingPoint(speed=1000 * math.pi / 30, load=800.0, temperature=313.15)
-    told = full_record(SCREW, starved, point, settings)
+    told = record_at(SCREW, starved, point, settings)
     assert told['inlet_heating'] is False
     loads = (told['normal_force_loaded_N'], told['normal_force_relieved_N'])
     contacts = make_contacts(Contacts.of(SCREW), starved, point, settings)
@@ -109,7 +110,7 @@ def test_the_heating_factor_is_that_by_which_a_starved_contact_is_slowed():
         for load in loads
     )
     assert told['inlet_heating_factor'] == pytest.approx(slowed**SPEED_EXPONENT, rel=1e-9)
-    flooded = full_record(SCREW, OIL, point, settings)['inlet_heating_factor']
+    flooded = record_at(SCREW, OIL, point, settings)['inlet_heating_factor']
     assert flooded < told['inlet_heating_factor'] < 1.0
 
 
@@ -244,12 +245,12 @@ def test_idle_nut_and_failure_give_a_reason():
 def test_a_third_contact_is_reported_when_it_appears():
     """Zero clearance: the side with the smaller angle reaches its other flank; 10 um: none."""
     point = OperatingPoint(speed=2 * math.pi, load=800.0, temperature=313.15)
-    tight = full_record(replace(SCREW, flank_clearance=0.0), OIL, point, SETTINGS)
+    tight = record_at(replace(SCREW, flank_clearance=0.0), OIL, point, SETTINGS)
     warned = [text for text in tight['warnings'] if 'third contact' in text]
     reached = [c for c in tight['contacts'] if c['opposite_flank_approach_m'] > 0]
     assert len(warned) == len(reached) == 2
     assert all(c['contact_angle_rad'] < SCREW.contact_angle for c in reached)
-    wide = full_record(replace(SCREW, flank_clearance=1e-5), OIL, point, SETTINGS)
+    wide = record_at(replace(SCREW, flank_clearance=1e-5), OIL, point, SETTINGS)
     assert not any('third contact' in text for text in wide['warnings'])
 
 
@@ -257,8 +258,8 @@ def test_hysteresis_adds_its_couple_to_the_torque():
     """Friction torque grows by 4 F us/w per ball and nut and the record holds the force."""
     point = OperatingPoint(speed=20 * math.pi, load=0.0, temperature=313.15)
     smooth = ScrewSettings(smooth=SMALL, kinematics='smooth')
-    plain = full_record(SCREW, OIL, point, smooth)
-    lossy = full_record(replace(SCREW, hysteresis_loss=0.01), OIL, point, smooth)
+    plain = record_at(SCREW, OIL, point, smooth)
+    lossy = record_at(replace(SCREW, hysteresis_loss=0.01), OIL, point, smooth)
     added = [
         lossy['contacts'][k]['rolling_force_N'] - plain['contacts'][k]['rolling_force_N']
         for k in range(4)
@@ -298,7 +299,7 @@ def test_films_of_hardly_pressed_contacts_are_warned_about():
     """Near unloading at high speed the relieved nut floats; each contact tells its error."""
     settings = ScrewSettings(kinematics='smooth')
     point = OperatingPoint(speed=200.0, load=2520.0, temperature=313.15)
-    found = full_record(SCREW, OIL, point, settings)
+    found = record_at(SCREW, OIL, point, settings)
     assert found['contacts'][0]['film_error'] < 0.01
     assert found['contacts'][2]['film_error'] > 0.1
     assert any('hardly pressed' in text for text in found['warnings'])
