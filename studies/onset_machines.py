@@ -30,7 +30,8 @@ from surrogate.identify.onset import FITTED, onset_speeds
 from surrogate.identify.table import formula_model
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.screw import closed_form
-from surrogate.screw.onset import onset_point, with_raceway
+from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import onset_point, with_raceway
 from surrogate.units import RPM
 
 MARCHES = Path(__file__).parent / 'results' / 'asperity_marches.csv'
@@ -119,13 +120,14 @@ def machine(seed, rpm=SPEEDS):
 
 def contact_torque(screw, oil, march, speed, kelvin):
     """Return the friction torque [N m] of contacts by the curves of a march."""
-    law = laws.law_of(screw)
-    law = MachineLaw(onsets=law.onsets, deviation=law.deviation, march=march)
-    usual, closed_form.law_of = closed_form.law_of, lambda _: law
+    opened = Contacts.of(screw)
+    usual = opened.law
+    law = MachineLaw(onsets=usual.onsets, deviation=usual.deviation, march=march)
+    vars(opened)['law'] = law
     try:
         return closed_form.solve(screw, oil, speed, 0.0, kelvin).friction_torque
     finally:
-        closed_form.law_of = usual
+        vars(opened)['law'] = usual
 
 
 def contacts_of(run):

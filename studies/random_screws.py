@@ -27,7 +27,7 @@ from surrogate.files import InputError
 from surrogate.parameters import load_lubricant, Lubricant, OperatingPoint, Screw
 from surrogate.screw.closed_form import solve
 from surrogate.screw.contacts import ScrewSettings
-from surrogate.screw.onset import onset_point
+from surrogate.screw.screw_onset import onset_point
 from surrogate.screw.solve import solve_screw
 from surrogate.tasks.table import read_table, write_table
 from surrogate.units import RPM, ZERO_CELSIUS

@@ -168,11 +168,11 @@ def march(variation: Variation) -> tuple[SpeedRamp, int, int]:
         cutoff_long=variation.cutoff_long_mm * 1e-3,
         fractal_dimension=variation.dimension,
     )
-    cut = variation.shortest_um * 1e-6
+    cut, waves = variation.shortest_um * 1e-6, scale_spectrum(spectrum)
     if cut < spectrum.cutoff_short:
         # Waves that no stylus has measured, to show what depends on them.
-        spectrum = with_shorter_waves(spectrum, cut)
-    surface = without_short_waves(draw_raceway(scale_spectrum(spectrum), variation.seed), cut)
+        waves = with_shorter_waves(spectrum, cut)
+    surface = without_short_waves(draw_raceway(waves, variation.seed), cut)
     ellipse = hertz(contact, variation.load)
     a = float(ellipse.semi_axis_x)
     shortest = surface.shortest_wavelength

@@ -19,8 +19,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from surrogate.asperities.onset import LAG_FACTOR, NODE_FACTOR, TopographyOnset
 from surrogate.asperities.topography import acting_roughness
+from surrogate.asperities.topography_onset import LAG_FACTOR, NODE_FACTOR, TopographyOnset
 from surrogate.ehl import ContactLubricant
 from surrogate.ehl.kernels.fft import good_length
 from surrogate.ehl.moving import MarchSettings, ramp_strip, StripContact
@@ -32,7 +32,6 @@ from surrogate.parameters import load_lubricant, load_screw, Screw
 from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, VERMILION
 from surrogate.raceway.dry_contact import run_in
 from surrogate.raceway.scaling import scale_spectrum, with_shorter_waves
-from surrogate.raceway.stated import spectrum_of
 from surrogate.raceway.tile import draw_tile, Tile
 from surrogate.units import ZERO_CELSIUS
 
@@ -100,11 +99,10 @@ def strip_of(row: dict[str, str]) -> Strip:
     screw, lubricant = screw_of(row), load_lubricant(row['oil'])
     contact = screw_contact(screw, 'screw')
     line = line_at(contact, float(normal_force(screw, screw.preload)), 0.0)
-    spectrum = spectrum_of(screw.roughness)
+    waves = scale_spectrum(screw.roughness)
     wanted = 1e-6 * float(row['shortest_um'])
     if wanted < screw.roughness.cutoff_short:
-        spectrum = with_shorter_waves(spectrum, 0.99 * wanted)
-    waves = scale_spectrum(spectrum)
+        waves = with_shorter_waves(screw.roughness, 0.99 * wanted)
     lengths = 2 * math.pi / waves.wave_number
     shortest = float(lengths[lengths > 0.97 * wanted].min())
     width = TURN * float(line.semi_axis)

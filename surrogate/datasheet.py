@@ -12,7 +12,7 @@ from dataclasses import field, fields, MISSING, replace
 import math
 from pathlib import Path
 import re
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from surrogate.files import InputError
 from surrogate.limits import read_text
@@ -82,6 +82,12 @@ def choice(*allowed: str, default: Any = MISSING, means: str = '') -> Any:
     return field(default=default, metadata={'choice': allowed, 'means': means})
 
 
+def same(cls: type, name: str, *, default: Any = None, means: str = '') -> Any:
+    """Declare a field as another sheet declares it, absent by default; it may mean less here."""
+    spec = next(spec for spec in fields(cls) if spec.name == name)
+    return field(default=default, metadata=spec.metadata | ({'means': means} if means else {}))
+
+
 def block(cls: type, *, default: Any = MISSING, means: str = '') -> Any:
     """Declare a nested block of quantities; a list of all its values in order will do too."""
     return field(default=default, metadata={'block': cls, 'means': means})
@@ -94,21 +100,26 @@ def key_of(spec: Any) -> str:
 
 
 class Checked:
-    """Base of all datasheets: every declared quantity is finite and inside its range."""
+    """
+    Base of all datasheets: quantities are finite and in their range, words are those allowed.
+
+    `WHERE` names the sheet in sentences, by default the class does.
+
+    """
 
     __slots__ = ()
+    WHERE: ClassVar[str] = ''
 
     def __post_init__(self) -> None:
-        """Raise InputError for a number outside its declared range; None is absent."""
+        """Raise InputError for a value that is not allowed; None is absent."""
+        where = self.WHERE or type(self).__name__.lower()
         for spec in fields(self):  # type: ignore[arg-type]
-            value = getattr(self, spec.name)
-            if 'low' in spec.metadata and value is not None:
-                for number in value if 'many' in spec.metadata else (value,):
-                    _check_range(
-                        type(self).__name__.lower(),
-                        spec,
-                        number / spec.metadata['factor'] - spec.metadata['shift'],
-                    )
+            value, rules = getattr(self, spec.name), spec.metadata
+            if value is not None and 'low' in rules:
+                for number in value if 'many' in rules else (value,):
+                    _check_range(where, spec, number / rules['factor'] - rules['shift'])
+            if value is not None and 'choice' in rules:
+                _check_choice(where, spec, value)
 
 
 def read_yaml(path: Path) -> Any:
@@ -203,10 +214,7 @@ def _value(spec: Any, raw: Any, where: str) -> Any:
             raise InputError(f'{where}: {key} is {raw!r}, allowed is {rules["allowed"]}')
         return raw.strip()
     if 'choice' in rules:
-        if raw not in rules['choice']:
-            raise InputError(
-                f'{where}: {key} is {raw!r}, allowed is {" or ".join(rules["choice"])}'
-            )
+        _check_choice(where, spec, raw)
         return raw
     if 'many' in rules:
         return tuple(
@@ -226,6 +234,12 @@ def _number(spec: Any, raw: Any, where: str) -> Any:
         )
     _check_range(where, spec, raw)
     return raw if rules.get('whole') else (raw + rules['shift']) * rules['factor']
+
+
+def _check_choice(where: str, spec: Any, word: Any) -> None:
+    allowed = spec.metadata['choice']
+    if word not in allowed:
+        raise InputError(f'{where}: {spec.name} is {word!r}, allowed is {" or ".join(allowed)}')
 
 
 def _check_range(where: str, spec: Any, value: float) -> None:

@@ -16,10 +16,9 @@ import time
 from typing import Any
 
 from surrogate.builder.full.chain import solved_point
-from surrogate.builder.tiers import screw_and_oil
 from surrogate.ehl.watch import Iteration, watched
 from surrogate.files import InputError
-from surrogate.parameters import OperatingPoint
+from surrogate.parameters import OperatingPoint, screw_and_oil
 from surrogate.screw import solve_screw
 from surrogate.surface import SolvedPoint
 from surrogate.worker import cancelled, tell

@@ -7,7 +7,8 @@ Temperatures are kelvin inside and degC on file.
 
 """
 
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
 import math
 from typing import Any, ClassVar
 
@@ -37,6 +38,7 @@ __all__ = [
     'OperatingPoint',
     'Roughness',
     'Screw',
+    'screw_and_oil',
 ]
 
 NAME = (r'[A-Za-z0-9][A-Za-z0-9_.-]*', 'letters, digits and _ . - (it becomes a file name)')
@@ -412,9 +414,46 @@ class OperatingPoint(Checked):
         return -self.load if self.speed < 0 else self.load
 
 
+def screw_and_oil(inputs: Mapping[str, Any]) -> tuple[Screw, Lubricant]:
+    """
+    Rebuild the datasheets from the `inputs` of a header, so that a file needs no other.
+
+    Raises InputError if these are not all values of both.
+
+    """
+    try:
+        screw, lubricant = (dict(inputs[kind]) for kind in ('screw', 'lubricant'))
+        for spec in fields(Screw):
+            if 'block' in spec.metadata and screw[spec.name] is not None:
+                screw[spec.name] = spec.metadata['block'](**screw[spec.name])
+        return Screw(**screw), Lubricant(**lubricant)
+    except (KeyError, TypeError, AttributeError, OverflowError) as error:
+        raise InputError(
+            f'the header of the surface states no whole screw and oil ({error}): build the '
+            'surface again'
+        ) from None
+
+
 def load_screw(name_or_path: str) -> Screw:
     """Load a screw by shipped name or file; raises InputError."""
-    return read_sheet(Screw, find_sheet(name_or_path, 'screws'))
+    path = find_sheet(name_or_path, 'screws')
+    screw = read_sheet(Screw, path)
+    check_waves(screw.roughness, str(path))
+    return screw
+
+
+def check_waves(roughness: Roughness, where: str) -> None:
+    """Raise InputError, which says `where`, if no waves have the stated slope."""
+    if roughness.rms_slope is None:
+        return
+    # Only a stated slope is worth the time that scipy takes to load.
+    from surrogate.raceway.scaling import scale_spectrum
+
+    try:
+        scale_spectrum(roughness)
+    except InputError as error:
+        name = f'{where.rpartition(": ")[2].split()[0]}: '
+        raise InputError(f'{where}: {str(error).removeprefix(name)}') from None
 
 
 def load_lubricant(name_or_path: str) -> Lubricant:

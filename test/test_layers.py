@@ -45,7 +45,7 @@ FLOORS = (
 )
 """Folders of the online half, the lowest first; those beside each other do not meet."""
 OFFLINE_FLOORS = (
-    ('units', 'files', 'progress', 'child'),
+    ('units', 'files', 'progress', 'results', 'child'),
     ('worker', 'store'),
     ('limits',),
     ('plain_yaml',),
@@ -67,6 +67,7 @@ STANDS_ON = {
         'surrogate.files',
         'surrogate.formulas.torque',
         'surrogate.limits',
+        'surrogate.results',
         'surrogate.units',
     },
     'tasks': {

@@ -25,7 +25,7 @@ from health_parts.programmes import DAYS
 from health_parts.years import draw_year, FIRST_DAY, Kind, LOSSES, Truth, Year
 import numpy as np
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.screw.onset import onset_point
+from surrogate.screw.screw_onset import onset_point
 
 LOOKS = 140, 200, 364
 """Days on which the onset is asked."""

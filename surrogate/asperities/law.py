@@ -11,17 +11,17 @@ strips of all spectra share one curve of RCS and, by pressure and lay, one line 
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
 import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import expit, logit
-from surrogate.asperities.onset import onset_of, PRESSURE, TopographyOnset
+from surrogate.asperities.running_in import RunningContact
+from surrogate.asperities.topography_onset import onset_of, PRESSURE, TopographyOnset
 from surrogate.ehl import Condition, ContactLubricant
-from surrogate.formulas.geometry import Contact, Side, SIDES
+from surrogate.formulas.geometry import Contact, Side
 from surrogate.formulas.line import Line, line_at
-from surrogate.parameters import Screw
+from surrogate.raceway.stated import Roughness
 
 Array = NDArray[np.float64]
 ONSET_RCS = 0.01
@@ -205,45 +205,23 @@ def _above(values: Array, least: float, width: float) -> Array:
     return np.asarray(least + width * np.logaddexp(0.0, (values - least) / width))
 
 
-@lru_cache(maxsize=64)
-def law_of(screw: Screw) -> AsperityLaw:
+def law_of(contacts: Mapping[Side, RunningContact], sheet: Roughness) -> AsperityLaw:
     """
-    Return the law of the raceways of a screw in the state that its sheet names.
+    Return the law of the raceways of a screw by their side.
 
-    The onset factor of the sheet acts here alone. Raises InputError as `running_tiles` does. It
-    takes seconds, once for each topography.
+    The onset factor and the calibration of the sheet act here alone. Raises InputError as
+    `onset_of` does.
 
     """
-    topography = replace(
-        screw,
-        name='',
-        source='',
-        roughness=replace(
-            screw.roughness,
-            asperity_friction=0.0,
-            onset_factor=1.0,
-            onset_band=None,
-            calibrated=None,
-        ),
-        parasitic_torque=0.0,
-        parasitic_torque_rate=0.0,
-        hysteresis_loss=0.0,
-        flank_clearance=None,
+    return AsperityLaw(
+        onsets={
+            side: replace(onset_of(contact), factor=sheet.onset_factor)
+            for side, contact in contacts.items()
+        },
+        deviation=math.log(band_of(sheet)) / NINE_OF_TEN,
     )
-    return _law(topography, screw.roughness.onset_factor, band_of(screw))
 
 
-def band_of(screw: Screw) -> float:
+def band_of(sheet: Roughness) -> float:
     """Return the factor within which nine of ten onsets lie [-], by calibration or marches."""
-    return screw.roughness.onset_band or BANDS[screw.roughness.lay]
-
-
-@lru_cache(maxsize=32)
-def _law(screw: Screw, factor: float, band: float) -> AsperityLaw:
-    onsets = {side: replace(onset, factor=factor) for side, onset in _onsets(screw).items()}
-    return AsperityLaw(onsets=onsets, deviation=math.log(band) / NINE_OF_TEN)
-
-
-@lru_cache(maxsize=32)
-def _onsets(screw: Screw) -> dict[Side, TopographyOnset]:
-    return {side: onset_of(screw, side) for side in SIDES}
+    return sheet.onset_band or BANDS[sheet.lay]

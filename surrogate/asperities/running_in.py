@@ -9,7 +9,7 @@ Raceway and ball are each cut alone and then added, as the contact adds them.
 
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 import math
 
 import numpy as np
@@ -26,7 +26,8 @@ from surrogate.parameters import Screw
 from surrogate.raceway.ball import ball_of
 from surrogate.raceway.dry_contact import run_in
 from surrogate.raceway.scaling import scale_spectrum, ScaledSpectrum
-from surrogate.raceway.stated import spectrum_of
+from surrogate.raceway.spectrum import RoughnessSpectrum
+from surrogate.raceway.stated import BallRoughness
 from surrogate.raceway.tile import draw_tile, Tile
 from surrogate.units import GIGA
 
@@ -54,7 +55,54 @@ def working_pressure(screw: Screw, side: Side) -> float:
     return float(hertz(screw_contact(screw, side), force).max_pressure)
 
 
-def running_tiles(screw: Screw, side: Side, *, shortest: float = 0.0) -> list[Tile]:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunningContact:
+    """
+    Raceway and ball of a contact as they run: all that the topography depends on.
+
+    Profile of the raceway as it was traced; roughness of the ball, None where it is smooth;
+    pressure at which summits are cut [Pa]; reduced modulus of the contact [Pa], its half length
+    under preload [m], largest working load [N] and Hertz pressure under it [Pa].
+
+    """
+
+    raceway: RoughnessSpectrum
+    ball: BallRoughness | None
+    cutting_pressure: float
+    reduced_modulus: float
+    half_length: float
+    working_load: float
+    working_pressure: float
+
+    @classmethod
+    def of(cls, screw: Screw, side: Side) -> 'RunningContact':
+        """Return a side of a screw, its raceway in the state of the sheet."""
+        contact = screw_contact(screw, side)
+        preload = float(normal_force(screw, working_preload(screw)))
+        return cls(
+            raceway=screw.roughness.spectrum,
+            ball=screw.ball_roughness,
+            cutting_pressure=screw.roughness.cutting_pressure,
+            reduced_modulus=contact.reduced_modulus,
+            half_length=float(hertz(contact, preload).semi_axis_x),
+            working_load=working_load(screw),
+            working_pressure=working_pressure(screw, side),
+        )
+
+    @property
+    def waves(self) -> dict[int, ScaledSpectrum]:
+        """Waves of raceway and ball by their field, 0 and 1; a smooth one has none."""
+        raceway = scale_spectrum(self.raceway) if self.raceway.rms else None
+        fields = {0: raceway, 1: ball_of(self.raceway, self.ball)}
+        return {field: waves for field, waves in fields.items() if waves is not None}
+
+    @property
+    def shortest_wave(self) -> float:
+        """Shortest wave of raceway and ball [m]."""
+        return min(2 * math.pi / float(waves.wave_number[-1]) for waves in self.waves.values())
+
+
+def running_tiles(contact: RunningContact, *, shortest: float = 0.0) -> list[Tile]:
     """
     Return tiles of a raceway with its ball in their state; none where both are smooth.
 
@@ -62,19 +110,18 @@ def running_tiles(screw: Screw, side: Side, *, shortest: float = 0.0) -> list[Ti
     the contact by more than the cutting pressure.
 
     """
-    contact = screw_contact(screw, side)
-    fields = waves_of(screw)
+    fields = contact.waves
     if not fields:
         return []
-    pressure, bound = working_pressure(screw, side), screw.roughness.cutting_pressure
+    pressure, bound = contact.working_pressure, contact.cutting_pressure
     if not 0 < pressure < bound:
         raise InputError(
-            f'raceway: under the largest working load of {working_load(screw):g} N the mean '
+            f'raceway: under the largest working load of {contact.working_load:g} N the mean '
             f'pressure is {GIGA * pressure:.3g} GPa, allowed is above 0 and below that at which '
             f'summits are cut, {GIGA * bound:.3g} GPa: see working_load_N, run_in_pressure_GPa '
             'and hardness_GPa'
         )
-    size, shape = tile_size(screw, side, shortest=shortest)
+    size, shape = tile_size(contact, shortest=shortest)
     return [
         _added(
             [
@@ -91,27 +138,12 @@ def running_tiles(screw: Screw, side: Side, *, shortest: float = 0.0) -> list[Ti
     ]
 
 
-def waves_of(screw: Screw) -> dict[int, ScaledSpectrum]:
-    """Return the waves of raceway and ball by their field, 0 and 1; a smooth one has none."""
-    raceway = scale_spectrum(spectrum_of(screw.roughness))
-    ball = ball_of(screw.roughness, screw.ball_roughness)
-    fields = {0: raceway if screw.roughness.rms else None, 1: ball}
-    return {field: waves for field, waves in fields.items() if waves is not None}
-
-
-def shortest_wave(screw: Screw) -> float:
-    """Return the shortest wave of raceway and ball [m]."""
-    return min(2 * math.pi / float(waves.wave_number[-1]) for waves in waves_of(screw).values())
-
-
 def tile_size(
-    screw: Screw, side: Side, *, shortest: float = 0.0
+    contact: RunningContact, *, shortest: float = 0.0
 ) -> tuple[tuple[float, float], tuple[int, int]]:
     """Return length and width of the tiles of a raceway [m] and their nodes [-]."""
-    force = float(normal_force(screw, working_preload(screw)))
-    semi_axis = float(hertz(screw_contact(screw, side), force).semi_axis_x)
-    shortest = max(shortest_wave(screw), shortest)
-    length = min(LENGTH * semi_axis, MOST_WAVES * shortest)
+    shortest = max(contact.shortest_wave, shortest)
+    length = min(LENGTH * contact.half_length, MOST_WAVES * shortest)
     # An even number of nodes, so that every other one repeats too.
     rows = 2 * next_fast_len(math.ceil(0.5 * NODES * length / shortest), real=True)
     columns = 2 * next_fast_len(math.ceil(0.25 * NODES * length / shortest), real=True)

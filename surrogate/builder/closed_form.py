@@ -18,16 +18,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 import scipy
-from surrogate.builder.tiers import screw_and_oil
 from surrogate.files import InputError
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.formulas.shaft import service_of
 from surrogate.formulas.sliding import largest_sliding
-from surrogate.parameters import Lubricant, Screw
+from surrogate.parameters import Lubricant, Screw, screw_and_oil
 from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
-from surrogate.screw.onset import onset_speeds
+from surrogate.screw.screw_onset import onset_speeds
 from surrogate.surface import FIELDS, SolvedPoint, Surface
 from surrogate.surface.file import FORMAT, FORMAT_VERSION, SurfaceData
 from surrogate.units import ZERO_CELSIUS

@@ -7,13 +7,11 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
-from surrogate.builder.tiers import build_surface, default_settings
+from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.files import InputError
 from surrogate.parameters import Lubricant, Screw
 from surrogate.surface import companion_path, PRELOAD_SHARES
 from surrogate.surface.file import write
-
-TIER = 'closed_form'
 
 
 def build_companions(
@@ -31,9 +29,9 @@ def build_companions(
             f'screw {screw.name}: preload_N is {screw.preload:g} N, --with-preloads needs a '
             'preload above 0 N'
         )
-    settings = default_settings(TIER, screw, ranges)
+    settings = dataclasses.replace(default_settings(screw), **ranges)
     for share in PRELOAD_SHARES:
         part = dataclasses.replace(screw, preload=share * screw.preload)
         path = companion_path(out, share)
-        write(path, build_surface(TIER, part, lubricant, settings))
+        write(path, build_closed_form(part, lubricant, settings))
         yield path

@@ -3,8 +3,8 @@
 """
 A catalogue of screws, oils and roughness, and a surface of each combination.
 
-A tier whose builder spreads its own solves is built here, one surface after another; of any other
-tier a surface is one task.
+The full tier spreads its own solves and is built here, one surface after another; a surface of
+formulas is one task.
 
 """
 
@@ -17,16 +17,19 @@ import re
 import time
 from typing import Any
 
-from surrogate.builder.tiers import (
-    build_surface,
-    default_settings,
-    find_tier,
-    load_function,
-    screw_and_oil,
-)
+from surrogate.builder.closed_form import build_closed_form, SurfaceSettings
+from surrogate.builder.tiers import build_surface, check_tier, default_settings, spreads
 from surrogate.datasheet import changed_sheet, read_yaml
 from surrogate.files import InputError
-from surrogate.parameters import load_lubricant, load_screw, Lubricant, NAME, Screw
+from surrogate.parameters import (
+    check_waves,
+    load_lubricant,
+    load_screw,
+    Lubricant,
+    NAME,
+    Screw,
+    screw_and_oil,
+)
 from surrogate.surface.file import from_bytes, SurfaceData, SurfaceError, to_bytes, write
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.units import RPM, ZERO_CELSIUS
@@ -88,7 +91,7 @@ def load_catalogue(path: Path) -> list[Item]:
         if key not in KEYS:
             raise InputError(f'{path}: unknown key {key}, allowed are {", ".join(KEYS)}')
     tier = content.get('tier', 'closed_form')
-    find_tier(str(tier))
+    check_tier(str(tier))
     ranges = _ranges(path, content)
     screws = [load_screw(_place(path, name)) for name in _names(path, content, 'screws')]
     oils = [load_lubricant(_place(path, name)) for name in _names(path, content, 'oils')]
@@ -140,6 +143,7 @@ def _with_roughness(path: Path, screw: Screw, name: str, changes: dict[str, Any]
     if not changes:
         return screw
     roughness = changed_sheet(screw.roughness, changes, where)
+    check_waves(roughness, where)
     return replace(screw, name=f'{screw.name}-{name}', roughness=roughness)
 
 
@@ -175,7 +179,7 @@ def sweep(
         report(built)
 
     named = {item.name: item for item in items}
-    tasks = {name: _inputs(item) for name, item in named.items() if not _spreads(item)}
+    tasks = {name: _inputs(item) for name, item in named.items() if not spreads(item.tier)}
     run_tasks(
         pool,
         build_item,
@@ -183,33 +187,24 @@ def sweep(
         report=lambda outcome: take(_written(named[outcome.name], outcome, out)),
     )
     for item in items:
-        if _spreads(item):
+        if spreads(item.tier):
             take(_build_here(item, out, pool))
     return [found[item.name] for item in items]
 
 
-def _spreads(item: Item) -> bool:
-    return find_tier(item.tier).spreads
-
-
 def _inputs(item: Item) -> dict[str, Any]:
     """Return what a worker needs: it may be on another machine and has none of the files."""
-    tier = find_tier(item.tier)
     return {
-        'settings': tier.settings,
-        'build': tier.build,
         'screw': asdict(item.screw),
         'lubricant': item.lubricant.stated(),
-        'ranges': {name: list(ends) for name, ends in item.ranges.items()},
+        'settings': asdict(default_settings(item.tier, item.screw, item.ranges)),
     }
 
 
 def build_item(inputs: Mapping[str, Any]) -> dict[str, str]:
-    """Build a surface in a worker; the result is the content of the file as text."""
-    screw, lubricant = screw_and_oil(inputs)
-    ranges = {name: tuple(ends) for name, ends in inputs['ranges'].items()}
-    settings = replace(load_function(inputs['settings'])(screw), **ranges)
-    data = load_function(inputs['build'])(screw, lubricant, settings)
+    """Build a surface of formulas in a worker; the result is the content of the file as text."""
+    settings = SurfaceSettings(**inputs['settings'])
+    data = build_closed_form(*screw_and_oil(inputs), settings)
     return {'file': base64.b64encode(to_bytes(data)).decode()}
 
 

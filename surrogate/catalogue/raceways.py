@@ -8,13 +8,13 @@ What no published number was found for is named as assumed.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from surrogate.catalogue.noted import derived, Noted, stated, typical
 from surrogate.catalogue.words import CatalogueScrew
 from surrogate.raceway.fractal import Lay
-from surrogate.raceway.standards import CUTOFF_SHORT, RA_OVER_RQ
-from surrogate.raceway.stated import HARDNESS
+from surrogate.raceway.standards import RA_OVER_RQ
+from surrogate.raceway.stated import Roughness
 from surrogate.units import MICRO, RPM, TURN
 
 
@@ -53,6 +53,19 @@ PROCESSES = {
     ),
 }
 """D n by HIWIN Ballscrews BS-08-2-EN-1704-K, section 3.7.6, where whirled screws are peeled."""
+USUAL = {
+    'cutoff_short': 'ISO 3274',
+    'hardness': '6.5 to 7.5: 58 to 62 HRC',
+    'run_in_pressure': '2 to 5',
+    'run_in_low': 'lowest likely',
+    'run_in_high': 'highest likely',
+    'state': 'after weeks of operation; new before',
+    'traced': 'before running in',
+    'scale_ratio': '1.2 to 2: generator of waves',
+    'ridges': '5 to 20: generator of waves',
+    'onset_factor': '1 until ballscrew identify --onset gives it',
+}
+"""Range or source of the values that a sheet of a raceway has by default."""
 ROLLED = ('7', '10')
 """Accuracy classes of rolled screws, unless the process is given."""
 
@@ -82,18 +95,13 @@ def raceway_of(given: CatalogueScrew) -> dict[str, Noted]:
         'cutoff_long': stated(
             given.cutoff_long, typical(0.25e-3, '0.08 to 0.8: as Ra was measured')
         ),
-        'cutoff_short': typical(CUTOFF_SHORT, 'ISO 3274'),
         'fractal_dimension': typical(2.5, '2.3 to 2.7'),
         'lay': typical(process.lay, process.lay_words),
         'fan_angle': typical(TURN / 36, '0 to 20'),
-        'hardness': typical(HARDNESS, '6.5 to 7.5: 58 to 62 HRC'),
-        'run_in_pressure': typical(3e9, '2 to 5'),
-        'run_in_low': typical(2e9, 'lowest likely'),
-        'run_in_high': typical(5e9, 'highest likely'),
-        'state': typical('run_in', 'after weeks of operation; new before'),
-        'traced': typical('new', 'before running in'),
-        'scale_ratio': typical(1.5, '1.2 to 2: generator of waves'),
-        'ridges': typical(10, '5 to 20: generator of waves'),
         'asperity_friction': typical(0.1, '0.08 to 0.12: mineral oil on steel'),
-        'onset_factor': typical(1.0, '1 until ballscrew identify --onset gives it'),
+        **{
+            spec.name: typical(spec.default, USUAL[spec.name])
+            for spec in fields(Roughness)
+            if spec.name in USUAL
+        },
     }

@@ -49,8 +49,8 @@ def _figures(args: argparse.Namespace) -> int:
     """Solve what is missing, draw, print the numbers; exit code 1 when a solve failed."""
     figures = tuple(args.only or FIGURES)
     wanted = tasks(figures, args.draws)
-    from surrogate.asperities.law import law_of
     from surrogate.parameters import load_screw
+    from surrogate.screw.opened import Contacts
     from surrogate.studies.figures import draw_figures
     from surrogate.studies.report import report
     from surrogate.studies.solve import run_study
@@ -65,7 +65,7 @@ def _figures(args: argparse.Namespace) -> int:
     for path in draw_figures(study, figures, args.out, measured):
         print(path, file=sys.stderr)
     screw = load_screw('nominal')
-    text = report(screw, law_of(screw), study.rows)
+    text = report(screw, Contacts.of(screw).law, study.rows)
     replace_file(args.out / 'paper.md', text.encode())
     print(args.out / 'paper.md', file=sys.stderr)
     print(text, end='')

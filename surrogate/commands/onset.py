@@ -36,7 +36,7 @@ def add_onset_command(subparsers: Any) -> None:
 
 
 def _onset(args: argparse.Namespace) -> int:
-    from surrogate.screw.onset import onset_page, onset_record
+    from surrogate.screw.screw_onset import onset_page, onset_record
 
     screw, lubricant = load_inputs(args)
     if args.plot:
@@ -44,5 +44,7 @@ def _onset(args: argparse.Namespace) -> int:
     record = onset_record(screw, lubricant, args.load, oil_temperature(args, lubricant))
     show(record, onset_page, json=args.json)
     if args.plot:
-        picture(args.plot, 'onset_figure', 'draw_onset', screw, lubricant, record)
+        from surrogate.screw.onset_figure import draw_onset
+
+        picture(args.plot, lambda folder: draw_onset(folder, screw, lubricant, record))
     return 0

@@ -3,9 +3,9 @@
 """The subcommand `point`: solve the screw at one operating point."""
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 import sys
-import time
 from typing import Any
 
 from surrogate.commands.output import add_json, show, tell
@@ -110,7 +110,7 @@ def add_temperature(parser: argparse.ArgumentParser) -> None:
 
 
 def _point(args: argparse.Namespace) -> int:
-    from surrogate.builder.contact_onset import onset_of_sheets
+    from surrogate.builder.sheets_onset import onset_of_sheets
     from surrogate.formulas.shaft import shaft_doubts
     from surrogate.screw.closed_form_record import closed_form_record, page
 
@@ -123,7 +123,7 @@ def _point(args: argparse.Namespace) -> int:
         prepare(args.plot)
     if args.sensitivity:
         return _sensitivity(args, screw, lubricant, point)
-    solution = None
+    solution: Any = None
     if args.tier == 'full':
         solution, record = _full(args, screw, lubricant, point)
     else:
@@ -131,7 +131,9 @@ def _point(args: argparse.Namespace) -> int:
     onset = onset_of_sheets(screw, lubricant, kelvin)
     show(record | {'contact_onset': onset.record()}, page, json=args.json)
     if args.plot:
-        picture(args.plot, 'figures', 'draw_point', screw, solution, record)
+        from surrogate.screw.figures import draw_point
+
+        picture(args.plot, lambda folder: draw_point(folder, screw, solution, record))
     return 0 if record.get('converged', True) else 1
 
 
@@ -162,7 +164,9 @@ def _sensitivity(
         progress.close()
     show(record, sensitivity_page, json=args.json)
     if args.plot:
-        picture(args.plot, 'sensitivity_figure', 'draw_sensitivity', record)
+        from surrogate.screw.sensitivity_figure import draw_sensitivity
+
+        picture(args.plot, lambda folder: draw_sensitivity(folder, record))
     return 0
 
 
@@ -171,16 +175,12 @@ def _full(
 ) -> tuple[Any, dict[str, Any]]:
     """Return a point of the full tier and its record; only this loads the contact solver."""
     from surrogate.screw.contacts import ScrewSettings
-    from surrogate.screw.full_record import solution_record
-    from surrogate.screw.solve import solve_screw
+    from surrogate.screw.full_record import full_record
 
-    started = time.perf_counter()
     settings = ScrewSettings(
         kinematics=args.kinematics or 'rolling', inlet_heating=not args.isothermal
     )
-    solution = solve_screw(screw, lubricant, point, settings=settings)
-    record = solution_record(screw, lubricant, point, solution, settings)
-    return solution, record | {'wall_s': time.perf_counter() - started}
+    return full_record(screw, lubricant, point, settings)
 
 
 def oil_temperature(args: argparse.Namespace, lubricant: Lubricant) -> float:
@@ -198,12 +198,9 @@ def prepare(folder: Path) -> None:
         raise InputError(f'--plot: {folder} cannot be made, {error.strerror}') from None
 
 
-def picture(folder: Path, module: str, function: str, *results: Any) -> None:
-    """Draw by a function of a module of `surrogate.screw`; only this needs matplotlib."""
-    from surrogate.builder.tiers import load_function
-
-    draw = load_function(f'surrogate.screw.{module}:{function}')
+def picture(folder: Path, draw: Callable[[Path], Path]) -> None:
+    """Draw into a folder, and print the path of the picture; raises InputError."""
     try:
-        print(draw(folder, *results), file=sys.stderr)
+        print(draw(folder), file=sys.stderr)
     except OSError as error:
         raise InputError(f'--plot: {folder} cannot be written, {error.strerror}') from None

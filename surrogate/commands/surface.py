@@ -10,8 +10,7 @@ from pathlib import Path
 import sys
 from typing import Any
 
-from surrogate.builder.companions import build_companions
-from surrogate.builder.tiers import build_surface, default_settings, find_tier, TIERS
+from surrogate.builder.tiers import build_surface, default_settings, spreads
 from surrogate.commands.output import add_json, show, tell
 from surrogate.commands.point import add_inputs, load_inputs
 from surrogate.commands.surface_inspect import add_file, add_inspect_commands
@@ -20,7 +19,7 @@ from surrogate.files import InputError
 from surrogate.parameters import Lubricant
 from surrogate.progress import Progress
 from surrogate.surface import find_surface, onset_of_surface, Surface
-from surrogate.surface.file import read, write
+from surrogate.surface.file import read, TIERS, write
 from surrogate.surface.shipped import SHIPPED_TIERS
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -52,7 +51,7 @@ def _add_build(parser: argparse.ArgumentParser) -> None:
     add_inputs(parser)
     parser.add_argument(
         '--tier',
-        choices=tuple(TIERS),
+        choices=TIERS,
         default=SHIPPED_TIERS[0],
         help='solved contacts in a minute (default), or published formulas alone in seconds',
     )
@@ -121,6 +120,8 @@ def _build(args: argparse.Namespace) -> int:
     print(f'{onset_of_surface(Surface(data)).sentence()}.')
     tell(surface_warnings(data))
     if args.with_preloads:
+        from surrogate.builder.companions import build_companions
+
         for file in build_companions(screw, lubricant, ranges, out):
             print(f'{file}: companion at another preload')
     if args.march:
@@ -143,13 +144,13 @@ def _one_temperature(args: argparse.Namespace, lubricant: Lubricant) -> dict[str
         'temperature_range': (max(kelvin - HALF_KELVIN, low), min(kelvin + HALF_KELVIN, high)),
         'temperature_nodes': 2,
     }
-    return settings | ({'held_out': HELD_OUT} if find_tier(args.tier).spreads else {})
+    return settings | ({'held_out': HELD_OUT} if spreads(args.tier) else {})
 
 
 @contextmanager
 def _workers(args: argparse.Namespace) -> Iterator[Any]:
     """Give workers to a builder that spreads its solves, and none to any other."""
-    if not find_tier(args.tier).spreads:
+    if not spreads(args.tier):
         if args.workers is not None or args.dask is not None:
             raise InputError(f'--workers and --dask have no meaning for tier {args.tier}')
         if args.march:

@@ -9,7 +9,7 @@ import sys
 import time
 from typing import Any
 
-from surrogate.builder.tiers import find_tier
+from surrogate.builder.tiers import spreads
 from surrogate.commands.output import add_json, show
 from surrogate.commands.point import add_operating_point
 from surrogate.files import InputError, replace_file
@@ -126,7 +126,7 @@ def _check(args: argparse.Namespace) -> int:
         raise InputError(f'--max-seconds is {args.max_seconds:g} s, allowed is above 0')
     data = read(path)
     deadline = time.monotonic() + args.max_seconds
-    slow = find_tier(data.header['tier']).spreads
+    slow = spreads(data.header['tier'])
     result = check_surface(
         data,
         args.points,

@@ -40,13 +40,10 @@ def add_workers(parser: argparse.ArgumentParser) -> None:
 def _sweep(args: argparse.Namespace) -> int:
     from surrogate.builder.sweep import Built, load_catalogue, sweep
     from surrogate.builder.sweep_report import JSON_NAME, PAGE_NAME, SweepReport
-    from surrogate.builder.tiers import find_tier, load_function
     from surrogate.progress import Progress
     from surrogate.tasks.workers import open_pool
 
     items = load_catalogue(args.catalogue)
-    for tier in {item.tier for item in items}:  # what is not installed fails no item, but all
-        load_function(find_tier(tier).build)
     for screw in dict.fromkeys(item.screw for item in items):
         examine(screw)
     report = SweepReport(args.catalogue, items, args.out)

@@ -9,7 +9,6 @@ optional. The roughness stands still in the contact, or rolls through it.
 """
 
 from dataclasses import dataclass, replace
-import math
 from typing import Literal
 
 from surrogate.datasheet import (
@@ -21,16 +20,18 @@ from surrogate.datasheet import (
     quantities,
     quantity,
     read_sheet,
+    same,
     text,
 )
 from surrogate.ehl import Condition, ContactLubricant
 from surrogate.ehl.interface import LARGEST_GRID, Law
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
-from surrogate.raceway.fractal import Lay
+from surrogate.raceway.fractal import Lay, PublishedRoughness
 from surrogate.raceway.measured import Outside
 from surrogate.raceway.patch import Patch
-from surrogate.raceway.standards import BALL_RA
+from surrogate.raceway.spectrum import RoughnessSpectrum
+from surrogate.raceway.stated import BallRoughness, Roughness
 
 CONSTANTS = (
     'fractal_dimension',
@@ -80,8 +81,8 @@ class CaseRoughness(Checked):
 
     """
 
-    rms: float | None = quantity(
-        'um', 1e-6, 0.0, 10.0, default=None, means='Rq; 0 is smooth; mandatory without `file`'
+    rms: float | None = same(
+        RoughnessSpectrum, 'rms', means='Rq; 0 is smooth; mandatory without `file`'
     )
     file: str | None = text(
         default=None,
@@ -100,99 +101,81 @@ class CaseRoughness(Checked):
         'cut',
         'standard',
         default=None,
-        means='`rescaled` (default): scaled once to `rms_um` over the window; `cut`: at '
-        'the height of formula or file; `standard`: by the standard, as a drawing '
-        'means Rq',
+        means='`rescaled` (default): scaled once to `rms_um` over the window; `cut`: '
+        'at the height of formula or file; `standard`: by the standard, as a '
+        'drawing means Rq',
     )
-    lay: Lay | None = choice(
-        'isotropic',
-        'longitudinal',
-        'transverse',
-        default=None,
-        means='direction of the ridges (isotropic)',
-    )
-    shortest_wavelength: float | None = quantity(
-        'um',
-        1e-6,
-        0.1,
-        1000.0,
-        default=None,
-        means='shortest wave of the raceway (8); with `file` the cut-off of a Gaussian '
-        'filter; with `patch: standard` shorter waves are left out',
+    lay: Lay | None = same(RoughnessSpectrum, 'lay', means='direction of the ridges (isotropic)')
+    shortest_wavelength: float | None = same(
+        PublishedRoughness,
+        'shortest_wavelength',
+        means='shortest wave of the raceway (8); with `file` the cut-off of a '
+        'Gaussian filter; with `patch: standard` shorter waves are left out',
     )
     grid_wavelength: float | None = quantity(
         'um',
-        1e-6,
+        1e-06,
         0.1,
         1000.0,
         default=None,
         means='shorter waves are not on the grid and raise the film floor by 0.05 of their rms',
     )
-    fractal_dimension: float | None = quantity(
-        '',
-        1.0,
-        2.01,
-        2.99,
-        default=None,
+    fractal_dimension: float | None = same(
+        RoughnessSpectrum,
+        'fractal_dimension',
         means='D (2.68); with `patch: standard` this or `rms_slope_deg`, without a default',
     )
-    fractal_roughness: float | None = quantity(
-        'nm', 1e-9, 1e-6, 1e3, default=None, means='G (0.97)'
+    fractal_roughness: float | None = same(
+        PublishedRoughness, 'fractal_roughness', means='G (0.97)'
     )
-    sample_length: float | None = quantity(
-        'mm', 1e-3, 0.01, 100.0, default=None, means='L of the generator (4)'
+    sample_length: float | None = same(
+        PublishedRoughness, 'sample_length', means='L of the generator (4)'
     )
-    scale_ratio: float | None = quantity(
-        '', 1.0, 1.01, 10.0, default=None, means='ratio of neighbouring wavelengths (1.5)'
+    scale_ratio: float | None = same(
+        RoughnessSpectrum, 'scale_ratio', means='ratio of neighbouring wavelengths (1.5)'
     )
-    ridges: int | None = count(1, 1000, default=None, means='ridges (10)')
+    ridges: int | None = same(RoughnessSpectrum, 'ridges', means='ridges (10)')
     position_x: float | None = quantity(
-        'mm', 1e-3, -1e3, 1e3, default=None, means='place of the raceway at the contact centre (0)'
+        'mm',
+        0.001,
+        -1000.0,
+        1000.0,
+        default=None,
+        means='place of the raceway at the contact centre (0)',
     )
-    position_y: float | None = quantity('mm', 1e-3, -1e3, 1e3, default=None, means='likewise')
+    position_y: float | None = quantity(
+        'mm', 0.001, -1000.0, 1000.0, default=None, means='likewise'
+    )
     window_x: float | None = quantity(
         'mm',
-        1e-3,
-        1e-3,
+        0.001,
+        0.001,
         100.0,
         default=None,
         means='side of the window in which the patch is levelled and scaled (Hertz '
         'rectangle); state one in a series over loads',
     )
-    window_y: float | None = quantity('mm', 1e-3, 1e-3, 100.0, default=None, means='likewise')
-    cutoff_long: float | None = quantity(
-        'mm',
-        1e-3,
-        0.001,
-        100.0,
-        default=None,
+    window_y: float | None = quantity('mm', 0.001, 0.001, 100.0, default=None, means='likewise')
+    cutoff_long: float | None = same(
+        RoughnessSpectrum,
+        'cutoff_long',
         means='standard: long cut-off (by the table for Ra = 0.8 Rq)',
     )
-    cutoff_short: float | None = quantity(
-        'um',
-        1e-6,
-        0.1,
-        1000.0,
-        default=None,
-        means='standard: short cut-off and shortest wave (2.5)',
+    cutoff_short: float | None = same(
+        RoughnessSpectrum, 'cutoff_short', means='standard: short cut-off and shortest wave (2.5)'
     )
-    rms_slope: float | None = quantity(
-        'deg', math.pi / 180, 0.001, 45.0, default=None, means='standard: Rdq of the profile'
+    rms_slope: float | None = same(
+        RoughnessSpectrum, 'rms_slope', means='standard: Rdq of the profile'
     )
-    fan_angle: float | None = quantity(
-        'deg',
-        math.pi / 180,
-        0.0,
-        90.0,
-        default=None,
-        means='standard: angle over which waves of a lay fan',
+    fan_angle: float | None = same(
+        RoughnessSpectrum, 'fan_angle', means='standard: angle over which waves of a lay fan'
     )
-    ball_rms: float | None = quantity(
-        'um', 1e-6, 0.0, 10.0, default=None, means='standard: Rq of the ball; this or `ball_grade`'
+    ball_rms: float | None = same(
+        BallRoughness, 'rms', means='standard: Rq of the ball; this or `ball_grade`'
     )
-    ball_grade: str | None = choice(*BALL_RA, default=None, means='standard: grade of the ball')
-    asperity_friction: float = quantity(
-        '', 1.0, 0.0, 1.0, default=0.1, means='boundary friction coefficient'
+    ball_grade: str | None = same(BallRoughness, 'grade', means='standard: grade of the ball')
+    asperity_friction: float = same(
+        Roughness, 'asperity_friction', default=0.1, means='boundary friction coefficient'
     )
 
     def __post_init__(self) -> None:

@@ -2,14 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """A solved contact as a record: plain numbers for JSON, and a page for a person."""
 
+from collections.abc import Mapping
 import math
-from typing import TypedDict
+from typing import Any
 
 from surrogate.contact.case import ContactCase
 from surrogate.contact.surface import roughness_words
 from surrogate.ehl import ContactSolution
 from surrogate.ehl.friction import slide_roll_friction
 from surrogate.raceway.patch import Raceway
+from surrogate.results import declared
 
 ASPERITY_FRICTION = 0.1
 """Boundary friction coefficient of a case without roughness [-], for dry contacts."""
@@ -39,32 +41,6 @@ KEYS = {
 """Keys of the record."""
 
 
-class ContactRecord(TypedDict):
-    """A solved contact for JSON, in the units of the keys; shares and errors [-]."""
-
-    status: str
-    converged: bool
-    central_film_m: float
-    minimum_film_m: float
-    max_pressure_Pa: float
-    hertz_pressure_Pa: float
-    semi_axis_x_m: float
-    semi_axis_y_m: float
-    rcs: float
-    asperity_share: float
-    rolling_force_N: float
-    friction_coefficient: list[float]
-    load_error: float
-    residual: float
-    newton_iterations: int
-    krylov_iterations: int
-    grid: list[int]
-    wall_s: float
-    central_film_error: float
-    rcs_error: float
-    film_floor_m: float
-
-
 def friction_coefficient(
     solution: ContactSolution, slide_roll_ratio: float, asperity_friction: float
 ) -> float:
@@ -77,7 +53,7 @@ def friction_coefficient(
     return found.coefficient
 
 
-def contact_record(case: ContactCase, solution: ContactSolution) -> ContactRecord:
+def contact_record(case: ContactCase, solution: ContactSolution) -> dict[str, Any]:
     """
     Return a solution in SI units, JSON types.
 
@@ -88,32 +64,22 @@ def contact_record(case: ContactCase, solution: ContactSolution) -> ContactRecor
     return {
         'status': solution.status.value,
         'converged': bool(solution.converged),
-        'central_film_m': float(solution.central_film),
-        'minimum_film_m': float(solution.minimum_film),
-        'max_pressure_Pa': float(solution.max_pressure),
-        'hertz_pressure_Pa': float(solution.hertz_pressure),
-        'semi_axis_x_m': float(solution.semi_axis_x),
-        'semi_axis_y_m': float(solution.semi_axis_y),
-        'rcs': float(solution.rcs),
-        'asperity_share': float(solution.asperity_share),
+        **declared(solution),
         'rolling_force_N': float(solution.whole_rolling_force),
         'friction_coefficient': [
             friction_coefficient(solution, ratio, friction) for ratio in case.slide_roll_ratio
         ],
-        'load_error': float(solution.load_error),
-        'residual': float(solution.residual),
-        'newton_iterations': int(solution.newton_iterations),
-        'krylov_iterations': int(solution.krylov_iterations),
         'grid': [len(solution.x), len(solution.y)],
-        'wall_s': float(solution.wall_time),
-        'central_film_error': float(solution.film_error),
-        'rcs_error': float(solution.rcs_error),
         'film_floor_m': float(solution.settings.film_floor),
+        'wall_s': float(solution.wall_time),
     }
 
 
 def contact_page(
-    record: ContactRecord, case: ContactCase, solution: ContactSolution, surface: Raceway | None
+    record: Mapping[str, Any],
+    case: ContactCase,
+    solution: ContactSolution,
+    surface: Raceway | None,
 ) -> str:
     """Return a record as a page of text in workshop units."""
     error, half = solution.film_error, ''

@@ -2,16 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """A contact with rolling roughness as a record: plain numbers for JSON, a page for a person."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 import math
-from typing import TypedDict
+from typing import Any
 
 from surrogate.contact.case import CaseRoughness, ContactCase
-from surrogate.contact.surface import composite_rms, raceway_spectrum, roughness_words
-from surrogate.ehl.moving import Mean, MovingSolution, StripContact
+from surrogate.contact.surface import composite_rms, raceway_waves, roughness_words
+from surrogate.ehl.moving import MovingSolution, StripContact
 from surrogate.ehl.moving.interface import HARDNESS, THIN_FILMS
 from surrogate.formulas.geometry import hertz
 from surrogate.raceway.patch import Raceway
+from surrogate.results import declared, Mean
 from surrogate.units import GIGA, MICRO, MILLI, NANO
 
 KEYS = {
@@ -52,76 +53,16 @@ KEYS = {
 """Keys of the record; a standard error beside an average has the key of the average."""
 
 
-class RoughnessRecord(TypedDict):
-    """Roughness of a record; NaN or None where a surface is not by the standard."""
-
-    sentence: str
-    rms_m: float
-    raceway_rms_m: float
-    cutoff_long_m: float
-    cutoff_short_m: float
-    cutoff_by_table: bool | None
-    rms_slope_rad: float
-    fractal_dimension: float
-    fractal_roughness_m: float
-    shortest_wavelength_m: float
-
-
-class RollingRecord(TypedDict):
+def rolling_record(
+    case: ContactCase, solution: MovingSolution, surface: Raceway
+) -> dict[str, Any]:
     """
-    Averages of a march for JSON, in the units of the keys; shares, errors and transits [-].
+    Return the averages of a march in SI units, JSON types; shares, errors and transits [-].
 
-    A standard error is that of the average before it, and in its unit.
+    A standard error is that of the average before it, and in its unit. Roughness is NaN or None
+    where a surface is not by the standard.
 
     """
-
-    status: str
-    converged: bool
-    kinematics: str
-    rcs: float
-    rcs_standard_error: float
-    asperity_share: float
-    asperity_share_standard_error: float
-    mean_film_m: float
-    mean_film_standard_error_m: float
-    film_rms_m: float
-    film_rms_standard_error_m: float
-    least_film_m: float
-    least_film_standard_error_m: float
-    thin_film_m: list[float]
-    thin_share: list[float]
-    thin_share_standard_error: list[float]
-    max_pressure_Pa: float
-    max_pressure_standard_error_Pa: float
-    hard_pressure_Pa: float
-    hard_share: float
-    hard_share_standard_error: float
-    film_traction: float
-    film_traction_standard_error: float
-    slide_roll_ratio: float
-    rolling_force_N: float
-    rolling_force_standard_error_N: float
-    smooth_rolling_force_N: float
-    central_film_m: float
-    film_ratio: float
-    memory_length_m: float
-    transits: float
-    places: int
-    steps: int
-    steps_failed: int
-    newton_iterations: int
-    krylov_iterations: int
-    grid: list[int]
-    strip_width_m: float
-    semi_axis_x_m: float
-    hertz_pressure_Pa: float
-    film_floor_m: float
-    roughness: RoughnessRecord
-    wall_s: float
-
-
-def rolling_record(case: ContactCase, solution: MovingSolution, surface: Raceway) -> RollingRecord:
-    """Return the averages of a march in SI units, JSON types."""
     assert case.roughness is not None
     settings, (semi_axis, _, pressure) = solution.settings, hertz_of(solution)
     roughness = _roughness_record(case.roughness, surface)
@@ -130,39 +71,18 @@ def rolling_record(case: ContactCase, solution: MovingSolution, surface: Raceway
         'status': solution.status.value,
         'converged': bool(solution.converged),
         'kinematics': case.kinematics,
-        'rcs': solution.rcs.value,
-        'rcs_standard_error': solution.rcs.error,
-        'asperity_share': solution.asperity_share.value,
-        'asperity_share_standard_error': solution.asperity_share.error,
-        'mean_film_m': solution.mean_film.value,
-        'mean_film_standard_error_m': solution.mean_film.error,
-        'film_rms_m': solution.film_rms.value,
-        'film_rms_standard_error_m': solution.film_rms.error,
-        'least_film_m': solution.least_film.value,
-        'least_film_standard_error_m': solution.least_film.error,
+        **declared(solution),
         'thin_film_m': list(THIN_FILMS),
         'thin_share': [share.value for share in solution.thin_shares],
         'thin_share_standard_error': [share.error for share in solution.thin_shares],
-        'max_pressure_Pa': solution.max_pressure.value,
-        'max_pressure_standard_error_Pa': solution.max_pressure.error,
         'hard_pressure_Pa': HARDNESS,
-        'hard_share': solution.hard_share.value,
-        'hard_share_standard_error': solution.hard_share.error,
-        'film_traction': solution.film_traction.value,
-        'film_traction_standard_error': solution.film_traction.error,
         'slide_roll_ratio': settings.slide_roll_ratio,
         'rolling_force_N': solution.rolling_loss.value,
         'rolling_force_standard_error_N': solution.rolling_loss.error,
         'smooth_rolling_force_N': solution.smooth_rolling_loss,
-        'central_film_m': solution.central_film,
         'film_ratio': solution.central_film / roughness['rms_m'],
         'memory_length_m': solution.memory * semi_axis,
-        'transits': solution.transits,
         'places': settings.places,
-        'steps': solution.steps,
-        'steps_failed': solution.steps_failed,
-        'newton_iterations': solution.newton_iterations,
-        'krylov_iterations': solution.krylov_iterations,
         'grid': [settings.nx, strip.columns if strip else settings.ny],
         'strip_width_m': strip.width if strip else math.nan,
         'semi_axis_x_m': semi_axis,
@@ -182,8 +102,8 @@ def hertz_of(solution: MovingSolution) -> tuple[float, float, float]:
     return float(ellipse.semi_axis_x), float(ellipse.semi_axis_y), float(ellipse.max_pressure)
 
 
-def _roughness_record(rough: CaseRoughness, surface: Raceway) -> RoughnessRecord:
-    standard = raceway_spectrum(rough) if rough.patch == 'standard' else None
+def _roughness_record(rough: CaseRoughness, surface: Raceway) -> dict[str, Any]:
+    standard = raceway_waves(rough) if rough.patch == 'standard' else None
     return {
         'sentence': roughness_words(rough, surface),
         'rms_m': composite_rms(rough),
@@ -198,7 +118,7 @@ def _roughness_record(rough: CaseRoughness, surface: Raceway) -> RoughnessRecord
     }
 
 
-def rolling_page(record: RollingRecord, case: ContactCase, solution: MovingSolution) -> str:
+def rolling_page(record: Mapping[str, Any], case: ContactCase, solution: MovingSolution) -> str:
     """Return a record as a page of text in workshop units."""
     return '\n'.join(
         [
@@ -212,7 +132,7 @@ def rolling_page(record: RollingRecord, case: ContactCase, solution: MovingSolut
 
 
 def _rows(
-    record: RollingRecord, case: ContactCase, solution: MovingSolution
+    record: Mapping[str, Any], case: ContactCase, solution: MovingSolution
 ) -> Iterator[tuple[str, str]]:
     """Yield names and words of the lines of a page."""
     for part in record['roughness']['sentence'].split('; '):
@@ -247,7 +167,7 @@ def _with_error(mean: Mean, unit: float = 1.0) -> str:
     return f'{unit * mean.value:.3g}{error}'
 
 
-def _march_words(record: RollingRecord) -> str:
+def _march_words(record: Mapping[str, Any]) -> str:
     nx, ny = record['grid']
     return (
         f'{record["transits"]:.3g} transits over {record["places"]} places, {nx} x {ny} nodes, '

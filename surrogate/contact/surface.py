@@ -2,15 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rough surface of a case: by formula, by the standard or measured, and what is said of it."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 import math
-from typing import Any
 
 import numpy as np
 from surrogate.contact.case import CaseRoughness, CONSTANTS, ContactCase
 from surrogate.files import InputError
 from surrogate.formulas.geometry import hertz
-from surrogate.raceway.ball import ball_waves, draw_pair
+from surrogate.raceway.ball import ball_of, draw_pair
 from surrogate.raceway.fractal import fractal_surface, FractalSurface, PublishedRoughness, shifted
 from surrogate.raceway.import_file import read_surface
 from surrogate.raceway.measured import MeasuredSurface
@@ -18,7 +17,7 @@ from surrogate.raceway.patch import Raceway, take_patch, Window
 from surrogate.raceway.scaling import draw_raceway, scale_spectrum, ScaledSpectrum
 from surrogate.raceway.short_waves import wave_rms, without_short_waves
 from surrogate.raceway.spectrum import RoughnessSpectrum
-from surrogate.raceway.standards import ball_rms, CUTOFF_SHORT
+from surrogate.raceway.stated import BallRoughness
 from surrogate.units import MICRO, NANO
 
 
@@ -64,48 +63,39 @@ def _at_place(draw: FractalSurface, rough: CaseRoughness) -> FractalSurface:
 
 def _all_waves(rough: CaseRoughness) -> FractalSurface:
     """Return the draw of raceway and ball with the waves that the grid may not hold."""
-    raceway = raceway_spectrum(rough)
-    ball, seed = ball_spectrum(rough, raceway), rough.seed or 0
+    raceway = raceway_waves(rough)
+    ball, seed = ball_waves_of(rough), rough.seed or 0
     return draw_raceway(raceway, seed) if ball is None else draw_pair(raceway, ball, seed)
 
 
-def raceway_spectrum(rough: CaseRoughness) -> ScaledSpectrum:
+def _spectrum(rough: CaseRoughness) -> RoughnessSpectrum:
+    names = [spec.name for spec in fields(RoughnessSpectrum)]
+    stated = {name: getattr(rough, name) for name in names if getattr(rough, name) is not None}
+    return RoughnessSpectrum(**stated)
+
+
+def raceway_waves(rough: CaseRoughness) -> ScaledSpectrum:
     """Return the scaled waves of a raceway by the standard; raises InputError."""
-    cutoff = rough.cutoff_short or CUTOFF_SHORT
-    shortest = rough.shortest_wavelength
+    spectrum = _spectrum(rough)
+    cutoff, shortest = spectrum.cutoff_short, rough.shortest_wavelength
     if shortest is not None and shortest < cutoff * (1 - 1e-9):
         raise InputError(
             f'roughness: shortest wavelength is {MICRO * shortest:g} um, allowed is the short '
             f'cut-off ({MICRO * cutoff:g} um) or more: there are no shorter waves'
         )
-    return scale_spectrum(
-        RoughnessSpectrum(
-            rms=rough.rms or 0.0,
-            cutoff_long=rough.cutoff_long,
-            cutoff_short=cutoff,
-            fractal_dimension=rough.fractal_dimension,
-            rms_slope=rough.rms_slope,
-            lay=rough.lay or 'isotropic',
-            fan_angle=rough.fan_angle,
-            **_generator(rough),
-        )
-    )
+    return scale_spectrum(spectrum)
 
 
-def ball_spectrum(rough: CaseRoughness, raceway: ScaledSpectrum) -> ScaledSpectrum | None:
+def ball_waves_of(rough: CaseRoughness) -> ScaledSpectrum | None:
     """Return the scaled waves of the ball, None where it is smooth."""
-    rms = ball_rms(rough.ball_grade) if rough.ball_grade else rough.ball_rms
-    return ball_waves(rms, raceway, **_generator(rough)) if rms else None
-
-
-def _generator(rough: CaseRoughness) -> dict[str, Any]:
-    stated = {name: getattr(rough, name) for name in ('scale_ratio', 'ridges')}
-    return {name: value for name, value in stated.items() if value is not None}
+    if rough.ball_rms is None and rough.ball_grade is None:
+        return None
+    return ball_of(_spectrum(rough), BallRoughness(rms=rough.ball_rms, grade=rough.ball_grade))
 
 
 def composite_rms(rough: CaseRoughness) -> float:
     """Return the stated Rq of the raceway, with that of a ball the root of the squares [m]."""
-    ball = ball_spectrum(rough, raceway_spectrum(rough)) if rough.patch == 'standard' else None
+    ball = ball_waves_of(rough)
     return math.hypot(rough.rms or 0.0, ball.rms if ball else 0.0)
 
 
@@ -133,9 +123,9 @@ def roughness_words(rough: CaseRoughness | None, surface: Raceway | None) -> str
 
 
 def _standard_words(rough: CaseRoughness) -> str:
-    raceway = raceway_spectrum(rough)
+    raceway = raceway_waves(rough)
     words = f'{raceway.sentence}, G {NANO * raceway.fractal_roughness:.3g} nm'
-    ball = ball_spectrum(rough, raceway)
+    ball = ball_waves_of(rough)
     if ball is not None:
         grade = f' {rough.ball_grade}' if rough.ball_grade else ''
         words += f'; ball{grade} {ball.sentence}'

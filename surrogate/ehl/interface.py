@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
+from surrogate.results import required
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -181,26 +182,26 @@ class ContactSolution:
     y: Array
     contact_mask: Mask
     cavitation_mask: Mask
-    central_film: float
-    minimum_film: float
+    central_film: float = required('m')
+    minimum_film: float = required('m')
     extrapolated_film: float
     extrapolated_minimum: float
-    film_error: float
-    max_pressure: float
-    hertz_pressure: float
-    semi_axis_x: float
-    semi_axis_y: float
+    film_error: float = required()
+    max_pressure: float = required('Pa')
+    hertz_pressure: float = required('Pa')
+    semi_axis_x: float = required('m')
+    semi_axis_y: float = required('m')
     approach: float
-    rcs: float
-    rcs_error: float
-    asperity_share: float
-    load_error: float
-    residual: float
+    rcs: float = required()
+    rcs_error: float = required()
+    asperity_share: float = required()
+    load_error: float = required()
+    residual: float = required()
     gap_error: float
     rolling_force: float
     rolling_tail: float
-    newton_iterations: int
-    krylov_iterations: int
+    newton_iterations: int = required()
+    krylov_iterations: int = required()
     wall_time: float
 
     @property

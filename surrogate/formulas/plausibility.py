@@ -18,7 +18,7 @@ from surrogate.formulas.shaft import shaft_doubts
 from surrogate.parameters import Screw
 from surrogate.raceway.scaling import scale_spectrum
 from surrogate.raceway.standards import CUTOFFS, RA_OVER_RQ
-from surrogate.raceway.stated import Roughness, spectrum_of
+from surrogate.raceway.stated import Roughness
 from surrogate.units import GIGA, MICRO, MILLI
 
 RATED = 4.2e9
@@ -99,7 +99,7 @@ def _rating(screw: Screw) -> str:
 def _doubts_of_roughness(sheet: Roughness) -> Iterator[str]:
     """Yield doubts about height against lay, slope and cut-off."""
     rms = f'roughness: rms_um is {MICRO * sheet.rms:g} um'
-    slope = scale_spectrum(spectrum_of(sheet)).rms_slope if sheet.rms else 0.0
+    slope = scale_spectrum(sheet).rms_slope if sheet.rms else 0.0
     if sheet.rms > MOST_RMS:
         fit = MICRO * sheet.rms / RZ_OVER_RQ
         yield f'{rms}, usual is up to {MICRO * MOST_RMS:g}: if it is Rz, {fit:.2g} um would fit'

@@ -21,7 +21,7 @@ from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.intervals import CONFIDENCE, student_factor
 from surrogate.identify.model import ContactModel, ONSET_BOUNDS
 from surrogate.identify.problem import DragProblem
-from surrogate.screw.onset import onset_point, with_raceway
+from surrogate.screw.screw_onset import onset_point, with_raceway
 from surrogate.units import RPM
 
 FITTED = ('asperity_friction', 'onset_factor', 'seal_torque')

@@ -34,6 +34,7 @@ from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import ScrewSettings
+from surrogate.screw.point import ScrewPoint
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw, TIER
 from surrogate.units import RPM
 
@@ -136,7 +137,7 @@ def formula_model(
     return _model(axes, run, closed_form.TIER, np.moveaxis(np.array(torque), -1, 0), share)
 
 
-def _formula(axes: _Axes, screw: Screw, factor: float) -> closed_form.ScrewResult:
+def _formula(axes: _Axes, screw: Screw, factor: float) -> ScrewPoint[Array]:
     oil = thickened(axes.oil, factor)
     speeds, kelvin = axes.nodes / factor, axes.oil.reference_temperature
     return closed_form.solve(screw, oil, speeds, axes.load, kelvin)

@@ -12,49 +12,42 @@ from numpy.typing import NDArray
 from surrogate.raceway.fractal import FractalSurface
 from surrogate.raceway.scaling import draw_raceway, scale_spectrum, ScaledSpectrum
 from surrogate.raceway.spectrum import RoughnessSpectrum
-from surrogate.raceway.stated import BallRoughness, Roughness, spectrum_of
+from surrogate.raceway.stated import BallRoughness, Roughness
 
 Array = NDArray[np.float64]
 
 
-def ball_waves(
-    rms: float, raceway: ScaledSpectrum, *, scale_ratio: float = 1.5, ridges: int = 10
-) -> ScaledSpectrum:
+def ball_waves(rms: float, raceway: RoughnessSpectrum) -> ScaledSpectrum:
     """
     Return the scaled waves of a ball with Rq `rms` [m], above 0.
 
-    They are isotropic, with the dimension of the raceway, between the same short cut-off and the
-    long one of the table: balls are measured by it. Scale ratio and ridges [-] of the generator.
+    They are isotropic, with dimension and generator of the raceway, between the same short cut-off
+    and the long one of the table: balls are measured by it.
 
     """
     return scale_spectrum(
         RoughnessSpectrum(
             rms=rms,
-            cutoff_short=raceway.band.cutoff_short,
-            fractal_dimension=raceway.fractal_dimension,
-            scale_ratio=scale_ratio,
-            ridges=ridges,
+            cutoff_short=raceway.cutoff_short,
+            fractal_dimension=scale_spectrum(raceway).fractal_dimension,
+            scale_ratio=raceway.scale_ratio,
+            ridges=raceway.ridges,
         )
     )
 
 
-def ball_of(roughness: Roughness, ball: BallRoughness | None) -> ScaledSpectrum | None:
+def ball_of(roughness: RoughnessSpectrum, ball: BallRoughness | None) -> ScaledSpectrum | None:
     """Return the scaled waves of a ball beside a raceway of `roughness`, None where smooth."""
     if ball is None or not ball.height:
         return None
-    return ball_waves(
-        ball.height,
-        scale_spectrum(spectrum_of(roughness)),
-        scale_ratio=roughness.scale_ratio,
-        ridges=roughness.ridges,
-    )
+    return ball_waves(ball.height, roughness)
 
 
 def draw_stated(
     roughness: Roughness, ball: BallRoughness | None, seed: int
 ) -> FractalSurface | None:
     """Return one draw of raceway and ball as stated, None where both are smooth."""
-    raceway, rolling = scale_spectrum(spectrum_of(roughness)), ball_of(roughness, ball)
+    raceway, rolling = scale_spectrum(roughness), ball_of(roughness, ball)
     if not roughness.rms and rolling is None:
         return None
     return draw_raceway(raceway, seed) if rolling is None else draw_pair(raceway, rolling, seed)
@@ -62,7 +55,7 @@ def draw_stated(
 
 def roughness_sentence(roughness: Roughness, ball: BallRoughness | None) -> str:
     """Say what the stated roughness stands for, and what of it is assumed."""
-    raceway, rolling = scale_spectrum(spectrum_of(roughness)), ball_of(roughness, ball)
+    raceway, rolling = scale_spectrum(roughness), ball_of(roughness, ball)
     state = {'run_in': 'run in', 'new': 'new'}[roughness.state]
     words = f'raceway ({state}): {raceway.sentence}, {roughness.lay}'
     if not roughness.rms:

@@ -61,9 +61,13 @@ class ScaledSpectrum:
         )
 
 
-def scale_spectrum(spectrum: RoughnessSpectrum) -> ScaledSpectrum:
+def scale_spectrum(
+    spectrum: RoughnessSpectrum, *, wavelengths: tuple[float, float] | None = None
+) -> ScaledSpectrum:
     """
     Return the waves of a spectrum, scaled once by the expectation over all phases.
+
+    `wavelengths` are the longest and the shortest one [m], by default the cut-offs.
 
     Rq^2 = sum over waves of a^2 |H(q cos t)|^2/2, t the angle of a wave to the trace, H the
     filters: a lay is traced across; isotropic waves are read by the mean over all traces, since
@@ -72,7 +76,7 @@ def scale_spectrum(spectrum: RoughnessSpectrum) -> ScaledSpectrum:
     Raises InputError where no dimension has the stated slope, or the stated one another slope.
 
     """
-    longest, shortest = spectrum.wavelengths
+    longest, shortest = wavelengths or (spectrum.band.cutoff_long, spectrum.cutoff_short)
     order = wave_orders(longest, shortest, spectrum.scale_ratio)
     number = np.asarray(2 * math.pi / longest * spectrum.scale_ratio**order)
     reading = _read(spectrum, number)
@@ -86,7 +90,7 @@ def scale_spectrum(spectrum: RoughnessSpectrum) -> ScaledSpectrum:
         amplitude=np.zeros(len(order)) if smooth else np.asarray(height * unit),
         direction=spectrum.directions,
         fractal_dimension=dimension,
-        fractal_roughness=_published_roughness(spectrum, height, dimension),
+        fractal_roughness=_published_roughness(spectrum, longest, height, dimension),
         rms=spectrum.rms,
         rms_slope=0.0 if smooth else _rms_slope(spectrum, order, reading, dimension),
         band=spectrum.band,
@@ -94,21 +98,18 @@ def scale_spectrum(spectrum: RoughnessSpectrum) -> ScaledSpectrum:
     )
 
 
-def with_shorter_waves(spectrum: RoughnessSpectrum, shortest: float) -> RoughnessSpectrum:
+def with_shorter_waves(spectrum: RoughnessSpectrum, shortest: float) -> ScaledSpectrum:
     """
-    Return the spectrum carried on to waves of `shortest` [m], which no stylus has measured.
+    Return the waves of a spectrum carried on to `shortest` [m], which no stylus has measured.
 
     Its dimension is that before; Rq through the same filters stays too, for which all waves shrink
     a little (0.4 % of D 2.68 for one wave more). Phases of a draw stay.
 
     """
     dimension = scale_spectrum(spectrum).fractal_dimension
-    return replace(
-        spectrum,
-        fractal_dimension=None if math.isnan(dimension) else dimension,
-        rms_slope=None,
-        shortest_wavelength=shortest,
-    )
+    stated = None if math.isnan(dimension) else dimension
+    known = replace(spectrum, fractal_dimension=stated, rms_slope=None)
+    return scale_spectrum(known, wavelengths=(spectrum.band.cutoff_long, shortest))
 
 
 def _read(spectrum: RoughnessSpectrum, number: Array) -> Reading:
@@ -160,11 +161,12 @@ def _dimension(spectrum: RoughnessSpectrum, order: NDArray[np.int64], reading: R
     return float(brentq(excess, *DIMENSIONS, xtol=1e-10))
 
 
-def _published_roughness(spectrum: RoughnessSpectrum, height: float, dimension: float) -> float:
-    """Return G [m] from the amplitude of a longest wave [m], L (G/L)^(D-2) sqrt(ln g/M)."""
+def _published_roughness(
+    spectrum: RoughnessSpectrum, longest: float, height: float, dimension: float
+) -> float:
+    """Return G [m] from the amplitude of the longest wave [m], L (G/L)^(D-2) sqrt(ln g/M)."""
     if not height:
         return math.nan
-    longest, _ = spectrum.wavelengths
     ratio = height / (longest * math.sqrt(math.log(spectrum.scale_ratio) / spectrum.ridges))
     return float(longest * ratio ** (1 / (dimension - 2)))
 

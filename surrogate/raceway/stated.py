@@ -1,22 +1,17 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Roughness of raceway and ball as a datasheet states it, by the standard.
-
-What the waves need beyond the sheet is checked when it is read, so that a sheet that cannot be
-solved is refused with its file.
+Roughness of raceway and ball as a datasheet of a screw states it, by the standard.
 
 """
 
-from dataclasses import dataclass
-import math
+from dataclasses import dataclass, fields
 from typing import Literal
 
-from surrogate.datasheet import Checked, choice, count, quantity, text
+from surrogate.datasheet import Checked, choice, quantity, text
 from surrogate.files import InputError
-from surrogate.raceway.fractal import DIMENSIONS, Lay
 from surrogate.raceway.spectrum import RoughnessSpectrum
-from surrogate.raceway.standards import BALL_RA, ball_rms, CUTOFF_SHORT
+from surrogate.raceway.standards import BALL_RA, ball_rms
 from surrogate.units import GIGA
 
 State = Literal['run_in', 'new']
@@ -27,18 +22,14 @@ ONSET_FACTORS = 0.05, 20.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Roughness(Checked):
+class Roughness(RoughnessSpectrum):
     """
-    Raceway roughness by the standard, and what asperities do.
+    Raceway roughness by the standard, its state, and the friction of its asperities.
 
-    Rq `rms` [m] of a profile traced across the lay, 0 for smooth, between a short and a long
-    cut-off [m], the long one by the table for Ra = 0.8 Rq where it is None; fractal dimension [-]
-    or rms slope Rdq [rad] of that profile; lay with the angle [rad] over which its ridges fan;
     `state` says whether the raceway is new or has run in, and `traced` in which of the two the
     profile was traced. No summit carries more than the `hardness` [Pa]; `run_in_pressure` [Pa]
     stands for yield and mild wear of running in together, with its lowest and highest likely
-    value. Ratio of neighbouring wavelengths and ridges of the generator [-]; boundary friction
-    coefficient [-].
+    value. Boundary friction coefficient [-].
 
     `onset_factor` is the onset speed of contact over that which the topography tells [-]. One that
     was fitted on the machine has the day, `calibrated`, and the factor within which nine of ten
@@ -46,55 +37,6 @@ class Roughness(Checked):
 
     """
 
-    rms: float = quantity(
-        'um',
-        1e-6,
-        0.0,
-        10.0,
-        means='Rq of a profile traced across the lay, which moves films and RCS most; 0 is smooth',
-    )
-    cutoff_long: float | None = quantity(
-        'mm',
-        1e-3,
-        0.001,
-        100.0,
-        default=None,
-        means='long cut-off of that profile; without it by ISO 21920 for Ra = 0.8 Rq, '
-        'which every result then states',
-    )
-    cutoff_short: float = quantity(
-        'um', 1e-6, 0.1, 1000.0, default=CUTOFF_SHORT, means='short cut-off, and the shortest wave'
-    )
-    fractal_dimension: float | None = quantity(
-        '',
-        1.0,
-        *DIMENSIONS,
-        default=None,
-        means='steepness of the short waves, from measured profiles; this or `rms_slope_deg`',
-    )
-    rms_slope: float | None = quantity(
-        'deg',
-        math.pi / 180,
-        0.001,
-        45.0,
-        default=None,
-        means='Rdq of the same profile; this or `fractal_dimension`',
-    )
-    lay: Lay = choice(
-        'isotropic',
-        'longitudinal',
-        'transverse',
-        default='isotropic',
-        means='`longitudinal`: ridges along the track; `transverse`: across it',
-    )
-    fan_angle: float | None = quantity(
-        'deg',
-        math.pi / 180,
-        0.0,
-        90.0,
-        default=None,
-        means='angle over which the waves of a lay fan',
-    )
     state: State = choice(
         'run_in',
         'new',
@@ -109,7 +51,7 @@ class Roughness(Checked):
     )
     hardness: float = quantity(
         'GPa',
-        1e9,
+        1000000000.0,
         1.0,
         20.0,
         default=HARDNESS,
@@ -117,33 +59,29 @@ class Roughness(Checked):
     )
     run_in_pressure: float = quantity(
         'GPa',
-        1e9,
+        1000000000.0,
         0.5,
         20.0,
-        default=3e9,
-        means='stands for yield and mild wear of running in together; the least certain '
-        'number of the sheet: 2 and 5 move the onset by 0.3 and 1.9',
+        default=3000000000.0,
+        means='stands for yield and mild wear of running in together; the least '
+        'certain number of the sheet: 2 and 5 move the onset by 0.3 and 1.9',
     )
     run_in_low: float = quantity(
         'GPa',
-        1e9,
+        1000000000.0,
         0.5,
         20.0,
-        default=2e9,
+        default=2000000000.0,
         means='its lowest likely value; draws the broken lines beside the limit alone',
     )
     run_in_high: float = quantity(
-        'GPa', 1e9, 0.5, 20.0, default=5e9, means='its highest likely value, likewise'
+        'GPa',
+        1000000000.0,
+        0.5,
+        20.0,
+        default=5000000000.0,
+        means='its highest likely value, likewise',
     )
-    scale_ratio: float = quantity(
-        '',
-        1.0,
-        1.01,
-        10.0,
-        default=1.5,
-        means='ratio of neighbouring wavelengths of the generator',
-    )
-    ridges: int = count(1, 1000, default=10, means='ridges of the generator')
     asperity_friction: float = quantity(
         '', 1.0, 0.0, 1.0, means='boundary friction coefficient, 0.1 for mineral oil on steel'
     )
@@ -171,16 +109,10 @@ class Roughness(Checked):
     )
 
     def __post_init__(self) -> None:
-        """Check every range, and that waves with these numbers exist."""
-        Checked.__post_init__(self)
+        """Check every range, and what is stated together."""
+        RoughnessSpectrum.__post_init__(self)
         self._check_yield()
         self._check_calibration()
-        spectrum = spectrum_of(self)
-        if self.rms_slope is not None:
-            # Only a stated slope is worth the time that scipy takes to load.
-            from surrogate.raceway.scaling import scale_spectrum
-
-            scale_spectrum(spectrum)
 
     def _check_yield(self) -> None:
         """Check the order of the pressures, and that the states agree."""
@@ -206,6 +138,12 @@ class Roughness(Checked):
                 f'roughness: {given} is given alone, allowed are both of calibrated and '
                 'onset_band or neither'
             )
+
+    @property
+    def spectrum(self) -> RoughnessSpectrum:
+        """The profile alone, by which waves are known."""
+        names = [spec.name for spec in fields(RoughnessSpectrum)]
+        return RoughnessSpectrum(**{name: getattr(self, name) for name in names})
 
     @property
     def calibration(self) -> str:
@@ -244,18 +182,3 @@ class BallRoughness(Checked):
     def height(self) -> float:
         """Rq [m], stated or by the grade."""
         return ball_rms(self.grade) if self.grade is not None else self.rms or 0.0
-
-
-def spectrum_of(roughness: Roughness) -> RoughnessSpectrum:
-    """Return what a datasheet says of the raceway; raises InputError where it contradicts."""
-    return RoughnessSpectrum(
-        rms=roughness.rms,
-        cutoff_long=roughness.cutoff_long,
-        cutoff_short=roughness.cutoff_short,
-        fractal_dimension=roughness.fractal_dimension,
-        rms_slope=roughness.rms_slope,
-        lay=roughness.lay,
-        fan_angle=roughness.fan_angle,
-        scale_ratio=roughness.scale_ratio,
-        ridges=roughness.ridges,
-    )

@@ -10,84 +10,31 @@ lines and elastic hysteresis are left to the full model.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from surrogate.asperities.law import law_of
 from surrogate.formulas.film import (
     central_film_hamrock_dowson_1977,
     film_ratio,
-    Groups,
     groups,
     minimum_film_hamrock_dowson_1977,
     rolling_force_biboulet_houpert_2010,
 )
-from surrogate.formulas.geometry import Hertz, hertz, screw_contact, Side, SIDES
+from surrogate.formulas.geometry import hertz, Side, SIDES
 from surrogate.formulas.inlet import inlet_speed
-from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force, nut_forces, NutName
 from surrogate.formulas.lubricant import lubricant_state, LubricantState
 from surrogate.formulas.sliding import sliding_friction
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.contacts import oil_at
+from surrogate.screw.opened import Contacts
+from surrogate.screw.point import PointContact, ScrewPoint
 
 Array = NDArray[np.float64]
 Touching = tuple[Array, Array, Array]
 """RCS, asperity share and rolling loss over that of a smooth contact [-]."""
 TIER = 'closed_form'
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class ContactResult:
-    """
-    One of the four contacts of the screw, at many points; films are NaN where it carries no load.
-
-    Normal force per ball [N], Hertz ellipse, film groups [-], central and minimum film [m], film
-    ratio [-], RCS and asperity share [-], friction coefficient [-], rolling force per surface [N],
-    friction torque of all balls of the nut on this side [N m], sliding and rolling.
-
-    """
-
-    nut: NutName
-    side: Side
-    normal_force: Array
-    ellipse: Hertz
-    film_groups: Groups
-    central_film: Array
-    minimum_film: Array
-    film_ratio: Array
-    rcs: Array
-    asperity_share: Array
-    friction_coefficient: Array
-    rolling_force: Array
-    sliding_torque: Array
-    rolling_torque: Array
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class ScrewResult:
-    """
-    The screw at many points, arrays of one shape.
-
-    Friction torque [N m] with the parasitic part; RCS and asperity share [-] of the worst contact;
-    film ratio [-], central and minimum film [m] of the thinnest; load-weighted friction
-    coefficient [-]; largest Hertz pressure [Pa]; index of the worst contact in `contacts`;
-    entrainment speed [m/s].
-
-    """
-
-    friction_torque: Array
-    rcs: Array
-    asperity_share: Array
-    film_ratio: Array
-    central_film: Array
-    minimum_film: Array
-    friction_coefficient: Array
-    max_pressure: Array
-    worst_contact: NDArray[np.int64]
-    entrainment_speed: Array
-    contacts: tuple[ContactResult, ...]
+STATUS = 'closed form: published formulas, asperity contact by the topography'
 
 
 def solve(
@@ -99,7 +46,7 @@ def solve(
     *,
     share_of: Callable[[Array], Array] | None = None,
     inlet_heating: bool = True,
-) -> ScrewResult:
+) -> ScrewPoint[Array]:
     """
     Solve the chain at `speed` [rad/s], at least 0, `load` [N] of any sign, `temperature` [K].
 
@@ -112,8 +59,8 @@ def solve(
     speed, load, temperature = np.broadcast_arrays(
         *(np.asarray(value, dtype=float) for value in (speed, load, temperature))
     )
-    oil = lubricant_state(lubricant, temperature)
-    entrained = no_slip_rates(screw).entrainment * speed
+    opened, oil = Contacts.of(screw), lubricant_state(lubricant, temperature)
+    entrained = opened.rates.entrainment * speed
     forces = nut_forces(load, screw.preload)
     nuts: tuple[tuple[NutName, Array], ...] = (('loaded', forces[0]), ('relieved', forces[1]))
 
@@ -124,20 +71,20 @@ def solve(
 
     def touching(side: Side, force: Array, slow: Array, ratio: Array) -> Touching:
         if share_of is None:
-            return asperities_at(screw, lubricant, side, force, temperature, slow)
+            return asperities_at(opened, lubricant, side, force, temperature, slow)
         share = np.where(force > 0, share_of(ratio), 0.0)
         return share, share, np.ones_like(share)
 
     contacts = tuple(
-        _solve_contact(screw, nut, side, normal_force(screw, force), oil, speed, inlet, touching)
+        _solve_contact(opened, nut, side, normal_force(screw, force), oil, speed, inlet, touching)
         for nut, force in nuts
         for side in SIDES
     )
-    return _combine(screw, contacts, speed)
+    return _combine(opened, contacts, speed)
 
 
 def _solve_contact(
-    screw: Screw,
+    opened: Contacts,
     nut: NutName,
     side: Side,
     force: Array,
@@ -145,9 +92,9 @@ def _solve_contact(
     speed: Array,
     inlet: Callable[[Side, Array], Array],
     touching: Callable[[Side, Array, Array, Array], Touching],
-) -> ContactResult:
-    contact, balls = screw_contact(screw, side), screw.loaded_balls_per_nut
-    arm = no_slip_rates(screw).entrainment
+) -> PointContact[Array]:
+    screw, contact = opened.sheet, opened.geometry[side]
+    balls, arm = screw.loaded_balls_per_nut, opened.rates.entrainment
     ellipse = hertz(contact, force)
     pressed = np.where(force > 0, force, np.nan)
     slow = inlet(side, force)
@@ -157,11 +104,13 @@ def _solve_contact(
     rcs, share, loss = touching(side, force, slow, ratio)
     sliding = sliding_friction(screw, side, ellipse, np.nan_to_num(film), share, oil, speed)
     rolling = loss * np.nan_to_num(rolling_force_biboulet_houpert_2010(contact, g))
-    return ContactResult(
+    return PointContact(
         nut=nut,
         side=side,
         normal_force=force,
-        ellipse=ellipse,
+        semi_axis_x=ellipse.semi_axis_x,
+        semi_axis_y=ellipse.semi_axis_y,
+        hertz_pressure=ellipse.max_pressure,
         film_groups=g,
         central_film=film,
         minimum_film=minimum_film_hamrock_dowson_1977(contact, g),
@@ -176,10 +125,15 @@ def _solve_contact(
 
 
 def asperities_at(
-    screw: Screw, lubricant: Lubricant, side: Side, force: Array, temperature: Array, speed: Array
+    opened: Contacts,
+    lubricant: Lubricant,
+    side: Side,
+    force: Array,
+    temperature: Array,
+    speed: Array,
 ) -> Touching:
     """Return what asperities do at entrainment speeds [m/s]; nothing without load."""
-    law, contact = law_of(screw), screw_contact(screw, side)
+    law, contact = opened.law, opened.geometry[side]
     rcs, share, loss = np.zeros(force.shape), np.zeros(force.shape), np.ones(force.shape)
     for load, heat in np.unique(np.stack([force.ravel(), temperature.ravel()], axis=1), axis=0):
         here = (force == load) & (temperature == heat)
@@ -190,7 +144,10 @@ def asperities_at(
     return rcs, share, loss
 
 
-def _combine(screw: Screw, contacts: tuple[ContactResult, ...], speed: Array) -> ScrewResult:
+def _combine(
+    opened: Contacts, contacts: tuple[PointContact[Array], ...], speed: Array
+) -> ScrewPoint[Array]:
+    screw = opened.sheet
     ratio = np.stack([contact.film_ratio for contact in contacts])
     # The thinnest film where none touches. An unpressed contact is never the worst; with nothing
     # pressed at all the first one answers.
@@ -207,7 +164,9 @@ def _combine(screw: Screw, contacts: tuple[ContactResult, ...], speed: Array) ->
     coefficient = np.stack([contact.friction_coefficient for contact in contacts])
     total = normal.sum(axis=0)
     loss = sum(contact.sliding_torque + contact.rolling_torque for contact in contacts)
-    return ScrewResult(
+    return ScrewPoint(
+        converged=True,
+        status=STATUS,
         friction_torque=np.asarray(
             loss + screw.parasitic_torque + screw.parasitic_torque_rate * speed
         ),
@@ -219,8 +178,9 @@ def _combine(screw: Screw, contacts: tuple[ContactResult, ...], speed: Array) ->
         friction_coefficient=np.divide(
             (coefficient * normal).sum(axis=0), total, out=np.zeros_like(total), where=total > 0
         ),
-        max_pressure=np.max([contact.ellipse.max_pressure for contact in contacts], axis=0),
+        max_pressure=np.max([contact.hertz_pressure for contact in contacts], axis=0),
         worst_contact=worst,
-        entrainment_speed=no_slip_rates(screw).entrainment * speed,
+        entrainment_speed=opened.rates.entrainment * speed,
         contacts=contacts,
+        normal_forces=(contacts[0].normal_force, contacts[2].normal_force),
     )

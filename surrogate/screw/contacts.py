@@ -16,19 +16,19 @@ from functools import lru_cache
 import math
 from typing import Literal
 
-from surrogate.asperities.law import AsperityContact, AsperityLaw, law_of
+from surrogate.asperities.law import AsperityContact, AsperityLaw
 from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
 from surrogate.ehl.domain import nodes_on_waves
 from surrogate.ehl.watch import at
 from surrogate.files import InputError
-from surrogate.formulas.geometry import Contact, screw_contact, Side, SIDES
+from surrogate.formulas.geometry import Contact, Side, SIDES
 from surrogate.formulas.inlet import inlet_speed
-from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.lubricant import lubricant_state
-from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.parameters import BallRoughness, Lubricant, OperatingPoint, Roughness, Screw
 from surrogate.raceway.ball import draw_stated
 from surrogate.raceway.fractal import FractalSurface
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
+from surrogate.screw.opened import Contacts
 from surrogate.units import ZERO_CELSIUS
 
 Kinematics = Literal['rolling', 'standing', 'smooth']
@@ -110,22 +110,22 @@ class RollingContact:
 
 
 def make_contacts(
-    screw: Screw, lubricant: Lubricant, point: OperatingPoint, settings: ScrewSettings
+    opened: Contacts, lubricant: Lubricant, point: OperatingPoint, settings: ScrewSettings
 ) -> tuple[RollingContact, ...]:
     """Return the contacts of a ball with screw and nut, the same for both nuts of a point."""
     oil = oil_at(lubricant, point.temperature)
     speeds = [
-        _entrainment(screw, lubricant, point, side, heated=settings.inlet_heating)
+        _entrainment(opened, lubricant, point, side, heated=settings.inlet_heating)
         for side in SIDES
     ]
     return tuple(
-        _make_contact(screw, side, oil, lubricant.film_floor, speed, settings)
+        _make_contact(opened, side, oil, lubricant.film_floor, speed, settings)
         for side, speed in zip(SIDES, speeds, strict=True)
     )
 
 
 def _make_contact(
-    screw: Screw,
+    opened: Contacts,
     side: Side,
     oil: ContactLubricant,
     film_floor: float,
@@ -134,14 +134,14 @@ def _make_contact(
 ) -> RollingContact:
     raceway, raised, rolls = None, 0.0, settings.kinematics == 'rolling'
     if settings.kinematics == 'standing':
-        raceway, raised = _on_grid(screw, settings.draw, settings.grid_wavelength)
+        raceway, raised = standing_raceway(opened.sheet, settings)
     return RollingContact(
         side=side,
-        geometry=screw_contact(screw, side),
+        geometry=opened.geometry[side],
         oil=oil,
         entrainment=entrainment,
         film_floor=film_floor,
-        law=law_of(screw) if rolls else None,
+        law=opened.law if rolls else None,
         raceway=raceway,
         raised=raised,
         settings=settings,
@@ -149,11 +149,11 @@ def _make_contact(
 
 
 def _entrainment(
-    screw: Screw, lubricant: Lubricant, point: OperatingPoint, side: Side, *, heated: bool
+    opened: Contacts, lubricant: Lubricant, point: OperatingPoint, side: Side, *, heated: bool
 ) -> Callable[[float], float]:
     """Return the entrainment speed [m/s] as a function of the normal force [N]."""
-    speed = no_slip_rates(screw).entrainment * abs(point.speed)
-    given = screw, lubricant, side
+    speed = opened.rates.entrainment * abs(point.speed)
+    given = opened.sheet, lubricant, side
     return lambda load: float(inlet_speed(*given, load, speed, point.temperature, heated=heated))
 
 
@@ -247,15 +247,22 @@ def _standing(
     return SolvedContact(smooth=smooth, pressed=pressed, asperities=found)
 
 
-@lru_cache(maxsize=8)
-def _on_grid(screw: Screw, draw: int, cut: float | None) -> tuple[FractalSurface | None, float]:
+def standing_raceway(screw: Screw, settings: ScrewSettings) -> tuple[FractalSurface | None, float]:
     """
-    Return the raceway with waves down to `cut` [m] and what others lift the floor by [m].
+    Return the raceway with the waves of the grid and what others lift the floor by [m].
 
     None where raceway and ball are smooth.
 
     """
-    surface = draw_stated(screw.roughness, screw.ball_roughness, draw)
+    rough, ball = screw.roughness, screw.ball_roughness
+    return _on_grid(rough, ball, settings.draw, settings.grid_wavelength)
+
+
+@lru_cache(maxsize=8)
+def _on_grid(
+    rough: Roughness, ball: BallRoughness | None, draw: int, cut: float | None
+) -> tuple[FractalSurface | None, float]:
+    surface = draw_stated(rough, ball, draw)
     if surface is None or cut is None:
         return surface, 0.0
     return without_short_waves(surface, cut), subgrid_floor(surface, cut)
@@ -293,7 +300,7 @@ def shortest_on_grid(screw: Screw, settings: ScrewSettings) -> float:
     """Return the shortest wavelength that rough contacts solve [m], infinite when smooth."""
     if settings.kinematics != 'standing':
         return math.inf
-    surface, _ = _on_grid(screw, settings.draw, settings.grid_wavelength)
+    surface, _ = standing_raceway(screw, settings)
     return math.inf if surface is None else surface.shortest_wavelength
 
 

@@ -8,14 +8,12 @@ from typing import Any
 
 import numpy as np
 from surrogate.asperities.law import band_of
-from surrogate.formulas.geometry import opposite_flank_approach
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
-from surrogate.raceway.ball import roughness_sentence
-from surrogate.screw.closed_form_record import closed_form_record, most_wear, with_wear
-from surrogate.screw.contacts import ScrewSettings, shortest_on_grid, smooth_film
-from surrogate.screw.nut import contact_slip, rolling_force, ScrewContact
+from surrogate.screw import closed_form
+from surrogate.screw.contacts import ScrewSettings, shortest_on_grid
+from surrogate.screw.nut import contact_slip, ScrewContact
+from surrogate.screw.record import point_record, rating_warnings
 from surrogate.screw.solve import ScrewSolution, solve_screw, TIER
-from surrogate.surface import regime_of
 from surrogate.units import GIGA
 
 LOAD_CHANGE = 0.01
@@ -42,22 +40,13 @@ CONTACT_KEYS = {
 
 
 def full_record(
-    screw: Screw,
-    lubricant: Lubricant,
-    point: OperatingPoint,
-    settings: ScrewSettings | None = None,
-) -> dict[str, Any]:
-    """
-    Solve one point in the full tier and return it as plain numbers, SI units, NaN where unknown.
-
-    The keys are those of the closed-form record, with its warnings about ratings and its
-    comparators.
-
-    """
-    started, settings = time.perf_counter(), settings or ScrewSettings()
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint, settings: ScrewSettings
+) -> tuple[ScrewSolution, dict[str, Any]]:
+    """Solve one point in the full tier; return it with its record."""
+    started = time.perf_counter()
     found = solve_screw(screw, lubricant, point, settings=settings)
     record = solution_record(screw, lubricant, point, found, settings)
-    return record | {'wall_s': time.perf_counter() - started}
+    return found, record | {'wall_s': time.perf_counter() - started}
 
 
 def solution_record(
@@ -67,101 +56,47 @@ def solution_record(
     found: ScrewSolution,
     settings: ScrewSettings,
 ) -> dict[str, Any]:
-    """Return a solved point as plain numbers, SI units, NaN where unknown."""
-    formulas = closed_form_record(screw, lubricant, point, inlet_heating=settings.inlet_heating)
-    contacts = [
-        with_wear(_contact_record(screw, found, contact), _slides(screw, contact))
-        for contact in found.contacts
-    ]
-    worst = found.contacts[found.worst_contact]
-    return formulas | {
+    """
+    Return a point of the full tier as plain numbers, SI units, NaN where unknown.
+
+    The keys are those of the closed-form record, with its warnings about ratings and its
+    comparators.
+
+    """
+    heated, place = settings.inlet_heating, (abs(point.speed), point.opposing_load)
+    record = point_record(
+        screw,
+        lubricant,
+        point,
+        found,
+        closed_form.solve(screw, lubricant, *place, point.temperature, inlet_heating=heated),
+        reasons=[_reason(found, contact) for contact in found.contacts],
+        sliding=[_slides(screw, contact) for contact in found.contacts],
+        inlet_heating=heated,
+    )
+    contacts = record['contacts']
+    return record | {
         'tier': TIER,
-        'status': found.status,
         'converged': found.converged,
         'warnings': [
-            *_warnings(formulas['warnings'], found),
+            *rating_warnings(screw, lubricant, point),
+            *_moved_forces(found),
             *_coarse(found, shortest_on_grid(screw, settings)),
             *_third_contacts(screw, contacts),
             *_uncertain_films(contacts),
         ],
-        'efficiency': found.efficiency,
-        'friction_torque_Nm': found.friction_torque,
-        'driving_torque_Nm': found.driving_torque,
-        'energy_error': found.energy_error,
-        'load_change': found.load_change,
-        'back_driving': found.back_driving,
-        'normal_force_loaded_N': found.normal_forces[0],
-        'normal_force_relieved_N': found.normal_forces[1],
-        'rcs': found.rcs,
         'rcs_deviation': found.rcs_deviation,
-        'asperity_share': found.asperity_share,
-        **most_wear(contacts),
         'asperity_law': law_sentence(screw, settings),
-        'roughness': roughness_sentence(screw.roughness, screw.ball_roughness),
-        'film_ratio': found.film_ratio,
-        'regime': regime_of(found.film_ratio).word,
-        'central_film_m': found.central_film,
-        'minimum_film_m': found.minimum_film,
-        'friction_coefficient': found.friction_coefficient,
-        'max_pressure_Pa': found.max_pressure,
-        'worst_contact': {'nut': worst.nut, 'side': worst.side},
         'contact_angle_A_rad': contacts[0]['contact_angle_rad'],
         'contact_angle_B_rad': contacts[1]['contact_angle_rad'],
-        'contacts': contacts,
     }
 
 
-def _contact_record(screw: Screw, found: ScrewSolution, contact: ScrewContact) -> dict[str, Any]:
-    """Return one contact; NaN with a reason where it carries no load or was not solved."""
-    solved, ball = contact.solved, contact.ball
-    head = {'nut': contact.nut, 'side': contact.side}
-    if solved is None:
-        return head | _unknown('no load on this nut, so no contact') | {'normal_force_N': 0.0}
-    pressed, asperities = solved.pressed, solved.asperities
-    return head | {
-        'reason': '' if found.converged else found.status,
-        'normal_force_N': ball.normal_force,
-        'contact_angle_rad': ball.angle,
-        'semi_axis_x_m': pressed.semi_axis_x,
-        'semi_axis_y_m': pressed.semi_axis_y,
-        'hertz_pressure_Pa': pressed.hertz_pressure,
-        'max_pressure_Pa': pressed.max_pressure,
-        'central_film_m': smooth_film(solved.smooth),
-        'film_error': solved.smooth.film_error,
-        'minimum_film_m': pressed.minimum_film,
-        'film_ratio': contact.film_ratio,
-        'rcs': asperities.rcs,
-        'asperity_share': asperities.asperity_share,
-        'friction_coefficient': contact.friction_coefficient,
-        'rolling_force_N': rolling_force(screw, solved),
-        'opposite_flank_approach_m': opposite_flank_approach(
-            screw, contact.side, ball.angle, pressed.approach
-        ),
-        'sliding_torque_Nm': screw.loaded_balls_per_nut * ball.slip_power / _speed(contact),
-        'rolling_torque_Nm': screw.loaded_balls_per_nut * ball.rolling_power / _speed(contact),
-    }
-
-
-def _unknown(reason: str) -> dict[str, Any]:
-    names = (
-        'contact_angle_rad',
-        'semi_axis_x_m',
-        'semi_axis_y_m',
-        'hertz_pressure_Pa',
-        'max_pressure_Pa',
-        'central_film_m',
-        'film_error',
-        'minimum_film_m',
-        'film_ratio',
-        'rcs',
-        'asperity_share',
-        'friction_coefficient',
-        'rolling_force_N',
-        'opposite_flank_approach_m',
-        'sliding_torque_Nm',
-        'rolling_torque_Nm',
-    )
-    return {'reason': reason} | dict.fromkeys(names, math.nan)
+def _reason(found: ScrewSolution, contact: ScrewContact) -> str:
+    """Return why a contact has no numbers, empty if it has."""
+    if contact.solved is None:
+        return 'no load on this nut, so no contact'
+    return '' if found.converged else found.status
 
 
 def _slides(screw: Screw, contact: ScrewContact) -> float:
@@ -173,20 +108,14 @@ def _slides(screw: Screw, contact: ScrewContact) -> float:
     return float(np.average(slip, weights=pressed.pressure))
 
 
-def _speed(contact: ScrewContact) -> float:
-    """Return the screw speed of the balance [rad/s]."""
-    return contact.motion.screw_speed if contact.motion else math.nan
-
-
-def _warnings(rated: list[str], found: ScrewSolution) -> list[str]:
-    """Return the warnings about ratings, and those of the full model."""
-    warnings = [text for text in rated if 'outside its range' not in text]
-    if found.load_change > LOAD_CHANGE:
-        warnings.append(
-            f'balls: friction and inertia change a normal force by {100 * found.load_change:.2g} '
-            '%, the contacts were solved before that'
-        )
-    return warnings
+def _moved_forces(found: ScrewSolution) -> list[str]:
+    """Return a warning where contacts were solved under other forces than those of the balance."""
+    if not found.load_change > LOAD_CHANGE:
+        return []
+    return [
+        f'balls: friction and inertia change a normal force by {100 * found.load_change:.2g} '
+        '%, the contacts were solved before that'
+    ]
 
 
 def _coarse(found: ScrewSolution, wave: float) -> list[str]:
@@ -211,7 +140,7 @@ def law_sentence(screw: Screw, settings: ScrewSettings) -> str:
     if not screw.composite_rms:
         return 'no roughness'
     state = 'new' if sheet.state == 'new' else 'run in'
-    band = f'onset by the topography, within {band_of(screw):g} of nine of ten marches'
+    band = f'onset by the topography, within {band_of(sheet):g} of nine of ten marches'
     return (
         f'roughness that rolls, {state}, summits cut at {GIGA * sheet.cutting_pressure:g} GPa; '
         f'{sheet.calibration or band}'

@@ -9,22 +9,24 @@ balance the ball.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 
 import numpy as np
 from surrogate.ehl import ContactSolution
 from surrogate.ehl.friction import contact_friction
 from surrogate.formulas.film import film_ratio
-from surrogate.formulas.geometry import Side, SIDES
+from surrogate.formulas.geometry import opposite_flank_approach, Side, SIDES
 from surrogate.formulas.load_sharing import NutName
 from surrogate.formulas.sliding import hysteresis_force
 from surrogate.parameters import OperatingPoint, Screw
+from surrogate.results import number
 from surrogate.screw.ball_balance import balance_ball
 from surrogate.screw.ball_motion import Array, BallMotion, Flank, slip_field, slip_floor
 from surrogate.screw.ball_result import BallBalance, BallContact
 from surrogate.screw.ball_traction import solved_traction
 from surrogate.screw.contacts import RollingContact, smooth_film, solve_sides, SolvedContact
+from surrogate.screw.point import PointContact
 
 CREEP = 1e-3
 """Screw speed of the limit of slow motion [rad/s]."""
@@ -35,22 +37,23 @@ NEGLECTED_FRICTION = 3e-4
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ScrewContact:
+class ScrewContact(PointContact[float]):
     """
     One contact of one nut; `solved` is None where it carries no load.
 
     Solutions and asperity contact, the part of the ball balance at this contact, the motion of
-    the ball, film ratio [-], mean traction against the slip over the normal force [-].
+    the ball; contact angle [rad], largest pressure [Pa], estimated relative error of the film [-],
+    how far the ball comes towards the opposite flank [m].
 
     """
 
-    nut: NutName
-    side: Side
     solved: SolvedContact | None
     ball: BallContact
     motion: BallMotion | None
-    film_ratio: float
-    friction_coefficient: float = math.nan
+    contact_angle: float = number('rad')
+    max_pressure: float = number('Pa')
+    film_error: float = number()
+    opposite_flank_approach: float = number('m')
 
     @property
     def smooth(self) -> ContactSolution | None:
@@ -149,20 +152,36 @@ def _contact(
 ) -> ScrewContact:
     """Return one contact with its part of the balance."""
     part = BallContact() if ball is None else ball.screw if side == 'screw' else ball.nut
-    film = math.nan if solved is None else smooth_film(solved.smooth)
     motion = ball.motion if ball else None
-    return ScrewContact(
-        nut=nut,
-        side=side,
-        solved=solved,
-        ball=part,
-        motion=motion,
+    idle = ScrewContact(
+        nut=nut, side=side, solved=solved, ball=part, motion=motion, normal_force=0.0
+    )
+    if solved is None:
+        return idle
+    pressed, film = solved.pressed, smooth_film(solved.smooth)
+    speed, friction = math.nan, math.nan
+    if motion is not None:
+        speed = motion.screw_speed
+        friction = friction_coefficient(screw, solved, side, motion)
+    return replace(
+        idle,
+        normal_force=part.normal_force,
+        contact_angle=part.angle,
+        semi_axis_x=pressed.semi_axis_x,
+        semi_axis_y=pressed.semi_axis_y,
+        hertz_pressure=pressed.hertz_pressure,
+        max_pressure=pressed.max_pressure,
+        central_film=film,
+        film_error=solved.smooth.film_error,
+        minimum_film=pressed.minimum_film,
         film_ratio=float(film_ratio(film, screw.composite_rms)),
-        friction_coefficient=(
-            friction_coefficient(screw, solved, side, motion)
-            if solved is not None and motion is not None
-            else math.nan
-        ),
+        rcs=solved.asperities.rcs,
+        asperity_share=solved.asperities.asperity_share,
+        friction_coefficient=friction,
+        rolling_force=rolling_force(screw, solved),
+        opposite_flank_approach=opposite_flank_approach(screw, side, part.angle, pressed.approach),
+        sliding_torque=screw.loaded_balls_per_nut * part.slip_power / speed,
+        rolling_torque=screw.loaded_balls_per_nut * part.rolling_power / speed,
     )
 
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 import numpy as np
 from surrogate.parameters import Lubricant, Screw
 from surrogate.plotting.style import BLUE, draw_picture, new_figure, ORANGE, VERMILION
-from surrogate.screw.onset import ABOVE, onset_over_pressure
+from surrogate.screw.screw_onset import ABOVE, onset_over_pressure
 from surrogate.units import GIGA, RPM, ZERO_CELSIUS
 
 PRESSURES = 0.5e9, 20e9

@@ -16,21 +16,22 @@ from surrogate.ehl.watch import at
 from surrogate.files import InputError
 from surrogate.formulas.film import film_ratio
 from surrogate.formulas.geometry import SIDES
-from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import IDLE_SHARE, normal_force, nut_forces
 from surrogate.formulas.torque import driving_torque, efficiency, is_back_driving
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.results import number
 from surrogate.screw.ball_motion import Flank
 from surrogate.screw.contacts import (
     make_contacts,
     RollingContact,
     ScrewSettings,
-    smooth_film,
     solve_sides,
     SolvedContact,
     with_oil_of,
 )
 from surrogate.screw.nut import load_change, make_nut, NutLoad, ScrewContact, solve_nut, SolvedNut
+from surrogate.screw.opened import Contacts
+from surrogate.screw.point import ScrewPoint
 
 TIER = 'full'
 SOLVED = (
@@ -47,72 +48,28 @@ SAME_FORCE = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ScrewSolution:
+class ScrewSolution(ScrewPoint[float]):
     """
-    The screw at one point; numbers are NaN unless `converged`, and `status` says why.
+    The screw at one point by solved contacts; numbers are NaN unless `converged`.
 
-    Friction torque [N m] with the parasitic part, from lost power; driving torque [N m] from the
-    loads on the screw; `energy_error`, what both miss of the energy balance, over the friction
-    torque [-]; efficiency [-], whether the load drives the screw; RCS and asperity share of the
-    worst contact [-], film ratio [-] and central film [m] of the thinnest; friction coefficient
-    over all normal forces [-]; entrainment speed
-    [m/s], normal forces of a ball of the loaded and the relieved nut before friction [N];
-    `load_change`, largest difference between a normal force in balance and that under which its
-    contact was solved [-].
+    Driving torque [N m] from the loads on the screw; `energy_error`, what it and the friction
+    torque, from lost power, miss of the energy balance, over the friction torque [-]; efficiency
+    [-], whether the load drives the screw; `load_change`, largest difference between a normal
+    force in balance and that under which its contact was solved [-].
 
     """
 
-    status: str
-    converged: bool
     contacts: tuple[ScrewContact, ...]
-    entrainment_speed: float
-    normal_forces: tuple[float, float]
-    friction_torque: float = math.nan
-    driving_torque: float = math.nan
-    energy_error: float = math.nan
-    efficiency: float = math.nan
-    back_driving: bool = False
-    rcs: float = math.nan
-    asperity_share: float = math.nan
-    film_ratio: float = math.nan
-    central_film: float = math.nan
-    friction_coefficient: float = math.nan
-    load_change: float = math.nan
+    driving_torque: float = number('Nm')
+    energy_error: float = number()
+    efficiency: float = number()
+    back_driving: bool = number(default=False)
+    load_change: float = number()
 
     @property
     def loaded_contacts(self) -> tuple[SolvedContact, ...]:
         """Solved contacts, those that carry load."""
         return tuple(one.solved for one in self.contacts if one.solved is not None)
-
-    @property
-    def worst_contact(self) -> int:
-        """Place in `contacts` of the largest RCS, of equal ones that of the thinnest film."""
-        pressed = [
-            (one.solved.asperities.rcs, -one.film_ratio, -place)
-            for place, one in enumerate(self.contacts)
-            if one.solved is not None and not math.isnan(one.solved.asperities.rcs)
-        ]
-        return -max(pressed)[2] if pressed else 0
-
-    @property
-    def minimum_film(self) -> float:
-        """Least film of all contacts [m], of the smooth ones unless roughness stands."""
-        return min(self._of_pressed('minimum_film'), default=math.nan)
-
-    @property
-    def max_pressure(self) -> float:
-        """Largest pressure of all contacts [Pa], without asperities unless roughness stands."""
-        return max(self._of_pressed('max_pressure'), default=math.nan)
-
-    @property
-    def rcs_deviation(self) -> float:
-        """Return the standard deviation of the largest RCS between strips of the raceway [-]."""
-        worst = self.contacts[self.worst_contact].solved if self.contacts else None
-        return worst.asperities.rcs_deviation if worst is not None else math.nan
-
-    def _of_pressed(self, name: str) -> list[float]:
-        found = self.loaded_contacts if self.converged else ()
-        return [getattr(one.pressed, name) for one in found]
 
 
 def solve_screw(
@@ -137,7 +94,7 @@ def solve_screw(
     near = [(found.smooth, found.pressed) for found in start.contacts] if start else []
     contacts: tuple[RollingContact, ...] = ()
     if any(nut.force for nut in nuts):
-        contacts = make_contacts(screw, lubricant, point, settings)
+        contacts = make_contacts(Contacts.of(screw), lubricant, point, settings)
     loaded, relieved = (float(normal_force(screw, nut.force)) for nut in nuts)
     with at(nut=1):
         pairs = [solve_sides(contacts, (loaded, loaded), near[:2])]
@@ -170,7 +127,7 @@ def rebalance_screw(
 
     """
     _check_same_load(screw, point, found)
-    sides = make_contacts(screw, lubricant, point, settings or ScrewSettings())
+    sides = make_contacts(Contacts.of(screw), lubricant, point, settings or ScrewSettings())
     loaded, relieved = (
         tuple(
             with_oil_of(side, contact.solved)
@@ -228,14 +185,19 @@ def _nut_loads(screw: Screw, point: OperatingPoint) -> tuple[NutLoad, NutLoad]:
 def _combine(screw: Screw, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> ScrewSolution:
     """Add up both nuts."""
     speed, load = abs(point.speed), point.opposing_load
+    contacts = nuts[0].contacts + nuts[1].contacts
+    worst = worst_contact(contacts)
+    worn = contacts[worst].solved if contacts else None
     found = ScrewSolution(
         status=next(
             (nut.failure for nut in nuts if nut.failure),
             SOLVED[sum(nut.force > 0 for nut in nuts)],
         ),
         converged=not any(nut.failure for nut in nuts),
-        contacts=nuts[0].contacts + nuts[1].contacts,
-        entrainment_speed=no_slip_rates(screw).entrainment * speed,
+        contacts=contacts,
+        worst_contact=worst,
+        rcs_deviation=worn.asperities.rcs_deviation if worn else math.nan,
+        entrainment_speed=Contacts.of(screw).rates.entrainment * speed,
         normal_forces=(
             float(normal_force(screw, nuts[0].force)),
             float(normal_force(screw, nuts[1].force)),
@@ -243,7 +205,8 @@ def _combine(screw: Screw, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> 
     )
     if not found.converged:
         return found
-    films, touching = _films(found), [one.asperities for one in found.loaded_contacts]
+    carrying = [contact for contact in contacts if contact.solved is not None]
+    film = min((contact.central_film for contact in carrying), default=math.nan)
     parasitic = screw.parasitic_torque + screw.parasitic_torque_rate * speed
     balls = [nut.ball for nut in nuts if nut.ball is not None]
     friction = screw.loaded_balls_per_nut * sum(ball.loss_torque for ball in balls) + parasitic
@@ -257,23 +220,28 @@ def _combine(screw: Screw, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> 
         efficiency=efficiency(friction, load, screw.lead),
         back_driving=is_back_driving(friction, load, screw.lead),
         load_change=max(load_change(nut) for nut in nuts),
-        friction_coefficient=_mean_friction(found),
-        rcs=max((one.rcs for one in touching), default=0.0),
-        asperity_share=max((one.asperity_share for one in touching), default=0.0),
-        film_ratio=float(film_ratio(min(films, default=math.nan), screw.composite_rms)),
-        central_film=min(films) if films else math.nan,
+        friction_coefficient=_mean_friction(carrying),
+        rcs=max((contact.rcs for contact in carrying), default=0.0),
+        asperity_share=max((contact.asperity_share for contact in carrying), default=0.0),
+        film_ratio=float(film_ratio(film, screw.composite_rms)),
+        central_film=film,
+        minimum_film=min((contact.minimum_film for contact in carrying), default=math.nan),
+        max_pressure=max((contact.max_pressure for contact in carrying), default=math.nan),
     )
 
 
-def _films(found: ScrewSolution) -> list[float]:
-    """Return the smooth films [m] of the contacts that carry; 0 at rest."""
-    pressed = [contact.smooth for contact in found.contacts if contact.smooth is not None]
-    return [smooth_film(smooth) for smooth in pressed]
+def worst_contact(contacts: Sequence[ScrewContact]) -> int:
+    """Return the place of the largest RCS, of equal ones that of the thinnest film."""
+    pressed = [
+        (contact.rcs, -contact.film_ratio, -place)
+        for place, contact in enumerate(contacts)
+        if contact.solved is not None and not math.isnan(contact.rcs)
+    ]
+    return -max(pressed)[2] if pressed else 0
 
 
-def _mean_friction(found: ScrewSolution) -> float:
+def _mean_friction(carrying: Sequence[ScrewContact]) -> float:
     """Return the friction coefficient over all normal forces [-], NaN without any."""
-    pressed = [contact for contact in found.contacts if contact.solved is not None]
-    total = sum(contact.ball.normal_force for contact in pressed)
-    friction = sum(contact.ball.normal_force * contact.friction_coefficient for contact in pressed)
+    total = sum(contact.normal_force for contact in carrying)
+    friction = sum(contact.normal_force * contact.friction_coefficient for contact in carrying)
     return friction / total if total else math.nan

@@ -7,12 +7,11 @@ from dataclasses import dataclass, fields, replace
 import math
 from typing import Any, Literal
 
-from surrogate.asperities.running_in import working_load, working_pressure
-from surrogate.formulas.geometry import SIDES
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.standards import long_cutoff_iso_21920, RA_OVER_RQ
 from surrogate.raceway.stated import Roughness
-from surrogate.screw.onset import ABOVE, onset_point, run_in_at, run_in_range, with_raceway
+from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import ABOVE, onset_point, run_in_at, run_in_range, with_raceway
 
 Part = Literal['point', 'lubricant', 'screw', 'roughness']
 Ends = tuple[float, float]
@@ -120,13 +119,13 @@ def _hardness(case: ScrewCase) -> Ends | None:
     if _runs_in(case):
         return None
     hardness = case.roughness.hardness
-    borne = ABOVE * max(working_pressure(case.screw, side) for side in SIDES)
+    borne = ABOVE * Contacts.of(case.screw).working_pressure
     return min(max(hardness / 1.15, borne), hardness), 1.15 * hardness
 
 
 def _working_loads(case: ScrewCase) -> Ends:
     """Return half and double of the largest working load, stated or assumed."""
-    load = working_load(case.screw)
+    load = Contacts.of(case.screw).working_load
     return 0.5 * load, 2.0 * load
 
 

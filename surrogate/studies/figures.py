@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from matplotlib.figure import Figure
-from surrogate.asperities.law import law_of
 from surrogate.parameters import load_screw
 from surrogate.plotting.style import draw_picture
+from surrogate.screw.opened import Contacts
 from surrogate.studies import contact_figures as contacts
 from surrogate.studies import map_figures as maps
 from surrogate.studies import screw_figures as screws
@@ -30,7 +30,7 @@ def pictures(
 ) -> dict[str, Callable[[], Figure]]:
     """Return what draws each figure of the study."""
     screw, rows = load_screw(SCREW), list(study.rows.values())
-    law = law_of(screw)
+    law = Contacts.of(screw).law
     return {
         '4': lambda: contacts.figure_fractal(study, screw),
         '6b': lambda: screws.figure_torque(rows, measured),

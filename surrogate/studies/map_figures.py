@@ -20,7 +20,7 @@ from surrogate.asperities.law import AsperityLaw
 from surrogate.formulas.torque import efficiency
 from surrogate.parameters import Screw
 from surrogate.plotting.style import BLUE, GREY, VERMILION
-from surrogate.screw.closed_form_record import CONSTANT_FRICTION
+from surrogate.screw.record import CONSTANT_FRICTION
 from surrogate.studies.drawing import declared_figure, entrainment, finish, limit, shades, STYLES
 from surrogate.studies.rows import Array, constant_friction_efficiency, grid, NO_CONTACT, StudyRow
 from surrogate.surface.aims import EFFICIENCY_LIMIT, RCS_LIMIT

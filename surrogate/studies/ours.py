@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.asperities.law import law_of
 from surrogate.asperities.running_in import running_tiles
 from surrogate.ehl import Condition, Settings, solve_contact
 from surrogate.ehl.moving import march_strip, MarchSettings, strip_at
@@ -27,7 +26,6 @@ from surrogate.formulas.film import (
     minimum_film_hamrock_dowson_1977,
     rolling_force_biboulet_houpert_2010,
 )
-from surrogate.formulas.geometry import screw_contact
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.line import (
     amplitude_reduction_venner_1997,
@@ -37,8 +35,15 @@ from surrogate.formulas.line import (
 )
 from surrogate.formulas.load_sharing import normal_force
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.raceway.tile import Tile
 from surrogate.screw.contacts import oil_at, ScrewSettings
-from surrogate.screw.onset import onset_over_pressure, onset_point, run_in_range, with_raceway
+from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import (
+    onset_over_pressure,
+    onset_point,
+    run_in_range,
+    with_raceway,
+)
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.units import RPM
 
@@ -75,7 +80,7 @@ class ValidationCase:
         """Take temperature [K], oil and contact at the screw, normal force [N], new raceway."""
         self.temperature = self.lubricant.reference_temperature
         self.oil = oil_at(self.lubricant, self.temperature)
-        self.contact = screw_contact(self.screw, 'screw')
+        self.contact = Contacts.of(self.screw).geometry['screw']
         self.load = float(normal_force(self.screw, self.screw.preload))
         self.new = with_raceway(self.screw, state='new')
 
@@ -125,14 +130,20 @@ def rolling_force(
     g = case.groups(load, speed)
     formula = float(rolling_force_biboulet_houpert_2010(case.contact, g))
     ratio = found.whole_rolling_force / formula
+    rough = Contacts.of(case.screw).law.contact('screw', *place)
     return {
         'load_N': load,
         'speed_rad_s': rpm * RPM,
         'moes_load': float(g.moes_load),
         'domain_over_formula': found.rolling_force / formula,
         'smooth_over_formula': ratio,
-        'rough_over_formula': law_of(case.screw).contact('screw', *place).loss_factor * ratio,
+        'rough_over_formula': rough.loss_factor * ratio,
     }
+
+
+def tiles_of(screw: Screw) -> list[Tile]:
+    """Return tiles of the raceway on the screw."""
+    return running_tiles(Contacts.of(screw).running['screw'])
 
 
 def _wave(case: ValidationCase, length: float) -> tuple[float, float]:
@@ -180,7 +191,7 @@ def load_on_film(case: ValidationCase) -> list[float]:
     wanted = np.log(np.array(THIN_FILMS) * case.screw.composite_rms)
     speed = np.exp(np.interp(wanted, np.log(film), np.log(speeds)))
     place = case.contact, case.load, case.oil, case.lubricant.film_floor
-    return (1 - law_of(case.new).touching('screw', *place, speed)[1]).tolist()
+    return (1 - Contacts.of(case.new).law.touching('screw', *place, speed)[1]).tolist()
 
 
 def run_in_speeds(case: ValidationCase) -> list[float]:
@@ -193,7 +204,7 @@ def run_in_speeds(case: ValidationCase) -> list[float]:
 def run_in_height(case: ValidationCase) -> list[float]:
     """Return by which share running in lowers the rms height of the tiles [-]."""
     new, worn = (
-        np.mean([tile.heights.std() for tile in running_tiles(screw, 'screw')])
+        np.mean([tile.heights.std() for tile in tiles_of(screw)])
         for screw in (case.new, with_raceway(case.screw, state='run_in'))
     )
     return [float(1 - worn / new)]
@@ -204,8 +215,7 @@ def film_parameter_at_onset(case: ValidationCase) -> list[float]:
     g = case.groups(case.load, case.onset['entrainment_speed_m_s'])
     least = float(minimum_film_hamrock_dowson_1977(case.contact, g))
     central = float(central_film_hamrock_dowson_1977(case.contact, g))
-    heights = [tile.heights for tile in running_tiles(case.new, 'screw')]
-    peaks = float(np.mean([reduced_peak_height(one) for one in heights]))
+    peaks = float(np.mean([reduced_peak_height(tile.heights) for tile in tiles_of(case.new)]))
     return [least / peaks, (least + central) / peaks]
 
 

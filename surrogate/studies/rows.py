@@ -16,11 +16,12 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.files import canonical_json
 from surrogate.formulas.geometry import helix_angle
 from surrogate.formulas.load_sharing import nut_forces
 from surrogate.formulas.torque import efficiency, torque_constant_friction
 from surrogate.parameters import Lubricant, Screw
-from surrogate.screw.closed_form_record import CONSTANT_FRICTION
+from surrogate.screw.record import CONSTANT_FRICTION
 from surrogate.studies.tasks import OURS, PRELOAD, RELIEVED, ROUGH_SPEEDS, SMOOTH, StudyTask
 
 Array = NDArray[np.float64]
@@ -92,8 +93,8 @@ def row_of(task: StudyTask, inputs: str, status: str, **numbers: Any) -> StudyRo
 
 def inputs_hash(screw: Screw, lubricant: Lubricant, law: str = '') -> str:
     """Return the beginning of the hash of datasheets, version of the law and what a row means."""
-    text = repr((VERSION, screw.stated(), lubricant.stated(), law))
-    return hashlib.sha256(text.encode()).hexdigest()[:12]
+    text = canonical_json([VERSION, screw.stated(), lubricant.stated(), law])
+    return hashlib.sha256(text).hexdigest()[:12]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

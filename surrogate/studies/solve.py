@@ -22,7 +22,7 @@ from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings
 from surrogate.ehl.domain import nodes_on_waves
 from surrogate.ehl.friction import contact_friction, ContactFriction
 from surrogate.formulas.film import asperity_share_aihara_1987
-from surrogate.formulas.geometry import hertz, screw_contact
+from surrogate.formulas.geometry import hertz
 from surrogate.formulas.kinematics import entrainment_speed_paper
 from surrogate.formulas.load_sharing import normal_force, nut_forces, UNLOADING_RATIO
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, OperatingPoint, Screw
@@ -33,6 +33,7 @@ from surrogate.screw import closed_form
 from surrogate.screw.ball_motion import slip_floor
 from surrogate.screw.contacts import ACROSS, ScrewSettings
 from surrogate.screw.nut import contact_slip, ScrewContact
+from surrogate.screw.opened import Contacts
 from surrogate.screw.solve import ScrewSolution, solve_screw
 from surrogate.studies.rows import inputs_hash, row_of, StudyRow
 from surrogate.studies.tasks import CASES, SMOOTH, STANDING, StudyTask
@@ -173,7 +174,7 @@ def published_patch(screw: Screw, draw: int) -> FractalSurface:
 
     """
     force = max(UNLOADING_RATIO * screw.preload, WINDOW_SHARE * screw.static_rating)
-    ellipse = hertz(screw_contact(screw, 'screw'), float(normal_force(screw, force)))
+    ellipse = hertz(Contacts.of(screw).geometry['screw'], float(normal_force(screw, force)))
     window = Window(
         length_x=2 * float(ellipse.semi_axis_x), length_y=2 * float(ellipse.semi_axis_y)
     )
@@ -190,7 +191,7 @@ def solve_patch(
     of a screw stands still.
 
     """
-    case, contact = CASES[task.case], screw_contact(screw, 'screw')
+    case, contact = CASES[task.case], Contacts.of(screw).geometry['screw']
     oil = ContactLubricant(
         viscosity=case.viscosity or lubricant.viscosity,
         pressure_viscosity=lubricant.pressure_viscosity,

@@ -1,15 +1,23 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Solution of one operating point, whatever the tier: surfaces are made of these."""
+"""Solution of an operating point, whatever the tier: surfaces are made of these."""
 
 from dataclasses import dataclass
 import math
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.results import number
+
+Number = TypeVar('Number', float, NDArray[np.float64])
+"""A number of one point, or an array over many."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class SolvedPoint:
+class SolvedPoint(Generic[Number]):
     """
-    One solved operating point; its numbers hold if it `converged`, else `status` says why not.
+    A solved operating point; its numbers hold if it `converged`, else `status` says why not.
 
     Friction torque [N m]; RCS and asperity share of the worst contact [-]; film ratio [-], central
     and minimum film [m] of the thinnest; friction coefficient over all normal forces [-]; largest
@@ -20,13 +28,13 @@ class SolvedPoint:
 
     converged: bool
     status: str = ''
-    friction_torque: float = math.nan
-    rcs: float = math.nan
-    asperity_share: float = math.nan
-    film_ratio: float = math.nan
-    central_film: float = math.nan
-    minimum_film: float = math.nan
-    friction_coefficient: float = math.nan
-    max_pressure: float = math.nan
-    worst_contact: int = -1
+    friction_torque: Number = number('Nm')
+    rcs: Number = number()
+    asperity_share: Number = number()
+    film_ratio: Number = number()
+    central_film: Number = number('m')
+    minimum_film: Number = number('m')
+    friction_coefficient: Number = number()
+    max_pressure: Number = number('Pa')
+    worst_contact: Any = -1
     rcs_deviation: float = math.nan

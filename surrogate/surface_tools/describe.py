@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from surrogate.builder.tiers import screw_and_oil
 from surrogate.files import InputError
+from surrogate.parameters import screw_and_oil
 from surrogate.raceway.ball import roughness_sentence
 from surrogate.surface import onset_of_surface, Surface
 from surrogate.surface.file import SurfaceData

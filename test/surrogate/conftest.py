@@ -10,9 +10,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from surrogate.builder.closed_form import build_closed_form, default_settings
-from surrogate.builder.tiers import screw_and_oil
 from surrogate.cli import add_commands, Parser
-from surrogate.parameters import load_lubricant, load_screw
+from surrogate.parameters import load_lubricant, load_screw, screw_and_oil
 from surrogate.screw import closed_form
 from surrogate.surface import FIELDS
 

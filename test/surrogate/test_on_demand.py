@@ -10,7 +10,7 @@ from surrogate.builder.full.tier import solve_full
 from surrogate.on_demand import Cancelled, solve, solve_point
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import ScrewSettings, solve_screw
-from surrogate.screw.onset import with_raceway
+from surrogate.screw.screw_onset import with_raceway
 from surrogate.surface import FIELDS
 from surrogate.worker import cancelled, listener, plain_result, run_task
 

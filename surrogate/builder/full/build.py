@@ -12,7 +12,6 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.asperities.law import law_of
 from surrogate.builder.closed_form import check_ranges, check_rough, solve_grid, surface_header
 from surrogate.builder.full.chain import point_inputs, solved_chain
 from surrogate.builder.full.held_out import cell_errors, held_out_points, HeldOut, judged
@@ -20,6 +19,7 @@ from surrogate.builder.full.nodes import Nodes, surface_nodes
 from surrogate.builder.full.ratios import ratios_at, Run, solve_ratios, solved_grid, with_floor
 from surrogate.builder.full.settings import FullSettings
 from surrogate.parameters import Lubricant, Screw
+from surrogate.screw.opened import Contacts
 from surrogate.screw.sensitivity import surface_bands
 from surrogate.screw.solve import TIER
 from surrogate.surface import FIELDS, Surface
@@ -87,7 +87,8 @@ def _surface(
 
 def _rcs_deviation(screw: Screw, lubricant: Lubricant, nodes: Nodes) -> Array:
     """Return the change of RCS [-] from half of the onset's deviation slower to as much faster."""
-    half, axes = 0.5 * law_of(screw).deviation, (nodes.load, nodes.temperature, nodes.log_onset)
+    half = 0.5 * Contacts.of(screw).law.deviation
+    axes = nodes.load, nodes.temperature, nodes.log_onset
     slower, faster = (
         solve_grid(screw, lubricant, nodes.s + apart, *axes)['rcs'] for apart in (-half, half)
     )

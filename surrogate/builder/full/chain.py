@@ -10,16 +10,15 @@ Its grids are coarse: beside those of a single point the friction torque is 0.1 
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 from surrogate.asperities.law import VERSION
-from surrogate.builder.tiers import screw_and_oil
 from surrogate.ehl import Settings
-from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.parameters import Lubricant, OperatingPoint, Screw, screw_and_oil
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
-from surrogate.surface import FIELDS, SolvedPoint
+from surrogate.surface import SolvedPoint
 
 WORK = f'full tier 13, {VERSION}'
 """Solver and version of what a chain returns, constants of the asperity law with it; part of the
@@ -116,10 +115,5 @@ def _turned(
 
 def solved_point(found: ScrewSolution) -> SolvedPoint:
     """Return what a surface keeps of a solution."""
-    return SolvedPoint(
-        converged=found.converged and bool(found.loaded_contacts),
-        status=found.status,
-        worst_contact=found.worst_contact,
-        rcs_deviation=found.rcs_deviation,
-        **{name: getattr(found, name) for name in FIELDS},
-    )
+    kept = {spec.name: getattr(found, spec.name) for spec in fields(SolvedPoint)}
+    return SolvedPoint(**kept | {'converged': found.converged and bool(found.loaded_contacts)})

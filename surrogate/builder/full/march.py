@@ -14,17 +14,16 @@ from dataclasses import asdict
 import math
 from typing import Any
 
-from surrogate.asperities.onset import LAG_FACTOR, NODE_FACTOR, TopographyOnset
-from surrogate.asperities.running_in import running_tiles, shortest_wave, TILES
+from surrogate.asperities.running_in import running_tiles, TILES
 from surrogate.asperities.topography import acting_roughness
-from surrogate.builder.tiers import screw_and_oil
+from surrogate.asperities.topography_onset import LAG_FACTOR, NODE_FACTOR, TopographyOnset
 from surrogate.ehl.kernels.fft import good_length
 from surrogate.ehl.moving import MarchSettings, ramp_strip, strip_at
 from surrogate.files import InputError
-from surrogate.formulas.geometry import hertz, screw_contact
 from surrogate.formulas.load_sharing import normal_force, working_preload
-from surrogate.parameters import Lubricant, Screw
+from surrogate.parameters import Lubricant, Screw, screw_and_oil
 from surrogate.screw.contacts import oil_at
+from surrogate.screw.opened import Contacts
 
 SHORTEST = 0.25
 """Shortest wave that is marched over the half length of the contact [-]."""
@@ -62,14 +61,12 @@ def march_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
 
     """
     screw, lubricant = screw_and_oil(inputs)
-    contact, oil = (
-        screw_contact(screw, 'screw'),
-        oil_at(lubricant, lubricant.reference_temperature),
-    )
+    opened, oil = Contacts.of(screw), oil_at(lubricant, lubricant.reference_temperature)
+    contact, running = opened.geometry['screw'], opened.running['screw']
     load = float(normal_force(screw, working_preload(screw)))
-    half = float(hertz(contact, load).semi_axis_x)
-    shortest = max(shortest_wave(screw), inputs['shortest'] * half)
-    tile = running_tiles(screw, 'screw', shortest=shortest)[inputs['draw']]
+    half = running.half_length
+    shortest = max(running.shortest_wave, inputs['shortest'] * half)
+    tile = running_tiles(running, shortest=shortest)[inputs['draw']]
     columns = good_length(math.ceil(ACROSS * tile.width / shortest))
     strip = strip_at(contact, load, 0.0, tile.width, columns)
     acting = acting_roughness([tile], 0.5 * contact.reduced_modulus, shortest)

@@ -18,7 +18,7 @@ from surrogate.builder.closed_form import speed_coordinates, temperature_nodes
 from surrogate.builder.full.settings import FullSettings
 from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Lubricant, Screw
-from surrogate.screw.onset import onset_speeds
+from surrogate.screw.screw_onset import onset_speeds
 
 Array = NDArray[np.float64]
 BESIDE = 1e-4

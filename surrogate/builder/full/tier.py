@@ -18,9 +18,8 @@ from surrogate.builder.full.chain import point_inputs, solve_chain, solved_chain
 from surrogate.builder.full.march import march_task, march_tasks
 from surrogate.builder.full.ratios import Results
 from surrogate.builder.full.settings import FullSettings
-from surrogate.builder.tiers import screw_and_oil
 from surrogate.child import Task
-from surrogate.parameters import Lubricant, Screw
+from surrogate.parameters import Lubricant, Screw, screw_and_oil
 from surrogate.progress import Progress
 from surrogate.surface import SolvedPoint
 from surrogate.surface.file import SurfaceData

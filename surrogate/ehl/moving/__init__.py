@@ -10,7 +10,7 @@ for waves that are too short for a grid over the whole.
 
 """
 
-from surrogate.ehl.moving.interface import MarchSettings, MarchStatus, Mean, MovingSolution
+from surrogate.ehl.moving.interface import MarchSettings, MarchStatus, MovingSolution
 from surrogate.ehl.moving.line import strip_at, StripContact
 from surrogate.ehl.moving.march import march_contact, march_strip
 from surrogate.ehl.moving.ramp import ramp_contact, ramp_strip, SpeedRamp
@@ -18,7 +18,6 @@ from surrogate.ehl.moving.ramp import ramp_contact, ramp_strip, SpeedRamp
 __all__ = [
     'MarchSettings',
     'MarchStatus',
-    'Mean',
     'MovingSolution',
     'SpeedRamp',
     'StripContact',

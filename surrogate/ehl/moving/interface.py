@@ -12,6 +12,7 @@ from surrogate.ehl.interface import Condition, ContactLubricant, NO_FADING, Sett
 from surrogate.ehl.moving.line import StripContact
 from surrogate.files import InputError
 from surrogate.formulas.geometry import Contact
+from surrogate.results import Mean, number
 
 Array = NDArray[np.float64]
 THIN_FILMS = (1e-9, 3e-9, 5e-9, 10e-9)
@@ -97,20 +98,6 @@ class MarchSettings:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Mean:
-    """
-    Average over a march and its standard error, from what the places differ by.
-
-    The error is NaN with one place: columns beside each other hold the same long waves, so that
-    parts of one track say nothing of it.
-
-    """
-
-    value: float = math.nan
-    error: float = math.nan
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
 class MovingSolution:
     """
     Averages over time and place of a contact that a rough raceway rolls through.
@@ -136,28 +123,28 @@ class MovingSolution:
     condition: Condition
     settings: MarchSettings
     status: MarchStatus
-    rcs: Mean = Mean()
-    asperity_share: Mean = Mean()
-    mean_film: Mean = Mean()
-    film_rms: Mean = Mean()
-    least_film: Mean = Mean()
+    rcs: Mean = number(default=Mean())
+    asperity_share: Mean = number(default=Mean())
+    mean_film: Mean = number('m', default=Mean())
+    film_rms: Mean = number('m', default=Mean())
+    least_film: Mean = number('m', default=Mean())
     thin_shares: tuple[Mean, ...] = field(default=(Mean(),) * len(THIN_FILMS))
-    max_pressure: Mean = Mean()
-    hard_share: Mean = Mean()
-    film_traction: Mean = Mean()
+    max_pressure: Mean = number('Pa', default=Mean())
+    hard_share: Mean = number(default=Mean())
+    film_traction: Mean = number(default=Mean())
     rolling_loss: Mean = Mean()
     moment_loss: Mean = Mean()
     smooth_rolling_loss: float = math.nan
-    central_film: float = math.nan
+    central_film: float = number('m')
     x: Array = field(default_factory=lambda: np.empty(0))
     rcs_along: Array = field(default_factory=lambda: np.empty(0))
     centre_films: Array = field(default_factory=lambda: np.empty(0))
     memory: float = math.nan
-    transits: float = 0.0
-    steps: int = 0
-    steps_failed: int = 0
-    newton_iterations: int = 0
-    krylov_iterations: int = 0
+    transits: float = number(default=0.0)
+    steps: int = number(default=0)
+    steps_failed: int = number(default=0)
+    newton_iterations: int = number(default=0)
+    krylov_iterations: int = number(default=0)
     wall_time: float = 0.0
     x_nodes: Array = field(default_factory=lambda: np.empty(0))
     y_nodes: Array = field(default_factory=lambda: np.empty(0))

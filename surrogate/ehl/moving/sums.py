@@ -13,10 +13,11 @@ from surrogate.ehl.case import ScaledCase
 from surrogate.ehl.friction import viscosity_of
 from surrogate.ehl.grid import Grid
 from surrogate.ehl.kernels.moving import dissipated
-from surrogate.ehl.moving.interface import HARDNESS, Mean, THIN_FILMS
+from surrogate.ehl.moving.interface import HARDNESS, THIN_FILMS
 from surrogate.ehl.moving.step import Step
 from surrogate.ehl.results import central_film, PUNCTURED
 from surrogate.ehl.system import film_planes, thin_film
+from surrogate.results import Mean
 
 Array = NDArray[np.float64]
 CORE = 0.8

@@ -12,7 +12,6 @@ import pytest
 from surrogate.asperities.law import (
     AsperityLaw,
     AT_REST,
-    law_of,
     LEAST_LOSS,
     loss_at,
     NINE_OF_TEN,
@@ -21,12 +20,13 @@ from surrogate.asperities.law import (
     share_at,
     SLOWEST,
 )
-from surrogate.asperities.onset import TopographyOnset
 from surrogate.asperities.topography import ActingRoughness
+from surrogate.asperities.topography_onset import TopographyOnset
 from surrogate.ehl import Condition, ContactLubricant
-from surrogate.formulas.geometry import screw_contact
+from surrogate.formulas.geometry import screw_contact, SIDES
 from surrogate.formulas.line import line_at
 from surrogate.parameters import load_screw
+from surrogate.screw.opened import Contacts
 
 SCREW = load_screw('nominal')
 CONTACT, LOAD, FLOOR = screw_contact(SCREW, 'screw'), 27.6, 3e-9
@@ -146,16 +146,17 @@ def test_a_screw_has_one_law_whatever_does_not_touch_its_raceways():
         parasitic_torque=0.1,
         roughness=replace(SCREW.roughness, asperity_friction=0.12),
     )
-    law_of.cache_clear()  # it keeps more screws than there are laws kept
-    assert law_of(other) is law_of(SCREW)
     run_in = replace(SCREW, roughness=replace(SCREW.roughness, state='run_in'))
-    assert law_of(run_in) is not law_of(SCREW)
+    usual, same, worn = (Contacts.of(one).law.onsets for one in (SCREW, other, run_in))
+    assert same == usual
+    assert all(same[side].acting is usual[side].acting for side in SIDES)
+    assert worn['screw'].acting != usual['screw'].acting
 
 
 def test_the_onset_factor_scales_the_onset_and_nothing_else():
     """RCS over the speed by that of the onset stays, and a calibration sets the band."""
     faster = replace(SCREW, roughness=replace(SCREW.roughness, onset_factor=1.5))
-    usual, law = law_of(SCREW), law_of(faster)
+    usual, law = (Contacts.of(one).law for one in (SCREW, faster))
     onset, scaled = (one.onsets['screw'].speed(CONTACT, LOAD, OIL, FLOOR) for one in (usual, law))
     assert scaled == pytest.approx(1.5 * onset)
     assert law.deviation == usual.deviation
@@ -166,5 +167,5 @@ def test_the_onset_factor_scales_the_onset_and_nothing_else():
         assert fast.rcs == pytest.approx(slow.rcs)
         assert fast.loss_factor == pytest.approx(slow.loss_factor)
     sheet = replace(faster.roughness, calibrated='2026-11-24', onset_band=1.15)
-    sure = law_of(replace(SCREW, roughness=sheet))
+    sure = Contacts.of(replace(SCREW, roughness=sheet)).law
     assert sure.deviation == pytest.approx(math.log(1.15) / NINE_OF_TEN)

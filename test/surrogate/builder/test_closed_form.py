@@ -17,7 +17,7 @@ from surrogate.builder.closed_form import (
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.formulas.sliding import largest_sliding
 from surrogate.screw import closed_form
-from surrogate.screw.onset import onset_speeds
+from surrogate.screw.screw_onset import onset_speeds
 from surrogate.surface import FIELDS, Surface, Validity
 
 SMALL = {'speed_nodes': 16, 'load_cells': 3, 'unloaded_cells': 1, 'temperature_nodes': 3}

@@ -16,11 +16,11 @@ def built(monkeypatch):
     """Build nothing; return what each companion was asked to be."""
     asked = []
 
-    def build(tier, screw, lubricant, settings):
-        asked.append((tier, screw.preload, settings))
+    def build(screw, lubricant, settings):
+        asked.append((screw.preload, settings))
         return read(shipped_surface())
 
-    monkeypatch.setattr(companions, 'build_surface', build)
+    monkeypatch.setattr(companions, 'build_closed_form', build)
     return asked
 
 
@@ -33,9 +33,9 @@ def test_each_part_of_the_preload_has_a_file_beside_the_surface(built, tmp_path)
         f'one_preload{percent}.npz' for percent in (100, 80, 60, 40)
     ]
     assert files == [companion_path(out, share) for share in PRELOAD_SHARES]
-    assert [preload for _, preload, _ in built] == [s * screw.preload for s in PRELOAD_SHARES]
-    assert {settings.temperature_range for _, _, settings in built} == {(300.0, 320.0)}
-    assert len({settings.load_range for _, _, settings in built}) == 1
+    assert [preload for preload, _ in built] == [s * screw.preload for s in PRELOAD_SHARES]
+    assert {settings.temperature_range for _, settings in built} == {(300.0, 320.0)}
+    assert len({settings.load_range for _, settings in built}) == 1
     assert Surface.load(files[-1]).screw_name == 'nominal'
 
 

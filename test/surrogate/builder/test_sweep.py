@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A catalogue swept: every item reported, one failure alone, a killed worker's items elsewhere."""
 
-from dataclasses import replace
+import importlib
 import json
 import os
 from pathlib import Path
@@ -11,8 +11,10 @@ import sys
 import threading
 
 import pytest
+from surrogate.builder import sweep, tiers
+from surrogate.builder.closed_form import build_closed_form
+from surrogate.builder.full import tier as full
 from surrogate.builder.sweep import load_catalogue
-from surrogate.builder.tiers import TIERS
 from surrogate.parameters import DATA
 from surrogate.surface import Surface
 from surrogate.surface.file import read
@@ -22,49 +24,41 @@ COMMAND = ('surface', 'sweep')
 
 DEADLINE = 600.0  # [s] which only ends a hang
 THREE = 'screws: [nominal]\noils: [iso_vg_32, iso_vg_68, iso_vg_100]\n'
+SMALL = {'speed_nodes': 12, 'load_cells': 2, 'unloaded_cells': 1, 'temperature_nodes': 3}
 BUILDERS = """
 import os
-from dataclasses import replace
-from surrogate.builder.closed_form import build_closed_form, default_settings
+from surrogate.builder.sweep import build_item
 from surrogate.files import InputError
 
-SMALL = {'speed_nodes': 12, 'load_cells': 2, 'unloaded_cells': 1, 'temperature_nodes': 3}
-
-def small_settings(screw):
-    return replace(default_settings(screw), **SMALL)
-
-def build(screw, lubricant, settings, **options):
-    if lubricant.name == 'iso_vg_100' and 'SWEEP_HELLO' in os.environ:
+def build(inputs):
+    if inputs['lubricant']['name'] == 'iso_vg_100' and 'SWEEP_HELLO' in os.environ:
         with open(os.environ['SWEEP_HELLO'], 'w') as hello:
             hello.write(str(os.getpid()))
         with open(os.environ['SWEEP_GATE']) as gate:
             gate.read()
-    return build_closed_form(screw, lubricant, settings)
+    return build_item(inputs)
 
-def build_all_but_one(screw, lubricant, settings, **options):
-    if lubricant.name == 'iso_vg_68':
+def build_all_but_one(inputs):
+    if inputs['lubricant']['name'] == 'iso_vg_68':
         raise InputError('iso_vg_68: not today')
-    return build_closed_form(screw, lubricant, settings)
-
-def build_here(screw, lubricant, settings, *, pool, out, march):
-    if lubricant.name == 'iso_vg_68':
-        raise ValueError(f'{out.name} with {type(pool).__name__}')
-    return build_closed_form(screw, lubricant, settings)
+    return build_item(inputs)
 """
 
 
 @pytest.fixture
-def tier(tmp_path: Path, monkeypatch):
-    """Return what makes the closed-form tier be built by another, smaller builder."""
+def builder(tmp_path: Path, monkeypatch):
+    """Return what makes surfaces small, and workers build them by a function of `BUILDERS`."""
     (tmp_path / 'sweep_builders.py').write_text(BUILDERS)
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, 'sweep_builders', raising=False)
 
-    def use(name: str, **changes) -> None:
-        names = {'build': f'sweep_builders:{name}', 'settings': 'sweep_builders:small_settings'}
-        monkeypatch.setitem(
-            TIERS, 'closed_form', replace(TIERS['closed_form'], **names, **changes)
-        )
+    def small(tier, screw, ranges):
+        return tiers.default_settings(tier, screw, ranges | SMALL)
+
+    def use(name: str) -> None:
+        task = getattr(importlib.import_module('sweep_builders'), name)
+        monkeypatch.setattr(sweep, 'build_item', task)
+        monkeypatch.setattr(sweep, 'default_settings', small)
 
     return use
 
@@ -83,9 +77,9 @@ def report(out: Path) -> dict:
     return json.loads((out / 'sweep.json').read_text())
 
 
-def test_every_combination_is_built(run, tmp_path, tier, catalogue, capsys):
+def test_every_combination_is_built(run, tmp_path, builder, catalogue, capsys):
     """Screws times roughness times oils, each a file that is what the report says."""
-    tier('build')
+    builder('build')
     catalogue.write_text(
         THREE
         + 'roughness: [{name: as_it_is}, {name: polished, rms_um: 0.06}]\n'
@@ -113,9 +107,9 @@ def test_every_combination_is_built(run, tmp_path, tier, catalogue, capsys):
     assert sorted(path.suffix for path in out.iterdir()) == ['.json', '.md', *6 * ['.npz']]
 
 
-def test_a_failed_item_never_stops_the_rest(run, tmp_path, tier, catalogue, capsys):
+def test_a_failed_item_never_stops_the_rest(run, tmp_path, builder, catalogue, capsys):
     """Its sentence is in the report and on the page; the exit code is 1."""
-    tier('build_all_but_one')
+    builder('build_all_but_one')
     out = tmp_path / 'out'
     assert run(catalogue, '--out', out, '--workers', 1) == 1
     assert '2 surfaces built, 1 failed' in capsys.readouterr().out
@@ -128,9 +122,18 @@ def test_a_failed_item_never_stops_the_rest(run, tmp_path, tier, catalogue, caps
     assert not (out / 'nominal_iso_vg_68.npz').exists()
 
 
-def test_a_tier_that_spreads_its_solves_is_built_here(run, tmp_path, tier, catalogue):
+def test_a_tier_that_spreads_its_solves_is_built_here(run, tmp_path, monkeypatch, catalogue):
     """Its builder gets the workers and the file; what it raises is that item's sentence."""
-    tier('build_here', spreads=True)
+
+    def build(screw, lubricant, settings, *, pool, out, march):
+        if lubricant.name == 'iso_vg_68':
+            raise ValueError(f'{out.name} with {type(pool).__name__}')
+        changes = {**SMALL, 'load_range': (-10.0, 10.0)}
+        small = tiers.default_settings('closed_form', screw, changes)
+        return build_closed_form(screw, lubricant, small)
+
+    monkeypatch.setattr(full, 'build_full_surface', build)
+    catalogue.write_text('tier: full\n' + THREE)
     out = tmp_path / 'out'
     assert run(catalogue, '--out', out, '--workers', 1) == 1
     items = report(out)['items']
@@ -156,11 +159,11 @@ def killer(hello: str, gate: str, seen: list[int]) -> threading.Thread:
 
 
 def test_a_cluster_that_loses_a_worker_builds_everything(
-    run, tmp_path, tier, catalogue, monkeypatch, says
+    run, tmp_path, builder, catalogue, monkeypatch, says
 ):
     """Two Dask workers, one killed at work: the report shows who did its item, same surfaces."""
     distributed = pytest.importorskip('distributed')
-    tier('build')
+    builder('build')
     names = {name: str(tmp_path / name) for name in ('hello', 'gate')}
     for name, path in names.items():
         os.mkfifo(path)
@@ -218,6 +221,7 @@ def test_sheets_beside_the_catalogue_are_found(tmp_path, catalogue):
         (THREE + 'roughness: [{name: a, rq: 1.0}]\n', 'roughness_unknown_key'),
         (THREE + 'roughness: [{name: a, rms_nm: 60.0}]\n', 'rms_nm_has_wrong'),
         (THREE + 'roughness: [{name: a, rms_um: 99.0}]\n', 'rms_um_99_0'),
+        (THREE + 'roughness: [{name: a, rms_slope_deg: 1.0}]\n', 'rms_slope'),
         (THREE + 'load_range_N: [5]\n', 'load_range_n_5_low'),
         (THREE + 'load_range_N: [5, 1]\n', 'load_range_n_5_1'),
         (THREE + 'oils: [iso_vg_68]\n', 'key_oils_stands'),
@@ -242,9 +246,9 @@ def test_a_scheduler_that_is_not_there_leaves_a_report_of_waiting_items(
     assert report(tmp_path / 'out')['counts'] == {'built': 0, 'failed': 0, 'waiting': 3}
 
 
-def test_a_surface_that_cannot_be_written_is_that_item_alone(run, tmp_path, tier, catalogue):
+def test_a_surface_that_cannot_be_written_is_that_item_alone(run, tmp_path, builder, catalogue):
     """A directory stands where a file should go."""
-    tier('build')
+    builder('build')
     out = tmp_path / 'out'
     (out / 'nominal_iso_vg_32.npz').mkdir(parents=True)
     assert run(catalogue, '--out', out, '--workers', 1) == 1

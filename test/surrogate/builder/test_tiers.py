@@ -1,35 +1,30 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The table of tiers: what is named can be loaded and does what the table says."""
+"""Settings, surface and point by either tier, and the datasheets of a header."""
 
 from dataclasses import asdict, replace
 import json
-import sys
 
 import pytest
 from surrogate.builder import tiers
-from surrogate.parameters import BallRoughness
+from surrogate.builder.full import settings as full_settings
+from surrogate.builder.full import tier as full
+from surrogate.parameters import BallRoughness, screw_and_oil
 from surrogate.screw import closed_form
 from surrogate.surface import FIELDS, shipped_surface, Surface
-from surrogate.surface import file as surface_file
-
-
-def test_every_tier_is_one_of_the_file_format():
-    """A tier that can be built can be written."""
-    assert set(tiers.TIERS) <= set(surface_file.TIERS)
 
 
 def test_an_unknown_tier_lists_the_known_ones(refused):
     """One sentence."""
-    refused('tier_guess_closed_form', tiers.find_tier, 'guess')
+    refused('tier_guess_closed_form', tiers.spreads, 'guess')
 
 
 def test_a_header_gives_back_its_datasheets(surface_data, screw, oil):
     """The file alone is enough to solve again."""
-    assert tiers.screw_and_oil(surface_data.header['inputs']) == (screw, oil)
+    assert screw_and_oil(surface_data.header['inputs']) == (screw, oil)
     rough = replace(screw, ball_roughness=BallRoughness(grade='G10'))
     inputs = json.loads(json.dumps({'screw': asdict(rough), 'lubricant': asdict(oil)}))
-    assert tiers.screw_and_oil(inputs) == (rough, oil)
+    assert screw_and_oil(inputs) == (rough, oil)
 
 
 @pytest.mark.parametrize(
@@ -47,7 +42,7 @@ def test_a_header_gives_back_its_datasheets(surface_data, screw, oil):
 def test_inputs_that_are_not_whole_are_a_sentence(surface_data, change, refused):
     inputs = json.loads(json.dumps(surface_data.header['inputs']))
     change(inputs)
-    refused('not_whole', tiers.screw_and_oil, inputs)
+    refused('not_whole', screw_and_oil, inputs)
 
 
 def test_a_point_is_solved_as_the_surface_was(surface_data, screw, oil):
@@ -80,12 +75,12 @@ def test_the_shipped_closed_form_is_the_one_that_is_built(surface_data):
 
 
 def test_a_builder_that_spreads_its_solves_gets_pool_and_file(monkeypatch, screw, oil, tmp_path):
-    """A tier of that kind is called with workers and the place beside which results are kept."""
+    """The full tier is called with workers and the place beside which results are kept."""
     seen = {}
-    module = type(sys)('spreading')
-    module.build = lambda *sheets, **options: seen.update(options)
-    monkeypatch.setitem(sys.modules, 'spreading', module)
-    tier = replace(tiers.TIERS['closed_form'], build='spreading:build', spreads=True)
-    monkeypatch.setitem(tiers.TIERS, 'closed_form', tier)
-    tiers.build_surface('closed_form', screw, oil, None, pool='workers', out=tmp_path)
+    monkeypatch.setattr(full, 'build_full_surface', lambda *_, **options: seen.update(options))
+    assert tiers.spreads('full')
+    assert not tiers.spreads('closed_form')
+    tiers.build_surface('full', screw, oil, None, pool='workers', out=tmp_path)
     assert seen == {'pool': 'workers', 'out': tmp_path, 'march': False}
+    settings = tiers.default_settings('full', screw, {'held_out': 3})
+    assert settings == replace(full_settings.default_full_settings(screw), held_out=3)

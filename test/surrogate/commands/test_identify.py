@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.screw import closed_form
-from surrogate.screw.onset import with_raceway
+from surrogate.screw.screw_onset import with_raceway
 
 COMMAND = ('identify',)
 

@@ -7,7 +7,7 @@ import shlex
 
 import pytest
 from surrogate.parameters import DATA, load_lubricant, load_screw
-from surrogate.screw.onset import onset_point
+from surrogate.screw.screw_onset import onset_point
 from surrogate.units import RPM
 
 COMMAND = ()

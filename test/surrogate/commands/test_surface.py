@@ -7,7 +7,7 @@ import json
 
 import numpy as np
 import pytest
-from surrogate.builder.tiers import screw_and_oil
+from surrogate.parameters import screw_and_oil
 from surrogate.screw import closed_form
 from surrogate.screw.closed_form_record import formula_warnings
 from surrogate.surface import shipped_surface

@@ -4,10 +4,11 @@
 
 from dataclasses import replace
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
-from surrogate.contact.rolling_record import KEYS, rolling_page, rolling_record, RollingRecord
+from surrogate.contact.rolling_record import KEYS, rolling_page, rolling_record
 from surrogate.ehl.moving import MarchStatus, MovingSolution
 from surrogate.files import json_text
 
@@ -17,6 +18,8 @@ AVERAGED = (
     *'memory_length_m'.split(),
 )
 
+PAGE = Path(__file__).parents[3] / 'docs' / 'reference' / 'contact.md'
+
 
 def strict(record):
     """Return a record as it is read from its JSON."""
@@ -24,11 +27,11 @@ def strict(record):
 
 
 def test_the_record_is_strict_json_of_the_march(rolling_case, marched, says):
-    """Keys in order; Lambda is the smooth central film over the whole Rq; shares are in order."""
+    """Lambda is the smooth central film over the whole Rq; shares are in order."""
     record = rolling_record(rolling_case, *marched)
-    assert list(record) == list(RollingRecord.__annotations__)
     averages = {key for key in record if '_standard_error' not in key}
     assert averages == KEYS.keys()
+    assert {'rcs_standard_error', 'mean_film_standard_error_m'} <= set(record)
     assert strict(record)['strip_width_m'] is None
     assert record['kinematics'] == 'rolling'
     assert record['grid'] == [65, 65]

@@ -20,7 +20,8 @@ from surrogate.formulas.inlet import (
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import make_contacts, ScrewSettings
-from surrogate.screw.onset import onset_point
+from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import onset_point
 from surrogate.screw.solve import solve_screw
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
@@ -85,7 +86,7 @@ def test_both_tiers_have_one_factor_at_one_entrainment_speed(kelvin, entrained):
         for given in (True, False)
     )
     point = OperatingPoint(speed=speed, load=load, temperature=kelvin)
-    sides = make_contacts(SCREW, starved, point, ScrewSettings())
+    sides = make_contacts(Contacts.of(SCREW), starved, point, ScrewSettings())
     given = float(starved_speed(starved, entrained))
     for one, other in zip(heated.contacts, cold.contacts, strict=True):
         side = next(side for side in sides if side.side == one.side)

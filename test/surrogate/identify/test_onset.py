@@ -23,7 +23,7 @@ from surrogate.identify.onset import (
 from surrogate.identify.record import identification_record, identified_screw, page
 from surrogate.identify.table import formula_model
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.screw.onset import onset_point
+from surrogate.screw.screw_onset import onset_point
 from surrogate.units import RPM
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')

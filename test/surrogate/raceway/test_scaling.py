@@ -24,11 +24,9 @@ SPACING = 0.4e-6
 
 def over_published(cutoff_long, shortest=2.5e-6):
     """Return the factor on the sum of the nominal datasheet, longest wave 4 mm [-]."""
-    spectrum = replace(
-        SPECTRUM, cutoff_long=cutoff_long, longest_wavelength=4e-3, shortest_wavelength=shortest
-    )
+    spectrum = replace(SPECTRUM, cutoff_long=cutoff_long)
     _, amplitude = wave_spectrum(replace(NOMINAL, shortest_wavelength=shortest))
-    scaled = scale_spectrum(spectrum)
+    scaled = scale_spectrum(spectrum, wavelengths=(4e-3, shortest))
     np.testing.assert_allclose(np.ptp(scaled.amplitude / amplitude), 0, atol=1e-9)
     return scaled.amplitude[0] / amplitude[0]
 
@@ -58,7 +56,7 @@ def test_factors_on_the_nominal_sum():
 def test_the_published_constants_follow():
     """G and the derived sum are those that `wave_spectrum` turns into the same amplitudes."""
     scaled = scale_spectrum(SPECTRUM)
-    longest, shortest = SPECTRUM.wavelengths
+    longest, shortest = SPECTRUM.cutoff_long, SPECTRUM.cutoff_short
     number, amplitude = wave_spectrum(
         replace(
             NOMINAL,
@@ -73,13 +71,14 @@ def test_the_published_constants_follow():
 
 def test_a_single_ridge_is_scaled_in_closed_form():
     """One wave across the trace, a sqrt(1/2) T = Rq; along a fan each ridge reads q cos t."""
-    alone = replace(SPECTRUM, lay='longitudinal', fan_angle=0.0, ridges=1, scale_ratio=50.0)
-    scaled = scale_spectrum(alone)
+    alone = replace(SPECTRUM, lay='longitudinal', fan_angle=0.0, ridges=1, scale_ratio=10.0)
+    waves = 0.25e-3, 20e-6
+    scaled = scale_spectrum(alone, wavelengths=waves)
     (wave, _) = scaled.wave_number
     readings = read_waves(scaled.wave_number, alone.band).height
     assert 0.5 * scaled.amplitude**2 @ readings == pytest.approx(alone.rms**2)
     assert wave == pytest.approx(2 * math.pi / 0.25e-3)
-    fan = scale_spectrum(replace(alone, fan_angle=FAN, ridges=3))
+    fan = scale_spectrum(replace(alone, fan_angle=FAN, ridges=3), wavelengths=waves)
     total = sum(
         0.5 * fan.amplitude**2 @ read_waves(fan.wave_number * math.cos(turn), alone.band).height
         for turn in (-FAN / 2, 0, FAN / 2)
@@ -137,7 +136,7 @@ def test_one_factor_for_all_draws():
 def test_the_dimension_is_found_again_in_profiles():
     """By the structure function of 32 unfiltered profiles; G within what its error allows."""
     scaled = scale_spectrum(SPECTRUM)
-    longest, shortest = SPECTRUM.wavelengths
+    longest, shortest = SPECTRUM.cutoff_long, SPECTRUM.cutoff_short
     heights = traces(scaled, 32, np.zeros(32), length=1.5e-3)
     constants = replace(NOMINAL, sample_length=longest, shortest_wavelength=shortest)
     found = identify_fractal(heights, SPACING, constants)
@@ -146,7 +145,7 @@ def test_the_dimension_is_found_again_in_profiles():
     assert made == pytest.approx(0, abs=0.5)
 
 
-@given(rms=st.floats(1e-9, 5e-6), factor=st.floats(0.1, 10), dimension=st.floats(2.1, 2.9))
+@given(rms=st.floats(1e-9, 1e-6), factor=st.floats(0.1, 10), dimension=st.floats(2.1, 2.9))
 def test_heights_and_slopes_are_proportional_to_rms(rms, factor, dimension):
     """And G to its power 1/(D-2); nothing else changes."""
     first, second = (
@@ -199,15 +198,13 @@ def test_smooth_is_a_roughness():
     scaled = scale_spectrum(RoughnessSpectrum(rms=0.0))
     assert scaled.rms_slope == 0.0
     assert not draw_raceway(scaled, 0).heights(np.arange(5.0), np.arange(3.0)).any()
-    finer = with_shorter_waves(RoughnessSpectrum(rms=0.0), 1e-6)
-    assert not scale_spectrum(finer).amplitude.any()
+    assert not with_shorter_waves(RoughnessSpectrum(rms=0.0), 1e-6).amplitude.any()
 
 
 def test_shorter_waves_add_and_keep_the_draw():
     """One step of 1.5 adds the waves of one length at the dimension that the slope gave."""
     base = replace(SPECTRUM, fractal_dimension=None, rms_slope=math.radians(2.0))
-    finer = with_shorter_waves(base, base.cutoff_short / 1.5)
-    first, second = scale_spectrum(base), scale_spectrum(finer)
+    first, second = scale_spectrum(base), with_shorter_waves(base, base.cutoff_short / 1.5)
     assert second.fractal_dimension == first.fractal_dimension
     assert len(second.wave_number) == len(first.wave_number) + 1
     assert second.rms == first.rms

@@ -12,7 +12,7 @@ from surrogate.raceway.ball import ball_of, draw_pair, draw_stated, roughness_se
 from surrogate.raceway.scaling import draw_raceway, scale_spectrum
 from surrogate.raceway.short_waves import wave_rms
 from surrogate.raceway.spectrum import RoughnessSpectrum
-from surrogate.raceway.stated import BallRoughness, Roughness, spectrum_of
+from surrogate.raceway.stated import BallRoughness, Roughness
 
 STATED = load_screw('nominal').roughness
 SMOOTH = Roughness(rms=0.0, asperity_friction=0.1)
@@ -33,8 +33,8 @@ def test_every_number_of_a_sheet_reaches_the_spectrum():
         'ridges': 7,
     }
     sheet = Roughness(**numbers, asperity_friction=0.12)
-    assert spectrum_of(sheet) == RoughnessSpectrum(**numbers)
-    nominal = scale_spectrum(spectrum_of(STATED))
+    assert sheet.spectrum == RoughnessSpectrum(**numbers)
+    nominal = scale_spectrum(STATED)
     assert (nominal.rms, nominal.fractal_dimension) == (0.12e-6, 2.68)
     assert nominal.band.cutoff_long == pytest.approx(0.25e-3)
     assert not nominal.cutoff_by_table
@@ -43,7 +43,7 @@ def test_every_number_of_a_sheet_reaches_the_spectrum():
 def test_the_state_is_said_and_changes_no_wave():
     """Run in by default."""
     run_in = replace(STATED, state='run_in')
-    assert spectrum_of(run_in) == spectrum_of(STATED)
+    assert run_in.spectrum == STATED.spectrum
     assert SMOOTH.state == 'run_in'
     assert roughness_sentence(run_in, None).startswith('raceway (run in): Rq 0.12 um between')
     assert roughness_sentence(STATED, None).startswith('raceway (new): Rq 0.12 um between')
@@ -90,7 +90,7 @@ def test_what_nobody_stated_is_said(says):
 
 def test_a_draw_is_that_of_raceway_and_ball():
     """Phases of their own; none of either where both are smooth."""
-    raceway, ball = scale_spectrum(spectrum_of(STATED)), ball_of(STATED, BALL)
+    raceway, ball = scale_spectrum(STATED), ball_of(STATED, BALL)
     for stated, expected in (
         (None, draw_raceway(raceway, 5)),
         (BALL, draw_pair(raceway, ball, 5)),

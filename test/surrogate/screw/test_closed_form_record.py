@@ -9,7 +9,8 @@ import pytest
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.parameters import OperatingPoint
 from surrogate.screw import closed_form
-from surrogate.screw.closed_form_record import _warnings, closed_form_record, page
+from surrogate.screw.closed_form_record import closed_form_record, page
+from surrogate.screw.record import rating_warnings
 
 REST = OperatingPoint(speed=0.0, load=0.0, temperature=313.15)
 
@@ -17,13 +18,10 @@ REST = OperatingPoint(speed=0.0, load=0.0, temperature=313.15)
 @pytest.fixture
 def warned(screw, oil):
     """Return the function that tells which warnings a point at given numbers has."""
-    result = closed_form.solve(screw, oil, 60.0, 0.0, 313.15)
 
     def begins(made=screw, lubricant=oil, **place):
-        point = replace(REST, **place)
-        formulas = 'outside its range'  # a fitted range is no rating
-        found = _warnings(made, lubricant, point, result)
-        return [text.split(':')[0] for text in found if formulas not in text]
+        found = rating_warnings(made, lubricant, replace(REST, **place))
+        return [text.split(':')[0] for text in found]
 
     return begins
 

@@ -17,19 +17,21 @@ from surrogate.screw import closed_form_record as closed_form
 from surrogate.screw import figures as figures_point
 from surrogate.screw import full_record as full
 from surrogate.screw.ball_motion import slip_floor
-from surrogate.screw.closed_form_record import closed_form_record, most_wear, page, with_wear
+from surrogate.screw.closed_form_record import closed_form_record, page
 from surrogate.screw.contacts import make_contacts, ScrewSettings
 from surrogate.screw.full_record import (
     _coarse,
+    _moved_forces,
     _third_contacts,
     _uncertain_films,
-    _warnings,
     full_record,
     law_sentence,
     solution_record,
 )
 from surrogate.screw.nut import contact_slip
-from surrogate.screw.onset import with_raceway
+from surrogate.screw.opened import Contacts
+from surrogate.screw.record import most_wear, with_wear
+from surrogate.screw.screw_onset import with_raceway
 from surrogate.screw.solve import solve_screw
 from surrogate.surface import onset_of_surface, shipped_surface, Surface
 
@@ -44,19 +46,21 @@ STANDING = ScrewSettings(
 )
 
 
+def record_at(screw, oil, point, settings):
+    """Return the record of a point."""
+    return full_record(screw, oil, point, settings)[1]
+
+
 def record(rpm, load, settings=SETTINGS):
     """Solve a point at 40 degC."""
     point = OperatingPoint(speed=rpm * math.pi / 30, load=load, temperature=313.15)
-    return point, full_record(SCREW, OIL, point, settings)
+    return point, record_at(SCREW, OIL, point, settings)
 
 
 def test_warnings_begin_beyond_their_limits():
     """A change of 1 %, a film known to 10 %, 4 nodes a wave, and the clearance are none yet."""
-    rated = ['film: outside its range', 'load: heavy']
-    for change, more in ((0.01, 0), (0.0101, 1), (math.nan, 0)):
-        found = SimpleNamespace(load_change=change)
-        assert _warnings(rated, found)[0] == 'load: heavy'
-        assert len(_warnings(rated, found)) == 1 + more
+    for change, told in ((0.01, 0), (0.0101, 1), (math.nan, 0)):
+        assert len(_moved_forces(SimpleNamespace(load_change=change))) == told
     ball = {'nut': 'loaded', 'side': 'screw'}
     for error, told in ((0.1, 0), (0.101, 1), (math.nan, 0)):
         assert len(_uncertain_films([ball | {'film_error': error}])) == told
@@ -93,18 +97,20 @@ def test_the_heating_factor_is_that_by_which_a_starved_contact_is_slowed():
     starved = replace(OIL, film_factor=0.5)
     settings = replace(SETTINGS, kinematics='smooth', inlet_heating=False)
     point = OperatingPoint(speed=1000 * math.pi / 30, load=800.0, temperature=313.15)
-    told = full_record(SCREW, starved, point, settings)
+    told = record_at(SCREW, starved, point, settings)
     assert told['inlet_heating'] is False
     loads = (told['normal_force_loaded_N'], told['normal_force_relieved_N'])
-    contacts = make_contacts(SCREW, starved, point, settings)
-    heated = make_contacts(SCREW, starved, point, replace(settings, inlet_heating=True))
+    contacts = make_contacts(Contacts.of(SCREW), starved, point, settings)
+    heated = make_contacts(
+        Contacts.of(SCREW), starved, point, replace(settings, inlet_heating=True)
+    )
     slowed = min(
         hot.entrainment(load) / cold.entrainment(load)
         for cold, hot in zip(contacts, heated, strict=True)
         for load in loads
     )
     assert told['inlet_heating_factor'] == pytest.approx(slowed**SPEED_EXPONENT, rel=1e-9)
-    flooded = full_record(SCREW, OIL, point, settings)['inlet_heating_factor']
+    flooded = record_at(SCREW, OIL, point, settings)['inlet_heating_factor']
     assert flooded < told['inlet_heating_factor'] < 1.0
 
 
@@ -239,12 +245,12 @@ def test_idle_nut_and_failure_give_a_reason():
 def test_a_third_contact_is_reported_when_it_appears():
     """Zero clearance: the side with the smaller angle reaches its other flank; 10 um: none."""
     point = OperatingPoint(speed=2 * math.pi, load=800.0, temperature=313.15)
-    tight = full_record(replace(SCREW, flank_clearance=0.0), OIL, point, SETTINGS)
+    tight = record_at(replace(SCREW, flank_clearance=0.0), OIL, point, SETTINGS)
     warned = [text for text in tight['warnings'] if 'third contact' in text]
     reached = [c for c in tight['contacts'] if c['opposite_flank_approach_m'] > 0]
     assert len(warned) == len(reached) == 2
     assert all(c['contact_angle_rad'] < SCREW.contact_angle for c in reached)
-    wide = full_record(replace(SCREW, flank_clearance=1e-5), OIL, point, SETTINGS)
+    wide = record_at(replace(SCREW, flank_clearance=1e-5), OIL, point, SETTINGS)
     assert not any('third contact' in text for text in wide['warnings'])
 
 
@@ -252,8 +258,8 @@ def test_hysteresis_adds_its_couple_to_the_torque():
     """Friction torque grows by 4 F us/w per ball and nut and the record holds the force."""
     point = OperatingPoint(speed=20 * math.pi, load=0.0, temperature=313.15)
     smooth = ScrewSettings(smooth=SMALL, kinematics='smooth')
-    plain = full_record(SCREW, OIL, point, smooth)
-    lossy = full_record(replace(SCREW, hysteresis_loss=0.01), OIL, point, smooth)
+    plain = record_at(SCREW, OIL, point, smooth)
+    lossy = record_at(replace(SCREW, hysteresis_loss=0.01), OIL, point, smooth)
     added = [
         lossy['contacts'][k]['rolling_force_N'] - plain['contacts'][k]['rolling_force_N']
         for k in range(4)
@@ -293,7 +299,7 @@ def test_films_of_hardly_pressed_contacts_are_warned_about():
     """Near unloading at high speed the relieved nut floats; each contact tells its error."""
     settings = ScrewSettings(kinematics='smooth')
     point = OperatingPoint(speed=200.0, load=2520.0, temperature=313.15)
-    found = full_record(SCREW, OIL, point, settings)
+    found = record_at(SCREW, OIL, point, settings)
     assert found['contacts'][0]['film_error'] < 0.01
     assert found['contacts'][2]['film_error'] > 0.1
     assert any('hardly pressed' in text for text in found['warnings'])

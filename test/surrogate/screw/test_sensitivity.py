@@ -11,7 +11,7 @@ from surrogate.asperities.law import BANDS, SLOPE
 from surrogate.parameters import OperatingPoint
 from surrogate.screw import sensitivity
 from surrogate.screw.closed_form import solve
-from surrogate.screw.onset import onset_point, run_in_at, with_raceway
+from surrogate.screw.screw_onset import onset_point, run_in_at, with_raceway
 from surrogate.screw.sensitivity import (
     _fastest,
     _spread,

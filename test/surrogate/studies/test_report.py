@@ -6,9 +6,9 @@ from pathlib import Path
 import re
 
 import pytest
-from surrogate.asperities.law import law_of
 from surrogate.commands.figures import DRAWS
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.screw.opened import Contacts
 from surrogate.studies.readings import trends
 from surrogate.studies.report import marks, report
 from surrogate.studies.rows import StudyRow
@@ -23,7 +23,7 @@ THEORY = TREE / 'docs' / 'theory'
 PAGE = (THEORY / 'validation.md').read_text(encoding='utf-8')
 NUMBERS = (THEORY / 'published_study_numbers.md').read_text(encoding='utf-8')
 MARKS = marks(SCREW, ROWS)
-TRENDS = trends(SCREW, law_of(SCREW), ROWS.values())
+TRENDS = trends(SCREW, Contacts.of(SCREW).law, ROWS.values())
 
 
 def task_of(kind, rpm, load, **more):
@@ -45,7 +45,7 @@ def trend(start):
 
 
 def test_page_of_numbers_is_the_report_of_the_rows_of_the_default_run():
-    assert NUMBERS.endswith(report(SCREW, law_of(SCREW), ROWS))
+    assert NUMBERS.endswith(report(SCREW, Contacts.of(SCREW).law, ROWS))
     wanted = {task.key: task for task in tasks(FIGURES, DRAWS)}
     assert set(ROWS) == set(wanted)
     known = known_inputs()

@@ -3,12 +3,11 @@
 """A check: by the solver of the file's tier, at points of its own, against what is stated."""
 
 from dataclasses import replace
-import sys
 
 import numpy as np
 import pytest
 from surrogate.builder import closed_form as build
-from surrogate.builder.tiers import TIERS
+from surrogate.builder.full import tier as full
 from surrogate.surface import shipped_surface, SolvedPoint
 from surrogate.surface.aims import EFFICIENCY_TOLERANCE
 from surrogate.surface.file import read
@@ -29,11 +28,7 @@ def with_solver(monkeypatch, solve):
         asked.append(point)
         return solve(header, *point)
 
-    module = type(sys)('full_solver')
-    module.solve = noted
-    monkeypatch.setitem(sys.modules, 'full_solver', module)
-    tier = replace(TIERS['closed_form'], solve='full_solver:solve')
-    monkeypatch.setitem(TIERS, 'full', tier)
+    monkeypatch.setattr(full, 'solve_full', noted)
     return asked
 
 

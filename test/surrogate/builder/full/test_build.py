@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.asperities.law import law_of, NOTHING
+from surrogate.asperities.law import NOTHING
 from surrogate.builder.full.build import build_full
 from surrogate.builder.full.chain import point_inputs, solved_chain
 from surrogate.builder.full.settings import FullSettings
@@ -20,7 +20,8 @@ from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import idle_load, normal_force, nut_forces
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import oil_at
-from surrogate.screw.onset import with_raceway
+from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import with_raceway
 from surrogate.screw.sensitivity import surface_bands
 from surrogate.surface import FIELDS, Surface, Validity
 from surrogate.surface import file as surface_file
@@ -98,7 +99,7 @@ def test_the_deviation_of_a_node_is_that_of_the_law_at_its_worst_contact(data, s
     A solve of the point shifts behind the inlet instead: less than a tenth apart.
 
     """
-    arm, law = no_slip_rates(screw).entrainment, law_of(screw)
+    arm, law = no_slip_rates(screw).entrainment, Contacts.of(screw).law
     half = 0.5 * law.deviation
     for i, j, k in np.argwhere(~data.mask)[::11]:
         nut, side = divmod(int(data.worst_contact[i, j, k]), len(SIDES))

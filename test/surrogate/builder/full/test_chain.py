@@ -16,12 +16,17 @@ from surrogate.builder.full.chain import (
     solved_chain,
     solved_point,
 )
-from surrogate.builder.tiers import screw_and_oil
 from surrogate.ehl import Settings, Status
-from surrogate.parameters import BallRoughness, load_lubricant, load_screw, OperatingPoint
+from surrogate.parameters import (
+    BallRoughness,
+    load_lubricant,
+    load_screw,
+    OperatingPoint,
+    screw_and_oil,
+)
 from surrogate.screw import contacts as screw_contacts
 from surrogate.screw.contacts import ScrewSettings
-from surrogate.screw.onset import with_raceway
+from surrogate.screw.screw_onset import with_raceway
 from surrogate.screw.solve import solve_screw
 from surrogate.surface import FIELDS
 

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surrogate.asperities.law import law_of
 from surrogate.builder.full.nodes import BESIDE, signed_loads, surface_nodes
 from surrogate.builder.full.settings import default_full_settings
 from surrogate.formulas.geometry import screw_contact
@@ -14,7 +13,8 @@ from surrogate.formulas.inlet import inlet_speed, SPEED_EXPONENT
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import idle_load, normal_force
 from surrogate.screw.contacts import oil_at
-from surrogate.screw.onset import onset_speeds, SMOOTH_ONSET
+from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import onset_speeds, SMOOTH_ONSET
 
 WARM = 313.15
 
@@ -86,7 +86,7 @@ def test_the_onset_is_that_of_the_law_on_the_faster_side(screw, oil):
     force, fluid = float(normal_force(screw, screw.preload)), oil_at(oil, WARM)
     fastest, side = max(
         (onset.speed(screw_contact(screw, side), force, fluid, oil.film_floor), side)
-        for side, onset in law_of(screw).onsets.items()
+        for side, onset in Contacts.of(screw).law.onsets.items()
     )
     entrained = found[0, 0] * no_slip_rates(screw).entrainment
     assert inlet_speed(screw, oil, side, force, entrained, WARM) == pytest.approx(fastest)

@@ -9,17 +9,15 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.asperities.law import band_of, law_of
-from surrogate.asperities.running_in import working_load, working_pressure
+from surrogate.asperities.law import band_of
 from surrogate.files import InputError
-from surrogate.formulas.geometry import screw_contact, SIDES
 from surrogate.formulas.inlet import speed_before_inlet, starved_speed
-from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.line import central_film_line, line_at
 from surrogate.formulas.load_sharing import normal_force, nut_forces, working_preload
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.raceway.ball import roughness_sentence
 from surrogate.screw.contacts import oil_at
+from surrogate.screw.opened import Contacts
 from surrogate.surface.contact_onset import law_doubt
 from surrogate.units import GIGA, MICRO, RPM, ZERO_CELSIUS
 
@@ -49,7 +47,7 @@ def onset_speeds(screw: Screw, lubricant: Lubricant, load: Array, temperature: A
         ]
         for force in load.tolist()
     ]
-    least = SMOOTH_ONSET / starved_speed(lubricant, no_slip_rates(screw).entrainment)
+    least = SMOOTH_ONSET / starved_speed(lubricant, Contacts.of(screw).rates.entrainment)
     return np.maximum(found, least)
 
 
@@ -60,9 +58,8 @@ def with_raceway(screw: Screw, **changes: Any) -> Screw:
 
 def run_in_range(screw: Screw) -> tuple[float, float]:
     """Return the likely range of the pressure of running in [Pa], which the contact must bear."""
-    pressed = max(working_pressure(screw, side) for side in SIDES)
     sheet = screw.roughness
-    low = max(sheet.run_in_low, ABOVE * pressed)
+    low = max(sheet.run_in_low, ABOVE * Contacts.of(screw).working_pressure)
     return min(low, sheet.run_in_pressure), sheet.run_in_high
 
 
@@ -90,18 +87,18 @@ def onset_point(
     as `running_tiles` does.
 
     """
-    oil, onsets = oil_at(lubricant, temperature), law_of(screw).onsets
+    opened, oil = Contacts.of(screw), oil_at(lubricant, temperature)
     loaded = float(nut_forces(load, screw.preload)[0]) or working_preload(screw)
     force, film = float(normal_force(screw, loaded)), 0.0
     entrainment, side = max(
-        (onsets[side].speed(screw_contact(screw, side), force, oil, lubricant.film_floor), side)
-        for side in SIDES
+        (onset.speed(opened.geometry[side], force, oil, lubricant.film_floor), side)
+        for side, onset in opened.law.onsets.items()
     )
     if entrainment:
-        line = line_at(screw_contact(screw, side), force, 0.0)
+        line = line_at(opened.geometry[side], force, 0.0)
         film = float(central_film_line(line, entrainment, oil.viscosity, oil.pressure_viscosity))
     before = speed_before_inlet(screw, lubricant, side, force, entrainment, temperature)
-    speed = before / no_slip_rates(screw).entrainment
+    speed = before / opened.rates.entrainment
     return {'speed_rad_s': speed, 'entrainment_speed_m_s': entrainment, 'central_film_m': film}
 
 
@@ -117,9 +114,9 @@ def onset_record(
     """
     _check_place(lubricant, load, temperature)
     stated = screw.working_load is not None
-    if abs(load) > working_load(screw):
+    if abs(load) > Contacts.of(screw).working_load:
         screw = replace(screw, working_load=abs(load))
-    band, states = band_of(screw), {}
+    opened, band, states = Contacts.of(screw), band_of(screw.roughness), {}
     sheet, place = screw.roughness, (lubricant, load, temperature)
     alone = sheet.traced == 'run_in' or sheet.calibrated
     for state in [sheet.state] if alone else ['new', 'run_in']:
@@ -134,17 +131,17 @@ def onset_record(
         )
     # The lower the pressure at which summits are cut, the more the load matters.
     raceway = with_raceway(screw, state=[*states][-1])
-    loads = [factor * working_load(screw) for factor in LOAD_FACTORS]
+    loads = [factor * opened.working_load for factor in LOAD_FACTORS]
     return {
         'screw': screw.name,
         'oil': lubricant.name,
         'load_N': load,
         'temperature_K': temperature,
-        'working_load_N': working_load(screw),
+        'working_load_N': opened.working_load,
         'working_load_stated': stated,
         'other_working_loads_N': loads,
         'other_working_load_speeds_rad_s': onset_over_working_load(raceway, *place, loads),
-        'working_pressure_Pa': max(working_pressure(screw, side) for side in SIDES),
+        'working_pressure_Pa': opened.working_pressure,
         'roughness': roughness_sentence(screw.roughness, screw.ball_roughness),
         'extrapolated': extrapolated(screw),
         'states': states,

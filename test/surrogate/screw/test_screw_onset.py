@@ -7,16 +7,17 @@ import math
 
 import numpy as np
 import pytest
-from surrogate.asperities.law import BANDS, law_of
-from surrogate.asperities.running_in import working_pressure
-from surrogate.formulas.geometry import screw_contact, SIDES
+from surrogate.asperities.law import BANDS
+from surrogate.formulas.geometry import screw_contact
 from surrogate.formulas.inlet import inlet_speed
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import normal_force
 from surrogate.parameters import BallRoughness
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import oil_at
-from surrogate.screw.onset import (
+from surrogate.screw.onset_figure import figure_onset
+from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import (
     extrapolated,
     onset_over_working_load,
     onset_page,
@@ -27,7 +28,6 @@ from surrogate.screw.onset import (
     run_in_range,
     with_raceway,
 )
-from surrogate.screw.onset_figure import figure_onset
 from surrogate.units import RPM
 
 KELVIN = 313.15
@@ -117,7 +117,7 @@ def test_a_working_load_that_summits_do_not_bear_has_no_onset(screw, oil):
 
 def test_running_in_is_at_a_pressure_that_the_contact_bears(screw):
     """The range of the sheet, from a tenth above the working pressure on, and no empty one."""
-    pressed = max(working_pressure(screw, side) for side in SIDES)
+    pressed = Contacts.of(screw).working_pressure
     sheet = screw.roughness
     assert run_in_range(screw) == (sheet.run_in_low, sheet.run_in_high)
     soft = with_raceway(screw, run_in_low=0.5 * pressed, run_in_pressure=1.2 * pressed)
@@ -130,7 +130,7 @@ def test_a_point_is_where_the_law_of_the_state_says(screw, oil, record):
     """Of the faster side, by the entrainment; a film of the same size as the roughness."""
     force, fluid = float(normal_force(screw, screw.preload)), oil_at(oil, KELVIN)
     for state, found in record['states'].items():
-        onsets = law_of(with_raceway(screw, state=state)).onsets
+        onsets = Contacts.of(with_raceway(screw, state=state)).law.onsets
         assert found['entrainment_speed_m_s'] == max(
             onset.speed(screw_contact(screw, side), force, fluid, oil.film_floor)
             for side, onset in onsets.items()

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surrogate.builder.contact_onset import EFFICIENCY, onset_of_sheets
+from surrogate.builder.sheets_onset import EFFICIENCY, onset_of_sheets
 from surrogate.formulas.torque import efficiency
-from surrogate.screw.onset import onset_point, with_raceway
+from surrogate.screw.screw_onset import onset_point, with_raceway
 from surrogate.surface import onset_of_surface, Surface
 from surrogate.surface.contact_onset import RMS_POWER
 

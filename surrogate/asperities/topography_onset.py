@@ -10,16 +10,16 @@ leaves of the roughness. The constants are fitted to marches of strips whose sum
 """
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from surrogate.asperities.running_in import running_tiles, shortest_wave
+from surrogate.asperities.running_in import running_tiles, RunningContact
 from surrogate.asperities.topography import acting_roughness, ActingRoughness
 from surrogate.ehl import ContactLubricant
-from surrogate.formulas.geometry import Contact, screw_contact, Side
+from surrogate.formulas.geometry import Contact
 from surrogate.formulas.line import central_film_line, Line, line_at, moes_line
-from surrogate.parameters import Screw
 
 Array = NDArray[np.float64]
 HEIGHTS = 4.76
@@ -94,15 +94,16 @@ def _fastest_root(spare: Array) -> Array:
     return np.asarray(np.where(below.any(axis=-1), speed, 0.0))
 
 
-def onset_of(screw: Screw, side: Side) -> TopographyOnset:
+@lru_cache(maxsize=64)
+def onset_of(contact: RunningContact) -> TopographyOnset:
     """
-    Return the onset of contact on a side of a screw, its raceway in the state of the sheet.
+    Return the onset of contact on a raceway as it runs.
 
-    Raises InputError as `running_tiles` does.
+    It takes seconds, once for each topography. Raises InputError as `running_tiles` does.
 
     """
-    tiles = running_tiles(screw, side)
+    tiles = running_tiles(contact)
     if not tiles:
         return TopographyOnset(acting=None)
-    modulus = 0.5 * screw_contact(screw, side).reduced_modulus
-    return TopographyOnset(acting=acting_roughness(tiles, modulus, shortest_wave(screw)))
+    modulus = 0.5 * contact.reduced_modulus
+    return TopographyOnset(acting=acting_roughness(tiles, modulus, contact.shortest_wave))

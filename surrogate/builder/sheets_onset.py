@@ -8,7 +8,7 @@ from surrogate.builder.closed_form import default_settings
 from surrogate.formulas.torque import efficiency
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw import closed_form
-from surrogate.screw.onset import onset_point
+from surrogate.screw.screw_onset import onset_point
 from surrogate.surface.contact_onset import (
     contact_onset,
     ContactOnset,
@@ -30,7 +30,7 @@ def onset_of_sheets(screw: Screw, lubricant: Lubricant, temperature: float) -> C
 
     """
     settings = default_settings(screw)
-    (slowest, fastest), band = settings.speed_range, band_of(screw)
+    (slowest, fastest), band = settings.speed_range, band_of(screw.roughness)
     speeds, loads = grid_of((slowest, fastest), settings.load_range)
 
     def has(heat: float, limits: ZoneLimits) -> bool:

@@ -1,0 +1,163 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+A point as a record, whatever the tier: plain numbers for JSON, SI units, NaN where unknown.
+
+The numbers of a result stand under the keys of their declaration, beside what the classical
+formulas say of the same point.
+
+"""
+
+from collections.abc import Sequence
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.formulas import torque
+from surrogate.formulas.film import central_film_nijenbanning_1994
+from surrogate.formulas.geometry import helix_angle
+from surrogate.formulas.inlet import heating_factor, starved_speed
+from surrogate.formulas.load_sharing import nut_forces, UNLOADING_RATIO
+from surrogate.parameters import Lubricant, OperatingPoint, Screw
+from surrogate.raceway.ball import roughness_sentence
+from surrogate.results import declared
+from surrogate.screw.opened import Contacts
+from surrogate.screw.point import PointContact, ScrewPoint
+from surrogate.surface import regime_of
+from surrogate.units import RPM, ZERO_CELSIUS
+
+Array = NDArray[np.float64]
+CONSTANT_FRICTION = 0.005
+"""Effective friction coefficient of the constant-friction comparator [-]."""
+WEAR = 'asperity_pressure_Pa', 'asperity_power_W'
+"""Keys of the load on asperities per Hertz area, and times the sliding speed."""
+
+
+def point_record(
+    screw: Screw,
+    lubricant: Lubricant,
+    point: OperatingPoint,
+    found: ScrewPoint[Any],
+    formulas: ScrewPoint[Array],
+    *,
+    reasons: Sequence[str],
+    sliding: Sequence[float],
+    inlet_heating: bool,
+) -> dict[str, Any]:
+    """
+    Return what both tiers tell of a point.
+
+    For each contact the reason why it has no numbers, empty if it has, and its mean sliding speed
+    [m/s]. `formulas` are the point by published formulas, for comparison.
+
+    """
+    contacts = [
+        with_wear({'nut': one.nut, 'side': one.side, 'reason': reason} | declared(one), speed)
+        for one, reason, speed in zip(found.contacts, reasons, sliding, strict=True)
+    ]
+    worst, (loaded, relieved) = contacts[int(found.worst_contact)], found.normal_forces
+    return {
+        'status': found.status,
+        'screw': screw.name,
+        'oil': lubricant.name,
+        'roughness': roughness_sentence(screw.roughness, screw.ball_roughness),
+        'film_floor_m': lubricant.film_floor,
+        'film_factor': lubricant.film_factor,
+        'speed_rad_s': point.speed,
+        'load_N': point.load,
+        'opposing_load_N': point.opposing_load,
+        'temperature_K': point.temperature,
+        **declared(found),
+        **most_wear(contacts),
+        'regime': regime_of(float(found.film_ratio)).word,
+        'inlet_heating': inlet_heating,
+        'inlet_heating_factor': _heating_factor(screw, lubricant, point, formulas),
+        'worst_contact': {key: worst[key] for key in ('nut', 'side')},
+        'normal_force_loaded_N': float(loaded),
+        'normal_force_relieved_N': float(relieved),
+        'contacts': contacts,
+        'comparators': _comparators(screw, point, formulas.contacts[0]),
+    }
+
+
+def _heating_factor(
+    screw: Screw, lubricant: Lubricant, point: OperatingPoint, result: ScrewPoint[Array]
+) -> float:
+    """Return the least film factor of the heated inlets of contacts that carry [-]."""
+    # The speed that a contact is taken at: a starved inlet has less to shear.
+    speed = starved_speed(lubricant, result.entrainment_speed)
+    factors = [
+        float(
+            heating_factor(screw, lubricant, one.side, one.normal_force, speed, point.temperature)
+        )
+        for one in result.contacts
+        if one.normal_force > 0
+    ]
+    return min(factors, default=math.nan)
+
+
+def with_wear(contact: dict[str, Any], sliding: float) -> dict[str, Any]:
+    """Return the record of a contact with its numbers of wear, mean `sliding` speed [m/s]."""
+    if not contact['normal_force_N']:
+        return contact | dict.fromkeys(WEAR, 0.0)
+    carried = contact['asperity_share'] * contact['normal_force_N']
+    area = math.pi * contact['semi_axis_x_m'] * contact['semi_axis_y_m']
+    return contact | dict(zip(WEAR, (carried / area, carried * sliding), strict=True))
+
+
+def most_wear(contacts: list[dict[str, Any]]) -> dict[str, float]:
+    """Return each number of wear of the contact that has the most of it."""
+    return {name: float(np.max([contact[name] for contact in contacts])) for name in WEAR}
+
+
+def _comparators(
+    screw: Screw, point: OperatingPoint, loaded_screw: PointContact[Array]
+) -> dict[str, Any]:
+    """Return what the classical formulas say of the same point."""
+    angle, load = helix_angle(screw), point.opposing_load
+    forces = [float(force) for force in nut_forces(load, screw.preload)]
+    opposing, assisting = forces if load >= 0 else forces[::-1]
+    film, groups = math.nan, loaded_screw.film_groups
+    if point.speed and groups is not None:
+        contact = Contacts.of(screw).geometry[loaded_screw.side]
+        film = float(central_film_nijenbanning_1994(contact, groups))
+    driving = torque.torque_constant_friction(
+        opposing, assisting, screw.pitch_radius, angle, CONSTANT_FRICTION
+    )
+    friction = driving - torque.driving_torque(0.0, load, screw.lead)
+    return {
+        'constant_friction_coefficient': CONSTANT_FRICTION,
+        'constant_friction_torque_Nm': driving,
+        'constant_friction_efficiency': torque.efficiency(friction, load, screw.lead),
+        'catalogue_drag_torque_Nm': torque.drag_torque_catalogue(screw.preload, screw.lead, angle),
+        'central_film_nijenbanning_m': film,
+        'reason': '' if film > 0 else 'no film at rest or without load',
+    }
+
+
+def rating_warnings(screw: Screw, lubricant: Lubricant, point: OperatingPoint) -> list[str]:
+    """Return a sentence for each rating or range of a sheet that the point leaves."""
+    warnings = []
+    product = abs(point.speed) * 2 * screw.pitch_radius
+    if product > screw.speed_limit:
+        warnings.append(
+            f'speed: D n is {product / RPM:.3g} m rev/min, the screw allows '
+            f'{screw.speed_limit / RPM:.3g}'
+        )
+    if abs(point.load) > screw.static_rating:
+        warnings.append(
+            f'load: {abs(point.load):.4g} N, the static rating is {screw.static_rating:.4g} N'
+        )
+    if screw.preload and abs(point.load) >= UNLOADING_RATIO * screw.preload:
+        warnings.append(
+            'load: the relieved nut carries nothing, unloading begins at '
+            f'{UNLOADING_RATIO * screw.preload:.4g} N'
+        )
+    low, high = lubricant.minimum_temperature, lubricant.maximum_temperature
+    if not low <= point.temperature <= high:
+        warnings.append(
+            f'temperature: {point.temperature - ZERO_CELSIUS:.4g} degC, the oil sheet '
+            f'covers {low - ZERO_CELSIUS:g} to {high - ZERO_CELSIUS:g} degC'
+        )
+    return warnings
