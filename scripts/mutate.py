@@ -55,8 +55,6 @@ COVERED = {
     'surrogate/screw/closed_form_record.py': 'full_record',
     'surrogate/screw/contacts.py': 'solve full_record',
     'surrogate/screw/nut.py': 'solve full_record',
-    'surrogate/screw/opened.py': 'screw_onset solve',
-    'surrogate/screw/point.py': 'solve full_record',
     'surrogate/screw/record.py': 'closed_form_record full_record',
     'surrogate/screw/screw_onset.py': 'sensitivity',
     'surrogate/screw/solve.py': 'full_record',

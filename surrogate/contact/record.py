@@ -34,7 +34,7 @@ KEYS = {
     'krylov_iterations': 'number',
     'grid': 'nodes along and across',
     'wall_s': 'wall time',
-    'central_film_error': 'relative, estimated from the half grid',
+    'film_error': 'relative, estimated from the half grid',
     'rcs_error': 'the same of RCS',
     'film_floor_m': 'floor at which asperities carry',
 }

@@ -16,7 +16,6 @@ import types
 
 from ballscrew_monitor.cli import main
 from ballscrew_monitor.core.fields import stamp_of
-from ballscrew_monitor.cycle import node_process
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
 from ballscrew_monitor.cycle.outcome import plan
 from ballscrew_monitor.cycle.run import run
@@ -28,6 +27,7 @@ import polars as pl
 import pytest
 from rclpy.serialization import deserialize_message
 from rosbags.highlevel import AnyReader
+from surrogate import child
 
 ROOT = Path(__file__).resolve().parents[3]
 PARAMS = ROOT / 'config' / 'nominal_cycle.yaml'
@@ -199,7 +199,7 @@ def test_a_node_that_dies_at_its_start_is_a_failure(short_bag, tmp_path, monkeyp
     for path in old:
         path.write_bytes(b'of an earlier run')
     made = plan(short_bag, PARAMS, tmp_path, 1.0)
-    monkeypatch.setattr(node_process, 'sys', types.SimpleNamespace(executable='false'))
+    monkeypatch.setattr(child, 'sys', types.SimpleNamespace(executable='false'))
     assert run(made) == 1
     out, err = capsys.readouterr()
     assert err.startswith('ballscrew: the node ended with exit code 1')

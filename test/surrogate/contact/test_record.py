@@ -56,13 +56,13 @@ def test_the_record_has_the_documented_keys_and_friction_grows_with_slip():
     assert np.all(np.diff(found) > 0)
 
 
-def test_what_did_not_converge_is_not_told(documented):
+def test_what_did_not_converge_is_not_told():
     """The last iterate of a solve that stopped is no result: null, with the status as reason."""
     solution = solve_contact(
         SMALL.contact, SMALL.lubricant, SMALL.condition, settings=Settings(newton_limit=1)
     )
     record = to_json(contact_record(SMALL, solution))
-    assert set(record) == documented
+    assert record.keys() == DECLARED.keys()
     assert record['converged'] is False
     assert record['status'] == solution.status.value
     assert record['friction_coefficient'] == [None] * 3
