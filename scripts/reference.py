@@ -24,7 +24,7 @@ from surrogate.contact import record as contact_record
 from surrogate.datasheet import key_of
 from surrogate.parameters import Lubricant, Material, Screw
 from surrogate.raceway.stated import BallRoughness, Roughness
-from surrogate.screw import closed_form_record, full_record, sensitivity
+from surrogate.screw import full_record, record, sensitivity
 
 TREE = Path(__file__).resolve().parent.parent
 REFERENCE = TREE / 'docs' / 'reference'
@@ -277,9 +277,9 @@ def option_row(parser: argparse.ArgumentParser, action: argparse.Action) -> list
 def json_page() -> str:
     """Return the page of the keys that commands print with `--json`."""
     records = {
-        '`ballscrew point`, both tiers': closed_form_record.KEYS,
+        '`ballscrew point`, both tiers': record.KEYS,
         '`ballscrew point --tier full`, besides': full_record.KEYS,
-        'Each of `contacts`': closed_form_record.CONTACT_KEYS,
+        'Each of `contacts`': record.CONTACT_KEYS,
         'Each of `contacts`, full tier, besides': full_record.CONTACT_KEYS,
         '`ballscrew point --sensitivity`': sensitivity.KEYS,
         '`ballscrew contact`': contact_record.KEYS,

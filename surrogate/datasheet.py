@@ -83,9 +83,14 @@ def choice(*allowed: str, default: Any = MISSING, means: str = '') -> Any:
 
 
 def same(cls: type, name: str, *, default: Any = None, means: str = '') -> Any:
-    """Declare a field as another sheet declares it, absent by default; it may mean less here."""
-    spec = next(spec for spec in fields(cls) if spec.name == name)
-    return field(default=default, metadata=spec.metadata | ({'means': means} if means else {}))
+    """
+    Declare a field as another sheet declares it, absent by default.
+
+    What it `means` is the same too, unless another meaning is given.
+
+    """
+    rules = next(spec for spec in fields(cls) if spec.name == name).metadata
+    return field(default=default, metadata={**rules, 'means': means or rules['means']})
 
 
 def block(cls: type, *, default: Any = MISSING, means: str = '') -> Any:

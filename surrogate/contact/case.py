@@ -101,20 +101,20 @@ class CaseRoughness(Checked):
         'cut',
         'standard',
         default=None,
-        means='`rescaled` (default): scaled once to `rms_um` over the window; `cut`: '
-        'at the height of formula or file; `standard`: by the standard, as a '
-        'drawing means Rq',
+        means='`rescaled` (default): scaled once to `rms_um` over the window; `cut`: at '
+        'the height of formula or file; `standard`: by the standard, as a drawing '
+        'means Rq',
     )
     lay: Lay | None = same(RoughnessSpectrum, 'lay', means='direction of the ridges (isotropic)')
     shortest_wavelength: float | None = same(
         PublishedRoughness,
         'shortest_wavelength',
-        means='shortest wave of the raceway (8); with `file` the cut-off of a '
-        'Gaussian filter; with `patch: standard` shorter waves are left out',
+        means='shortest wave of the raceway (8); with `file` the cut-off of a Gaussian '
+        'filter; with `patch: standard` shorter waves are left out',
     )
     grid_wavelength: float | None = quantity(
         'um',
-        1e-06,
+        1e-6,
         0.1,
         1000.0,
         default=None,
@@ -136,26 +136,19 @@ class CaseRoughness(Checked):
     )
     ridges: int | None = same(RoughnessSpectrum, 'ridges', means='ridges (10)')
     position_x: float | None = quantity(
-        'mm',
-        0.001,
-        -1000.0,
-        1000.0,
-        default=None,
-        means='place of the raceway at the contact centre (0)',
+        'mm', 1e-3, -1e3, 1e3, default=None, means='place of the raceway at the contact centre (0)'
     )
-    position_y: float | None = quantity(
-        'mm', 0.001, -1000.0, 1000.0, default=None, means='likewise'
-    )
+    position_y: float | None = quantity('mm', 1e-3, -1e3, 1e3, default=None, means='likewise')
     window_x: float | None = quantity(
         'mm',
-        0.001,
-        0.001,
+        1e-3,
+        1e-3,
         100.0,
         default=None,
         means='side of the window in which the patch is levelled and scaled (Hertz '
         'rectangle); state one in a series over loads',
     )
-    window_y: float | None = quantity('mm', 0.001, 0.001, 100.0, default=None, means='likewise')
+    window_y: float | None = quantity('mm', 1e-3, 1e-3, 100.0, default=None, means='likewise')
     cutoff_long: float | None = same(
         RoughnessSpectrum,
         'cutoff_long',

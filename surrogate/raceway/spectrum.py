@@ -43,27 +43,22 @@ class RoughnessSpectrum(Checked):
 
     rms: float = quantity(
         'um',
-        1e-06,
+        1e-6,
         0.0,
         10.0,
         means='Rq of a profile traced across the lay, which moves films and RCS most; 0 is smooth',
     )
     cutoff_long: float | None = quantity(
         'mm',
-        0.001,
+        1e-3,
         0.001,
         100.0,
         default=None,
-        means='long cut-off of that profile; without it by ISO 21920 for Ra = 0.8 Rq,'
-        ' which every result then states',
+        means='long cut-off of that profile; without it by ISO 21920 for Ra = 0.8 Rq, '
+        'which every result then states',
     )
     cutoff_short: float = quantity(
-        'um',
-        1e-06,
-        0.1,
-        1000.0,
-        default=CUTOFF_SHORT,
-        means='short cut-off, and the shortest wave',
+        'um', 1e-6, 0.1, 1000.0, default=CUTOFF_SHORT, means='short cut-off, and the shortest wave'
     )
     fractal_dimension: float | None = quantity(
         '',

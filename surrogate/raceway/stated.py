@@ -51,7 +51,7 @@ class Roughness(RoughnessSpectrum):
     )
     hardness: float = quantity(
         'GPa',
-        1000000000.0,
+        1e9,
         1.0,
         20.0,
         default=HARDNESS,
@@ -59,28 +59,23 @@ class Roughness(RoughnessSpectrum):
     )
     run_in_pressure: float = quantity(
         'GPa',
-        1000000000.0,
+        1e9,
         0.5,
         20.0,
-        default=3000000000.0,
-        means='stands for yield and mild wear of running in together; the least '
-        'certain number of the sheet: 2 and 5 move the onset by 0.3 and 1.9',
+        default=3e9,
+        means='stands for yield and mild wear of running in together; the least certain '
+        'number of the sheet: 2 and 5 move the onset by 0.3 and 1.9',
     )
     run_in_low: float = quantity(
         'GPa',
-        1000000000.0,
+        1e9,
         0.5,
         20.0,
-        default=2000000000.0,
+        default=2e9,
         means='its lowest likely value; draws the broken lines beside the limit alone',
     )
     run_in_high: float = quantity(
-        'GPa',
-        1000000000.0,
-        0.5,
-        20.0,
-        default=5000000000.0,
-        means='its highest likely value, likewise',
+        'GPa', 1e9, 0.5, 20.0, default=5e9, means='its highest likely value, likewise'
     )
     asperity_friction: float = quantity(
         '', 1.0, 0.0, 1.0, means='boundary friction coefficient, 0.1 for mineral oil on steel'

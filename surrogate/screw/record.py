@@ -32,6 +32,70 @@ CONSTANT_FRICTION = 0.005
 """Effective friction coefficient of the constant-friction comparator [-]."""
 WEAR = 'asperity_pressure_Pa', 'asperity_power_W'
 """Keys of the load on asperities per Hertz area, and times the sliding speed."""
+KEYS = {
+    'tier': 'model',
+    'status': 'how the solve ended, with the reason of a number that is not known',
+    'warnings': 'sentences about ratings and ranges',
+    'screw': 'name of the sheet',
+    'oil': 'name of the sheet',
+    'roughness': 'stated roughness with its assumptions',
+    'film_floor_m': 'of the oil',
+    'film_factor': 'of the oil',
+    'speed_rad_s': 'as asked',
+    'load_N': 'as asked',
+    'opposing_load_N': 'positive against the motion',
+    'temperature_K': 'of the oil',
+    'efficiency': '0 at zero load',
+    'friction_torque_Nm': 'lost torque',
+    'driving_torque_Nm': 'torque on the screw, negative when the load drives it',
+    'back_driving': 'whether the load drives the screw',
+    'rcs': 'of the worst contact',
+    'asperity_share': 'of the worst contact',
+    'asperity_pressure_Pa': 'asperity load over the area of the Hertz ellipse, of the contact '
+    'with most of it',
+    'asperity_power_W': 'asperity load times mean sliding speed, of the contact with most of it',
+    'film_ratio': 'Lambda of the thinnest smooth film',
+    'regime': 'by the film ratio',
+    'central_film_m': 'of the thinnest contact',
+    'minimum_film_m': 'of the thinnest contact',
+    'inlet_heating': 'whether heating of the inlet thins the films',
+    'inlet_heating_factor': 'least factor on a film; 0.3 stands for beyond the fit',
+    'friction_coefficient': 'mean traction against the slip over the normal forces',
+    'max_pressure_Pa': 'of the most pressed contact',
+    'worst_contact': '`nut` and `side` of the largest RCS',
+    'normal_force_loaded_N': 'of a ball of the loaded nut, before friction',
+    'normal_force_relieved_N': 'of a ball of the relieved nut, before friction',
+    'entrainment_speed_m_s': 'of a ball, before friction',
+    'contact_angle_A_rad': 'of a ball of the loaded nut on the screw',
+    'contact_angle_B_rad': 'of the same ball on the nut',
+    'contacts': 'the four contacts, keys below',
+    'comparators': 'constant friction, catalogue drag, a second film formula',
+    'wall_s': 'wall time',
+    'contact_onset': 'where contact begins: `sentence`, `speed_rad_s`, `speed_range_rad_s`, '
+    '`fastest_speed_rad_s`, `temperature_K`, `optimal_zone`',
+}
+"""Keys of a point of either tier, as `ballscrew point --json` prints it."""
+CONTACT_KEYS = {
+    'nut': 'loaded or relieved',
+    'side': 'screw or nut',
+    'reason': 'of a number that is not known',
+    'normal_force_N': 'of a ball',
+    'semi_axis_x_m': 'along the track',
+    'semi_axis_y_m': 'across it',
+    'hertz_pressure_Pa': 'largest Hertz pressure',
+    'central_film_m': 'of the smooth contact',
+    'minimum_film_m': 'of the smooth contact',
+    'film_ratio': 'Lambda',
+    'rcs': 'share of the load on punctured nodes',
+    'asperity_share': 'share that asperities carry',
+    'friction_coefficient': 'of the sliding',
+    'rolling_force_N': 'on each surface',
+    'sliding_torque_Nm': 'of all balls of the nut',
+    'rolling_torque_Nm': 'of all balls of the nut',
+    'asperity_pressure_Pa': 'as above',
+    'asperity_power_W': 'as above',
+}
+"""Keys of each of its contacts."""
 
 
 def point_record(

@@ -141,11 +141,6 @@ def rolling_force(
     }
 
 
-def tiles_of(screw: Screw) -> list[Tile]:
-    """Return tiles of the raceway on the screw."""
-    return running_tiles(Contacts.of(screw).running['screw'])
-
-
 def _wave(case: ValidationCase, length: float) -> tuple[float, float]:
     """Return what is left of a wave, its length over the half length of the contact [-]."""
     strip = strip_at(case.contact, case.load, 0.0, 1e-5, 4)
@@ -199,6 +194,11 @@ def run_in_speeds(case: ValidationCase) -> list[float]:
     place = case.lubricant, 0.0, case.temperature
     found = onset_over_pressure(case.new, *place, run_in_range(case.screw))
     return [speed / case.onset['speed_rad_s'] for speed in found]
+
+
+def tiles_of(screw: Screw) -> list[Tile]:
+    """Return tiles of the raceway on the screw as it runs."""
+    return running_tiles(Contacts.of(screw).running['screw'])
 
 
 def run_in_height(case: ValidationCase) -> list[float]:

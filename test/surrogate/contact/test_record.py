@@ -4,18 +4,15 @@
 
 from dataclasses import replace
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
 from surrogate.contact.case import CaseDomain, CaseGrid, CaseRoughness, load_case
-from surrogate.contact.record import contact_page, contact_record, friction_coefficient
-from surrogate.contact.record import KEYS as DECLARED
+from surrogate.contact.record import contact_page, contact_record, friction_coefficient, KEYS
 from surrogate.contact.solve import solve_case
 from surrogate.ehl import Settings, solve_contact
 from surrogate.files import to_json
 
-PAGE = Path(__file__).parents[3] / 'docs' / 'reference' / 'contact.md'
 SMALL = replace(load_case('nominal_smooth'), grid=CaseGrid(nx=65, ny=33))
 
 
@@ -39,11 +36,11 @@ def table_case(rows, name, side):
     )
 
 
-def test_the_record_has_the_documented_keys_and_friction_grows_with_slip():
+def test_the_record_has_the_declared_keys_and_friction_grows_with_slip():
     """All keys, JSON types; no slip, no friction; then monotonic, linear at first."""
     solution, _ = solve_case(SMALL)
     record = contact_record(SMALL, solution)
-    assert DECLARED.keys() == record.keys()
+    assert record.keys() == KEYS.keys()
     assert record['grid'] == [65, 33]
     assert record['converged'] is True
     assert record['rcs'] == record['asperity_share'] == 0.0
@@ -62,7 +59,7 @@ def test_what_did_not_converge_is_not_told():
         SMALL.contact, SMALL.lubricant, SMALL.condition, settings=Settings(newton_limit=1)
     )
     record = to_json(contact_record(SMALL, solution))
-    assert record.keys() == DECLARED.keys()
+    assert record.keys() == KEYS.keys()
     assert record['converged'] is False
     assert record['status'] == solution.status.value
     assert record['friction_coefficient'] == [None] * 3

@@ -4,7 +4,6 @@
 
 from dataclasses import replace
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,8 +17,6 @@ AVERAGED = (
     *'memory_length_m'.split(),
 )
 
-PAGE = Path(__file__).parents[3] / 'docs' / 'reference' / 'contact.md'
-
 
 def strict(record):
     """Return a record as it is read from its JSON."""
@@ -31,7 +28,7 @@ def test_the_record_is_strict_json_of_the_march(rolling_case, marched, says):
     record = rolling_record(rolling_case, *marched)
     averages = {key for key in record if '_standard_error' not in key}
     assert averages == KEYS.keys()
-    assert {'rcs_standard_error', 'mean_film_standard_error_m'} <= set(record)
+    assert {'rcs_standard_error', 'mean_film_standard_error_m'} <= record.keys()
     assert strict(record)['strip_width_m'] is None
     assert record['kinematics'] == 'rolling'
     assert record['grid'] == [65, 65]

@@ -13,9 +13,9 @@ from surrogate.ehl.friction import contact_friction
 from surrogate.files import to_json
 from surrogate.formulas.inlet import SPEED_EXPONENT
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
-from surrogate.screw import closed_form_record as closed_form
 from surrogate.screw import figures as figures_point
 from surrogate.screw import full_record as full
+from surrogate.screw import record as both
 from surrogate.screw.ball_motion import slip_floor
 from surrogate.screw.closed_form_record import closed_form_record, page
 from surrogate.screw.contacts import make_contacts, ScrewSettings
@@ -316,10 +316,10 @@ def test_every_key_is_declared_with_its_meaning():
     """Those of the closed form for both tiers, the others for the full one."""
     point, found = record(60, 800.0)
     formulas = closed_form_record(SCREW, OIL, point)
-    assert closed_form.KEYS.keys() == formulas.keys() | {'contact_onset'}
-    assert closed_form.CONTACT_KEYS.keys() == formulas['contacts'][0].keys()
+    assert both.KEYS.keys() == formulas.keys() | {'contact_onset'}
+    assert both.CONTACT_KEYS.keys() == formulas['contacts'][0].keys()
     assert full.KEYS.keys() == found.keys() - formulas.keys()
     solved = found['contacts'][0].keys()
-    assert full.CONTACT_KEYS.keys() == solved - closed_form.CONTACT_KEYS.keys()
+    assert full.CONTACT_KEYS.keys() == solved - both.CONTACT_KEYS.keys()
     onset = onset_of_surface(Surface.load(shipped_surface())).record()
-    assert all(f'`{key}`' in closed_form.KEYS['contact_onset'] for key in onset)
+    assert all(f'`{key}`' in both.KEYS['contact_onset'] for key in onset)

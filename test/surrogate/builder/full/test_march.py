@@ -4,9 +4,9 @@
 
 from dataclasses import replace
 import json
-import sys
 
 from surrogate.builder import tiers
+from surrogate.builder.full import march
 from surrogate.builder.full import tier as full_tier
 from surrogate.builder.full.march import march_task, march_tasks
 from surrogate.builder.full.settings import default_full_settings
@@ -48,8 +48,7 @@ def test_a_build_keeps_what_strips_gave_and_tells_it(
         return NEVER if inputs['draw'] else BEGINS
 
     monkeypatch.setattr(full_tier, 'build_full', lambda *given: SHIPPED)
-    # Workers find it by the name of the task.
-    monkeypatch.setattr(sys.modules[full_tier.march_task.__module__], 'march_task', marched)
+    monkeypatch.setattr(march, 'march_task', marched)  # where workers find it
     settings = default_full_settings(screw)
     known = {'pool': here(), 'out': tmp_path / 'a.npz'}
     data = tiers.build_surface('full', screw, oil, settings, march=True, **known)
