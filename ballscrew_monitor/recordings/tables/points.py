@@ -103,7 +103,8 @@ def _column_of(
 
 def _scaling(path: Path, column: str, kind: str, asked: PointColumns) -> conversions.Scaling:
     """Return the line from the numbers of a column to SI units, by the unit in its name."""
-    unit = unit_of(column, kind)
+    milli = kind == 'torque' and MILLI_NEWTON.search(column) is not None
+    unit = 'N m' if milli else unit_of(column, kind)
     allowed = [one for one in UNITS[kind] if one != RATED]
     if unit not in allowed:
         raise InputError(
@@ -115,9 +116,7 @@ def _scaling(path: Path, column: str, kind: str, asked: PointColumns) -> convers
         return conversions.speed_scaling(unit, handedness='right', **line)
     if kind == 'temperature':
         return conversions.temperature_scaling(unit, scale=1.0, offset=0.0)
-    factor = UNITS[kind][unit]
-    if kind == 'torque' and MILLI_NEWTON.search(column):
-        factor *= 1e-3
+    factor = UNITS[kind][unit] * (1e-3 if milli else 1.0)
     if kind == 'current' and asked.torque_constant is not None:
         factor *= asked.torque_constant
     return conversions.Scaling(factor=factor, shift=0.0)

@@ -19,6 +19,8 @@ BRACKETS = re.compile(r'[\[(]([^\])]+)[\])]')
 _PER = re.compile(r'[\s_]*(?:/|_|\s|(?<![a-z])per(?![a-z]))[\s_]*')
 _CAMEL_PER = re.compile(r'(?<=[a-z])Per(?=[A-Z])')
 _LONGEST = 4  # words of a unit, such as m per min in camel case
+_PREFIX = re.compile(r'(?<![^\W\d_])(?:da|[munkMGhcdµμ])$')
+"""A prefix of the SI that begins a word: what follows is no unit by itself, as N in daN."""
 _BY_ITSELF = 2  # letters of a unit that says without brackets which quantity it is of
 _OTHER_WORDS = frozenset({'min', 'rev', 'rad', 'deg', 'nm', 'ma', 'amp', 'amps'})
 _ALIASES = {
@@ -100,7 +102,7 @@ def _stated(column: str) -> Iterator[str]:
         for first in range(1, len(spans) - length + 1):
             begin, end = spans[first][0], spans[first + length - 1][1]
             text = _plain(bare[begin:end])
-            if _stands_alone(text):
+            if _stands_alone(text) and not _PREFIX.search(bare[:begin]):
                 yield text
 
 
@@ -108,7 +110,8 @@ def _ends(column: str) -> list[str]:
     """Return the last words of a name as they are joined, most of them first, but never all."""
     bare = BRACKETS.sub(' ', column).strip()
     starts = [match.start() for match in WORD.finditer(bare)][1:]
-    return [_plain(bare[start:]) for start in starts[-_LONGEST:]]
+    whole = [start for start in starts if not _PREFIX.search(bare[:start])]
+    return [_plain(bare[start:]) for start in whole[-_LONGEST:]]
 
 
 def _before(column: str, unit: str) -> str:

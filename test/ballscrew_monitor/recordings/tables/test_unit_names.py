@@ -31,6 +31,12 @@ import pytest
         ('x_min_time', 'time', ''),
         ('Drehzahl [min⁻¹]', 'speed', 'rev/min'),
         ('Laufzeit [sek]', 'time', 's'),
+        ('x_force_daN', 'load', ''),  # ten times a newton
+        ('x_force_kN', 'load', 'kN'),
+        ('x_torque_mNm', 'torque', ''),
+        ('x_torque_kNm', 'torque', ''),
+        ('torqueNm', 'torque', 'N m'),
+        ('oil_mK', 'temperature', ''),
     ],
 )
 def test_a_unit_is_found_as_it_is_spelt(column, kind, unit):
