@@ -1,9 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Roughness of raceway and ball as a datasheet of a screw states it, by the standard.
-
-"""
+"""Roughness of raceway and ball as a datasheet of a screw states it, by the standard."""
 
 from dataclasses import dataclass, fields
 from typing import Literal
@@ -136,7 +133,7 @@ class Roughness(RoughnessSpectrum):
 
     @property
     def spectrum(self) -> RoughnessSpectrum:
-        """The profile alone, by which waves are known."""
+        """Return the profile alone, by which waves are known."""
         names = [spec.name for spec in fields(RoughnessSpectrum)]
         return RoughnessSpectrum(**{name: getattr(self, name) for name in names})
 

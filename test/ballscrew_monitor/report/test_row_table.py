@@ -37,8 +37,8 @@ def test_parts_hold_each_row_once_and_what_lies_ahead(judged, tmp_path, small_pa
     table = judged.table(tmp_path / 'rows.arrow', [judged.rows(0, 50), judged.rows(50, 25)])
     stamps = [part.collect()['stamp'].to_list() for part in table.parts(ahead=ahead)]
     wanted = judged.rows(0, 75).rows['stamp'].tolist()
-    ends = min(30 + ahead, 75), min(60 + ahead, 75)
-    assert stamps == [wanted[: ends[0]], wanted[30 : ends[1]], wanted[60:]]
+    first, second = min(30 + ahead, 75), min(60 + ahead, 75)
+    assert stamps == [wanted[:first], wanted[30:second], wanted[60:]]
     found = table.collect(lambda part: part.filter(pl.col('stamp') > wanted[28]).select('stamp'))
     assert found['stamp'].to_list() == wanted[29:]
 
