@@ -25,7 +25,7 @@ from mcap.records import ChunkIndex
 import numpy as np
 from surrogate import limits
 
-BATCH = 4 * 1024 * 1024  # [bytes] of chunks that are looked at together
+BATCH = 1024 * 1024  # [bytes] of chunks that are looked at together
 MESSAGES = 16384  # of a bag without chunks that are looked at together
 PLACES = 32  # bits for the place of a message in its chunk
 END = 2**63 - 1
