@@ -90,7 +90,6 @@ class RowTable:
     """The rows of one axis in a file."""
 
     def __init__(self, path: Path) -> None:
-        """Begin with no row."""
         self.rows, self._path = 0, path
 
     def add(self, rows: NDArray[Any]) -> None:
@@ -124,7 +123,6 @@ class RowStore:
     """Keeps the rows of all axes in a folder, which is a `scratch_folder`."""
 
     def __init__(self, folder: Path) -> None:
-        """Begin with no row."""
         self._folder = folder
         self._tables: dict[str, RowTable] = {}
 
@@ -151,7 +149,6 @@ class RowStore:
 
 
 def _named(axis: str, frame: pl.DataFrame) -> pl.DataFrame:
-    """Return a frame with its axis and the words of codes."""
     words = (WORDS[name].gather(frame[name]).alias(name) for name in WORDS)
     whose = pl.Series('axis', [axis], dtype=pl.String).new_from_index(0, frame.height)
     return frame.with_columns(*words).insert_column(0, whose)
