@@ -112,7 +112,7 @@ def event_bytes(case: AxisCase, budget: AxisBudget) -> float:
 
 
 def _is_short(case: AxisCase, buckets: int) -> bool:
-    """Tell whether all samples are kept, because they are no more than the rows of buckets."""
+    """Return True if all samples are kept, because they are no more than the rows of buckets."""
     return case.survey.rows <= 2 * buckets
 
 
