@@ -96,7 +96,7 @@ class Summary:
 
     @property
     def says_nothing(self) -> bool:
-        """Tell whether nothing of a motion was judged; at standstill there is nothing to judge."""
+        """Return True if no motion was judged; at standstill there is nothing to judge."""
         return not self.judged or not self.optimal_time + self.outside_time
 
     def record(self) -> dict[str, Any]:

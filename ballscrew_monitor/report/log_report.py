@@ -119,7 +119,7 @@ class LogResult:
 
     @property
     def judged(self) -> bool:
-        """Tell whether something was judged on at least one axis."""
+        """Return True if something was judged on at least one axis."""
         return len(self.unjudged) < len(self.lines)
 
 
@@ -154,7 +154,6 @@ def report_log(
                 on_state=add_state,
                 health=HistoryMaker,
             )
-        store.end()
         with new_file(made / logs.STATES) as partial:
             store.write(partial)
         on_share(STORED_SHARE)

@@ -34,10 +34,12 @@ def find_logs(
     for path in paths:
         held = _recordings(path, tables, out)
         if not held:
-            endings = (*ENDINGS, *TABLES) if tables else ENDINGS
+            endings, there = (*ENDINGS, *TABLES) if tables else ENDINGS, _files(path, TABLES)
+            hint = '--guess > map.yaml, then --map map.yaml'
             raise InputError(
                 f'folder {path} holds no recording, it must hold bags or files of '
-                f'{" or ".join(endings)}{_hint(path)}'
+                f'{" or ".join(endings)}'
+                + (f'; for its tables: ballscrew import {there[0]} {hint}' if there else '')
             )
         found += held
     return list(dict.fromkeys(found))
@@ -67,7 +69,7 @@ def map_for(log: Path, mapping: Path | None, *, alone: bool) -> Path | None:
 
 def is_one_bag(folder: Path, *, tables: bool = False, out: Path | None = None) -> bool:
     """
-    Tell whether a folder is one bag: with metadata, or no more than the parts of one.
+    Return True if a folder is one bag: with metadata, or no more than the parts of one.
 
     Parts are numbered from 0 without a gap. Tables beside them count if `tables`; `out` does not.
 
@@ -90,7 +92,6 @@ def bears_name_of_bag(folder: Path) -> bool:
 
 
 def _are_parts(files: Sequence[Path]) -> bool:
-    """Tell whether files are by their names all parts of one bag that was split."""
     parts = [_PART.fullmatch(_stem(file.name)) for file in files]
     found = [(part[1], int(part[2])) for part in parts if part is not None]
     numbers = sorted(number for _, number in found)
@@ -101,16 +102,6 @@ def _stem(name: str) -> str:
     """Return the name of a file without its ending; points before that belong to the name."""
     endings = (ending for ending in (*ENDINGS, ACTIVE, *TABLES) if name.endswith(ending))
     return name.removesuffix(next(endings, ''))
-
-
-def _hint(folder: Path) -> str:
-    """Return what else is to be said of a folder without a recording that holds tables."""
-    tables = _files(folder, TABLES)
-    if not tables:
-        return ''
-    return (
-        f'; for its tables: ballscrew import {tables[0]} --guess > map.yaml, then --map map.yaml'
-    )
 
 
 def _folders(folder: Path, out: Path | None) -> list[Path]:
@@ -128,7 +119,6 @@ def _files(folder: Path, endings: tuple[str, ...]) -> list[Path]:
 
 
 def _held(folder: Path) -> list[Path]:
-    """Return what a folder holds in order of names, but for the products of a report."""
     products = PRODUCTS if (folder / PAGE).is_file() else ()
     return sorted(path for path in folder.iterdir() if path.name not in products)
 
