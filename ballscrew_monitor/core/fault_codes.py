@@ -37,11 +37,7 @@ class Fault(Worded):
 
     NONE = 0, 'nothing is wrong'
     NOT_SET = (1, 'no message was set', 'report it with the log of the node')
-    NOT_CONFIGURED = (
-        2,
-        'not configured, or shut down',
-        'correct the parameter or the file that the message names; then configure and activate',
-    )
+    NOT_CONFIGURED = (2, 'not configured, or shut down', 'configure and activate the node')
     INACTIVE = (3, 'the node is inactive, nothing is judged', 'activate the node')
     NOTHING_YET = (4, 'nothing has been judged yet', 'wait for an input; see Inputs')
     CLOCK_STANDS = (5, 'the clock stands still', 'play /clock, or set use_sim_time to false')
@@ -51,6 +47,11 @@ class Fault(Worded):
         'a defect: report the message and the trace in the log; the node goes on with the '
         'next message, other axes are not affected, and the error stays until the node is '
         'configured again',
+    )
+    NOT_BUILT = (
+        7,
+        'not configured, because a parameter or a file is wrong',
+        'correct the parameter or the file that the message names; then configure and activate',
     )
 
     RCS_HIGH = (

@@ -358,7 +358,7 @@ class AxisPublisher:
             self.axis.name,
             self._last,
             self._inputs,
-            self.axis.monitor.event.cause.code,
+            self.axis.monitor.event.code,
             self.axis.surface,
             links=links,
             clock_stands=stood > self.settings.timeouts[Source.SPEED],
@@ -368,7 +368,7 @@ class AxisPublisher:
         )
 
     def _summaries(self) -> tuple[diagnostics.StatusSummary, ...]:
-        cause = self.axis.monitor.event.cause.code
+        cause = self.axis.monitor.event.code
         return diagnostics.summaries(self._message, self._inputs, cause, self._links, self._policy)
 
     @property

@@ -5,7 +5,7 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Protocol
 
-from ballscrew_monitor.core.memory import after_restart, AxisRecord, Memory, memory_of, record_of
+from ballscrew_monitor.core.memory import after_restart, AxisRecord
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_records import entry_of, event_facts, Kind
@@ -65,21 +65,20 @@ class KeptAxes:
         axis: str | None = None,
         *,
         stamp: int | None = None,
-        memory: Memory | None = None,
+        record: AxisRecord | None = None,
         **facts: Any,
     ) -> None:
-        """Write an entry and the memory of its axis; its stamp [ns] is now unless stated."""
+        """Write an entry and the record of its axis; its stamp [ns] is now unless stated."""
         if self.state.folder is None:
             return
         if stamp is None:
             stamp = self._node.get_clock().now().nanoseconds
-        record = None if axis is None or memory is None else record_of(axis, memory)
         self.state.keep(record, entry_of(kind, axis, stamp, facts))
 
-    def remember(self, axis: str, memory: Memory) -> None:
-        """Keep what is remembered of an axis."""
+    def remember(self, record: AxisRecord) -> None:
+        """Keep the record of an axis."""
         if self.state.folder is not None:
-            self.state.keep(record_of(axis, memory))
+            self.state.keep(record)
 
     def restore(self, axes: Iterable[str] | None = None) -> None:
         """Take up what was kept of all axes, or late of some, and say what came of that."""
@@ -97,17 +96,16 @@ class KeptAxes:
         return publisher.restore(late=late)
 
     def _remember(self, axis: Axis) -> None:
-        self.remember(axis.name, axis.monitor.kept)
+        self.remember(axis.monitor.kept)
 
-    def _recall(self, axis: str, *, late: bool) -> Memory:
+    def _recall(self, axis: str, *, late: bool) -> AxisRecord:
         """Return what is known of an axis from before; an event that was interrupted is over."""
-        before = memory_of(self.state.recall(AxisRecord(axis=axis), late=late))
-        memory = after_restart(before)
-        if memory is not before:
-            event = memory.event
-            facts = event_facts(event)
-            self.note(Kind.EVENT_END, axis, stamp=event.stamp, memory=memory, **facts)
-        return memory
+        before = self.state.recall(AxisRecord(axis=axis), late=late)
+        record = after_restart(before)
+        if record is not before:
+            facts = event_facts(record)
+            self.note(Kind.EVENT_END, axis, stamp=record.stamp_ns, record=record, **facts)
+        return record
 
     def remember_all(self) -> None:
         """Keep the sums, events and shelvings of all axes."""

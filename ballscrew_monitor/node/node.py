@@ -8,6 +8,7 @@ import traceback
 from typing import Any
 
 from ballscrew_monitor.core.conversions import nanoseconds, seconds
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.inputs import InputSample, Refusal
 from ballscrew_monitor.core.tick_grid import TickGrid
 from ballscrew_monitor.judge.records import Row
@@ -366,7 +367,8 @@ class BallscrewMonitor(LifecycleNode):
                 links = self._intake.links(publisher.axis) if self._intake else None
                 made += publisher.statuses(links=links, stood=stood)
             else:
-                made += diagnostics.failed(node, name, self._failed.get(name, self._reason))
+                code = Fault.NOT_BUILT if name in self._failed else Fault.NOT_CONFIGURED
+                made += diagnostics.failed(node, name, self._failed.get(name, self._reason), code)
         return made + self._healths.statuses(axes) + self._recording.statuses()
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:

@@ -28,6 +28,7 @@ from ballscrew_monitor.messages.state_messages import fill_result, read_point, T
 from ballscrew_monitor.messages.unjudged import reason_of
 from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.node.solver import Done, End, Job, MOST_WAITING, Solver, Step
+from ballscrew_monitor.settings.parameters import REFUSALS
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import PointResult
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
@@ -107,7 +108,8 @@ class SolveServer:
         if not refusal:
             return GoalResponse.ACCEPT
         # Each is logged, since who has sent the goal reads the reason there.
-        self._node.get_logger().warning(f'solve of axis {request.axis} rejected: {refusal}')
+        logger = self._node.get_logger().get_child(REFUSALS)
+        logger.warning(f'solve of axis {request.axis} rejected: {refusal}')
         return GoalResponse.REJECT
 
     def _wanted(self, request: Any) -> tuple[AxisPublisher | str, Row | str]:

@@ -161,7 +161,7 @@ def _event_record(event: EventRecord, stamp: float) -> dict[str, Any]:
         'limit': event.limit,
         'active': stamp < begin + event.duration,
         'shelved': False,
-        'advice': advised(event.advice, event.target_speed),
+        'advice': advised(event.target_speed, event.carry),
         'acknowledged': False,
         'acknowledged_by': '',
     }

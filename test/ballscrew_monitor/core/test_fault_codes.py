@@ -6,7 +6,8 @@ import json
 from pathlib import Path
 
 from ballscrew_monitor.core.fault_codes import cause_code, Fault, STATUSES
-from ballscrew_monitor.core.judgement import Code, Severity, violation
+from ballscrew_monitor.core.judgement import Code, Severity
+from ballscrew_monitor.messages.state_messages import violation
 import pytest
 
 ROOT = Path(__file__).parents[3]
@@ -35,5 +36,5 @@ def test_a_cause_has_the_code_that_its_sentence_says(cause):
     assert code.name == (cause.name if known else 'CAUSE_UNKNOWN')
     if known:
         finding = violation(cause, 0.5, 0.25)
-        assert finding.severity is Severity.WARN
+        assert finding.severity == Severity.WARN
         assert finding.text.startswith(code.text.removeprefix('outside the optimal zone: '))
