@@ -173,7 +173,13 @@ class Supervision:
                 self._check_node()
                 if status.due(now) and self._states:
                     self._show(status, now)
-                if self._player.elapsed >= self._plan.bag.duration and self._all_received():
+                # The states say that every speed message of the bag has been taken.
+                if self._player.elapsed >= self._plan.bag.duration and all(
+                    axis.name in self._states
+                    and speed_health(self._state(axis.name)).received
+                    >= self._plan.bag.topics[absolute(axis.inputs[-1].topic)].count
+                    for axis in self._plan.axes
+                ):
                     self._settled.set()
 
     def _show(self, status: StatusLine, now: float) -> None:
@@ -186,15 +192,6 @@ class Supervision:
 
     def _state(self, axis: str) -> BallScrewState:
         return deserialize_message(self._states[axis], BallScrewState)
-
-    def _all_received(self) -> bool:
-        """Return True if the states say that every speed message of the bag has been taken."""
-        return all(
-            axis.name in self._states
-            and speed_health(self._state(axis.name)).received
-            >= self._plan.bag.topics[absolute(axis.inputs[-1].topic)].count
-            for axis in self._plan.axes
-        )
 
     def _check_node(self) -> None:
         code = self._process.returncode

@@ -175,6 +175,13 @@ def input_status_of(
     lag = int(least_lag(memory, source)) if lag_known else 0
     causes = source * WHYS
     newest = max(memory.refused_last[slice(causes, causes + WHYS)])
+    taken = int(memory.span_taken[source] + memory.before_taken[source])
+    refused = int(memory.span_refused[source] + memory.before_refused[source])
+    refusal = ''
+    if why != NOT_KNOWN:
+        numbers = float(memory.refusal_first[source]), float(memory.refusal_second[source])
+        most = float(settings.plausible[source])
+        refusal = inputs.refusal_text(source, Why(why), *numbers, most=most, field=field)
     return InputStatus(
         source=source,
         state=input_state_of(memory, settings, source, now),
@@ -195,29 +202,11 @@ def input_status_of(
         else tuple(
             cause for cause in Why if 0 <= now - memory.refused_last[causes + cause] < SHOWN
         ),
-        refused_share=_refused_share(memory, source),
+        refused_share=refused / taken if taken else 0.0,
         why=None if why == NOT_KNOWN else Why(why),
-        refusal='' if why == NOT_KNOWN else _refusal_text(memory, settings, source, field),
+        refusal=refusal,
         joints=joints if memory.others[source] else None,
     )
-
-
-def _refusal_text(memory: Any, settings: Any, source: Source, field: str) -> str:
-    """Return why the last message of an input was refused."""
-    return inputs.refusal_text(
-        source,
-        Why(int(memory.refusal[source])),
-        float(memory.refusal_first[source]),
-        float(memory.refusal_second[source]),
-        most=float(settings.plausible[source]),
-        field=field,
-    )
-
-
-def _refused_share(memory: Any, source: Source) -> float:
-    taken = int(memory.span_taken[source] + memory.before_taken[source])
-    refused = int(memory.span_refused[source] + memory.before_refused[source])
-    return refused / taken if taken else 0.0
 
 
 def _rate(memory: Any, source: Source) -> float:

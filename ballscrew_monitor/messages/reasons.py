@@ -41,10 +41,6 @@ def _refusal_reason(why: Why, link: Link | None, parameter: str) -> str:
     return f'{code.said}, {code.cure}'
 
 
-def _slow(status: InputStatus, link: Link | None, parameter: str) -> str:
-    return slow_reason(status.longest_gap, parameter)
-
-
 def _is_refused(status: InputStatus) -> bool:
     """Tell whether many messages are refused; implausible ones have words of their own."""
     others = set(status.refusing) - {Why.IMPLAUSIBLE}
@@ -58,7 +54,10 @@ _TROUBLES: dict[Fault, tuple[Happens, Cure | None]] = {
     Fault.LOST: (lambda status, link: status.losing, None),
     Fault.SIMULATED_STAMPS: (lambda status, link: status.lag > seconds(YEAR), None),
     Fault.LAG: (lambda status, link: status.lagging, None),
-    Fault.SLOW: (lambda status, link: status.slow, _slow),
+    Fault.SLOW: (
+        lambda status, link: status.slow,
+        lambda status, link, parameter: slow_reason(status.longest_gap, parameter),
+    ),
     Fault.SOURCES_UNKNOWN: (lambda status, link: link is not None and link.several is None, None),
     Fault.LOSS_UNKNOWN: (lambda status, link: status.lost is None, None),
 }

@@ -202,7 +202,16 @@ def fill_state(message: msg.BallScrewState, row: Any, monitor: Monitor) -> tuple
     fill_totals(message.totals, monitor.totals)
     for part, status in zip(message.inputs, inputs):
         fill_input(part, status)
-    _fill_judgement(message, row, monitor.settings.limits, reason)
+    limits = monitor.settings.limits
+    message.level, message.zone = int(row.level), int(row.zone)
+    fill_time(message.level_since, int(row.level_since))
+    message.event_id = int(row.event_id)
+    message.findings = findings_of(row, limits, reason)
+    message.active_gates = [int(gate) for gate in Gate if gate and row.gates & 1 << gate - 1]
+    message.rcs_limit = float(limits.rcs)
+    message.efficiency_limit = float(limits.efficiency)
+    message.light_load_limit = float(limits.light_load)
+    message.standstill_limit = float(limits.standstill_speed)
     message.judged = int(monitor.memory.judged)
     measured = row.motor_torque_source == PointSource.MEASURED
     message.measured_torque = torque = float(row.motor_torque) if measured else NAN
@@ -218,21 +227,6 @@ def fill_shelving(message: msg.BallScrewState, shelving: states.Shelving) -> Non
     message.shelved = shelving.until != 0
     fill_time(message.shelved_until, shelving.until)
     message.shelve_reason = shelving.reason
-
-
-def _fill_judgement(
-    message: msg.BallScrewState, row: Any, limits: judgement.Limits, reason: str
-) -> None:
-    message.level = int(row.level)
-    fill_time(message.level_since, int(row.level_since))
-    message.event_id = int(row.event_id)
-    message.zone = int(row.zone)
-    message.findings = findings_of(row, limits, reason)
-    message.active_gates = [int(gate) for gate in Gate if gate and row.gates & 1 << gate - 1]
-    message.rcs_limit = float(limits.rcs)
-    message.efficiency_limit = float(limits.efficiency)
-    message.light_load_limit = float(limits.light_load)
-    message.standstill_limit = float(limits.standstill_speed)
 
 
 def plain_values(state: msg.BallScrewState) -> dict[str, float | str | bool]:

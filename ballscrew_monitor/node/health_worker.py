@@ -175,14 +175,10 @@ class HealthWorker:
         self.take_store()
         job.keeper.keep(today)
         if job.assesses and not self._ending:
-            companions = self._companions_of(job)
+            known = job.surface.base_sha256
+            if known not in self._companions:  # the surfaces at other preloads
+                self._companions[known] = companions_beside(job.file(), job.surface)
+            companions = self._companions[known]
             made = job.keeper.assess(job.now, job.surface, companions, job.settings, over=job.over)
             said = health_message(made, surface_id=surface_id(job.surface), policy=job.policy)
             self.done.append(Assessed(made, said))
-
-    def _companions_of(self, job: Job) -> Companions | str:
-        """Return the surfaces at other preloads; they are looked for once for each surface."""
-        known = job.surface.base_sha256
-        if known not in self._companions:
-            self._companions[known] = companions_beside(job.file(), job.surface)
-        return self._companions[known]

@@ -90,22 +90,19 @@ class KeptAxes:
         self._log()
 
     def _restore(self, publisher: KeptAxis, late: bool) -> str:
+        """Take up what is known from before; an event that was interrupted is over."""
         axis = publisher.axis
-        axis.monitor.take_up(self._recall(axis.name, late=late))
+        before = self.state.recall(AxisRecord(axis=axis.name), late=late)
+        record = after_restart(before)
+        if record is not before:
+            facts = event_facts(record)
+            self.note(Kind.EVENT_END, axis.name, stamp=record.stamp_ns, record=record, **facts)
+        axis.monitor.take_up(record)
         self._remember(axis)
         return publisher.restore(late=late)
 
     def _remember(self, axis: Axis) -> None:
         self.remember(axis.monitor.kept)
-
-    def _recall(self, axis: str, *, late: bool) -> AxisRecord:
-        """Return what is known of an axis from before; an event that was interrupted is over."""
-        before = self.state.recall(AxisRecord(axis=axis), late=late)
-        record = after_restart(before)
-        if record is not before:
-            facts = event_facts(record)
-            self.note(Kind.EVENT_END, axis, stamp=record.stamp_ns, record=record, **facts)
-        return record
 
     def remember_all(self) -> None:
         """Keep the sums, events and shelvings of all axes."""

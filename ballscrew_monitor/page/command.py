@@ -47,7 +47,11 @@ def page_command(args: argparse.Namespace, nominal: Path) -> int:
     with interrupts(threading.Event()) as stopped, bound_socket(options) as bound:
         options = dataclasses.replace(options, port=bound.getsockname()[1])
         with contextlib.ExitStack() as stack:
-            begin = _begin_log(args, nominal) if args.log else _begin_node(options, stack)
+            if args.log:
+                begin = _begin_log(args, nominal)
+            else:
+                node = stack.enter_context(started_node('ballscrew_page'))
+                begin = lambda hub: LiveSource(node, hub, options)  # noqa: E731
             asyncio.run(_serve(options, bound, begin, lambda: bool(stopped)))
     return DONE
 
@@ -76,12 +80,6 @@ def _begin_log(args: argparse.Namespace, nominal: Path) -> Begin:
         axes = recorded_axes(bag, parameters, on_done)
     say(*parameters.notes, *bag.notes)
     return lambda hub: Recording(hub, axes)
-
-
-def _begin_node(options: PageOptions, stack: contextlib.ExitStack) -> Begin:
-    """Join the ROS graph; return what follows its nodes."""
-    node = stack.enter_context(started_node('ballscrew_page'))
-    return lambda hub: LiveSource(node, hub, options)
 
 
 class LiveSource:

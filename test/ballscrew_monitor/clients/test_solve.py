@@ -125,7 +125,8 @@ def test_what_the_node_cannot_solve_is_a_sentence_and_exit_code_1(node):
         ),
         (
             ('--axis', 'x', '--speed-rpm', 0, '--load-N', 500),
-            'ballscrew: the speed of the point is 0 rev/min, a solve needs motion\n',
+            'ballscrew: solve of axis x rejected: the speed of the point is 0 rev/min, '
+            'a solve needs motion\n',
         ),
     ):
         assert ask(node, *arguments) == (1, '', sentence)
