@@ -8,7 +8,7 @@ only those to be written.
 
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 import difflib
 import enum
 import math
@@ -96,21 +96,15 @@ def summary(
                 _trouble(axis, found, links, cure or f'{code.said}: {code.cure}'),
                 code,
             )
-    remarks = _remarks(axis, inputs, links)
-    return Standing.GOOD, '; '.join([Standing.GOOD.value, *remarks]), Fault.NONE
-
-
-def _remarks(
-    axis: str, inputs: tuple[InputStatus, ...], links: Mapping[Source, Link]
-) -> Iterator[str]:
-    """Yield what is worth a word of inputs that are well."""
+    remarks = [Standing.GOOD.value]
     few = [status for status in inputs if status.refusing]
     if few:
-        yield f'a few {_trouble(axis, few, links, _refused)}'
+        remarks.append(f'a few {_trouble(axis, few, links, _refused)}')
     for status in inputs:
         link = links.get(status.source)
         if link is not None and link.several:
-            yield f'{status.source.name.lower()} comes from {senders(link)}'
+            remarks.append(f'{status.source.name.lower()} comes from {senders(link)}')
+    return Standing.GOOD, '; '.join(remarks), Fault.NONE
 
 
 def _parameter(axis: str, source: Source) -> str:

@@ -144,19 +144,16 @@ class Intake(Waitable):
             types = {publisher.type_name for publisher in publishers_on(self._node, name)}
             if known is not None:
                 types = {known.type_name}
-            if len(types) == 1:
-                self._close(axis, one, types.pop())
-
-    def _close(self, axis: Axis, one: OpenInput, type_name: str) -> None:
-        """Read an open input as messages of a type, or note why that does not work."""
-        self._problems.pop((axis.name, one.source), None)
-        try:
-            closed = one.close(type_name)
-        except InputError as error:
-            self._problems[axis.name, one.source] = str(error)
-            return
-        self._open.remove((axis, one))
-        self._read(axis, closed)
+            if len(types) != 1:
+                continue
+            self._problems.pop((axis.name, one.source), None)
+            try:
+                closed = one.close(types.pop())
+            except InputError as error:
+                self._problems[axis.name, one.source] = str(error)
+                continue
+            self._open.remove((axis, one))
+            self._read(axis, closed)
 
     def __enter__(self) -> None:
         """Keep what the executor waits for, also when it is closed meanwhile."""

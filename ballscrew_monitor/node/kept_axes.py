@@ -87,7 +87,13 @@ class KeptAxes:
             publisher = self._publishers[name]
             if said := publisher.guarded('what was kept of it', self._restore, publisher, late):
                 self._node.get_logger().info(f'axis {name}: {said}')
-        self._log()
+        # What is wrong is logged when that has changed.
+        problem, before = self.state.problem, self._said
+        self._said = problem
+        if problem and problem != before:
+            self._node.get_logger().warning(f'state_dir: {problem}')
+        elif before and not problem:
+            self._node.get_logger().info('state_dir: all is kept again')
 
     def _restore(self, publisher: KeptAxis, late: bool) -> str:
         """Take up what is known from before; an event that was interrupted is over."""
@@ -128,12 +134,3 @@ class KeptAxes:
         self._looks += 1
         if self._looks % round(PERIOD / LOOK) == 0:
             self.remember_all()
-
-    def _log(self) -> None:
-        """Log what is wrong when that has changed."""
-        problem, before = self.state.problem, self._said
-        self._said = problem
-        if problem and problem != before:
-            self._node.get_logger().warning(f'state_dir: {problem}')
-        elif before and not problem:
-            self._node.get_logger().info('state_dir: all is kept again')

@@ -121,7 +121,15 @@ def _checked(args: argparse.Namespace) -> PageOptions:
     if not 0 <= args.port <= 0xFFFF:
         raise InputError(f'--port is {args.port}, allowed is 0 to 65535, 0 for any that is free')
     if args.cert is not None:
-        _check_certificate(args.cert, args.key)
+        try:
+            ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(
+                args.cert, args.key
+            )
+        except OSError as error:  # that of TLS is one too
+            raise InputError(
+                f'--cert {args.cert} and --key {args.key} cannot be used: '
+                f'{error.strerror or error}'
+            ) from None
     return PageOptions(
         host=args.host,
         port=args.port,
@@ -133,14 +141,6 @@ def _checked(args: argparse.Namespace) -> PageOptions:
         acting=args.allow_acting,
         oils=tuple(map(Surface.load, args.oils)),
     )
-
-
-def _check_certificate(cert: Path, key: Path) -> None:
-    try:
-        ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(cert, key)
-    except OSError as error:  # that of TLS is one too
-        why = error.strerror or error
-        raise InputError(f'--cert {cert} and --key {key} cannot be used: {why}') from None
 
 
 async def _serve(
