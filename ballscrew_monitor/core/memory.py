@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is kept of an axis over restarts: sums, last event and shelving."""
+"""Record of an axis over restarts: sums, last event and shelving."""
 
 import dataclasses
 import math

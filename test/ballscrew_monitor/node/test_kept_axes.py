@@ -99,7 +99,7 @@ class Machine:
 
     @property
     def running_time(self):
-        return self.monitor.kept.totals.running_time
+        return self.monitor.kept.running_time_ns
 
 
 def live(machine, pipe):

@@ -441,7 +441,7 @@ def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path)
     for name, outcome in (('x', x), ('z', z)):
         monitor = node.axes[name].monitor
         assert (outcome.axis, outcome.judged) == (name, monitor.memory.judged)
-        assert outcome.totals == monitor.kept.totals
+        assert outcome.totals == monitor.totals
         assert len(outcome.events) == monitor.event.number
         assert sum(len(one.rows) for one in blocks if one.axis == name) == outcome.rows
     assert not any(one.active for one in x.events[:-1])
