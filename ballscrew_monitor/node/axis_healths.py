@@ -159,11 +159,11 @@ class AxisHealths:
         while worker.damage:
             self._kept.state.damage.append(worker.damage.popleft())
         while worker.done:
-            made = worker.done.popleft()
-            name = made.health.axis
-            self._last[name] = made.health
-            self._latched[name].health.publish(made.message)
-            self._record(f'~/{name}/health', made.message)
+            health, message = worker.done.popleft()
+            name = health.axis
+            self._last[name] = health
+            self._latched[name].health.publish(message)
+            self._record(f'~/{name}/health', message)
 
     def _serve(self, axis: str, request: Any, response: Any) -> Any:
         """Name a baseline, and assess with it soon; answer what was done."""
