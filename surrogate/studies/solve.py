@@ -36,14 +36,12 @@ from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.opened import Contacts
 from surrogate.screw.solve import ScrewSolution, solve_screw
 from surrogate.studies.rows import inputs_hash, row_of, StudyRow
-from surrogate.studies.tasks import CASES, SMOOTH, STANDING, StudyTask
+from surrogate.studies.tasks import CASES, OIL, SCREW, SMOOTH, STANDING, StudyTask
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.tasks.store import TaskStore
 from surrogate.tasks.table import read_table, write_table
 from surrogate.units import RPM
 
-SCREW, OIL = 'nominal', 'iso_vg_68'
-"""Datasheets of the published screw."""
 TABLE = 'paper.csv'
 """Name of the table of rows in the output folder."""
 WORK = 'surrogate.studies.solve 1'
