@@ -14,6 +14,7 @@ from surrogate.formulas.film import Groups, outside_range, rolling_force_biboule
 from surrogate.formulas.sliding import mean_sliding_speed
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 from surrogate.screw.point import PointContact, ScrewPoint
 from surrogate.screw.record import point_record, rating_warnings
 from surrogate.units import RPM, ZERO_CELSIUS
@@ -36,7 +37,7 @@ def closed_form_record(
     """
     started = time.perf_counter()
     place = abs(point.speed), point.opposing_load, point.temperature
-    found = closed_form.solve(screw, lubricant, *place, inlet_heating=inlet_heating)
+    found = closed_form.solve(Contacts.of(screw), lubricant, *place, inlet_heating=inlet_heating)
     told = float(found.friction_torque), point.opposing_load, screw.lead
     record = point_record(
         screw,

@@ -12,6 +12,7 @@ from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import ScrewSettings, shortest_on_grid
 from surrogate.screw.nut import contact_slip, ScrewContact
+from surrogate.screw.opened import Contacts
 from surrogate.screw.record import point_record, rating_warnings
 from surrogate.screw.solve import ScrewSolution, solve_screw, TIER
 from surrogate.units import GIGA
@@ -44,13 +45,14 @@ def full_record(
 ) -> tuple[ScrewSolution, dict[str, Any]]:
     """Solve one point in the full tier; return it with its record."""
     started = time.perf_counter()
-    found = solve_screw(screw, lubricant, point, settings=settings)
-    record = solution_record(screw, lubricant, point, found, settings)
+    opened = Contacts.of(screw)
+    found = solve_screw(opened, lubricant, point, settings=settings)
+    record = solution_record(opened, lubricant, point, found, settings)
     return found, record | {'wall_s': time.perf_counter() - started}
 
 
 def solution_record(
-    screw: Screw,
+    opened: Contacts,
     lubricant: Lubricant,
     point: OperatingPoint,
     found: ScrewSolution,
@@ -63,13 +65,14 @@ def solution_record(
     comparators.
 
     """
-    heated, place = settings.inlet_heating, (abs(point.speed), point.opposing_load)
+    screw, heated = opened.sheet, settings.inlet_heating
+    place = abs(point.speed), point.opposing_load, point.temperature
     record = point_record(
         screw,
         lubricant,
         point,
         found,
-        closed_form.solve(screw, lubricant, *place, point.temperature, inlet_heating=heated),
+        closed_form.solve(opened, lubricant, *place, inlet_heating=heated),
         reasons=[_reason(found, contact) for contact in found.contacts],
         sliding=[_slides(screw, contact) for contact in found.contacts],
         inlet_heating=heated,

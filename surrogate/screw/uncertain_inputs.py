@@ -41,7 +41,7 @@ class ScrewCase:
     def onset(self) -> float:
         """Screw speed at which contact begins [rad/s]."""
         place = self.point.opposing_load, self.point.temperature
-        return onset_point(self.screw, self.lubricant, *place)['speed_rad_s']
+        return onset_point(Contacts.of(self.screw), self.lubricant, *place)['speed_rad_s']
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 import numpy as np
-from surrogate.parameters import load_screw, Screw
+from surrogate.parameters import load_screw
 from surrogate.plotting.style import BLUE, draw_picture, GREY, VERMILION
 from surrogate.raceway.short_waves import without_short_waves
 from surrogate.screw.opened import Contacts
@@ -47,17 +47,17 @@ def pictures(
 ) -> dict[str, Callable[[], Figure]]:
     """Return what draws each figure of the study."""
     screw, rows = load_screw(SCREW), list(study.rows.values())
-    law = Contacts.of(screw).law
+    opened = Contacts.of(screw)
     return {
-        '4': lambda: figure_fractal(study, screw),
+        '4': lambda: figure_fractal(study, opened),
         '6b': lambda: screws.figure_torque(rows, measured),
         '7': lambda: figure_smooth_speed(study),
         '8': lambda: figure_smooth_load(study),
         '9': lambda: figure_rough(study, '9'),
         '10': lambda: figure_rough(study, '10'),
-        '11': lambda: screws.figure_stribeck(law, rows),
+        '11': lambda: screws.figure_stribeck(opened.law, rows),
         '12': lambda: screws.figure_maps(screw, rows),
-        '13': lambda: screws.figure_zone(screw, law, rows),
+        '13': lambda: screws.figure_zone(screw, opened.law, rows),
         'trends': lambda: screws.figure_trends(screw, rows),
     }
 
@@ -89,13 +89,13 @@ def _scaled(fields: dict[str, Any]) -> SimpleNamespace:
     )
 
 
-def figure_fractal(study: Study, screw: Screw) -> Figure:
+def figure_fractal(study: Study, opened: Contacts) -> Figure:
     """Return surface, film and asperity pressure of a mixed contact, and a cut along it (4)."""
     row, found = drawn(study, '4')[0]
     figure = declared_figure('4', row=row)
     upper, lower = np.asarray(figure.subfigures(2, 1, height_ratios=(1.65, 1)))
     panels = upper.subplots(1, 4, width_ratios=(2.1, 1, 1, 1))
-    raceway = without_short_waves(published_patch(screw, row.draw), SHORTEST_ON_GRID)
+    raceway = without_short_waves(published_patch(opened, row.draw), SHORTEST_ON_GRID)
     place = np.linspace(-WIDE, WIDE, 401)
     heights, side = MICRO * raceway.heights(place, place), MICRO * place
     label = 'height of the raceway [µm]'

@@ -28,7 +28,7 @@ from surrogate.formulas.line import (
 )
 from surrogate.formulas.load_sharing import normal_force
 from surrogate.limits import read_text
-from surrogate.parameters import load_lubricant, load_screw, OperatingPoint, Screw
+from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.plain_yaml import plain_values
 from surrogate.raceway.tile import Tile
 from surrogate.screw.contacts import oil_at, ScrewSettings
@@ -74,7 +74,8 @@ class ValidationCase:
     """
     The nominal screw and its oil, with what many comparisons need.
 
-    Temperature [K], oil and contact at the screw, normal force [N], the screw with a new raceway.
+    Temperature [K], oil and contact at the screw, normal force [N], the screw with a new raceway,
+    both opened.
 
     """
 
@@ -82,9 +83,10 @@ class ValidationCase:
         self.screw, self.lubricant = load_screw(SCREW), load_lubricant(OIL)
         self.temperature = self.lubricant.reference_temperature
         self.oil = oil_at(self.lubricant, self.temperature)
-        self.contact = Contacts.of(self.screw).geometry['screw']
+        self.opened = Contacts.of(self.screw)
+        self.contact = self.opened.geometry['screw']
         self.load = float(normal_force(self.screw, self.screw.preload))
-        self.new = with_raceway(self.screw, state='new')
+        self.new = Contacts.of(with_raceway(self.screw, state='new'))
 
     @cached_property
     def onset(self) -> Mapping[str, float]:
@@ -107,7 +109,7 @@ class ValidationCase:
 
     def solved(self, rpm: float, settings: ScrewSettings) -> ScrewSolution:
         """Return the screw at a speed [rev/min]."""
-        return solve_screw(self.screw, self.lubricant, self.point(rpm), settings=settings)
+        return solve_screw(self.opened, self.lubricant, self.point(rpm), settings=settings)
 
     def groups(self, load: float, speed: float) -> film.Groups:
         """Return the groups of the contact at a normal force [N] and an entrainment [m/s]."""
@@ -119,8 +121,7 @@ def rolling_force(
     case: ValidationCase, load: float, rpm: float, settings: Settings = PRODUCTION
 ) -> dict[str, float]:
     """Return the rolling force at a normal force [N] and a screw speed [rev/min]."""
-    opened = Contacts.of(case.screw)
-    speed = opened.rates.entrainment * rpm * RPM
+    speed = case.opened.rates.entrainment * rpm * RPM
     condition = Condition(load=load, entrainment_speed=speed)
     place = case.contact, condition, case.oil, case.lubricant.film_floor
     smooth = solve_contact(case.contact, case.oil, condition, settings=settings)
@@ -133,7 +134,7 @@ def rolling_force(
         'moes_load': float(groups.moes_load),
         'domain_over_formula': smooth.rolling_force / formula,
         'smooth_over_formula': ratio,
-        'rough_over_formula': opened.law.contact('screw', *place).loss_factor * ratio,
+        'rough_over_formula': case.opened.law.contact('screw', *place).loss_factor * ratio,
     }
 
 
@@ -164,9 +165,9 @@ def wide(width: float) -> Settings:
     return replace(PRODUCTION, nx=601, ny=129, domain=domain, open_inlet=True)
 
 
-def tiles_of(screw: Screw) -> list[Tile]:
+def tiles_of(opened: Contacts) -> list[Tile]:
     """Return tiles of the raceway on the screw as it runs."""
-    return running_tiles(Contacts.of(screw).running['screw'])
+    return running_tiles(opened.running['screw'])
 
 
 def reduced_peak_height(heights: Array) -> float:
@@ -208,21 +209,21 @@ def load_on_film(case: ValidationCase) -> list[float]:
     wanted = np.log(np.array(THIN_FILMS) * case.screw.composite_rms)
     speed = np.exp(np.interp(wanted, np.log(films), np.log(speeds)))
     place = case.contact, case.load, case.oil, case.lubricant.film_floor
-    return (1 - Contacts.of(case.new).law.touching('screw', *place, speed)[1]).tolist()
+    return (1 - case.new.law.touching('screw', *place, speed)[1]).tolist()
 
 
 def run_in_speeds(case: ValidationCase) -> list[float]:
     """Return the onset after running in over that of a new raceway, over its pressures [-]."""
     place = case.lubricant, 0.0, case.temperature
-    speeds = onset_over_pressure(case.new, *place, run_in_range(case.screw))
+    speeds = onset_over_pressure(case.new.sheet, *place, run_in_range(case.screw))
     return [speed / case.onset['speed_rad_s'] for speed in speeds]
 
 
 def run_in_height(case: ValidationCase) -> list[float]:
     """Return by which share running in lowers the rms height of the tiles [-]."""
     new, worn = (
-        np.mean([tile.heights.std() for tile in tiles_of(screw)])
-        for screw in (case.new, with_raceway(case.screw, state='run_in'))
+        np.mean([tile.heights.std() for tile in tiles_of(opened)])
+        for opened in (case.new, Contacts.of(with_raceway(case.screw, state='run_in')))
     )
     return [float(1 - worn / new)]
 
@@ -286,7 +287,7 @@ def torque_table(case: ValidationCase) -> dict[str, float]:
     point, solved = case.point(FAST), case.solved(FAST, ISOTHERMAL)
     solutions = {
         name: rebalance_screw(
-            case.screw, replace(case.lubricant, **oil), point, solved, settings=ISOTHERMAL
+            case.opened, replace(case.lubricant, **oil), point, solved, settings=ISOTHERMAL
         )
         for name, oil in oils.items()
     } | {name: case.solved(FAST, settings) for name, settings in inlets.items()}

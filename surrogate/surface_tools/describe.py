@@ -76,12 +76,12 @@ def surface_warnings(data: SurfaceData) -> list[str]:
         return []
     from surrogate.screw import closed_form  # slow to load
     from surrogate.screw.closed_form_record import formula_warnings
+    from surrogate.screw.opened import Contacts
 
     places = np.meshgrid(data.header['settings']['speed_range'], data.load, data.temperature)
     # The groups of films do not depend on what asperities do.
-    solution = closed_form.solve(
-        *screw_and_oil(data.header['inputs']), *places, share_of=np.zeros_like
-    )
+    screw, oil = screw_and_oil(data.header['inputs'])
+    solution = closed_form.solve(Contacts.of(screw), oil, *places, share_of=np.zeros_like)
     return formula_warnings(solution)
 
 

@@ -39,11 +39,12 @@ def build_full(
     """
     check_rough(screw)
     check_ranges(settings, lubricant)
-    nodes = surface_nodes(screw, lubricant, settings)
+    opened = Contacts.of(screw)
+    nodes = surface_nodes(opened, lubricant, settings)
     with ThreadPoolExecutor(max_workers=1) as beside:
         # While workers solve; a raceway may not bear the lowest pressure of its range.
         found = beside.submit(surface_bands, screw, lubricant)
-        data = _surface(screw, lubricant, settings, nodes, run)
+        data = _surface(opened, lubricant, settings, nodes, run)
         bands = found.result()
     held_out = _held_out(data, screw, lubricant, settings, run)
     errors = cell_errors(data, held_out, screw, settings)
@@ -53,15 +54,16 @@ def build_full(
 
 
 def _surface(
-    screw: Screw, lubricant: Lubricant, settings: FullSettings, nodes: Nodes, run: Run
+    opened: Contacts, lubricant: Lubricant, settings: FullSettings, nodes: Nodes, run: Run
 ) -> SurfaceData:
     """Return the surface of formulas times the ratios of solved points, errors unknown."""
+    screw = opened.sheet
     grid = solved_grid(screw, lubricant, settings)
-    logs = solve_ratios(screw, lubricant, grid, run)
+    logs = solve_ratios(opened, lubricant, grid, run)
     ratios, failed = ratios_at(logs, grid, nodes, lubricant)
     axes = nodes.s, nodes.load, nodes.temperature
-    found = solve_grid(screw, lubricant, *axes, nodes.log_onset)
-    deviation = _rcs_deviation(screw, lubricant, nodes)
+    found = solve_grid(opened, lubricant, *axes, nodes.log_onset)
+    deviation = _rcs_deviation(opened, lubricant, nodes)
     formulas = with_floor({name: found[name] for name in FIELDS}, screw, lubricant)
     solved = {name: values * ratios.get(name, 1.0) for name, values in formulas.items()}
     # Between two solved points a ratio may take a film that lies on the floor below it.
@@ -85,12 +87,12 @@ def _surface(
     )
 
 
-def _rcs_deviation(screw: Screw, lubricant: Lubricant, nodes: Nodes) -> Array:
+def _rcs_deviation(opened: Contacts, lubricant: Lubricant, nodes: Nodes) -> Array:
     """Return the change of RCS [-] from half of the onset's deviation slower to as much faster."""
-    half = 0.5 * Contacts.of(screw).law.deviation
+    half = 0.5 * opened.law.deviation
     axes = nodes.load, nodes.temperature, nodes.log_onset
     slower, faster = (
-        solve_grid(screw, lubricant, nodes.s + apart, *axes)['rcs'] for apart in (-half, half)
+        solve_grid(opened, lubricant, nodes.s + apart, *axes)['rcs'] for apart in (-half, half)
     )
     return np.asarray(slower - faster)
 

@@ -17,6 +17,7 @@ from surrogate.asperities.law import VERSION
 from surrogate.ehl import Settings
 from surrogate.parameters import Lubricant, OperatingPoint, Screw, screw_and_oil
 from surrogate.screw.contacts import ScrewSettings
+from surrogate.screw.opened import Contacts
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.surface import SolvedPoint
 
@@ -81,21 +82,22 @@ def solved_chain(result: Mapping[str, Any]) -> SolvedChain:
 def _points(inputs: Mapping[str, Any]) -> Iterator[tuple[ScrewSolution, ScrewSolution]]:
     """Yield both solutions of each speed; they share their contacts and differ by the balance."""
     screw, lubricant = screw_and_oil(inputs)
+    opened = Contacts.of(screw)
     single = inputs.get('single', False)
     settings = ScrewSettings() if single else ScrewSettings(smooth=COARSE)
     last: ScrewSolution | None = None
     for speed in inputs['speeds']:
         point = OperatingPoint(speed=speed, load=inputs['load'], temperature=inputs['temperature'])
-        opposing = solve_screw(screw, lubricant, point, settings=settings, start=last)
+        opposing = solve_screw(opened, lubricant, point, settings=settings, start=last)
         last = opposing if opposing.converged else last
         assisting = opposing
         if point.load and not single:
-            assisting = _turned(screw, lubricant, settings, point, opposing)
+            assisting = _turned(opened, lubricant, settings, point, opposing)
         yield opposing, assisting
 
 
 def _turned(
-    screw: Screw,
+    opened: Contacts,
     lubricant: Lubricant,
     settings: ScrewSettings,
     point: OperatingPoint,
@@ -107,10 +109,10 @@ def _turned(
     against = replace(point, load=-point.load)
     # Balls that float on one side may hold on the other: an idle nut is solved again.
     if all(found.normal_forces) and found.load_change <= settings.coupling_tolerance:
-        balanced = rebalance_screw(screw, lubricant, against, found, settings=settings)
+        balanced = rebalance_screw(opened, lubricant, against, found, settings=settings)
         if balanced.load_change <= settings.coupling_tolerance:
             return balanced
-    return solve_screw(screw, lubricant, against, settings=settings, start=found)
+    return solve_screw(opened, lubricant, against, settings=settings, start=found)
 
 
 def solved_point(found: ScrewSolution) -> SolvedPoint:

@@ -18,6 +18,7 @@ from surrogate.builder.closed_form import speed_coordinates, temperature_nodes
 from surrogate.builder.full.settings import FullSettings
 from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Lubricant, Screw
+from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_speeds
 
 Array = NDArray[np.float64]
@@ -48,13 +49,13 @@ class Nodes:
         return np.asarray(self.s[:, None, None] + self.log_onset)
 
 
-def surface_nodes(screw: Screw, lubricant: Lubricant, settings: FullSettings) -> Nodes:
+def surface_nodes(opened: Contacts, lubricant: Lubricant, settings: FullSettings) -> Nodes:
     """Return the nodes of a surface of some settings."""
-    load, breaks = signed_loads(screw, settings)
+    load, breaks = signed_loads(opened.sheet, settings)
     temperature = temperature_nodes(
         lubricant, settings.temperature_range, settings.temperature_nodes
     )
-    log_onset = np.log(onset_speeds(screw, lubricant, load, temperature))
+    log_onset = np.log(onset_speeds(opened, lubricant, load, temperature))
     return Nodes(
         s=speed_coordinates(settings, log_onset),
         load=load,

@@ -28,6 +28,7 @@ from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 from surrogate.surface import FIELDS
 from surrogate.surface.fields import SHARES
 
@@ -98,7 +99,7 @@ def _pieces(screw: Screw, settings: FullSettings) -> Iterator[Array]:
 
 
 def solve_ratios(
-    screw: Screw, lubricant: Lubricant, grid: SolvedGrid, run: Run
+    opened: Contacts, lubricant: Lubricant, grid: SolvedGrid, run: Run
 ) -> dict[str, Array]:
     """
     Return the logarithms of the ratios by field, [sense, speed, load, temperature].
@@ -107,12 +108,14 @@ def solve_ratios(
 
     """
     found = closed_form.solve(
-        screw, lubricant, grid.speeds[:, None, None], grid.loads[:, None], grid.temperature
+        opened, lubricant, grid.speeds[:, None, None], grid.loads[:, None], grid.temperature
     )
-    formulas = with_floor({name: getattr(found, name) for name in CORRECTED}, screw, lubricant)
+    formulas = with_floor(
+        {name: getattr(found, name) for name in CORRECTED}, opened.sheet, lubricant
+    )
     shape = (len(SENSES), len(grid.speeds), len(grid.loads), len(grid.temperature))
     logs = {name: np.full(shape, np.nan) for name in CORRECTED}
-    for (j, k), chain in _solved_chains(screw, lubricant, grid, run):
+    for (j, k), chain in _solved_chains(opened.sheet, lubricant, grid, run):
         for sense, points in enumerate((chain.opposing, chain.assisting)):
             for i, point in enumerate(reversed(points)):
                 for name in CORRECTED if point.converged else ():

@@ -36,6 +36,7 @@ from surrogate.screw.solve import solve_screw
 from surrogate.surface import onset_of_surface, shipped_surface, Surface
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+OPENED = Contacts.of(SCREW)
 SMALL = Settings(nx=65, ny=65, error_estimate=False)
 SETTINGS = ScrewSettings(smooth=SMALL)
 STANDING = ScrewSettings(
@@ -100,10 +101,8 @@ def test_the_heating_factor_is_that_by_which_a_starved_contact_is_slowed():
     told = record_at(SCREW, starved, point, settings)
     assert told['inlet_heating'] is False
     loads = (told['normal_force_loaded_N'], told['normal_force_relieved_N'])
-    contacts = make_contacts(Contacts.of(SCREW), starved, point, settings)
-    heated = make_contacts(
-        Contacts.of(SCREW), starved, point, replace(settings, inlet_heating=True)
-    )
+    contacts = make_contacts(OPENED, starved, point, settings)
+    heated = make_contacts(OPENED, starved, point, replace(settings, inlet_heating=True))
     slowed = min(
         hot.entrainment(load) / cold.entrainment(load)
         for cold, hot in zip(contacts, heated, strict=True)
@@ -127,7 +126,7 @@ def test_friction_is_integrated_with_the_slip_of_the_balance(settings):
     point = OperatingPoint(speed=60 * math.pi / 30, load=800.0, temperature=313.15)
     # Contacts under the very forces of the balance.
     agreed = replace(settings, coupling_tolerance=1e-4)
-    for contact in solve_screw(SCREW, OIL, point, settings=agreed).contacts:
+    for contact in solve_screw(OPENED, OIL, point, settings=agreed).contacts:
         slip_x, slip_y = contact_slip(SCREW, contact.pressed, contact.side, contact.motion)
         found = contact_friction(
             contact.pressed,
@@ -273,8 +272,8 @@ def test_hysteresis_adds_its_couple_to_the_torque():
 def test_picture_has_a_column_per_pressed_contact(tmp_path):
     """Two columns beyond unloading; labels with units; the file appears whole."""
     point = OperatingPoint(speed=2.0, load=3.0 * SCREW.preload, temperature=313.15)
-    found = solve_screw(SCREW, OIL, point, settings=SETTINGS)
-    record = solution_record(SCREW, OIL, point, found, SETTINGS)
+    found = solve_screw(OPENED, OIL, point, settings=SETTINGS)
+    record = solution_record(OPENED, OIL, point, found, SETTINGS)
     figure = figures_point.figure_point(SCREW, found, record)
     titles = [axes.get_title() for axes in figure.axes if 'nut' in axes.get_title()]
     assert len(titles) == 2
@@ -289,9 +288,9 @@ def test_a_failed_point_is_drawn_without_its_contacts(tmp_path):
     """No column for a contact without a solution; the record is not lost."""
     point = OperatingPoint(speed=60.0, load=500.0, temperature=313.15)
     failed = ScrewSettings(smooth=Settings(newton_limit=1), kinematics='smooth')
-    found = solve_screw(SCREW, OIL, point, settings=failed)
+    found = solve_screw(OPENED, OIL, point, settings=failed)
     assert not found.converged
-    record = solution_record(SCREW, OIL, point, found, failed)
+    record = solution_record(OPENED, OIL, point, found, failed)
     assert figures_point.draw_point(tmp_path, SCREW, found, record).exists()
 
 

@@ -21,6 +21,7 @@ from surrogate.tasks.table import read_table
 
 TREE = Path(__file__).parents[3]
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+OPENED = Contacts.of(SCREW)
 ROWS = {row.key: row for row in read_table(TREE / 'test' / 'data' / 'paper.csv', StudyRow)}
 THEORY = TREE / 'docs' / 'theory'
 PAGE = (THEORY / 'validation.md').read_text(encoding='utf-8')
@@ -28,7 +29,7 @@ NUMBERS = (THEORY / 'published_study_numbers.md').read_text(encoding='utf-8')
 BASE = StudyRow(inputs='a', kind='screw', rpm=5.0, load=0.0, status='CONVERGED')
 LAW = AsperityLaw(onsets={}, deviation=0.16)
 MARKS = marks(SCREW, ROWS)
-TRENDS = trends(SCREW, Contacts.of(SCREW).law, ROWS.values())
+TRENDS = trends(SCREW, OPENED.law, ROWS.values())
 
 
 def task_of(kind, rpm, load, **more):
@@ -50,7 +51,7 @@ def trend(start):
 
 
 def test_page_of_numbers_is_the_report_of_the_rows_of_the_default_run():
-    assert NUMBERS.endswith(report(SCREW, Contacts.of(SCREW).law, ROWS))
+    assert NUMBERS.endswith(report(SCREW, OPENED.law, ROWS))
     wanted = {task.key: task for task in tasks(FIGURES, DRAWS)}
     assert set(ROWS) == set(wanted)
     known = known_inputs()
@@ -156,7 +157,7 @@ def test_statistical_contact_and_other_rules_of_friction():
 def test_rows_are_what_the_code_solves(task, columns, tolerance):
     """One row of every kind, solved again; none of the compared numbers is zero."""
     kept = ROWS[task.key]
-    row, _ = solve_task(SCREW, OIL, task, kept.inputs)
+    row, _ = solve_task(OPENED, OIL, task, kept.inputs)
     assert row.status == kept.status
     for name in columns.split():
         assert getattr(kept, name) > 0

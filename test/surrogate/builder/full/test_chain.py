@@ -26,11 +26,13 @@ from surrogate.parameters import (
 )
 from surrogate.screw import contacts as screw_contacts
 from surrogate.screw.contacts import ScrewSettings
+from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import with_raceway
 from surrogate.screw.solve import solve_screw
 from surrogate.surface import FIELDS
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+OPENED = Contacts.of(SCREW)
 WARM = 313.15
 GRIDS = ScrewSettings(smooth=COARSE), ScrewSettings()
 """Those of a chain, and of a single point."""
@@ -58,7 +60,7 @@ def test_a_chain_is_the_points_it_says():
     for load, points in ((500.0, typed.opposing), (-500.0, typed.assisting)):
         for solved, speed in zip(points, speeds, strict=True):
             point = OperatingPoint(speed=speed, load=load, temperature=WARM)
-            same, single = (solve_screw(SCREW, OIL, point, settings=one) for one in GRIDS)
+            same, single = (solve_screw(OPENED, OIL, point, settings=one) for one in GRIDS)
             assert solved.converged
             assert solved.friction_torque == pytest.approx(same.friction_torque, rel=1e-4)
             assert solved.film_ratio == pytest.approx(same.film_ratio, rel=1e-4)
@@ -94,7 +96,7 @@ def test_balls_that_move_their_forces_are_solved_again():
     load = 2600.0
     for sense, sign in (('opposing', 1), ('assisting', -1)):
         point = OperatingPoint(speed=300.0, load=sign * load, temperature=WARM)
-        same, single = (solve_screw(SCREW, OIL, point, settings=one) for one in GRIDS)
+        same, single = (solve_screw(OPENED, OIL, point, settings=one) for one in GRIDS)
         found = chain(load, WARM, [300.0])[sense][0]
         assert found['friction_torque'] == pytest.approx(same.friction_torque, rel=1e-3)
         assert found['friction_torque'] == pytest.approx(single.friction_torque, rel=0.01)
@@ -130,7 +132,7 @@ def test_record_of_a_point():
     small = Settings(nx=65, ny=65, error_estimate=False)
     settings = ScrewSettings(smooth=small, kinematics='smooth')
     point = OperatingPoint(speed=60.0, load=500.0, temperature=WARM)
-    found = solve_screw(SCREW, OIL, point, settings=settings)
+    found = solve_screw(OPENED, OIL, point, settings=settings)
     record = solved_point(found)
     assert {name: getattr(record, name) for name in FIELDS} == {
         name: getattr(found, name) for name in FIELDS
@@ -139,10 +141,10 @@ def test_record_of_a_point():
     ratios = [contact.film_ratio for contact in found.contacts]
     assert record.worst_contact == ratios.index(min(ratios))
     rolling = replace(settings, kinematics='rolling')
-    found = solve_screw(SCREW, OIL, replace(point, speed=10.0), settings=rolling)
+    found = solve_screw(OPENED, OIL, replace(point, speed=10.0), settings=rolling)
     record = solved_point(found)
     assert record.rcs_deviation == found.rcs_deviation > 0
     assert solved_chain({'opposing': [asdict(record)], 'assisting': []}).opposing == (record,)
     free = replace(SCREW, preload=0.0)
-    unloaded = solve_screw(free, OIL, replace(point, load=0.0), settings=settings)
+    unloaded = solve_screw(Contacts.of(free), OIL, replace(point, load=0.0), settings=settings)
     assert not solved_point(unloaded).converged
