@@ -109,7 +109,7 @@ def build_closed_form(
     errors = measure_errors(
         opened, lubricant, data, lambda done: progress(len(temperature) + done, total)
     )
-    return replace(data, errors=errors, provenance=_provenance(time.perf_counter() - started))
+    return replace(data, errors=errors, provenance=provenance(time.perf_counter() - started))
 
 
 def solve_closed_form(
@@ -278,7 +278,8 @@ def surface_header(
     }
 
 
-def _provenance(seconds: float) -> Mapping[str, Any]:
+def provenance(seconds: float) -> dict[str, Any]:
+    """Return when, in how many seconds and by what a surface was built."""
     return {
         'built': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime()),
         'build_seconds': round(seconds, 3),

@@ -16,7 +16,7 @@ from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw import closed_form
 from surrogate.screw.opened import Contacts
 from surrogate.screw.point import PointContact, ScrewPoint
-from surrogate.screw.record import point_record, rating_warnings
+from surrogate.screw.record import point_record
 from surrogate.units import RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
@@ -35,32 +35,30 @@ def closed_form_record(
     least factor on a film is stated in any case.
 
     """
-    started = time.perf_counter()
+    started, opened = time.perf_counter(), Contacts.of(screw)
     place = abs(point.speed), point.opposing_load, point.temperature
-    found = closed_form.solve(Contacts.of(screw), lubricant, *place, inlet_heating=inlet_heating)
+    found = closed_form.solve(opened, lubricant, *place, inlet_heating=inlet_heating)
     told = float(found.friction_torque), point.opposing_load, screw.lead
     record = point_record(
-        screw,
+        opened,
         lubricant,
         point,
         found,
         found,
+        tier=closed_form.TIER,
         reasons=['' if one.normal_force > 0 else IDLE for one in found.contacts],
         sliding=[
             mean_sliding_speed(screw, one.side, float(one.normal_force), point.speed)
             for one in found.contacts
         ],
+        angles=(screw.contact_angle, screw.contact_angle),
+        warnings=formula_warnings(found) if point.speed else (),
         inlet_heating=inlet_heating,
     )
-    warnings = rating_warnings(screw, lubricant, point)
     return record | {
-        'tier': closed_form.TIER,
-        'warnings': warnings + (formula_warnings(found) if point.speed else []),
         'efficiency': torque.efficiency(*told),
         'driving_torque_Nm': float(torque.driving_torque(*told)),
         'back_driving': torque.is_back_driving(*told),
-        'contact_angle_A_rad': screw.contact_angle,
-        'contact_angle_B_rad': screw.contact_angle,
         'wall_s': time.perf_counter() - started,
     }
 
