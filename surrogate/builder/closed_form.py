@@ -95,6 +95,7 @@ def build_closed_form(
     nodes = solve_grid(
         opened, lubricant, s, load, temperature, log_onset, lambda done: progress(done, total)
     )
+    axes = (s, load, temperature)
     data = SurfaceData(
         header=surface_header(screw, lubricant, settings, breaks, closed_form.TIER),
         speed_coordinate=s,
@@ -102,7 +103,7 @@ def build_closed_form(
         temperature=temperature,
         log_onset=log_onset,
         fields={name: nodes[name] for name in FIELDS},
-        errors=_unmeasured((s, load, temperature)),
+        errors={name: np.full([len(axis) - 1 for axis in axes], np.nan) for name in FIELDS},
         worst_contact=nodes['worst_contact'].astype(np.uint8),
         mask=~np.all([np.isfinite(nodes[name]) for name in FIELDS], axis=0),
     )
@@ -220,10 +221,6 @@ def solve_grid(
             values.append(getattr(result, name))
         step(k + 1)
     return {name: np.stack(values, axis=-1) for name, values in slices.items()}
-
-
-def _unmeasured(axes: tuple[Array, ...]) -> dict[str, Array]:
-    return {name: np.full([len(axis) - 1 for axis in axes], np.nan) for name in FIELDS}
 
 
 def check_rough(screw: Screw) -> None:

@@ -57,7 +57,18 @@ def identification_record(
         'points': len(run.speed),
         'speed_range_rad_s': [float(speed.min()), float(speed.max())],
         'temperature_K': run.mean_temperature,
-        'parameters': [_estimate_record(one) for one in found.estimates],
+        'parameters': [
+            {
+                'name': one.name,
+                'unit': UNITS[one.name],
+                'value': one.value,
+                'low': one.low,
+                'high': one.high,
+                'standard_error': one.standard_error,
+                'reason': one.reason,
+            }
+            for one in found.estimates
+        ],
         'correlation': {'of': list(found.correlated), 'matrix': found.correlation.tolist()},
         'onset': _onset_record(run, contacts, found),
         'offset_force_N': found.value('torque_offset') * 2 * math.pi / screw.lead,
@@ -76,18 +87,6 @@ def _status(found: Identification) -> str:
     if not found.converged:
         return 'the fit ended before it converged'
     return 'the onset is refused, and no sheet is written' if found.onset_refused else 'fitted'
-
-
-def _estimate_record(one: ParameterEstimate) -> dict[str, Any]:
-    return {
-        'name': one.name,
-        'unit': UNITS[one.name],
-        'value': one.value,
-        'low': one.low,
-        'high': one.high,
-        'standard_error': one.standard_error,
-        'reason': one.reason,
-    }
 
 
 def _onset_record(

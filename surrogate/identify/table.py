@@ -111,7 +111,7 @@ def solved_model(
     fitted: Sequence[str] = (),
     *,
     settings: ScrewSettings | None = None,
-    progress: OnProgress | None = None,
+    progress: OnProgress = lambda done, total: None,
 ) -> ContactModel:
     """
     Solve the table of a run for the `fitted` parameters and return what interpolates it.
@@ -122,7 +122,7 @@ def solved_model(
 
     """
     axes = _axes(screw, lubricant, run, fitted, FRICTIONS)
-    return _model(axes, run, TIER, *_solve_table(axes, settings, progress or _nobody))
+    return _model(axes, run, TIER, *_solve_table(axes, settings, progress))
 
 
 def formula_model(
@@ -185,10 +185,6 @@ def _model(axes: _Axes, run: NoLoadRun, tier: str, torque: Array, shares: Array)
         screw=bare(axes.screw),
         lubricant=axes.oil,
     )
-
-
-def _nobody(done: int, total: int) -> None:
-    """Take no notice of the progress."""
 
 
 def _solve_table(

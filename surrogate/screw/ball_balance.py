@@ -184,15 +184,13 @@ def _search(
         trial = unknowns + damping * step
         if _legal(problem, trial):
             found = wrenches(problem, trial)
-            left = np.linalg.solve(jacobian, _imbalance(problem, trial, found))
+            left = np.linalg.solve(
+                jacobian, residual(problem, trial, (found[0].values, found[1].values))
+            )
             if np.linalg.norm(left) <= (1 - 0.5 * damping) * np.linalg.norm(step):
                 return trial, found
         damping *= 0.5
     return None
-
-
-def _imbalance(problem: BallProblem, unknowns: Array, friction: tuple[Wrench, Wrench]) -> Array:
-    return residual(problem, unknowns, (friction[0].values, friction[1].values))
 
 
 def _legal(problem: BallProblem, unknowns: Array) -> bool:

@@ -15,7 +15,7 @@ from surrogate.formulas.sliding import mean_sliding_speed
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw import closed_form
 from surrogate.screw.opened import Contacts
-from surrogate.screw.point import PointContact, ScrewPoint
+from surrogate.screw.point import ScrewPoint
 from surrogate.screw.record import point_record
 from surrogate.units import RPM, ZERO_CELSIUS
 
@@ -65,24 +65,19 @@ def closed_form_record(
 
 def formula_warnings(result: ScrewPoint[Array]) -> list[str]:
     """Return a sentence for each formula that contacts use beyond what it was fitted over."""
-    g = _all_groups(result.contacts)
+    every = [contact.film_groups for contact in result.contacts if contact.film_groups is not None]
+    g = Groups(
+        speed=np.stack([g.speed for g in every]),
+        load=np.stack([g.load for g in every]),
+        material=np.stack([g.material for g in every]),
+        radius_ratio=max(g.radius_ratio for g in every),
+    )
     found = ((formula, outside_range(formula, g)) for formula in FORMULAS)
     return [
         f'{formula} outside its range: {", ".join(phrases)}'
         for formula, phrases in found
         if phrases
     ]
-
-
-def _all_groups(contacts: tuple[PointContact[Array], ...]) -> Groups:
-    """Return the film groups of all contacts as one, so that a range is left only once."""
-    every = [contact.film_groups for contact in contacts if contact.film_groups is not None]
-    return Groups(
-        speed=np.stack([g.speed for g in every]),
-        load=np.stack([g.load for g in every]),
-        material=np.stack([g.material for g in every]),
-        radius_ratio=max(g.radius_ratio for g in every),
-    )
 
 
 def _deviation(deviation: float) -> str:

@@ -41,43 +41,35 @@ def figure_point(screw: Screw, found: ScrewSolution, record: dict[str, Any]) -> 
         if contact.solved is not None and contact.solved.converged
     ]
     figure = new_figure(2.3 * max(len(pressed), 2) + 1.2, 7.4)
-    figure.suptitle(_title(record))
-    if pressed:
-        _draw_columns(figure, screw, pressed)
-    return figure
-
-
-def _title(record: dict[str, Any]) -> str:
-    return (
+    figure.suptitle(
         f'{record["screw"]}, {record["oil"]}: {record["speed_rad_s"] / RPM:g} rev/min, '
         f'{record["load_N"]:g} N, {record["temperature_K"] - ZERO_CELSIUS:g} °C\n'
         f'friction torque {MILLI * record["friction_torque_Nm"]:.1f} mN m, '
         f'efficiency {record["efficiency"]:.3f}, $\\Lambda$ {record["film_ratio"]:.2f}, '
         f'RCS {100 * record["rcs"]:.2g} %'
     )
-
-
-def _draw_columns(figure: Figure, screw: Screw, pressed: list[ScrewContact]) -> None:
-    axes = np.atleast_2d(figure.subplots(2, len(pressed), squeeze=False))
-    solved = [contact.solved for contact in pressed if contact.solved is not None]
-    top = GIGA * max(one.pressed.max_pressure for one in solved)
-    bottom = NANO * min(float(one.pressed.film.min()) for one in solved)
-    film = LogNorm(bottom, FILM_SPAN * bottom)
-    for column, (contact, one) in enumerate(zip(pressed, solved, strict=True)):
-        (upper, lower), rough = axes[:, column], one.pressed
-        pressure = _map(upper, rough, GIGA * rough.pressure, vmin=0, vmax=top)
-        gap = _map(lower, rough, NANO * rough.film, norm=film)
-        _mark_contact(lower, rough)
-        _draw_slip(lower, screw, contact, rough)
-        upper.set_title(
-            f'{contact.nut} nut, ball on {contact.side}\n{contact.ball.normal_force:.1f} N, '
-            f'RCS {100 * one.asperities.rcs:.2g} %'
-        )
-        lower.set_xlabel('along the track [µm]', fontsize=8)
-    for row in (0, 1):
-        axes[row, 0].set_ylabel('across the track [µm]', fontsize=8)
-    figure.colorbar(pressure, ax=axes[0], label='total pressure [GPa]')
-    figure.colorbar(gap, ax=axes[1], label='film [nm], arrows: slip', extend='max')
+    if pressed:
+        axes = np.atleast_2d(figure.subplots(2, len(pressed), squeeze=False))
+        solved = [contact.solved for contact in pressed if contact.solved is not None]
+        top = GIGA * max(one.pressed.max_pressure for one in solved)
+        bottom = NANO * min(float(one.pressed.film.min()) for one in solved)
+        film = LogNorm(bottom, FILM_SPAN * bottom)
+        for column, (contact, one) in enumerate(zip(pressed, solved, strict=True)):
+            (upper, lower), rough = axes[:, column], one.pressed
+            pressure = _map(upper, rough, GIGA * rough.pressure, vmin=0, vmax=top)
+            gap = _map(lower, rough, NANO * rough.film, norm=film)
+            _mark_contact(lower, rough)
+            _draw_slip(lower, screw, contact, rough)
+            upper.set_title(
+                f'{contact.nut} nut, ball on {contact.side}\n{contact.ball.normal_force:.1f} N, '
+                f'RCS {100 * one.asperities.rcs:.2g} %'
+            )
+            lower.set_xlabel('along the track [µm]', fontsize=8)
+        for row in (0, 1):
+            axes[row, 0].set_ylabel('across the track [µm]', fontsize=8)
+        figure.colorbar(pressure, ax=axes[0], label='total pressure [GPa]')
+        figure.colorbar(gap, ax=axes[1], label='film [nm], arrows: slip', extend='max')
+    return figure
 
 
 def _map(axes: Axes, rough: ContactSolution, field: Array, **options: Any) -> Any:

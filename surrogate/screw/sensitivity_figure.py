@@ -7,7 +7,6 @@ import math
 from pathlib import Path
 from typing import Any
 
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, ORANGE, SKY
@@ -50,7 +49,12 @@ def figure_sensitivity(record: Mapping[str, Any]) -> Figure:
         axes.axvline(stated, color='black', linewidth=0.8)
         axes.grid(axis='x')
     every[0].use_sticky_edges = False
-    _draw_bands(every[0], record)
+    # Below the bars of the onset, its bands.
+    onset = record['stated'][ONSET] / RPM
+    every[0].axhline(-0.5, color='black', linewidth=0.8)
+    for place, (name, (_, shade)) in enumerate(BANDS.items()):
+        low, high = (factor * onset for factor in record[name])
+        every[0].barh(-1 - place, high - low, left=low, color=shade, height=0.7)
     every[0].set_yticks(
         range(-len(BANDS), len(rows)),
         [words for words, _ in BANDS.values()][::-1] + [_label(row) for row in rows],
@@ -62,15 +66,6 @@ def figure_sensitivity(record: Mapping[str, Any]) -> Figure:
         f'{record["load_N"]:g} N, {record["temperature_K"] - ZERO_CELSIUS:g} °C'
     )
     return figure
-
-
-def _draw_bands(axes: Axes, record: Mapping[str, Any]) -> None:
-    """Draw the bands of the onset below its bars."""
-    stated = record['stated'][ONSET] / RPM
-    axes.axhline(-0.5, color='black', linewidth=0.8)
-    for place, (name, (_, colour)) in enumerate(BANDS.items()):
-        low, high = (factor * stated for factor in record[name])
-        axes.barh(-1 - place, high - low, left=low, color=colour, height=0.7)
 
 
 def _label(row: Mapping[str, Any]) -> str:

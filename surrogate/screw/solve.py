@@ -211,6 +211,8 @@ def _combine(opened: Contacts, point: OperatingPoint, nuts: Sequence[SolvedNut])
     parasitic = screw.parasitic_torque + screw.parasitic_torque_rate * speed
     balls = [nut.ball for nut in nuts if nut.ball is not None]
     friction = screw.loaded_balls_per_nut * sum(ball.loss_torque for ball in balls) + parasitic
+    pressing = sum(contact.normal_force for contact in carrying)
+    sliding = sum(contact.normal_force * contact.friction_coefficient for contact in carrying)
     driving = screw.loaded_balls_per_nut * sum(ball.torque for ball in balls) + parasitic
     missed = driving - driving_torque(friction, load, screw.lead)
     return replace(
@@ -221,7 +223,7 @@ def _combine(opened: Contacts, point: OperatingPoint, nuts: Sequence[SolvedNut])
         efficiency=efficiency(friction, load, screw.lead),
         back_driving=is_back_driving(friction, load, screw.lead),
         load_change=max(load_change(nut) for nut in nuts),
-        friction_coefficient=_mean_friction(carrying),
+        friction_coefficient=sliding / pressing if pressing else math.nan,
         rcs=max((contact.rcs for contact in carrying), default=0.0),
         asperity_share=max((contact.asperity_share for contact in carrying), default=0.0),
         film_ratio=float(film_ratio(film, screw.composite_rms)),
@@ -239,10 +241,3 @@ def worst_contact(contacts: Sequence[ScrewContact]) -> int:
         if contact.solved is not None and not math.isnan(contact.rcs)
     ]
     return -max(pressed)[2] if pressed else 0
-
-
-def _mean_friction(carrying: Sequence[ScrewContact]) -> float:
-    """Return the friction coefficient over all normal forces [-], NaN without any."""
-    total = sum(contact.normal_force for contact in carrying)
-    friction = sum(contact.normal_force * contact.friction_coefficient for contact in carrying)
-    return friction / total if total else math.nan

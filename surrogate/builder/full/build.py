@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.builder.closed_form import check_ranges, check_rough, solve_grid, surface_header
 from surrogate.builder.full.chain import point_inputs, solved_chain
-from surrogate.builder.full.held_out import cell_errors, held_out_points, HeldOut, judged
+from surrogate.builder.full.held_out import cell_errors, held_out_points, judged
 from surrogate.builder.full.nodes import Nodes, surface_nodes
 from surrogate.builder.full.ratios import ratios_at, Run, solve_ratios, solved_grid, with_floor
 from surrogate.builder.full.settings import FullSettings
@@ -46,7 +46,17 @@ def build_full(
         found = beside.submit(surface_bands, screw, lubricant)
         data = _surface(opened, lubricant, settings, nodes, run)
         bands = found.result()
-    held_out = _held_out(data, screw, lubricant, settings, run)
+    points = held_out_points(Surface(data), screw, settings)
+    chains = {
+        f'held out {place}': point_inputs(screw, lubricant, load, heat, speed)
+        for place, (speed, load, heat) in enumerate(points)
+    }
+    results = run(chains)
+    pairs = zip(points, results.values(), strict=True)
+    solved = ((point, solved_chain(one).opposing[0]) for point, one in pairs if one)
+    surface = Surface(data)
+    compared = (judged(data, surface, screw, point, found) for point, found in solved)
+    held_out = [one for one in compared if one is not None]
     errors = cell_errors(data, held_out, screw, settings)
     reached = max((one.miss for one in held_out), default=None)
     header = {**data.header, **bands, 'reached': reached}
@@ -95,20 +105,3 @@ def _rcs_deviation(opened: Contacts, lubricant: Lubricant, nodes: Nodes) -> Arra
         solve_grid(opened, lubricant, nodes.s + apart, *axes)['rcs'] for apart in (-half, half)
     )
     return np.asarray(slower - faster)
-
-
-def _held_out(
-    data: SurfaceData, screw: Screw, lubricant: Lubricant, settings: FullSettings, run: Run
-) -> list[HeldOut]:
-    """Return points that are no nodes, solved and compared with the lookup."""
-    points = held_out_points(Surface(data), screw, settings)
-    chains = {
-        f'held out {place}': point_inputs(screw, lubricant, load, heat, speed)
-        for place, (speed, load, heat) in enumerate(points)
-    }
-    results = run(chains)
-    pairs = zip(points, results.values(), strict=True)
-    solved = ((point, solved_chain(one).opposing[0]) for point, one in pairs if one)
-    surface = Surface(data)
-    compared = (judged(data, surface, screw, point, found) for point, found in solved)
-    return [one for one in compared if one is not None]

@@ -196,13 +196,12 @@ class March:
             krylov_iterations=self.krylov,
             wall_time=wall_time,
         )
-        return self._with_averages(bare) if any(self.places) else bare
-
-    def _with_averages(self, bare: MovingSolution) -> MovingSolution:
+        if not any(self.places):
+            return bare
         step_length = self.settings.stride * self.grid.dx
         means, smooth = average(self.places, step_length), self.smooth_measures()[0]
         assert self.last is not None
-        state, case = self.last.outcome.state, self.case
+        state = self.last.outcome.state
         return replace(
             bare,
             **means.numbers,  # type: ignore[arg-type]

@@ -19,15 +19,7 @@ from surrogate.screw import record as both
 from surrogate.screw.ball_motion import slip_floor
 from surrogate.screw.closed_form_record import closed_form_record, page
 from surrogate.screw.contacts import make_contacts, ScrewSettings
-from surrogate.screw.full_record import (
-    _coarse,
-    _moved_forces,
-    _third_contacts,
-    _uncertain_films,
-    full_record,
-    law_sentence,
-    solution_record,
-)
+from surrogate.screw.full_record import _warnings, full_record, law_sentence, solution_record
 from surrogate.screw.nut import contact_slip
 from surrogate.screw.opened import Contacts
 from surrogate.screw.record import most_wear, with_wear
@@ -60,20 +52,24 @@ def record(rpm, load, settings=SETTINGS):
 
 def test_warnings_begin_beyond_their_limits():
     """A change of 1 %, a film known to 10 %, 4 nodes a wave, and the clearance are none yet."""
+
+    def warnings(screw=SCREW, *, change=0.0, error=0.0, approach=0.0, grids=(), wave=0.0):
+        ball = {'nut': 'loaded', 'side': 'screw', 'film_error': error}
+        contact = SimpleNamespace(**ball, opposite_flank_approach=approach)
+        found = {'load_change': change, 'loaded_contacts': grids, 'contacts': [contact]}
+        return [*_warnings(screw, SimpleNamespace(**found), wave)]
+
     for change, told in ((0.01, 0), (0.0101, 1), (math.nan, 0)):
-        assert len(_moved_forces(SimpleNamespace(load_change=change))) == told
-    ball = {'nut': 'loaded', 'side': 'screw'}
+        assert len(warnings(change=change)) == told
     for error, told in ((0.1, 0), (0.101, 1), (math.nan, 0)):
-        assert len(_uncertain_films([ball | {'film_error': error}])) == told
-    tight = replace(SCREW, flank_clearance=1e-6)
+        assert len(warnings(error=error)) == told
     for approach, told in ((1e-6, 0), (1.1e-6, 1), (math.nan, 0)):
-        contacts = [ball | {'opposite_flank_approach_m': approach}]
-        assert len(_third_contacts(tight, contacts)) == told
-        assert not _third_contacts(replace(SCREW, flank_clearance=None), contacts)
+        assert len(warnings(replace(SCREW, flank_clearance=1e-6), approach=approach)) == told
+        assert not warnings(replace(SCREW, flank_clearance=None), approach=approach)
     grids = [SimpleNamespace(pressed=SimpleNamespace(y=[1.0, 1.25, 9.0]))] * 2
-    found = SimpleNamespace(loaded_contacts=grids)
-    assert _coarse(found, 1.0) == _coarse(SimpleNamespace(loaded_contacts=()), 0.0) == []
-    assert _coarse(found, 0.75)[0].startswith('roughness: 3 nodes per shortest wave')
+    assert warnings(grids=grids, wave=1.0) == warnings(grids=(), wave=0.0) == []
+    (coarse,) = warnings(grids=grids, wave=0.75)
+    assert coarse.startswith('roughness: 3 nodes per shortest wave')
 
 
 def test_record_has_the_keys_of_the_formulas_and_parts_that_add_up():
