@@ -132,14 +132,14 @@ def _check(args: argparse.Namespace) -> int:
         Progress(args.points, 'points').step if slow else lambda: None,
     )
     print(f'{path}: {result.sentence()}')
-    for limit in limit_errors(
+    for (speed, load, temperature), error in limit_errors(
         data, args.limit_points, args.seed, lambda: time.monotonic() < deadline
     ):
-        off = f'is off by {100 * limit.error:+.2g} % of the speed'
+        off = f'is off by {100 * error:+.2g} % of the speed'
         print(
-            f'RCS is 0.01 at {limit.speed / RPM:.3g} rev/min, {limit.load:.0f} N, '
-            f'{limit.temperature - ZERO_CELSIUS:.0f} degC; that '
-            + (off if math.isfinite(limit.error) else 'has no solution')
+            f'RCS is 0.01 at {speed / RPM:.3g} rev/min, {load:.0f} N, '
+            f'{temperature - ZERO_CELSIUS:.0f} degC; that '
+            + (off if math.isfinite(error) else 'has no solution')
         )
     return 0 if result.passed else 1
 

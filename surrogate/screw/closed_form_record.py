@@ -85,12 +85,6 @@ def _deviation(deviation: float) -> str:
     return '' if math.isnan(deviation) else f', strips differ by {100 * deviation:.2g} %'
 
 
-def _film_by_formula(compared: Mapping[str, Any]) -> str:
-    """Return the words about the film of a comparator, or why there is none."""
-    film = 1e9 * compared['central_film_nijenbanning_m']
-    return compared['reason'] or f'Nijenbanning film {film:.1f} nm'
-
-
 def page(record: Mapping[str, Any]) -> str:
     """Return a record as a page of text in workshop units."""
     rows = [
@@ -125,6 +119,7 @@ def page(record: Mapping[str, Any]) -> str:
         for contact in record['contacts']
     ]
     compared = record['comparators']
+    film = 1e9 * compared['central_film_nijenbanning_m']
     return '\n'.join(
         [
             f'{record["screw"]}, {record["oil"]}, tier {record["tier"]}: '
@@ -138,7 +133,7 @@ def page(record: Mapping[str, Any]) -> str:
             '',
             f'  compare: constant friction {compared["constant_friction_efficiency"]:.3f}, '
             f'catalogue drag {compared["catalogue_drag_torque_Nm"]:.3f} N m, '
-            + _film_by_formula(compared),
+            + (compared['reason'] or f'Nijenbanning film {film:.1f} nm'),
             f'  roughness: {record["roughness"]}',
             *(f'  contact: {record[name]}' for name in ('asperity_law',) if name in record),
             f'  status: {record["status"]}',

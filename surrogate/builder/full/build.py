@@ -53,7 +53,7 @@ def build_full(
     }
     results = run(chains)
     pairs = zip(points, results.values(), strict=True)
-    solved = ((point, solved_chain(one).opposing[0]) for point, one in pairs if one)
+    solved = ((point, solved_chain(one)[0][0]) for point, one in pairs if one)
     surface = Surface(data)
     compared = (judged(data, surface, screw, point, found) for point, found in solved)
     held_out = [one for one in compared if one is not None]

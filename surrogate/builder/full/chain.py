@@ -10,7 +10,7 @@ Its grids are coarse: beside those of a single point the friction torque is 0.1 
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, fields, replace
 from typing import Any
 
 from surrogate.asperities.law import VERSION
@@ -28,12 +28,10 @@ COARSE = Settings(nx=129)
 """Contacts of a chain: half of the nodes along the track, half of the time and less."""
 
 
-@dataclass(frozen=True, slots=True)
-class SolvedChain:
-    """Points of a chain in the order of its speeds: load against the motion, and with it."""
-
-    opposing: tuple[SolvedPoint, ...]
-    assisting: tuple[SolvedPoint, ...]
+SENSES = ('opposing', 'assisting')
+"""Load against the motion, and with it."""
+SolvedChain = tuple[tuple[SolvedPoint, ...], ...]
+"""Points of a chain in the order of its speeds, by the `SENSES` of the load."""
 
 
 def chain_inputs(
@@ -66,17 +64,13 @@ def solve_chain(inputs: Mapping[str, Any]) -> dict[str, Any]:
     pairs = list(_points(inputs))
     return {
         sense: [asdict(solved_point(pair[place])) for pair in pairs]
-        for place, sense in enumerate(('opposing', 'assisting'))
+        for place, sense in enumerate(SENSES)
     }
 
 
 def solved_chain(result: Mapping[str, Any]) -> SolvedChain:
     """Return what `solve_chain` returned, typed; the only reader of its JSON."""
-    opposing, assisting = (
-        tuple(SolvedPoint(**point) for point in result[sense])
-        for sense in ('opposing', 'assisting')
-    )
-    return SolvedChain(opposing, assisting)
+    return tuple(tuple(SolvedPoint(**point) for point in result[sense]) for sense in SENSES)
 
 
 def _points(inputs: Mapping[str, Any]) -> Iterator[tuple[ScrewSolution, ScrewSolution]]:

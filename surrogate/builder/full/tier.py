@@ -139,4 +139,4 @@ def solve_full(
     """Solve a point [rad/s, N, K] of the screw and oil of a surface."""
     screw, lubricant = screw_and_oil(header['inputs'])
     given = point_inputs(screw, lubricant, load, temperature, speed)
-    return solved_chain(solve_chain(given)).opposing[0]
+    return solved_chain(solve_chain(given))[0][0]

@@ -15,7 +15,7 @@ from surrogate.ehl.moving.feed import Feed
 from surrogate.ehl.moving.interface import MarchSettings, MarchStatus, MovingSolution
 from surrogate.ehl.moving.line import StripContact
 from surrogate.ehl.moving.step import Step, step_limits, Stepper
-from surrogate.ehl.moving.sums import average, Gauge, Measure
+from surrogate.ehl.moving.sums import averages, Gauge, Measure
 from surrogate.ehl.watch import at, tell
 from surrogate.formulas.geometry import Contact
 
@@ -199,17 +199,14 @@ class March:
         if not any(self.places):
             return bare
         step_length = self.settings.stride * self.grid.dx
-        means, smooth = average(self.places, step_length), self.smooth_measures()[0]
+        smooth = self.smooth_measures()[0]
         assert self.last is not None
         state = self.last.outcome.state
         return replace(
             bare,
-            **means.numbers,  # type: ignore[arg-type]
-            thin_shares=means.thin_shares,
+            **averages(self.places, step_length),
             x=self.grid.x,
-            rcs_along=means.rcs_along,
             centre_films=np.array([step.centre_film for steps in self.places for step in steps]),
-            memory=means.memory,
             transits=sum(map(len, self.places)) * step_length / 2,
             smooth_rolling_loss=smooth.rolling_loss,
             central_film=smooth.centre_film,

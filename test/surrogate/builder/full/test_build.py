@@ -51,7 +51,7 @@ def make_solve(screw, oil, stand_in):
 
     def solve(speed, load, heat):
         given = point_inputs(screw, oil, load, heat, speed)
-        return solved_chain(stand_in.chain(given)).opposing[0]
+        return solved_chain(stand_in.chain(given))[0][0]
 
     return solve
 
