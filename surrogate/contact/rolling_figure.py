@@ -67,6 +67,7 @@ def _draw_film(axes: Axes, solution: MovingSolution) -> None:
         shading='nearest',
         rasterized=True,
     )
+    # The edge of the Hertz zone: an ellipse, or two lines of a strip.
     turn = np.linspace(0, 2 * np.pi, 181)
     edges = (
         [(a * np.cos(turn), b * np.sin(turn))]

@@ -119,7 +119,7 @@ class Roughness(RoughnessSpectrum):
         if (self.calibrated is None) != (self.onset_band is None):
             alone = 'calibrated' if self.onset_band is None else 'onset_band'
             raise InputError(
-                f'roughness: {alone} is alone alone, allowed are both of calibrated and '
+                f'roughness: {alone} is given alone, allowed are both of calibrated and '
                 'onset_band or neither'
             )
 

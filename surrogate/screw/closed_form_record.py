@@ -65,6 +65,7 @@ def closed_form_record(
 
 def formula_warnings(result: ScrewPoint[Array]) -> list[str]:
     """Return a sentence for each formula that contacts use beyond what it was fitted over."""
+    # The groups of all contacts as one, so that a range is left only once.
     every = [contact.film_groups for contact in result.contacts if contact.film_groups is not None]
     g = Groups(
         speed=np.stack([g.speed for g in every]),

@@ -138,7 +138,15 @@ def figure_stribeck(law: AsperityLaw, rows: Rows) -> Figure:
     _draw_shares(second, law, rows)
     film = screw_speeds(rows, 'central_film')
     over_speed(third, film, 'o-', 'black', 'central film', factor=NANO)
-    _mark_films(third)
+    # The published film, and film ratios of the published roughness.
+    label = f'reported, rough: {REPORTED_FILM:.0f} nm at {MARK_SPEED} mm/s'
+    third.plot(MARK_SPEED, REPORTED_FILM, 'D', color=VERMILION, label=label)
+    for ratio in (1, 3):
+        level = ratio * ROUGHNESS
+        third.axhline(level, color='0.4', linestyle=':', linewidth=1.0)
+        place: dict[str, Any] = {'xycoords': ('axes fraction', 'data'), 'ha': 'right'}
+        third.annotate(f'Λ = {ratio}', (0.985, level), fontsize=8, va='bottom', **place)
+    third.set(ylabel='film [nm]', yscale='log', ylim=(1, 1000))
     for axes, letter in zip((first, second, third), 'abc', strict=True):
         speed_axis(axes, label=axes is third, top=axes is first)
         finish(axes, letter)
@@ -160,18 +168,6 @@ def _draw_shares(axes: Axes, law: AsperityLaw, rows: Rows) -> None:
         over_speed(axes, found, *style, floor=NO_CONTACT)
     limit(axes, RCS_LIMIT, f'limit {RCS_LIMIT:g}')
     axes.set(ylabel='share of the load [-]', yscale='log', ylim=(NO_CONTACT, 1.3))
-
-
-def _mark_films(axes: Axes) -> None:
-    """Mark the published film, and film ratios of the published roughness."""
-    label = f'reported, rough: {REPORTED_FILM:.0f} nm at {MARK_SPEED} mm/s'
-    axes.plot(MARK_SPEED, REPORTED_FILM, 'D', color=VERMILION, label=label)
-    for ratio in (1, 3):
-        film = ratio * ROUGHNESS
-        axes.axhline(film, color='0.4', linestyle=':', linewidth=1.0)
-        place: dict[str, Any] = {'xycoords': ('axes fraction', 'data'), 'ha': 'right'}
-        axes.annotate(f'Λ = {ratio}', (0.985, film), fontsize=8, va='bottom', **place)
-    axes.set(ylabel='film [nm]', yscale='log', ylim=(1, 1000))
 
 
 def figure_trends(screw: Screw, rows: Rows) -> Figure:
@@ -277,8 +273,17 @@ def fine_map(screw: Screw, rows: Rows) -> FineMap:
     """
     speeds, loads, torque = grid(rows, 'friction_torque')
     rcs = np.log(np.maximum(grid(rows, 'rcs')[2], NO_CONTACT))
-    speed, load = (np.geomspace(one[0], one[-1], FINE) for one in (speeds, loads))
-    friction, log_rcs = (_between(speeds, loads, values, speed, load) for values in (torque, rcs))
+    speed, load = (np.geomspace(axis[0], axis[-1], FINE) for axis in (speeds, loads))
+
+    def between(values: Array) -> Array:
+        places, lines = np.log(speeds), []
+        for line in values:  # gaps, nodes that failed, are bridged straight
+            good = np.isfinite(line)
+            lines.append(np.interp(places, places[good], line[good]))
+        along = PchipInterpolator(places, np.array(lines), axis=1)(np.log(speed))
+        return np.asarray(PchipInterpolator(np.log(loads), along, axis=0)(np.log(load)))
+
+    friction, log_rcs = between(torque), between(rcs)
     return FineMap(entrainment(speed), load, np.exp(log_rcs), _efficiency(screw, load, friction))
 
 
@@ -290,16 +295,6 @@ def _efficiency(screw: Screw, load: Array, torque: Array) -> Array:
             for force, line in zip(load, torque, strict=True)
         ]
     )
-
-
-def _between(speeds: Array, loads: Array, values: Array, speed: Array, load: Array) -> Array:
-    """Return values at finer places: monotone cubics along the speed, then along the load."""
-    places, lines = np.log(speeds), []
-    for line in values:  # gaps, nodes that failed, are bridged straight
-        good = np.isfinite(line)
-        lines.append(np.interp(places, places[good], line[good]))
-    along = PchipInterpolator(places, np.array(lines), axis=1)(np.log(speed))
-    return np.asarray(PchipInterpolator(np.log(loads), along, axis=0)(np.log(load)))
 
 
 def figure_maps(screw: Screw, rows: Rows) -> Figure:

@@ -8,7 +8,7 @@ axial load, from the functions that solve points and surfaces.
 
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 import math
@@ -328,36 +328,30 @@ def compared(value: Mapping[str, Any], ours: Sequence[float]) -> dict[str, Any]:
 
 def validation_page(record: Mapping[str, Any]) -> str:
     """Return the tables of a record in Markdown."""
-    ratios, torques = record['rolling_over_width'], record['torque_Nm']
+    compared_rows = []
+    for row in record['comparisons']:
+        within = f' ± {100 * row["tolerance"]:.0f} %' if row['tolerance'] else ''
+        published, ours = span(row['published']), span(row['ours'])
+        numbers = f'{published}{within} {row["unit"]}'.strip(), f'{ours} {row["unit"]}'.strip()
+        words = (row[key] for key in ('what', 'source', 'read'))
+        compared_rows.append((*words, *numbers, row['verdict'], row['reason']))
+    rolling = []
+    for row in record['rolling']:
+        place = f'{row["load_N"]:g}', f'{row["speed_rad_s"] / RPM:.0f}'
+        ratios = [row[f'{name}_over_formula'] for name in ('domain', 'smooth', 'rough')]
+        rolling.append((*place, f'{row["moes_load"]:.0f}', *(f'{ratio:.2f}' for ratio in ratios)))
+    ratios = record['rolling_over_width']
     width = 'half width of the oil over the semi-axis', *(f'{width:g}' for width in ratios)
     over = 'rolling force over the formula', *(f'{ratio:.2f}' for ratio in ratios.values())
+    torques = [(name, f'{torque:.3f}') for name, torque in record['torque_Nm'].items()]
     parts = (
-        markdown_table(COMPARED, map(_compared_cells, record['comparisons'])),
+        markdown_table(COMPARED, compared_rows),
         '\n'.join(f'* {sentence}' for sentence in record['without_number']),
-        markdown_table(ROLLING, map(_rolling_cells, record['rolling'])),
+        markdown_table(ROLLING, rolling),
         markdown_table(width, [over]),
-        markdown_table(
-            (f'friction torque at {FAST:g} rev/min', 'N m'),
-            ((name, f'{torque:.3f}') for name, torque in torques.items()),
-        ),
+        markdown_table((f'friction torque at {FAST:g} rev/min', 'N m'), torques),
     )
     return '\n\n'.join(parts)
-
-
-def _compared_cells(row: Mapping[str, Any]) -> Iterable[str]:
-    within = f' ± {100 * row["tolerance"]:.0f} %' if row['tolerance'] else ''
-    return (
-        *(row[key] for key in ('what', 'source', 'read')),
-        f'{span(row["published"])}{within} {row["unit"]}'.strip(),
-        f'{span(row["ours"])} {row["unit"]}'.strip(),
-        *(row[key] for key in ('verdict', 'reason')),
-    )
-
-
-def _rolling_cells(row: Mapping[str, float]) -> Iterable[str]:
-    ratios = [row[f'{name}_over_formula'] for name in ('domain', 'smooth', 'rough')]
-    place = f'{row["load_N"]:g}', f'{row["speed_rad_s"] / RPM:.0f}', f'{row["moes_load"]:.0f}'
-    return *place, *(f'{ratio:.2f}' for ratio in ratios)
 
 
 def span(values: Sequence[float]) -> str:

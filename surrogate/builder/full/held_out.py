@@ -113,6 +113,7 @@ def _point(
 ) -> HeldOutPlace | None:
     """Return a point of a stratum; cold or hot oil may have none, then another is tried."""
     for _ in range(TRIES):
+        # A load of either sign, within a band of its size and the range.
         pieces = [
             (max(low, settings.load_range[0]), min(high, settings.load_range[1]))
             for low, high in (loads, (-loads[1], -loads[0]))

@@ -15,7 +15,7 @@ from surrogate.formulas.load_sharing import normal_force
 from surrogate.parameters import BallRoughness
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import oil_at
-from surrogate.screw.onset_figure import figure_onset
+from surrogate.screw.figures import figure_onset
 from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import (
     extrapolated,
@@ -249,7 +249,7 @@ def test_smooth_raceways_say_so(screw, oil):
 
 
 def test_the_picture_falls_with_the_cutting_pressure(screw, oil, record, monkeypatch):
-    monkeypatch.setattr('surrogate.screw.onset_figure.STEPS', 3)
+    monkeypatch.setattr('surrogate.screw.figures.STEPS', 3)
     axes = figure_onset(screw, oil, record).axes[0]
     speeds = axes.lines[0].get_ydata()
     assert list(speeds) == sorted(speeds)
@@ -265,7 +265,7 @@ def test_the_picture_stays_among_pressures_that_a_sheet_may_state(screw, oil, re
         cut.append([run_in_at(pressed, one) for one in pressures])
         return pressures
 
-    monkeypatch.setattr('surrogate.screw.onset_figure.onset_over_pressure', speeds)
+    monkeypatch.setattr('surrogate.screw.figures.onset_over_pressure', speeds)
     for hardness, low in ((20e9, 2e9), (7e9, 0.5e9)):
         sheet = with_raceway(screw, hardness=hardness, run_in_low=low)
         figure_onset(sheet, oil, record | {'working_pressure_Pa': 1e8, 'working_load_N': 5e3})

@@ -361,7 +361,7 @@ def test_a_light_load_has_no_limit_of_efficiency(screw, oil):
 
 def test_the_picture_has_a_bar_per_end_and_the_bands(record, tmp_path):
     pytest.importorskip('matplotlib')
-    from surrogate.screw.sensitivity_figure import draw_sensitivity, figure_sensitivity
+    from surrogate.screw.figures import draw_sensitivity, figure_sensitivity
 
     figure = figure_sensitivity(record)
     assert [axes.get_title() for axes in figure.axes] == [
