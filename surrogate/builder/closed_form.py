@@ -27,6 +27,7 @@ from surrogate.parameters import Lubricant, Screw, screw_and_oil
 from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
 from surrogate.screw.opened import Contacts
+from surrogate.screw.point import kept_point
 from surrogate.screw.screw_onset import onset_speeds
 from surrogate.surface import FIELDS, SolvedPoint, Surface
 from surrogate.surface.file import FORMAT, FORMAT_VERSION, SurfaceData
@@ -118,13 +119,8 @@ def solve_closed_form(
 ) -> SolvedPoint:
     """Solve a point [rad/s, N, K] as the closed-form surface of this header was solved."""
     screw, lubricant = screw_and_oil(header['inputs'])
-    result = closed_form.solve(Contacts.of(screw), lubricant, speed, load, temperature)
-    fields: dict[str, Any] = {name: float(getattr(result, name)) for name in FIELDS}
-    return SolvedPoint(
-        converged=all(map(math.isfinite, fields.values())),
-        worst_contact=int(result.worst_contact),
-        **fields,
-    )
+    opened = Contacts.of(screw)
+    return kept_point(closed_form.solve(opened, lubricant, speed, load, temperature))
 
 
 def load_nodes(screw: Screw, settings: SurfaceSettings) -> tuple[Array, list[float]]:

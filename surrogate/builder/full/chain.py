@@ -10,7 +10,7 @@ Its grids are coarse: beside those of a single point the friction torque is 0.1 
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, fields, replace
+from dataclasses import asdict, replace
 from typing import Any
 
 from surrogate.asperities.law import VERSION
@@ -18,6 +18,7 @@ from surrogate.ehl import Settings
 from surrogate.parameters import Lubricant, OperatingPoint, Screw, screw_and_oil
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.opened import Contacts
+from surrogate.screw.point import kept_point
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.surface import SolvedPoint
 
@@ -63,7 +64,7 @@ def solve_chain(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """
     pairs = list(_points(inputs))
     return {
-        sense: [asdict(solved_point(pair[place])) for pair in pairs]
+        sense: [asdict(kept_point(pair[place])) for pair in pairs]
         for place, sense in enumerate(SENSES)
     }
 
@@ -107,9 +108,3 @@ def _turned(
         if balanced.load_change <= settings.coupling_tolerance:
             return balanced
     return solve_screw(opened, lubricant, against, settings=settings, start=found)
-
-
-def solved_point(found: ScrewSolution) -> SolvedPoint:
-    """Return what a surface keeps of a solution."""
-    kept = {spec.name: getattr(found, spec.name) for spec in fields(SolvedPoint)}
-    return SolvedPoint(**kept | {'converged': found.converged and bool(found.loaded_contacts)})

@@ -14,7 +14,6 @@ from surrogate.builder.full.chain import (
     point_inputs,
     solve_chain,
     solved_chain,
-    solved_point,
 )
 from surrogate.ehl import Settings, Status
 from surrogate.parameters import (
@@ -27,6 +26,7 @@ from surrogate.parameters import (
 from surrogate.screw import contacts as screw_contacts
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.opened import Contacts
+from surrogate.screw.point import kept_point
 from surrogate.screw.screw_onset import with_raceway
 from surrogate.screw.solve import solve_screw
 from surrogate.surface import FIELDS
@@ -56,8 +56,8 @@ def test_a_chain_is_the_points_it_says():
     speeds = [30.0, 10.0]
     found = chain(500.0, WARM, speeds)
     assert json.loads(json.dumps(found)) == found
-    typed = solved_chain(found)
-    for load, points in zip((500.0, -500.0), typed, strict=True):
+    opposing, assisting = solved_chain(found)
+    for load, points in ((500.0, opposing), (-500.0, assisting)):
         for solved, speed in zip(points, speeds, strict=True):
             point = OperatingPoint(speed=speed, load=load, temperature=WARM)
             same, single = (solve_screw(OPENED, OIL, point, settings=one) for one in GRIDS)
@@ -67,11 +67,11 @@ def test_a_chain_is_the_points_it_says():
             assert solved.friction_torque == pytest.approx(single.friction_torque, rel=0.01)
             assert solved.film_ratio == pytest.approx(single.film_ratio, rel=0.005)
             exact = solve_chain(point_inputs(SCREW, OIL, load, WARM, speed))['opposing'][0]
-            assert exact == asdict(solved_point(single))
+            assert exact == asdict(kept_point(single))
             assert solved.rcs == pytest.approx(single.rcs, rel=1e-3)
             assert solved.rcs_deviation == pytest.approx(single.rcs_deviation, rel=1e-3)
-    assert typed.opposing[0].friction_torque != typed.assisting[0].friction_torque
-    assert typed.opposing[1].rcs > typed.opposing[0].rcs
+    assert opposing[0].friction_torque != assisting[0].friction_torque
+    assert opposing[1].rcs > opposing[0].rcs
 
 
 def test_the_state_of_the_raceway_counts():
@@ -133,7 +133,7 @@ def test_record_of_a_point():
     settings = ScrewSettings(smooth=small, kinematics='smooth')
     point = OperatingPoint(speed=60.0, load=500.0, temperature=WARM)
     found = solve_screw(OPENED, OIL, point, settings=settings)
-    record = solved_point(found)
+    record = kept_point(found)
     assert {name: getattr(record, name) for name in FIELDS} == {
         name: getattr(found, name) for name in FIELDS
     }
@@ -142,10 +142,10 @@ def test_record_of_a_point():
     assert record.worst_contact == ratios.index(min(ratios))
     rolling = replace(settings, kinematics='rolling')
     found = solve_screw(OPENED, OIL, replace(point, speed=10.0), settings=rolling)
-    record = solved_point(found)
+    record = kept_point(found)
     assert record.rcs_deviation == found.rcs_deviation > 0
     kept = solved_chain({'opposing': [asdict(record)], 'assisting': []})
     assert kept == ((record,), ())
     free = replace(SCREW, preload=0.0)
     unloaded = solve_screw(Contacts.of(free), OIL, replace(point, load=0.0), settings=settings)
-    assert not solved_point(unloaded).converged
+    assert not kept_point(unloaded).converged
