@@ -50,10 +50,11 @@ def solve(
     """
     Solve the chain at `speed` [rad/s], at least 0, `load` [N] of any sign, `temperature` [K].
 
-    The arguments broadcast against each other. Friction does not depend on the sign of the load,
-    which only picks the nut that is loaded. What asperities do follows from the topography; with
-    `share_of` RCS and their share follow from the film ratio instead, without more loss. Shear
-    heats the oil in the inlet, unless `inlet_heating` is off.
+    The screw is opened by `Contacts.of`; the other arguments broadcast against each other.
+    Friction does not depend on the sign of the load, which only picks the nut that is loaded.
+    What asperities do follows from the topography; with `share_of` RCS and their share follow
+    from the film ratio instead, without more loss. Shear heats the oil in the inlet, unless
+    `inlet_heating` is off.
 
     """
     speed, load, temperature = np.broadcast_arrays(

@@ -81,7 +81,7 @@ def solve_screw(
     start: ScrewSolution | None = None,
 ) -> ScrewSolution:
     """
-    Solve the full model at one operating point.
+    Solve the full model of a screw, opened by `Contacts.of`, at one operating point.
 
     A `start` from a neighbouring point of the same screw saves time and changes nothing beyond the
     tolerances of the contacts; rough ones of another load start from cold all the same. Speed zero
