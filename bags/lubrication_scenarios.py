@@ -15,6 +15,7 @@ from feeding import CLEAR_DELAY, FEED, LATE, later, LOAD, OIL, RAMP, TOUCHING
 from scenario import Expected, ExpectedEvent, LimitPoint, OIL_PERIOD, ResidualChange, Scenario
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.screw.closed_form import solve
+from surrogate.screw.opened import Contacts
 from surrogate.units import RPM
 
 LIGHT_LOAD = 247.5  # [N] a quarter of the preload: efficiency is judged from here on
@@ -33,7 +34,9 @@ PRELOAD_STRETCH = 6.0  # [s] recorded of each week
 def friction(oil: str, speed: float = FEED, load: float = LOAD) -> float:
     """Return the friction torque [N m] of the nominal screw with an oil, by the closed form."""
     screw, lubricant = load_screw('nominal'), load_lubricant(oil)
-    return float(solve(screw, lubricant, speed * RPM, load, kelvin(OIL)).friction_torque)
+    return float(
+        solve(Contacts.of(screw), lubricant, speed * RPM, load, kelvin(OIL)).friction_torque
+    )
 
 
 def warm_up() -> Scenario:

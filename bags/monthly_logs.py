@@ -41,6 +41,7 @@ from scipy.interpolate import RegularGridInterpolator
 from surrogate.formulas.torque import driving_torque
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 from surrogate.units import ZERO_CELSIUS
 import yaml
 
@@ -166,7 +167,7 @@ def friction(month: Month, speed: Array, load: Array, oil: Array) -> Array:
     """
     screw = load_screw(SCREW)
     solved = closed_form.solve(
-        dataclasses.replace(screw, preload=month.preload * screw.preload),
+        Contacts.of(dataclasses.replace(screw, preload=month.preload * screw.preload)),
         load_lubricant(month.oil),
         np.maximum(SLOWEST * np.sinh(SPEED_NODES), SLOWEST)[:, None, None],
         LOAD_NODES[None, :, None],

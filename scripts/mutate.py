@@ -61,11 +61,7 @@ COVERED = {
     'surrogate/screw/uncertain_inputs.py': 'sensitivity',
 }
 """Tests of a file beside the one that mirrors it, in the same folder; quick ones first."""
-PICTURES = (
-    'surrogate/screw/figures.py',
-    'surrogate/screw/onset_figure.py',
-    'surrogate/screw/sensitivity_figure.py',
-)
+PICTURES = ('surrogate/screw/figures.py',)
 KERNELS = 'surrogate/screw/ball_sums.py'
 """What is compiled wherever it runs, and so is only changed with the compiler off."""
 COMPILING = (

@@ -24,6 +24,7 @@ from surrogate.identify.fit import identify
 from surrogate.identify.model import anchored, closed_form_model, thickened
 from surrogate.identify.table import solved_model
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
+from surrogate.screw.opened import Contacts
 from surrogate.screw.solve import rebalance_screw, solve_screw
 from surrogate.units import RPM
 
@@ -49,7 +50,9 @@ def recording(screw, oil):
         temperature=WARM,
     )
     points = [OperatingPoint(speed=float(one), load=0.0, temperature=WARM) for one in SPEEDS]
-    contacts = np.array([solve_screw(screw, oil, point).friction_torque for point in points])
+    contacts = np.array(
+        [solve_screw(Contacts.of(screw), oil, point).friction_torque for point in points]
+    )
     drag = np.sign(speed) * (np.tile(contacts, 2) + CONSTANT) + RATE * speed + OFFSET
     noise = NOISE * np.random.default_rng(3).standard_normal(len(speed))
     return replace(blank, torque=drag + noise), contacts
@@ -74,7 +77,7 @@ def check_table(screw, oil, model, contacts):
     )
     for place in THICK_SPEEDS:
         point = OperatingPoint(speed=float(SPEEDS[place]), load=0.0, temperature=WARM)
-        exact = solve_screw(screw, thick, point).friction_torque
+        exact = solve_screw(Contacts.of(screw), thick, point).friction_torque
         print(
             f'table at {SPEEDS[place] / RPM:5.0f} rev/min, viscosity times {THICK:g}: '
             f'{100 * (found[place] / exact - 1):6.2f} %'
@@ -91,9 +94,9 @@ def check_balance(screw, oil):
         speed = rpm * RPM
         point = OperatingPoint(speed=speed, load=0.0, temperature=kelvin)
         base = OperatingPoint(speed=speed * factor, load=0.0, temperature=WARM)
-        solved = solve_screw(screw, warm, base)
-        exact = solve_screw(screw, thick, point).friction_torque
-        found = rebalance_screw(screw, thick, point, solved).friction_torque
+        solved = solve_screw(Contacts.of(screw), warm, base)
+        exact = solve_screw(Contacts.of(screw), thick, point).friction_torque
+        found = rebalance_screw(Contacts.of(screw), thick, point, solved).friction_torque
         print(
             f'{rpm:5.0f} rev/min at {kelvin:g} K, viscosity times {factor:.3g}: the product alone '
             f'{100 * (solved.friction_torque / exact - 1):6.2f} %, balls balanced again '

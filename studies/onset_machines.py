@@ -40,6 +40,7 @@ SPEEDS = np.geomspace(3.0, 1000.0, 14)
 FAST = np.geomspace(200.0, 2000.0, 10)
 """Speeds of a staircase, and of one that ends above most upturns [rev/min]."""
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+OPENED = Contacts.of(SCREW)
 WITHIN = 1.3
 
 
@@ -111,8 +112,8 @@ def machine(seed, rpm=SPEEDS):
     drag *= 1 + 0.01 * drawn.standard_normal(len(speed))
     torque = np.sign(speed) * drag + truth['parasitic_torque_rate'] * speed
     torque += 0.01 * drawn.standard_normal() + 0.001 * drawn.standard_normal(len(speed))
-    begun = onset_point(screw, oil, 0.0, WARM)['speed_rad_s']
-    truth['onset_factor'] = begun / onset_point(SCREW, OIL, 0.0, WARM)['speed_rad_s']
+    begun = onset_point(Contacts.of(screw), oil, 0.0, WARM)['speed_rad_s']
+    truth['onset_factor'] = begun / onset_point(OPENED, OIL, 0.0, WARM)['speed_rad_s']
     return no_load_run(
         {'speed': speed, 'torque': torque}, source='machine', temperature=WARM
     ), truth
@@ -125,7 +126,7 @@ def contact_torque(screw, oil, march, speed, kelvin):
     law = MachineLaw(onsets=usual.onsets, deviation=usual.deviation, march=march)
     vars(opened)['law'] = law
     try:
-        return closed_form.solve(screw, oil, speed, 0.0, kelvin).friction_torque
+        return closed_form.solve(Contacts.of(screw), oil, speed, 0.0, kelvin).friction_torque
     finally:
         vars(opened)['law'] = usual
 

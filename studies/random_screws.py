@@ -27,6 +27,7 @@ from surrogate.files import InputError
 from surrogate.parameters import load_lubricant, Lubricant, OperatingPoint, Screw
 from surrogate.screw.closed_form import solve
 from surrogate.screw.contacts import ScrewSettings
+from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point
 from surrogate.screw.solve import solve_screw
 from surrogate.tasks.table import read_table, write_table
@@ -85,9 +86,9 @@ def draw(seed: int) -> tuple[CatalogueScrew, str, float, float]:
 
 def closed_form_onset(screw: Screw, oil: Lubricant, load: float, temperature: float) -> float:
     """Return the fastest screw speed at which RCS is 0.01 [rad/s], closed-form tier."""
-    middle = onset_point(screw, oil, load, temperature)['speed_rad_s']
+    middle = onset_point(Contacts.of(screw), oil, load, temperature)['speed_rad_s']
     speeds = middle * np.geomspace(BETWEEN, 1 / BETWEEN, 241)
-    rcs = solve(screw, oil, speeds, load, temperature).rcs
+    rcs = solve(Contacts.of(screw), oil, speeds, load, temperature).rcs
     last = int(np.argmax(rcs >= ONSET_RCS))
     ends = np.log(np.maximum(rcs[[last - 1, last]], 1e-9))
     logs = np.log(speeds[[last - 1, last]])
@@ -101,7 +102,7 @@ def full_onset(
     speed, known = near, None
     for _ in range(3):
         point = OperatingPoint(speed=speed, load=load, temperature=temperature)
-        known = solve_screw(screw, oil, point, settings=SETTINGS, start=known)
+        known = solve_screw(Contacts.of(screw), oil, point, settings=SETTINGS, start=known)
         if not (known.converged and known.rcs > 0):
             return math.nan, known.status
         found = speed * (known.rcs / ONSET_RCS) ** (-1 / SLOPE)

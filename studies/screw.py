@@ -17,6 +17,7 @@ import numpy as np
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint, Screw
 from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, PURPLE, VERMILION
 from surrogate.screw.contacts import Kinematics, ScrewSettings
+from surrogate.screw.opened import Contacts
 from surrogate.screw.solve import ScrewSolution, solve_screw
 from surrogate.units import MILLI, RPM
 
@@ -43,7 +44,9 @@ def solve_all(screw: Screw, load: float) -> list[Row]:
 
     def solved(rpm: float, kinematics: Kinematics) -> ScrewSolution:
         point = OperatingPoint(speed=rpm * RPM, load=load, temperature=313.15)
-        return solve_screw(screw, oil, point, settings=ScrewSettings(kinematics=kinematics))
+        return solve_screw(
+            Contacts.of(screw), oil, point, settings=ScrewSettings(kinematics=kinematics)
+        )
 
     solved(SPEEDS[-1], 'rolling')
     rows = []

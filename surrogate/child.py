@@ -150,15 +150,13 @@ class Worker:
         with contextlib.suppress(OSError, ValueError), self._process.stdout as lines:
             while line := lines.readline(LONGEST_FRAME):
                 hear(self, json.loads(line))
-        hear(self, {'lost': self._describe_end()})
-
-    def _describe_end(self) -> str:
         try:
             code = self._process.wait(PATIENCE)
         except subprocess.TimeoutExpired:
             self._process.kill()
             code = self._process.wait()
-        return f'was killed by signal {-code}' if code < 0 else f'ended with exit code {code}'
+        killed, ended = f'was killed by signal {-code}', f'ended with exit code {code}'
+        hear(self, {'lost': killed if code < 0 else ended})
 
 
 class Workers:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Datasheets written back to YAML: the keys, units and blocks from which they are read."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 import textwrap
@@ -39,22 +39,17 @@ def write_sheet(
         for line in textwrap.wrap(text, WIDTH - 2, break_on_hyphens=False)
     ]
     body = yaml.safe_dump(_on_file(sheet), sort_keys=False, allow_unicode=True, width=WIDTH)
-    lines = [*(f'# {line}' for line in head), *_noted(body, notes or {})]
+    lines, block = [f'# {line}' for line in head], ''
+    for line in body.splitlines():
+        key = line.partition(':')[0]
+        name = f'{block}.{key.strip()}' if line.startswith(' ') else key
+        block = block if line.startswith(' ') else key
+        lines.append(f'{line}  # {notes[name]}' if notes and name in notes else line)
     text = ''.join(f'{line}\n' for line in lines)
     try:
         replace_file(path, text.encode())
     except OSError as error:
         raise InputError(f'{path}: the datasheet cannot be written, {error.strerror}') from None
-
-
-def _noted(body: str, notes: Mapping[str, str]) -> Iterator[str]:
-    """Yield the lines of a sheet, each with the note behind it."""
-    block = ''
-    for line in body.splitlines():
-        key = line.partition(':')[0]
-        name = f'{block}.{key.strip()}' if line.startswith(' ') else key
-        block = block if line.startswith(' ') else key
-        yield f'{line}  # {notes[name]}' if name in notes else line
 
 
 def _on_file(sheet: Any) -> dict[str, Any]:

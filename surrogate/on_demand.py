@@ -15,11 +15,12 @@ import resource
 import time
 from typing import Any
 
-from surrogate.builder.full.chain import solved_point
 from surrogate.ehl.watch import Iteration, watched
 from surrogate.files import InputError
 from surrogate.parameters import OperatingPoint, screw_and_oil
 from surrogate.screw import solve_screw
+from surrogate.screw.opened import Contacts
+from surrogate.screw.point import kept_point
 from surrogate.surface import SolvedPoint
 from surrogate.worker import cancelled, tell
 
@@ -56,7 +57,7 @@ def solve_point(
     )
     screw, oil = screw_and_oil(header['inputs'])
     with watched(_Watcher(progress, cancel)):
-        return solved_point(solve_screw(screw, oil, point))
+        return kept_point(solve_screw(Contacts.of(screw), oil, point))
 
 
 class _Watcher:

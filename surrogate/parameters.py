@@ -205,7 +205,19 @@ class Screw(Checked):
                 f'screw: {given} is given without {other}, allowed is both or neither'
             )
         if self._ball_rms:
-            self._check_balls()
+            if not (self.roughness.fractal_dimension or self.roughness.rms_slope):
+                raise InputError(
+                    'screw: ball_roughness is given without fractal_dimension or rms_slope_deg in '
+                    'roughness, allowed is a raceway with one of them, which the balls share'
+                )
+            short = self.roughness.cutoff_short
+            long = long_cutoff_iso_21920(RA_OVER_RQ * self._ball_rms)
+            if short >= long:
+                raise InputError(
+                    f'screw: cutoff_short_um of roughness is {short * 1e6:g} um, allowed is less '
+                    f'than the long cut-off of the balls, {long * 1e6:g} um by the table for '
+                    f'their Rq of {self._ball_rms * 1e6:.3g} um'
+                )
 
     def stated(self) -> dict[str, Any]:
         """Return the values by name on which a solve depends."""
@@ -215,24 +227,6 @@ class Screw(Checked):
         """Return the values by name that are stated for life, critical speed and buckling."""
         values = {name: getattr(self, name) for name in self.SERVICE}
         return {name: value for name, value in values.items() if value is not None}
-
-    def _check_balls(self) -> None:
-        """Check that what balls share with the raceway gives them waves."""
-        if not (self.roughness.fractal_dimension or self.roughness.rms_slope):
-            raise InputError(
-                'screw: ball_roughness is given without fractal_dimension or rms_slope_deg in '
-                'roughness, allowed is a raceway with one of them, which the balls share'
-            )
-        short, long = (
-            self.roughness.cutoff_short,
-            long_cutoff_iso_21920(RA_OVER_RQ * self._ball_rms),
-        )
-        if short >= long:
-            raise InputError(
-                f'screw: cutoff_short_um of roughness is {short * 1e6:g} um, allowed is less than '
-                f'the long cut-off of the balls, {long * 1e6:g} um by the table for their Rq of '
-                f'{self._ball_rms * 1e6:.3g} um'
-            )
 
     @property
     def _ball_rms(self) -> float:
@@ -351,7 +345,13 @@ class Lubricant(Checked):
                 f'kinematic_viscosity_40_mm2_s ({self.kinematic_viscosity_40 * 1e6:g} mm2/s)'
             )
         self._check_viscosity()
-        self._check_film_floor()
+        slack = 1 + 1e-9  # the rounding of the conversion must not refuse the bound itself
+        if not self.film_floor_low / slack <= self.film_floor <= self.film_floor_high * slack:
+            raise InputError(
+                f'lubricant: film_floor_nm is {self.film_floor * 1e9:g} nm, allowed is '
+                f'{self.film_floor_low * 1e9:g} to {self.film_floor_high * 1e9:g} nm '
+                '(film_floor_low_nm to film_floor_high_nm of the sheet)'
+            )
         if not (
             self.minimum_temperature <= self.reference_temperature <= self.maximum_temperature
         ):
@@ -365,15 +365,6 @@ class Lubricant(Checked):
     def stated(self) -> dict[str, Any]:
         """Return the values by name; an option that is absent leaves no trace."""
         return {name: value for name, value in asdict(self).items() if value is not None}
-
-    def _check_film_floor(self) -> None:
-        slack = 1 + 1e-9  # the rounding of the conversion must not refuse the bound itself
-        if not self.film_floor_low / slack <= self.film_floor <= self.film_floor_high * slack:
-            raise InputError(
-                f'lubricant: film_floor_nm is {self.film_floor * 1e9:g} nm, allowed is '
-                f'{self.film_floor_low * 1e9:g} to {self.film_floor_high * 1e9:g} nm '
-                '(film_floor_low_nm to film_floor_high_nm of the sheet)'
-            )
 
     def _check_viscosity(self) -> None:
         """Refuse the commonest slip, mPa s typed as Pa s, where the sheet itself shows it."""

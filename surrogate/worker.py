@@ -138,19 +138,6 @@ def main() -> None:
     if memory:
         resource.setrlimit(resource.RLIMIT_DATA, (memory, memory))
     requests: queue.SimpleQueue[Frame | None] = queue.SimpleQueue()
-    frames, send = _pipes()
-    threading.Thread(target=_listen, args=(frames, requests), daemon=True).start()
-    try:
-        while (request := requests.get()) is not None:
-            listener.set(ShareTeller(lambda step: send({'step': step})))
-            send(run_task(request['task'], request['inputs']))
-    except SystemExit:
-        os._exit(1)  # at once: the other thread may hold the input
-    os._exit(0)
-
-
-def _pipes() -> tuple[TextIO, Callable[[Frame], None]]:
-    """Return where frames come in and what sends them; what a task prints is not among them."""
     frames, out = os.fdopen(os.dup(0)), os.fdopen(os.dup(1), 'w')
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)
@@ -165,7 +152,14 @@ def _pipes() -> tuple[TextIO, Callable[[Frame], None]]:
         except OSError:
             os._exit(0)  # nobody reads
 
-    return frames, send
+    threading.Thread(target=_listen, args=(frames, requests), daemon=True).start()
+    try:
+        while (request := requests.get()) is not None:
+            listener.set(ShareTeller(lambda step: send({'step': step})))
+            send(run_task(request['task'], request['inputs']))
+    except SystemExit:
+        os._exit(1)  # at once: the other thread may hold the input
+    os._exit(0)
 
 
 def _listen(frames: TextIO, requests: 'queue.SimpleQueue[Frame | None]') -> None:

@@ -19,6 +19,7 @@ from surrogate.builder.closed_form import build_closed_form, SurfaceSettings
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.progress import Progress
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 from surrogate.surface import Surface
 from surrogate.units import ZERO_CELSIUS
 
@@ -127,4 +128,4 @@ def _log_friction(course: Course, state: float | str) -> Array:
         oil = dataclasses.replace(oil, film_factor=state)
     screw = _screw(state if course is Course.PRELOAD else 1.0)
     grid = SPEEDS[:, None, None], LOADS[None, :, None], HEATS[None, None, :]
-    return np.log(closed_form.solve(screw, oil, *grid).friction_torque)
+    return np.log(closed_form.solve(Contacts.of(screw), oil, *grid).friction_torque)

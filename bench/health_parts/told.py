@@ -25,6 +25,7 @@ from health_parts.programmes import DAYS
 from health_parts.years import draw_year, FIRST_DAY, Kind, LOSSES, Truth, Year
 import numpy as np
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point
 
 LOOKS = 140, 200, 364
@@ -89,8 +90,8 @@ def _true_onset(year: Year, day: int) -> float:
     )
     heat = oil.reference_temperature
     now, before = (
-        onset_point(*sheets, 0.0, heat)['speed_rad_s']
-        for sheets in ((loaded, changed), (screw, oil))
+        onset_point(Contacts.of(sheet), lubricant, 0.0, heat)['speed_rad_s']
+        for sheet, lubricant in ((loaded, changed), (screw, oil))
     )
     part = size if truth in OTHER_OILS else 1.0
     return 1.0 + part * (now / before - 1.0)

@@ -122,20 +122,16 @@ def running_tiles(contact: RunningContact, *, shortest: float = 0.0) -> list[Til
             'and hardness_GPa'
         )
     size, shape = tile_size(contact, shortest=shortest)
-    return [
-        _added(
-            [
-                _cut(
-                    draw_tile(waves, draw, size=size, shape=shape, shortest=shortest, field=field),
-                    0.5 * contact.reduced_modulus,
-                    pressure,
-                    bound,
-                )
-                for field, waves in fields.items()
-            ]
+    modulus, tiles = 0.5 * contact.reduced_modulus, []
+    for draw in range(TILES):
+        drawn = (
+            draw_tile(waves, draw, size=size, shape=shape, shortest=shortest, field=field)
+            for field, waves in fields.items()
         )
-        for draw in range(TILES)
-    ]
+        cut = [_cut(tile, modulus, pressure, bound) for tile in drawn]
+        heights = np.sum([tile.heights for tile in cut], axis=0)
+        tiles.append(replace(cut[0], heights=heights))
+    return tiles
 
 
 def tile_size(
@@ -164,7 +160,3 @@ def _cut(tile: Tile, modulus: float, pressure: float, bound: float) -> Tile:
             'smaller working_load_N'
         )
     return lower
-
-
-def _added(tiles: list[Tile]) -> Tile:
-    return replace(tiles[0], heights=np.sum([tile.heights for tile in tiles], axis=0))

@@ -108,16 +108,11 @@ def _log_heights(tile: Tile, modulus: float, shortest_wave: float) -> Array:
         left = left_by_rolling(tile, float(reduction))
         wave = 2 * math.pi * math.sqrt(left.moment(0) / left.moment(1))
         for column, pressure in enumerate(PRESSURES):
-            gap = _gap_under(left, modulus, float(pressure))
+            load = LOAD_SHARE * 0.25 * math.pi * float(pressure)
+            pressed = press(left, modulus, load, tolerance=TOLERANCE)
+            gap = max(pressed.separation, FLAT)
             found[row, column] = math.log(gap * wave**WAVE_POWER) + gain
     return found
-
-
-def _gap_under(tile: Tile, modulus: float, pressure: float) -> float:
-    """Return the mean gap [m] of a tile under the share of a Hertz pressure [Pa]."""
-    load = LOAD_SHARE * 0.25 * math.pi * pressure
-    found = press(tile, modulus, load, tolerance=TOLERANCE)
-    return max(found.separation, FLAT)
 
 
 def left_by_rolling(tile: Tile, reduction: float) -> Tile:

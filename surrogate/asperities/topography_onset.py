@@ -65,7 +65,13 @@ class TopographyOnset:
         reduction = M1**0.75 / np.sqrt(L) / every.semi_axis
         film = central_film_line(every, speed, oil.viscosity, oil.pressure_viscosity)
         wanted = film_at_onset(self.acting.height(reduction, pressure), floor, pressure)
-        return self.factor * _fastest_root(np.log(film) - np.log(wanted))
+        spare = np.log(film) - np.log(wanted)
+        below = spare[..., :-1] < 0
+        last = len(LOG_SPEEDS) - 2 - np.argmax(below[..., ::-1], axis=-1)
+        low, high = (np.take_along_axis(spare, (last + k)[..., None], -1)[..., 0] for k in (0, 1))
+        step = LOG_SPEEDS[1] - LOG_SPEEDS[0]
+        fastest = np.exp(LOG_SPEEDS[last] - low / (high - low) * step)
+        return self.factor * np.asarray(np.where(below.any(axis=-1), fastest, 0.0))
 
     def speed(self, contact: Contact, load: float, oil: ContactLubricant, floor: float) -> float:
         """Return the onset speed [m/s] in the middle of a contact under a load [N]."""
@@ -82,16 +88,6 @@ def film_at_onset(height: ArrayLike, floor: float, pressure: ArrayLike) -> Array
     constant = HEIGHTS * (NODE_FACTOR * LAG_FACTOR) ** STEEPNESS
     over = (np.asarray(pressure) / PRESSURE) ** PRESSURE_POWER
     return np.asarray(np.maximum(constant * floor**FLOOR_POWER * over * height, floor))
-
-
-def _fastest_root(spare: Array) -> Array:
-    """Return the fastest of `LOG_SPEEDS` [m/s], the last axis, below which film is missing."""
-    below = spare[..., :-1] < 0
-    last = len(LOG_SPEEDS) - 2 - np.argmax(below[..., ::-1], axis=-1)
-    low, high = (np.take_along_axis(spare, (last + k)[..., None], -1)[..., 0] for k in (0, 1))
-    step = LOG_SPEEDS[1] - LOG_SPEEDS[0]
-    speed = np.exp(LOG_SPEEDS[last] - low / (high - low) * step)
-    return np.asarray(np.where(below.any(axis=-1), speed, 0.0))
 
 
 @lru_cache(maxsize=64)

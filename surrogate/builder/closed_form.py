@@ -26,6 +26,8 @@ from surrogate.formulas.sliding import largest_sliding
 from surrogate.parameters import Lubricant, Screw, screw_and_oil
 from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
+from surrogate.screw.point import kept_point
 from surrogate.screw.screw_onset import onset_speeds
 from surrogate.surface import FIELDS, SolvedPoint, Surface
 from surrogate.surface.file import FORMAT, FORMAT_VERSION, SurfaceData
@@ -83,17 +85,18 @@ def build_closed_form(
     """
     check_rough(screw)
     check_ranges(settings, lubricant)
-    started = time.perf_counter()
+    started, opened = time.perf_counter(), Contacts.of(screw)
     load, breaks = load_nodes(screw, settings)
     temperature = temperature_nodes(
         lubricant, settings.temperature_range, settings.temperature_nodes
     )
-    log_onset = np.log(onset_speeds(screw, lubricant, load, temperature))
+    log_onset = np.log(onset_speeds(opened, lubricant, load, temperature))
     s = speed_coordinates(settings, log_onset)
     total = 2 * len(temperature) - 1
     nodes = solve_grid(
-        screw, lubricant, s, load, temperature, log_onset, lambda done: progress(done, total)
+        opened, lubricant, s, load, temperature, log_onset, lambda done: progress(done, total)
     )
+    axes = (s, load, temperature)
     data = SurfaceData(
         header=surface_header(screw, lubricant, settings, breaks, closed_form.TIER),
         speed_coordinate=s,
@@ -101,14 +104,14 @@ def build_closed_form(
         temperature=temperature,
         log_onset=log_onset,
         fields={name: nodes[name] for name in FIELDS},
-        errors=_unmeasured((s, load, temperature)),
+        errors={name: np.full([len(axis) - 1 for axis in axes], np.nan) for name in FIELDS},
         worst_contact=nodes['worst_contact'].astype(np.uint8),
         mask=~np.all([np.isfinite(nodes[name]) for name in FIELDS], axis=0),
     )
     errors = measure_errors(
-        screw, lubricant, data, lambda done: progress(len(temperature) + done, total)
+        opened, lubricant, data, lambda done: progress(len(temperature) + done, total)
     )
-    return replace(data, errors=errors, provenance=_provenance(time.perf_counter() - started))
+    return replace(data, errors=errors, provenance=provenance(time.perf_counter() - started))
 
 
 def solve_closed_form(
@@ -116,13 +119,8 @@ def solve_closed_form(
 ) -> SolvedPoint:
     """Solve a point [rad/s, N, K] as the closed-form surface of this header was solved."""
     screw, lubricant = screw_and_oil(header['inputs'])
-    result = closed_form.solve(screw, lubricant, speed, load, temperature)
-    fields: dict[str, Any] = {name: float(getattr(result, name)) for name in FIELDS}
-    return SolvedPoint(
-        converged=all(map(math.isfinite, fields.values())),
-        worst_contact=int(result.worst_contact),
-        **fields,
-    )
+    opened = Contacts.of(screw)
+    return kept_point(closed_form.solve(opened, lubricant, speed, load, temperature))
 
 
 def load_nodes(screw: Screw, settings: SurfaceSettings) -> tuple[Array, list[float]]:
@@ -166,7 +164,7 @@ def speed_coordinates(settings: SurfaceSettings, log_onset: Array) -> Array:
 
 
 def measure_errors(
-    screw: Screw, lubricant: Lubricant, data: SurfaceData, step: Callable[[int], None]
+    opened: Contacts, lubricant: Lubricant, data: SurfaceData, step: Callable[[int], None]
 ) -> dict[str, Array]:
     """
     Return, per field and cell, |lookup - solve| at the centre of the cell.
@@ -182,7 +180,7 @@ def measure_errors(
     log_onset = np.log(
         [[surface.onset_speed(force, heat) for heat in temperature] for force in load]
     )
-    solved = solve_grid(screw, lubricant, s, load, temperature, log_onset, step)
+    solved = solve_grid(opened, lubricant, s, load, temperature, log_onset, step)
     points = [
         surface.lookup(math.exp(s[i] + log_onset[j, k]), float(load[j]), float(temperature[k]))
         for i, j, k in np.ndindex(len(s), len(load), len(temperature))
@@ -197,7 +195,7 @@ def measure_errors(
 
 
 def solve_grid(
-    screw: Screw,
+    opened: Contacts,
     lubricant: Lubricant,
     s: Array,
     load: Array,
@@ -214,15 +212,11 @@ def solve_grid(
     slices: dict[str, list[Array]] = {name: [] for name in (*FIELDS, 'worst_contact')}
     for k, heat in enumerate(temperature):
         speed = np.exp(s[:, None] + log_onset[None, :, k])
-        result = closed_form.solve(screw, lubricant, speed, load, heat)
+        result = closed_form.solve(opened, lubricant, speed, load, heat)
         for name, values in slices.items():
             values.append(getattr(result, name))
         step(k + 1)
     return {name: np.stack(values, axis=-1) for name, values in slices.items()}
-
-
-def _unmeasured(axes: tuple[Array, ...]) -> dict[str, Array]:
-    return {name: np.full([len(axis) - 1 for axis in axes], np.nan) for name in FIELDS}
 
 
 def check_rough(screw: Screw) -> None:
@@ -277,7 +271,8 @@ def surface_header(
     }
 
 
-def _provenance(seconds: float) -> Mapping[str, Any]:
+def provenance(seconds: float) -> dict[str, Any]:
+    """Return when, in how many seconds and by what a surface was built."""
     return {
         'built': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime()),
         'build_seconds': round(seconds, 3),

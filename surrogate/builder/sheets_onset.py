@@ -8,6 +8,7 @@ from surrogate.builder.closed_form import default_settings
 from surrogate.formulas.torque import efficiency
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point
 from surrogate.surface.contact_onset import (
     contact_onset,
@@ -29,18 +30,18 @@ def onset_of_sheets(screw: Screw, lubricant: Lubricant, temperature: float) -> C
     Raises InputError as `running_tiles` does.
 
     """
-    settings = default_settings(screw)
+    settings, opened = default_settings(screw), Contacts.of(screw)
     (slowest, fastest), band = settings.speed_range, band_of(screw.roughness)
     speeds, loads = grid_of((slowest, fastest), settings.load_range)
 
     def has(heat: float, limits: ZoneLimits) -> bool:
-        found = closed_form.solve(screw, lubricant, speeds, loads, heat)
+        found = closed_form.solve(opened, lubricant, speeds, loads, heat)
         shares = EFFICIENCY(found.friction_torque, loads, screw.lead)
         return limits.has_zone(found.rcs, shares, loads)
 
     limits = usual_limits(screw.preload)
     return contact_onset(
-        onset=lambda heat: onset_point(screw, lubricant, 0.0, heat)['speed_rad_s'],
+        onset=lambda heat: onset_point(opened, lubricant, 0.0, heat)['speed_rad_s'],
         has_zone=lambda heat: has(heat, limits),
         has_film=lambda heat: has(heat, limits.of_film),
         temperature=temperature,

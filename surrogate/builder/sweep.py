@@ -131,20 +131,16 @@ def _variants(path: Path, content: Any, screw: Screw) -> list[tuple[str, Screw]]
     for entry in content:
         if not isinstance(entry, dict) or not isinstance(entry.get('name'), str):
             raise InputError(f'{path}: roughness: {entry!r} must be a mapping with a name')
-        changes = {key: value for key, value in entry.items() if key != 'name'}
-        found.append((entry['name'], _with_roughness(path, screw, entry['name'], changes)))
+        name, variant = entry['name'], screw
+        where = f'{path}: roughness {name}'
+        if not re.fullmatch(NAME[0], name):
+            raise InputError(f'{where}: name must be {NAME[1]}')
+        if changes := {key: value for key, value in entry.items() if key != 'name'}:
+            roughness = changed_sheet(screw.roughness, changes, where)
+            check_waves(roughness, where)
+            variant = replace(screw, name=f'{screw.name}-{name}', roughness=roughness)
+        found.append((name, variant))
     return found
-
-
-def _with_roughness(path: Path, screw: Screw, name: str, changes: dict[str, Any]) -> Screw:
-    where = f'{path}: roughness {name}'
-    if not re.fullmatch(NAME[0], name):
-        raise InputError(f'{where}: name must be {NAME[1]}')
-    if not changes:
-        return screw
-    roughness = changed_sheet(screw.roughness, changes, where)
-    check_waves(roughness, where)
-    return replace(screw, name=f'{screw.name}-{name}', roughness=roughness)
 
 
 def _ranges(path: Path, content: Mapping[str, Any]) -> dict[str, tuple[float, float]]:

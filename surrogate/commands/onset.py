@@ -44,7 +44,7 @@ def _onset(args: argparse.Namespace) -> int:
     record = onset_record(screw, lubricant, args.load, oil_temperature(args, lubricant))
     show(record, onset_page, json=args.json)
     if args.plot:
-        from surrogate.screw.onset_figure import draw_onset
+        from surrogate.screw.figures import draw_onset
 
         picture(args.plot, lambda folder: draw_onset(folder, screw, lubricant, record))
     return 0

@@ -164,7 +164,7 @@ def _sensitivity(
         progress.close()
     show(record, sensitivity_page, json=args.json)
     if args.plot:
-        from surrogate.screw.sensitivity_figure import draw_sensitivity
+        from surrogate.screw.figures import draw_sensitivity
 
         picture(args.plot, lambda folder: draw_sensitivity(folder, record))
     return 0

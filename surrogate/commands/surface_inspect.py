@@ -27,7 +27,20 @@ def add_inspect_commands(actions: Any) -> None:
     text = 'Exit code 1: a point or the other surface differs by more than the tolerance.'
     check = 'compare a surface file with fresh solves'
     _add_check(actions.add_parser('check', help=check, epilog=text))
-    _add_query(actions.add_parser('query', help='look up one point, or those of a table'))
+    parser = actions.add_parser('query', help='look up one point, or those of a table')
+    add_file(parser)
+    add_operating_point(parser, required=False)
+    parser.add_argument(
+        '--csv',
+        type=Path,
+        metavar='IN.csv',
+        help='table of points instead: speed_rpm, load_N, temperature_degC (may be missing)',
+    )
+    parser.add_argument(
+        '--out', type=Path, metavar='OUT.csv', help='table to write (default: print)'
+    )
+    add_json(parser)
+    parser.set_defaults(handler=_query)
     plot = actions.add_parser('plot', help='draw a surface, a picture per temperature')
     add_file(plot)
     plot.add_argument('--out', type=Path, required=True, metavar='DIR', help='where pictures go')
@@ -76,22 +89,6 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(handler=_check)
 
 
-def _add_query(parser: argparse.ArgumentParser) -> None:
-    add_file(parser)
-    add_operating_point(parser, required=False)
-    parser.add_argument(
-        '--csv',
-        type=Path,
-        metavar='IN.csv',
-        help='table of points instead: speed_rpm, load_N, temperature_degC (may be missing)',
-    )
-    parser.add_argument(
-        '--out', type=Path, metavar='OUT.csv', help='table to write (default: print)'
-    )
-    add_json(parser)
-    parser.set_defaults(handler=_query)
-
-
 def _add_diff(parser: argparse.ArgumentParser) -> None:
     for name, letter in (('first', 'A'), ('second', 'B')):
         parser.add_argument(
@@ -135,14 +132,14 @@ def _check(args: argparse.Namespace) -> int:
         Progress(args.points, 'points').step if slow else lambda: None,
     )
     print(f'{path}: {result.sentence()}')
-    for limit in limit_errors(
+    for (speed, load, temperature), error in limit_errors(
         data, args.limit_points, args.seed, lambda: time.monotonic() < deadline
     ):
-        off = f'is off by {100 * limit.error:+.2g} % of the speed'
+        off = f'is off by {100 * error:+.2g} % of the speed'
         print(
-            f'RCS is 0.01 at {limit.speed / RPM:.3g} rev/min, {limit.load:.0f} N, '
-            f'{limit.temperature - ZERO_CELSIUS:.0f} degC; that '
-            + (off if math.isfinite(limit.error) else 'has no solution')
+            f'RCS is 0.01 at {speed / RPM:.3g} rev/min, {load:.0f} N, '
+            f'{temperature - ZERO_CELSIUS:.0f} degC; that '
+            + (off if math.isfinite(error) else 'has no solution')
         )
     return 0 if result.passed else 1
 
@@ -152,7 +149,21 @@ def _query(args: argparse.Namespace) -> int:
 
     surface = Surface.load(find_surface(args.file))
     if args.csv is not None:
-        return _query_table(args, surface)
+        from surrogate.surface_tools.query import query_table
+
+        if args.json or not (args.speed_rpm is args.load is args.temperature is None):
+            raise InputError('--csv takes its points from the table and writes a table')
+        try:
+            lines = read_text(args.csv, most=TABLE).splitlines()
+        except (OSError, UnicodeDecodeError, InputError) as error:
+            raise InputError(f'{args.csv}: cannot be read, {error}') from None
+        table, points, answers = query_table(surface, lines, str(args.csv))
+        if args.out is None:
+            print(table, end='')
+        else:
+            _write(args.out, table.encode())
+        print(f'{answers} of {points} points lie on the surface', file=sys.stderr)
+        return 0
     if args.speed_rpm is None or args.load is None:
         raise InputError('a point needs --speed-rpm and --load-N, a table of points --csv')
     if args.out is not None:
@@ -166,24 +177,6 @@ def _query(args: argparse.Namespace) -> int:
     record = query_record(surface, point)
     show(record, query_page, json=args.json)
     return 1 if record['reason'] else 0
-
-
-def _query_table(args: argparse.Namespace, surface: Surface) -> int:
-    from surrogate.surface_tools.query import query_table
-
-    if args.json or not (args.speed_rpm is args.load is args.temperature is None):
-        raise InputError('--csv takes its points from the table and writes a table')
-    try:
-        lines = read_text(args.csv, most=TABLE).splitlines()
-    except (OSError, UnicodeDecodeError, InputError) as error:
-        raise InputError(f'{args.csv}: cannot be read, {error}') from None
-    table, points, answers = query_table(surface, lines, str(args.csv))
-    if args.out is None:
-        print(table, end='')
-    else:
-        _write(args.out, table.encode())
-    print(f'{answers} of {points} points lie on the surface', file=sys.stderr)
-    return 0
 
 
 def _plot(args: argparse.Namespace) -> int:

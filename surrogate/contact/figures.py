@@ -68,10 +68,28 @@ def figure_profiles(solution: ContactSolution) -> Figure:
     columns = _lines(solution)
     figure = _figure(2.0 + 4.5 * len(columns), 6.5, solution)
     panels = figure.subplots(2, len(columns), sharex=True, sharey='row', squeeze=False)
+    x, a = MICRO * solution.x, MICRO * solution.semi_axis_x
+    there_and_back = (lambda x: np.divide(x, a), lambda s: np.multiply(s, a))
     for (upper, lower), column in zip(panels.T, columns, strict=True):
-        _draw_pressure(upper, solution, column)
+        y = float(solution.y[column])
+        asperity = GIGA * solution.asperity_pressure[:, column]
+        upper.plot(x, GIGA * solution.film_pressure[:, column], color=BLUE, lw=1.4, label='film')
+        if asperity.any():
+            upper.fill_between(x, asperity, color=VERMILION, alpha=0.35, linewidth=0)
+            upper.plot(x, asperity, color=VERMILION, linewidth=1.2, label='asperities')
+            total = GIGA * solution.pressure[:, column]
+            upper.plot(x, total, color='black', linewidth=0.9, linestyle=':', label='total')
+        inside = 1 - (solution.x / solution.semi_axis_x) ** 2 - (y / solution.semi_axis_y) ** 2
+        hertz = GIGA * (solution.hertz_pressure * np.sqrt(np.maximum(inside, 0.0)))
+        upper.plot(
+            x, hertz, color=GREY, linestyle='--', linewidth=1.0, label='Hertz, dry and smooth'
+        )
+        upper.set_title(f'y = {MICRO * y:.0f} µm')
+        upper.grid(visible=True)
         _draw_film(lower, solution, column)
-        _mark_semi_axes(upper, solution)
+        second = upper.secondary_xaxis('top', functions=there_and_back)
+        second.set_xlabel('x over the Hertz semi-axis [-]', fontsize=8)
+        second.tick_params(labelsize=8)
         lower.set_xlabel('x along the track [µm], the oil enters at the left')
     left = max(solution.x[0], -INLET * solution.semi_axis_x)
     panels[0, 0].set(
@@ -92,21 +110,6 @@ def _lines(solution: ContactSolution) -> list[int]:
     return [middle] if most == middle or carried[most] == 0 else [middle, most]
 
 
-def _draw_pressure(axes: Axes, solution: ContactSolution, column: int) -> None:
-    x, y = MICRO * solution.x, float(solution.y[column])
-    asperity = GIGA * solution.asperity_pressure[:, column]
-    axes.plot(x, GIGA * solution.film_pressure[:, column], color=BLUE, lw=1.4, label='film')
-    if asperity.any():
-        axes.fill_between(x, asperity, color=VERMILION, alpha=0.35, linewidth=0)
-        axes.plot(x, asperity, color=VERMILION, linewidth=1.2, label='asperities')
-        total = GIGA * solution.pressure[:, column]
-        axes.plot(x, total, color='black', linewidth=0.9, linestyle=':', label='total')
-    hertz = GIGA * _hertz(solution, y)
-    axes.plot(x, hertz, color=GREY, linestyle='--', linewidth=1.0, label='Hertz, dry and smooth')
-    axes.set_title(f'y = {MICRO * y:.0f} µm')
-    axes.grid(visible=True)
-
-
 def _draw_film(axes: Axes, solution: ContactSolution, column: int) -> None:
     x, film = MICRO * solution.x, NANO * solution.film[:, column]
     lowest, floor = NANO * solution.film.min(axis=1), NANO * solution.settings.film_floor
@@ -125,14 +128,6 @@ def _draw_film(axes: Axes, solution: ContactSolution, column: int) -> None:
     axes.grid(visible=True)
 
 
-def _mark_semi_axes(axes: Axes, solution: ContactSolution) -> None:
-    a = MICRO * solution.semi_axis_x
-    there_and_back = (lambda x: np.divide(x, a), lambda s: np.multiply(s, a))
-    second = axes.secondary_xaxis('top', functions=there_and_back)
-    second.set_xlabel('x over the Hertz semi-axis [-]', fontsize=8)
-    second.tick_params(labelsize=8)
-
-
 def figure_maps(solution: ContactSolution) -> Figure:
     """Return maps of total pressure and film with the Hertz ellipse and the touching nodes."""
     figure = _figure(8.0, 6.0, solution)
@@ -146,10 +141,9 @@ def figure_maps(solution: ContactSolution) -> Figure:
     mesh = _mesh(right, solution, film, vmin=least, vmax=_film_top(solution))
     figure.colorbar(mesh, ax=right, location='bottom', label='film [nm]', extend='max')
     if _mark_contact(right, solution):
+        mark = Line2D([], [], linestyle='none', marker='s', color=VERMILION)
         figure.legend(
-            handles=[_swatch(VERMILION, 'asperity contact')],
-            loc='outside lower right',
-            frameon=False,
+            handles=[mark], labels=['asperity contact'], loc='outside lower right', frameon=False
         )
     _finish_map(left, solution, 'Pressure')
     _finish_map(right, solution, 'Film')
@@ -206,12 +200,6 @@ def figure_roughness(solution: ContactSolution, surface: Raceway) -> Figure:
     return figure
 
 
-def _hertz(solution: ContactSolution, y: float) -> Array:
-    """Return Hertz's pressure [Pa] along x at `y` [m]."""
-    inside = 1 - (solution.x / solution.semi_axis_x) ** 2 - (y / solution.semi_axis_y) ** 2
-    return solution.hertz_pressure * np.sqrt(np.maximum(inside, 0.0))
-
-
 def _film_top(solution: ContactSolution) -> float:
     """Return the top of the film scale [nm]: what happens inside the Hertz ellipse fills it."""
     film = float(np.percentile(solution.film[solution.distance < 1], 90))
@@ -248,10 +236,6 @@ def _mark_contact(axes: Axes, solution: ContactSolution) -> bool:
     if mask.any():
         _mesh(axes, solution, np.where(mask, 1.0, np.nan), cmap=ListedColormap([VERMILION]))
     return bool(mask.any())
-
-
-def _swatch(colour: str, label: str) -> Line2D:
-    return Line2D([], [], linestyle='none', marker='s', color=colour, label=label)
 
 
 def _finish_map(axes: Axes, solution: ContactSolution, title: str) -> None:

@@ -67,24 +67,20 @@ def _draw_film(axes: Axes, solution: MovingSolution) -> None:
         shading='nearest',
         rasterized=True,
     )
-    _draw_outline(axes, a, b)
-    label = 'film [nm], punctured where it is at the floor'
-    axes.figure.colorbar(mesh, ax=axes, location='right', label=label, extend='both')
-    axes.set_title('(a) Film of the last step, the Hertz zone dashed')
-    axes.set(xlabel='x along the track [µm]', ylabel='y across the track [µm]')
-
-
-def _draw_outline(axes: Axes, a: float, b: float) -> None:
-    """Draw the edge of the Hertz zone, semi-axes [m]: an ellipse, or two lines of a strip."""
+    # The edge of the Hertz zone: an ellipse, or two lines of a strip.
     turn = np.linspace(0, 2 * np.pi, 181)
     edges = (
         [(a * np.cos(turn), b * np.sin(turn))]
         if np.isfinite(b)
         else [(np.full(2, side), np.array(axes.get_ylim()) / MICRO) for side in (-a, a)]
     )
-    for x, y in edges:
-        axes.plot(MICRO * x, MICRO * y, color='white', linewidth=1.8)
-        axes.plot(MICRO * x, MICRO * y, color='black', linewidth=0.9, linestyle='--')
+    for along, across in edges:
+        axes.plot(MICRO * along, MICRO * across, color='white', linewidth=1.8)
+        axes.plot(MICRO * along, MICRO * across, color='black', linewidth=0.9, linestyle='--')
+    label = 'film [nm], punctured where it is at the floor'
+    axes.figure.colorbar(mesh, ax=axes, location='right', label=label, extend='both')
+    axes.set_title('(a) Film of the last step, the Hertz zone dashed')
+    axes.set(xlabel='x along the track [µm]', ylabel='y across the track [µm]')
 
 
 def _draw_rcs(axes: Axes, solution: MovingSolution) -> None:

@@ -158,19 +158,13 @@ def _rows(
     loss = _with_error(solution.rolling_loss, MILLI)
     yield 'rolling force', f'{loss} mN on each surface, {smooth}'
     yield 'memory', f'RCS forgets over {MICRO * record["memory_length_m"]:.3g} um of the way'
-    yield 'march', _march_words(record)
+    nx, ny = record['grid']
+    words = f'{record["transits"]:.3g} transits over {record["places"]} places, {nx} x {ny} nodes'
+    steps = f'{record["steps"]} steps, {record["steps_failed"]} of them failed'
+    yield 'march', f'{words}, {steps}, {record["wall_s"]:.1f} s'
 
 
 def _with_error(mean: Mean, unit: float = 1.0) -> str:
     """Return an average and its standard error, which one place does not have."""
     error = '' if math.isnan(mean.error) else f' +- {unit * mean.error:.2g}'
     return f'{unit * mean.value:.3g}{error}'
-
-
-def _march_words(record: Mapping[str, Any]) -> str:
-    nx, ny = record['grid']
-    return (
-        f'{record["transits"]:.3g} transits over {record["places"]} places, {nx} x {ny} nodes, '
-        f'{record["steps"]} steps, {record["steps_failed"]} of them failed, '
-        f'{record["wall_s"]:.1f} s'
-    )

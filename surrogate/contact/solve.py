@@ -102,7 +102,10 @@ def case_settings(case: ContactCase, surface: Raceway | None) -> Settings:
     if case.grid is not None:
         settings = replace(settings, nx=case.grid.nx, ny=case.grid.ny)
     elif surface is not None:
-        settings = _rough_grid(case, settings, surface.shortest_wavelength)
+        along, across = (
+            nodes_on_waves(side, surface.shortest_wavelength) for side in _sides(case, settings)
+        )
+        settings = replace(settings, nx=max(along, ROUGH_NX), ny=max(across, settings.ny))
     elif ellipticity(case.contact) < SLENDER:
         settings = replace(settings, ny=WIDE_NY)
     if surface is not None:
@@ -119,12 +122,6 @@ def _sides(case: ContactCase, settings: Settings) -> tuple[float, float]:
     scaled = make_case(case.contact, case.lubricant, case.condition, settings, None)
     inlet, outlet, side = scaled.domain
     return (outlet - inlet) * scaled.semi_axis_x, 2 * side * scaled.semi_axis_x
-
-
-def _rough_grid(case: ContactCase, settings: Settings, wave: float) -> Settings:
-    """Return settings with the grid that the shortest wavelength [m] asks for, within bounds."""
-    along, across = (nodes_on_waves(side, wave) for side in _sides(case, settings))
-    return replace(settings, nx=max(along, ROUGH_NX), ny=max(across, settings.ny))
 
 
 def warn_of_coarse_nodes(distances: tuple[float, float], wave: float) -> None:

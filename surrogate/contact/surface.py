@@ -27,34 +27,28 @@ def case_surface(case: ContactCase) -> Raceway | None:
     if rough is None or (rough.file is None and not rough.rms):
         return None
     if rough.patch == 'standard':
-        return _by_standard(rough)
+        draw = _all_waves(rough)
+        if rough.shortest_wavelength is not None:
+            draw = without_short_waves(draw, rough.shortest_wavelength)
+        return _at_place(draw, rough)
     ellipse = hertz(case.contact, case.load)
     window = Window(
         length_x=rough.window_x or 2 * float(ellipse.semi_axis_x),
         length_y=rough.window_y or 2 * float(ellipse.semi_axis_y),
     )
     if rough.file is None:
-        return take_patch(_generated(rough), rough.patch or 'rescaled', window, rough.rms or 0.0)
+        given = {name: getattr(rough, name) for name in CONSTANTS}
+        constants = {name: value for name, value in given.items() if value is not None}
+        waves = PublishedRoughness(**constants)
+        draw = fractal_surface(waves, rough.seed or 0, lay=rough.lay or 'isotropic')
+        placed = _at_place(draw, rough)
+        return take_patch(placed, rough.patch or 'rescaled', window, rough.rms or 0.0)
     kind = rough.patch or ('rescaled' if rough.rms else 'cut')
     return take_patch(_measured(rough, rough.file), kind, window, rough.rms or 0.0)
 
 
-def _generated(rough: CaseRoughness) -> FractalSurface:
-    stated = {name: getattr(rough, name) for name in CONSTANTS if getattr(rough, name) is not None}
-    constants = PublishedRoughness(**stated)
-    draw = fractal_surface(constants, rough.seed or 0, lay=rough.lay or 'isotropic')
-    return _at_place(draw, rough)
-
-
 def _measured(rough: CaseRoughness, file: str) -> MeasuredSurface:
     return read_surface(file, shortest_wavelength=rough.shortest_wavelength, outside=rough.outside)
-
-
-def _by_standard(rough: CaseRoughness) -> FractalSurface:
-    draw = _all_waves(rough)
-    if rough.shortest_wavelength is not None:
-        draw = without_short_waves(draw, rough.shortest_wavelength)
-    return _at_place(draw, rough)
 
 
 def _at_place(draw: FractalSurface, rough: CaseRoughness) -> FractalSurface:
@@ -115,26 +109,22 @@ def roughness_words(rough: CaseRoughness | None, surface: Raceway | None) -> str
     if rough is None or surface is None:
         return 'none'
     if rough.patch == 'standard':
-        return _standard_words(rough)
+        raceway = raceway_waves(rough)
+        words = f'{raceway.sentence}, G {NANO * raceway.fractal_roughness:.3g} nm'
+        ball = ball_waves_of(rough)
+        if ball is not None:
+            grade = f' {rough.ball_grade}' if rough.ball_grade else ''
+            words += f'; ball{grade} {ball.sentence}'
+        shortest = rough.shortest_wavelength
+        if shortest is None:
+            return words
+        whole = _all_waves(rough)
+        kept = wave_rms(without_short_waves(whole, shortest))
+        lost = math.sqrt(max(wave_rms(whole) ** 2 - kept**2, 0.0))
+        return words + (
+            f'; waves shorter than {MICRO * shortest:g} um, rms {NANO * lost:.3g} nm, are left out'
+        )
     return (
         f'patch {surface.patch}, heights times {surface.scale:.4g}, shortest wavelength '
         f'{MICRO * surface.shortest_wavelength:.3g} um'
-    )
-
-
-def _standard_words(rough: CaseRoughness) -> str:
-    raceway = raceway_waves(rough)
-    words = f'{raceway.sentence}, G {NANO * raceway.fractal_roughness:.3g} nm'
-    ball = ball_waves_of(rough)
-    if ball is not None:
-        grade = f' {rough.ball_grade}' if rough.ball_grade else ''
-        words += f'; ball{grade} {ball.sentence}'
-    shortest = rough.shortest_wavelength
-    if shortest is None:
-        return words
-    whole = _all_waves(rough)
-    kept = wave_rms(without_short_waves(whole, shortest))
-    lost = math.sqrt(max(wave_rms(whole) ** 2 - kept**2, 0.0))
-    return words + (
-        f'; waves shorter than {MICRO * shortest:g} um, rms {NANO * lost:.3g} nm, are left out'
     )

@@ -133,7 +133,18 @@ class Settings:
                     f'{name} is {value!r}, allowed is an odd number from 17 to {LARGEST_GRID}'
                 )
         if self.domain is not None:
-            _require_domain(self.domain)
+            good = (
+                len(self.domain) == 3
+                and all(math.isfinite(edge) for edge in self.domain)
+                and -50 <= self.domain[0] <= -1.1
+                and 1.1 <= self.domain[1] <= 20
+                and 1.05 <= self.domain[2] <= 20
+            )
+            if not good:
+                raise InputError(
+                    f'domain is {self.domain!r}, allowed is inlet -50 to -1.1, outlet 1.1 to 20, '
+                    'side 1.05 to 20, over the semi-axes'
+                )
         _require('film_floor', self.film_floor, 'm', 1e-12, 1e-6)
         for name in ('flux_tolerance', 'load_tolerance', 'gap_tolerance'):
             _require(name, getattr(self, name), '-', 1e-12, 0.1)
@@ -245,18 +256,3 @@ def _require(name: str, value: float, unit: str, low: float, high: float) -> Non
     good = isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
     if not good or not math.isfinite(value) or not low <= value <= high:
         raise InputError(f'{name} is {value!r} {unit}, allowed is {low:g} to {high:g} {unit}')
-
-
-def _require_domain(domain: tuple[float, float, float]) -> None:
-    good = (
-        len(domain) == 3
-        and all(math.isfinite(edge) for edge in domain)
-        and -50 <= domain[0] <= -1.1
-        and 1.1 <= domain[1] <= 20
-        and 1.05 <= domain[2] <= 20
-    )
-    if not good:
-        raise InputError(
-            f'domain is {domain!r}, allowed is inlet -50 to -1.1, outlet 1.1 to 20, '
-            'side 1.05 to 20, over the semi-axes'
-        )

@@ -165,8 +165,15 @@ class Search:
     def from_hertz(self, grid: Grid, speed: float, limits: NewtonLimits) -> NewtonResult:
         """Start from Hertz's pressure at this speed [m/s] or, failing that, at a faster one."""
         heights = self.case.shape_heights(grid)
-        if speed and self.case.fluid_numbers(0.0)[0] > STIFF:
-            return self._from_soft(grid, speed, heights, limits)
+        if speed and self.case.fluid_numbers(0.0)[0] > STIFF:  # the oil stiffens on the way
+
+            def stiffening(t: float) -> GridProblem:
+                return self.case.problem(grid, speed, heights, 1.0, 1.0 - t)
+
+            outcome = self.solve(grid, stiffening(0.0), self.case.hertz_state(grid, speed), limits)
+            if not outcome.converged:
+                return outcome
+            return self.march(grid, outcome.state, stiffening, limits, 0.5)
         for factor in (1.0, 4.0, 16.0, 64.0, 256.0):
             start = speed * factor
             outcome = self.solve(
@@ -186,19 +193,6 @@ class Search:
             limits,
             1 / math.log2(2 * factor),
         )
-
-    def _from_soft(
-        self, grid: Grid, speed: float, heights: Array, limits: NewtonLimits
-    ) -> NewtonResult:
-        """Start with a softer fluid and stiffen it."""
-
-        def stiffening(t: float) -> GridProblem:
-            return self.case.problem(grid, speed, heights, 1.0, 1.0 - t)
-
-        outcome = self.solve(grid, stiffening(0.0), self.case.hertz_state(grid, speed), limits)
-        if not outcome.converged:
-            return outcome
-        return self.march(grid, outcome.state, stiffening, limits, 0.5)
 
     def _slowing(
         self, grid: Grid, heights: Array, fast: float, slow: float, order: float | None = None

@@ -44,7 +44,17 @@ def figure_identification(
     if onset is not None:
         _draw_onset(upper, onset)
     _draw_torque(upper, run, found)
-    _draw_residual(lower, run, found)
+    order = np.argsort(np.abs(run.speed))
+    rpm, band = np.abs(run.speed)[order] / RPM, MILLI * found.band[order]
+    lower.fill_between(
+        rpm, -band, band, color=BLUE, alpha=0.15, linewidth=0, label='95 % of the points'
+    )
+    lower.axhline(0, color=BLUE, linewidth=1.0)
+    _draw_points(lower, run, run.torque - found.after, '')
+    lower.set_ylim(top=HEADROOM * lower.get_ylim()[1])
+    lower.set_ylabel('measured - model [mN m]')
+    lower.set_xlabel('screw speed [rev/min]')
+    lower.legend(frameon=False, loc='upper right')
     upper.set_title(title)
     speed = np.abs(run.speed)
     if speed.max() > LOG_SPAN * speed.min():
@@ -98,20 +108,6 @@ def _draw_onset(axes: Axes, onset: Mapping[str, Any]) -> None:
         axes.axvspan(low, high, color=ORANGE, alpha=0.2, linewidth=0)
         label = 'onset, extrapolated'
     axes.axvline(speed, color=ORANGE, linestyle='--', label=label)
-
-
-def _draw_residual(axes: Axes, run: NoLoadRun, found: Identification) -> None:
-    order = np.argsort(np.abs(run.speed))
-    rpm, band = np.abs(run.speed)[order] / RPM, MILLI * found.band[order]
-    axes.fill_between(
-        rpm, -band, band, color=BLUE, alpha=0.15, linewidth=0, label='95 % of the points'
-    )
-    axes.axhline(0, color=BLUE, linewidth=1.0)
-    _draw_points(axes, run, run.torque - found.after, '')
-    axes.set_ylim(top=HEADROOM * axes.get_ylim()[1])
-    axes.set_ylabel('measured - model [mN m]')
-    axes.set_xlabel('screw speed [rev/min]')
-    axes.legend(frameon=False, loc='upper right')
 
 
 def _draw_points(axes: Axes, run: NoLoadRun, torque: Array, label: str) -> None:

@@ -97,16 +97,6 @@ class _Fit:
     spread: float
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Scatter:
-    """Covariance of the parameters, zero where held; variance of a point; errors; reasons."""
-
-    covariance: Array
-    variance: float
-    reasons: dict[str, str]
-    freedom: int
-
-
 def identify(
     screw: Screw,
     run: NoLoadRun,
@@ -134,7 +124,7 @@ def identify(
         # The first spread still has the points in it that are far off.
         spread = MEDIAN_TO_SPREAD * float(np.median(np.abs(problem.residual(fit.values)) / sigma))
         fit = _fit(problem, fit.values, held, sigma, spread) if spread > 0 else fit
-    return _result(problem, fit, _scatter(problem, fit, held, sigma), sigma)
+    return _result(problem, fit, held, sigma)
 
 
 def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
@@ -153,7 +143,7 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
     def fitted(start: Array, held: dict[str, str]) -> Identification:
         held = problem.without_effect(start) | held
         fit = _fit(problem, start, held, sigma)
-        return _result(problem, fit, _scatter(problem, fit, held, sigma), sigma)
+        return _result(problem, fit, held, sigma)
 
     def without_onset(factor: float, reason: str) -> Identification:
         kept = 'not told without the onset: kept as in the datasheet'
@@ -222,8 +212,16 @@ def _fit(
     return _Fit(values=values(found.x), converged=bool(found.success), spread=spread)
 
 
-def _scatter(problem: DragProblem, fit: _Fit, held: Mapping[str, str], sigma: Array) -> _Scatter:
-    """Return how sure the parameters are; one at a bound counts as known."""
+def _scatter(
+    problem: DragProblem, fit: _Fit, held: Mapping[str, str], sigma: Array
+) -> tuple[Array, float, dict[str, str], int]:
+    """
+    Return how sure the parameters are; one at a bound counts as known.
+
+    Their covariance, zero where held; the variance of a point; why some have none; the degrees of
+    freedom.
+
+    """
     reasons = dict(held) | problem.at_bounds(fit.values)
     free = [place for place, name in enumerate(problem.names) if name not in reasons]
     jacobian = problem.jacobian(fit.values)[:, free] / sigma[:, None]
@@ -231,51 +229,42 @@ def _scatter(problem: DragProblem, fit: _Fit, held: Mapping[str, str], sigma: Ar
     part, variance = covariance(jacobian, problem.residual(fit.values) / sigma, fit.spread)
     whole = np.zeros((len(problem.names), len(problem.names)))
     whole[np.ix_(free, free)] = part
-    return _Scatter(
-        covariance=whole, variance=variance, reasons=reasons, freedom=len(sigma) - len(free)
-    )
+    return whole, variance, reasons, len(sigma) - len(free)
 
 
-def _result(problem: DragProblem, fit: _Fit, scatter: _Scatter, sigma: Array) -> Identification:
+def _result(
+    problem: DragProblem, fit: _Fit, held: Mapping[str, str], sigma: Array
+) -> Identification:
     run, values = problem.run, fit.values
+    spread, variance, reasons, freedom = _scatter(problem, fit, held, sigma)
+    known = [n for n, name in enumerate(problem.names) if name not in reasons]
     residual, jacobian = problem.residual(values), problem.jacobian(values)
-    width = student_factor(scatter.freedom)
-    curve = np.einsum('pi,ij,pj->p', jacobian, scatter.covariance, jacobian)
-    known = [n for n, name in enumerate(problem.names) if name not in scatter.reasons]
+    width = student_factor(freedom)
+    curve = np.einsum('pi,ij,pj->p', jacobian, spread, jacobian)
+    estimates = []
+    for place, (name, value) in enumerate(zip(problem.names, values.tolist(), strict=True)):
+        if name in reasons:
+            interval: dict[str, Any] = {'reason': reasons[name]}
+        else:
+            error = math.sqrt(spread[place, place])
+            low, high = value - width * error, value + width * error
+            interval = {'low': low, 'high': high, 'standard_error': error}
+        estimates.append(ParameterEstimate(name=name, value=value, **interval))
     before = problem.torque(problem.start)
-    chi_square = float(np.sum((residual / sigma) ** 2)) / scatter.freedom
+    chi_square = float(np.sum((residual / sigma) ** 2)) / freedom
     return Identification(
         converged=fit.converged,
-        estimates=tuple(
-            _estimate(problem, values, scatter, width, place)
-            for place in range(len(problem.names))
-        ),
+        estimates=tuple(estimates),
         correlated=tuple(problem.names[place] for place in known),
-        correlation=correlation(scatter.covariance[np.ix_(known, known)]),
+        correlation=correlation(spread[np.ix_(known, known)]),
         before=before,
         after=problem.torque(values),
-        band=width * np.sqrt(scatter.variance * sigma**2 + curve),
+        band=width * np.sqrt(variance * sigma**2 + curve),
         contacts=problem.contact_torque(values),
         rms_before=_rms(run.torque - before),
         rms=_rms(residual),
-        degrees_of_freedom=scatter.freedom,
+        degrees_of_freedom=freedom,
         reduced_chi_square=math.nan if run.torque_std is None else chi_square,
-    )
-
-
-def _estimate(
-    problem: DragProblem, values: Array, scatter: _Scatter, width: float, place: int
-) -> ParameterEstimate:
-    name, value = problem.names[place], float(values[place])
-    if name in scatter.reasons:
-        return ParameterEstimate(name=name, value=value, reason=scatter.reasons[name])
-    error = math.sqrt(scatter.covariance[place, place])
-    return ParameterEstimate(
-        name=name,
-        value=value,
-        low=value - width * error,
-        high=value + width * error,
-        standard_error=error,
     )
 
 

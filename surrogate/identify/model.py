@@ -17,6 +17,7 @@ from surrogate.formulas.lubricant import GOLD_EXPONENT_MINERAL, lubricant_state
 from surrogate.identify.data import Array, NoLoadRun
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 
 VISCOSITY_BOUNDS = (0.5, 2.0)
 """Viscosity factor [-]: beyond, the sheet is that of another oil or the temperature is wrong."""
@@ -89,10 +90,11 @@ def closed_form_model(screw: Screw, lubricant: Lubricant, run: NoLoadRun) -> Con
     @lru_cache(maxsize=64)
     def torque(factor: float, friction: float, onset: float) -> Array:
         rough = bare(screw, asperity_friction=friction, onset_factor=onset)
-        thick = thickened(oil, factor)
-        return closed_form.solve(rough, thick, speed, load, run.temperature).friction_torque
+        thick, place = thickened(oil, factor), (speed, load, run.temperature)
+        return closed_form.solve(Contacts.of(rough), thick, *place).friction_torque
 
-    share = closed_form.solve(bare(screw), oil, speed, load, run.temperature).asperity_share
+    sheet = Contacts.of(bare(screw))
+    share = closed_form.solve(sheet, oil, speed, load, run.temperature).asperity_share
     return ContactModel(
         torque=torque,
         asperity_share=share,

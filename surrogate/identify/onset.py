@@ -21,6 +21,7 @@ from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.intervals import CONFIDENCE, student_factor
 from surrogate.identify.model import ContactModel, ONSET_BOUNDS
 from surrogate.identify.problem import DragProblem
+from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point, with_raceway
 from surrogate.units import RPM
 
@@ -140,7 +141,7 @@ def onset_speeds(
     def at(factor: float) -> float:
         if math.isnan(factor):
             return factor
-        sheet = with_raceway(contacts.screw, onset_factor=factor)
+        sheet = Contacts.of(with_raceway(contacts.screw, onset_factor=factor))
         return onset_point(sheet, oil, load, oil.reference_temperature)['speed_rad_s']
 
     return [at(factor) for factor in factors]

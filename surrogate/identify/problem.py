@@ -202,26 +202,21 @@ def _check(problem: DragProblem) -> None:
             f'allowed is a span of {SPEED_SPAN:g} to 1 or more'
         )
     if 'onset_factor' in problem.names:
-        _check_onset(problem, speed)
+        ordered = np.sort(speed)
+        number = 1 + int((ordered[1:] >= SAME_SPEED * ordered[:-1]).sum())
+        if number < ONSET_SPEEDS:
+            raise InputError(
+                f'{problem.run.source}: has {number} speeds, allowed are {ONSET_SPEEDS} or more '
+                'for the onset of contact, from below the upturn of the torque to well above it'
+            )
+        if not problem.contacts.screw.composite_rms:
+            raise InputError(
+                'screw: raceway and balls are smooth, allowed for the onset of contact is an Rq '
+                'above 0 in roughness'
+            )
     drag = float((run.direction * (run.torque - problem.load_torque)).mean())
     if not run.both_directions and drag <= 0:
         raise InputError(
             f'{run.source}: the mean friction torque is {drag:.3g} N m, allowed is more than 0: '
             'friction has the sign of the motion, so torque and speed must agree in sign'
-        )
-
-
-def _check_onset(problem: DragProblem, speed: Array) -> None:
-    """Refuse few speeds [rev/min], and raceways that never touch."""
-    ordered = np.sort(speed)
-    number = 1 + int((ordered[1:] >= SAME_SPEED * ordered[:-1]).sum())
-    if number < ONSET_SPEEDS:
-        raise InputError(
-            f'{problem.run.source}: has {number} speeds, allowed are {ONSET_SPEEDS} or more for '
-            'the onset of contact, from below the upturn of the torque to well above it'
-        )
-    if not problem.contacts.screw.composite_rms:
-        raise InputError(
-            'screw: raceway and balls are smooth, allowed for the onset of contact is an Rq above '
-            '0 in roughness'
         )

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """An identification as a record, a page and the datasheets that hold what was found."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from itertools import combinations
 import math
 from typing import Any
 
@@ -49,7 +50,7 @@ def identification_record(
         'tier': contacts.tier,
         'status': _status(found),
         'converged': found.converged,
-        'warnings': _warnings(screw, run, contacts, found),
+        'warnings': [*_warnings(screw, run, contacts, found)],
         'screw': screw.name,
         'oil': contacts.lubricant.name,
         'data': run.source,
@@ -57,7 +58,18 @@ def identification_record(
         'points': len(run.speed),
         'speed_range_rad_s': [float(speed.min()), float(speed.max())],
         'temperature_K': run.mean_temperature,
-        'parameters': [_estimate_record(one) for one in found.estimates],
+        'parameters': [
+            {
+                'name': one.name,
+                'unit': UNITS[one.name],
+                'value': one.value,
+                'low': one.low,
+                'high': one.high,
+                'standard_error': one.standard_error,
+                'reason': one.reason,
+            }
+            for one in found.estimates
+        ],
         'correlation': {'of': list(found.correlated), 'matrix': found.correlation.tolist()},
         'onset': _onset_record(run, contacts, found),
         'offset_force_N': found.value('torque_offset') * 2 * math.pi / screw.lead,
@@ -76,18 +88,6 @@ def _status(found: Identification) -> str:
     if not found.converged:
         return 'the fit ended before it converged'
     return 'the onset is refused, and no sheet is written' if found.onset_refused else 'fitted'
-
-
-def _estimate_record(one: ParameterEstimate) -> dict[str, Any]:
-    return {
-        'name': one.name,
-        'unit': UNITS[one.name],
-        'value': one.value,
-        'low': one.low,
-        'high': one.high,
-        'standard_error': one.standard_error,
-        'reason': one.reason,
-    }
 
 
 def _onset_record(
@@ -122,61 +122,48 @@ def _contact_share(run: NoLoadRun, found: Identification) -> tuple[float, float]
 
 def _warnings(
     screw: Screw, run: NoLoadRun, contacts: ContactModel, found: Identification
-) -> list[str]:
-    """Return a sentence for each thing that makes the numbers say less than they seem to."""
-    warnings = [f'{one.name}: {one.reason}' for one in found.estimates if one.reason]
+) -> Iterator[str]:
+    """Yield a sentence for each thing that makes the numbers say less than they seem to."""
+    yield from (f'{one.name}: {one.reason}' for one in found.estimates if one.reason)
     if not run.both_directions:
-        warnings.append(
+        yield (
             'one direction only: a weight on the axis or a wrong zero of the torque counts as '
             'parasitic torque'
         )
-    warnings += _at_zero(contacts, found)
+    hint = f'check oil, temperature, preload and the sign of the torque, tier {contacts.tier}'
+    if found.value('parasitic_torque') == 0:
+        yield f'the contacts of the model take more torque than was measured: {hint}'
+    elif found.value('parasitic_torque_rate') == 0:
+        yield f'the torque measured rises less with speed than that of the contacts: {hint}'
     touching = int((contacts.asperity_share > CLOSED_FORM_SHARE).sum())
     calibrated = found.estimate('onset_factor') is not None
     if touching and contacts.tier == closed_form.TIER and not calibrated:
-        warnings.append(
+        yield (
             f'{touching} of {len(run.speed)} points have an asperity share above '
             f'{CLOSED_FORM_SHARE:g}, which the closed-form tier misjudges'
         )
     scatter = math.sqrt(found.reduced_chi_square) if found.reduced_chi_square >= 0 else 1.0
     if not EXPECTED_SCATTER[0] <= scatter <= EXPECTED_SCATTER[1]:
-        warnings.append(
-            f'the residual is {scatter:.2g} times the standard deviation given'
-            + (', the model misses something' if scatter > 1 else '')
-        )
+        misses = ', the model misses something' if scatter > 1 else ''
+        yield f'the residual is {scatter:.2g} times the standard deviation given{misses}'
     load = float(np.abs(run.load).max())
     if load > MOST_LOAD * screw.preload:
-        warnings.append(
+        yield (
             f'the load is up to {load:.4g} N, above {MOST_LOAD:g} of the preload: what the '
             'model misses under load counts as parasitic'
         )
     if calibrated:
-        warnings.append(
+        yield (
             'the onset factor holds what sheet, running in, film floor and law are off by '
             'together: it tells neither the hardness nor any other key of the sheet'
         )
-    return warnings + _entangled(found)
-
-
-def _at_zero(contacts: ContactModel, found: Identification) -> list[str]:
-    """Return what it means that a parasitic part met its bound."""
-    hint = f'check oil, temperature, preload and the sign of the torque, tier {contacts.tier}'
-    if found.value('parasitic_torque') == 0:
-        return [f'the contacts of the model take more torque than was measured: {hint}']
-    if found.value('parasitic_torque_rate') == 0:
-        return [f'the torque measured rises less with speed than that of the contacts: {hint}']
-    return []
-
-
-def _entangled(found: Identification) -> list[str]:
-    """Return a sentence for each pair of parameters that the data hardly tell apart."""
-    return [
-        f'{first} and {second} are correlated by {found.correlation[row, column]:.3f}: the data '
-        'tell a mixture of them better than either'
-        for row, first in enumerate(found.correlated)
-        for column, second in enumerate(found.correlated)
-        if row < column and abs(found.correlation[row, column]) > STRONG
-    ]
+    for (row, first), (column, second) in combinations(enumerate(found.correlated), 2):
+        correlated = found.correlation[row, column]
+        if abs(correlated) > STRONG:
+            yield (
+                f'{first} and {second} are correlated by {correlated:.3f}: the data '
+                'tell a mixture of them better than either'
+            )
 
 
 def identified_screw(
@@ -241,6 +228,7 @@ def page(record: Mapping[str, Any]) -> str:
     """Return a record as a page of text in workshop units."""
     low, high = (end / RPM for end in record['speed_range_rad_s'])
     least, most = (100 * share for share in record['contact_share_range'])
+    force, weight = record['offset_force_N'], 'a weight on the axis for instance'
     return '\n'.join(
         [
             f'{record["screw"]}, {record["oil"]}, tier {record["tier"]}: '
@@ -248,7 +236,7 @@ def page(record: Mapping[str, Any]) -> str:
             f'{record["temperature_K"] - ZERO_CELSIUS:.4g} degC',
             *(f'  {_row(one)}' for one in record['parameters']),
             *_onset_rows(record['onset']),
-            *_offset_row(record),
+            *([] if math.isnan(force) else [f'  {"offset as a load":22} {force:.3g} N, {weight}']),
             f'  {"residual, rms":22} {record["residual_rms_Nm"]:.4g} N m, '
             f'{record["residual_rms_before_Nm"]:.4g} N m with the datasheet',
             f'  {"contacts":22} {least:.0f} to {most:.0f} % of the friction torque; catalogue '
@@ -277,13 +265,6 @@ def _onset_rows(onset: Mapping[str, Any] | None) -> list[str]:
         f'  {"":22} RCS 0.01 itself does not show in a torque; within {onset["band"]:.3g} in nine '
         'of ten',
     ]
-
-
-def _offset_row(record: Mapping[str, Any]) -> list[str]:
-    force = record['offset_force_N']
-    if math.isnan(force):
-        return []
-    return [f'  {"offset as a load":22} {force:.3g} N, a weight on the axis for instance']
 
 
 def _row(one: Mapping[str, Any]) -> str:

@@ -34,6 +34,7 @@ from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import ScrewSettings
+from surrogate.screw.opened import Contacts
 from surrogate.screw.point import ScrewPoint
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw, TIER
 from surrogate.units import RPM
@@ -110,7 +111,7 @@ def solved_model(
     fitted: Sequence[str] = (),
     *,
     settings: ScrewSettings | None = None,
-    progress: OnProgress | None = None,
+    progress: OnProgress = lambda done, total: None,
 ) -> ContactModel:
     """
     Solve the table of a run for the `fitted` parameters and return what interpolates it.
@@ -121,7 +122,7 @@ def solved_model(
 
     """
     axes = _axes(screw, lubricant, run, fitted, FRICTIONS)
-    return _model(axes, run, TIER, *_solve_table(axes, settings, progress or _nobody))
+    return _model(axes, run, TIER, *_solve_table(axes, settings, progress))
 
 
 def formula_model(
@@ -140,7 +141,7 @@ def formula_model(
 def _formula(axes: _Axes, screw: Screw, factor: float) -> ScrewPoint[Array]:
     oil = thickened(axes.oil, factor)
     speeds, kelvin = axes.nodes / factor, axes.oil.reference_temperature
-    return closed_form.solve(screw, oil, speeds, axes.load, kelvin)
+    return closed_form.solve(Contacts.of(screw), oil, speeds, axes.load, kelvin)
 
 
 def _axes(
@@ -184,10 +185,6 @@ def _model(axes: _Axes, run: NoLoadRun, tier: str, torque: Array, shares: Array)
         screw=bare(axes.screw),
         lubricant=axes.oil,
     )
-
-
-def _nobody(done: int, total: int) -> None:
-    """Take no notice of the progress."""
 
 
 def _solve_table(
@@ -260,7 +257,8 @@ def _solve(
 ) -> ScrewSolution:
     """Solve a node at the mean viscosity, from its neighbour."""
     point = _point(oil, speed, load)
-    return _converged(solve_screw(screw, oil, point, settings=settings, start=start), speed)
+    found = solve_screw(Contacts.of(screw), oil, point, settings=settings, start=start)
+    return _converged(found, speed)
 
 
 def _rebalanced(
@@ -270,7 +268,7 @@ def _rebalanced(
 
     def torque(rough: Screw, factor: float) -> float:
         thick, point = thickened(axes.oil, factor), _point(axes.oil, node / factor, axes.load)
-        balanced = rebalance_screw(rough, thick, point, found, settings=settings)
+        balanced = rebalance_screw(Contacts.of(rough), thick, point, found, settings=settings)
         return _converged(balanced, node).friction_torque
 
     return [

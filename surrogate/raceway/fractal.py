@@ -18,10 +18,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from surrogate.datasheet import Checked, count, quantity
 from surrogate.files import InputError
-from surrogate.raceway.patch import grid_axes, Patch, Plane
-from surrogate.raceway.strip import Strip
+from surrogate.raceway.patch import grid_axes, on_plane, Patch, Plane
 
 Array = NDArray[np.float64]
+Waves = NDArray[np.complex128]
 Lay = Literal['isotropic', 'longitudinal', 'transverse']
 
 DIMENSIONS = (2.01, 2.99)
@@ -48,6 +48,35 @@ class PublishedRoughness(Checked):
     shortest_wavelength: float = quantity('um', 1e-6, 0.1, 1000.0, default=8e-6)
     scale_ratio: float = quantity('', 1.0, 1.01, 10.0, default=1.5)
     ridges: int = count(1, 1000, default=10)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Strip:
+    """
+    A sum of plane waves at the places `y` [m] across the track, at any place along it.
+
+    The part of each wave along y is worked out once, so that each block of rows that rolls
+    through a contact costs one matrix product. Heights are positive out of the material.
+
+    Wave numbers along the track [rad/m]; `weight` [m], amplitude and phase; `across` [-], shape
+    (waves, ny); plane (offset [m], slopes [-]) and scale [-] as in
+    `surrogate.raceway.patch.Raceway`.
+
+    """
+
+    y: Array
+    wave_number_x: Array
+    weight: Waves
+    across: Waves
+    plane: Plane
+    scale: float
+
+    def rows(self, x: ArrayLike) -> Array:
+        """Return heights [m], shape (nx, ny), at the places `x` [m] along the track."""
+        x = np.atleast_1d(np.asarray(x, dtype=float))
+        along = np.exp(1j * np.outer(x, self.wave_number_x))
+        waves = np.sum(self.weight.real) - ((along * self.weight) @ self.across).real
+        return np.asarray(self.scale * (waves - on_plane(self.plane, x, self.y)))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -61,10 +61,19 @@ def periodic_across(surface: FractalSurface, width: float) -> PeriodicSurface:
     kept = np.copysign(np.sqrt(np.maximum(number**2 - snapped**2, 0.0)), along)
     near = np.abs(across) <= STEEPEST * np.abs(along)
     adjusted = np.where(near & (np.abs(snapped) <= number), kept, along)
+    old, new = np.hypot(surface.wave_number_x, surface.wave_number_y), np.hypot(adjusted, snapped)
+    alive = new > 1e-9 * old
+    total = float(np.sum(surface.amplitude**2)) or 1.0
+    weight = np.where(alive, surface.amplitude**2, 0.0) / total
+    length = np.where(alive, old / np.where(alive, new, 1.0) - 1.0, 0.0)
+    turn = _turn(surface.wave_number_x, surface.wave_number_y, adjusted, snapped)
     return PeriodicSurface(
         surface=replace(surface, wave_number_x=adjusted, wave_number_y=snapped),
         width=width,
-        **_cost(surface, adjusted, snapped),
+        turn=math.sqrt(float(weight @ turn**2)),
+        length_change=math.sqrt(float(weight @ length**2)),
+        largest_length_change=float(np.max(np.abs(length))),
+        lost=float(np.sum(surface.amplitude[~alive] ** 2)) / total,
     )
 
 
@@ -77,19 +86,3 @@ def _turn(along: Array, across: Array, new_along: Array, new_across: Array) -> A
             )
         )
     )
-
-
-def _cost(surface: FractalSurface, along: Array, across: Array) -> dict[str, float]:
-    """Return the changes of a surface with new wave numbers [rad/m], as `PeriodicSurface` has."""
-    old, new = np.hypot(surface.wave_number_x, surface.wave_number_y), np.hypot(along, across)
-    alive = new > 1e-9 * old
-    total = float(np.sum(surface.amplitude**2)) or 1.0
-    weight = np.where(alive, surface.amplitude**2, 0.0) / total
-    length = np.where(alive, old / np.where(alive, new, 1.0) - 1.0, 0.0)
-    turn = _turn(surface.wave_number_x, surface.wave_number_y, along, across)
-    return {
-        'turn': math.sqrt(float(weight @ turn**2)),
-        'length_change': math.sqrt(float(weight @ length**2)),
-        'largest_length_change': float(np.max(np.abs(length))),
-        'lost': float(np.sum(surface.amplitude[~alive] ** 2)) / total,
-    }

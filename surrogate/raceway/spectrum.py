@@ -103,11 +103,6 @@ class RoughnessSpectrum(Checked):
     def __post_init__(self) -> None:
         """Check each value, and that the band is not upside down, as `ProfileBand` does."""
         Checked.__post_init__(self)
-        self._check_shape()
-        self._check_lay()
-        _ = self.band
-
-    def _check_shape(self) -> None:
         if self.fractal_dimension is None and self.rms_slope is None and self.rms:
             raise InputError(
                 'roughness: neither fractal dimension nor rms slope is given, allowed is one of '
@@ -118,14 +113,13 @@ class RoughnessSpectrum(Checked):
                 f'roughness: rms_slope_deg is {math.degrees(self.rms_slope):g} deg and rms_um is '
                 '0 um, allowed is a slope with an rms above 0'
             )
-
-    def _check_lay(self) -> None:
         fan = self.fan_angle
         if (fan is None) != (self.lay == 'isotropic'):
             raise InputError(
                 f'roughness: fan angle is {"missing" if fan is None else "given"}, lay is '
                 f'{self.lay}, allowed is a fan angle with every lay that is not isotropic'
             )
+        _ = self.band
 
     @property
     def band(self) -> ProfileBand:

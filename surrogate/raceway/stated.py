@@ -103,11 +103,6 @@ class Roughness(RoughnessSpectrum):
     def __post_init__(self) -> None:
         """Check every range, and what is stated together."""
         RoughnessSpectrum.__post_init__(self)
-        self._check_yield()
-        self._check_calibration()
-
-    def _check_yield(self) -> None:
-        """Check the order of the pressures, and that the states agree."""
         given = self.run_in_low, self.run_in_pressure, self.run_in_high, self.hardness
         if list(given) != sorted(given):
             low, middle, high, most = (f'{GIGA * one:g}' for one in given)
@@ -121,13 +116,10 @@ class Roughness(RoughnessSpectrum):
                 'roughness: traced is run_in and state is new, allowed is state: run_in for a '
                 'profile that was traced after running in'
             )
-
-    def _check_calibration(self) -> None:
-        """Check that a calibration has its day and its band."""
         if (self.calibrated is None) != (self.onset_band is None):
-            given = 'calibrated' if self.onset_band is None else 'onset_band'
+            alone = 'calibrated' if self.onset_band is None else 'onset_band'
             raise InputError(
-                f'roughness: {given} is given alone, allowed are both of calibrated and '
+                f'roughness: {alone} is given alone, allowed are both of calibrated and '
                 'onset_band or neither'
             )
 

@@ -184,15 +184,13 @@ def _search(
         trial = unknowns + damping * step
         if _legal(problem, trial):
             found = wrenches(problem, trial)
-            left = np.linalg.solve(jacobian, _imbalance(problem, trial, found))
+            left = np.linalg.solve(
+                jacobian, residual(problem, trial, (found[0].values, found[1].values))
+            )
             if np.linalg.norm(left) <= (1 - 0.5 * damping) * np.linalg.norm(step):
                 return trial, found
         damping *= 0.5
     return None
-
-
-def _imbalance(problem: BallProblem, unknowns: Array, friction: tuple[Wrench, Wrench]) -> Array:
-    return residual(problem, unknowns, (friction[0].values, friction[1].values))
 
 
 def _legal(problem: BallProblem, unknowns: Array) -> bool:
@@ -221,14 +219,10 @@ def _check(
     if (normal_force is None) == (axial_force is None):
         raise InputError('give either normal_force or axial_force, not both and not none')
     for name, force in (('normal_force', normal_force), ('axial_force', axial_force)):
-        _check_force(name, 0.0 if force is None else force)
+        if force is not None and not (math.isfinite(force) and force >= 0):
+            raise InputError(f'{name} is {force!r} N, allowed is 0 or more')
 
 
 def _check_rolling(name: str, force: float) -> None:
     if not math.isfinite(force):
         raise InputError(f'{name} is {force!r} N, allowed is any finite number')
-
-
-def _check_force(name: str, force: float) -> None:
-    if not (math.isfinite(force) and force >= 0):
-        raise InputError(f'{name} is {force!r} N, allowed is 0 or more')

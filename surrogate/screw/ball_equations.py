@@ -64,10 +64,25 @@ class BallProblem:
         """Derive what every evaluation needs."""
         sense = math.copysign(1.0, self.speed)
         object.__setattr__(self, 'axis', axis_vector(self.screw))
-        object.__setattr__(self, 'force_unit', _force_unit(self))
+        angle, alpha = self.screw.contact_angle, helix_angle(self.screw)
+        force = self.normal_force
+        if force is None:
+            assert self.axial_force is not None
+            force = self.axial_force / (math.sin(angle) * math.cos(alpha))
+        object.__setattr__(self, 'force_unit', force)
         object.__setattr__(self, 'directions', (sense, -sense))
-        object.__setattr__(self, 'couples', _couples(self))
-        object.__setattr__(self, 'scales', _scales(self))
+        # The pressure centre lies upstream: M_r = -integral x p dA = 2 Rx F_roll along e_p where
+        # the entrainment is along t.
+        first, second = (
+            2 * direction * screw_contact(self.screw, side).radius_x * force
+            for direction, side, force in zip(self.directions, SIDES, self.rolling_forces)
+        )
+        object.__setattr__(self, 'couples', (first, second))
+        # The size of each unknown that matters: rates as the helical slip has them.
+        slow = self.speed * math.sin(alpha)
+        rates = [0.5 * slow * self.screw.ball_diameter / self.screw.pitch_radius, slow, slow, slow]
+        forces = [] if self.normal_force is not None else [force]
+        object.__setattr__(self, 'scales', np.array([1.0, 1.0, force, *rates, *forces]))
 
     @property
     def mass(self) -> float:
@@ -232,34 +247,3 @@ def ball_motion(problem: BallProblem, values: Array) -> BallMotion:
         nut_angle=float(values[NUT_ANGLE]),
         flank=problem.flank,
     )
-
-
-def _force_unit(problem: BallProblem) -> float:
-    if problem.normal_force is not None:
-        return problem.normal_force
-    assert problem.axial_force is not None
-    angle, alpha = problem.screw.contact_angle, helix_angle(problem.screw)
-    return problem.axial_force / (math.sin(angle) * math.cos(alpha))
-
-
-def _couples(problem: BallProblem) -> tuple[float, float]:
-    """
-    Return the rolling couples on the ball about e_p [N m].
-
-    The pressure centre lies upstream: M_r = -integral x p dA = 2 Rx F_roll along e_p where the
-    entrainment is along t.
-
-    """
-    first, second = (
-        2 * direction * screw_contact(problem.screw, side).radius_x * force
-        for direction, side, force in zip(problem.directions, SIDES, problem.rolling_forces)
-    )
-    return first, second
-
-
-def _scales(problem: BallProblem) -> Array:
-    """Return the size of each unknown that matters: rates as the helical slip has them."""
-    screw, force = problem.screw, problem.force_unit
-    slow = problem.speed * math.sin(helix_angle(screw))
-    rates = [0.5 * slow * screw.ball_diameter / screw.pitch_radius, slow, slow, slow]
-    return np.array([1.0, 1.0, force, *rates, *([force] if problem.normal_force is None else [])])

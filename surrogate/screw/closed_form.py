@@ -25,7 +25,7 @@ from surrogate.formulas.inlet import inlet_speed
 from surrogate.formulas.load_sharing import normal_force, nut_forces, NutName
 from surrogate.formulas.lubricant import lubricant_state, LubricantState
 from surrogate.formulas.sliding import sliding_friction
-from surrogate.parameters import Lubricant, Screw
+from surrogate.parameters import Lubricant
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.opened import Contacts
 from surrogate.screw.point import PointContact, ScrewPoint
@@ -38,7 +38,7 @@ STATUS = 'closed form: published formulas, asperity contact by the topography'
 
 
 def solve(
-    screw: Screw,
+    opened: Contacts,
     lubricant: Lubricant,
     speed: ArrayLike,
     load: ArrayLike,
@@ -50,16 +50,17 @@ def solve(
     """
     Solve the chain at `speed` [rad/s], at least 0, `load` [N] of any sign, `temperature` [K].
 
-    The arguments broadcast against each other. Friction does not depend on the sign of the load,
-    which only picks the nut that is loaded. What asperities do follows from the topography; with
-    `share_of` RCS and their share follow from the film ratio instead, without more loss. Shear
-    heats the oil in the inlet, unless `inlet_heating` is off.
+    The screw is opened by `Contacts.of`; the other arguments broadcast against each other.
+    Friction does not depend on the sign of the load, which only picks the nut that is loaded.
+    What asperities do follows from the topography; with `share_of` RCS and their share follow
+    from the film ratio instead, without more loss. Shear heats the oil in the inlet, unless
+    `inlet_heating` is off.
 
     """
     speed, load, temperature = np.broadcast_arrays(
         *(np.asarray(value, dtype=float) for value in (speed, load, temperature))
     )
-    opened, oil = Contacts.of(screw), lubricant_state(lubricant, temperature)
+    screw, oil = opened.sheet, lubricant_state(lubricant, temperature)
     entrained = opened.rates.entrainment * speed
     forces = nut_forces(load, screw.preload)
     nuts: tuple[tuple[NutName, Array], ...] = (('loaded', forces[0]), ('relieved', forces[1]))

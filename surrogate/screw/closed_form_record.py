@@ -14,8 +14,9 @@ from surrogate.formulas.film import Groups, outside_range, rolling_force_biboule
 from surrogate.formulas.sliding import mean_sliding_speed
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw import closed_form
-from surrogate.screw.point import PointContact, ScrewPoint
-from surrogate.screw.record import point_record, rating_warnings
+from surrogate.screw.opened import Contacts
+from surrogate.screw.point import ScrewPoint
+from surrogate.screw.record import point_record
 from surrogate.units import RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
@@ -34,39 +35,44 @@ def closed_form_record(
     least factor on a film is stated in any case.
 
     """
-    started = time.perf_counter()
+    started, opened = time.perf_counter(), Contacts.of(screw)
     place = abs(point.speed), point.opposing_load, point.temperature
-    found = closed_form.solve(screw, lubricant, *place, inlet_heating=inlet_heating)
+    found = closed_form.solve(opened, lubricant, *place, inlet_heating=inlet_heating)
     told = float(found.friction_torque), point.opposing_load, screw.lead
     record = point_record(
-        screw,
+        opened,
         lubricant,
         point,
         found,
         found,
+        tier=closed_form.TIER,
         reasons=['' if one.normal_force > 0 else IDLE for one in found.contacts],
         sliding=[
             mean_sliding_speed(screw, one.side, float(one.normal_force), point.speed)
             for one in found.contacts
         ],
+        angles=(screw.contact_angle, screw.contact_angle),
+        warnings=formula_warnings(found) if point.speed else (),
         inlet_heating=inlet_heating,
     )
-    warnings = rating_warnings(screw, lubricant, point)
     return record | {
-        'tier': closed_form.TIER,
-        'warnings': warnings + (formula_warnings(found) if point.speed else []),
         'efficiency': torque.efficiency(*told),
         'driving_torque_Nm': float(torque.driving_torque(*told)),
         'back_driving': torque.is_back_driving(*told),
-        'contact_angle_A_rad': screw.contact_angle,
-        'contact_angle_B_rad': screw.contact_angle,
         'wall_s': time.perf_counter() - started,
     }
 
 
 def formula_warnings(result: ScrewPoint[Array]) -> list[str]:
     """Return a sentence for each formula that contacts use beyond what it was fitted over."""
-    g = _all_groups(result.contacts)
+    # The groups of all contacts as one, so that a range is left only once.
+    every = [contact.film_groups for contact in result.contacts if contact.film_groups is not None]
+    g = Groups(
+        speed=np.stack([g.speed for g in every]),
+        load=np.stack([g.load for g in every]),
+        material=np.stack([g.material for g in every]),
+        radius_ratio=max(g.radius_ratio for g in every),
+    )
     found = ((formula, outside_range(formula, g)) for formula in FORMULAS)
     return [
         f'{formula} outside its range: {", ".join(phrases)}'
@@ -75,26 +81,9 @@ def formula_warnings(result: ScrewPoint[Array]) -> list[str]:
     ]
 
 
-def _all_groups(contacts: tuple[PointContact[Array], ...]) -> Groups:
-    """Return the film groups of all contacts as one, so that a range is left only once."""
-    every = [contact.film_groups for contact in contacts if contact.film_groups is not None]
-    return Groups(
-        speed=np.stack([g.speed for g in every]),
-        load=np.stack([g.load for g in every]),
-        material=np.stack([g.material for g in every]),
-        radius_ratio=max(g.radius_ratio for g in every),
-    )
-
-
 def _deviation(deviation: float) -> str:
     """Return the words about what strips of a raceway differ by [-], none where not known."""
     return '' if math.isnan(deviation) else f', strips differ by {100 * deviation:.2g} %'
-
-
-def _film_by_formula(compared: Mapping[str, Any]) -> str:
-    """Return the words about the film of a comparator, or why there is none."""
-    film = 1e9 * compared['central_film_nijenbanning_m']
-    return compared['reason'] or f'Nijenbanning film {film:.1f} nm'
 
 
 def page(record: Mapping[str, Any]) -> str:
@@ -131,6 +120,7 @@ def page(record: Mapping[str, Any]) -> str:
         for contact in record['contacts']
     ]
     compared = record['comparators']
+    film = 1e9 * compared['central_film_nijenbanning_m']
     return '\n'.join(
         [
             f'{record["screw"]}, {record["oil"]}, tier {record["tier"]}: '
@@ -144,7 +134,7 @@ def page(record: Mapping[str, Any]) -> str:
             '',
             f'  compare: constant friction {compared["constant_friction_efficiency"]:.3f}, '
             f'catalogue drag {compared["catalogue_drag_torque_Nm"]:.3f} N m, '
-            + _film_by_formula(compared),
+            + (compared['reason'] or f'Nijenbanning film {film:.1f} nm'),
             f'  roughness: {record["roughness"]}',
             *(f'  contact: {record[name]}' for name in ('asperity_law',) if name in record),
             f'  status: {record["status"]}',

@@ -12,7 +12,7 @@ film floor.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 import math
 from typing import Literal
 
@@ -114,47 +114,29 @@ def make_contacts(
 ) -> tuple[RollingContact, ...]:
     """Return the contacts of a ball with screw and nut, the same for both nuts of a point."""
     oil = oil_at(lubricant, point.temperature)
-    speeds = [
-        _entrainment(opened, lubricant, point, side, heated=settings.inlet_heating)
-        for side in SIDES
-    ]
-    return tuple(
-        _make_contact(opened, side, oil, lubricant.film_floor, speed, settings)
-        for side, speed in zip(SIDES, speeds, strict=True)
-    )
-
-
-def _make_contact(
-    opened: Contacts,
-    side: Side,
-    oil: ContactLubricant,
-    film_floor: float,
-    entrainment: Callable[[float], float],
-    settings: ScrewSettings,
-) -> RollingContact:
-    raceway, raised, rolls = None, 0.0, settings.kinematics == 'rolling'
+    speed, heated = opened.rates.entrainment * abs(point.speed), settings.inlet_heating
+    raceway, raised = None, 0.0
     if settings.kinematics == 'standing':
         raceway, raised = standing_raceway(opened.sheet, settings)
-    return RollingContact(
-        side=side,
-        geometry=opened.geometry[side],
-        oil=oil,
-        entrainment=entrainment,
-        film_floor=film_floor,
-        law=opened.law if rolls else None,
-        raceway=raceway,
-        raised=raised,
-        settings=settings,
+
+    def entrained(side: Side, load: float) -> float:
+        place = load, speed, point.temperature
+        return float(inlet_speed(opened.sheet, lubricant, side, *place, heated=heated))
+
+    return tuple(
+        RollingContact(
+            side=side,
+            geometry=opened.geometry[side],
+            oil=oil,
+            entrainment=partial(entrained, side),
+            film_floor=lubricant.film_floor,
+            law=opened.law if settings.kinematics == 'rolling' else None,
+            raceway=raceway,
+            raised=raised,
+            settings=settings,
+        )
+        for side in SIDES
     )
-
-
-def _entrainment(
-    opened: Contacts, lubricant: Lubricant, point: OperatingPoint, side: Side, *, heated: bool
-) -> Callable[[float], float]:
-    """Return the entrainment speed [m/s] as a function of the normal force [N]."""
-    speed = opened.rates.entrainment * abs(point.speed)
-    given = opened.sheet, lubricant, side
-    return lambda load: float(inlet_speed(*given, load, speed, point.temperature, heated=heated))
 
 
 def solve_sides(
@@ -189,11 +171,15 @@ def _solve_side(contact: RollingContact, load: float, start: Start) -> SolvedCon
     """Return a contact under a normal force [N], from a near one."""
     condition = Condition(load=load, entrainment_speed=contact.entrainment(load))
     case = contact.geometry, contact.oil, condition
-    even, known = replace(contact.settings.smooth, film_floor=contact.film_floor), start[0]
-    if known is not None and _is_of(known, (*case, even)):
-        smooth = known
+    even, near = replace(contact.settings.smooth, film_floor=contact.film_floor), start[0]
+    if (
+        near is not None
+        and near.converged
+        and (near.contact, near.lubricant, near.condition, near.settings) == (*case, even)
+    ):
+        smooth = near
     else:
-        smooth = solve_contact(*case, settings=even, start=known)
+        smooth = solve_contact(*case, settings=even, start=near)
     if contact.raceway is not None and smooth.converged:
         return _standing(contact, smooth, start[1])
     return _rolling(contact, smooth)
@@ -266,18 +252,6 @@ def _on_grid(
     if surface is None or cut is None:
         return surface, 0.0
     return without_short_waves(surface, cut), subgrid_floor(surface, cut)
-
-
-def _is_of(
-    known: ContactSolution, case: tuple[Contact, ContactLubricant, Condition, Settings]
-) -> bool:
-    """Tell whether a smooth solution converged and is that of a case."""
-    return known.converged and case == (
-        known.contact,
-        known.lubricant,
-        known.condition,
-        known.settings,
-    )
 
 
 def oil_at(lubricant: Lubricant, temperature: float) -> ContactLubricant:

@@ -1,20 +1,41 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Picture of a solved point: pressure, film and slip of all contacts that carry load."""
+"""
+Pictures of a screw: of a solved point, of the onset of contact, of the sensitivity of a point.
 
+A point shows pressure, film and slip of all contacts that carry load, the onset its course over
+the pressure at which summits are cut, and the sensitivity what each input changes (a tornado).
+
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+import math
 from pathlib import Path
 from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap, LogNorm
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl import ContactSolution, punctured_nodes
 from surrogate.formulas.geometry import SIDES
-from surrogate.parameters import Screw
-from surrogate.plotting.style import draw_picture, MAP, new_figure, VERMILION
+from surrogate.parameters import Lubricant, Screw
+from surrogate.plotting.style import (
+    BLUE,
+    draw_picture,
+    GREY,
+    MAP,
+    new_figure,
+    ORANGE,
+    SKY,
+    VERMILION,
+)
 from surrogate.screw.nut import contact_slip, ScrewContact
+from surrogate.screw.screw_onset import ABOVE, onset_over_pressure
+from surrogate.screw.sensitivity import EFFICIENCY_SPEED, ONSET, shown, TORQUE
 from surrogate.screw.solve import ScrewSolution
 from surrogate.units import GIGA, MICRO, MILLI, NANO, RPM, ZERO_CELSIUS
 
@@ -26,6 +47,20 @@ ARROWS = (5, 9)
 """Arrows of slip along and across a contact."""
 FILM_SPAN = 30.0
 """Top of the film scale over its bottom [-]."""
+CUTTING = 0.5e9, 20e9
+"""Cutting pressures that a sheet may state [Pa]."""
+STEPS = 8
+"""Cutting pressures along the curve [-]."""
+PANELS = {
+    ONSET: ('Contact begins', 'speed [rev/min]', RPM),
+    TORQUE: ('Friction torque', 'torque [N m]', 1.0),
+    EFFICIENCY_SPEED: ('Efficiency falls to 0.85', 'speed [rev/min]', RPM),
+}
+"""Title, label and unit [SI] of the quantities that are drawn."""
+BANDS = {'unknown_band': ('not known', GREY), 'numerical_band': ('numerics', SKY)}
+"""Words and colours of the bands of the onset."""
+COLOURS = {'low': BLUE, 'high': ORANGE}
+"""Colours of the ends of an input."""
 
 
 def draw_point(folder: Path, screw: Screw, found: ScrewSolution, record: dict[str, Any]) -> Path:
@@ -41,43 +76,35 @@ def figure_point(screw: Screw, found: ScrewSolution, record: dict[str, Any]) -> 
         if contact.solved is not None and contact.solved.converged
     ]
     figure = new_figure(2.3 * max(len(pressed), 2) + 1.2, 7.4)
-    figure.suptitle(_title(record))
-    if pressed:
-        _draw_columns(figure, screw, pressed)
-    return figure
-
-
-def _title(record: dict[str, Any]) -> str:
-    return (
+    figure.suptitle(
         f'{record["screw"]}, {record["oil"]}: {record["speed_rad_s"] / RPM:g} rev/min, '
         f'{record["load_N"]:g} N, {record["temperature_K"] - ZERO_CELSIUS:g} °C\n'
         f'friction torque {MILLI * record["friction_torque_Nm"]:.1f} mN m, '
         f'efficiency {record["efficiency"]:.3f}, $\\Lambda$ {record["film_ratio"]:.2f}, '
         f'RCS {100 * record["rcs"]:.2g} %'
     )
-
-
-def _draw_columns(figure: Figure, screw: Screw, pressed: list[ScrewContact]) -> None:
-    axes = np.atleast_2d(figure.subplots(2, len(pressed), squeeze=False))
-    solved = [contact.solved for contact in pressed if contact.solved is not None]
-    top = GIGA * max(one.pressed.max_pressure for one in solved)
-    bottom = NANO * min(float(one.pressed.film.min()) for one in solved)
-    film = LogNorm(bottom, FILM_SPAN * bottom)
-    for column, (contact, one) in enumerate(zip(pressed, solved, strict=True)):
-        (upper, lower), rough = axes[:, column], one.pressed
-        pressure = _map(upper, rough, GIGA * rough.pressure, vmin=0, vmax=top)
-        gap = _map(lower, rough, NANO * rough.film, norm=film)
-        _mark_contact(lower, rough)
-        _draw_slip(lower, screw, contact, rough)
-        upper.set_title(
-            f'{contact.nut} nut, ball on {contact.side}\n{contact.ball.normal_force:.1f} N, '
-            f'RCS {100 * one.asperities.rcs:.2g} %'
-        )
-        lower.set_xlabel('along the track [µm]', fontsize=8)
-    for row in (0, 1):
-        axes[row, 0].set_ylabel('across the track [µm]', fontsize=8)
-    figure.colorbar(pressure, ax=axes[0], label='total pressure [GPa]')
-    figure.colorbar(gap, ax=axes[1], label='film [nm], arrows: slip', extend='max')
+    if pressed:
+        axes = np.atleast_2d(figure.subplots(2, len(pressed), squeeze=False))
+        solved = [contact.solved for contact in pressed if contact.solved is not None]
+        top = GIGA * max(one.pressed.max_pressure for one in solved)
+        bottom = NANO * min(float(one.pressed.film.min()) for one in solved)
+        film = LogNorm(bottom, FILM_SPAN * bottom)
+        for column, (contact, one) in enumerate(zip(pressed, solved, strict=True)):
+            (upper, lower), rough = axes[:, column], one.pressed
+            pressure = _map(upper, rough, GIGA * rough.pressure, vmin=0, vmax=top)
+            gap = _map(lower, rough, NANO * rough.film, norm=film)
+            _mark_contact(lower, rough)
+            _draw_slip(lower, screw, contact, rough)
+            upper.set_title(
+                f'{contact.nut} nut, ball on {contact.side}\n{contact.ball.normal_force:.1f} N, '
+                f'RCS {100 * one.asperities.rcs:.2g} %'
+            )
+            lower.set_xlabel('along the track [µm]', fontsize=8)
+        for row in (0, 1):
+            axes[row, 0].set_ylabel('across the track [µm]', fontsize=8)
+        figure.colorbar(pressure, ax=axes[0], label='total pressure [GPa]')
+        figure.colorbar(gap, ax=axes[1], label='film [nm], arrows: slip', extend='max')
+    return figure
 
 
 def _map(axes: Axes, rough: ContactSolution, field: Array, **options: Any) -> Any:
@@ -124,3 +151,98 @@ def _draw_slip(axes: Axes, screw: Screw, contact: ScrewContact, rough: ContactSo
 
 def _spread(count: int) -> Array:
     return np.linspace(-0.8, 0.8, count)
+
+
+def draw_onset(
+    folder: Path, screw: Screw, lubricant: Lubricant, record: Mapping[str, Any]
+) -> Path:
+    """Draw the onset of a screw and oil into a folder and return the path of the picture."""
+    name = f'onset_{record["screw"]}_{record["oil"]}.png'
+    return draw_picture(folder / name, lambda: figure_onset(screw, lubricant, record))
+
+
+def figure_onset(screw: Screw, lubricant: Lubricant, record: Mapping[str, Any]) -> Figure:
+    """Return the onset speed over the cutting pressure, with hardness and running-in marked."""
+    low, high = next(iter(record['states'].values()))['band']
+    sheet = screw.roughness
+    screw = replace(screw, working_load=record['working_load_N'])
+    least = max(ABOVE * record['working_pressure_Pa'], 0.8 * sheet.run_in_low)
+    least, most = np.clip([least, 1.2 * sheet.hardness], *CUTTING)
+    pressures = np.geomspace(least, most, STEPS)
+    place = record['load_N'], record['temperature_K']
+    speed = np.array(onset_over_pressure(screw, lubricant, *place, pressures.tolist())) / RPM
+    figure = new_figure(6.4, 4.0)
+    axes, giga = figure.subplots(), GIGA * pressures
+    axes.fill_between(
+        giga, speed * low, speed * high, color=BLUE, alpha=0.2, label=f'within {high:g}'
+    )
+    axes.plot(giga, speed, color=BLUE, label='onset, RCS 0.01')
+    axes.axvspan(
+        GIGA * sheet.run_in_low,
+        GIGA * sheet.run_in_high,
+        color=ORANGE,
+        alpha=0.2,
+        label='run in, its range',
+    )
+    axes.axvline(GIGA * sheet.run_in_pressure, color=ORANGE, linestyle='--', label='run in')
+    axes.axvline(GIGA * sheet.hardness, color=VERMILION, linestyle=':', label='hardness: new')
+    axes.set(
+        xscale='log',
+        yscale='log',
+        xlabel='pressure at which summits are cut [GPa]',
+        ylabel='speed at which contact begins [rev/min]',
+        title=f'{record["screw"]}, {record["oil"]}, {record["load_N"]:g} N, '
+        f'{record["temperature_K"] - ZERO_CELSIUS:g} °C',
+    )
+    ticks = [one for one in (1, 1.5, 2, 3, 5, 7, 10) if giga[0] <= one <= giga[-1]]
+    axes.set_xticks(ticks, [f'{one:g}' for one in ticks])
+    axes.minorticks_off()
+    axes.legend(loc='lower right')
+    return figure
+
+
+def draw_sensitivity(folder: Path, record: Mapping[str, Any]) -> Path:
+    """Draw a record of `sensitivity_record` into a folder and return the path of the picture."""
+    name = f'sensitivity_{record["screw"]}_{record["oil"]}.png'
+    return draw_picture(folder / name, lambda: figure_sensitivity(record))
+
+
+def figure_sensitivity(record: Mapping[str, Any]) -> Figure:
+    """Return bars of what each input changes, the largest on top, and the bands of the onset."""
+    panels = [name for name in PANELS if math.isfinite(record['stated'][name])]
+    rows = [*record['inputs'][::-1]]
+    figure = new_figure(2.2 + 2.4 * len(panels), 1.6 + 0.28 * (len(rows) + len(BANDS)))
+    every = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+    for axes, name in zip(every, panels, strict=True):
+        title, label, unit = PANELS[name]
+        axes.set(title=title, xlabel=label)
+        stated = record['stated'][name] / unit
+        for place, row in enumerate(rows):
+            ends = [(row[f'at_{end}'][name] / unit - stated, end) for end in COLOURS]
+            # The longer bar first, so that it does not hide another on its side.
+            for reached, end in sorted(ends, key=lambda one: -abs(one[0])):
+                axes.barh(place, reached, left=stated, color=COLOURS[end], height=0.7)
+        axes.axvline(stated, color='black', linewidth=0.8)
+        axes.grid(axis='x')
+    every[0].use_sticky_edges = False
+    # Below the bars of the onset, its bands.
+    onset = record['stated'][ONSET] / RPM
+    every[0].axhline(-0.5, color='black', linewidth=0.8)
+    for place, (name, (_, shade)) in enumerate(BANDS.items()):
+        low, high = (factor * onset for factor in record[name])
+        every[0].barh(-1 - place, high - low, left=low, color=shade, height=0.7)
+    every[0].set_yticks(
+        range(-len(BANDS), len(rows)),
+        [words for words, _ in BANDS.values()][::-1] + [_label(row) for row in rows],
+    )
+    marks = [Patch(color=colour, label=f'input is {end}') for end, colour in COLOURS.items()]
+    every[-1].legend(handles=marks, loc='lower right')
+    figure.suptitle(
+        f'{record["screw"]}, {record["oil"]}: {record["speed_rad_s"] / RPM:g} rev/min, '
+        f'{record["load_N"]:g} N, {record["temperature_K"] - ZERO_CELSIUS:g} °C'
+    )
+    return figure
+
+
+def _label(row: Mapping[str, Any]) -> str:
+    return f'{row["key"]}  {shown(row["low"])} to {shown(row["high"])}'

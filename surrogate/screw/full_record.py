@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A point of the full tier as a record: plain numbers for JSON, beside the classical formulas."""
 
+from collections.abc import Iterator
 import math
 import time
 from typing import Any
@@ -12,7 +13,8 @@ from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import ScrewSettings, shortest_on_grid
 from surrogate.screw.nut import contact_slip, ScrewContact
-from surrogate.screw.record import point_record, rating_warnings
+from surrogate.screw.opened import Contacts
+from surrogate.screw.record import point_record
 from surrogate.screw.solve import ScrewSolution, solve_screw, TIER
 from surrogate.units import GIGA
 
@@ -44,13 +46,14 @@ def full_record(
 ) -> tuple[ScrewSolution, dict[str, Any]]:
     """Solve one point in the full tier; return it with its record."""
     started = time.perf_counter()
-    found = solve_screw(screw, lubricant, point, settings=settings)
-    record = solution_record(screw, lubricant, point, found, settings)
+    opened = Contacts.of(screw)
+    found = solve_screw(opened, lubricant, point, settings=settings)
+    record = solution_record(opened, lubricant, point, found, settings)
     return found, record | {'wall_s': time.perf_counter() - started}
 
 
 def solution_record(
-    screw: Screw,
+    opened: Contacts,
     lubricant: Lubricant,
     point: OperatingPoint,
     found: ScrewSolution,
@@ -63,32 +66,26 @@ def solution_record(
     comparators.
 
     """
-    heated, place = settings.inlet_heating, (abs(point.speed), point.opposing_load)
+    screw, heated = opened.sheet, settings.inlet_heating
+    place = abs(point.speed), point.opposing_load, point.temperature
+    screw_side, nut_side = found.contacts[:2]
     record = point_record(
-        screw,
+        opened,
         lubricant,
         point,
         found,
-        closed_form.solve(screw, lubricant, *place, point.temperature, inlet_heating=heated),
+        closed_form.solve(opened, lubricant, *place, inlet_heating=heated),
+        tier=TIER,
         reasons=[_reason(found, contact) for contact in found.contacts],
-        sliding=[_slides(screw, contact) for contact in found.contacts],
+        sliding=[_sliding_speed(screw, contact) for contact in found.contacts],
+        angles=(screw_side.contact_angle, nut_side.contact_angle),
+        warnings=[*_warnings(screw, found, shortest_on_grid(screw, settings))],
         inlet_heating=heated,
     )
-    contacts = record['contacts']
     return record | {
-        'tier': TIER,
         'converged': found.converged,
-        'warnings': [
-            *rating_warnings(screw, lubricant, point),
-            *_moved_forces(found),
-            *_coarse(found, shortest_on_grid(screw, settings)),
-            *_third_contacts(screw, contacts),
-            *_uncertain_films(contacts),
-        ],
         'rcs_deviation': found.rcs_deviation,
         'asperity_law': law_sentence(screw, settings),
-        'contact_angle_A_rad': contacts[0]['contact_angle_rad'],
-        'contact_angle_B_rad': contacts[1]['contact_angle_rad'],
     }
 
 
@@ -99,7 +96,7 @@ def _reason(found: ScrewSolution, contact: ScrewContact) -> str:
     return '' if found.converged else found.status
 
 
-def _slides(screw: Screw, contact: ScrewContact) -> float:
+def _sliding_speed(screw: Screw, contact: ScrewContact) -> float:
     """Return the mean sliding speed under the pressure of a contact [m/s], NaN if not balanced."""
     if contact.solved is None or contact.motion is None:
         return math.nan
@@ -108,26 +105,34 @@ def _slides(screw: Screw, contact: ScrewContact) -> float:
     return float(np.average(slip, weights=pressed.pressure))
 
 
-def _moved_forces(found: ScrewSolution) -> list[str]:
-    """Return a warning where contacts were solved under other forces than those of the balance."""
-    if not found.load_change > LOAD_CHANGE:
-        return []
-    return [
-        f'balls: friction and inertia change a normal force by {100 * found.load_change:.2g} '
-        '%, the contacts were solved before that'
-    ]
-
-
-def _coarse(found: ScrewSolution, wave: float) -> list[str]:
-    """Return a warning where roughness that stands has few nodes per shortest wave [m]."""
-    grids = (one.pressed.y for one in found.loaded_contacts)
-    least = min((wave / float(y[1] - y[0]) for y in grids), default=math.inf)
-    if least >= FEWEST_NODES:
-        return []
-    return [
-        f'roughness: {least:.2g} nodes per shortest wave across the track, asperity contact is '
-        f'resolved from {FEWEST_NODES:g}'
-    ]
+def _warnings(screw: Screw, found: ScrewSolution, wave: float) -> Iterator[str]:
+    """Yield what is doubtful of a solution; `wave`, the shortest one that was solved [m]."""
+    if found.load_change > LOAD_CHANGE:
+        yield (
+            f'balls: friction and inertia change a normal force by {100 * found.load_change:.2g} '
+            '%, the contacts were solved before that'
+        )
+    grids = (contact.pressed.y for contact in found.loaded_contacts)
+    nodes = min((wave / float(y[1] - y[0]) for y in grids), default=math.inf)
+    if nodes < FEWEST_NODES:
+        yield (
+            f'roughness: {nodes:.2g} nodes per shortest wave across the track, asperity contact '
+            f'is resolved from {FEWEST_NODES:g}'
+        )
+    for contact in found.contacts:
+        approach, clearance = contact.opposite_flank_approach, screw.flank_clearance
+        if clearance is not None and approach > clearance:
+            yield (
+                f'{contact.nut} nut, {contact.side}: the ball comes {1e6 * approach:.2g} um '
+                f'towards the other flank, its clearance is {1e6 * clearance:g} um: a third '
+                'contact, which is not solved'
+            )
+    for contact in found.contacts:
+        if contact.film_error > FILM_ERROR:
+            yield (
+                f'{contact.nut} nut, {contact.side}: the film is known to '
+                f'{100 * contact.film_error:.0f} % only, the contact is hardly pressed'
+            )
 
 
 def law_sentence(screw: Screw, settings: ScrewSettings) -> str:
@@ -145,26 +150,3 @@ def law_sentence(screw: Screw, settings: ScrewSettings) -> str:
         f'roughness that rolls, {state}, summits cut at {GIGA * sheet.cutting_pressure:g} GPa; '
         f'{sheet.calibration or band}'
     )
-
-
-def _uncertain_films(contacts: list[dict[str, Any]]) -> list[str]:
-    """Return a warning for each contact whose film is known badly: hardly pressed, thick film."""
-    return [
-        f'{contact["nut"]} nut, {contact["side"]}: the film is known to '
-        f'{100 * contact["film_error"]:.0f} % only, the contact is hardly pressed'
-        for contact in contacts
-        if contact['film_error'] > FILM_ERROR
-    ]
-
-
-def _third_contacts(screw: Screw, contacts: list[dict[str, Any]]) -> list[str]:
-    """Return a warning for each contact whose ball would reach the other flank of its groove."""
-    if screw.flank_clearance is None:
-        return []
-    return [
-        f'{contact["nut"]} nut, {contact["side"]}: the ball comes '
-        f'{1e6 * contact["opposite_flank_approach_m"]:.2g} um towards the other flank, its '
-        f'clearance is {1e6 * screw.flank_clearance:g} um: a third contact, which is not solved'
-        for contact in contacts
-        if contact['opposite_flank_approach_m'] > screw.flank_clearance
-    ]

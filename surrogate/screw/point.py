@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Result of a point of the screw and of its contacts, whatever the tier."""
 
-from dataclasses import dataclass
-from typing import Generic
+from dataclasses import dataclass, fields
+import math
+from typing import Any, Generic
 
 from surrogate.formulas.film import Groups
 from surrogate.formulas.geometry import Side
 from surrogate.formulas.load_sharing import NutName
 from surrogate.results import number
+from surrogate.surface.fields import FIELDS
 from surrogate.surface.solved import Number, SolvedPoint
 
 
@@ -56,3 +58,15 @@ class ScrewPoint(SolvedPoint[Number], Generic[Number]):
     contacts: tuple[PointContact[Number], ...]
     entrainment_speed: Number = number('m_s')
     normal_forces: tuple[Number, Number]
+
+
+def kept_point(point: ScrewPoint[Any]) -> SolvedPoint[float]:
+    """Return what a surface keeps of one point, whatever its tier; none without a load."""
+    kept = {spec.name: getattr(point, spec.name) for spec in fields(SolvedPoint)}
+    numbers = {name: float(kept[name]) for name in FIELDS}
+    kept |= {
+        **numbers,
+        'converged': point.converged and all(map(math.isfinite, numbers.values())),
+        'worst_contact': int(point.worst_contact),
+    }
+    return SolvedPoint(**kept)

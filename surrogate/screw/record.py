@@ -99,30 +99,37 @@ CONTACT_KEYS = {
 
 
 def point_record(
-    screw: Screw,
+    opened: Contacts,
     lubricant: Lubricant,
     point: OperatingPoint,
     found: ScrewPoint[Any],
     formulas: ScrewPoint[Array],
     *,
+    tier: str,
     reasons: Sequence[str],
     sliding: Sequence[float],
+    angles: tuple[float, float],
+    warnings: Sequence[str],
     inlet_heating: bool,
 ) -> dict[str, Any]:
     """
     Return what both tiers tell of a point.
 
     For each contact the reason why it has no numbers, empty if it has, and its mean sliding speed
-    [m/s]. `formulas` are the point by published formulas, for comparison.
+    [m/s]; contact angles [rad] at screw and nut; warnings of the tier, after those of ratings.
+    `formulas` are the point by published formulas, for comparison.
 
     """
+    screw = opened.sheet
     contacts = [
         with_wear({'nut': one.nut, 'side': one.side, 'reason': reason} | declared(one), speed)
         for one, reason, speed in zip(found.contacts, reasons, sliding, strict=True)
     ]
     worst, (loaded, relieved) = contacts[int(found.worst_contact)], found.normal_forces
     return {
+        'tier': tier,
         'status': found.status,
+        'warnings': [*rating_warnings(screw, lubricant, point), *warnings],
         'screw': screw.name,
         'oil': lubricant.name,
         'roughness': roughness_sentence(screw.roughness, screw.ball_roughness),
@@ -140,8 +147,10 @@ def point_record(
         'worst_contact': {key: worst[key] for key in ('nut', 'side')},
         'normal_force_loaded_N': float(loaded),
         'normal_force_relieved_N': float(relieved),
+        'contact_angle_A_rad': angles[0],
+        'contact_angle_B_rad': angles[1],
         'contacts': contacts,
-        'comparators': _comparators(screw, point, formulas.contacts[0]),
+        'comparators': _comparators(opened, point, formulas.contacts[0]),
     }
 
 
@@ -176,15 +185,16 @@ def most_wear(contacts: list[dict[str, Any]]) -> dict[str, float]:
 
 
 def _comparators(
-    screw: Screw, point: OperatingPoint, loaded_screw: PointContact[Array]
+    opened: Contacts, point: OperatingPoint, loaded_screw: PointContact[Array]
 ) -> dict[str, Any]:
     """Return what the classical formulas say of the same point."""
-    angle, load = helix_angle(screw), point.opposing_load
+    screw, load = opened.sheet, point.opposing_load
+    angle = helix_angle(screw)
     forces = [float(force) for force in nut_forces(load, screw.preload)]
     opposing, assisting = forces if load >= 0 else forces[::-1]
     film, groups = math.nan, loaded_screw.film_groups
     if point.speed and groups is not None:
-        contact = Contacts.of(screw).geometry[loaded_screw.side]
+        contact = opened.geometry[loaded_screw.side]
         film = float(central_film_nijenbanning_1994(contact, groups))
     driving = torque.torque_constant_friction(
         opposing, assisting, screw.pitch_radius, angle, CONSTANT_FRICTION

@@ -33,7 +33,7 @@ LOAD_FACTORS = 0.5, 2.0
 WORDS = {'new': 'new, after its first pass', 'run_in': 'run in'}
 
 
-def onset_speeds(screw: Screw, lubricant: Lubricant, load: Array, temperature: Array) -> Array:
+def onset_speeds(opened: Contacts, lubricant: Lubricant, load: Array, temperature: Array) -> Array:
     """
     Return the screw speeds [rad/s] of the onset over load [N] and temperature [K].
 
@@ -42,12 +42,12 @@ def onset_speeds(screw: Screw, lubricant: Lubricant, load: Array, temperature: A
     """
     found = [
         [
-            onset_point(screw, lubricant, force, heat)['speed_rad_s']
+            onset_point(opened, lubricant, force, heat)['speed_rad_s']
             for heat in temperature.tolist()
         ]
         for force in load.tolist()
     ]
-    least = SMOOTH_ONSET / starved_speed(lubricant, Contacts.of(screw).rates.entrainment)
+    least = SMOOTH_ONSET / starved_speed(lubricant, opened.rates.entrainment)
     return np.maximum(found, least)
 
 
@@ -77,7 +77,7 @@ def run_in_at(screw: Screw, pressure: float) -> Screw:
 
 
 def onset_point(
-    screw: Screw, lubricant: Lubricant, load: float, temperature: float
+    opened: Contacts, lubricant: Lubricant, load: float, temperature: float
 ) -> dict[str, float]:
     """
     Return where contact begins under an axial load [N] at an oil temperature [K].
@@ -87,7 +87,7 @@ def onset_point(
     as `running_tiles` does.
 
     """
-    opened, oil = Contacts.of(screw), oil_at(lubricant, temperature)
+    screw, oil = opened.sheet, oil_at(lubricant, temperature)
     loaded = float(nut_forces(load, screw.preload)[0]) or working_preload(screw)
     force, film = float(normal_force(screw, loaded)), 0.0
     entrainment, side = max(
@@ -114,14 +114,15 @@ def onset_record(
     """
     _check_place(lubricant, load, temperature)
     stated = screw.working_load is not None
-    if abs(load) > Contacts.of(screw).working_load:
-        screw = replace(screw, working_load=abs(load))
     opened, band, states = Contacts.of(screw), band_of(screw.roughness), {}
+    if abs(load) > opened.working_load:
+        screw = replace(screw, working_load=abs(load))
+        opened = Contacts.of(screw)
     sheet, place = screw.roughness, (lubricant, load, temperature)
     alone = sheet.traced == 'run_in' or sheet.calibrated
     for state in [sheet.state] if alone else ['new', 'run_in']:
         raceway = with_raceway(screw, state=state)
-        states[state] = onset_point(raceway, *place) | {
+        states[state] = onset_point(Contacts.of(raceway), *place) | {
             'cutting_pressure_Pa': raceway.roughness.cutting_pressure,
             'band': [1 / band, band],
         }
@@ -250,7 +251,8 @@ def onset_over_working_load(
     found = []
     for largest in loads:
         try:
-            point = onset_point(replace(screw, working_load=largest), lubricant, load, temperature)
+            pressed = Contacts.of(replace(screw, working_load=largest))
+            point = onset_point(pressed, lubricant, load, temperature)
         except InputError:
             point = {'speed_rad_s': math.nan}
         found.append(point['speed_rad_s'])
@@ -261,7 +263,5 @@ def onset_over_pressure(
     screw: Screw, lubricant: Lubricant, load: float, temperature: float, pressures: Sequence[float]
 ) -> list[float]:
     """Return the onset speeds [rad/s] of a profile that runs in at some pressures [Pa]."""
-    return [
-        onset_point(run_in_at(screw, pressure), lubricant, load, temperature)['speed_rad_s']
-        for pressure in pressures
-    ]
+    worn = [Contacts.of(run_in_at(screw, pressure)) for pressure in pressures]
+    return [onset_point(one, lubricant, load, temperature)['speed_rad_s'] for one in worn]

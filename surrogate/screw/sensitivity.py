@@ -20,6 +20,7 @@ from surrogate.formulas import torque
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 from surrogate.screw.uncertain_inputs import INPUTS, LEFT_OUT, ScrewCase, Varied
 from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT, RCS_RELATIVE_TOLERANCE
 from surrogate.surface.contact_onset import law_doubt
@@ -133,7 +134,8 @@ def _outcome(case: ScrewCase) -> dict[str, float]:
     wide = np.geomspace(min(near[0], most), most, SPEEDS)
     speed = np.concatenate([[abs(point.speed)], near, wide])
     load = point.opposing_load
-    found = closed_form.solve(case.screw, case.lubricant, speed, load, point.temperature)
+    place = case.lubricant, speed, load, point.temperature
+    found = closed_form.solve(Contacts.of(case.screw), *place)
     slow, fast = found.rcs[1:-SPEEDS], found.friction_torque[-SPEEDS:]
     with np.errstate(divide='ignore'):
         contact = np.log(slow / RCS_LIMIT)

@@ -73,7 +73,7 @@ class ScrewSolution(ScrewPoint[float]):
 
 
 def solve_screw(
-    screw: Screw,
+    opened: Contacts,
     lubricant: Lubricant,
     point: OperatingPoint,
     *,
@@ -81,7 +81,7 @@ def solve_screw(
     start: ScrewSolution | None = None,
 ) -> ScrewSolution:
     """
-    Solve the full model at one operating point.
+    Solve the full model of a screw, opened by `Contacts.of`, at one operating point.
 
     A `start` from a neighbouring point of the same screw saves time and changes nothing beyond the
     tolerances of the contacts; rough ones of another load start from cold all the same. Speed zero
@@ -89,12 +89,12 @@ def solve_screw(
     ball that did not converge leaves its sentence in the status and NaN elsewhere.
 
     """
-    settings = settings or ScrewSettings()
+    settings, screw = settings or ScrewSettings(), opened.sheet
     nuts = _nut_loads(screw, point)
     near = [(found.smooth, found.pressed) for found in start.contacts] if start else []
     contacts: tuple[RollingContact, ...] = ()
     if any(nut.force for nut in nuts):
-        contacts = make_contacts(Contacts.of(screw), lubricant, point, settings)
+        contacts = make_contacts(opened, lubricant, point, settings)
     loaded, relieved = (float(normal_force(screw, nut.force)) for nut in nuts)
     with at(nut=1):
         pairs = [solve_sides(contacts, (loaded, loaded), near[:2])]
@@ -106,11 +106,11 @@ def solve_screw(
         with at(nut=place + 1):
             tolerance = settings.coupling_tolerance
             solved.append(solve_nut(screw, point, nut, contacts, pair, tolerance=tolerance))
-    return _combine(screw, point, _without_floating(screw, point, nuts, solved))
+    return _combine(opened, point, _without_floating(screw, point, nuts, solved))
 
 
 def rebalance_screw(
-    screw: Screw,
+    opened: Contacts,
     lubricant: Lubricant,
     point: OperatingPoint,
     found: ScrewSolution,
@@ -126,8 +126,9 @@ def rebalance_screw(
     another load than that solved.
 
     """
+    screw = opened.sheet
     _check_same_load(screw, point, found)
-    sides = make_contacts(Contacts.of(screw), lubricant, point, settings or ScrewSettings())
+    sides = make_contacts(opened, lubricant, point, settings or ScrewSettings())
     loaded, relieved = (
         tuple(
             with_oil_of(side, contact.solved)
@@ -139,7 +140,7 @@ def rebalance_screw(
     nuts = _nut_loads(screw, point)
     pairs = zip(nuts, (loaded, relieved), strict=True)
     solved = [make_nut(screw, point, *given) for given in pairs]
-    return _combine(screw, point, _without_floating(screw, point, nuts, solved))
+    return _combine(opened, point, _without_floating(screw, point, nuts, solved))
 
 
 def _without_floating(
@@ -182,9 +183,9 @@ def _nut_loads(screw: Screw, point: OperatingPoint) -> tuple[NutLoad, NutLoad]:
     )
 
 
-def _combine(screw: Screw, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> ScrewSolution:
+def _combine(opened: Contacts, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> ScrewSolution:
     """Add up both nuts."""
-    speed, load = abs(point.speed), point.opposing_load
+    screw, speed, load = opened.sheet, abs(point.speed), point.opposing_load
     contacts = nuts[0].contacts + nuts[1].contacts
     worst = worst_contact(contacts)
     worn = contacts[worst].solved if contacts else None
@@ -197,7 +198,7 @@ def _combine(screw: Screw, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> 
         contacts=contacts,
         worst_contact=worst,
         rcs_deviation=worn.asperities.rcs_deviation if worn else math.nan,
-        entrainment_speed=Contacts.of(screw).rates.entrainment * speed,
+        entrainment_speed=opened.rates.entrainment * speed,
         normal_forces=(
             float(normal_force(screw, nuts[0].force)),
             float(normal_force(screw, nuts[1].force)),
@@ -210,6 +211,8 @@ def _combine(screw: Screw, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> 
     parasitic = screw.parasitic_torque + screw.parasitic_torque_rate * speed
     balls = [nut.ball for nut in nuts if nut.ball is not None]
     friction = screw.loaded_balls_per_nut * sum(ball.loss_torque for ball in balls) + parasitic
+    pressing = sum(contact.normal_force for contact in carrying)
+    sliding = sum(contact.normal_force * contact.friction_coefficient for contact in carrying)
     driving = screw.loaded_balls_per_nut * sum(ball.torque for ball in balls) + parasitic
     missed = driving - driving_torque(friction, load, screw.lead)
     return replace(
@@ -220,7 +223,7 @@ def _combine(screw: Screw, point: OperatingPoint, nuts: Sequence[SolvedNut]) -> 
         efficiency=efficiency(friction, load, screw.lead),
         back_driving=is_back_driving(friction, load, screw.lead),
         load_change=max(load_change(nut) for nut in nuts),
-        friction_coefficient=_mean_friction(carrying),
+        friction_coefficient=sliding / pressing if pressing else math.nan,
         rcs=max((contact.rcs for contact in carrying), default=0.0),
         asperity_share=max((contact.asperity_share for contact in carrying), default=0.0),
         film_ratio=float(film_ratio(film, screw.composite_rms)),
@@ -238,10 +241,3 @@ def worst_contact(contacts: Sequence[ScrewContact]) -> int:
         if contact.solved is not None and not math.isnan(contact.rcs)
     ]
     return -max(pressed)[2] if pressed else 0
-
-
-def _mean_friction(carrying: Sequence[ScrewContact]) -> float:
-    """Return the friction coefficient over all normal forces [-], NaN without any."""
-    total = sum(contact.normal_force for contact in carrying)
-    friction = sum(contact.normal_force * contact.friction_coefficient for contact in carrying)
-    return friction / total if total else math.nan

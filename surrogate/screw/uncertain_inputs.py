@@ -41,7 +41,7 @@ class ScrewCase:
     def onset(self) -> float:
         """Screw speed at which contact begins [rad/s]."""
         place = self.point.opposing_load, self.point.temperature
-        return onset_point(self.screw, self.lubricant, *place)['speed_rad_s']
+        return onset_point(Contacts.of(self.screw), self.lubricant, *place)['speed_rad_s']
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,15 +71,14 @@ class Varied:
 
     def bounds(self, case: ScrewCase) -> Ends | None:
         """Return the ends [SI] within what a sheet may state, None where it has no such input."""
-        ends = self.ends(case) if self.ends is not None else self._around(self.stated(case))
+        value, ends = self.stated(case), self.ends(case) if self.ends is not None else None
+        if self.ends is None and value:
+            ends = value / self.times - self.plus, value * self.times + self.plus
         if ends is None:
             return None
         rules = self.rules(case)
         least, most = ((rules[end] + rules['shift']) * rules['factor'] for end in ('low', 'high'))
         return max(ends[0], least), min(ends[1], most)
-
-    def _around(self, value: float | None) -> Ends | None:
-        return (value / self.times - self.plus, value * self.times + self.plus) if value else None
 
     def rules(self, case: ScrewCase) -> Mapping[str, Any]:
         """Return what a sheet states of the field: unit, factor, limits."""

@@ -85,6 +85,13 @@ class StudyRow:
         return StudyTask(**task).key
 
 
+def markdown_table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """Return rows below their heads as a table in Markdown."""
+    names = list(heads)
+    lines = [f'| {" | ".join(names)} |', f'|{len(names) * "---|"}']
+    return '\n'.join(lines + [f'| {" | ".join(cells)} |' for cells in rows])
+
+
 def row_of(task: StudyTask, inputs: str, status: str, **numbers: Any) -> StudyRow:
     """Return the row of a task."""
     words: Any = {name: getattr(task, name) for name in TASK}

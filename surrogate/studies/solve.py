@@ -36,14 +36,12 @@ from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.opened import Contacts
 from surrogate.screw.solve import ScrewSolution, solve_screw
 from surrogate.studies.rows import inputs_hash, row_of, StudyRow
-from surrogate.studies.tasks import CASES, SMOOTH, STANDING, StudyTask
+from surrogate.studies.tasks import CASES, OIL, SCREW, SMOOTH, STANDING, StudyTask
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.tasks.store import TaskStore
 from surrogate.tasks.table import read_table, write_table
 from surrogate.units import RPM
 
-SCREW, OIL = 'nominal', 'iso_vg_68'
-"""Datasheets of the published screw."""
 TABLE = 'paper.csv'
 """Name of the table of rows in the output folder."""
 WORK = 'surrogate.studies.solve 1'
@@ -122,24 +120,26 @@ def solve_plain(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Solve a task in plain JSON; return its row and, where they are kept, its fields."""
     words = dict(inputs)
     known = words.pop('inputs')
-    row, fields = solve_task(load_screw(SCREW), load_lubricant(OIL), StudyTask(**words), known)
+    row, fields = solve_task(
+        Contacts.of(load_screw(SCREW)), load_lubricant(OIL), StudyTask(**words), known
+    )
     plain = {name: np.asarray(value).tolist() for name, value in fields.items()}
     return {'row': asdict(row), 'fields': plain}
 
 
 def solve_task(
-    screw: Screw, lubricant: Lubricant, task: StudyTask, inputs: str
+    opened: Contacts, lubricant: Lubricant, task: StudyTask, inputs: str
 ) -> tuple[StudyRow, Fields]:
     """Solve one task; return its row and, for a contact that keeps them, its fields."""
     began = time.process_time()
-    speed = float(entrainment_speed_paper(screw, task.rpm * RPM))
+    speed = float(entrainment_speed_paper(opened.sheet, task.rpm * RPM))
     fields: Fields = {}
     if task.kind == 'contact':
-        status, numbers, fields = _contact(screw, lubricant, task, speed)
+        status, numbers, fields = _contact(opened, lubricant, task, speed)
     elif task.kind == 'screw':
-        status, numbers = _screw(screw, lubricant, task)
+        status, numbers = _screw(opened, lubricant, task)
     else:
-        status, numbers = 'CONVERGED', _formulas(screw, lubricant, task)
+        status, numbers = 'CONVERGED', _formulas(opened, lubricant, task)
     numbers |= {'entrainment_speed': speed, 'seconds': time.process_time() - began}
     return row_of(task, inputs, status, **numbers), fields
 
@@ -149,11 +149,12 @@ def _taken(found: Any, names: str) -> Numbers:
 
 
 def _contact(
-    screw: Screw, lubricant: Lubricant, task: StudyTask, speed: float
+    opened: Contacts, lubricant: Lubricant, task: StudyTask, speed: float
 ) -> tuple[str, Numbers, Fields]:
+    screw = opened.sheet
     forces = nut_forces(task.load, screw.preload)
     force = float(normal_force(screw, forces[CASES[task.case].nut == 'relieved']))
-    solution, surface = solve_patch(screw, lubricant, task, force, speed)
+    solution, surface = solve_patch(opened, lubricant, task, force, speed)
     numbers: Numbers = {'normal_force': force}
     if not solution.converged:
         return solution.status.name, numbers, {}
@@ -165,7 +166,7 @@ def _contact(
     return solution.status.name, numbers, _fields(solution, surface, task.fields)
 
 
-def published_patch(screw: Screw, draw: int) -> FractalSurface:
+def published_patch(opened: Contacts, draw: int) -> FractalSurface:
     """
     Return one draw of the published raceway, rescaled once over a window that no load moves.
 
@@ -173,8 +174,9 @@ def published_patch(screw: Screw, draw: int) -> FractalSurface:
     or under `WINDOW_SHARE` of the static rating where that is larger.
 
     """
+    screw = opened.sheet
     force = max(UNLOADING_RATIO * screw.preload, WINDOW_SHARE * screw.static_rating)
-    ellipse = hertz(Contacts.of(screw).geometry['screw'], float(normal_force(screw, force)))
+    ellipse = hertz(opened.geometry['screw'], float(normal_force(screw, force)))
     window = Window(
         length_x=2 * float(ellipse.semi_axis_x), length_y=2 * float(ellipse.semi_axis_y)
     )
@@ -182,7 +184,7 @@ def published_patch(screw: Screw, draw: int) -> FractalSurface:
 
 
 def solve_patch(
-    screw: Screw, lubricant: Lubricant, task: StudyTask, force: float, speed: float
+    opened: Contacts, lubricant: Lubricant, task: StudyTask, force: float, speed: float
 ) -> tuple[ContactSolution, FractalSurface | None]:
     """
     Solve the contact of a task under a normal `force` [N] at an entrainment `speed` [m/s].
@@ -191,7 +193,7 @@ def solve_patch(
     of a screw stands still.
 
     """
-    case, contact = CASES[task.case], Contacts.of(screw).geometry['screw']
+    case, contact = CASES[task.case], opened.geometry['screw']
     oil = ContactLubricant(
         viscosity=case.viscosity or lubricant.viscosity,
         pressure_viscosity=lubricant.pressure_viscosity,
@@ -204,7 +206,7 @@ def solve_patch(
     condition = Condition(load=force, entrainment_speed=speed)
     if task.draw == SMOOTH:
         return solve_contact(contact, oil, condition, settings=settings), None
-    whole = published_patch(screw, task.draw)
+    whole = published_patch(opened, task.draw)
     surface = without_short_waves(whole, SHORTEST_ON_GRID)
     width = ACROSS * float(hertz(contact, force).semi_axis_y)
     settings = replace(
@@ -247,14 +249,14 @@ def _fields(solution: ContactSolution, surface: FractalSurface | None, kind: str
     return {'x': x, 'y': y, 'heights': heights} | arrays | sizes
 
 
-def _screw(screw: Screw, lubricant: Lubricant, task: StudyTask) -> tuple[str, Numbers]:
+def _screw(opened: Contacts, lubricant: Lubricant, task: StudyTask) -> tuple[str, Numbers]:
     """Solve the whole screw in the full tier; the published study is isothermal."""
     temperature = lubricant.reference_temperature
     point = OperatingPoint(speed=task.rpm * RPM, load=task.load, temperature=temperature)
     settings = ScrewSettings(
         kinematics='standing' if task.case == STANDING else 'rolling', inlet_heating=False
     )
-    found = solve_screw(screw, lubricant, point, settings=settings)
+    found = solve_screw(opened, lubricant, point, settings=settings)
     if not found.converged:
         return found.status, {}
     touching: dict[str, list[float]] = {'loaded': [], 'relieved': []}
@@ -262,7 +264,7 @@ def _screw(screw: Screw, lubricant: Lubricant, task: StudyTask) -> tuple[str, Nu
         if contact.solved is not None:
             touching[contact.nut].append(contact.solved.asperities.rcs)
     names = 'central_film minimum_film rcs asperity_share rcs_deviation friction_torque'
-    return 'CONVERGED', _taken(found, names) | _frictions(screw, found, point.speed) | {
+    return 'CONVERGED', _taken(found, names) | _frictions(opened.sheet, found, point.speed) | {
         'normal_force': found.normal_forces[0],
         'rcs_loaded': max(touching['loaded']),
         'rcs_relieved': max(touching['relieved'], default=0.0),
@@ -313,10 +315,11 @@ def _friction(screw: Screw, contact: ScrewContact, film: Any) -> ContactFriction
     )
 
 
-def _formulas(screw: Screw, lubricant: Lubricant, task: StudyTask) -> Numbers:
+def _formulas(opened: Contacts, lubricant: Lubricant, task: StudyTask) -> Numbers:
     """Take the screw by published formulas, asperities by a statistical share."""
+    screw = opened.sheet
     found = closed_form.solve(
-        screw,
+        opened,
         lubricant,
         task.rpm * RPM,
         task.load,

@@ -16,6 +16,8 @@ from typing import Any, Literal, NamedTuple
 
 from surrogate.files import InputError
 
+SCREW, OIL = 'nominal', 'iso_vg_68'
+"""Datasheets of the published screw."""
 SMOOTH = -1
 """Draw of a task without roughness [-]."""
 OURS, RELIEVED, SHORT, STANDING = 'ours', 'relieved nut', 'short inlet', 'standing'
@@ -70,6 +72,8 @@ PRELOAD = 0.0
 """Axial load of a screw under preload alone [N]."""
 MARK_RPM = 600.0
 """Screw speed of the published central film [rev/min]: 502.65 mm/s by w r_m / 2."""
+REPORTED_FILM = 153.0
+"""Central film at that speed and preload only, published for the rough surface [nm]."""
 SMOOTH_SPEEDS = (50.0, 200.0, 600.0, 1000.0)
 LOADS = (0.0, 500.0, 1000.0, 1500.0, 2000.0, 2400.0)
 RELIEVED_LOADS = LOADS[:-1]

@@ -76,12 +76,12 @@ def surface_warnings(data: SurfaceData) -> list[str]:
         return []
     from surrogate.screw import closed_form  # slow to load
     from surrogate.screw.closed_form_record import formula_warnings
+    from surrogate.screw.opened import Contacts
 
     places = np.meshgrid(data.header['settings']['speed_range'], data.load, data.temperature)
     # The groups of films do not depend on what asperities do.
-    solution = closed_form.solve(
-        *screw_and_oil(data.header['inputs']), *places, share_of=np.zeros_like
-    )
+    screw, oil = screw_and_oil(data.header['inputs'])
+    solution = closed_form.solve(Contacts.of(screw), oil, *places, share_of=np.zeros_like)
     return formula_warnings(solution)
 
 
@@ -100,15 +100,7 @@ def info_page(record: Mapping[str, Any]) -> str:
             f'{record["file"]}',
             f'  {record["contact_onset"]["sentence"]}',
             *_head(record),
-            *_builder_lines(record),
-            '  measured interpolation error                    max         p95',
-            *(
-                f'    {_label(name):44} {error["max"]:<10.3g}  {error["p95"]:.3g}'
-                for name, error in record['errors'].items()
-            ),
-            *_spreads(record['spreads']),
-            '  provenance (not hashed)',
-            *(f'    {name:12} {value}' for name, value in record['provenance'].items()),
+            *_quality(record),
         ]
     )
 
@@ -148,7 +140,8 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
     )
 
 
-def _builder_lines(record: Mapping[str, Any]) -> Iterator[str]:
+def _quality(record: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what is known of the accuracy, errors, spreads over strips, and the provenance."""
     for name, words in (('limit_band', 'what is not known'), ('numerical_band', 'the numerics')):
         if record[name] is not None:
             low, high = record[name]
@@ -164,6 +157,16 @@ def _builder_lines(record: Mapping[str, Any]) -> Iterator[str]:
     if record['march'] is not None:
         yield from march_lines(record['march'])
     yield from (f'  formulas     {text}' for text in record['formula_warnings'])
+    yield '  measured interpolation error                    max         p95'
+    for name, error in record['errors'].items():
+        yield f'    {_label(name):44} {error["max"]:<10.3g}  {error["p95"]:.3g}'
+    if record['spreads']:
+        yield '  over strips of the raceway               deviation: median, max    of the mean'
+    for name, spread in record['spreads'].items():
+        kinds = [spread[kind][part] for kind in ('std', 'stderr') for part in ('median', 'max')]
+        yield f'    {_label(name):36} ' + '  '.join(f'{value:<10.3g}' for value in kinds).rstrip()
+    yield '  provenance (not hashed)'
+    yield from (f'    {name:12} {value}' for name, value in record['provenance'].items())
 
 
 def march_lines(march: Mapping[str, Any]) -> Iterator[str]:
@@ -178,20 +181,4 @@ def march_lines(march: Mapping[str, Any]) -> Iterator[str]:
         yield (
             f'  marched      {name}, waves down to {1e6 * strip["shortest_wave_m"]:.2g} um: '
             f'contact {onset}, told {by_law:.3g} m/s; {strip["status"]}'
-        )
-
-
-def _spreads(spreads: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the table of what strips of the raceway differ by, if that is known."""
-    if not spreads:
-        return
-    yield '  over strips of the raceway               deviation: median, max    of the mean'
-    for name, spread in spreads.items():
-        yield (
-            f'    {_label(name):36} '
-            + '  '.join(
-                f'{spread[kind][part]:<10.3g}'
-                for kind in ('std', 'stderr')
-                for part in ('median', 'max')
-            ).rstrip()
         )

@@ -9,7 +9,6 @@ there instead, over the slope of RCS, is a change of the logarithm of the speed.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 import math
 import random
 
@@ -27,26 +26,20 @@ INSIDE = 1e-9
 """Distance from the ends of the speed range, as a logarithm [-]."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class LimitError:
-    """
-    A point on the limit by the lookup [rad/s, N, K], and how far off it is.
-
-    The error is the logarithm of its speed by the lookup over that by the solver [-], NaN where
-    the solver has no solution.
-
-    """
-
-    speed: float
-    load: float
-    temperature: float
-    error: float
+Place = tuple[float, float, float]
+"""Speed [rad/s], load [N] and temperature [K]."""
 
 
 def limit_errors(
     data: SurfaceData, points: int, seed: int, has_time: Callable[[], bool]
-) -> Iterator[LimitError]:
-    """Yield the errors at up to `points` random points, as long as `has_time` says so."""
+) -> Iterator[tuple[Place, float]]:
+    """
+    Yield points on the limit by the lookup, and how far off it is, as long as `has_time` says so.
+
+    Up to `points` random ones. The error is the logarithm of its speed by the lookup over that by
+    the solver [-], NaN where the solver has no solution.
+
+    """
     surface, drawn = Surface(data), random.Random(seed)
     for _ in range(points):
         if not has_time():
@@ -60,13 +53,7 @@ def limit_errors(
         else:
             return
         place = speed, load, temperature
-        solved = solve_point(data.header, *place).rcs
-        yield LimitError(
-            speed=speed,
-            load=load,
-            temperature=temperature,
-            error=limit_error(surface, place, solved),
-        )
+        yield place, limit_error(surface, place, solve_point(data.header, *place).rcs)
 
 
 def limit_speed(surface: Surface, load: float, temperature: float) -> float | None:
@@ -92,7 +79,7 @@ def limit_speed(surface: Surface, load: float, temperature: float) -> float | No
     return math.exp(root) if inside and above(root - STEP) > above(root + STEP) else None
 
 
-def limit_error(surface: Surface, place: tuple[float, float, float], rcs: float) -> float:
+def limit_error(surface: Surface, place: Place, rcs: float) -> float:
     """Return the error [-] at a place on the limit where the solver finds `rcs` [-]."""
     speed, load, temperature = place
     slow, fast = (

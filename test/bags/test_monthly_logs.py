@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.screw.closed_form import solve
+from surrogate.screw.opened import Contacts
 from surrogate.units import RPM, ZERO_CELSIUS
 
 LAST = monthly_logs.months('preload')[-1]
@@ -38,7 +39,9 @@ def test_the_torque_is_that_of_the_closed_form_and_of_the_wiper(motion, rpm):
     screw = dataclasses.replace(screw, preload=0.4 * screw.preload)
     torque = monthly_logs.torque_of(LAST, motion)[places]
     speed, load, oil = abs(rpm) * RPM, motion.load[places], motion.oil[places]
-    solved = solve(screw, load_lubricant('iso_vg_68'), speed, load, oil + ZERO_CELSIUS)
+    solved = solve(
+        Contacts.of(screw), load_lubricant('iso_vg_68'), speed, load, oil + ZERO_CELSIUS
+    )
     wiper = 0.04 + 0.02 * math.exp(-speed / 5.0)
     drag = math.copysign(1.0, rpm) * (solved.friction_torque + wiper)
     assert torque == pytest.approx(drag - load * 0.010 / (2 * math.pi), abs=1e-3, rel=0.002)

@@ -13,6 +13,7 @@ from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.cli import add_commands, Parser
 from surrogate.parameters import load_lubricant, load_screw, screw_and_oil
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 from surrogate.surface import FIELDS
 
 REFERENCE = Path(__file__).parents[1] / 'reference'
@@ -66,7 +67,9 @@ def chain_stand_in(inputs):
     """Return what `solve_chain` returns: formulas, of which torque and films are corrected."""
     screw, lubricant = screw_and_oil(inputs)
     load, heat = inputs['load'], inputs['temperature']
-    found = closed_form.solve(screw, lubricant, np.array(inputs['speeds']), load, heat)
+    found = closed_form.solve(
+        Contacts.of(screw), lubricant, np.array(inputs['speeds']), load, heat
+    )
     return {
         sense: [
             stand_in_point(found, place, torque_of_stand_in(speed, sign * load, heat))

@@ -10,11 +10,13 @@ from surrogate.builder.full.tier import solve_full
 from surrogate.on_demand import Cancelled, solve, solve_point
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import ScrewSettings, solve_screw
+from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import with_raceway
 from surrogate.surface import FIELDS
 from surrogate.worker import cancelled, listener, plain_result, run_task
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+OPENED = Contacts.of(SCREW)
 HEADER = {'tier': 'full', 'inputs': {'screw': asdict(SCREW), 'lubricant': asdict(OIL)}}
 POINT = {'speed': 6.0, 'opposing_load': 500.0, 'temperature': 313.15}
 
@@ -43,7 +45,7 @@ def test_it_is_solved_as_the_surface_was(load):
 def test_a_surface_of_formulas_is_solved_as_its_screw_is():
     found = solve_point(request(HEADER | {'tier': 'closed_form'}))
     point = OperatingPoint(speed=6.0, load=500.0, temperature=313.15)
-    alone = solve_screw(SCREW, OIL, point)
+    alone = solve_screw(OPENED, OIL, point)
     expected = {name: getattr(alone, name) for name in FIELDS}
     assert {name: getattr(found, name) for name in FIELDS} == expected
     assert found.worst_contact == alone.worst_contact
@@ -80,7 +82,7 @@ def test_it_can_be_taken_back_at_every_step(after):
 
 def test_a_solve_that_does_not_converge_is_a_status(monkeypatch):
     point = OperatingPoint(speed=6.0, load=500.0, temperature=313.15)
-    alone = solve_screw(SCREW, OIL, point, settings=ScrewSettings(kinematics='smooth'))
+    alone = solve_screw(OPENED, OIL, point, settings=ScrewSettings(kinematics='smooth'))
     stalled = replace(alone, converged=False, status='Stalled.')
     monkeypatch.setattr('surrogate.on_demand.solve_screw', lambda *given, **how: stalled)
     found = solve_point(request())

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.builder.closed_form import check_ranges, check_rough, solve_grid, surface_header
 from surrogate.builder.full.chain import point_inputs, solved_chain
-from surrogate.builder.full.held_out import cell_errors, held_out_points, HeldOut, judged
+from surrogate.builder.full.held_out import cell_errors, held_out_points, judged
 from surrogate.builder.full.nodes import Nodes, surface_nodes
 from surrogate.builder.full.ratios import ratios_at, Run, solve_ratios, solved_grid, with_floor
 from surrogate.builder.full.settings import FullSettings
@@ -39,13 +39,24 @@ def build_full(
     """
     check_rough(screw)
     check_ranges(settings, lubricant)
-    nodes = surface_nodes(screw, lubricant, settings)
+    opened = Contacts.of(screw)
+    nodes = surface_nodes(opened, lubricant, settings)
     with ThreadPoolExecutor(max_workers=1) as beside:
         # While workers solve; a raceway may not bear the lowest pressure of its range.
         found = beside.submit(surface_bands, screw, lubricant)
-        data = _surface(screw, lubricant, settings, nodes, run)
+        data = _surface(opened, lubricant, settings, nodes, run)
         bands = found.result()
-    held_out = _held_out(data, screw, lubricant, settings, run)
+    points = held_out_points(Surface(data), screw, settings)
+    chains = {
+        f'held out {place}': point_inputs(screw, lubricant, load, heat, speed)
+        for place, (speed, load, heat) in enumerate(points)
+    }
+    results = run(chains)
+    pairs = zip(points, results.values(), strict=True)
+    solved = ((point, solved_chain(one)[0][0]) for point, one in pairs if one)
+    surface = Surface(data)
+    compared = (judged(data, surface, screw, point, found) for point, found in solved)
+    held_out = [one for one in compared if one is not None]
     errors = cell_errors(data, held_out, screw, settings)
     reached = max((one.miss for one in held_out), default=None)
     header = {**data.header, **bands, 'reached': reached}
@@ -53,15 +64,16 @@ def build_full(
 
 
 def _surface(
-    screw: Screw, lubricant: Lubricant, settings: FullSettings, nodes: Nodes, run: Run
+    opened: Contacts, lubricant: Lubricant, settings: FullSettings, nodes: Nodes, run: Run
 ) -> SurfaceData:
     """Return the surface of formulas times the ratios of solved points, errors unknown."""
+    screw = opened.sheet
     grid = solved_grid(screw, lubricant, settings)
-    logs = solve_ratios(screw, lubricant, grid, run)
+    logs = solve_ratios(opened, lubricant, grid, run)
     ratios, failed = ratios_at(logs, grid, nodes, lubricant)
     axes = nodes.s, nodes.load, nodes.temperature
-    found = solve_grid(screw, lubricant, *axes, nodes.log_onset)
-    deviation = _rcs_deviation(screw, lubricant, nodes)
+    found = solve_grid(opened, lubricant, *axes, nodes.log_onset)
+    deviation = _rcs_deviation(opened, lubricant, nodes)
     formulas = with_floor({name: found[name] for name in FIELDS}, screw, lubricant)
     solved = {name: values * ratios.get(name, 1.0) for name, values in formulas.items()}
     # Between two solved points a ratio may take a film that lies on the floor below it.
@@ -85,28 +97,11 @@ def _surface(
     )
 
 
-def _rcs_deviation(screw: Screw, lubricant: Lubricant, nodes: Nodes) -> Array:
+def _rcs_deviation(opened: Contacts, lubricant: Lubricant, nodes: Nodes) -> Array:
     """Return the change of RCS [-] from half of the onset's deviation slower to as much faster."""
-    half = 0.5 * Contacts.of(screw).law.deviation
+    half = 0.5 * opened.law.deviation
     axes = nodes.load, nodes.temperature, nodes.log_onset
     slower, faster = (
-        solve_grid(screw, lubricant, nodes.s + apart, *axes)['rcs'] for apart in (-half, half)
+        solve_grid(opened, lubricant, nodes.s + apart, *axes)['rcs'] for apart in (-half, half)
     )
     return np.asarray(slower - faster)
-
-
-def _held_out(
-    data: SurfaceData, screw: Screw, lubricant: Lubricant, settings: FullSettings, run: Run
-) -> list[HeldOut]:
-    """Return points that are no nodes, solved and compared with the lookup."""
-    points = held_out_points(Surface(data), screw, settings)
-    chains = {
-        f'held out {place}': point_inputs(screw, lubricant, load, heat, speed)
-        for place, (speed, load, heat) in enumerate(points)
-    }
-    results = run(chains)
-    pairs = zip(points, results.values(), strict=True)
-    solved = ((point, solved_chain(one).opposing[0]) for point, one in pairs if one)
-    surface = Surface(data)
-    compared = (judged(data, surface, screw, point, found) for point, found in solved)
-    return [one for one in compared if one is not None]

@@ -10,13 +10,15 @@ Its grids are coarse: beside those of a single point the friction torque is 0.1 
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, replace
 from typing import Any
 
 from surrogate.asperities.law import VERSION
 from surrogate.ehl import Settings
 from surrogate.parameters import Lubricant, OperatingPoint, Screw, screw_and_oil
 from surrogate.screw.contacts import ScrewSettings
+from surrogate.screw.opened import Contacts
+from surrogate.screw.point import kept_point
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
 from surrogate.surface import SolvedPoint
 
@@ -27,12 +29,10 @@ COARSE = Settings(nx=129)
 """Contacts of a chain: half of the nodes along the track, half of the time and less."""
 
 
-@dataclass(frozen=True, slots=True)
-class SolvedChain:
-    """Points of a chain in the order of its speeds: load against the motion, and with it."""
-
-    opposing: tuple[SolvedPoint, ...]
-    assisting: tuple[SolvedPoint, ...]
+SENSES = ('opposing', 'assisting')
+"""Load against the motion, and with it."""
+SolvedChain = tuple[tuple[SolvedPoint, ...], ...]
+"""Points of a chain in the order of its speeds, by the `SENSES` of the load."""
 
 
 def chain_inputs(
@@ -64,38 +64,35 @@ def solve_chain(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """
     pairs = list(_points(inputs))
     return {
-        sense: [asdict(solved_point(pair[place])) for pair in pairs]
-        for place, sense in enumerate(('opposing', 'assisting'))
+        sense: [asdict(kept_point(pair[place])) for pair in pairs]
+        for place, sense in enumerate(SENSES)
     }
 
 
 def solved_chain(result: Mapping[str, Any]) -> SolvedChain:
     """Return what `solve_chain` returned, typed; the only reader of its JSON."""
-    opposing, assisting = (
-        tuple(SolvedPoint(**point) for point in result[sense])
-        for sense in ('opposing', 'assisting')
-    )
-    return SolvedChain(opposing, assisting)
+    return tuple(tuple(SolvedPoint(**point) for point in result[sense]) for sense in SENSES)
 
 
 def _points(inputs: Mapping[str, Any]) -> Iterator[tuple[ScrewSolution, ScrewSolution]]:
     """Yield both solutions of each speed; they share their contacts and differ by the balance."""
     screw, lubricant = screw_and_oil(inputs)
+    opened = Contacts.of(screw)
     single = inputs.get('single', False)
     settings = ScrewSettings() if single else ScrewSettings(smooth=COARSE)
     last: ScrewSolution | None = None
     for speed in inputs['speeds']:
         point = OperatingPoint(speed=speed, load=inputs['load'], temperature=inputs['temperature'])
-        opposing = solve_screw(screw, lubricant, point, settings=settings, start=last)
+        opposing = solve_screw(opened, lubricant, point, settings=settings, start=last)
         last = opposing if opposing.converged else last
         assisting = opposing
         if point.load and not single:
-            assisting = _turned(screw, lubricant, settings, point, opposing)
+            assisting = _turned(opened, lubricant, settings, point, opposing)
         yield opposing, assisting
 
 
 def _turned(
-    screw: Screw,
+    opened: Contacts,
     lubricant: Lubricant,
     settings: ScrewSettings,
     point: OperatingPoint,
@@ -107,13 +104,7 @@ def _turned(
     against = replace(point, load=-point.load)
     # Balls that float on one side may hold on the other: an idle nut is solved again.
     if all(found.normal_forces) and found.load_change <= settings.coupling_tolerance:
-        balanced = rebalance_screw(screw, lubricant, against, found, settings=settings)
+        balanced = rebalance_screw(opened, lubricant, against, found, settings=settings)
         if balanced.load_change <= settings.coupling_tolerance:
             return balanced
-    return solve_screw(screw, lubricant, against, settings=settings, start=found)
-
-
-def solved_point(found: ScrewSolution) -> SolvedPoint:
-    """Return what a surface keeps of a solution."""
-    kept = {spec.name: getattr(found, spec.name) for spec in fields(SolvedPoint)}
-    return SolvedPoint(**kept | {'converged': found.converged and bool(found.loaded_contacts)})
+    return solve_screw(opened, lubricant, against, settings=settings, start=found)

@@ -113,7 +113,13 @@ def _point(
 ) -> HeldOutPlace | None:
     """Return a point of a stratum; cold or hot oil may have none, then another is tried."""
     for _ in range(TRIES):
-        load = _signed(drawn, loads, settings.load_range)
+        # A load of either sign, within a band of its size and the range.
+        pieces = [
+            (max(low, settings.load_range[0]), min(high, settings.load_range[1]))
+            for low, high in (loads, (-loads[1], -loads[0]))
+        ]
+        inside = [piece for piece in pieces if piece[0] < piece[1]]
+        load = float(drawn.uniform(*inside[int(drawn.integers(len(inside)))]))
         heat = float(drawn.uniform(*settings.temperature_range))
         onset = math.log(surface.onset_speed(load, heat))
         low, high = (math.log(speed) - onset for speed in settings.speed_range)
@@ -121,16 +127,6 @@ def _point(
         if low < high:
             return math.exp(float(drawn.uniform(low, high)) + onset), load, heat
     return None
-
-
-def _signed(drawn: np.random.Generator, band: Ends, load_range: Ends) -> float:
-    """Return a load [N] of either sign within a band of |load| and the range."""
-    pieces = [
-        (max(low, load_range[0]), min(high, load_range[1]))
-        for low, high in (band, (-band[1], -band[0]))
-    ]
-    inside = [piece for piece in pieces if piece[0] < piece[1]]
-    return float(drawn.uniform(*inside[int(drawn.integers(len(inside)))]))
 
 
 def _cell(data: SurfaceData, place: Sequence[float]) -> tuple[int, int, int]:

@@ -18,6 +18,7 @@ from surrogate.builder.closed_form import speed_coordinates, temperature_nodes
 from surrogate.builder.full.settings import FullSettings
 from surrogate.formulas.load_sharing import idle_load
 from surrogate.parameters import Lubricant, Screw
+from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_speeds
 
 Array = NDArray[np.float64]
@@ -48,13 +49,13 @@ class Nodes:
         return np.asarray(self.s[:, None, None] + self.log_onset)
 
 
-def surface_nodes(screw: Screw, lubricant: Lubricant, settings: FullSettings) -> Nodes:
+def surface_nodes(opened: Contacts, lubricant: Lubricant, settings: FullSettings) -> Nodes:
     """Return the nodes of a surface of some settings."""
-    load, breaks = signed_loads(screw, settings)
+    load, breaks = signed_loads(opened.sheet, settings)
     temperature = temperature_nodes(
         lubricant, settings.temperature_range, settings.temperature_nodes
     )
-    log_onset = np.log(onset_speeds(screw, lubricant, load, temperature))
+    log_onset = np.log(onset_speeds(opened, lubricant, load, temperature))
     return Nodes(
         s=speed_coordinates(settings, log_onset),
         load=load,
@@ -67,10 +68,22 @@ def surface_nodes(screw: Screw, lubricant: Lubricant, settings: FullSettings) ->
 def signed_loads(screw: Screw, settings: FullSettings) -> tuple[Array, list[float]]:
     """Return the load nodes [N] of either sign within the range, and the breaks among them."""
     low, high = settings.load_range
-    sizes = _magnitudes(screw, settings)
+    (_, most), beside = settings.load_sizes, beside_idle(screw)
+    below, above = beside
+    if above <= 0:
+        # Without preload there is no contact at zero load: nodes crowd towards it.
+        cells = settings.load_cells + settings.unloaded_cells
+        sizes = np.union1d(0.0, np.geomspace(LIGHTEST * most, most, cells))
+    elif most <= above:
+        sizes = np.linspace(0.0, most, settings.load_cells + 1)
+    else:
+        shared = np.linspace(0.0, below, settings.load_cells + 1)
+        halvings = 0.5 ** np.arange(1, settings.idle_halvings + 1)
+        halved = below - (shared[-1] - shared[-2]) * halvings
+        alone = np.linspace(above, most, settings.unloaded_cells + 1)
+        sizes = np.concatenate([np.union1d(shared, halved), alone])
     nodes = np.union1d(-sizes, sizes) + 0.0
     nodes = np.union1d(nodes[(nodes >= low) & (nodes <= high)], [low, high])
-    beside = beside_idle(screw)
     breaks = [
         float(load)
         for load in nodes
@@ -83,18 +96,3 @@ def beside_idle(screw: Screw) -> tuple[float, float]:
     """Return the loads [N] just below and just above the idle load."""
     idle = idle_load(screw)
     return (1 - BESIDE) * idle, (1 + BESIDE) * idle
-
-
-def _magnitudes(screw: Screw, settings: FullSettings) -> Array:
-    """Return the magnitudes of the loads [N]: below the idle load, and above it."""
-    (_, most), (below, above) = settings.load_sizes, beside_idle(screw)
-    if above <= 0:
-        # Without preload there is no contact at zero load: nodes crowd towards it.
-        cells = settings.load_cells + settings.unloaded_cells
-        return np.union1d(0.0, np.geomspace(LIGHTEST * most, most, cells))
-    if most <= above:
-        return np.linspace(0.0, most, settings.load_cells + 1)
-    shared = np.linspace(0.0, below, settings.load_cells + 1)
-    halved = below - (shared[-1] - shared[-2]) * 0.5 ** np.arange(1, settings.idle_halvings + 1)
-    alone = np.linspace(above, most, settings.unloaded_cells + 1)
-    return np.concatenate([np.union1d(shared, halved), alone])

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import distance_transform_edt
 from surrogate.builder.closed_form import temperature_nodes
-from surrogate.builder.full.chain import chain_inputs, solved_chain, SolvedChain
+from surrogate.builder.full.chain import chain_inputs, SENSES, solved_chain
 from surrogate.builder.full.nodes import beside_idle, LIGHTEST, Nodes
 from surrogate.builder.full.settings import FullSettings
 from surrogate.files import InputError
@@ -28,6 +28,7 @@ from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 from surrogate.surface import FIELDS
 from surrogate.surface.fields import SHARES
 
@@ -38,8 +39,6 @@ SPEEDS = (0.0, 0.25, 0.42, 0.58, 0.71, 0.83, 0.92, 0.96, 1.0)
 """Solved speeds over the range, in logarithms [-]: they crowd where the balls feel inertia."""
 LOADS = (0.0, 0.375, 0.75, 0.9, 1.0)
 """Solved loads between none and the idle load [-]."""
-SENSES = ('opposing', 'assisting')
-"""Load against the motion, and with it."""
 FILMS = 'central_film', 'minimum_film'
 NEXT_TO_A_FAILURE = 1e-9
 """Interpolated share of failed points above which a node has one beside it [-]."""
@@ -98,7 +97,7 @@ def _pieces(screw: Screw, settings: FullSettings) -> Iterator[Array]:
 
 
 def solve_ratios(
-    screw: Screw, lubricant: Lubricant, grid: SolvedGrid, run: Run
+    opened: Contacts, lubricant: Lubricant, grid: SolvedGrid, run: Run
 ) -> dict[str, Array]:
     """
     Return the logarithms of the ratios by field, [sense, speed, load, temperature].
@@ -107,17 +106,26 @@ def solve_ratios(
 
     """
     found = closed_form.solve(
-        screw, lubricant, grid.speeds[:, None, None], grid.loads[:, None], grid.temperature
+        opened, lubricant, grid.speeds[:, None, None], grid.loads[:, None], grid.temperature
     )
-    formulas = with_floor({name: getattr(found, name) for name in CORRECTED}, screw, lubricant)
+    formulas = with_floor(
+        {name: getattr(found, name) for name in CORRECTED}, opened.sheet, lubricant
+    )
     shape = (len(SENSES), len(grid.speeds), len(grid.loads), len(grid.temperature))
     logs = {name: np.full(shape, np.nan) for name in CORRECTED}
-    for (j, k), chain in _solved_chains(screw, lubricant, grid, run):
-        for sense, points in enumerate((chain.opposing, chain.assisting)):
+    speeds, tasks, places = grid.speeds[::-1].tolist(), {}, {}
+    for j, load in enumerate(grid.loads.tolist()):
+        for k, heat in enumerate(grid.temperature.tolist()):
+            name = f'{load!r} N, temperature {k}'
+            tasks[name] = chain_inputs(opened.sheet, lubricant, load, heat, speeds)
+            places[name] = j, k
+    for name, result in run(tasks).items():
+        j, k = places[name]
+        for sense, points in enumerate(solved_chain(result) if result else ()):
             for i, point in enumerate(reversed(points)):
-                for name in CORRECTED if point.converged else ():
-                    ratio = getattr(point, name) / formulas[name][i, j, k]
-                    logs[name][sense, i, j, k] = math.log(ratio)
+                for field in CORRECTED if point.converged else ():
+                    ratio = getattr(point, field) / formulas[field][i, j, k]
+                    logs[field][sense, i, j, k] = math.log(ratio)
     if np.isnan(logs['friction_torque']).all():
         raise InputError('screw: no point of the surface converged, see the reasons above')
     return logs
@@ -132,21 +140,6 @@ def with_floor(
     return {name: np.maximum(values, floors.get(name, -np.inf)) for name, values in fields.items()}
 
 
-def _solved_chains(
-    screw: Screw, lubricant: Lubricant, grid: SolvedGrid, run: Run
-) -> Iterator[tuple[tuple[int, int], SolvedChain]]:
-    """Yield solved chains with the places of their load and temperature on the grid."""
-    speeds, tasks, places = grid.speeds[::-1].tolist(), {}, {}
-    for j, load in enumerate(grid.loads.tolist()):
-        for k, heat in enumerate(grid.temperature.tolist()):
-            name = f'{load!r} N, temperature {k}'
-            tasks[name] = chain_inputs(screw, lubricant, load, heat, speeds)
-            places[name] = j, k
-    for name, result in run(tasks).items():
-        if result:
-            yield places[name], solved_chain(result)
-
-
 def ratios_at(
     logs: Mapping[str, Array], grid: SolvedGrid, nodes: Nodes, lubricant: Lubricant
 ) -> tuple[dict[str, Array], NDArray[np.bool_]]:
@@ -159,9 +152,13 @@ def ratios_at(
     failed = np.isnan(logs['friction_torque'])
     nearest = distance_transform_edt(failed, return_distances=False, return_indices=True)
     stacked = np.stack([*(values[tuple(nearest)] for values in logs.values()), failed])
-    found = _along_speed(
-        _along_load(_along_temperature(stacked, grid, nodes, lubricant), grid, nodes), grid, nodes
-    )
+    loaded = _along_load(_along_temperature(stacked, grid, nodes, lubricant), grid, nodes)
+    known = np.log(grid.speeds)
+    wanted = np.clip(nodes.log_speed, known[0], known[-1])
+    found = np.empty((len(loaded), *wanted.shape))
+    for j, k in np.ndindex(nodes.log_onset.shape):
+        along = PchipInterpolator(known, loaded[:, :, j, k], axis=1)
+        found[:, :, j, k] = along(wanted[:, j, k])
     ratios = {name: np.exp(values) for name, values in zip(logs, found)}
     return ratios, found[-1] > NEXT_TO_A_FAILURE
 
@@ -191,15 +188,4 @@ def _along_load(values: Array, grid: SolvedGrid, nodes: Nodes) -> Array:
             here = (owner == place) & signed
             along = PchipInterpolator(piece, values[:, sense, :, first:last], axis=2)
             found[:, :, here] = along(np.clip(sizes[here], piece[0], piece[-1]))
-    return found
-
-
-def _along_speed(values: Array, grid: SolvedGrid, nodes: Nodes) -> Array:
-    """Return [field, speed, load, temperature] at the speeds of the nodes."""
-    known = np.log(grid.speeds)
-    wanted = np.clip(nodes.log_speed, known[0], known[-1])
-    found = np.empty((len(values), *wanted.shape))
-    for j, k in np.ndindex(nodes.log_onset.shape):
-        along = PchipInterpolator(known, values[:, :, j, k], axis=1)
-        found[:, :, j, k] = along(wanted[:, j, k])
     return found

@@ -5,14 +5,13 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-import platform
 import sys
 import time
 from typing import Any
 
 import numba
 import numpy as np
-import scipy
+from surrogate.builder.closed_form import provenance
 from surrogate.builder.full.build import build_full
 from surrogate.builder.full.chain import point_inputs, solve_chain, solved_chain, WORK
 from surrogate.builder.full.march import march_task, march_tasks
@@ -97,7 +96,14 @@ def build_full_surface(
         data = replace(data, header={**data.header, 'march': found})
     for sentence in shortfalls(data, settings):
         print(sentence, file=sys.stderr)
-    return replace(data, provenance=_provenance(run, time.perf_counter() - began))
+    work = {
+        'worker_seconds': round(run.seconds, 3),
+        'tasks': run.tasks,
+        'kept_tasks': run.kept,
+        'failed_tasks': len(run.failures),
+        'numba': numba.__version__,
+    }
+    return replace(data, provenance=provenance(time.perf_counter() - began) | work)
 
 
 def shortfalls(data: SurfaceData, settings: FullSettings) -> Iterator[str]:
@@ -133,20 +139,4 @@ def solve_full(
     """Solve a point [rad/s, N, K] of the screw and oil of a surface."""
     screw, lubricant = screw_and_oil(header['inputs'])
     given = point_inputs(screw, lubricant, load, temperature, speed)
-    return solved_chain(solve_chain(given)).opposing[0]
-
-
-def _provenance(run: TaskRun, seconds: float) -> dict[str, Any]:
-    return {
-        'built': time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime()),
-        'build_seconds': round(seconds, 3),
-        'worker_seconds': round(run.seconds, 3),
-        'tasks': run.tasks,
-        'kept_tasks': run.kept,
-        'failed_tasks': len(run.failures),
-        'machine': platform.machine(),
-        'python': platform.python_version(),
-        'numpy': np.__version__,
-        'scipy': scipy.__version__,
-        'numba': numba.__version__,
-    }
+    return solved_chain(solve_chain(given))[0][0]

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A march under way: step after step at one place of the raceway after the other."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 import math
 import time
@@ -15,7 +14,7 @@ from surrogate.ehl.moving.feed import Feed
 from surrogate.ehl.moving.interface import MarchSettings, MarchStatus, MovingSolution
 from surrogate.ehl.moving.line import StripContact
 from surrogate.ehl.moving.step import Step, step_limits, Stepper
-from surrogate.ehl.moving.sums import average, Gauge, Measure
+from surrogate.ehl.moving.sums import averages, Gauge, Measure
 from surrogate.ehl.watch import at, tell
 from surrogate.formulas.geometry import Contact
 
@@ -86,33 +85,28 @@ class March:
         """March so many transits at each place, until the march ends."""
         self.planned = self.settings.places * len(self._moves(transits))
         self._tell(0, math.nan)
-        for place in range(self.settings.places if self.path else 0):
-            self.places.append([])
-            for step in self._track(place, transits):
-                self.places[-1].append(self.gauge.measure(step))
-            if self.ended is not None:
-                return
-
-    def _track(self, place: int, transits: float) -> Iterator[Step]:
-        """Yield the steps at a place, less the run-in."""
-        stepper, settings, path = self._stepper(), self.settings, self.path
-        assert path is not None
+        settings, path = self.settings, self.path
+        if path is None:
+            return
         run_in, length = RUN_IN / self.grid.dx, 2 * transits / self.grid.dx
-        feed = Feed(
-            case=self.case,
-            grid=self.grid,
-            place=self._place(place, RUN_IN + 2 * transits),
-            ramp=settings.moving,
-            side_slip=settings.side_slip,
-        )
-        for moved in self._moves(transits):
-            stepper.follow(*path.at((moved - run_in) / length))
-            step = stepper.step(feed.at(moved if settings.moving else 0))
-            self._count(step)
-            if self.ended is not None:
-                return
-            if moved > run_in:
-                yield step
+        for place in range(settings.places):
+            self.places.append([])
+            stepper = self._stepper()
+            feed = Feed(
+                case=self.case,
+                grid=self.grid,
+                place=self._place(place, RUN_IN + 2 * transits),
+                ramp=settings.moving,
+                side_slip=settings.side_slip,
+            )
+            for moved in self._moves(transits):
+                stepper.follow(*path.at((moved - run_in) / length))
+                step = stepper.step(feed.at(moved if settings.moving else 0))
+                self._count(step)
+                if self.ended is not None:
+                    return
+                if moved > run_in:
+                    self.places[-1].append(self.gauge.measure(step))
 
     def _moves(self, transits: float) -> range:
         """Return by how many nodes the raceway has moved on at each step at a place [-]."""
@@ -196,21 +190,17 @@ class March:
             krylov_iterations=self.krylov,
             wall_time=wall_time,
         )
-        return self._with_averages(bare) if any(self.places) else bare
-
-    def _with_averages(self, bare: MovingSolution) -> MovingSolution:
+        if not any(self.places):
+            return bare
         step_length = self.settings.stride * self.grid.dx
-        means, smooth = average(self.places, step_length), self.smooth_measures()[0]
+        smooth = self.smooth_measures()[0]
         assert self.last is not None
-        state, case = self.last.outcome.state, self.case
+        state = self.last.outcome.state
         return replace(
             bare,
-            **means.numbers,  # type: ignore[arg-type]
-            thin_shares=means.thin_shares,
+            **averages(self.places, step_length),
             x=self.grid.x,
-            rcs_along=means.rcs_along,
             centre_films=np.array([step.centre_film for steps in self.places for step in steps]),
-            memory=means.memory,
             transits=sum(map(len, self.places)) * step_length / 2,
             smooth_rolling_loss=smooth.rolling_loss,
             central_film=smooth.centre_film,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -130,16 +131,6 @@ class Gauge:
         return self.case.hertz_pressure * self.case.height_unit * self.case.semi_axis_x
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Averages:
-    """Averages over places, each an equal share of the steps, and how long RCS remembers."""
-
-    numbers: dict[str, Mean]
-    thin_shares: tuple[Mean, ...]
-    rcs_along: Array
-    memory: float
-
-
 NUMBERS = (
     'rcs',
     'asperity_share',
@@ -155,22 +146,26 @@ NUMBERS = (
 """Numbers of a `Measure` that are averaged into a `Mean` of the same name."""
 
 
-def average(places: Sequence[Sequence[Measure]], step_length: float) -> Averages:
-    """Average the steps, `step_length` [semi-axes] apart, of all places that have any."""
+def averages(places: Sequence[Sequence[Measure]], step_length: float) -> dict[str, Any]:
+    """
+    Return averages of a `MovingSolution` over the steps of all places that have any.
+
+    Steps are `step_length` [semi-axes] apart; each place has an equal share.
+
+    """
     places = [steps for steps in places if steps]
-    numbers = {
+    numbers: dict[str, Any] = {
         name: _mean([np.mean([getattr(step, name) for step in steps]) for steps in places])
         for name in NUMBERS
     }
     thin = np.array([np.mean([step.thin_shares for step in steps], axis=0) for steps in places])
     along = [np.mean([step.rcs_along for step in steps], axis=0) for steps in places]
     tracks = [np.array([step.rcs for step in steps]) for steps in places]
-    return Averages(
-        numbers=numbers,
-        thin_shares=tuple(_mean(column) for column in thin.T),
-        rcs_along=np.mean(along, axis=0),
-        memory=_memory(tracks) * step_length,
-    )
+    return numbers | {
+        'thin_shares': tuple(_mean(column) for column in thin.T),
+        'rcs_along': np.mean(along, axis=0),
+        'memory': _memory(tracks) * step_length,
+    }
 
 
 def _mean(values: Sequence[float] | Array) -> Mean:

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 from surrogate.units import RPM
 
 SPEEDS = 1.0, 3.0, 8.0, 14.0, 25.0, 50.0, 80.0
@@ -102,7 +103,7 @@ def closed_form_at():
 
         def friction(points):
             places = places_of(points).T
-            return closed_form.solve(screw, starved, *places).friction_torque
+            return closed_form.solve(Contacts.of(screw), starved, *places).friction_torque
 
         return friction
 

@@ -22,6 +22,7 @@ from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState, Temperature
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 
 SECOND = 10**9
 RATE = 50  # samples of JointState per second
@@ -33,6 +34,7 @@ CHANNELS = [
     torque_channel('joint_states', 'effort[x_axis]', 1.0),
 ]
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+OPENED = Contacts.of(SCREW)
 
 
 def speeds(*plateaus):
@@ -169,7 +171,7 @@ def test_a_bag_without_what_is_asked_for_or_without_its_fields_is_refused(
 def test_the_command_finds_the_parasitic_torque_in_a_bag(tmp_path, capsys):
     """From messages to the datasheet: known torque, noise, both directions, a restless start."""
     speed = speeds(*(sign * rpm * math.pi / 30 for sign in (1, -1) for rpm in PLATEAUS))
-    contacts = closed_form.solve(SCREW, OIL, np.abs(speed), 0.0, 313.15).friction_torque
+    contacts = closed_form.solve(OPENED, OIL, np.abs(speed), 0.0, 313.15).friction_torque
     drag = np.sign(speed) * (contacts + 0.12) + 4e-4 * speed + 0.03
     noise = 0.01 * np.random.default_rng(6).standard_normal(len(speed))
     inertia = 2e-3 * np.gradient(speed) * RATE
@@ -189,5 +191,5 @@ def test_the_command_finds_the_parasitic_torque_in_a_bag(tmp_path, capsys):
     words = ['point', '--tier', 'closed_form', '--speed-rpm', '600', '--load-N', '0', '--json']
     assert cli.main([*words, '--screw', str(tmp_path / 'found.yaml')]) == 0
     found = json.loads(capsys.readouterr().out)['friction_torque_Nm']
-    bare = float(closed_form.solve(SCREW, OIL, point.speed, 0.0, 313.15).friction_torque)
+    bare = float(closed_form.solve(OPENED, OIL, point.speed, 0.0, 313.15).friction_torque)
     assert found == pytest.approx(bare + 0.12 + 4e-4 * point.speed, rel=0.01)

@@ -17,6 +17,7 @@ from surrogate.builder.closed_form import (
 from surrogate.formulas.lubricant import lubricant_state
 from surrogate.formulas.sliding import largest_sliding
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_speeds
 from surrogate.surface import FIELDS, Surface, Validity
 
@@ -27,7 +28,7 @@ def test_smooth_surfaces_have_no_map(screw, oil, refused):
     """Without any roughness the film ratio, a field of the map, has no end."""
     smooth = replace(screw, roughness=replace(screw.roughness, rms=0.0))
     refused('screw_nominal_rms_um', build_closed_form, smooth, oil, default_settings(smooth))
-    found = closed_form.solve(smooth, oil, 10.0, 0.0, 313.15)
+    found = closed_form.solve(Contacts.of(smooth), oil, 10.0, 0.0, 313.15)
     assert (float(found.film_ratio), float(found.rcs)) == (math.inf, 0.0)
 
 
@@ -42,8 +43,8 @@ def test_break_nodes_are_nodes(screw):
 def test_an_onset_is_where_rcs_is_one_percent(screw, oil):
     """In the middle of the loaded contacts; their sides, less pressed, touch a little more."""
     load, kelvin = np.array([0.0, 1500.0, 3500.0]), 330.0
-    speed = onset_speeds(screw, oil, load, np.array([kelvin]))[:, 0]
-    contacts = closed_form.solve(screw, oil, speed, load, kelvin).contacts[:2]
+    speed = onset_speeds(Contacts.of(screw), oil, load, np.array([kelvin]))[:, 0]
+    contacts = closed_form.solve(Contacts.of(screw), oil, speed, load, kelvin).contacts[:2]
     assert np.maximum(*(one.rcs for one in contacts)) == pytest.approx(0.013, rel=0.05)
 
 
@@ -69,7 +70,7 @@ def test_measured_errors_are_those_of_the_lookup(screw, oil):
         for axis, n in ((data.speed_coordinate, i), (data.load, j), (data.temperature, k))
     )
     speed = surface.onset_speed(load, kelvin) * math.exp(s)
-    solved = closed_form.solve(screw, oil, speed, load, kelvin)
+    solved = closed_form.solve(Contacts.of(screw), oil, speed, load, kelvin)
     found = surface.lookup(speed, load, kelvin)
     for name in FIELDS:
         error = abs(getattr(found, name) - float(getattr(solved, name)))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from surrogate.builder.sheets_onset import EFFICIENCY, onset_of_sheets
 from surrogate.formulas.torque import efficiency
+from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point, with_raceway
 from surrogate.surface import onset_of_surface, Surface
 from surrogate.surface.contact_onset import RMS_POWER
@@ -34,7 +35,9 @@ def test_what_it_advises_makes_contact_begin_as_slow_as_it_must(screw, oil, foun
     assert not found.zone
     assert found.slower > 1.0
     target = found.speed / found.slower
-    assert onset_point(screw, oil, 0.0, found.colder)['speed_rad_s'] == pytest.approx(target)
+    assert onset_point(Contacts.of(screw), oil, 0.0, found.colder)['speed_rad_s'] == pytest.approx(
+        target
+    )
     thicker = replace(
         oil,
         viscosity=found.slower * oil.viscosity,
@@ -42,15 +45,17 @@ def test_what_it_advises_makes_contact_begin_as_slow_as_it_must(screw, oil, foun
         kinematic_viscosity_100=found.slower * oil.kinematic_viscosity_100,
     )
     smoother = with_raceway(screw, rms=screw.roughness.rms / found.slower**RMS_POWER)
-    for sheets in ((screw, thicker), (smoother, oil)):
-        speed = onset_point(*sheets, 0.0, WARM)['speed_rad_s']
+    for sheet, lubricant in ((screw, thicker), (smoother, oil)):
+        speed = onset_point(Contacts.of(sheet), lubricant, 0.0, WARM)['speed_rad_s']
         assert speed == pytest.approx(target, rel=0.1)
 
 
 @pytest.mark.parametrize('factor', [0.5, 2.0])
 def test_the_power_of_rq_is_near_that_of_the_law(screw, oil, factor):
     rougher = with_raceway(screw, rms=factor * screw.roughness.rms)
-    usual, speed = (onset_point(one, oil, 0.0, WARM)['speed_rad_s'] for one in (screw, rougher))
+    usual, speed = (
+        onset_point(Contacts.of(one), oil, 0.0, WARM)['speed_rad_s'] for one in (screw, rougher)
+    )
     assert speed == pytest.approx(usual * factor ** (1 / RMS_POWER), rel=0.2)
 
 

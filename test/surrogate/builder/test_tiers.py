@@ -11,6 +11,7 @@ from surrogate.builder.full import settings as full_settings
 from surrogate.builder.full import tier as full
 from surrogate.parameters import BallRoughness, screw_and_oil
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 from surrogate.surface import FIELDS, shipped_surface, Surface
 
 
@@ -48,7 +49,7 @@ def test_inputs_that_are_not_whole_are_a_sentence(surface_data, change, refused)
 def test_a_point_is_solved_as_the_surface_was(surface_data, screw, oil):
     """All fields of the closed-form tier, as its solver gives them."""
     found = tiers.solve_point(surface_data.header, 62.8, 1000.0, 313.0)
-    direct = closed_form.solve(screw, oil, 62.8, 1000.0, 313.0)
+    direct = closed_form.solve(Contacts.of(screw), oil, 62.8, 1000.0, 313.0)
     assert found.converged
     for name in (*FIELDS, 'worst_contact'):
         assert getattr(found, name) == float(getattr(direct, name))

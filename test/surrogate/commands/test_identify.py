@@ -11,15 +11,17 @@ import numpy as np
 import pytest
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import with_raceway
 
 COMMAND = ('identify',)
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+OPENED = Contacts.of(SCREW)
 RPM = np.array([60, 100, 200, 400, 800, 1600, -60, -200, -800, -1600])
 ROWS = RPM * math.pi / 30
 TORQUE = np.sign(ROWS) * (
-    np.asarray(closed_form.solve(SCREW, OIL, np.abs(ROWS), 0.0, 313.15).friction_torque) + 0.12
+    np.asarray(closed_form.solve(OPENED, OIL, np.abs(ROWS), 0.0, 313.15).friction_torque) + 0.12
 )
 TORQUE = TORQUE + 4e-4 * ROWS + 0.03
 
@@ -79,7 +81,7 @@ def test_the_written_sheet_gives_the_measured_torque(run, capsys, data, tmp_path
     oil = load_lubricant(str(sheet.with_name('found_oil.yaml')))
     kelvin = oil.reference_temperature
     assert kelvin == pytest.approx(308.15)
-    found = closed_form.solve(screw, oil, np.abs(ROWS), 0.0, kelvin).friction_torque
+    found = closed_form.solve(Contacts.of(screw), oil, np.abs(ROWS), 0.0, kelvin).friction_torque
     np.testing.assert_allclose(found, np.sign(ROWS) * (TORQUE - 0.03), rtol=5e-3)
     assert says('parasitic_torque_identified') in screw.source
     assert str(tmp_path) not in sheet.read_text(encoding='utf-8')
@@ -134,7 +136,12 @@ def test_the_onset_makes_a_calibrated_sheet(run, tmp_path, capsys, refused):
     """From a current; the sheet says the day and the band, the picture shows the onset."""
     machine = with_raceway(SCREW, onset_factor=0.5)
     rpm = np.geomspace(4, 1200, 12)
-    drag = closed_form.solve(machine, OIL, rpm * math.pi / 30, 0.0, 313.15).friction_torque + 0.05
+    drag = (
+        closed_form.solve(
+            Contacts.of(machine), OIL, rpm * math.pi / 30, 0.0, 313.15
+        ).friction_torque
+        + 0.05
+    )
     data = tmp_path / 'staircase.csv'
     lines = [f'{speed},{torque / 0.4}' for speed, torque in zip(rpm, drag, strict=True)]
     data.write_text('\n'.join(['speed_rpm,current_A', *lines]), encoding='utf-8')

@@ -7,6 +7,7 @@ import shlex
 
 import pytest
 from surrogate.parameters import DATA, load_lubricant, load_screw
+from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point
 from surrogate.units import RPM
 
@@ -54,7 +55,7 @@ def test_from_the_page_of_a_catalogue_to_the_onset(run, tmp_path, capsys, says, 
     assert run('screw', 'new', *words, *ratings, '--out', path, '--force') == 0
     assert capsys.readouterr() == (f'{path}\n', says('ra_typical'))
     oil = load_lubricant('iso_vg_68')
-    found = onset_point(load_screw(str(path)), oil, 0.0, oil.reference_temperature)
+    found = onset_point(Contacts.of(load_screw(str(path))), oil, 0.0, oil.reference_temperature)
     assert found['speed_rad_s'] / RPM == pytest.approx(expected, rel=0.02)
 
 

@@ -10,6 +10,7 @@ import pytest
 from surrogate.parameters import screw_and_oil
 from surrogate.screw import closed_form
 from surrogate.screw.closed_form_record import formula_warnings
+from surrogate.screw.opened import Contacts
 from surrogate.surface import shipped_surface
 from surrogate.surface.file import read, write
 from surrogate.tasks.store import store_path, TaskStore
@@ -136,7 +137,9 @@ def test_formulas_beyond_what_they_were_fitted_over_are_named_once(run, capsys):
     assert run('info', 'closed_form', '--json') == 0
     told = json.loads(capsys.readouterr().out)['formula_warnings']
     screw, oil = screw_and_oil(DATA.header['inputs'])
-    corner = closed_form.solve(screw, oil, DATA.header['settings']['speed_range'], 3960.0, 353.15)
+    corner = closed_form.solve(
+        Contacts.of(screw), oil, DATA.header['settings']['speed_range'], 3960.0, 353.15
+    )
     names = [text.split()[0] for text in told]
     assert names == [text.split()[0] for text in formula_warnings(corner)]
     assert len(set(names)) == len(names) > 0

@@ -25,6 +25,7 @@ from surrogate.screw.screw_onset import onset_point
 from surrogate.screw.solve import solve_screw
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+OPENED = Contacts.of(SCREW)
 WARM, COLD = 313.15, 283.15
 RPM = math.pi / 30
 
@@ -32,7 +33,7 @@ RPM = math.pi / 30
 @pytest.mark.parametrize('factor', [0.05, 0.5, 1.0])
 def test_the_isothermal_central_film_is_the_stated_share(screw, oil, factor):
     starved, flooded = (
-        closed_form.solve(one, sheet, [1.0, 50.0], 500.0, WARM, inlet_heating=False)
+        closed_form.solve(Contacts.of(one), sheet, [1.0, 50.0], 500.0, WARM, inlet_heating=False)
         for one, sheet in ((screw, replace(oil, film_factor=factor)), (screw, oil))
     )
     np.testing.assert_allclose(starved.central_film, factor * flooded.central_film, rtol=1e-12)
@@ -64,8 +65,8 @@ def test_heated_films_of_the_solver_are_thinner_by_the_factor():
     small = Settings(nx=129, ny=65, error_estimate=False)
     warm = ScrewSettings(smooth=small, kinematics='smooth')
     point = OperatingPoint(speed=1000 * RPM, load=0.0, temperature=WARM)
-    plain = solve_screw(SCREW, OIL, point, settings=replace(warm, inlet_heating=False))
-    heated = solve_screw(SCREW, OIL, point, settings=warm)
+    plain = solve_screw(OPENED, OIL, point, settings=replace(warm, inlet_heating=False))
+    heated = solve_screw(OPENED, OIL, point, settings=warm)
     speed, load = plain.entrainment_speed, plain.normal_forces[0]
     factor = heating_factor(SCREW, OIL, 'screw', load, speed, WARM)
     assert factor < 0.985
@@ -79,14 +80,14 @@ def test_heated_films_of_the_solver_are_thinner_by_the_factor():
 def test_both_tiers_have_one_factor_at_one_entrainment_speed(kelvin, entrained):
     """1 to 3 m/s: films of formulas and the speeds of contacts that are solved fall alike."""
     load, starved = 1000.0, replace(OIL, film_factor=0.7)
-    still = closed_form.solve(SCREW, starved, 1.0, load, kelvin)
+    still = closed_form.solve(OPENED, starved, 1.0, load, kelvin)
     speed = entrained / float(still.entrainment_speed)
     heated, cold = (
-        closed_form.solve(SCREW, starved, speed, load, kelvin, inlet_heating=given)
+        closed_form.solve(OPENED, starved, speed, load, kelvin, inlet_heating=given)
         for given in (True, False)
     )
     point = OperatingPoint(speed=speed, load=load, temperature=kelvin)
-    sides = make_contacts(Contacts.of(SCREW), starved, point, ScrewSettings())
+    sides = make_contacts(OPENED, starved, point, ScrewSettings())
     given = float(starved_speed(starved, entrained))
     for one, other in zip(heated.contacts, cold.contacts, strict=True):
         side = next(side for side in sides if side.side == one.side)
@@ -105,7 +106,7 @@ def test_a_faster_screw_makes_up_for_a_heated_inlet():
         found = float(inlet_speed(SCREW, OIL, side, load, speed, kelvin))
         assert found == pytest.approx(inlet, rel=1e-9)
         assert speed > inlet
-    begun = onset_point(SCREW, OIL, 0.0, WARM)
-    found = closed_form.solve(SCREW, OIL, begun['speed_rad_s'], 0.0, WARM)
+    begun = onset_point(OPENED, OIL, 0.0, WARM)
+    found = closed_form.solve(OPENED, OIL, begun['speed_rad_s'], 0.0, WARM)
     told = begun['entrainment_speed_m_s']
     assert 1 < float(found.entrainment_speed) / told < 1.03

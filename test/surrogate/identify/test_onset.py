@@ -23,6 +23,7 @@ from surrogate.identify.onset import (
 from surrogate.identify.record import identification_record, identified_screw, page
 from surrogate.identify.table import formula_model
 from surrogate.parameters import load_lubricant, load_screw
+from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point
 from surrogate.units import RPM
 
@@ -165,7 +166,7 @@ def test_the_sheet_is_calibrated_and_says_so(slow, found):
     run, contacts = slow
     sheet = identified_screw(SCREW, run, contacts, found, '2026-11-24')
     assert sheet.roughness.calibration.startswith('onset calibrated on 2026-11-24 within 1.3')
-    points = [onset_point(one, OIL, 0.0, WARM) for one in (SCREW, sheet)]
+    points = [onset_point(Contacts.of(one), OIL, 0.0, WARM) for one in (SCREW, sheet)]
     behind_inlet = [one['entrainment_speed_m_s'] for one in points]
     factor = found.value('onset_factor')
     assert behind_inlet[1] == pytest.approx(factor * behind_inlet[0])

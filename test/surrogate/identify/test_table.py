@@ -15,9 +15,11 @@ from surrogate.identify.table import solved_model
 from surrogate.parameters import load_lubricant, load_screw, OperatingPoint
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import ScrewSettings
+from surrogate.screw.opened import Contacts
 from surrogate.screw.solve import solve_screw
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+OPENED = Contacts.of(SCREW)
 WARM = 313.15
 RPM = math.pi / 30
 SMOOTH = ScrewSettings(smooth=Settings(nx=65, ny=65, error_estimate=False), kinematics='smooth')
@@ -47,13 +49,13 @@ def formulas(monkeypatch):
     """Put the closed-form tier in the place of the solver; return the speeds it was asked for."""
     solved = []
 
-    def answer(screw, oil, point, *rest, **options):
-        found = closed_form.solve(screw, oil, point.speed, point.load, point.temperature)
+    def answer(opened, oil, point, *rest, **options):
+        found = closed_form.solve(opened, oil, point.speed, point.load, point.temperature)
         return Stub(float(found.friction_torque), float(found.asperity_share))
 
-    def solve(screw, oil, point, **options):
+    def solve(opened, oil, point, **options):
         solved.append(point.speed)
-        return answer(screw, oil, point)
+        return answer(opened, oil, point)
 
     monkeypatch.setattr('surrogate.identify.table.solve_screw', solve)
     monkeypatch.setattr('surrogate.identify.table.rebalance_screw', answer)
@@ -116,7 +118,7 @@ def test_solved_contacts_and_a_known_answer():
     run = run_at([100, 250, 600, 1500])
     model = solved_model(SCREW, OIL, run, settings=SMOOTH)
     points = [OperatingPoint(speed=speed, load=0.0, temperature=WARM) for speed in run.speed]
-    exact = [solve_screw(SCREW, OIL, one, settings=SMOOTH).friction_torque for one in points]
+    exact = [solve_screw(OPENED, OIL, one, settings=SMOOTH).friction_torque for one in points]
     np.testing.assert_allclose(model.torque(1.0, 0.1, 1.0), exact, rtol=1e-5)
     run = replace(run, torque=np.array(exact) + 0.12 + 4e-4 * run.speed)
     found = identify(SCREW, run, model)

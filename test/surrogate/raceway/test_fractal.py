@@ -14,12 +14,16 @@ from surrogate.files import InputError
 from surrogate.raceway.fractal import fractal_surface, PublishedRoughness, shifted, theoretical_rms
 from surrogate.raceway.fractal_fit import structure_function
 from surrogate.raceway.patch import take_patch, Window
+from surrogate.raceway.scaling import draw_raceway, scale_spectrum
+from surrogate.raceway.spectrum import RoughnessSpectrum
 
 NOMINAL = PublishedRoughness()
 COARSE = replace(NOMINAL, shortest_wavelength=64e-6)
 SHORT = replace(NOMINAL, sample_length=1e-5, shortest_wavelength=2e-5)
 HERTZ = Window(length_x=0.2e-3, length_y=1.6e-3)
 SMALL = Window(length_x=0.1e-3, length_y=0.8e-3)
+RACEWAY = draw_raceway(scale_spectrum(RoughnessSpectrum(rms=1e-7, fractal_dimension=2.5)), 4)
+ACROSS = np.linspace(-4e-4, 4e-4, 33)
 PLACE = st.floats(-2e-3, 2e-3)
 
 
@@ -191,3 +195,24 @@ def test_bad_input_is_one_sentence(act, sentence, says):
         act()
     assert says(sentence) in str(caught.value)
     assert '\n' not in str(caught.value)
+
+
+def test_blocks_are_the_heights_of_the_surface():
+    """Put together they are the whole, also of a patch with its plane and scale."""
+    window = Window(length_x=1e-4, length_y=8e-4)
+    patch = take_patch(fractal_surface(PublishedRoughness(), 1), 'rescaled', window, 1e-7)
+    x = np.linspace(-1e-4, 3e-4, 50)
+    for surface in (RACEWAY, patch):
+        strip = surface.strip(ACROSS)
+        blocks = [strip.rows(part) for part in np.array_split(x, 4)]
+        np.testing.assert_allclose(np.concatenate(blocks), surface.heights(x, ACROSS), atol=1e-20)
+
+
+def test_a_strip_goes_on_without_end():
+    """A metre along the track it is the surface moved there, and as rough as at its start."""
+    x = 1e-6 * np.arange(200)
+    far = RACEWAY.strip(ACROSS).rows(1.0 + x)
+    np.testing.assert_allclose(far, shifted(RACEWAY, 1.0, 0.0).heights(x, ACROSS), atol=1e-14)
+    places = np.arange(0.0, 0.4, 1.3e-3)
+    start, later = (np.std(RACEWAY.strip(ACROSS).rows(where + places)) for where in (0.0, 2.0))
+    assert later == pytest.approx(start, rel=0.1)

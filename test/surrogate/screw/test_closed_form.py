@@ -15,13 +15,14 @@ from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.formulas.sliding import ellipse_nodes
 from surrogate.parameters import OperatingPoint
 from surrogate.screw import closed_form, ScrewSettings, solve_screw
+from surrogate.screw.opened import Contacts
 
 RPM = math.pi / 30
 WARM = 313.15
 
 
 def solve(screw, oil, rpm, load, kelvin=WARM):
-    return closed_form.solve(screw, oil, np.asarray(rpm) * RPM, load, kelvin)
+    return closed_form.solve(Contacts.of(screw), oil, np.asarray(rpm) * RPM, load, kelvin)
 
 
 def test_ellipse_nodes_integrate_the_hertz_pressure_and_its_moment():
@@ -89,7 +90,7 @@ def test_contacts_touch_as_much_as_solved_ones(screw, oil, rpm):
     """The same law under nearly the same normal forces."""
     point = OperatingPoint(speed=rpm * RPM, load=1000.0, temperature=WARM)
     quick = ScrewSettings(smooth=Settings(nx=65, ny=65, error_estimate=False))
-    solved = solve_screw(screw, oil, point, settings=quick)
+    solved = solve_screw(Contacts.of(screw), oil, point, settings=quick)
     found = solve(screw, oil, rpm, 1000.0)
     assert float(found.rcs) == pytest.approx(solved.rcs, rel=0.02)
     assert float(found.asperity_share) == pytest.approx(solved.asperity_share, rel=0.02)
@@ -97,7 +98,9 @@ def test_contacts_touch_as_much_as_solved_ones(screw, oil, rpm):
 
 
 def test_a_share_by_the_film_ratio_takes_the_place_of_the_topography(screw, oil):
-    found = closed_form.solve(screw, oil, 300 * RPM, 0.0, WARM, share_of=lambda ratio: 0 * ratio)
+    found = closed_form.solve(
+        Contacts.of(screw), oil, 300 * RPM, 0.0, WARM, share_of=lambda ratio: 0 * ratio
+    )
     assert found.rcs == found.asperity_share == 0.0
 
 

@@ -10,6 +10,7 @@ from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.parameters import OperatingPoint
 from surrogate.screw import closed_form
 from surrogate.screw.closed_form_record import closed_form_record, page
+from surrogate.screw.opened import Contacts
 from surrogate.screw.record import rating_warnings
 
 REST = OperatingPoint(speed=0.0, load=0.0, temperature=313.15)
@@ -50,7 +51,7 @@ def test_a_record_holds_the_numbers_of_its_solve(screw, oil, load):
     point = replace(REST, speed=60.0, load=load)
     record, found = (
         closed_form_record(screw, oil, point),
-        closed_form.solve(screw, oil, 60.0, load, 313.15),
+        closed_form.solve(Contacts.of(screw), oil, 60.0, load, 313.15),
     )
     assert record['friction_torque_Nm'] == float(found.friction_torque)
     ideal = load * screw.lead / math.tau

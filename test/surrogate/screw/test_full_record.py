@@ -19,15 +19,7 @@ from surrogate.screw import record as both
 from surrogate.screw.ball_motion import slip_floor
 from surrogate.screw.closed_form_record import closed_form_record, page
 from surrogate.screw.contacts import make_contacts, ScrewSettings
-from surrogate.screw.full_record import (
-    _coarse,
-    _moved_forces,
-    _third_contacts,
-    _uncertain_films,
-    full_record,
-    law_sentence,
-    solution_record,
-)
+from surrogate.screw.full_record import _warnings, full_record, law_sentence, solution_record
 from surrogate.screw.nut import contact_slip
 from surrogate.screw.opened import Contacts
 from surrogate.screw.record import most_wear, with_wear
@@ -36,6 +28,7 @@ from surrogate.screw.solve import solve_screw
 from surrogate.surface import onset_of_surface, shipped_surface, Surface
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+OPENED = Contacts.of(SCREW)
 SMALL = Settings(nx=65, ny=65, error_estimate=False)
 SETTINGS = ScrewSettings(smooth=SMALL)
 STANDING = ScrewSettings(
@@ -59,20 +52,24 @@ def record(rpm, load, settings=SETTINGS):
 
 def test_warnings_begin_beyond_their_limits():
     """A change of 1 %, a film known to 10 %, 4 nodes a wave, and the clearance are none yet."""
+
+    def warnings(screw=SCREW, *, change=0.0, error=0.0, approach=0.0, grids=(), wave=0.0):
+        ball = {'nut': 'loaded', 'side': 'screw', 'film_error': error}
+        contact = SimpleNamespace(**ball, opposite_flank_approach=approach)
+        found = {'load_change': change, 'loaded_contacts': grids, 'contacts': [contact]}
+        return [*_warnings(screw, SimpleNamespace(**found), wave)]
+
     for change, told in ((0.01, 0), (0.0101, 1), (math.nan, 0)):
-        assert len(_moved_forces(SimpleNamespace(load_change=change))) == told
-    ball = {'nut': 'loaded', 'side': 'screw'}
+        assert len(warnings(change=change)) == told
     for error, told in ((0.1, 0), (0.101, 1), (math.nan, 0)):
-        assert len(_uncertain_films([ball | {'film_error': error}])) == told
-    tight = replace(SCREW, flank_clearance=1e-6)
+        assert len(warnings(error=error)) == told
     for approach, told in ((1e-6, 0), (1.1e-6, 1), (math.nan, 0)):
-        contacts = [ball | {'opposite_flank_approach_m': approach}]
-        assert len(_third_contacts(tight, contacts)) == told
-        assert not _third_contacts(replace(SCREW, flank_clearance=None), contacts)
+        assert len(warnings(replace(SCREW, flank_clearance=1e-6), approach=approach)) == told
+        assert not warnings(replace(SCREW, flank_clearance=None), approach=approach)
     grids = [SimpleNamespace(pressed=SimpleNamespace(y=[1.0, 1.25, 9.0]))] * 2
-    found = SimpleNamespace(loaded_contacts=grids)
-    assert _coarse(found, 1.0) == _coarse(SimpleNamespace(loaded_contacts=()), 0.0) == []
-    assert _coarse(found, 0.75)[0].startswith('roughness: 3 nodes per shortest wave')
+    assert warnings(grids=grids, wave=1.0) == warnings(grids=(), wave=0.0) == []
+    (coarse,) = warnings(grids=grids, wave=0.75)
+    assert coarse.startswith('roughness: 3 nodes per shortest wave')
 
 
 def test_record_has_the_keys_of_the_formulas_and_parts_that_add_up():
@@ -100,10 +97,8 @@ def test_the_heating_factor_is_that_by_which_a_starved_contact_is_slowed():
     told = record_at(SCREW, starved, point, settings)
     assert told['inlet_heating'] is False
     loads = (told['normal_force_loaded_N'], told['normal_force_relieved_N'])
-    contacts = make_contacts(Contacts.of(SCREW), starved, point, settings)
-    heated = make_contacts(
-        Contacts.of(SCREW), starved, point, replace(settings, inlet_heating=True)
-    )
+    contacts = make_contacts(OPENED, starved, point, settings)
+    heated = make_contacts(OPENED, starved, point, replace(settings, inlet_heating=True))
     slowed = min(
         hot.entrainment(load) / cold.entrainment(load)
         for cold, hot in zip(contacts, heated, strict=True)
@@ -127,7 +122,7 @@ def test_friction_is_integrated_with_the_slip_of_the_balance(settings):
     point = OperatingPoint(speed=60 * math.pi / 30, load=800.0, temperature=313.15)
     # Contacts under the very forces of the balance.
     agreed = replace(settings, coupling_tolerance=1e-4)
-    for contact in solve_screw(SCREW, OIL, point, settings=agreed).contacts:
+    for contact in solve_screw(OPENED, OIL, point, settings=agreed).contacts:
         slip_x, slip_y = contact_slip(SCREW, contact.pressed, contact.side, contact.motion)
         found = contact_friction(
             contact.pressed,
@@ -273,8 +268,8 @@ def test_hysteresis_adds_its_couple_to_the_torque():
 def test_picture_has_a_column_per_pressed_contact(tmp_path):
     """Two columns beyond unloading; labels with units; the file appears whole."""
     point = OperatingPoint(speed=2.0, load=3.0 * SCREW.preload, temperature=313.15)
-    found = solve_screw(SCREW, OIL, point, settings=SETTINGS)
-    record = solution_record(SCREW, OIL, point, found, SETTINGS)
+    found = solve_screw(OPENED, OIL, point, settings=SETTINGS)
+    record = solution_record(OPENED, OIL, point, found, SETTINGS)
     figure = figures_point.figure_point(SCREW, found, record)
     titles = [axes.get_title() for axes in figure.axes if 'nut' in axes.get_title()]
     assert len(titles) == 2
@@ -289,9 +284,9 @@ def test_a_failed_point_is_drawn_without_its_contacts(tmp_path):
     """No column for a contact without a solution; the record is not lost."""
     point = OperatingPoint(speed=60.0, load=500.0, temperature=313.15)
     failed = ScrewSettings(smooth=Settings(newton_limit=1), kinematics='smooth')
-    found = solve_screw(SCREW, OIL, point, settings=failed)
+    found = solve_screw(OPENED, OIL, point, settings=failed)
     assert not found.converged
-    record = solution_record(SCREW, OIL, point, found, failed)
+    record = solution_record(OPENED, OIL, point, found, failed)
     assert figures_point.draw_point(tmp_path, SCREW, found, record).exists()
 
 

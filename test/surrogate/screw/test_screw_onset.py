@@ -15,7 +15,7 @@ from surrogate.formulas.load_sharing import normal_force
 from surrogate.parameters import BallRoughness
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import oil_at
-from surrogate.screw.onset_figure import figure_onset
+from surrogate.screw.figures import figure_onset
 from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import (
     extrapolated,
@@ -88,7 +88,7 @@ def test_both_states_and_their_bounds_stand_in_the_record(record, screw, oil):
     assert new['cutting_pressure_Pa'] == 7e9
     assert record['working_load_stated'] is False
     low = run_in_at(screw, screw.roughness.run_in_low)
-    found = onset_point(low, oil, 0.0, KELVIN)['speed_rad_s']
+    found = onset_point(Contacts.of(low), oil, 0.0, KELVIN)['speed_rad_s']
     assert record['states']['run_in']['speed_range_rad_s'][0] == found
 
 
@@ -99,7 +99,10 @@ def test_other_working_loads_cut_the_summits_of_the_last_state(record, screw, oi
     slow = with_raceway(screw, state='run_in')
     for load, speed in zip((low, high), record['other_working_load_speeds_rad_s'], strict=True):
         assert (
-            speed == onset_point(replace(slow, working_load=load), oil, 0.0, KELVIN)['speed_rad_s']
+            speed
+            == onset_point(Contacts.of(replace(slow, working_load=load)), oil, 0.0, KELVIN)[
+                'speed_rad_s'
+            ]
         )
     half, double = record['other_working_load_speeds_rad_s']
     assert half > record['states']['run_in']['speed_rad_s'] > double > 0
@@ -144,7 +147,7 @@ def test_a_point_is_where_the_law_of_the_state_says(screw, oil, record):
 
 
 def test_half_the_film_of_starvation_needs_a_faster_speed(screw, oil, record):
-    starved = onset_point(screw, replace(oil, film_factor=0.5), 0.0, KELVIN)
+    starved = onset_point(Contacts.of(screw), replace(oil, film_factor=0.5), 0.0, KELVIN)
     assert starved['speed_rad_s'] > 2 * record['states']['new']['speed_rad_s']
 
 
@@ -181,11 +184,13 @@ def test_a_calibrated_raceway_has_the_state_and_the_band_of_its_calibration(scre
     assert state['speed_rad_s'] == pytest.approx(0.5 * new['speed_rad_s'], rel=0.01)
     assert 'onset calibrated on 2026-11-24 within 1.15' in onset_page(found)
     place = np.array([0.0, 500.0]), np.array([KELVIN])
-    usual, scaled = (onset_speeds(one, oil, *place) for one in (screw, sheet))
+    usual, scaled = (onset_speeds(Contacts.of(one), oil, *place) for one in (screw, sheet))
     np.testing.assert_allclose(scaled, 0.5 * usual, rtol=0.01)
     speeds = np.array([5.0, 20.0, 40.0])
     rcs, slower = (
-        closed_form.solve(one, oil, part * speeds, 0.0, KELVIN, inlet_heating=False).rcs
+        closed_form.solve(
+            Contacts.of(one), oil, part * speeds, 0.0, KELVIN, inlet_heating=False
+        ).rcs
         for one, part in ((screw, 1.0), (sheet, 0.5))
     )
     np.testing.assert_allclose(slower, rcs, rtol=1e-9)
@@ -229,14 +234,14 @@ def test_what_was_not_marched_is_called_extrapolated(screw, says):
 @pytest.mark.parametrize('lay', ['longitudinal', 'transverse'])
 def test_ridges_without_a_fan_have_an_onset(screw, oil, lay):
     ridges = with_raceway(screw, lay=lay, fan_angle=0.0, state='run_in')
-    assert onset_point(ridges, oil, 0.0, KELVIN)['speed_rad_s'] > 0
+    assert onset_point(Contacts.of(ridges), oil, 0.0, KELVIN)['speed_rad_s'] > 0
 
 
 def test_smooth_raceways_say_so(screw, oil):
     smooth = with_raceway(screw, rms=0.0)
-    speeds = onset_speeds(smooth, oil, np.array([0.0]), np.array([KELVIN]))
+    speeds = onset_speeds(Contacts.of(smooth), oil, np.array([0.0]), np.array([KELVIN]))
     assert speeds == pytest.approx(1e-3 / no_slip_rates(screw).entrainment)
-    assert onset_point(smooth, oil, 0.0, KELVIN)['speed_rad_s'] == 0.0
+    assert onset_point(Contacts.of(smooth), oil, 0.0, KELVIN)['speed_rad_s'] == 0.0
     page = onset_page(onset_record(smooth, oil, 0.0, KELVIN))
     assert 'no contact: raceway and ball are smooth' in page
     assert 'Contact is likely' not in page
@@ -244,7 +249,7 @@ def test_smooth_raceways_say_so(screw, oil):
 
 
 def test_the_picture_falls_with_the_cutting_pressure(screw, oil, record, monkeypatch):
-    monkeypatch.setattr('surrogate.screw.onset_figure.STEPS', 3)
+    monkeypatch.setattr('surrogate.screw.figures.STEPS', 3)
     axes = figure_onset(screw, oil, record).axes[0]
     speeds = axes.lines[0].get_ydata()
     assert list(speeds) == sorted(speeds)
@@ -260,7 +265,7 @@ def test_the_picture_stays_among_pressures_that_a_sheet_may_state(screw, oil, re
         cut.append([run_in_at(pressed, one) for one in pressures])
         return pressures
 
-    monkeypatch.setattr('surrogate.screw.onset_figure.onset_over_pressure', speeds)
+    monkeypatch.setattr('surrogate.screw.figures.onset_over_pressure', speeds)
     for hardness, low in ((20e9, 2e9), (7e9, 0.5e9)):
         sheet = with_raceway(screw, hardness=hardness, run_in_low=low)
         figure_onset(sheet, oil, record | {'working_pressure_Pa': 1e8, 'working_load_N': 5e3})

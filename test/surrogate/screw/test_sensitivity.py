@@ -11,6 +11,7 @@ from surrogate.asperities.law import BANDS, SLOPE
 from surrogate.parameters import OperatingPoint
 from surrogate.screw import sensitivity
 from surrogate.screw.closed_form import solve
+from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point, run_in_at, with_raceway
 from surrogate.screw.sensitivity import (
     _fastest,
@@ -70,9 +71,9 @@ def test_a_limit_is_looked_for_among_sixty_speeds_about_the_onset(screw, oil, mo
     """From its 2.5th part to 2.5 times the onset, and from there to the fastest speed."""
     asked = []
 
-    def solve_once(made, lubricant, speed, *place):
+    def solve_once(opened, lubricant, speed, *place):
         asked.append(speed)
-        return solve(made, lubricant, speed, *place)
+        return solve(opened, lubricant, speed, *place)
 
     monkeypatch.setattr(sensitivity.closed_form, 'solve', solve_once)
     case = ScrewCase(screw=screw, lubricant=oil, point=POINT)
@@ -106,8 +107,11 @@ def row_of(record, key):
 def test_what_is_stated_is_what_onset_and_point_say(screw, oil, record):
     assert record.keys() == sensitivity.KEYS.keys()
     stated = record['stated']
-    assert stated['onset_speed_rad_s'] == onset_point(screw, oil, 500.0, 313.15)['speed_rad_s']
-    found = solve(screw, oil, [POINT.speed, *list_of_limits(stated)], 500.0, 313.15)
+    assert (
+        stated['onset_speed_rad_s']
+        == onset_point(Contacts.of(screw), oil, 500.0, 313.15)['speed_rad_s']
+    )
+    found = solve(Contacts.of(screw), oil, [POINT.speed, *list_of_limits(stated)], 500.0, 313.15)
     assert stated['friction_torque_Nm'] == found.friction_torque[0]
     assert found.rcs[1] == pytest.approx(0.01, rel=0.01)
     ideal = 500.0 * screw.lead / (2 * math.pi)
@@ -357,7 +361,7 @@ def test_a_light_load_has_no_limit_of_efficiency(screw, oil):
 
 def test_the_picture_has_a_bar_per_end_and_the_bands(record, tmp_path):
     pytest.importorskip('matplotlib')
-    from surrogate.screw.sensitivity_figure import draw_sensitivity, figure_sensitivity
+    from surrogate.screw.figures import draw_sensitivity, figure_sensitivity
 
     figure = figure_sensitivity(record)
     assert [axes.get_title() for axes in figure.axes] == [

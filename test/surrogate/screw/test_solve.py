@@ -39,6 +39,7 @@ from surrogate.screw.solve import (
 )
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+OPENED = Contacts.of(SCREW)
 SMALL = Settings(nx=65, ny=65, error_estimate=False)
 SMOOTH = ScrewSettings(smooth=SMALL, kinematics='smooth')
 STANDING = ScrewSettings(
@@ -57,7 +58,7 @@ WARM = 313.15
 def at(rpm, load, settings=SMOOTH, screw=SCREW):
     """Solve a point at 40 degC."""
     point = OperatingPoint(speed=rpm * math.pi / 30, load=load, temperature=WARM)
-    return solve_screw(screw, OIL, point, settings=settings)
+    return solve_screw(Contacts.of(screw), OIL, point, settings=settings)
 
 
 def contact(rcs=0.0, film_ratio=1.0):
@@ -203,7 +204,7 @@ def test_preload_alone_loses_power_and_the_nuts_share_their_contacts():
 def test_a_warm_start_saves_work_and_changes_nothing():
     near = at(20, 400.0, STANDING)
     point = OperatingPoint(speed=24 * math.pi / 30, load=400.0, temperature=WARM)
-    warm = solve_screw(SCREW, OIL, point, settings=STANDING, start=near)
+    warm = solve_screw(OPENED, OIL, point, settings=STANDING, start=near)
     cold = at(24, 400.0, STANDING)
     assert warm.converged, warm.status
     assert warm.friction_torque == pytest.approx(cold.friction_torque, rel=1e-4)
@@ -218,7 +219,7 @@ def test_a_warm_start_saves_work_and_changes_nothing():
 def test_full_tier_is_near_the_formulas_at_full_film():
     """At 600 rev/min film within 10 %, torque within 30 % of the closed-form tier."""
     found = at(600, 500.0)
-    formula = closed_form.solve(SCREW, OIL, 600 * math.pi / 30, 500.0, WARM)
+    formula = closed_form.solve(OPENED, OIL, 600 * math.pi / 30, 500.0, WARM)
     assert found.central_film == pytest.approx(float(formula.central_film), rel=0.1)
     assert found.friction_torque == pytest.approx(float(formula.friction_torque), rel=0.3)
     assert found.rcs == 0.0
@@ -254,7 +255,7 @@ def test_the_raceway_belongs_to_the_draw():
     assert np.array_equal(first.heights(x, y), again.heights(x, y))
     assert not np.allclose(first.heights(x, y), other.heights(x, y))
     point = OperatingPoint(speed=1.0, load=0.0, temperature=313.15)
-    sides = make_contacts(Contacts.of(SCREW), OIL, point, replace(STANDING, draw=3))
+    sides = make_contacts(OPENED, OIL, point, replace(STANDING, draw=3))
     assert sides[0].raceway is sides[1].raceway
     assert sides[0].raceway.shortest_wavelength > GRID_WAVELENGTH
     assert {side.film_floor for side in sides} == {OIL.film_floor}
@@ -277,10 +278,7 @@ def test_a_starved_contact_is_taken_at_a_slower_entrainment():
     point = OperatingPoint(speed=10.0, load=0.0, temperature=313.15)
     full, half = (
         make_contacts(
-            Contacts.of(SCREW),
-            replace(OIL, film_factor=factor),
-            point,
-            ScrewSettings(inlet_heating=False),
+            OPENED, replace(OIL, film_factor=factor), point, ScrewSettings(inlet_heating=False)
         )[0]
         for factor in (1.0, 0.5)
     )
@@ -341,7 +339,7 @@ def test_rolling_roughness_is_the_smooth_contact_with_the_law():
     for contact in found.contacts:
         solved = contact.solved
         assert solved.pressed is solved.smooth
-        law = Contacts.of(SCREW).law.contact(
+        law = OPENED.law.contact(
             contact.side,
             solved.smooth.contact,
             solved.smooth.condition,
@@ -388,11 +386,11 @@ def test_a_starved_film_touches_more():
     """The film of a flooded contact so much slower, about half; more contact at one speed."""
     point = OperatingPoint(speed=MIXED * math.pi / 30, load=500.0, temperature=WARM)
     full, half = (
-        solve_screw(SCREW, replace(OIL, film_factor=factor), point, settings=ROLLING)
+        solve_screw(OPENED, replace(OIL, film_factor=factor), point, settings=ROLLING)
         for factor in (1.0, 0.5)
     )
     slower = replace(point, speed=0.5 ** (1 / SPEED_EXPONENT) * point.speed)
-    flooded = solve_screw(SCREW, OIL, slower, settings=ROLLING)
+    flooded = solve_screw(OPENED, OIL, slower, settings=ROLLING)
     assert half.central_film == pytest.approx(flooded.central_film, rel=1e-6)
     assert half.rcs == pytest.approx(flooded.rcs, rel=1e-6)
     assert half.central_film == pytest.approx(0.5 * full.central_film, rel=0.1)
@@ -424,9 +422,7 @@ def test_waves_off_the_grid_raise_the_floor_of_the_oil():
     (floor,) = {contact.pressed.settings.film_floor for contact in found.contacts}
     point = OperatingPoint(speed=60 * math.pi / 30, load=500.0, temperature=WARM)
     cut, whole = (
-        make_contacts(Contacts.of(SCREW), OIL, point, replace(STANDING, grid_wavelength=wave))[
-            0
-        ].raised
+        make_contacts(OPENED, OIL, point, replace(STANDING, grid_wavelength=wave))[0].raised
         for wave in (GRID_WAVELENGTH, None)
     )
     assert floor == OIL.film_floor + cut
@@ -439,11 +435,11 @@ def test_balls_are_balanced_anew_on_solved_contacts(rpm, settings):
     """The same point gives the same; another friction what a fresh solve gives."""
     found = at(rpm, 500.0, settings)
     point = OperatingPoint(speed=rpm * math.pi / 30, load=500.0, temperature=WARM)
-    again = rebalance_screw(SCREW, OIL, point, found, settings=settings)
+    again = rebalance_screw(OPENED, OIL, point, found, settings=settings)
     assert again.friction_torque == found.friction_torque
     assert again.rcs == found.rcs
     rough = replace(SCREW, roughness=replace(SCREW.roughness, asperity_friction=0.15))
-    balanced = rebalance_screw(rough, OIL, point, found, settings=settings)
+    balanced = rebalance_screw(Contacts.of(rough), OIL, point, found, settings=settings)
     fresh = at(rpm, 500.0, settings, screw=rough)
     assert balanced.friction_torque == pytest.approx(fresh.friction_torque, rel=1e-9)
     assert balanced.energy_error < 1e-8
@@ -455,8 +451,8 @@ def test_another_oil_at_the_same_viscosity_times_speed_shears_on_the_same_film()
     found = at(600, 0.0)
     thick = thickened(OIL, 2.0)
     point = OperatingPoint(speed=300 * math.pi / 30, load=0.0, temperature=WARM)
-    fresh = solve_screw(SCREW, thick, point, settings=SMOOTH)
-    balanced = rebalance_screw(SCREW, thick, point, found)
+    fresh = solve_screw(OPENED, thick, point, settings=SMOOTH)
+    balanced = rebalance_screw(OPENED, thick, point, found)
     assert balanced.friction_torque == pytest.approx(fresh.friction_torque, rel=0.01)
     assert found.friction_torque != pytest.approx(fresh.friction_torque, rel=0.01)
 
@@ -465,11 +461,11 @@ def test_a_balance_needs_solved_contacts():
     """None in a nut without load, and a sentence where a contact has failed."""
     idle = at(600, 3.0 * SCREW.preload)
     point = OperatingPoint(speed=600 * math.pi / 30, load=3.0 * SCREW.preload, temperature=WARM)
-    again = rebalance_screw(SCREW, OIL, point, idle)
+    again = rebalance_screw(OPENED, OIL, point, idle)
     assert again.friction_torque == idle.friction_torque
     settings = ScrewSettings(smooth=Settings(newton_limit=1), kinematics='smooth')
     failed = at(600, 3.0 * SCREW.preload, settings)
-    again = rebalance_screw(SCREW, OIL, point, failed)
+    again = rebalance_screw(OPENED, OIL, point, failed)
     assert not again.converged
     assert again.status.startswith('loaded nut, screw, smooth contact: ')
 
@@ -478,8 +474,8 @@ def test_contacts_of_another_load_are_not_rebalanced(refused):
     """Smooth contacts beyond unloading say nothing about a load below it, nor of another one."""
     idle = at(600, 3.0 * SCREW.preload)
     point = OperatingPoint(speed=600 * math.pi / 30, load=1000.0, temperature=WARM)
-    refused('load_1000_n', rebalance_screw, SCREW, OIL, point, idle)
-    refused('load_1000', rebalance_screw, SCREW, OIL, point, at(600, 900.0))
+    refused('load_1000_n', rebalance_screw, OPENED, OIL, point, idle)
+    refused('load_1000', rebalance_screw, OPENED, OIL, point, at(600, 900.0))
     same = replace(point, load=3.0 * SCREW.preload)
-    again = rebalance_screw(SCREW, OIL, same, idle)
+    again = rebalance_screw(OPENED, OIL, same, idle)
     assert again.friction_torque == pytest.approx(idle.friction_torque, rel=1e-9)

@@ -8,14 +8,12 @@ import numpy as np
 import pytest
 from surrogate.asperities.law import AsperityLaw
 from surrogate.parameters import load_screw
-from surrogate.studies.readings import trends
-from surrogate.studies.report import marks, report, table
+from surrogate.studies.report import marks, report, table, trends
 from surrogate.studies.rows import row_of
 from surrogate.studies.solve import Study
 from surrogate.studies.tasks import FIGURES, MAP_LOADS, PRELOAD, SMOOTH, SPEEDS, StudyTask, tasks
 
 figures = pytest.importorskip('surrogate.studies.figures')
-maps = pytest.importorskip('surrogate.studies.map_figures')
 screws = pytest.importorskip('surrogate.studies.screw_figures')
 entrainment = pytest.importorskip('surrogate.studies.drawing').entrainment
 
@@ -133,8 +131,8 @@ def test_stribeck_marks_limit_and_film_and_zone_needs_the_map_alone(study):
     assert 'reported, rough: 153 nm at 502.65 mm/s' in labels
     assert {'asperity share', 'film share'} <= set(labels)
     only = [row for row in study.rows.values() if row.load > 0 and row.kind == 'screw']
-    assert maps.figure_maps(SCREW, only).axes
-    assert maps.figure_zone(SCREW, LAW, only).axes
+    assert screws.figure_maps(SCREW, only).axes
+    assert screws.figure_zone(SCREW, LAW, only).axes
 
 
 def test_measurements_are_read_and_refused():
@@ -147,7 +145,7 @@ def test_measurements_are_read_and_refused():
 
 def test_maps_meet_their_nodes_and_a_point_that_failed_leaves_a_gap(study):
     """Between the nodes lies a map that returns them; efficiency rises with load."""
-    speed, load, rcs, eta = maps.fine_map(SCREW, list(study.rows.values()))
+    speed, load, rcs, eta = screws.fine_map(SCREW, list(study.rows.values()))
     corner = study.rows[
         StudyTask(kind='screw', rpm=SPEEDS[0], load=MAP_LOADS[-1], draw=SMOOTH).key
     ]
@@ -166,7 +164,7 @@ def test_maps_meet_their_nodes_and_a_point_that_failed_leaves_a_gap(study):
     labels = figure.axes[0].get_legend_handles_labels()[1]
     assert len(labels) == 4
     assert not [label for label in labels if '600 rev/min' in label]
-    assert np.isfinite(maps.fine_map(SCREW, list(rows.values()))[3]).all()
+    assert np.isfinite(screws.fine_map(SCREW, list(rows.values()))[3]).all()
 
 
 def test_report_leaves_out_what_the_rows_cannot_tell(study):

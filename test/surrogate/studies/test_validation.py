@@ -5,13 +5,22 @@
 import json
 from pathlib import Path
 import re
+from statistics import NormalDist
 
+import numpy as np
 import pytest
 from surrogate.files import json_text
-from surrogate.studies import ours
-from surrogate.studies.validation import PUBLISHED, span, validation_page, verdict
+from surrogate.studies.validation import (
+    compared,
+    OURS,
+    PUBLISHED,
+    reduced_peak_height,
+    span,
+    validation_page,
+)
 
 DOCUMENT = Path(__file__).parents[3] / 'docs' / 'theory' / 'validation.md'
+SHARES = (np.arange(20000) + 0.5) / 20000
 NUMBER = re.compile(r'\d+(?:\.\d+)?')
 
 
@@ -67,7 +76,7 @@ def test_a_published_value_is_declared_in_full(value):
     assert value['reason']
     assert 0 <= value['published'][0] <= value['published'][1]
     assert 0 <= value.get('tolerance', 0.0) < 0.2
-    assert getattr(ours, value['ours']).__doc__
+    assert OURS[value['ours']].__doc__
 
 
 def test_no_value_is_declared_twice():
@@ -81,5 +90,32 @@ def test_no_value_is_declared_twice():
 def test_all_of_ours_must_lie_within(found, expected):
     """The limit itself belongs to the range; what is not comparable stays so."""
     value = {'published': [1.0, 2.0], 'tolerance': 0.1, 'comparable': True}
-    assert verdict(value, found) == expected
-    assert verdict(value | {'comparable': False}, found) == 'not comparable'
+    assert compared(value, found)['verdict'] == expected
+    unequal = compared(value | {'comparable': False}, found)
+    assert unequal['verdict'] == 'not comparable'
+
+
+def test_a_uniform_profile_has_no_peaks():
+    """Its material ratio curve is straight."""
+    assert reduced_peak_height(np.linspace(-1e-7, 1e-7, 1000)) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_gaussian_heights():
+    """
+    Core from the quantile of 0.7, slope 2 q/0.4, extended to the top t = 5 q/2.
+
+    Spk = 2 (pdf(t) - t Q(t))/Q(t), in rms heights.
+
+    """
+    normal = NormalDist()
+    top = 2.5 * normal.inv_cdf(0.7)
+    above = 1 - normal.cdf(top)
+    expected = 2 * (normal.pdf(top) - top * above) / above
+    heights = np.array([normal.inv_cdf(share) for share in SHARES])
+    assert reduced_peak_height(1e-7 * heights) == pytest.approx(1e-7 * expected, rel=5e-3)
+
+
+def test_peaks_upon_a_plateau():
+    """One in ten rises evenly to a height upon a flat: a triangle of that height."""
+    heights = np.concatenate([np.zeros(9000), np.linspace(0, 1e-6, 1001)[1:]])
+    assert reduced_peak_height(heights) == pytest.approx(1e-6, rel=1e-2)

@@ -13,6 +13,7 @@ import pytest
 from surrogate.formulas import torque
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.screw import closed_form
+from surrogate.screw.opened import Contacts
 from surrogate.surface import FIELDS, shipped_surface, Surface, Validity
 from surrogate.surface.aims import EFFICIENCY_TOLERANCE, RCS_TOLERANCE
 from surrogate.surface.file import read, write
@@ -63,7 +64,7 @@ def test_lookup_agrees_with_the_model(speed, load, kelvin):
     from surrogate.parameters import load_lubricant, load_screw
 
     screw, oil = load_screw('nominal'), load_lubricant('iso_vg_68')
-    solved = closed_form.solve(screw, oil, speed, load, kelvin)
+    solved = closed_form.solve(Contacts.of(screw), oil, speed, load, kelvin)
     found = SHIPPED.lookup(speed, load, kelvin)
     if abs(load) > 0.25 * screw.preload:
         expected = torque.efficiency(float(solved.friction_torque), load, screw.lead)

@@ -51,7 +51,7 @@ def make_solve(screw, oil, stand_in):
 
     def solve(speed, load, heat):
         given = point_inputs(screw, oil, load, heat, speed)
-        return solved_chain(stand_in.chain(given)).opposing[0]
+        return solved_chain(stand_in.chain(given))[0][0]
 
     return solve
 
@@ -79,7 +79,7 @@ def test_nodes_are_what_solves_give(data, screw, oil, stand_in):
     for i, j, k in np.argwhere(~data.mask)[::7]:
         speed = math.exp(data.speed_coordinate[i] + data.log_onset[j, k])
         place = speed, float(data.load[j]), float(data.temperature[k])
-        formula = closed_form.solve(screw, oil, *place)
+        formula = closed_form.solve(Contacts.of(screw), oil, *place)
         assert data.fields['rcs'][i, j, k] == pytest.approx(float(formula.rcs), rel=1e-9)
         film = max(0.9 * float(formula.central_film), oil.film_floor)
         assert data.fields['central_film'][i, j, k] == pytest.approx(film, rel=0.01)

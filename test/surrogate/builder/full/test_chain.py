@@ -14,7 +14,6 @@ from surrogate.builder.full.chain import (
     point_inputs,
     solve_chain,
     solved_chain,
-    solved_point,
 )
 from surrogate.ehl import Settings, Status
 from surrogate.parameters import (
@@ -26,11 +25,14 @@ from surrogate.parameters import (
 )
 from surrogate.screw import contacts as screw_contacts
 from surrogate.screw.contacts import ScrewSettings
+from surrogate.screw.opened import Contacts
+from surrogate.screw.point import kept_point
 from surrogate.screw.screw_onset import with_raceway
 from surrogate.screw.solve import solve_screw
 from surrogate.surface import FIELDS
 
 SCREW, OIL = load_screw('nominal'), load_lubricant('iso_vg_68')
+OPENED = Contacts.of(SCREW)
 WARM = 313.15
 GRIDS = ScrewSettings(smooth=COARSE), ScrewSettings()
 """Those of a chain, and of a single point."""
@@ -54,22 +56,22 @@ def test_a_chain_is_the_points_it_says():
     speeds = [30.0, 10.0]
     found = chain(500.0, WARM, speeds)
     assert json.loads(json.dumps(found)) == found
-    typed = solved_chain(found)
-    for load, points in ((500.0, typed.opposing), (-500.0, typed.assisting)):
+    opposing, assisting = solved_chain(found)
+    for load, points in ((500.0, opposing), (-500.0, assisting)):
         for solved, speed in zip(points, speeds, strict=True):
             point = OperatingPoint(speed=speed, load=load, temperature=WARM)
-            same, single = (solve_screw(SCREW, OIL, point, settings=one) for one in GRIDS)
+            same, single = (solve_screw(OPENED, OIL, point, settings=one) for one in GRIDS)
             assert solved.converged
             assert solved.friction_torque == pytest.approx(same.friction_torque, rel=1e-4)
             assert solved.film_ratio == pytest.approx(same.film_ratio, rel=1e-4)
             assert solved.friction_torque == pytest.approx(single.friction_torque, rel=0.01)
             assert solved.film_ratio == pytest.approx(single.film_ratio, rel=0.005)
             exact = solve_chain(point_inputs(SCREW, OIL, load, WARM, speed))['opposing'][0]
-            assert exact == asdict(solved_point(single))
+            assert exact == asdict(kept_point(single))
             assert solved.rcs == pytest.approx(single.rcs, rel=1e-3)
             assert solved.rcs_deviation == pytest.approx(single.rcs_deviation, rel=1e-3)
-    assert typed.opposing[0].friction_torque != typed.assisting[0].friction_torque
-    assert typed.opposing[1].rcs > typed.opposing[0].rcs
+    assert opposing[0].friction_torque != assisting[0].friction_torque
+    assert opposing[1].rcs > opposing[0].rcs
 
 
 def test_the_state_of_the_raceway_counts():
@@ -94,7 +96,7 @@ def test_balls_that_move_their_forces_are_solved_again():
     load = 2600.0
     for sense, sign in (('opposing', 1), ('assisting', -1)):
         point = OperatingPoint(speed=300.0, load=sign * load, temperature=WARM)
-        same, single = (solve_screw(SCREW, OIL, point, settings=one) for one in GRIDS)
+        same, single = (solve_screw(OPENED, OIL, point, settings=one) for one in GRIDS)
         found = chain(load, WARM, [300.0])[sense][0]
         assert found['friction_torque'] == pytest.approx(same.friction_torque, rel=1e-3)
         assert found['friction_torque'] == pytest.approx(single.friction_torque, rel=0.01)
@@ -130,8 +132,8 @@ def test_record_of_a_point():
     small = Settings(nx=65, ny=65, error_estimate=False)
     settings = ScrewSettings(smooth=small, kinematics='smooth')
     point = OperatingPoint(speed=60.0, load=500.0, temperature=WARM)
-    found = solve_screw(SCREW, OIL, point, settings=settings)
-    record = solved_point(found)
+    found = solve_screw(OPENED, OIL, point, settings=settings)
+    record = kept_point(found)
     assert {name: getattr(record, name) for name in FIELDS} == {
         name: getattr(found, name) for name in FIELDS
     }
@@ -139,10 +141,11 @@ def test_record_of_a_point():
     ratios = [contact.film_ratio for contact in found.contacts]
     assert record.worst_contact == ratios.index(min(ratios))
     rolling = replace(settings, kinematics='rolling')
-    found = solve_screw(SCREW, OIL, replace(point, speed=10.0), settings=rolling)
-    record = solved_point(found)
+    found = solve_screw(OPENED, OIL, replace(point, speed=10.0), settings=rolling)
+    record = kept_point(found)
     assert record.rcs_deviation == found.rcs_deviation > 0
-    assert solved_chain({'opposing': [asdict(record)], 'assisting': []}).opposing == (record,)
+    kept = solved_chain({'opposing': [asdict(record)], 'assisting': []})
+    assert kept == ((record,), ())
     free = replace(SCREW, preload=0.0)
-    unloaded = solve_screw(free, OIL, replace(point, load=0.0), settings=settings)
-    assert not solved_point(unloaded).converged
+    unloaded = solve_screw(Contacts.of(free), OIL, replace(point, load=0.0), settings=settings)
+    assert not kept_point(unloaded).converged

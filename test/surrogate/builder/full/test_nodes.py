@@ -82,7 +82,7 @@ def test_loads_of_a_free_screw_crowd_zero(screw, settings):
 
 def test_the_onset_is_that_of_the_law_on_the_faster_side(screw, oil):
     """By the entrainment of the screw before its inlet is heated, under preload; faster hot."""
-    found = onset_speeds(screw, oil, np.array([0.0]), np.array([WARM, 340.0]))
+    found = onset_speeds(Contacts.of(screw), oil, np.array([0.0]), np.array([WARM, 340.0]))
     force, fluid = float(normal_force(screw, screw.preload)), oil_at(oil, WARM)
     fastest, side = max(
         (onset.speed(screw_contact(screw, side), force, fluid, oil.film_floor), side)
@@ -97,30 +97,32 @@ def test_the_onset_is_that_of_the_law_on_the_faster_side(screw, oil):
 def test_a_starved_film_moves_the_onset(screw, oil):
     """To the speed at which the flooded film is that of the onset, divided by the share."""
     place = np.array([0.0, 900.0]), np.array([WARM])
-    flooded = onset_speeds(screw, oil, *place)
-    starved = onset_speeds(screw, replace(oil, film_factor=0.5), *place)
+    flooded = onset_speeds(Contacts.of(screw), oil, *place)
+    starved = onset_speeds(Contacts.of(screw), replace(oil, film_factor=0.5), *place)
     assert starved == pytest.approx(2 ** (1 / SPEED_EXPONENT) * flooded)
 
 
 def test_loads_of_either_sign_have_one_onset(screw, oil):
     """The loaded nut counts, whichever it is; a free screw without load has one, too."""
     loads = np.array([-900.0, 900.0])
-    found = onset_speeds(screw, oil, loads, np.array([WARM]))
+    found = onset_speeds(Contacts.of(screw), oil, loads, np.array([WARM]))
     assert found[0] == pytest.approx(found[1])
-    free = onset_speeds(replace(screw, preload=0.0), oil, np.zeros(1), np.array([WARM]))
+    free = onset_speeds(
+        Contacts.of(replace(screw, preload=0.0)), oil, np.zeros(1), np.array([WARM])
+    )
     assert free[0, 0] > 0
 
 
 def test_smooth_raceways_have_a_stand_in(screw, oil):
     """A speed that the logarithm bears."""
     smooth = replace(screw, roughness=replace(screw.roughness, rms=0.0))
-    found = onset_speeds(smooth, oil, np.zeros(1), np.array([WARM]))
+    found = onset_speeds(Contacts.of(smooth), oil, np.zeros(1), np.array([WARM]))
     assert found[0, 0] == pytest.approx(SMOOTH_ONSET / no_slip_rates(screw).entrainment)
 
 
 def test_speeds_of_every_column_cover_the_range(screw, oil, settings):
     """At every load and temperature, to both ends."""
-    nodes = surface_nodes(screw, oil, settings)
+    nodes = surface_nodes(Contacts.of(screw), oil, settings)
     found = nodes.log_speed
     assert found.shape == (len(nodes.s), len(nodes.load), len(nodes.temperature))
     low, high = np.log(settings.speed_range)

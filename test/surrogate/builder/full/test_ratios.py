@@ -19,6 +19,7 @@ from surrogate.builder.full.settings import default_full_settings
 from surrogate.files import InputError
 from surrogate.formulas.load_sharing import UNLOADING_RATIO
 from surrogate.formulas.lubricant import lubricant_state
+from surrogate.screw.opened import Contacts
 
 
 @pytest.fixture(name='settings')
@@ -30,7 +31,7 @@ def defaults(screw):
 @pytest.fixture(name='place')
 def make_place(screw, oil, settings):
     """Return the solved grid and the nodes of the defaults."""
-    return solved_grid(screw, oil, settings), surface_nodes(screw, oil, settings)
+    return solved_grid(screw, oil, settings), surface_nodes(Contacts.of(screw), oil, settings)
 
 
 def logs_of(grid, oil):
@@ -58,7 +59,7 @@ def test_a_plane_is_found_as_it_is(oil, place):
 def test_a_range_of_one_kelvin_is_solved_in_its_middle(screw, oil, settings):
     """Its ratio holds at both ends; a wider range has three temperatures."""
     warm = replace(settings, temperature_range=(312.65, 313.65), temperature_nodes=2)
-    grid, nodes = solved_grid(screw, oil, warm), surface_nodes(screw, oil, warm)
+    grid, nodes = solved_grid(screw, oil, warm), surface_nodes(Contacts.of(screw), oil, warm)
     assert grid.temperature == pytest.approx([313.15])
     assert len(nodes.temperature) == 2
     level = logs_of(grid, oil)['friction_torque'][:, :1] + np.zeros((len(grid.speeds), 1, 1))
@@ -140,7 +141,7 @@ def test_ratios_are_solved_over_formulas(screw, oil, settings, stand_in):
         done[second]['assisting'][0]['converged'] = False
         return done
 
-    logs = solve_ratios(screw, oil, grid, run)
+    logs = solve_ratios(Contacts.of(screw), oil, grid, run)
     torque = logs['friction_torque']
     assert torque.shape == (2, len(grid.speeds), len(grid.loads), settings.solved_temperatures)
     assert np.isnan(torque[:, :, 0, 0]).all()
@@ -168,4 +169,4 @@ def test_films_of_formulas_end_at_the_floor(screw, oil):
 def test_nothing_that_converges_is_one_sentence(screw, oil, settings):
     """No ratio is known, so there is no surface."""
     with pytest.raises(InputError, match='no point of the surface converged'):
-        solve_ratios(screw, oil, solved_grid(screw, oil, settings), dict.fromkeys)
+        solve_ratios(Contacts.of(screw), oil, solved_grid(screw, oil, settings), dict.fromkeys)
