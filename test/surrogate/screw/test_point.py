@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a surface keeps of a point, whatever its tier."""
+"""The point that a surface keeps, whatever its tier."""
 
 from dataclasses import replace
 import math
