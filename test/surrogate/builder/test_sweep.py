@@ -23,7 +23,7 @@ from surrogate.worker import worker_name
 COMMAND = ('surface', 'sweep')
 
 DEADLINE = 600.0  # [s] which only ends a hang
-THREE = 'screws: [nominal]\noils: [iso_vg_32, iso_vg_68, iso_vg_100]\n'
+THREE = 'screws: [nominal.yaml]\noils: [iso_vg_32, iso_vg_68, iso_vg_100]\n'
 SMALL = {'speed_nodes': 12, 'load_cells': 2, 'unloaded_cells': 1, 'temperature_nodes': 3}
 BUILDERS = """
 import os
@@ -65,7 +65,10 @@ def builder(tmp_path: Path, monkeypatch):
 
 @pytest.fixture
 def catalogue(tmp_path: Path) -> Path:
-    """Return a catalogue of one screw and three oils."""
+    """Return a catalogue of one screw, whose waves are long and so its tiles small, and oils."""
+    sheet = (DATA / 'screws' / 'nominal.yaml').read_text()
+    coarse = sheet.replace('cutoff_short_um: 2.5', 'cutoff_short_um: 20')
+    (tmp_path / 'nominal.yaml').write_text(coarse)
     path = tmp_path / 'catalogue.yaml'
     path.write_text(THREE)
     return path
