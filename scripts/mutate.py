@@ -33,7 +33,7 @@ from mutants import Mutant, PACKAGES, sample, sources
 
 TREE = Path(__file__).resolve().parent.parent
 RESULTS = TREE / 'build' / 'mutants'
-INTERPRETED = ('ballscrew_monitor/judge', 'surrogate/formulas', 'surrogate/surface')
+INTERPRETED = ('ballscrew_monitor/judge/', 'surrogate/formulas/', 'surrogate/surface/')
 """Rooms that are compiled wherever many rows wait; their mutants run with the compiler off."""
 COMPILING = (
     'ballscrew_monitor/judge/many.py',
