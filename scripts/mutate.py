@@ -34,7 +34,7 @@ from mutants import Mutant, PACKAGES, sample, sources
 TREE = Path(__file__).resolve().parent.parent
 RESULTS = TREE / 'build' / 'mutants'
 INTERPRETED = ('ballscrew_monitor/judge/', 'surrogate/formulas/', 'surrogate/surface/')
-"""Rooms that are compiled wherever many rows wait; their mutants run with the compiler off."""
+"""Rooms compiled wherever many rows wait: their mutants, as kernels, run with the compiler off."""
 COMPILING = (
     'ballscrew_monitor/judge/many.py',
     'surrogate/surface/batch.py',
@@ -45,7 +45,7 @@ ENOUGH = 0.9  # part of the mutants that must be caught
 COST = 30.0  # [s] that the tests of a mutant take together, beside the mirroring ones
 GROUP = 8.0  # [s] of them, after which the next ones run in a process of their own
 PATIENCE = 30.0, 5.0  # [s] of processor for a run, and that many times what it takes otherwise
-LONGEST = 180.0  # [s] of processor for a file of tests without a mutant
+LONGEST = 60.0  # [s] of processor for a file of tests without a mutant
 HANG = 900  # [s] after which a run hangs that takes no processor time
 NONE_COLLECTED, BROKEN = 5, 70  # exit codes: of pytest, and of a run that ends before it
 SURVIVED, CAUGHT, TOO_LONG = 'survived', 'caught', 'too long'
@@ -146,9 +146,10 @@ class Baseline:
 
 def compiler_of(path: str) -> str:
     """Return how the tests of a source compile: off, into a fresh cache, or from the kept one."""
-    if path in COMPILING or '@njit' in (TREE / path).read_text(encoding='utf-8'):
+    if path in COMPILING:
         return 'fresh'
-    return 'off' if path.startswith(INTERPRETED) else 'kept'
+    kernels = '@njit' in (TREE / path).read_text(encoding='utf-8')
+    return 'off' if kernels or path.startswith(INTERPRETED) else 'kept'
 
 
 def groups_of(path: str, baseline: Baseline, number: int) -> Iterator[list[str]]:
