@@ -46,7 +46,7 @@ COST = 30.0  # [s] that the tests of a mutant take together, beside the mirrorin
 GROUP = 8.0  # [s] of them, after which the next ones run in a process of their own
 PATIENCE = 30.0, 5.0  # [s] of processor for a run, and that many times what it takes otherwise
 LONGEST = 60.0  # [s] of processor for a file of tests without a mutant
-HANG = 900  # [s] after which a run hangs that takes no processor time
+HANG = 2.0  # times the limit of processor time: a run hangs that has not ended by then
 NONE_COLLECTED, BROKEN = 5, 70  # exit codes: of pytest, and of a run that ends before it
 SURVIVED, CAUGHT, TOO_LONG = 'survived', 'caught', 'too long'
 
@@ -148,8 +148,9 @@ def compiler_of(path: str) -> str:
     """Return how the tests of a source compile: off, into a fresh cache, or from the kept one."""
     if path in COMPILING:
         return 'fresh'
-    kernels = '@njit' in (TREE / path).read_text(encoding='utf-8')
-    return 'off' if kernels or path.startswith(INTERPRETED) else 'kept'
+    text = (TREE / path).read_text(encoding='utf-8')
+    compiles = any(word in text for word in ('@njit', 'surrogate.surface.compiled'))
+    return 'off' if compiles or path.startswith(INTERPRETED) else 'kept'
 
 
 def groups_of(path: str, baseline: Baseline, number: int) -> Iterator[list[str]]:
@@ -233,7 +234,7 @@ def _enter(limit: float, folder: str, compiler: str) -> None:
     os.setsid()
     gc.freeze()  # what the other process has left is not to be destroyed in this one
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    signal.alarm(HANG)
+    signal.alarm(round(HANG * limit))
     resource.setrlimit(resource.RLIMIT_CPU, (round(limit), round(limit) + 5))
     for stream in (1, 2):
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream)

@@ -121,10 +121,13 @@ def test_a_mutant_is_noticed_or_not_and_the_file_stays(small, tmp_path):
 
 def test_results_are_kept_and_a_second_call_goes_on(small, monkeypatch, capsys):
     mutate = small['mutate']
-    arguments = ['mutate.py', 'surrogate', '--sample', '8']
+    arguments = ['mutate.py', 'surrogate', '--sample', '4']
     monkeypatch.setattr(sys, 'argv', arguments)
     assert mutate.main() == 1
-    assert '5 of 8 mutants caught' in capsys.readouterr().out
+    output = capsys.readouterr().out
+    survivors = output.count(', survived: ')
+    assert survivors in (1, 2)  # of each pair of neighbours one is drawn
+    assert f'{4 - survivors} of 4 mutants caught' in output
     kept = mutate.Lines('sample.tsv')
     with kept.path.open('a') as file:
         file.write('a line that was interru')
@@ -132,26 +135,20 @@ def test_results_are_kept_and_a_second_call_goes_on(small, monkeypatch, capsys):
     assert ', 0 min, ' not in capsys.readouterr().out
     monkeypatch.setattr(sys, 'argv', [*arguments, '--again'])
     mutate.main()
-    assert capsys.readouterr().out.count('survived: ') == 3
-    assert len(kept.read()) == 8 + 1 + 3
+    assert capsys.readouterr().out.count(', survived: ') == survivors
+    assert len(kept.read()) == 4 + 1 + survivors
 
 
-def test_a_matrix_tells_which_test_notices_alone(small, monkeypatch, tmp_path):
-    monkeypatch.setattr(sys, 'argv', ['mutate.py', 'surrogate', '--sample', '8', '--matrix'])
-    assert small['mutate'].main() == 0
-    _, *rows = (tmp_path / 'build' / 'tests.tsv').read_text().splitlines()
-    counts = {row.rpartition('::')[2]: row.split('\t')[:2] for row in rows}
-    assert counts == {'test_zero': ['0', '2'], 'test_half': ['3', '5']}
-
-
-def test_a_test_that_fails_without_a_mutant_catches_none(small, monkeypatch, tmp_path, capsys):
+def test_a_matrix_tells_which_test_notices_alone(small, monkeypatch, tmp_path, capsys):
+    """A test that fails without any mutant notices none."""
     with (tmp_path / 'test/surrogate/test_half.py').open('a') as file:
         file.write('\ndef test_never():\n    assert False\n')
-    monkeypatch.setattr(sys, 'argv', ['mutate.py', 'surrogate', '--sample', '8'])
-    small['mutate'].main()
-    output = capsys.readouterr().out
-    assert 'test_never fails without any mutant' in output
-    assert '5 of 8 mutants caught' in output
+    monkeypatch.setattr(sys, 'argv', ['mutate.py', 'surrogate', '--sample', '8', '--matrix'])
+    assert small['mutate'].main() == 0
+    assert 'test_never fails without any mutant' in capsys.readouterr().out
+    _, *rows = (tmp_path / 'build' / 'tests.tsv').read_text().splitlines()
+    counts = {row.rpartition('::')[2]: row.split('\t')[:2] for row in rows}
+    assert counts == {'test_never': ['0', '0'], 'test_zero': ['0', '2'], 'test_half': ['3', '5']}
 
 
 def test_tests_are_found_by_mirror_then_by_imports(small, tmp_path):
