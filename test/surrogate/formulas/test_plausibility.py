@@ -82,7 +82,7 @@ def test_a_smooth_raceway_has_no_doubts(screw):
 
 
 def test_balls_that_fill_less_than_a_fifth_of_the_diameters_of_their_circle_are_told(screw):
-    """Loaded turns [-] times the ball diameter over that of the circle; the 51 of the sheet fill 0.56."""
+    """Loaded turns times ball over ball-circle diameter; the 51 balls of the sheet fill 0.56."""
     turn = math.hypot(2 * math.pi * screw.pitch_radius, screw.lead)
     for number in range(10, 52):
         turns = number * screw.ball_diameter / turn
