@@ -167,6 +167,7 @@ def test_a_recording_that_is_paused_has_no_news(playing, monkeypatch):
         playing._axes[0].show(playing._last + past, 0.5)
         assert view.news(0.5, 1.0) == []
         assert view.history.count
+    assert len(view.news(1.0, 1.0)) == 1  # a state comes after the period anyway
 
 
 def test_browsers_are_told_the_clock(playing, page_parts):
