@@ -7,7 +7,6 @@ import io
 import json
 import math
 import os
-from pathlib import Path
 import zipfile
 
 from hypothesis import given, settings
