@@ -9,6 +9,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from surrogate.asperities import running_in
+from surrogate.asperities.topography_onset import onset_of
 from surrogate.builder.closed_form import build_closed_form, default_settings
 from surrogate.cli import add_commands, Parser
 from surrogate.parameters import load_lubricant, load_screw, screw_and_oil
@@ -50,6 +52,22 @@ def screw():
 @pytest.fixture(scope='session')
 def oil():
     return load_lubricant('iso_vg_68')
+
+
+@pytest.fixture(scope='module')
+def small_tiles():
+    """Draw a small tile for each raceway, for tests that need no statistics of it."""
+
+    def forget():
+        for cache in (Contacts.of, onset_of):
+            cache.cache_clear()
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(running_in, 'TILES', 1)
+        patch.setattr(running_in, 'MOST_WAVES', 16)
+        forget()
+        yield
+    forget()
 
 
 @pytest.fixture(scope='session')

@@ -3,6 +3,7 @@
 """Progress: rate, time left, a bar on a terminal and few lines elsewhere."""
 
 import io
+import itertools
 import sys
 
 import pytest
@@ -57,6 +58,17 @@ def test_a_log_gets_a_line_per_tenth_or_minute():
     assert lines[-1].startswith('1000/1000 solves')
     expected = '3/1000 solves, 4 s each, 66 min left'
     assert run(io.StringIO(), 1000, 4.0).splitlines()[0] == expected
+
+
+def test_a_log_hears_of_work_that_goes_on_after_10_s_of_silence():
+    now, stream = [0.0], io.StringIO()
+    progress = Progress(3, 'solves', stream=stream, clock=lambda: now[0])
+    for now[0], lines in ((9.9, 0), (10.0, 1), (19.9, 1), (20.0, 2)):
+        progress.beat()
+        assert stream.getvalue().count('\n') == lines
+    quiet = Terminal()
+    Progress(3, 'solves', stream=quiet, clock=itertools.count(0.0, 10.0).__next__).beat()
+    assert quiet.getvalue() == ''
 
 
 def test_what_was_there_does_not_count_for_the_rate():

@@ -18,6 +18,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 import pytest
 from surrogate.store import (
+    connected,
     is_passing,
     MAY_BE_NAN,
     on_network,
@@ -261,6 +262,13 @@ def test_one_that_is_opened_alone_is_for_nobody_else(tmp_path):
     store.close()
     opened(tmp_path, alone=True).close()
     assert [path.name for path in tmp_path.iterdir()] == ['a.sqlite3']
+
+
+@pytest.mark.parametrize('alone', [False, True])
+def test_the_journal_takes_a_sixteenth_of_the_limit(tmp_path, alone):
+    with contextlib.closing(connected(tmp_path / 'a.sqlite3', 2**20, alone=alone)) as database:
+        assert database.execute('PRAGMA journal_size_limit').fetchone() == (2**16,)
+        assert database.execute('PRAGMA wal_autocheckpoint').fetchone() == (2**16 // 4096,)
 
 
 def test_a_file_system_of_another_machine_is_known_by_its_name(tmp_path):

@@ -52,6 +52,7 @@ def test_scale_comes_before_offset_and_both_before_the_unit():
     assert speed('rad/s', 3.0, scale=2.0, offset=-1.0) == 5.0
     assert conversions.load_scaling('kN', scale=2.0, offset=1.0)(3.0) == 7000.0
     assert conversions.temperature_scaling('degC', scale=0.5, offset=10.0)(60.0) == 313.15
+    assert conversions.torque_scaling(0.5, scale=2.0, offset=1.0, handedness='left')(3.0) == -3.5
 
 
 @pytest.mark.parametrize(('unit', 'torque'), [('N m', 4.0), ('A', 0.5 * 4.0), ('%', 0.25 * 4.0)])

@@ -5,9 +5,10 @@
 from collections import Counter
 from pathlib import Path
 
-from ballscrew_monitor.cycle.outcome import loss, Outcome
+from ballscrew_monitor.cycle.outcome import loss, Outcome, plan
 from ballscrew_msgs.msg import BallScrewState, InputHealth
 import pytest
+from surrogate.files import InputError
 
 
 def make_outcome(**states):
@@ -50,3 +51,10 @@ def test_a_loss_is_said_and_nothing_else(says):
 )
 def test_it_says_what_was_lost_refused_or_without_verdict(health, sentence, says):
     assert words(**health) == f'axis x: {says(sentence)}'
+
+
+@pytest.mark.parametrize('rate', [-1.0, 0.0, 1001.0])
+def test_a_rate_at_which_nothing_plays_is_refused(tmp_path, rate):
+    with pytest.raises(InputError, match='allowed is above 0 to 1000'):
+        plan(tmp_path, tmp_path, tmp_path / 'out', rate)
+    assert not (tmp_path / 'out').exists()

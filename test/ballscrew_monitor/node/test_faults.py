@@ -14,7 +14,9 @@ import pytest
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger
+from surrogate.files import InputError
 from surrogate.surface import shipped_surface
+import yaml
 
 AHEAD = 3600.0  # [s]
 FAST = 100.0  # [rad/s]
@@ -106,6 +108,12 @@ def bad_value(row):
     return "'maybe'" if isinstance(row.default, bool) else '3.5'
 
 
+def test_each_parameter_refuses_a_bad_value():
+    for name, row in ROWS.items():
+        with pytest.raises(InputError, match=f'parameter {name} is .*, (allowed is|it must be) '):
+            row.check(name, yaml.safe_load(bad_value(row)))
+
+
 @pytest.fixture(scope='module')
 def environment():
     """Stay in a free domain with the middleware of this process."""
@@ -116,8 +124,11 @@ def environment():
 
 
 def test_a_bad_start_value_is_one_sentence_and_exit_code_2(environment, capfd):
+    """A parameter of each type, with choices or without."""
+    kinds = {(type(row.default), bool(row.choices)): name for name, row in ROWS.items()}
     offenders = []
-    for name, row in ROWS.items():
+    for name in kinds.values():
+        row = ROWS[name]
         code = run(['--ros-args', '-p', f'{name}:={bad_value(row)}'], [1])
         out, err = capfd.readouterr()
         sentence = rf'ballscrew_monitor: parameter {name} is .*, (allowed is|it must be) .*\n'

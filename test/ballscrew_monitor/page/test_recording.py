@@ -144,6 +144,8 @@ def test_events_are_shown_from_their_begin_as_far_as_they_have_come(playing):
     playing.advance(0.0, 0.0)
     assert view.events[event.event_id]['active']
     assert view.events[event.event_id]['duration_s'] == pytest.approx(0.25 * event.duration)
+    acts = {name: view.events[event.event_id][name] for name in ('shelved', 'acknowledged')}
+    assert acts == {'shelved': False, 'acknowledged': False}
     ask(playing, 'seek', s=3.0)
     playing.advance(0.0, 0.0)
     assert view.events[event.event_id]['duration_s'] <= event.duration
@@ -165,6 +167,7 @@ def test_a_recording_that_is_paused_has_no_news(playing, monkeypatch):
         playing._axes[0].show(playing._last + past, 0.5)
         assert view.news(0.5, 1.0) == []
         assert view.history.count
+    assert len(view.news(1.0, 1.0)) == 1  # a state comes after the period anyway
 
 
 def test_browsers_are_told_the_clock(playing, page_parts):

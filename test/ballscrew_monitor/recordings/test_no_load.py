@@ -10,7 +10,9 @@ from ballscrew_monitor import cli
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.no_load import (
+    _keeps,
     read_no_load,
+    Series,
     speed_channel,
     temperature_channel,
     torque_channel,
@@ -111,6 +113,15 @@ def test_a_slow_drift_is_no_steady_speed(tmp_path, refused):
             assert len(read_no_load(bag, CHANNELS)[0]['speed']) > 3
         else:
             refused('0_39_windows', read_no_load, bag, CHANNELS)
+
+
+@pytest.mark.parametrize(('drift', 'keeps'), [(0.0, True), (1.0, True), (1.0625, False)])
+def test_a_drift_of_just_1_percent_is_steady(drift, keeps):
+    """The speeds are exact in binary; 1 % of 100 rad/s is rounded to just 1."""
+    time = np.array([0.0, 0.25, 0.5])
+    value = 100.0 + drift * np.array([-0.5, 0.0, 0.5])
+    assert _keeps(Series(time=time, value=value)) is keeps
+    assert _keeps(Series(time=time, value=-value)) is keeps
 
 
 def test_units_scale_and_temperature(tmp_path):

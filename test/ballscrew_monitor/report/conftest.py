@@ -203,13 +203,13 @@ def judged(tmp_path_factory):
 
 
 @pytest.fixture(scope='session')
-def hour(judged):
-    """Return an hour at 1 kHz with 60 long events and a measured torque."""
+def half_hour(judged):
+    """Return half an hour at 1 kHz with 60 long events and a measured torque."""
     noise = np.random.default_rng(1)
-    rows = 60_000
+    rows = 30_000
 
-    def block(minute):
-        block = make_rows(minute * rows, rows, rate=1000.0, motor_torque_source=1)
+    def block(number):
+        block = make_rows(number * rows, rows, rate=1000.0, motor_torque_source=1)
         made = block.rows
         return changed(
             block,
@@ -222,7 +222,7 @@ def hour(judged):
         )
 
     events = [
-        make_event(n + 1, 60.0 * n + 10.0, 20.0, worst_value=0.011 + 0.001 * n) for n in range(60)
+        make_event(n + 1, 30.0 * n + 5.0, 20.0, worst_value=0.011 + 0.001 * n) for n in range(60)
     ]
     values = make_values(**{'x.torque.topic': 'torque', 'x.torque.field': 'data'})
-    return judged.case([block(minute) for minute in range(60)], events, values=values)
+    return judged.case([block(number) for number in range(60)], events, values=values)

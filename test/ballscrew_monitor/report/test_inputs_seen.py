@@ -130,6 +130,11 @@ def test_feeds_too_slow_or_too_fast_and_a_load_that_never_changes_are_doubted(ju
     block = judged.rows(speed=2000.0)
     hints = seen_of(judged.case([block], values=values), Source.SPEED).hints
     assert any('it feeds with up to 3.18 m/s' in hint for hint in hints)
+    two = 2.0 * 2 * math.pi / 0.01  # [rad/s] at which a lead of 10 mm feeds 2 m/s
+    for speed, doubted in ((0.999 * two, False), (1.001 * two, True)):
+        case = judged.case([judged.rows(speed=speed)], values=values)
+        hints = seen_of(case, Source.SPEED).hints
+        assert any('it feeds with up to 2 m/s' in hint for hint in hints) is doubted
     hints = seen_of(judged.case([judged.rows(axial_load=0.0)]), Source.LOAD).hints
     assert hints == ('x.load: it never changes, is it connected?',)
 

@@ -8,6 +8,7 @@ import pytest
 from surrogate.files import InputError
 from surrogate.parameters import DATA
 
+pytestmark = pytest.mark.usefixtures('small_tiles')
 COMMAND = ('onset',)
 NOMINAL = (DATA / 'screws' / 'nominal.yaml').read_text(encoding='utf-8')
 

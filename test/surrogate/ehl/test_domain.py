@@ -2,13 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The domain of a contact that states none."""
 
+from types import SimpleNamespace
+
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
 from surrogate.ehl import Condition, Settings, solve_contact, Status
 from surrogate.ehl.case import make_case
-from surrogate.ehl.domain import nodes_at_multiples
+import surrogate.ehl.domain
+from surrogate.ehl.domain import nodes_at_multiples, production_domain
 
 SLOW = Condition(load=27.6, entrainment_speed=0.01)
 
@@ -36,6 +39,24 @@ def test_a_summit_that_touches_outside_is_inside_the_domain(nominal, place, edge
     assert abs(found[edge]) > abs(least)
     flat, low = domain(nominal, bump(x0, y0, 0.0)), domain(nominal, bump(x0, y0, 0.2e-6))
     assert low == pytest.approx(flat)
+
+
+@pytest.mark.parametrize(
+    ('reaches', 'ends'), [((0, 0, 0), (-1.4, 1.4, 1.3)), ((0.9, 0.8, 0.7), (-1.9, 1.8, 1.7))]
+)
+def test_at_rest_the_domain_ends_where_its_summits_do(monkeypatch, reaches, ends):
+    """All over the semi-axes, from the middle of the contact."""
+    monkeypatch.setattr(surrogate.ehl.domain, '_summit_reaches', lambda *known: reaches)
+    still = SimpleNamespace(condition=Condition(load=27.6, entrainment_speed=0.0))
+    assert production_domain(still, 0.0) == pytest.approx(ends)
+
+
+def test_coarseness_is_the_distance_of_the_nodes_over_the_inlet_length(nominal):
+    settings = Settings(domain=(-4.0, 2.0, 1.5), nx=61)
+    case = make_case(*nominal, SLOW, settings, None)
+    distance = 6.0 / 60
+    length = case.inlet_length(SLOW.entrainment_speed)
+    assert case.coarseness(settings, SLOW.entrainment_speed) * length == pytest.approx(distance)
 
 
 def test_heights_at_nodes_leave_the_domain_alone(nominal):

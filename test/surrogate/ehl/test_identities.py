@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from surrogate.ehl import Condition, Settings, solve_contact
+from surrogate.ehl.grid import make_grid
+from surrogate.ehl.results import _rolling
 from surrogate.formulas.geometry import Contact, hertz
 
 
@@ -127,3 +129,11 @@ def test_production_domain_cuts_nothing_off(nominal, load, speed, radius_y):
     assert found.converged, found.status.value
     assert wide.converged, wide.status.value
     assert found.central_film == pytest.approx(wide.central_film, rel=5e-3)
+
+
+def test_in_a_gap_of_one_height_rolling_is_half_of_it_times_the_rise_from_the_inlet():
+    """The pressure before the first row is a share of that of the second one."""
+    grid = make_grid(5, 5, (-2.0, 2.0, 1.0), symmetric=False, compliance=1.0)
+    pressure = np.array([0.0, 1.0, 4.0, 2.0, 0.5])[:, None] + np.zeros(grid.shape)
+    force = _rolling(grid, np.full(grid.shape, 3.0), pressure, np.full(5, 0.25))
+    assert force == pytest.approx(1.5 * (0.5 - 0.25 * 1.0) * 5 * grid.dy)

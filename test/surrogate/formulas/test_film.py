@@ -81,6 +81,8 @@ def test_hamrock_and_dowson_against_converged_solutions_and_their_own_case(table
     [
         (500, 10, 25.0, 5.310),  # an incompressible solution extrapolated to 5.314
         (20, 10, 1.0, 4.265),
+        # Elastic and isoviscous: 3.18 1.63^(-14/25) M^(-2/15), joined with 1.8 of no load.
+        (10_000, 1e-3, 1.0, (0.70843**-4 + 1.8**-4) ** -0.25),
     ],
 )
 def test_nijenbanning_values(load, material, ratio, film):

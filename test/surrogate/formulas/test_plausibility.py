@@ -3,6 +3,7 @@
 """Numbers of a sheet that do not suit each other: refused, or told, with the number that fits."""
 
 from dataclasses import replace
+import math
 
 import pytest
 from surrogate.formulas.plausibility import (
@@ -78,3 +79,13 @@ def test_an_unusual_roughness_is_told(screw, change, key, says):
 def test_a_smooth_raceway_has_no_doubts(screw):
     smooth = replace(screw.roughness, rms=0.0, cutoff_long=None)
     assert doubts(replace(screw, roughness=smooth)) == []
+
+
+def test_balls_that_fill_less_than_a_fifth_of_the_diameters_of_their_circle_are_told(screw):
+    """Loaded turns times ball over ball-circle diameter; the 51 balls of the sheet fill 0.56."""
+    turn = math.hypot(2 * math.pi * screw.pitch_radius, screw.lead)
+    for number in range(10, 52):
+        turns = number * screw.ball_diameter / turn
+        told = doubts(replace(screw, loaded_balls_per_nut=number))
+        little = turns * screw.ball_diameter / (2 * screw.pitch_radius) < 0.2
+        assert any('the balls fill' in sentence for sentence in told) is little, number

@@ -39,6 +39,13 @@ def test_robust_variance_is_that_of_least_squares_where_nothing_is_cut():
     assert robust[0, 0] < 0.01 * covariance(np.ones((21, 1)), outlier)[0][0, 0]
 
 
+@pytest.mark.parametrize(('angle', 'lost'), [(1.9e-6, True), (2.1e-6, False)])
+def test_two_columns_are_told_apart_by_a_millionth_of_the_largest_singular_value(angle, lost):
+    """Of unit columns at an angle [rad] they are sqrt(2) times its half's sine and cosine."""
+    jacobian = np.array([[1.0, math.cos(angle)], [0.0, math.sin(angle)]])
+    assert bool(undetermined(('a', 'b'), jacobian)) is lost
+
+
 def test_parameters_that_the_data_cannot_tell_are_named():
     """Two equal columns are lost, a third one keeps its error."""
     x = np.linspace(1.0, 2.0, 6)

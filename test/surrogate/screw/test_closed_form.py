@@ -62,6 +62,14 @@ def test_torque_has_an_interior_minimum_and_rcs_falls(screw, oil):
     assert np.all(np.diff(result.rcs[result.rcs > 0]) < 0)
 
 
+def test_a_screw_that_hardly_presses_has_friction_and_one_that_does_not_has_none(screw, oil):
+    smooth = replace(screw, preload=0.0, roughness=replace(screw.roughness, rms=0.0))
+    lightly, unloaded = (solve(smooth, oil, 300.0, load) for load in (1.0, 0.0))
+    assert 0.0 < sum(lightly.normal_forces) < 0.1  # [N] of a ball
+    assert 0.0 < lightly.friction_coefficient < 1e-3
+    assert unloaded.friction_coefficient == 0.0
+
+
 def test_at_rest_the_asperities_carry_everything_and_rub_by_the_slip_arm(screw, oil):
     """Torque above the helical part of mu_a times the Hertz-weighted slip arm."""
     rest, crawl = solve(screw, oil, 0.0, 1000.0), solve(screw, oil, 1e-9, 1000.0)

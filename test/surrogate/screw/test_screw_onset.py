@@ -30,6 +30,7 @@ from surrogate.screw.screw_onset import (
 )
 from surrogate.units import RPM
 
+pytestmark = pytest.mark.usefixtures('small_tiles')
 KELVIN = 313.15
 
 

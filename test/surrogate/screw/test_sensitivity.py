@@ -26,6 +26,7 @@ from surrogate.screw.sensitivity import (
 from surrogate.screw.uncertain_inputs import INPUTS, LEFT_OUT, ScrewCase
 from surrogate.units import RPM
 
+pytestmark = pytest.mark.usefixtures('small_tiles')
 POINT = OperatingPoint(speed=600 * RPM, load=500.0, temperature=313.15)
 QUICK = [one for one in INPUTS if one.part in ('point', 'lubricant')]
 BY_NAME = {one.name: one for one in INPUTS}

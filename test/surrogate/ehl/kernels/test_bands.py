@@ -5,6 +5,7 @@
 import numpy as np
 import pytest
 from surrogate.ehl.kernels.bands import (
+    _assemble,
     BAND,
     bands_across,
     factor_bands,
@@ -133,3 +134,22 @@ def test_lines_from_bands_leave_less_of_a_slow_wave():
         rest[started] = np.abs(found - wave).max()
     assert rest[False] > 0.8
     assert rest[True] < 0.3 * rest[False]
+
+
+@pytest.mark.parametrize(
+    ('plane', 'node', 'beside'), [(3, 1 + BAND, -1), (4, BAND, 1), (3, 1, 0), (4, 2 * BAND + 5, 0)]
+)
+def test_a_step_to_the_next_band_is_as_long_as_a_band(plane, node, beside):
+    """A share of the flow over an inner edge joins the next band, none of that over a side."""
+    shape = (NX, 2 * BAND + 7)
+    planes, thick = np.zeros((6, *shape), np.float32), np.ones(shape, np.float32)
+    planes[plane, 5, node] = 1.0
+    count = bands_across(shape[1])
+    rows = np.ones((NX * count, 2 * count + 1), np.float32)
+    _assemble(planes, thick, rows)
+    expected = np.zeros_like(rows)
+    row = expected[5 * count + (node - 1) // BAND]
+    share = 1.0 / BAND if beside else 0.0
+    row[count + beside] = share
+    row[count] = 1.0 - share
+    assert rows == pytest.approx(expected)

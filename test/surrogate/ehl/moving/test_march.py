@@ -211,3 +211,9 @@ def test_raceways_that_end_and_fewer_transits_than_places_are_refused(
     contact, oil, condition, _ = moes_case(100, 10, 'roelands_dh')
     with refused('each_4_places'):
         march_contact(contact, oil, condition, flat, transits=2.0, settings=MarchSettings())
+
+
+def test_what_arrives_from_outside_continues_the_first_two_rows():
+    before = np.array([[10.0, 1.0], [20.0, 1.0], [45.0, 3.0], [7.0, 8.0]])
+    after = [[-10.0, 1.0], [0.0, 1.0], [10.0, 1.0], [20.0, 1.0]]
+    assert step.arrived(before, 2).tolist() == after
