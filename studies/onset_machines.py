@@ -126,7 +126,7 @@ def contact_torque(screw, oil, march, speed, kelvin):
     law = MachineLaw(onsets=usual.onsets, deviation=usual.deviation, march=march)
     vars(opened)['law'] = law
     try:
-        return closed_form.solve(Contacts.of(screw), oil, speed, 0.0, kelvin).friction_torque
+        return closed_form.solve(opened, oil, speed, 0.0, kelvin).friction_torque
     finally:
         vars(opened)['law'] = usual
 

@@ -28,8 +28,8 @@ COLUMNS = 5
 """Quantities of a window: speed, axial load, efficiency, RCS, film ratio."""
 EVENTS_VERSION = 1
 """Version of the events in files, and of the message that holds them."""
-MEMORY_VERSION = 2
-"""Version of `Memory` and `SlopeRing` in files."""
+MEMORY_VERSION = 3
+"""Version of a memory in files: `Memory`, `SlopeRing` and what `snapshot` adds to them."""
 MEMORY_LAYOUT = 'df634f0de83e3629'
 """SHA-256 of names and types of their fields; another one is another version."""
 

@@ -37,6 +37,7 @@ from rclpy.task import Future
 
 LOG = logging.getLogger(__name__)
 STATE_TYPE = 'ballscrew_msgs/msg/BallScrewState'
+OUTPUTS = ('state', 'out_of_zone', 'surface_info', 'health')  # of an axis that the page reads
 LOOK = 1.0  # [s] between two looks at the graph
 DEPTH = 100  # messages of a topic of which few come, that wait for their turn
 DIAGNOSTICS_QOS = QoSProfile(depth=DEPTH)
@@ -187,13 +188,16 @@ def node_of(base: str) -> str:
 
 
 def sent_hashes(node: Node, base: str) -> set[str]:
-    """Return the hashes of the type of the state below `base`, as it is sent."""
-    sent = node.get_publishers_info_by_topic(f'{base}/state')
-    return {str(publisher.topic_type_hash) for publisher in sent}
+    """Return the hashes of the types of the outputs below `base`, as they are sent."""
+    return {
+        str(publisher.topic_type_hash)
+        for name in OUTPUTS
+        for publisher in node.get_publishers_info_by_topic(f'{base}/{name}')
+    }
 
 
 def version_problem(node: str, hashes: tuple[set[str], set[str]]) -> Said:
-    """Return why a node is not listened to, by hashes of its type and of ours; empty if it is."""
+    """Return why a node is not heard, by hashes of its types and of ours; empty if it is."""
     theirs, ours = hashes
     if theirs <= ours:
         return ''
@@ -239,10 +243,13 @@ class AxisLink:
         return lost
 
     def hashes(self) -> tuple[set[str], set[str]]:
-        """Return the hashes of the type of the state, as it is sent and as we read it."""
-        read = self._node.get_subscriptions_info_by_topic(f'{self.view.name}/state')
-        name = self._node.get_name()
-        ours = {str(reader.topic_type_hash) for reader in read if reader.node_name == name}
+        """Return the hashes of the types of the outputs, as they are sent and as we read them."""
+        ours = {
+            str(reader.topic_type_hash)
+            for name in OUTPUTS
+            for reader in self._node.get_subscriptions_info_by_topic(f'{self.view.name}/{name}')
+            if reader.node_name == self._node.get_name()
+        }
         return sent_hashes(self._node, self.view.name), ours
 
     @property

@@ -61,7 +61,12 @@ class ScrewPoint(SolvedPoint[Number], Generic[Number]):
 
 
 def kept_point(point: ScrewPoint[Any]) -> SolvedPoint[float]:
-    """Return what a surface keeps of one point, whatever its tier; none without a load."""
+    """
+    Return what a surface keeps of one point, whatever its tier.
+
+    It has not converged where a number is not finite, such as a film without a load.
+
+    """
     kept = {spec.name: getattr(point, spec.name) for spec in fields(SolvedPoint)}
     numbers = {name: float(kept[name]) for name in FIELDS}
     kept |= {

@@ -15,7 +15,13 @@ from ballscrew_monitor.node.state_records import Corrections
 from ballscrew_monitor.page import hub as hubs
 from ballscrew_monitor.page.hub import Browser, Hub
 from ballscrew_monitor.page.phrases import english
-from ballscrew_monitor.page.ros_side import _act_all, LATE_QOS, RosSide, version_problem
+from ballscrew_monitor.page.ros_side import (
+    _act_all,
+    LATE_QOS,
+    RosSide,
+    sent_hashes,
+    version_problem,
+)
 from ballscrew_monitor.settings.qos import started_node
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from builtin_interfaces.msg import Time
@@ -343,6 +349,16 @@ def test_versions_are_told_apart_by_the_hashes_of_their_types(says):
     assert version_problem('/m', ({'a'}, {'a'})) == ''
     assert version_problem('/m', (set(), {'a'})) == ''
     assert english(version_problem('/m', ({'a', 'b'}, {'a'}))) == says('version')
+
+
+def test_events_of_another_version_count_where_the_states_are_of_ours():
+    hashes = {f'{NAME}/state': 'a', f'{NAME}/out_of_zone': 'b'}
+    graph = SimpleNamespace(
+        get_publishers_info_by_topic=lambda topic: [
+            SimpleNamespace(topic_type_hash=hashes[topic]) for one in hashes if one == topic
+        ]
+    )
+    assert sent_hashes(graph, NAME) == {'a', 'b'}
 
 
 def test_the_policy_of_sros2_allows_all_that_the_page_has(node, heard):
