@@ -5,7 +5,7 @@
 from pathlib import Path
 
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bag_files import ACTIVE, is_bag, is_table
+from ballscrew_monitor.recordings.bag_files import ACTIVE, is_bag, is_table, kind_of
 from ballscrew_monitor.recordings.words import Shown, shown_progress
 from surrogate.files import InputError
 
@@ -23,10 +23,10 @@ def opened_log(path: Path, *, mapping: Path | None = None, shown: Shown = shown_
     if path.is_dir() or is_bag(path):
         _check_bag(path, mapping)
         return Bag(path, salvage=True)
-    if not is_table(path):
+    if not path.is_file() or kind_of(path) == 'rosbag1':
         raise InputError(
-            f'log {path} is neither a bag nor a table, it must be of MCAP, sqlite3, CSV, Parquet '
-            'or xlsx'
+            f'log {path} is neither a bag nor a table, it must be of MCAP, sqlite3, CSV, Parquet, '
+            'xlsx, or a file of signals'
         )
     if mapping is None:
         raise InputError(

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 import dataclasses
 
 from ballscrew_monitor.core import conversions
+from ballscrew_monitor.recordings.tables.clocks import SCALES
 from surrogate.files import printable
 
 RATED = '%'  # of the rated torque, or of the current at which the motor gives it
@@ -16,7 +17,7 @@ UNITS: dict[str, Mapping[str, float]] = {
     'torque': {'N m': 1.0, RATED: 0.01},
     'current': conversions.CURRENT_UNITS | {RATED: 0.01},
     'temperature': conversions.TEMPERATURE_UNITS,
-    'time': conversions.TIME_UNITS,
+    'time': {unit: factor for unit, (factor, _) in SCALES.items()},
 }
 """Units of each kind of column; some need what a map states, as the lead or the rated torque."""
 MOTION = ('speed', 'position')
