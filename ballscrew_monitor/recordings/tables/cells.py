@@ -127,13 +127,15 @@ class Cells:
         self._type: pl.DataType = pl.Null()
         self._kinds: list[list[_Count]] = []
         self.count, self._holes = 0, (0, 0)
+        self._looks = 3
 
     def add(self, cells: pl.Series) -> None:
         """Look through the next cells; raises InputError when their type is that of no number."""
         if not self._kinds:
             self._first, self._type = cells[0], cells.dtype
-            self._kinds = [[_Count(form=form) for form in kind] for kind in self._forms(cells)]
         with readable(f'{self.where} of {self._type} cannot be read as numbers'):
+            if not self._kinds:
+                self._kinds = [[_Count(form=form) for form in kind] for kind in self._forms(cells)]
             self._count(cells)
             self._count_holes(cells)
         self._row += len(cells)
@@ -231,6 +233,19 @@ class Cells:
                 read = self._count_numbers(cells, *kind)
             else:
                 read = max([one.add(cells, self._row) for one in kind])
+        if not read and len(self._kinds) == 1 and self._looks:
+            self._look_for_times(cells)
+
+    def _look_for_times(self, cells: pl.Series) -> None:
+        """Let cells that are no numbers be times, of which there was none so far."""
+        self._looks -= 1
+        before = max(one.good + one.bad for one in self._kinds[0]) - len(cells)
+        for kind in self._forms(cells)[1:] if cells.dtype == pl.String else ():
+            counts = [_Count(form=form, bad=before) for form in kind]
+            for one in counts:
+                one.first = f'{short(repr(self._first))} in row {self._first_row}' * (before > 0)
+                one.add(cells, self._row)
+            self._kinds.append(counts)
 
     def _count_numbers(self, cells: pl.Series, points: _Count, commas: _Count) -> bool:
         """Count cells as numbers with a point and with a comma; return True if one reads all."""

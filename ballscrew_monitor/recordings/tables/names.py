@@ -48,8 +48,8 @@ ELSEWHERE = frozenset(
 )
 MEASURED = frozenset('actual act feedback fb measured meas encoder enc real ist istwert'.split())
 WANTED = frozenset(
-    'command commanded cmd com des vcmd set setpoint target reference ref demand desired nominal soll '
-    'sollwert'.split()
+    'command commanded cmd com des vcmd set setpoint target reference ref demand desired nominal '
+    'soll sollwert'.split()
 )
 QUALIFIERS = frozenset('filtered smoothed mean average avg rms value wert'.split())
 PROCESSED = frozenset('output raw'.split())
@@ -69,10 +69,16 @@ JOINED = re.compile(
 )
 """Axis and quantity in one word, as of MTConnect: Xact, X1actm, Zfrt; or Fx, vz."""
 LETTERED = re.compile(r'[\[(]([XYZxyz]\d?)[\])]')
-JOINED_WORDS = {'act': 'act position', 'actm': 'act position', 'actw': 'position', 'abs': 'position',
-                'com': 'command position', 'frt': 'feed', 'load': 'percent'}  # fmt: skip
+JOINED_WORDS = {'act': 'act position', 'actm': 'act position', 'actw': 'position',
+                'abs': 'position', 'com': 'command position', 'frt': 'feed', 'load': 'percent'}  # fmt: skip
 TELLS_NOTHING = (
-    MEASURED | WANTED | PROCESSED | OF_THE_SCREW | AXIS | ENCODERS | {'achs', 'axial', 'axes'}
+    MEASURED
+    | WANTED
+    | PROCESSED
+    | OF_THE_SCREW
+    | AXIS
+    | (ENCODERS - ELSEWHERE)
+    | {'achs', 'axial', 'axes'}
 )
 TURNING = {'drehzahl': 'rev/min', 'omega': 'rad/s'}
 """Words of a speed that tell its unit, where nothing else does."""

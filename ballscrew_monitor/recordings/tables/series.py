@@ -145,7 +145,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     notes = [note for one in times for note in one.notes()]
     return Series(
         count=sum(one.count for one in times),
-        usual_period=max(one.usual_period for one in times if one.group.is_motion),
+        usual_period=max(one.usual_period for one in times if one.count > 1),
         begin=times[0].begin,
         end=max(one.end for one in times),
         notes=(
@@ -177,19 +177,18 @@ def _moving(axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
 
 def _place(path: Path, times: Sequence[Times]) -> None:
     """Let the runs of all groups follow each other, and all stamps count from the first time."""
-    counts = {len(one.gate.runs) for one in times}
-    if len(counts) > 1:
-        first, second = [one for one in times if len(one.gate.runs) in (min(counts), max(counts))][
-            :2
-        ]
-        raise InputError(
-            f'log {path}: time begins again {len(first.gate.runs) - 1} times in column '
-            f'{short(first.group.time_columns[0])} of {short(first.group.columns[0])} and '
-            f'{len(second.gate.runs) - 1} times in that of {short(second.group.columns[0])}: split '
-            'the log there'
-        )
-    gap = max(BETWEEN, *(LONG_GAP * one.gate.step for one in times if one.group.is_motion))
-    ends = [max(parts) for parts in zip(*(one.gate.ends(gap) for one in times))]
+    motion = [one for one in times if one.group.is_motion]
+    runs = len(motion[0].gate.runs)
+    for one in times:
+        if len(one.gate.runs) != runs > 1 or (one in motion and len(one.gate.runs) != runs):
+            raise InputError(
+                f'log {path}: time begins again {runs - 1} times for '
+                f'{short(motion[0].group.columns[0])} and {len(one.gate.runs) - 1} times for '
+                f'{short(one.group.columns[0])}: split the log there'
+            )
+    gap = max(BETWEEN, *(LONG_GAP * one.gate.step for one in motion))
+    alike = [one.gate.ends(gap) for one in times if len(one.gate.runs) == runs]
+    ends = [max(parts) for parts in zip(*alike, strict=True)]
     for one in times:
         one.place(gap, ends if len(times) > 1 else None)
     begin = min(one.first for one in times)

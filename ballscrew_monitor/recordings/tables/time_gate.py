@@ -22,7 +22,6 @@ RATE = 1e5  # [Hz] no table has more rows in a second
 LONGEST = 10 * 365.25 * DAY  # [s] that a recording may last
 AGAIN = 10  # rows that rise, all earlier than one before them: more than a few that came late
 WINDOW = 512  # rows that are looked at together where some come late
-UNORDERED = 0.3  # of the rows that fall: such a column is no time
 SHARED = 0.05  # of the rows that may have the time of the row before
 REGULAR = 0.8  # of the usual number of rows that share a time
 MOST = 0.9  # of the times that are shared by the usual number
@@ -54,12 +53,14 @@ class TimeGate:
         self.clocks: list[tuple[int, float]] = []  # row from which a clock was set back [s]
         self.count = self.late = 0
         self._fallen = self._equal = 0
+        self._unordered = False
         self._pending: list[tuple[float, int]] = []  # late rows at the end
         self._before = 0.0  # time of the row before them [s]
         self._last = np.zeros(0)
         self._steps: Counter[float] = Counter()
         self._shares: Counter[int] = Counter()
         self._share = 0  # rows that have the last time
+        self._whole = False
         self._least, self._most = (math.inf, 0), (-math.inf, 0)
         self._first_equal = self._first_fall = (0.0, 0.0, 0)
 
@@ -73,7 +74,7 @@ class TimeGate:
             self._most = max(self._most, moment, key=lambda one: one[0])
         self._add_steps(times, rows)
         self.count += len(times)
-        if self._fallen <= UNORDERED * self.count or self.count < AGAIN:
+        if not self._unordered and len(self.runs) <= RUNS:
             for begin in range(0, len(times), WINDOW):
                 end = begin + WINDOW
                 self._follow(times[begin:end], rows[begin:end])
@@ -100,7 +101,10 @@ class TimeGate:
             shares = np.diff(begins, append=len(times))
             self._end_share(int(begins[0]))
             self._share = int(shares[-1])
-            self._shares.update({round(one): n for one, n in _counts(shares[:-1])})
+            if len(shares) > 1:
+                inner = shares[:-1] if self._whole else shares[1:-1]
+                self._whole = True
+                self._shares.update({round(one): n for one, n in _counts(inner)})
             rising = steps[steps > 0.0]
             if len(self._steps) < 4 * WINDOW:
                 rounded = np.array([float(f'{step:.3g}') for step in rising[:WINDOW]])
@@ -110,8 +114,10 @@ class TimeGate:
         self._last = times[-1:]
 
     def _end_share(self, more: int = 0) -> None:
-        if self._share + more:
+        """Count the rows of the last time, unless it is the first of all, which may be cut."""
+        if self._whole and self._share + more:
             self._shares[self._share + more] += 1
+        self._whole |= self._share + more > 0
 
     def _follow(self, times: Array, rows: RowNumbers) -> None:
         """Follow the runs through a few rows."""
@@ -157,8 +163,10 @@ class TimeGate:
     def _begin_again(self) -> None:
         """Let the rows that wait begin a run, or go on by a clock that was set back."""
         run, (first, row) = self.runs[-1], self._pending[0]
+        steps = np.diff([time for time, _ in self._pending])
+        self._unordered |= 2 * int((steps < 0.0).sum()) > len(steps)
         fall = self._before - first
-        if self._wall and HOUR - CLOSE <= fall <= HOUR and first > run.begin:
+        if self._wall and HOUR - CLOSE <= fall <= HOUR and abs(first - run.begin) > CLOSE:
             run.shift += HOUR
             self.clocks.append((row, HOUR))
             run.rows += len(self._pending)
@@ -172,14 +180,19 @@ class TimeGate:
 
     def finish(self) -> None:
         """Take the end of the file for that of the last run: few rows may be one, too."""
-        self._end_share()
         if self._pending:
             times = np.array([time for time, _ in self._pending])
             again = times[0] <= self.runs[-1].begin and (np.diff(times) >= 0.0).all()
-            if again:
+            self._unordered |= 2 * len(times) > self.count and not again
+            if again and len(times) > 1:
                 self._begin_again()
             else:
                 self._settle()
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Return the least and the most time [s]."""
+        return self._least[0], self._most[0]
 
     def shifts(self, gap: float, ends: Sequence[float] | None = None) -> dict[int, float]:
         """Return what is added to the times from some rows on [s], so that no run meets another."""
@@ -224,22 +237,24 @@ class TimeGate:
 
     @property
     def shared(self) -> float:
-        """Return the part of the rows that have the time of the row before [-]."""
-        return self._equal / max(self.count - 1, 1)
+        """Return the part of the rows that have the time of the row before [-], if not a few."""
+        return self._equal / (self.count - 1) if self._equal >= AGAIN else 0.0
 
-    def usual_share(self) -> tuple[int, float]:
+    def usual_share(self) -> tuple[float, float]:
         """Return how many rows share each time and the step [s] to the next; 0 if irregular."""
         usual, step, times = _median(self._shares), self.step, sum(self._shares.values())
-        near = sum(
-            times
-            for count, times in self._shares.items()
+        near = {
+            count: n
+            for count, n in self._shares.items()
             if abs(count - usual) <= max(1.0, (1.0 - REGULAR) * usual)
-        )
+        }
         even = {one: n for one, n in self._steps.items() if abs(one / step - 1.0) < 0.5}
         steps = sum(even.values())
-        if times < 4 or near < MOST * (times - 2) or steps < MOST * sum(self._steps.values()):
+        all_near = sum(near.values())
+        if times < 2 or all_near < MOST * times or steps < MOST * sum(self._steps.values()):
             return 0, 0.0
-        return round(usual), sum(one * n for one, n in even.items()) / steps
+        mean = sum(count * n for count, n in near.items()) / all_near
+        return mean, sum(one * n for one, n in even.items()) / steps
 
     @property
     def step(self) -> float:
@@ -255,7 +270,7 @@ class TimeGate:
 
     def fault_of_order(self) -> tuple[str, str]:
         """Return the fault of times that do not rise, or begin again all the time."""
-        if self._fallen > UNORDERED * self.count or len(self.runs) > RUNS:
+        if self._unordered or len(self.runs) > RUNS:
             before, time, row = self._first_fall
             return (
                 f'it does not rise: row {row} has {time:.12g} s after {before:.12g} s',

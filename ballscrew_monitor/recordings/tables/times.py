@@ -157,7 +157,7 @@ def groups_of(table: Table, mapping: TableMap) -> list[Group]:
 class Spread:
     """Rows that share each stamp, spread over the time to the next one: usual number and step."""
 
-    usual: int
+    usual: float
     step: float  # [s]
 
     @classmethod
@@ -170,7 +170,7 @@ class Spread:
     def words(self) -> str:
         """Return what was done."""
         return (
-            f'{self.usual} rows share each time, {self.step:.4g} s apart: they were spread, '
+            f'{self.usual:.4g} rows share each time, {self.step:.4g} s apart: they were spread, '
             f'{self.usual / self.step:.4g} rows in a second'
         )
 
@@ -212,10 +212,13 @@ class Spread:
         steps = np.diff(times[begins], append=following)
         steps = np.where((steps > 0.0) & (steps < 1.5 * self.step), steps, self.step)
         places = np.arange(len(times)) - np.repeat(begins, counts)
-        full = np.maximum(counts, np.where(counts < REGULAR * self.usual, self.usual, counts))
+        full = np.where(counts < REGULAR * self.usual, self.usual, counts)
         late = np.zeros(len(counts))
         if first:
+            full[0] = max(full[0], self.usual)
             late[0] = full[0] - counts[0]
+        if following == math.inf:
+            full[-1] = max(full[-1], self.usual)
         each = steps / full
         return np.asarray(times + np.repeat(each, counts) * (places + np.repeat(late, counts)))
 
@@ -241,11 +244,13 @@ class Times:
                 self.gate.add(times[known], row + np.flatnonzero(known))
                 show((row + len(times) - table.first_row) / table.rows)
         self.gate.finish()
-        self.count = self.gate.count
-        if self.count < 2:
+        self.count, self._shown = self.gate.count, shown
+        if self.count < 2 and group.is_motion:
             raise InputError(
                 f'log {table.path} holds {self.count} rows with a time, at least two are needed'
             )
+        if self.count:
+            self._check(*self.gate.range)
         if mapping.time:
             self._check_gate()
         self._shifts = dict[int, float]()
@@ -255,10 +260,15 @@ class Times:
         """
         Place the runs `gap` [s] behind each other, after `ends` [s] where these are later.
 
+        Without as many ends as there are runs, the times stay as they are.
+
         Then the steps between rows are known, and how late the latest row comes.
 
         """
-        self._shifts = self.gate.shifts(gap, ends)
+        if ends is None or len(ends) == len(self.gate.runs):
+            self._shifts = self.gate.shifts(gap, ends)
+        else:
+            self.gate.runs = self.gate.runs[:1]
         self._late, self._steps = 0.0, Steps()
         for _, times, _ in self._placed(self.group.time_columns or list(self.group.columns)[:1]):
             latest = np.maximum.accumulate(np.maximum(times, self._end))
@@ -272,11 +282,12 @@ class Times:
     def since(self, begin: float) -> None:
         """Let stamps count from the first time of the log [s]; raises InputError for others."""
         self._begin = begin
-        self._check()
+        self._check(begin, self.last)
         if self._late:
             self._steps = Steps()
-            for rows in self.rows():
-                self._steps.add((rows.stamps - self.begin).astype(np.float64))
+            with self._shown(self._table.rows, 'rows put in order') as show:
+                for rows in self.rows(show):
+                    self._steps.add((rows.stamps - self.begin).astype(np.float64))
 
     @property
     def begin(self) -> int:
@@ -305,6 +316,8 @@ class Times:
         if self._spread:
             found.append(f'{log} {self._spread.words}')
         found += [f'{log} {one}' for one in self.gate.words()]
+        if self.count < 2:
+            return found
         if gaps := self._steps.gaps() - len(self.gate.runs) + 1:
             which = 'gap is' if gaps == 1 else 'gaps are'
             found.append(
@@ -358,14 +371,9 @@ class Times:
 
     def _check_gate(self) -> None:
         """Raise InputError if times are such as no recording has; a slow signal refuses none."""
-        fault = self.gate.fault_of_order()
-        if not any(fault) and self.gate.shared > SHARED:
+        if self.gate.shared > SHARED:
             self._spread = Spread.of(self.gate)
-            fault = ('', '') if self._spread else self.gate.fault_of_shared()
-        if self.group.is_motion and not any(fault):
-            fault = self.gate.fault_of_rate(self._spread is not None)
-        if not any(fault):
-            fault = self.gate.fault_of_span()
+        fault = self.gate.fault() if self.group.is_motion else self.gate.fault_of_span()
         if any(fault):
             where = f'log {self._table.path}: column {short(repr(self.group.time_columns[0]))}'
             raise InputError(f'{where}: {fault[0]}: {fault[1]}')
@@ -404,16 +412,14 @@ class Times:
     def _stamps(self, times: Array) -> Stamps:
         return self._nanoseconds(times).astype(np.int64) + (self._mapping.epoch or 0)
 
-    def _check(self) -> None:
-        """Raise InputError unless the first and the last time give stamps."""
+    def _check(self, begin: float, end: float) -> None:
+        """Raise InputError unless the first and the last time [s] give stamps."""
         shift = self._mapping.epoch
-        first = self._begin if shift is None else 0.0
-        last = self.last if shift is None else self.last - self._begin
+        first, last = (begin, end) if shift is None else (0.0, end - begin)
         if last * SECOND + (shift or 0) >= LATEST or first * SECOND + (shift or 0) <= 0:
             raise InputError(
-                f'log {self._table.path}: its times are {self._begin:g} to {self.last:g} s, which '
-                'give no stamps after 1970 and before 2038: correct time.unit, or state a '
-                'time.epoch'
+                f'log {self._table.path}: its times are {begin:g} to {end:g} s, which give no '
+                'stamps after 1970 and before 2038: correct time.unit, or state a time.epoch'
             )
 
 
