@@ -93,7 +93,10 @@ class _Count:
 
     def pass_over(self, cells: pl.Series, row: int) -> None:
         """Count cells from `row` on as no numbers, without a look at them."""
-        self._miss(cells, ~empties(cells), row)
+        if not self.bad:
+            self._miss(cells, ~empties(cells), row)
+        else:
+            self.bad += len(cells) - cells.null_count()
 
     def _good(self, numbers: Array) -> None:
         self.good += len(numbers)
@@ -256,7 +259,9 @@ class Cells:
             if not pointed.any():
                 return commas.take(numbers, cells, self._row)
             self._look(cells, pointed)
-            if not self.signs.shows('.'):
+            if self.signs.shows('.'):
+                commas.pass_over(cells, self._row)
+            else:
                 commas.add(cells, self._row)
             return read
         self._look(cells, pointed | _holds(cells, ','))

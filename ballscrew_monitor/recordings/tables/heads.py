@@ -48,6 +48,7 @@ NO_NUMBER = frozenset(
 )
 """Cells that stand for a number that is not known."""
 MOSTLY = 0.8
+SURE = 0.7  # weight of blanks, which stand in texts and dates as well
 FULL = 0.5  # of the cells of the fullest row: emptier ones belong to no table
 FOLLOWING = 12  # rows that show whether a block begins
 UNNAMED = 'column {}'
@@ -106,7 +107,7 @@ def find_head(lines: Sequence[Line], layout: Layout | None = None) -> Head:
     blocks = {sign: _Block(lines, sign) for sign in _separators(lines)}
     if layout is not None:
         return _stated_head(lines, layout, blocks)
-    block = max(blocks.values(), key=lambda one: one.score)
+    block = max(blocks.values(), key=lambda one: (one.score, max(map(len, one.rows))))
     if not block.score:
         return _stated_head(lines, Layout(), blocks)
     return _Above(lines[: block.begin], block).head(lines[block.begin].row)
@@ -200,6 +201,7 @@ class _Block:
         numbers = sum(kinds[at].count('n') for at in rows)
         cells = sum(len(kinds[at]) - kinds[at].count('-') for at in rows)
         alone = 0.5 if self.width < 2 else 1.0
+        alone *= SURE if self.separator == BLANKS else 1.0
         return len(rows) * alone * numbers / cells if cells else 0.0
 
 
@@ -261,13 +263,15 @@ class _Above:
         for _, row in self.wide:
             kind = property_of(row[0])
             if kind in ('name', 'symbol', 'unit') or (
-                kind == 'period' and any(_kind(cell) == 'n' for cell in row)
+                kind == 'period' and sum(_kind(cell) == 'n' for cell in row) > 1
             ):
                 held = self.rows.get(kind, [])
                 self.rows[kind] = row if sum(map(bool, row)) > sum(map(bool, held)) else held
 
     def head(self, first: int) -> Head:
         names, named = self._names()
+        filled = [at + 1 for at, name in enumerate(names) if name]
+        self.width = max([self.width, *filled])  # columns without a number have names, too
         names = [*names[: self.width], *[''] * (self.width - len(names))]
         units = self._units(names)
         told = unlike(
@@ -321,13 +325,16 @@ class _Above:
 
     def _row_of_names(self) -> list[str]:
         """Return the lowest row that names most columns: units and remarks may stand below it."""
-        rows = [(line, row) for line, row in self.wide if not _is_of_numbers(row)]
+        rows = [
+            (line, row)
+            for line, row in self.wide
+            if not _is_of_numbers(row) and (len(row) == self.width or self.separator != BLANKS)
+        ]
         if not rows:
             return []
+        rows = [one for one in rows if not _is_of_units(one[1])] or rows
         best = max(rows, key=lambda one: (_known(one[1]), rows.index(one)))
-        if _known(best[1]) == 0:
-            below = [one for one in rows if not _is_of_units(one[1])]
-            best = below[-1] if below else rows[-1]
+        best = best if _known(best[1]) else rows[-1]
         at, row = rows.index(best), best[1]
         above = rows[at - 1][1] if at else []
         if len(set(row)) < len(row) - 1 and len(above) == len(row) and not _is_of_units(above):
@@ -369,7 +376,7 @@ class _Above:
         """Return the names of a column each in as many lines as there are columns."""
         lines = [line.text.strip() for line, _ in self.lines if line.text.strip()]
         last = lines[-self.width :]
-        if self.width < 2 or len(last) < self.width or any(map(property_of, last)):
+        if self.width < 2 or len(last) < self.width:
             return []
         return last if sum(bool(read_name(one).kind) for one in last) >= FULL * self.width else []
 

@@ -94,17 +94,15 @@ class TimeGate:
             self._first_fall = before, float(times[at]), int(rows[at])
         self._equal += int(equal.sum())
         self._fallen += int(falls.sum())
-        begins = np.flatnonzero(~equal) + joined
-        if joined:
-            begins = np.append(0, begins)
+        begins = np.append(np.zeros(joined, np.int64), np.flatnonzero(~equal) + joined)
         if len(begins):
+            cut = np.append(np.ones(joined, np.bool_), falls[~equal])  # of a run, maybe
             shares = np.diff(begins, append=len(times))
-            self._end_share(int(begins[0]))
-            self._share = int(shares[-1])
-            if len(shares) > 1:
-                inner = shares[:-1] if self._whole else shares[1:-1]
-                self._whole = True
-                self._shares.update({round(one): n for one, n in _counts(inner)})
+            if self._whole and not cut[0]:
+                self._shares[self._share + int(begins[0])] += 1
+            inner = shares[:-1][~cut[:-1] & ~cut[1:]]
+            self._shares.update({round(one): n for one, n in _counts(inner)})
+            self._share, self._whole = int(shares[-1]), not cut[-1]
             rising = steps[steps > 0.0]
             if len(self._steps) < 4 * WINDOW:
                 rounded = np.array([float(f'{step:.3g}') for step in rising[:WINDOW]])
@@ -112,12 +110,6 @@ class TimeGate:
         else:
             self._share += len(times)
         self._last = times[-1:]
-
-    def _end_share(self, more: int = 0) -> None:
-        """Count the rows of the last time, unless it is the first of all, which may be cut."""
-        if self._whole and self._share + more:
-            self._shares[self._share + more] += 1
-        self._whole |= self._share + more > 0
 
     def _follow(self, times: Array, rows: RowNumbers) -> None:
         """Follow the runs through a few rows."""

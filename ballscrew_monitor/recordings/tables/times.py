@@ -5,6 +5,7 @@
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 import dataclasses
 import math
+from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables.cells import Array
@@ -196,7 +197,7 @@ class Spread:
             if ready:
                 spread = self._spread(times[:ready], float(times[ready]), first=first)
                 yield row, spread, {name: values[:ready] for name, values in columns.items()}
-                first = False
+                first = not self._follows(times[ready] - times[ready - 1])
             held = (
                 row + ready,
                 times[ready:],
@@ -205,20 +206,23 @@ class Spread:
         if held is not None:
             yield held[0], self._spread(held[1], math.inf, first=first), held[2]
 
+    def _follows(self, step: Any) -> Any:
+        """Return where a time follows the one before without a gap."""
+        return (step > 0.0) & (step < 1.5 * self.step)
+
     def _spread(self, times: Array, following: float, *, first: bool) -> Array:
         """Return times spread between those that rows share, the next of which is `following`."""
         begins = np.flatnonzero(np.diff(times, prepend=math.nan) != 0.0)
         counts = np.diff(begins, append=len(times))
         steps = np.diff(times[begins], append=following)
-        steps = np.where((steps > 0.0) & (steps < 1.5 * self.step), steps, self.step)
+        last = ~self._follows(steps)  # of a run, or before a gap: some of its rows are missing
+        first_ones = np.append(first, last[:-1])
+        steps = np.where(last, self.step, steps)
         places = np.arange(len(times)) - np.repeat(begins, counts)
-        full = np.where(counts < REGULAR * self.usual, self.usual, counts)
-        late = np.zeros(len(counts))
-        if first:
-            full[0] = max(full[0], self.usual)
-            late[0] = full[0] - counts[0]
-        if following == math.inf:
-            full[-1] = max(full[-1], self.usual)
+        whole = np.maximum(counts, self.usual)
+        cut = last | first_ones | (counts < REGULAR * self.usual)
+        full = np.where(cut, whole, counts)
+        late = np.where(first_ones, full - counts, 0.0)
         each = steps / full
         return np.asarray(times + np.repeat(each, counts) * (places + np.repeat(late, counts)))
 
@@ -337,7 +341,7 @@ class Times:
     def _as_written(self, show: Callable[[float], None]) -> Iterator[Rows]:
         names = list(dict.fromkeys([*self.group.time_columns, *self.group.columns]))
         for row, times, columns in self._placed(names):
-            show((row - self._table.first_row) / self._table.rows)
+            show((row + len(times) - self._table.first_row) / self._table.rows)
             yield Rows(stamps=self._stamps(times), columns=columns)
 
     def _placed(self, names: Collection[str]) -> Iterator[tuple[int, Array, dict[str, Array]]]:

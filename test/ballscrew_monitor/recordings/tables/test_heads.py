@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Heads of tables: the block of numbers is found, and what stands above it names its columns."""
 
+import math
+
 from ballscrew_monitor.recordings.tables.heads import find_head, Line
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from hypothesis import given, strategies
@@ -77,7 +79,7 @@ def test_a_map_may_state_where_the_names_stand():
     ],
 )
 def test_a_period_is_found_wherever_it_stands(line, period):
-    head = head_of(f'{line}\nX pos;X speed\n1;2\n2;3\n3;4')
+    head = head_of(f'{line}\nX pos;X speed;X force\n1;2;3\n2;3;4\n3;4;5')
     assert (
         head.period == pytest.approx(period, nan_ok=True) if period else head.period != head.period
     )

@@ -85,7 +85,7 @@ def test_columns_of_either_sign_leave_others_in_doubt(read, refused):
 @pytest.mark.parametrize('sign', '.,')
 def test_blanks_and_apostrophes_part_thousands(read, mark, sign):
     texts = [f'5{mark}400', f'-1{mark}234{mark}567{sign}5', '12', f'0{sign}5']
-    values = read({'v': texts})['v']
+    values = read({'n': ['1', '2', '3', '4'], 'v': texts})['v']
     assert values.tolist() == [5400.0, -1_234_567.5, 12.0, 0.5]
 
 
