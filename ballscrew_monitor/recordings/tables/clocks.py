@@ -8,7 +8,7 @@ two entries, and all cells decide between them.
 
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 import dataclasses
 import functools
 import re
@@ -139,7 +139,10 @@ def time_forms(texts: pl.Series) -> Iterator[tuple[TimeForm, ...]]:
     english = sample.str.replace_many(MONTHS)
     months = not english.equals(sample)
     by_hours: dict[str, list[TimeForm]] = {}
-    for form in _all_forms():
+    signs = {letter for letter in ''.join(sample) if not letter.isalnum()}
+    for form, needed in _all_forms().items():
+        if not needed <= signs:
+            continue
         made = dataclasses.replace(form, steps=(*steps, *([_GERMAN] if months else [])))
         if made._seconds(english).null_count() < len(sample):
             key = re.sub('%[dm]', '', form.pattern) if form.order else form.pattern
@@ -160,7 +163,8 @@ def _replaced(texts: pl.Series, steps: object) -> pl.Series:
 
 
 @functools.cache
-def _all_forms() -> tuple[TimeForm, ...]:
+def _all_forms() -> dict[TimeForm, set[str]]:
+    """Return all forms, and the signs that each needs."""
     moments = (
         TimeForm(pattern=f'{date} {hours}', kind='moment', order=order, zoned='%z' in hours)
         for order, date in DATES
@@ -168,7 +172,7 @@ def _all_forms() -> tuple[TimeForm, ...]:
     )
     of_day = (TimeForm(pattern=hours, kind='hours') for hours in HOURS[:-1] if '%z' not in hours)
     days = (TimeForm(pattern=date, kind='day', order=order) for order, date in DATES)
-    return (*moments, *of_day, *days)
+    return {form: set(re.sub(r'%\.?\w', '', form.pattern)) for form in (*moments, *of_day, *days)}
 
 
 def moments_of(text: str) -> list[tuple[float, TimeForm]]:
@@ -176,6 +180,3 @@ def moments_of(text: str) -> list[tuple[float, TimeForm]]:
     cells = pl.Series([text])
     found = [(form(cells)[0], form) for forms in time_forms(cells) for form in forms]
     return [(seconds, form) for seconds, form in found if seconds is not None]
-
-
-Parser = Callable[[pl.Series], pl.Series]

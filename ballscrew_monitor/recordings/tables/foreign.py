@@ -26,7 +26,7 @@ import polars as pl
 from surrogate import limits
 from surrogate.files import InputError
 
-SHDR = re.compile(rb'^\d{4}-\d\d-\d\dT[\d:.]+Z?\|[^|\r\n]+\|', re.M)
+SHDR = re.compile(rb'^\d{4}-\d\d-\d\dT[\d:.]+Z?\|[^|\r\n\d.,+-][^|\r\n]*\|', re.M)
 STAMP = '%Y-%m-%dT%H:%M:%S%.f'
 HELD = 1.5  # times the usual time between changes, after which a value is repeated
 MOST_HELD = 100_000  # repeated values of a signal
@@ -189,13 +189,6 @@ def _number(text: str) -> float:
 def _on_own_rows(frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
     """Return signals with a time each as rows of one frame, empty where one has no sample."""
     return pl.concat(frames, how='diagonal').sort('time') if frames else pl.DataFrame()
-
-
-def long_table(frame: pl.DataFrame, time: str, name: str, value: str) -> pl.DataFrame:
-    """Return a table of a value a row, by the names of their signals, with a column for each."""
-    parts = frame.select(time, name, value).partition_by(name, maintain_order=True)
-    each = [part.select(pl.col(time), pl.col(value).alias(str(part[name][0]))) for part in parts]
-    return pl.concat(each, how='diagonal')
 
 
 def _mat(path: Path) -> Signals:

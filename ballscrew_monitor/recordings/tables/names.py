@@ -69,8 +69,15 @@ JOINED = re.compile(
 )
 """Axis and quantity in one word, as of MTConnect: Xact, X1actm, Zfrt; or Fx, vz."""
 LETTERED = re.compile(r'[\[(]([XYZxyz]\d?)[\])]')
-JOINED_WORDS = {'act': 'act position', 'actm': 'act position', 'actw': 'position',
-                'abs': 'position', 'com': 'command position', 'frt': 'feed', 'load': 'percent'}  # fmt: skip
+JOINED_WORDS = {
+    'act': 'act position',
+    'actm': 'act position',
+    'actw': 'position',
+    'abs': 'position',
+    'com': 'command position',
+    'frt': 'feed',
+    'load': 'percent',
+}
 TELLS_NOTHING = (
     MEASURED
     | WANTED

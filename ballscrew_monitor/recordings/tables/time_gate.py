@@ -187,7 +187,7 @@ class TimeGate:
         return self._least[0], self._most[0]
 
     def shifts(self, gap: float, ends: Sequence[float] | None = None) -> dict[int, float]:
-        """Return what is added to the times from some rows on [s], so that no run meets another."""
+        """Return what is added to the times from some rows on [s], so that no runs meet."""
         found: dict[int, float] = {}
         shift, end = 0.0, -math.inf
         for number, run in enumerate(self.runs):

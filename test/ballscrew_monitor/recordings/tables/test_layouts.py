@@ -3,29 +3,25 @@
 """
 Tables in layouts that were drawn: each is read right or refused, never read as other numbers.
 
-The writer below knows nothing of the reader: it makes a motion, and writes its numbers by a sign, a
-form of time, in groups of columns, below a preamble.
+The writer below knows nothing of the reader: it makes a motion, and writes its numbers by a sign,
+a form of time, in groups of columns, below a preamble.
 
 """
 
 import datetime as dt
-import json
 import math
-from pathlib import Path
 import random
 
-from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.tables.guess import guess
-from ballscrew_monitor.recordings.tables.log import TableLog
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
 import numpy as np
 import pytest
 from surrogate.files import InputError
-import yaml
 
 BEGIN = dt.datetime(2025, 7, 14, 11, 59, 50, tzinfo=dt.UTC)
 ROWS = 60
+DRAWN = 40
 DAY = 86400.0
 
 
@@ -84,14 +80,12 @@ PREAMBLES = (
 )
 SIGNALS = {
     'X position [mm]': lambda t: 150.0 + 2000.0 / math.tau * (1.0 - math.cos(math.tau * t / 2.0)),
-    'X speed [mm/min]': lambda t: 60.0 * 1000.0 / math.tau * math.tau * math.sin(math.pi * t) / 1.0,
+    'X speed [mm/min]': lambda t: (
+        60.0 * 1000.0 / math.tau * math.tau * math.sin(math.pi * t) / 1.0
+    ),
     'X force [N]': lambda t: -2400.0 if math.sin(math.pi * t) >= 0.0 else 1200.0,
 }
-FORMS = {
-    'X position [mm]': 4,
-    'X speed [mm/min]': 0,
-    'X force [N]': 0,
-}
+FORMS = {'X position [mm]': 4, 'X speed [mm/min]': 0, 'X force [N]': 0}
 
 
 def number(value, digits, sign, part):
@@ -225,6 +219,3 @@ def test_a_drawn_layout_is_read_right_or_refused(part, tmp_path):
         except AssertionError as error:
             raise AssertionError(f'{made}: {error}\n{text[:600]}') from None
     assert read >= 0.7 * DRAWN
-
-
-DRAWN = 250
