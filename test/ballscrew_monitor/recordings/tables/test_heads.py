@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Heads of tables: the block of numbers is found, and what stands above it names its columns."""
 
-
 from ballscrew_monitor.recordings.tables.heads import find_head, Line
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from hypothesis import given, strategies
