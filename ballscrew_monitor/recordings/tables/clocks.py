@@ -13,13 +13,11 @@ import dataclasses
 import functools
 import re
 
-from ballscrew_monitor.core.conversions import SECOND, TIME_UNITS
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.tables.quantities import DAY
 import polars as pl
 
-DAY = 86400.0  # [s]
 KNOWN = (631_152_000.0, 4_102_444_800.0)  # [s] of the universal clock: 1990 to 2100
-ORDERS = {'dmy': 'day, month', 'mdy': 'month, day'}
-"""Orders of a date in numbers that a map states, in words."""
 DATES = (
     ('', '%Y-%m-%d'),
     ('', '%Y/%m/%d'),
@@ -73,21 +71,6 @@ STEPS = (
     (r'[,\s_]+', ' '),
 )
 """What is replaced in a text before its form is looked for, each only where it occurs."""
-EPOCHS = {
-    'filetime': (1e-7, -11_644_473_600.0),
-    'spreadsheet_days': (DAY, -25_569 * DAY),
-    'labview_s': (1.0, -2_082_844_800.0),
-    'datenum': (DAY, -719_529 * DAY),
-}
-"""Counts of times since other epochs: a unit of each [s], and their zero [s] since 1970."""
-EPOCH_WORDS = {
-    'filetime': 'ticks of 100 ns since 1601',
-    'spreadsheet_days': 'days of a spreadsheet since 1900',
-    'labview_s': 'seconds of LabVIEW since 1904',
-    'datenum': 'days of MATLAB since the year 0',
-}
-SCALES = {unit: (factor, 0.0) for unit, factor in TIME_UNITS.items()} | EPOCHS
-"""Units of a time that a map states, each with its factor and shift [s]."""
 SAMPLE = 60  # cells by which the forms of a column are found
 
 

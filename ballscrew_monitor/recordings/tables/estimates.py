@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 import math
 
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS, LINEAR_SPEED_UNITS
-from ballscrew_monitor.recordings.tables.clocks import EPOCHS, SCALES
+from ballscrew_monitor.recordings.tables.quantities import EPOCHS, SCALES
 import numpy as np
 from numpy.typing import NDArray
 
@@ -108,10 +108,10 @@ def unit_by_motion(
     times: Array, position: Array, speed: Array, *, places: Sequence[str], speeds: Sequence[str]
 ) -> str:
     """
-    Return the only unit of times in which a position is the integral of its speed, else nothing.
+    Return the only unit of times [-] in which a position [-] is the integral of its speed [-].
 
     `places` and `speeds` are the units that these may have: no feed axis is longer than 20 m or
-    faster than 2 m/s.
+    faster than 2 m/s. Empty where several units fit, or none.
 
     """
     mean, moved = (speed[1:] + speed[:-1]) / 2 * np.diff(times), np.diff(position)

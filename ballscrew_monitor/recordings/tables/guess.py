@@ -21,9 +21,9 @@ from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
-from ballscrew_monitor.recordings.tables.clocks import moments_of, SCALES
+from ballscrew_monitor.recordings.tables.clocks import moments_of
 from ballscrew_monitor.recordings.tables.names import Named, read_name
-from ballscrew_monitor.recordings.tables.quantities import INPUTS, RATED, UNITS
+from ballscrew_monitor.recordings.tables.quantities import INPUTS, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
 from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.time_gate import RATE, TimeGate

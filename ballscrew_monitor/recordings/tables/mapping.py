@@ -19,12 +19,12 @@ from typing import Any
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.bag_files import is_table
 from ballscrew_monitor.recordings.log_facts import Assumption
-from ballscrew_monitor.recordings.tables.clocks import ORDERS
 from ballscrew_monitor.recordings.tables.quantities import (
     column_name,
     INPUTS,
     Layout,
     MOTION,
+    ORDERS,
     OTHER_SIGN,
     RATED,
     UNITS,

@@ -9,9 +9,9 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables.cells import Array
-from ballscrew_monitor.recordings.tables.clocks import SCALES
 from ballscrew_monitor.recordings.tables.estimates import is_of_a_day, Midnights
 from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
+from ballscrew_monitor.recordings.tables.quantities import SCALES
 from ballscrew_monitor.recordings.tables.read import Table
 from ballscrew_monitor.recordings.tables.sources import BLOCK
 from ballscrew_monitor.recordings.tables.time_gate import REGULAR, SHARED, TimeGate
