@@ -9,6 +9,11 @@ from ballscrew_monitor.recordings.bag_files import ACTIVE, is_bag, is_table, kin
 from ballscrew_monitor.recordings.words import Shown, shown_progress
 from surrogate.files import InputError
 
+SIGNALS = (b'\xff\xfe', b'\xfe\xff', b'PK', b'MATLAB', b'\x89HDF', b'TDSm', b'MDF ')
+"""How files of signals and of wide letters begin."""
+CONTROLS = set(range(9))
+"""Bytes that no text holds."""
+
 
 def opened_log(path: Path, *, mapping: Path | None = None, shown: Shown = shown_progress) -> Bag:
     """
@@ -23,7 +28,7 @@ def opened_log(path: Path, *, mapping: Path | None = None, shown: Shown = shown_
     if path.is_dir() or is_bag(path):
         _check_bag(path, mapping)
         return Bag(path, salvage=True)
-    if not path.is_file() or kind_of(path) == 'rosbag1':
+    if not is_table(path) and not _may_be_table(path):
         raise InputError(
             f'log {path} is neither a bag nor a table, it must be of MCAP, sqlite3, CSV, Parquet, '
             'xlsx, or a file of signals'
@@ -37,6 +42,15 @@ def opened_log(path: Path, *, mapping: Path | None = None, shown: Shown = shown_
     from ballscrew_monitor.recordings.tables.mapping import read_map
 
     return TableLog(path, read_map(mapping), shown)
+
+
+def _may_be_table(path: Path) -> bool:
+    """Return True if a file of any ending is a text, or one of signals by its first bytes."""
+    if not path.is_file() or kind_of(path) == 'rosbag1':
+        return False
+    with path.open('rb') as stream:
+        head = stream.read(512)
+    return head.startswith(SIGNALS) or not (head.startswith(b'\x89') or CONTROLS & set(head))
 
 
 def _check_bag(path: Path, mapping: Path | None) -> None:

@@ -258,7 +258,8 @@ class Cells:
             read = points.take(numbers, cells, self._row)
             if not pointed.any():
                 return commas.take(numbers, cells, self._row)
-            self._look(cells, pointed)
+            if not self.signs.shows('.'):
+                self._look(cells, pointed)
             if self.signs.shows('.'):
                 commas.pass_over(cells, self._row)
             else:
