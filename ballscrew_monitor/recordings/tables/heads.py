@@ -142,6 +142,8 @@ def _cells(line: Line, separator: str) -> list[str]:
     try:
         rows = list(csv.reader([text], delimiter=separator, skipinitialspace=True))
     except csv.Error:
+        if len(text) > csv.field_size_limit():
+            raise
         return []
     return [cell.strip() for cell in rows[0]] if rows else []
 

@@ -201,6 +201,8 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     with text.stream() as stream:
         plain, comments = _look_at_lines(path, stream, text.line_end.encode())
     lines, begins = _first_lines(text)
+    widest = max((line.text.count(sign) for line in lines for sign in ';\t|,'), default=0)
+    _check_columns(path, widest + 1)
     with _findable(path):
         head = heads.find_head(lines, layout)
     _check_columns(path, len(head.names))
