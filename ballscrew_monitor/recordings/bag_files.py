@@ -21,7 +21,11 @@ MAGIC = {
 ZSTD = next(magic for magic, kind in MAGIC.items() if kind == 'zstd')
 ENDINGS = ('.mcap', '.db3', '.mcap.zstd', '.db3.zstd')
 ACTIVE = '.mcap.active'
-TABLES = ('.csv', '.tsv', '.txt', '.parquet', '.xlsx')
+TABLES = (
+    '.csv', '.tsv', '.tab', '.txt', '.log', '.dat', '.asc', '.lvm', '.prn', '.parquet', '.xlsx',
+    '.mat', '.h5', '.hdf5', '.tdms', '.mf4', '.mdf', '.shdr',
+)  # fmt: skip
+"""Endings of tables in a folder; a file that is named is read whatever its ending."""
 STORAGES = ('mcap', 'sqlite3')
 NO_METADATA = (OSError, ValueError, KeyError, TypeError, AttributeError)
 OWN = 'ballscrew_monitor'

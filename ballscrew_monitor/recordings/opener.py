@@ -5,9 +5,14 @@
 from pathlib import Path
 
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bag_files import ACTIVE, is_bag, is_table
+from ballscrew_monitor.recordings.bag_files import ACTIVE, is_bag, is_table, kind_of
 from ballscrew_monitor.recordings.words import Shown, shown_progress
 from surrogate.files import InputError
+
+SIGNALS = (b'\xff\xfe', b'\xfe\xff', b'PK', b'MATLAB', b'\x89HDF', b'TDSm', b'MDF ')
+"""How files of signals and of wide letters begin."""
+CONTROLS = set(range(9))
+"""Bytes that no text holds."""
 
 
 def opened_log(path: Path, *, mapping: Path | None = None, shown: Shown = shown_progress) -> Bag:
@@ -30,10 +35,10 @@ def opened_log(path: Path, *, mapping: Path | None = None, shown: Shown = shown_
             )
             raise InputError(f'{path} holds no log, neither a bag nor a file of one{hint}')
         return Bag(path, salvage=True)
-    if not is_table(path):
+    if not is_table(path) and not _may_be_table(path):
         raise InputError(
-            f'log {path} is neither a bag nor a table, it must be of MCAP, sqlite3, CSV, Parquet '
-            'or xlsx'
+            f'log {path} is neither a bag nor a table, it must be of MCAP, sqlite3, CSV, Parquet, '
+            'xlsx, or a file of signals'
         )
     if mapping is None:
         raise InputError(
@@ -44,3 +49,12 @@ def opened_log(path: Path, *, mapping: Path | None = None, shown: Shown = shown_
     from ballscrew_monitor.recordings.tables.mapping import read_map
 
     return TableLog(path, read_map(mapping), shown)
+
+
+def _may_be_table(path: Path) -> bool:
+    """Return True if a file of any ending is a text, or one of signals by its first bytes."""
+    if not path.is_file() or kind_of(path) == 'rosbag1':
+        return False
+    with path.open('rb') as stream:
+        head = stream.read(512)
+    return head.startswith(SIGNALS) or not (head.startswith(b'\x89') or CONTROLS & set(head))

@@ -4,21 +4,23 @@
 Cells of a table as numbers: in which form they are, by all cells of a column, block by block.
 
 Numbers, times and durations of Parquet are read by their type. Texts are numbers with a decimal
-point, numbers with a decimal comma, times of ISO 8601 or of the German form, or parts of these.
+point, numbers with a decimal comma, or times of one of the forms of `clocks`.
 
 """
 
 from collections.abc import Callable, Iterator
 import contextlib
 import dataclasses
-import functools
+import datetime as dt
 import math
 from pathlib import Path
 import re
 from typing import Any
+import zlib
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables import signs
+from ballscrew_monitor.recordings.tables.clocks import SAMPLE, time_forms, TimeForm
 from ballscrew_monitor.recordings.tables.quantities import OTHER_SIGN
 from ballscrew_monitor.recordings.words import short
 import numpy as np
@@ -35,16 +37,28 @@ ENDS = (KeyboardInterrupt, SystemExit, GeneratorExit)
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Reading:
-    """How the cells of a column are numbers, the least and the most of them, what is not."""
+    """
+    How the cells of a column are numbers, the least and the most of them, and what is not.
+
+    Empty cells are no samples: `holes` are their number and a checksum of their rows. What else is
+    no number is unknown, and the note counts it.
+
+    """
 
     form: Form
     extremes: Array
+    holes: tuple[int, int]
     note: str
 
     @property
     def is_time(self) -> bool:
-        """Tell whether the cells are times by their form or type, hence [s]."""
-        return self.form in (_seconds, *_TIMES)
+        """Return True if the cells are times by their form or type, hence [s]."""
+        return self.form is _seconds or isinstance(self.form, TimeForm)
+
+    @property
+    def is_zoned(self) -> bool:
+        """Return True if the zone of the times is written or that of the universal clock."""
+        return not isinstance(self.form, TimeForm) or self.form.zoned
 
     def numbers(self, cells: pl.Series) -> Array:
         """Return cells as numbers, NaN where one is not a number."""
@@ -63,65 +77,87 @@ class _Count:
     most: float = -math.inf
 
     def add(self, cells: pl.Series, row: int) -> bool:
-        """Count cells from `row` on; tell if all are numbers."""
+        """Count cells from `row` on; return True if all that is written is a number."""
         return self.take(_finite(self.form, cells), cells, row)
 
     def take(self, numbers: Array, cells: pl.Series, row: int) -> bool:
         """Count the numbers that the form makes of cells from `row` on, as `add` does."""
         bad = np.isnan(numbers)
-        missing = int(bad.sum())
-        if missing:
-            self._miss(cells, int(bad.argmax()), missing, row)
-            numbers = numbers[~bad]
-        self.good += len(numbers)
-        self.least = float(np.min(numbers, initial=self.least))
-        self.most = float(np.max(numbers, initial=self.most))
-        return not missing
+        if not bad.any():
+            self._good(numbers)
+            return True
+        self._good(numbers[~bad])
+        bad &= ~empties(cells)
+        self._miss(cells, bad, row)
+        return not bad.any()
 
     def pass_over(self, cells: pl.Series, row: int) -> None:
         """Count cells from `row` on as no numbers, without a look at them."""
-        self._miss(cells, 0, len(cells), row)
-
-    def _miss(self, cells: pl.Series, at: int, missing: int, row: int) -> None:
         if not self.bad:
-            what = 'nothing' if cells[at] is None else short(repr(cells[at]))
-            self.first = f'{what} in row {row + at}'
+            self._miss(cells, ~empties(cells), row)
+        else:
+            self.bad += len(cells) - cells.null_count()
+
+    def _good(self, numbers: Array) -> None:
+        self.good += len(numbers)
+        self.least = float(np.min(numbers, initial=self.least))
+        self.most = float(np.max(numbers, initial=self.most))
+
+    def _miss(self, cells: pl.Series, bad: NDArray[np.bool_], row: int) -> None:
+        missing = int(bad.sum())
+        if missing and not self.bad:
+            at = int(bad.argmax())
+            self.first = f'{short(repr(cells[at]))} in row {row + at}'
         self.bad += missing
 
 
 class Cells:
     """The cells of one column, looked through in the order of their rows."""
 
-    def __init__(
-        self, path: Path, name: str, separator: str, *, first_row: int = 1, decimal: str = ''
-    ) -> None:
+    def __init__(self, path: Path, name: str, *, first_row: int = 1, order: str = '') -> None:
         """
-        Begin with the column `name` of the log at `path`, whose cells have a separator.
+        Begin with the column `name` of the log at `path`.
 
-        The first of them stands in the row `first_row` of the file; `decimal` is the sign that the
-        map states, for a column in which no cell shows the other one.
+        The first of its cells stands in the row `first_row` of the file; `order` is that of day
+        and month, where it is known.
 
         """
-        self._separator, self._decimal = separator, decimal
         self.where = f'log {path}: column {short(repr(name))}'
         self._row = self._first_row = first_row
+        self._order = order
         self._first: Any = None
         self.signs = signs.Signs()
         self._type: pl.DataType = pl.Null()
-        self._counts: list[_Count] = []
+        self._kinds: list[list[_Count]] = []
+        self.count, self._holes = 0, (0, 0)
+        self._looks = 3
 
     def add(self, cells: pl.Series) -> None:
         """Look through the next cells; raises InputError when their type is that of no number."""
-        if self._row == self._first_row:
+        if not self._kinds:
             self._first, self._type = cells[0], cells.dtype
-            self._counts = [_Count(form=form) for form in self._forms()]
         with readable(f'{self.where} of {self._type} cannot be read as numbers'):
+            if not self._kinds:
+                self._kinds = [[_Count(form=form) for form in kind] for kind in self._forms(cells)]
             self._count(cells)
+            self._count_holes(cells)
         self._row += len(cells)
+        self.count += len(cells)
 
-    def reading(self) -> Reading:
-        """Return how the column is read; raises InputError when it holds no number."""
-        chosen = self._chosen()
+    def _count_holes(self, cells: pl.Series) -> None:
+        if cells.null_count() or (cells.dtype == pl.String and (cells.head(SAMPLE) == '').any()):
+            places = np.flatnonzero(empties(cells)) + self._row
+            count, check = self._holes
+            self._holes = count + len(places), zlib.crc32(places.tobytes(), check)
+
+    def reading(self, sign: str = '', order: str = '') -> Reading:
+        """
+        Return how the column is read in a table of a decimal sign, and an order of its dates.
+
+        Raises InputError when it holds no number.
+
+        """
+        chosen = self._chosen(sign, order)
         if not chosen.good:
             raise InputError(
                 f'{self.where} holds no number, but {short(repr(self._first))} in row '
@@ -135,74 +171,130 @@ class Cells:
         return Reading(
             form=chosen.form,
             extremes=extremes if chosen.least <= chosen.most else np.full(2, math.nan),
+            holes=self._holes,
             note=note if chosen.bad else '',
         )
 
-    def _forms(self) -> tuple[Form, ...]:
+    @property
+    def numbers(self) -> list[_Count]:
+        """Return what numbers of each decimal sign were made of the cells."""
+        return [one for kind in self._kinds for one in kind if one.form in _NUMBERS.values()]
+
+    @property
+    def order(self) -> str:
+        """Return the order of day and month that the dates show, empty if they show none."""
+        chosen = self._chosen()
+        return '' if self._twins(chosen) else getattr(chosen.form, 'order', '')
+
+    def doubt(self) -> str:
+        """Return in words what else its dates may be, empty if all of them are clear."""
+        chosen = self._chosen()
+        both = self._twins(chosen)
+        if not both:
+            return ''
+        days = [f'{dt.datetime.fromtimestamp(one.least, dt.UTC):%Y-%m-%d}' for one in both]
+        orders = [one.form.order for one in both]  # type: ignore[attr-defined]
+        return (
+            f'{self.where} holds {short(repr(self._first))} in row {self._first_row}, which is '
+            f'{days[0]} or {days[1]}, for no day of the log is above 12: state `time.order: '
+            f'{orders[0]}` or `time.order: {orders[1]}` in the map'
+        )
+
+    def _twins(self, chosen: _Count) -> list[_Count]:
+        """Return the forms in which dates can be read, if they are two of one date."""
+        kind = next((kind for kind in self._kinds if chosen in kind), [])
+        both = [one for one in kind if one.good == chosen.good > 0]
+        dated = all(getattr(one.form, 'order', '') for one in both)
+        return both if dated and len({one.least for one in both}) > 1 else []
+
+    def _forms(self, cells: pl.Series) -> list[tuple[Form, ...]]:
         if self._type == pl.String:
-            return (*_NUMBERS[self._decimal], *_TIMES)
+            numbers = tuple(_NUMBERS.values())
+            plain = cells.head(SAMPLE)
+            if not plain.null_count() and not np.isnan(_finite(_points, plain)).any():
+                return [numbers]
+            forms = [
+                tuple(form for form in kind if form.order in ('', self._order or form.order))
+                for kind in time_forms(cells)
+            ]
+            return [numbers, *filter(None, forms)]
         if self._type.is_temporal():
-            return (_seconds,)
+            return [(_seconds,)]
         if self._type.is_numeric():
-            return (_plain,)
+            return [(_plain,)]
         raise InputError(f'{self.where} holds {self._type}, it must hold numbers')
 
     def _count(self, cells: pl.Series) -> None:
         """Count what each form makes of cells; what reads all of them leaves none to others."""
-        if len(self._counts) == 1:
-            self._counts[0].add(cells, self._row)
-            return
-        points, commas, *times = self._counts
         # A text is a number or a time of one form: the kind of most cells so far is tried first.
-        kinds = [[points, commas], *([one] for one in times)]
         read = False
-        for kind in sorted(kinds, key=lambda kind: -max(one.good for one in kind)):
+        for kind in sorted(self._kinds, key=lambda kind: -max(one.good for one in kind)):
             if read:
                 for one in kind:
                     one.pass_over(cells, self._row)
-            elif len(kind) > 1:
-                read = self._count_numbers(cells, points, commas)
+            elif kind[0].form is _NUMBERS['.']:
+                read = self._count_numbers(cells, *kind)
             else:
-                read = kind[0].add(cells, self._row)
+                read = max([one.add(cells, self._row) for one in kind])
+        if not read and len(self._kinds) == 1 and self._looks:
+            self._look_for_times(cells)
+
+    def _look_for_times(self, cells: pl.Series) -> None:
+        """Let cells that are no numbers be times, of which there was none so far."""
+        self._looks -= 1
+        before = max(one.good + one.bad for one in self._kinds[0]) - len(cells)
+        for kind in self._forms(cells)[1:] if cells.dtype == pl.String else ():
+            counts = [_Count(form=form, bad=before) for form in kind]
+            for one in counts:
+                one.first = f'{short(repr(self._first))} in row {self._first_row}' * (before > 0)
+                one.add(cells, self._row)
+            self._kinds.append(counts)
 
     def _count_numbers(self, cells: pl.Series, points: _Count, commas: _Count) -> bool:
         """Count cells as numbers with a point and with a comma; return True if one reads all."""
-        numbers, commaed = _finite(_points, cells), np.zeros(len(cells), np.bool_)
-        unread = np.isnan(numbers)
-        if unread.any():  # only a cell without a number with a point may have a comma
-            commaed = unread & _holds(cells, ',')
-            if commaed.any():
-                numbers = _finite(_points, _with_points(cells))
-                unread = np.isnan(numbers)
-        pointed = functools.cache(lambda: _holds(cells, '.'))
-        self.signs.look(cells, {'.': pointed, ',': lambda: commaed}, unread, self._row)
-        if self._decimal:
-            read = points.add(cells, self._row)
-            return commas.add(cells, self._row) or read
-        read = points.take(np.where(commaed, math.nan, numbers), cells, self._row)
-        thousands = self._separator == ',' and points.good  # which a comma may part there
-        if not thousands:
-            read |= commas.take(np.where(pointed(), math.nan, numbers), cells, self._row)
-        return read
+        numbers = _finite(_points, cells)
+        pointed = _holds(cells, '.') if not self.signs.shows('.') else np.ones(len(cells), bool)
+        if np.isfinite(numbers).all():  # none of them holds a comma
+            read = points.take(numbers, cells, self._row)
+            if not pointed.any():
+                return commas.take(numbers, cells, self._row)
+            if not self.signs.shows('.'):
+                self._look(cells, pointed)
+            if self.signs.shows('.'):
+                commas.pass_over(cells, self._row)
+            else:
+                commas.add(cells, self._row)
+            return read
+        self._look(cells, pointed | _holds(cells, ','))
+        read = points.add(cells, self._row)
+        return commas.add(cells, self._row) or read
 
-    def _chosen(self) -> _Count:
+    def _look(self, cells: pl.Series, holding: NDArray[np.bool_]) -> None:
+        if holding.all():
+            self.signs.look(cells, self._row)
+        elif holding.any():
+            first = int(holding.argmax())
+            self.signs.look(cells.set(pl.Series(~holding), None)[first:], self._row + first)
+
+    def _chosen(self, sign: str = '', order: str = '') -> _Count:
         """
         Return the form in which a column is read: the one that leaves the fewest without a number.
 
-        Where commas separate the cells, one within a cell may part thousands too: it is a decimal
-        mark only if no cell is a number as is. A sign that the map states counts unless a cell
-        shows the other one.
+        Numbers have the decimal sign that cells of the column show, else that of the table.
 
         """
-        if len(self._counts) == 1:
-            return self._counts[0]
-        points, commas, *times = self._counts
-        if self._decimal:
-            other = self.signs.shows(OTHER_SIGN[self._decimal])
-            points = commas = points if (self._decimal == '.') != other else commas
-        elif self._separator == ',' and points.good:
-            commas = points
-        return max(points, commas, *times, key=lambda one: one.good)
+        if not self._kinds:
+            return _Count(form=_points)
+        counts = [
+            max(kind, key=lambda one: (one.good, getattr(one.form, 'order', order) == order))
+            for kind in self._kinds
+        ]
+        if self._kinds[0][0].form is _NUMBERS['.']:
+            own = [each for each in OTHER_SIGN if self.signs.shows(each)]
+            decided = own[0] if len(own) == 1 else sign
+            if decided:
+                counts[0] = self._kinds[0][list(_NUMBERS).index(decided)]
+        return max(counts, key=lambda one: one.good)
 
 
 def _finite(form: Form, cells: pl.Series) -> Array:
@@ -231,67 +323,38 @@ def _points(texts: pl.Series) -> pl.Series:
     return texts.str.strip_chars().cast(pl.Float64, strict=False)
 
 
-def _commas(texts: pl.Series) -> pl.Series:
-    """Return texts as numbers with a decimal comma; one with a point becomes null."""
-    return _points(_with_points(texts.set(pl.Series(_holds(texts, '.')), None)))
-
-
-def _with_points(texts: pl.Series) -> pl.Series:
-    return texts.str.replace(',', '.', literal=True)
-
-
 def _holds(texts: pl.Series, mark: str) -> NDArray[np.bool_]:
     """Return which texts hold a mark."""
     return texts.str.contains(mark, literal=True).fill_null(False).to_numpy()
 
 
-def _grouped(sign: str, plain: Form) -> Form:
-    """Return a form of numbers with a decimal sign, whose thousands the other one may part."""
-    part = OTHER_SIGN[sign]
-    pattern = rf'{signs.thousands(part, "+")}(?:{re.escape(sign)}\d*)?'
+def empties(cells: pl.Series) -> NDArray[np.bool_]:
+    """Return which cells hold nothing, or blanks alone: these are no samples."""
+    if cells.dtype != pl.String:
+        return cells.is_null().to_numpy()
+    return ((cells.str.strip_chars() == '') | cells.is_null()).fill_null(True).to_numpy()
+
+
+def _grouped(sign: str) -> Form:
+    """Return the form of numbers with a decimal sign, whose thousands another one may part."""
+    pattern, other = signs.grouped(sign), OTHER_SIGN[sign]
+    between = rf'{signs.MARKS}|{re.escape(other)}'
 
     def form(texts: pl.Series) -> pl.Series:
-        without = texts.str.replace_all(part, '', literal=True)
-        return plain(without.zip_with(pl.Series(signs.are(texts, pattern)), texts))
+        texts = texts.str.strip_chars()
+        if _holds(texts, other).any() or texts.str.contains(rf'\d{signs.MARKS}\d').any():
+            parted = pl.Series(signs.are(texts, pattern))
+            texts = texts.str.replace_all(between, '').zip_with(parted, texts)
+        if sign == '.':
+            return texts.cast(pl.Float64, strict=False)
+        pointed = texts.set(pl.Series(_holds(texts, '.')), None)
+        return pointed.str.replace(',', '.', literal=True).cast(pl.Float64, strict=False)
 
     return form
 
 
-_NUMBERS = {
-    '': (_points, _commas),
-    '.': (_grouped('.', _points), _commas),
-    ',': (_points, _grouped(',', _commas)),
-}
-"""Forms with a decimal point and with a comma, by the sign that the map states."""
-
-
-def _made(parsed: Callable[[pl.Series], pl.Series]) -> Form:
-    """Return what makes texts times [s] by what parses them with a decimal point."""
-
-    def made(texts: pl.Series) -> pl.Series:
-        plain = texts.str.strip_chars().str.replace(',', '.', literal=True)
-        return _seconds(parsed(plain.str.replace('T', ' ', literal=True).str.strip_suffix('Z')))
-
-    return made
-
-
-def _clock(form: str) -> Form:
-    """Return what makes texts of a form of date and time those of the universal clock [s]."""
-    return _made(lambda texts: texts.str.to_datetime(form, time_unit='ns', strict=False))
-
-
-def _day(form: str) -> Form:
-    """Return what makes texts of a form of a date its begin by the universal clock [s]."""
-    return _made(lambda texts: texts.str.to_date(form, strict=False))
-
-
-_OF_DAY = '%H:%M:%S%.f'
-_TIMES = (
-    *(_clock(f'{day} {_OF_DAY}') for day in ('%Y-%m-%d', '%d.%m.%Y', '%Y/%m/%d')),
-    _clock(f'%Y-%m-%d {_OF_DAY}%z'),
-    _made(lambda texts: texts.str.to_time(_OF_DAY, strict=False)),
-    *map(_day, ('%Y-%m-%d', '%d.%m.%Y', '%Y/%m/%d')),
-)
+_NUMBERS = {sign: _grouped(sign) for sign in OTHER_SIGN}
+"""Forms of numbers by their decimal sign."""
 
 
 @contextlib.contextmanager

@@ -47,7 +47,7 @@ def print_guess(log: Path) -> None:
     _check_log(log)
     made = guess(log, shown=shown_progress)
     print(made.text, end='')
-    say(*made.notes, *made.unstated)
+    say(*made.picture, *made.notes, *made.unstated)
 
 
 def make_bag(log: Path, config: Path | None, out: Path | None) -> None:

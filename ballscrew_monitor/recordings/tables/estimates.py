@@ -5,7 +5,8 @@
 from collections.abc import Mapping, Sequence
 import math
 
-from ballscrew_monitor.core.conversions import LINEAR_SPEED_UNITS, TIME_UNITS
+from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS, LINEAR_SPEED_UNITS
+from ballscrew_monitor.recordings.tables.quantities import EPOCHS, SCALES
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,9 +15,12 @@ Array = NDArray[np.float64]
 NEAR = 0.05  # part by which a speed may miss what its position says
 FAST = 2.0  # [m/s] no feed axis moves faster
 FASTEST = 2000.0  # in mm/s, the same
-UNIVERSAL = (946_684_800.0, 4_102_444_800.0)  # [s] of the universal clock: 2000 to 2100
+UNIVERSAL = (946_684_800.0, 2_147_483_648.0)  # [s] of the universal clock: 2000 to 2038
 DAY = 86400.0  # [s]
 SLOWEST = 0.5  # [Hz] of a plausible log
+RARE, SHORTEST = 0.01, 0.95e-5  # [Hz] of the slowest, and [s] between rows of the fastest
+ALIKE = 0.8  # squared correlation of a motion and its speed
+LONGEST_AXIS = 20.0  # [m]
 FACTOR = 1.5  # by which a place and its speed may disagree
 
 
@@ -72,23 +76,66 @@ def position_unit(position: Array) -> tuple[str, str]:
     return 'mm', f'its largest amount is {largest:.3g}, more than a feed axis has in m'
 
 
-def time_unit(values: Array) -> str:
-    """
-    Return the unit of times that none is stated for, empty where they may be of any.
-
-    It is known of the universal clock alone.
-
-    """
+def epoch_units(values: Array) -> list[str]:
+    """Return the units in which times [-] may begin between 2000 and 2038, at a rate of a log."""
     step = float(np.median(np.diff(values)))
-    for unit in ('s', 'ms', 'us', 'ns'):
-        if is_universal(values, unit) and step * TIME_UNITS[unit] <= 1.0 / SLOWEST:
-            return unit
-    return ''
+    return [
+        unit
+        for unit in ('s', 'ms', 'us', 'ns', *EPOCHS)
+        if is_universal(values, unit) and SHORTEST <= step * SCALES[unit][0] <= 1.0 / RARE
+    ]
 
 
 def is_universal(values: Array, unit: str) -> bool:
     """Return True if the first of times in a unit may be one of the universal clock."""
-    return UNIVERSAL[0] <= float(values[0]) * TIME_UNITS[unit] < UNIVERSAL[1]
+    factor, shift = SCALES[unit]
+    return UNIVERSAL[0] <= float(values[0]) * factor + shift < UNIVERSAL[1]
+
+
+def unit_by_period(step: float, period: float) -> str:
+    """Return the unit of times a step apart of which the period [s] is known, else nothing."""
+    return next(
+        (
+            unit
+            for unit in ('s', 'ms', 'us', 'ns')
+            if abs(step * SCALES[unit][0] / period - 1) < NEAR
+        ),
+        '',
+    )
+
+
+def unit_by_motion(
+    times: Array, position: Array, speed: Array, *, places: Sequence[str], speeds: Sequence[str]
+) -> str:
+    """
+    Return the only unit of times [-] in which a position [-] is the integral of its speed [-].
+
+    `places` and `speeds` are the units that these may have: no feed axis is longer than 20 m or
+    faster than 2 m/s. Empty where several units fit, or none.
+
+    """
+    mean, moved = (speed[1:] + speed[:-1]) / 2 * np.diff(times), np.diff(position)
+    good = np.isfinite(mean) & np.isfinite(moved)
+    across, along = float(moved[good] @ mean[good]), float(mean[good] @ mean[good])
+    if not across > 0.0 or across**2 < ALIKE * along * float(moved[good] @ moved[good]):
+        return ''
+    fits = {
+        unit
+        for unit in ('s', 'ms', 'us', 'ns')
+        for place in places
+        for fast in speeds
+        if float(np.ptp(position[good.nonzero()[0]])) * LINEAR_POSITION_UNITS[place] < LONGEST_AXIS
+        and float(np.nanmax(np.abs(speed))) * LINEAR_SPEED_UNITS[fast] <= FAST
+        and abs(
+            across
+            / along
+            * LINEAR_POSITION_UNITS[place]
+            / (LINEAR_SPEED_UNITS[fast] * SCALES[unit][0])
+            - 1.0
+        )
+        < NEAR
+    }
+    return fits.pop() if len(fits) == 1 else ''
 
 
 def is_of_days(extremes: Array) -> bool:

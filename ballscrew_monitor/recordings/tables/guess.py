@@ -11,19 +11,22 @@ of a time and the decimal sign are not assumed: they stand without a value, to b
 from collections.abc import Callable, Iterator, Mapping
 import contextlib
 import dataclasses
+import datetime as dt
 import math
 from pathlib import Path
+import re
 from typing import Any
 
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
+from ballscrew_monitor.recordings.tables.clocks import moments_of
 from ballscrew_monitor.recordings.tables.names import Named, read_name
-from ballscrew_monitor.recordings.tables.quantities import INPUTS, Layout, RATED, UNITS
+from ballscrew_monitor.recordings.tables.quantities import INPUTS, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
-from ballscrew_monitor.recordings.tables.sources import layout_of, source_of
-from ballscrew_monitor.recordings.tables.time_gate import SHORTEST, TimeGate
+from ballscrew_monitor.recordings.tables.sources import source_of
+from ballscrew_monitor.recordings.tables.time_gate import RATE, TimeGate
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
@@ -38,6 +41,20 @@ EFFICIENCY = 0.9
 TEMPERATURE = 40.0  # [degC]
 NUMBERS = 4_000_000  # of the first rows that are in memory
 EPOCH = '2000-01-01T00:00:00Z'
+LATE = 2_147_483_648.0  # [s] since 1970: no stamp is later
+SMALL = 20.0  # amount of a force that no axis is driven with in N
+TURNS = 6.3  # range of a joint from which its unit is no metre
+SEPARATED_BY = {';': 'semicolons', ',': 'commas', '\t': 'tabs', '|': 'bars', ' ': 'blanks'}
+ORDER_OR_SIGN = ('.', ',', 'order')
+JOINT = re.compile(
+    r'(?P<before>.*?)(?P<field>name|position|velocity|effort)(?P<number>\[?_?\d+\]?)$'
+)
+"""A column of the arrays of joint states."""
+FILE_DATE = re.compile(
+    r'(?<!\d)(?P<year>20\d\d)[-_.]?(?P<month>[01]\d)[-_.]?(?P<day>[0-3]\d)'
+    r'(?:[-_T. ](?P<hour>[0-2]\d)[-_.h:]?(?P<minute>[0-5]\d)(?:[-_.m:]?(?P<second>[0-5]\d))?)?'
+    r'(?!\d)'
+)
 FORCE = (
     '2 pi efficiency torque / lead against the torque: friction of guides and seals, and what '
     'accelerates the axis, count as load'
@@ -49,13 +66,15 @@ class Guess:
     """
     A map as its content, and what is to be said about it.
 
-    `unstated` says of each place of the map that is null why nothing is assumed there.
+    `unstated` says of each place of the map that is null why nothing is assumed there; `picture`
+    is what was found in the file.
 
     """
 
     content: dict[str, Any]
     unstated: tuple[str, ...]
     notes: tuple[str, ...]
+    picture: tuple[str, ...]
 
     @property
     def text(self) -> str:
@@ -65,6 +84,7 @@ class Guess:
             '# knows a value writes it in its place and takes it out of `assumed`, such as\n'
             '# `axes: {x: {lead_mm: 5.0, screw: my_screw, oil: my_oil, surface: my_screw.npz}}`.\n'
         )
+        head += ''.join(f'# {" ".join(line.split())}\n' for line in self.picture)
         if self.unstated:
             head += '# The log cannot be judged before a value stands where this map says null:\n'
         head += ''.join(f'#   {" ".join(why.split())}\n' for why in self.unstated)
@@ -94,31 +114,39 @@ class _Guesser:
 
     def __init__(self, path: Path, shown: Shown) -> None:
         self.path = path
-        self.layout = layout_of(path)
-        self.source = source = source_of(path, self.layout)
-        self.named = [read_name(name) for name in source.names()]
+        self.source = source = source_of(path)
+        self.head = head = source.head
+        if not head.named:
+            raise InputError(self._unnamed())
+        texts = self._texts()
+        self.named = [read_name(name, texts.get(name, '')) for name in source.names()]
         self.assumed: dict[str, dict[str, Any]] = {}
         self.notes: list[str] = []
         self.used: dict[str, dict[str, dict[str, Any]]] = {}
-        self.step = math.nan
+        self.step, self.epoch = math.nan, ''
+        self.groups: dict[str, str] = {}
+        self.members: dict[tuple[str, tuple[int, int]], str] = {}
+        self.times = [one for one in self.named if self._may_be_time(one)]
+        self.named = [one for one in self.named if one not in self.times or one.kind == 'time']
         self.axes = {
             name: chosen
-            for name, found in names.by_axis(self.named).items()
+            for name, found in names.by_axis([o for o in self.named if o.kind != 'time']).items()
             if {'speed', 'position'} & set(chosen := names.best(found))
         }
         if not self.axes:
             raise InputError(
                 f'log {path}: no column looks like the speed or position of an axis, it holds '
-                f'{listed([one.column for one in self.named])}'
+                f'{listed(source.names())}'
             )
-        self.times = [one for one in self.named if one.kind == 'time']
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
-        used = [one.column for one in [*columns, *self.times]]
+        used = list(dict.fromkeys(one.column for one in [*columns, *self.times]))
         table = look_through(source, used, optional=used, shown=shown)
         self.unstated = list(table.doubts.values())[:1]
-        for sign in list(table.doubts)[:1]:
-            table = look_through(source, used, decimal=sign, optional=used, shown=shown)
-        self.first_row = table.first_row
+        self.doubts = [key for key in table.doubts if key in ORDER_OR_SIGN][:1]
+        for key in self.doubts:
+            decided = {'order': 'dmy'} if key == 'order' else {'decimal': key}
+            table = look_through(source, used, **decided, optional=used, shown=shown)
+        self.table, self.first_row = table, table.first_row
         rows = NUMBERS // len(used)
         # The first rows tell how the speeds go with the positions, all of them the ranges.
         self.data = table.head(rows)
@@ -126,7 +154,11 @@ class _Guesser:
         self.timed = {name for name, one in table.readings.items() if one.is_time}
         times = {one.column for one in self.times}
         # Why a column is not taken for the time.
-        self.not_times = [why for name, why in table.left_out.items() if name in times]
+        self.not_times = [
+            why
+            for name, why in table.left_out.items()
+            if name in {one.column for one in self.times if one.kind == 'time'}
+        ]
         self.notes += [
             f'{why}; it is left out' for name, why in table.left_out.items() if name not in times
         ]
@@ -134,21 +166,81 @@ class _Guesser:
         if rows < table.rows:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
         self._forget_texts()
+        self._forget_still()
+
+    def _unnamed(self) -> str:
+        """Return in a sentence how a map names the columns of a table without names."""
+        head = self.head
+        between = SEPARATED_BY.get(head.separator, repr(head.separator))
+        period = head.period if math.isfinite(head.period) else 0.001
+        return (
+            f'log {self.path}: no line names its columns, of which it has {len(head.names)}, '
+            f'separated by {between}: a map calls them by their numbers, such as '
+            '`axes: {x: {position: {column: column 2, unit: mm}, lead_mm: 10.0}}`, with '
+            f'`time: {{rate_Hz: {1.0 / period:g}}}` or `time: {{column: column 1, unit: s}}`'
+        )
+
+    def _texts(self) -> dict[str, str]:
+        """Return what is known of columns besides their names: longer ones, names of joints."""
+        texts = {name: f'{symbol} {name}' for name, symbol in self.head.symbols.items()}
+        joints = {name: match for name in self.head.names if (match := JOINT.match(name))}
+        named = [name for name, match in joints.items() if match['field'] == 'name']
+        first = self.source.first_rows() if named else None
+        for name, match in joints.items():
+            of = f'{match["before"]}name{match["number"]}'
+            if first is not None and of in named and match['field'] != 'name':
+                joint = str(first[of][0])
+                texts[name] = f'{joint} {match["field"]}'
+        self.joints = set(texts) & set(joints)
+        return texts
+
+    def _may_be_time(self, one: Named) -> bool:
+        """Return True if a column may be the time by its name, or as the head names it nothing."""
+        return (
+            (one.kind == 'time' and one.place == 'machine')
+            or one.column in self.head.labelled
+            or bool(self._unit_of_program(one))
+            or (one is self.named[0] and not one.kind)
+        )
+
+    def _unit_of_program(self, one: Named) -> str:
+        """Return the unit of a time that the program writes which made the table, or nothing."""
+        program = self.head.program
+        if program is None:
+            return ''
+        labelled = program.labelled if one.column in self.head.labelled else ''
+        return dict(program.times).get(one.column.split(' [')[0], labelled)
+
+    def _forget_still(self) -> None:
+        """Leave out speeds of nothing but 0 beside a position that moves."""
+        for name, chosen in self.axes.items():
+            if {'speed', 'position'} <= set(chosen):
+                speed, position = (
+                    self.extremes[chosen[kind].column] for kind in ('speed', 'position')
+                )
+                if not speed.any() and position[0] != position[1]:
+                    self.notes.append(
+                        f'axis {name}: {chosen.pop("speed").column} is always 0 while the '
+                        'position moves: the speed is the slope of the position'
+                    )
 
     def result(self) -> Guess:
-        doubtful = bool(self.unstated)
         time = self._time_column()
         for name in self.axes:
-            self._fill(name)
+            self._fill(name, str(time.get('column', '')))
         if not time:
             time = self._time_without_column()
         self._say_what_is_left_out(time)
-        usual, found = (dataclasses.asdict(one) for one in (Layout(), self.layout))
         content: dict[str, Any] = {'log': self.path.name}
-        content |= {key: value for key, value in found.items() if value != usual[key]}
-        content |= {'decimal': None} if doubtful else {}
+        content |= {'decimal': None} if '.' in self.doubts or ',' in self.doubts else {}
+        time |= {'order': None} if 'order' in self.doubts else {}
         content |= {'time': time, 'axes': self.used, 'assumed': self.assumed}
-        return Guess(content=content, unstated=tuple(self.unstated), notes=tuple(self.notes))
+        return Guess(
+            content=content,
+            unstated=tuple(self.unstated),
+            notes=tuple(self.notes),
+            picture=tuple(self._picture(time)),
+        )
 
     def _assume(self, key: str, value: Any, reason: str) -> None:
         self.assumed[key] = {'value': value, 'reason': reason}
@@ -172,13 +264,16 @@ class _Guesser:
         """Return what the map says of the time; take the step between rows if it is known."""
         days = next((one for one in self.times if self._is(estimates.is_of_days, one)), None)
         others = [one for one in self.times if one is not days]
-        for one in sorted(others, key=lambda one: -one.rank):  # by name, then by unit
+        # By name, then by unit, and what the head does not name comes last.
+        for one in sorted(others, key=lambda one: (one.kind != 'time', -one.rank)):
             values, dated = self.data[one.column], {}
             if one.column in self.timed and self._is(estimates.is_of_a_day, one):
                 if days is None:
                     values = estimates.Midnights().passed(values)
                 else:
                     values, dated = self.data[days.column] + values, {'date': days.column}
+            elif one.kind != 'time' and not self._is_surely_time(one, values):
+                continue
             if fault := self._fault(one, values):
                 self.not_times.append(f'column {short(repr(one.column))}: {fault}')
                 continue
@@ -186,56 +281,189 @@ class _Guesser:
             return self._time_of(one, values) | dated
         return {}
 
+    def _is_surely_time(self, one: Named, values: Array) -> bool:
+        """Return True if a column that no name calls a time is one by its numbers or its head."""
+        known = values[np.isfinite(values)]
+        if len(known) < 2 or one.column in self.head.labelled or self._unit_of_program(one):
+            return len(known) > 1
+        return one.column in self.timed or bool(estimates.epoch_units(known))
+
     def _is(self, kind: Callable[[Array], bool], one: Named) -> bool:
         return kind(self.extremes[one.column])
 
     def _fault(self, one: Named, values: Array) -> str:
         """Return why values are no time of the motion, empty if they are."""
-        motion = [
-            np.isfinite(self.data[(chosen.get('speed') or chosen['position']).column])
-            for chosen in self.axes.values()
-        ]
-        rows = np.flatnonzero(np.isfinite(values) & np.any(motion, axis=0))
-        values, rows = values[rows], rows + self.first_row
-        if len(rows) < 2:
-            return 'it holds fewer than two numbers beside those of the motion'
-        if not estimates.is_rising(values):
-            at = int((np.diff(values) <= 0.0).argmax())
-            return (
-                f'it does not rise, such as from {values[at]:.12g} in row {rows[at]} to '
-                f'{values[at + 1]:.12g} in row {rows[at + 1]}'
-            )
-        gate = TimeGate()
-        if unit := self._unit_of_time(one, values)[0]:
-            gate.add(values * conversions.TIME_UNITS[unit], rows)
-        return gate.fault()[0]
+        faults = []
+        for chosen in self.axes.values():
+            moves = np.isfinite(self.data[(chosen.get('speed') or chosen['position']).column])
+            rows = np.flatnonzero(np.isfinite(values) & moves)
+            times, numbers = values[rows], rows + self.first_row
+            if len(rows) < 2:
+                return 'it holds fewer than two numbers beside those of the motion'
+            gate = TimeGate(wall=one.column in self.timed)
+            unit = self._unit_of_time(one, times)[0]
+            gate.add(times * (SCALES[unit][0] if unit else 1.0), numbers)
+            gate.finish()
+            faults.append((gate.fault() if unit else gate.fault_of_order())[0])
+        return next(filter(None, faults), '')
 
-    def _unit_of_time(self, one: Named, values: Array) -> tuple[str, bool]:
-        """Return the unit of times, empty if unknown, and if they are since 1970."""
-        if stated := 's' if one.column in self.timed else one.unit:
-            return stated, estimates.is_universal(values, stated)
-        unit = estimates.time_unit(values)
-        return unit, bool(unit)
+    def _unit_of_time(self, one: Named, values: Array) -> tuple[str, str]:
+        """Return the unit of times, empty if unknown, and why it is that if nothing states it."""
+        if one.column in self.timed:
+            return 's', ''
+        stated = one.unit or self._unit_of_program(one)
+        first, rising = values[:1], np.diff(np.unique(values[:NUMBERS]))
+        step = float(np.median(rising)) if len(rising) else math.nan
+        epochs = estimates.epoch_units(values) if len(values) > 1 else []
+        if stated and not (stated == 's' and epochs == ['labview_s'] and first > LATE):
+            return stated, ''
+        if len(epochs) == 1:
+            return epochs[0], ''
+        periods = {self.head.period, *self.head.periods.values()}
+        for period in periods:
+            if math.isfinite(period) and (unit := estimates.unit_by_period(step, period)):
+                return unit, f'the head states a period of {period:g} s'
+        for name, chosen in self.axes.items():
+            if {'speed', 'position'} <= set(chosen):
+                unit = self._unit_by_motion(one, chosen['position'], chosen['speed'])
+                if unit:
+                    return unit, f'position and speed of axis {name} agree in no other'
+        return '', ''
+
+    def _unit_by_motion(self, one: Named, position: Named, speed: Named) -> str:
+        places = [position.unit] if position.unit else list(LINEAR_POSITION_UNITS)
+        speeds = [speed.unit] if speed.unit else list(conversions.LINEAR_SPEED_UNITS)
+        if not set(places) <= set(LINEAR_POSITION_UNITS) or not set(speeds) <= set(
+            conversions.LINEAR_SPEED_UNITS
+        ):
+            return ''
+        return estimates.unit_by_motion(
+            *(self.data[each.column] for each in (one, position, speed)),
+            places=places,
+            speeds=speeds,
+        )
 
     def _time_of(self, one: Named, values: Array) -> dict[str, Any]:
-        unit, absolute = self._unit_of_time(one, values[np.isfinite(values)])
-        step = float(np.nanmedian(np.diff(values)))
+        known = values[np.isfinite(values)]
+        unit, why = self._unit_of_time(one, known)
+        step = _period(known)
         if not unit:
             self.unstated.append(
                 f'state time.unit in the map: column {one.column} states none that is known; its '
                 f'rows are {step:.3g} apart, which may be of any{_rates(step)}'
             )
-        if not absolute:
-            self._assume_epoch(f'column {one.column} does not count from a known time')
+        if why:
+            self._assume('time.unit', unit, f'{one.column} states none that is known; {why}')
+        if not unit or not estimates.is_universal(known, unit):
+            of_day = one.column in self.timed
+            self._set_epoch(
+                f'column {one.column} does not count from a known time',
+                since=float(known[0]) if of_day else None,
+            )
         if unit:
-            self.step = step * conversions.TIME_UNITS[unit]
-        return {'column': one.column, 'unit': unit or None}
+            self.step = step * SCALES[unit][0]
+        self._set_own_times(one)
+        return {'column': one.column} | ({} if why else {'unit': unit or None})
 
-    def _assume_epoch(self, why: str) -> None:
-        self._assume('time.epoch', EPOCH, f'{why}, and a stamp of 0 means that there is none')
+    def _set_own_times(self, time: Named) -> None:
+        """Give inputs of another group the column of their time: the nearest before them."""
+        base = re.sub(r'_duplicated_\d+$', '', time.column)
+        alike = {
+            one.column
+            for one in self.times
+            if re.sub(r'_duplicated_\d+$', '', one.column) == base and one.column in self.data
+        }
+        held = self.source.names()
+        self.groups = {
+            one.column: next(
+                (each for each in reversed(held[: held.index(one.column)]) if each in alike),
+                time.column,
+            )
+            for chosen in self.axes.values()
+            for one in chosen.values()
+        }
+
+    def _set_epoch(self, why: str, *, since: float | None = None) -> None:
+        """State the time of the first row by the head or the name of the file, or assume one."""
+        begin, where = self._start()
+        if since is not None and begin is not None:
+            begin = begin - begin % estimates.DAY + since
+        if begin is None:
+            self._assume('time.epoch', EPOCH, f'{why}, and a stamp of 0 means that there is none')
+            return
+        moment = dt.datetime.fromtimestamp(begin, dt.UTC)
+        text = moment.isoformat(timespec='microseconds' if begin % 1 else 'seconds')
+        self.epoch = f'start {moment:%Y-%m-%d %H:%M:%S} {where}'
+        self._assume('time.epoch', text.replace('+00:00', 'Z'), f'{where}, taken as UTC')
+
+    def _start(self) -> tuple[float | None, str]:
+        """Return when the log begins [s] by its head or name, and where that stands."""
+        properties = self.head.properties
+        if 'start' in properties:
+            text, row = properties['start'].text, properties['start'].row
+            if 'clock' in properties:
+                text = f'{text} {properties["clock"].text}'
+            for each in (text, properties['start'].text):
+                found = {
+                    seconds: form for seconds, form in moments_of(each) if form.kind != 'hours'
+                }
+                if each.isdigit() and estimates.is_universal(np.array([float(each)]), 'filetime'):
+                    return float(each) * SCALES['filetime'][0] + SCALES['filetime'][
+                        1
+                    ], f'from line {row}'
+                if len(found) == 1:
+                    return next(iter(found)), f'from line {row}'
+        for match in FILE_DATE.finditer(self.path.stem):
+            found = {
+                seconds: form
+                for seconds, form in moments_of(_date_in(match))
+                if form.kind != 'hours'
+            }
+            if len(found) == 1:
+                return next(iter(found)), 'from the name of the file'
+        return None, ''
+
+    def _period_of(self, time: str, column: str, stated: Mapping[str, Any]) -> float:
+        """Return the usual time between samples of a column with its own time [s]."""
+        unit = stated.get('unit') or self.assumed.get('time.unit', {}).get('value', '')
+        if not time or not unit or time not in self.data:
+            return self.step
+        values = self.data[time][np.isfinite(self.data[column])]
+        return _period(values[np.isfinite(values)]) * SCALES[unit][0]
+
+    def _picture(self, time: Mapping[str, Any]) -> Iterator[str]:
+        """Yield what was found in the file, a line each."""
+        main = time.get('column', '')
+        groups: dict[tuple[str, tuple[int, int]], list[str]] = {}
+        for name, kinds in self.used.items():
+            for kind, place in kinds.items():
+                if column := place.get('column', ''):
+                    key = (self.groups.get(column, main), self.table.readings[column].holes)
+                    told = f'{name} {kind} {self._unit(name, kind)} ({column})'
+                    groups.setdefault(key, []).append(told)
+                    self.members.setdefault(key, column)
+        for number, (key, members) in enumerate(groups.items()):
+            step = self._period_of(key[0], self.members[key], time)
+            each = f'{1e3 * step:.4g} ms' if math.isfinite(step) else 'an unknown period'
+            yield f'Group {number + 1}: {each}, {", ".join(members)}'
+        head = self.head
+        between = SEPARATED_BY.get(head.separator, repr(head.separator))
+        found = [f'{len(head.names)} columns separated by {between}'] if head.separator else []
+        found += [f'first numbers in row {head.first}']
+        found += [f'written by {head.program.program}'] if head.program else []
+        found += [self.epoch] if self.epoch else []
+        found += [self.table.decision.words] if self.table.decision.words else []
+        yield f'Found: {"; ".join(found)}'
 
     def _time_without_column(self) -> dict[str, Any]:
         """Return what the map says of the time of a log whose time is not read."""
+        if math.isfinite(self.head.period) and not self.not_times:
+            self.step = self.head.period
+            self._set_epoch('the log has no time that is read')
+            self.notes.append(
+                f'the head states a period of {self.step:g} s in line {self.head.period_row}'
+            )
+            return {'rate_Hz': float(f'{1.0 / self.step:.9g}')}
         motions = {
             name: self._motion(name)
             for name, chosen in self.axes.items()
@@ -251,16 +479,16 @@ class _Guesser:
                 'positions best'
             )
         self.unstated.append(f'state time.rate_Hz in the map, the rows in a second: {why}')
-        self._assume_epoch('the log has no time that is read')
+        self._set_epoch('the log has no time that is read')
         return {'rate_Hz': None}
 
     def _rising(self) -> Iterator[str]:
         """Yield which columns may be a time by their first cells, though not by their names."""
-        head = self.source.head()
+        head = self.source.first_rows()
         for one in self.named:
             if one.column in self.data:
                 continue
-            cells = Cells(self.path, one.column, self.source.separator)
+            cells = Cells(self.path, one.column)
             with contextlib.suppress(InputError):
                 cells.add(head[one.column])
                 values = cells.reading().numbers(head[one.column])
@@ -285,7 +513,7 @@ class _Guesser:
         assumed = self.assumed.get(f'{name}.{kind}.unit', {}).get('value', '')
         return str(self.used[name][kind].get('unit', assumed))
 
-    def _fill(self, name: str) -> None:
+    def _fill(self, name: str, time: str) -> None:
         """Let the map say of an axis what its columns and their numbers tell."""
         chosen = self.axes[name]
         used = self.used[name] = {
@@ -295,6 +523,8 @@ class _Guesser:
         }
         for kind in used:
             self._set_unit(name, kind)
+            group = self.groups.get(used[kind]['column'], time)
+            used[kind] |= {'time': group} if group != time else {}
         lead = Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead * MILLI
         for key, value in (('screw', SCREW), ('oil', OIL)):
             self._assume(f'{name}.{key}', value, 'the log does not say it; the shipped one')
@@ -327,7 +557,9 @@ class _Guesser:
             place['unit'] = stated
             return
         values = self.extremes[place['column']]
-        if kind == 'position':
+        if place['column'] in self.joints and (unit := self._unit_of_joint(name, kind, values)):
+            why = 'positions of joints are in rad or m, and none is so large in m'
+        elif kind == 'position':
             unit, why = estimates.position_unit(values)
         elif kind == 'speed' and (turning := names.turning_unit(place['column'])):
             unit, why = turning, 'its name is that of a turning speed'
@@ -335,12 +567,29 @@ class _Guesser:
             metres, speed = self._metres(name), self.data[place['column']]
             motion = None if metres is None else (metres, speed)
             unit, why = estimates.speed_unit(values, motion, self.step)
+        elif kind == 'load' and self._largest_load() <= SMALL:
+            unit, why = 'kN', f'no force of the log is above {self._largest_load():.3g}'
         elif kind == 'temperature' and np.nanmin(values) > TEMPERATURE * 5:
             unit, why = 'K', f'its least is {np.nanmin(values):.3g}'
         else:
             unit, why = next(iter(UNITS[kind])), 'the usual one'
         self._assume(
             f'{name}.{kind}.unit', unit, f'{place["column"]} states none that is known; {why}'
+        )
+
+    def _largest_load(self) -> float:
+        """Return the largest amount of all forces that state no unit."""
+        loads = [chosen['load'] for chosen in self.axes.values() if 'load' in chosen]
+        return max(
+            float(np.nanmax(np.abs(self.extremes[one.column]))) for one in loads if not one.unit
+        )
+
+    def _unit_of_joint(self, name: str, kind: str, values: Array) -> str:
+        """Return the unit of a joint that turns, empty if it may slide."""
+        position = self.axes[name].get('position')
+        turns = position is not None and np.ptp(self.extremes[position.column]) > TURNS
+        return (
+            {'position': 'rad', 'speed': 'rad/s', 'torque': 'N m'}.get(kind, '') if turns else ''
         )
 
     def _metres(self, name: str) -> Array | None:
@@ -391,11 +640,27 @@ class _Guesser:
         self.notes += names.left_out([one for one in self.named if one.column not in used])
 
 
+def _period(times: Array) -> float:
+    """Return the usual time between rows, which may share times."""
+    steps = np.diff(times)
+    rising = steps[steps > 0.0]
+    changes = np.diff(np.flatnonzero(steps > 0.0))
+    share = float(np.median(changes)) if len(changes) else 1.0
+    return float(np.median(rising)) / share if len(rising) else math.nan
+
+
+def _date_in(match: re.Match[str]) -> str:
+    """Return a date in the name of a file with the signs that dates have."""
+    date = '-'.join(match.group('year', 'month', 'day'))
+    hours = match.group('hour', 'minute', 'second')
+    return f'{date} {hours[0]}:{hours[1]}:{hours[2] or "00"}' if hours[0] else date
+
+
 def _rates(step: float) -> str:
     """Return the rates that a step between rows makes in those units of a time that may be."""
     told = [
         f'{unit} {1.0 / (step * factor):.3g} Hz'
         for unit, factor in conversions.TIME_UNITS.items()
-        if SHORTEST <= step * factor <= 1.0 / estimates.SLOWEST
+        if 0.95 / RATE <= step * factor <= 1.0 / estimates.SLOWEST
     ]
     return f': in {", in ".join(told)}' if told else ''

@@ -1,62 +1,119 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Heads of tables: lines before the names of the columns, and names in one line or two."""
+"""
+Heads of tables: the block of numbers is found first, and what stands above it is its properties.
 
-from collections.abc import Iterator, Sequence
+The block is the longest run of rows whose cells are numbers and times in the same columns. Above
+it, rows as wide as the block say something of each column, and narrow ones of the file.
+
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 import csv
 import dataclasses
-import itertools
+import functools
+import math
 import re
 
+from ballscrew_monitor.recordings.tables.layouts import (
+    COLUMN,
+    Format,
+    format_of,
+    period_of,
+    property_of,
+    REMARK,
+    SEPARATED,
+)
+from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.quantities import column_name, Layout
-from ballscrew_monitor.recordings.tables.unit_names import is_unit
+from ballscrew_monitor.recordings.tables.unit_names import BRACKETS, is_unit
 
-SEPARATORS = (';', '\t', '|', ',')
-"""What may part the cells; a comma may be a decimal mark as well, hence it is the last."""
+BLANKS = ' '
+SEPARATORS = (';', '\t', '|', ',', BLANKS)
+"""What may part the cells; a comma may be a decimal sign as well, blanks stand in a date."""
+COMMENTS = ('#', '%', '//')
 COMMENT = '#'
-QUOTED = re.compile('"[^"]*"')
-NUMBER = re.compile(r'\s*[-+]?[.,]*\d[\d.,:eETZ +/-]*')
-"""A number, date or time in whatever form."""
+NUMBER = re.compile(
+    r"[-+]?(?:\d+|[1-9]\d{0,2}(?:[ '’\xa0\u202f]\d{3})+)?(?:[.,]\d+)*[.,]?(?:[eE][-+]?\d+)?\s*%?"
+)
+TIME = re.compile(
+    r'(?:\w{2,9}\.?,? )?(?=.*\d)(?:\d{1,4}[-./ ](?:\d{1,2}|\w{3,9}\.?)[-./ ]\d{1,4}|\w{3,9}\.? '
+    r'\d{1,2},? \d{4}|\d{8}(?=T))?,?[ T_-]?(?:\d{1,2}:\d{2}(?::\d{2}(?:[.,:]\d+)?)?)?'
+    r'(?: ?[AaPp]\.?[Mm]\.?)?(?: ?(?:Z|UTC|GMT|[-+]\d{2}:?\d{2}))?'
+)
+"""A date, a time of day or both."""
+NO_NUMBER = frozenset(
+    {'nan', 'n/a', 'na', 'null', 'none', 'inf', '-inf', '-nan', '#n/a', '--', '-'}
+)
+"""Cells that stand for a number that is not known."""
+MOSTLY = 0.8
+SURE = 0.7  # weight of blanks, which stand in texts and dates as well
 FULL = 0.5  # of the cells of the fullest row: emptier ones belong to no table
+FOLLOWING = 12  # rows that show whether a block begins
+UNNAMED = 'column {}'
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Line:
+    """A row of a file as a text or as cells, and its number in the file."""
+
+    text: str
+    row: int
+    cells: tuple[str, ...] = ()
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Property:
+    """What a head says, and the row in which it does so."""
+
+    text: str
+    row: int
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Head:
     """
-    Names of the columns, how the cells are parted, and the lines before the names.
+    Names of the columns, how the cells are parted, and what stands above the first of them.
 
-    The first cells stand in the row `first` of the file.
+    The first cells are the line `begin` of those that were looked at, in the row `first` of the
+    file. `symbols` are longer names, `periods` [s] those that columns state, NaN for none;
+    `labelled` are the columns that the head gives no name of their own; without `named` it names
+    none. `properties` are those of the file by their words.
 
     """
 
     names: tuple[str, ...]
     separator: str
-    lines: int
+    begin: int
     first: int
+    symbols: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    periods: Mapping[str, float] = dataclasses.field(default_factory=dict)
+    labelled: frozenset[str] = frozenset()
+    named: bool = True
+    program: Format | None = None
+    properties: Mapping[str, Property] = dataclasses.field(default_factory=dict)
+    period: float = math.nan
+    period_row: int = 0
 
 
-def read_head(lines: Iterator[str], layout: Layout) -> Head:
-    """Return the head of a text; raises csv.Error, and ValueError when no line names columns."""
-    for number, line in enumerate(lines):
-        if number >= layout.skip and line.strip() and not line.startswith(COMMENT):
-            while line.count('"') % 2 and (more := next(lines, '')):
-                line += more  # a name of several lines
-            separator = _separator(line)
-            rows = csv.reader(itertools.chain(line.splitlines(True), lines), delimiter=separator)
-            names = names_of(list(itertools.islice(rows, layout.header_rows)))
-            first = number + rows.line_num + 1
-            return Head(names=names, separator=separator, lines=number, first=first)
-    raise ValueError('no line names its columns')
+def find_head(lines: Sequence[Line], layout: Layout | None = None) -> Head:
+    """
+    Return the head of a table by its first lines, or as a map states it.
+
+    Raises ValueError where no line can be that of a table.
+
+    """
+    blocks = {sign: _Block(lines, sign) for sign in _separators(lines)}
+    if layout is not None:
+        return _stated_head(lines, layout, blocks)
+    block = max(blocks.values(), key=lambda one: (one.score, max(map(len, one.rows))))
+    if not block.score:
+        return _stated_head(lines, Layout(), blocks)
+    return _Above(lines[: block.begin], block).head(lines[block.begin].row)
 
 
-def names_of(rows: Sequence[Sequence[str]]) -> tuple[str, ...]:
-    """Return the names of columns that stand in one row, or in two with units or parts below."""
-    below = rows[1] if len(rows) > 1 else ()
-    more = (*below, *[''] * (len(rows[0]) - len(below)))
-    return unlike([_joined(name, part) for name, part in zip(rows[0], more, strict=False)])
-
-
-def unlike(names: Sequence[str]) -> tuple[str, ...]:
+def unlike(names: Iterable[str]) -> tuple[str, ...]:
     """Return names of columns in one line each, of which no two are equal."""
     counts: dict[str, int] = {}
     made = []
@@ -66,56 +123,332 @@ def unlike(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(made)
 
 
-def found_layout(rows: Sequence[Sequence[str]]) -> Layout:
-    """Return where the names stand in the first rows of a table: above the first full numbers."""
-    most = max((_filled(row) for row in rows), default=0)
-    full = [number for number, row in enumerate(rows) if _filled(row) >= FULL * most]
-    first = next((at for at, number in enumerate(full) if _is_of_numbers(rows[number])), 0)
-    above = full[:first]
-    if not above:
-        return Layout()
-    two = len(above) > 1 and _is_of_units(rows[above[-1]]) and above[-1] - above[-2] == 1
-    names = above[-2] if two else above[-1]
-    before = any(_filled(row) for row in rows[:names])
-    return Layout(skip=names if before else 0, header_rows=1 + two)
+def _separators(lines: Sequence[Line]) -> tuple[str, ...]:
+    if lines and lines[0].cells:
+        return ('',)
+    match = SEPARATED.match(lines[0].text) if lines else None
+    return (match['sign'],) if match and match['sign'] in SEPARATORS else SEPARATORS
 
 
-def found_in_lines(lines: Sequence[str]) -> Layout:
-    """Return where the names stand in the first lines of a text."""
-    rows: list[list[str]] = []
-    for separator in SEPARATORS:
-        rows = [_cells(line, separator) for line in lines]
-        if 2 * sum(len(row) > 1 for row in rows) > len(lines):
-            break
-    return found_layout(rows)
-
-
-def _separator(line: str) -> str:
-    """Return what parts the cells of a line, by what is not quoted in it; a comma if nothing."""
-    return max(reversed(SEPARATORS), key=QUOTED.sub('', line).count)
-
-
-def _cells(line: str, separator: str) -> list[str]:
+def _cells(line: Line, separator: str) -> list[str]:
+    """Return the cells of a line without blanks around them."""
+    if line.cells:
+        return [cell.strip() for cell in line.cells]
+    text = line.text.strip('\r\n')
+    if separator == BLANKS:
+        return [cell.strip('"') for cell in re.findall(r'"[^"]*"|\S+', text)]
+    if '"' not in text:
+        return [cell.strip() for cell in text.split(separator)]
     try:
-        rows = [] if line.startswith(COMMENT) else list(csv.reader([line], delimiter=separator))
+        rows = list(csv.reader([text], delimiter=separator, skipinitialspace=True))
     except csv.Error:
-        rows = []
-    return rows[0] if rows else []
+        if len(text) > csv.field_size_limit():
+            raise
+        return []
+    return [cell.strip() for cell in rows[0]] if rows else []
+
+
+@functools.lru_cache(maxsize=1 << 16)
+def _kind(cell: str) -> str:
+    """Return n for a number or time, - for nothing, and x for any other cell."""
+    if not cell or cell.lower() in NO_NUMBER:
+        return '-'
+    if any(letter.isdigit() for letter in cell) and (
+        NUMBER.fullmatch(cell) or TIME.fullmatch(cell)
+    ):
+        return 'n'
+    return 'x'
+
+
+class _Block:
+    """The longest run of rows of numbers that lines have when a sign separates their cells."""
+
+    def __init__(self, lines: Sequence[Line], separator: str) -> None:
+        self.separator = separator
+        self.rows = [
+            [] if line.text.startswith(COMMENT) else _cells(line, separator) for line in lines
+        ]
+        kinds = [[_kind(cell) for cell in row] for row in self.rows]
+        self.data = [at for at, row in enumerate(kinds) if _is_data(row)]
+        self.width = max((len(self.rows[at]) for at in self.data), default=0)
+        counts: list[Counter[str]] = [Counter() for _ in range(self.width)]
+        for at in self.data[len(self.data) // 3 :]:
+            for count, kind in zip(counts, kinds[at], strict=False):
+                count[kind] += 1
+        self.numeric = [count['n'] >= MOSTLY * (count['n'] + count['x']) > 0 for count in counts]
+        while self.width and not counts[self.width - 1].keys() - {'-'}:
+            self.width -= 1  # a sign at the end of each line parts nothing
+        fits = {at for at in self.data if self._fits(kinds[at])}
+        self.begin = self._begin(kinds, fits)
+        self.score = self._score(kinds, [at for at in fits if at >= self.begin])
+
+    def _fits(self, kinds: Sequence[str]) -> bool:
+        """Return True if a row holds a number or nothing wherever most rows do."""
+        return not any(
+            number and kind == 'x' for number, kind in zip(self.numeric, kinds, strict=False)
+        )
+
+    def _begin(self, kinds: Sequence[Sequence[str]], fits: set[int]) -> int:
+        """Return the first row with as many numbers as is usual, which most of the next follow."""
+        filled = sorted(kinds[at].count('n') for at in fits)
+        usual = filled[len(filled) // 2] if filled else 0
+        for place, at in enumerate(self.data):
+            following = self.data[place : place + FOLLOWING]
+            whole = at in fits and kinds[at].count('n') >= FULL * usual
+            if whole and sum(one in fits for one in following) >= MOSTLY * len(following):
+                return at
+        return len(self.rows)
+
+    def _score(self, kinds: Sequence[Sequence[str]], rows: Sequence[int]) -> float:
+        numbers = sum(kinds[at].count('n') for at in rows)
+        cells = sum(len(kinds[at]) - kinds[at].count('-') for at in rows)
+        alone = 0.5 if self.width < 2 else 1.0
+        alone *= SURE if self.separator == BLANKS else 1.0
+        return len(rows) * alone * numbers / cells if cells else 0.0
+
+
+def _is_data(kinds: Sequence[str]) -> bool:
+    numbers = kinds.count('n')
+    return numbers > 0 and 2 * numbers >= len(kinds) - kinds.count('-')
+
+
+def _stated_head(lines: Sequence[Line], layout: Layout, blocks: Mapping[str, _Block]) -> Head:
+    """Return the head of a table whose names stand where a map states it, or in its first row."""
+    begin = next(
+        (
+            at
+            for at, line in enumerate(lines)
+            if line.row > layout.skip
+            and (any(line.cells) or (line.text.strip() and not line.text.startswith(COMMENT)))
+        ),
+        None,
+    )
+    if begin is None:
+        raise ValueError('no line names its columns')
+    line, end = lines[begin], begin + layout.header_rows
+    block = max(blocks.values(), key=lambda one: one.score)
+    separator = block.separator
+    if not block.score and not line.cells:
+        plain = re.sub('"[^"]*"', '', line.text)
+        separator = max((',', '|', '\t', ';'), key=plain.count)
+    rows = [_cells(line, separator) for line in lines[begin:end]]
+    if len(rows) < layout.header_rows:
+        raise ValueError('no line names its columns')
+    first = lines[end].row if end < len(lines) else lines[end - 1].row + 1
+    if not rows:
+        names = [UNNAMED.format(at + 1) for at in range(len(_cells(line, separator)))]
+    else:
+        below = [*(rows[1] if len(rows) > 1 else []), *[''] * len(rows[0])]
+        names = [_joined(name, part) for name, part in zip(rows[0], below, strict=False)]
+    return Head(names=unlike(names), separator=separator, begin=end, first=first, named=bool(rows))
 
 
 def _joined(name: str, below: str) -> str:
-    part = below.strip()
-    bare = is_unit(part) and part[0] not in '[('
-    return f'{name} [{part}]' if bare else f'{name} {part}'
+    bare = is_unit(below) and below[0] not in '[('
+    return f'{name} [{below}]' if bare else f'{name} {below}'.strip()
 
 
-def _filled(row: Sequence[str]) -> int:
-    return sum(bool(cell.strip()) for cell in row)
+class _Above:
+    """The lines above a block: rows about its columns, properties of the file, and remarks."""
+
+    def __init__(self, lines: Sequence[Line], block: _Block) -> None:
+        self.block, self.separator, self.width = block, block.separator, block.width
+        self.lines = list(zip(lines, block.rows, strict=False))
+        self.text = '\n'.join(line.text or '\t'.join(line.cells) for line in lines)
+        self.program = format_of(self.text)
+        self.wide = [
+            (line, row)
+            for line, row in self.lines
+            if sum(map(bool, row)) > FULL * (self.width - 1) and (len(row) > 1 or self.width == 1)
+        ]
+        self.rows: dict[str, list[str]] = {}
+        for _, row in self.wide:
+            kind = property_of(row[0])
+            if kind in ('name', 'symbol', 'unit') or (
+                kind == 'period' and sum(_kind(cell) == 'n' for cell in row) > 1
+            ):
+                held = self.rows.get(kind, [])
+                self.rows[kind] = row if sum(map(bool, row)) > sum(map(bool, held)) else held
+
+    def head(self, first: int) -> Head:
+        names, named = self._names()
+        filled = [at + 1 for at, name in enumerate(names) if name]
+        self.width = max([self.width, *filled])  # columns without a number have names, too
+        names = [*names[: self.width], *[''] * (self.width - len(names))]
+        units = self._units(names)
+        told = unlike(
+            f'{name} [{unit}]' if is_unit(unit) and not BRACKETS.search(name) else name or unnamed
+            for name, unit, unnamed in zip(
+                names, units, (UNNAMED.format(at + 1) for at in range(self.width)), strict=True
+            )
+        )
+        labelled = {
+            one
+            for one, name in zip(told, names, strict=True)
+            if property_of(name) in ('name', 'symbol')
+        }
+        symbols = self._row('symbol')
+        properties = self._properties()
+        period, row = self._period(properties)
+        return Head(
+            names=told,
+            separator=self.separator,
+            begin=self.block.begin,
+            first=first,
+            symbols={name: symbol for name, symbol in zip(told, symbols) if symbol},
+            periods=self._periods(told),
+            labelled=frozenset(labelled),
+            named=named,
+            program=self.program,
+            properties=properties,
+            period=period,
+            period_row=row,
+        )
+
+    def _row(self, kind: str) -> list[str]:
+        row = self.rows.get(kind, [])
+        return [*row[: self.width], *[''] * (self.width - len(row))]
+
+    def _names(self) -> tuple[list[str], bool]:
+        """Return what the columns are called, and whether anything calls them so."""
+        if 'name' in self.rows:
+            row = self.rows['name']
+            plain = [one for one in row if property_of(one) != 'name']
+            symbols = self.rows.get('symbol', [])
+            if len(set(plain)) < len(plain) and len(symbols) == len(row):
+                row = symbols
+            return row, True
+        if 'symbol' in self.rows:
+            return self.rows['symbol'], True
+        for find in (self._row_of_names, self._comment, self._numbered, self._below_each_other):
+            if names := find():
+                return names, True
+        return [], False
+
+    def _row_of_names(self) -> list[str]:
+        """Return the lowest row that names most columns: units and remarks may stand below it."""
+        rows = [
+            (line, row)
+            for line, row in self.wide
+            if not _is_of_numbers(row) and (len(row) == self.width or self.separator != BLANKS)
+        ]
+        if not rows:
+            return []
+        rows = [one for one in rows if not _is_of_units(one[1])] or rows
+        best = max(rows, key=lambda one: (_known(one[1]), rows.index(one)))
+        best = best if _known(best[1]) else rows[-1]
+        at, row = rows.index(best), best[1]
+        above = rows[at - 1][1] if at else []
+        if len(set(row)) < len(row) - 1 and len(above) == len(row) and not _is_of_units(above):
+            groups = [name or '' for name in above]
+            joined = [f'{group} {name}'.strip() for group, name in zip(groups, row)]
+            row = joined if len(set(joined)) == len(joined) else row
+        return list(row)
+
+    def _comment(self) -> list[str]:
+        """Return the names in the last remark that has as many as there are columns."""
+        for line, _ in reversed(self.lines):
+            text = line.text.strip()
+            mark = next((mark for mark in COMMENTS if text.startswith(mark)), '')
+            if mark:
+                row = _cells(Line(text=text.removeprefix(mark).strip(), row=0), self.separator)
+                if len(row) == self.width > 1 and not _is_of_numbers(row):
+                    return row
+        return []
+
+    def _numbered(self) -> list[str]:
+        """Return the names of lines such as `channel 1: X position [mm]`."""
+        found: dict[int, str] = {}
+        for line, _ in self.lines:
+            key, value = _key_and_value(line, self.separator)
+            match = COLUMN.match(key)
+            if match and value:
+                found.setdefault(int(match[1]), value)
+        if not found:
+            return []
+        shift = 0 if 0 in found else 1
+        shift -= self.width - len(found) if len(found) == self.width - 1 else 0
+        names = [''] * self.width
+        for number, name in found.items():
+            if 0 <= number - shift < self.width:
+                names[number - shift] = name
+        return names
+
+    def _below_each_other(self) -> list[str]:
+        """Return the names of a column each in as many lines as there are columns."""
+        lines = [line.text.strip() for line, _ in self.lines if line.text.strip()]
+        last = lines[-self.width :]
+        if self.width < 2 or len(last) < self.width:
+            return []
+        return last if sum(bool(read_name(one).kind) for one in last) >= FULL * self.width else []
+
+    def _units(self, names: Sequence[str]) -> list[str]:
+        if 'unit' in self.rows:
+            return self._row('unit')
+        for _, row in reversed(self.wide):
+            if row[: self.width] != list(names[: len(row)]) and _is_of_units(row):
+                cells = [cell.strip('[]() ') for cell in row[: self.width]]
+                return [*cells, *[''] * (self.width - len(cells))]
+        return [''] * self.width
+
+    def _periods(self, names: Sequence[str]) -> dict[str, float]:
+        if 'period' not in self.rows:
+            return {}
+        stated = BRACKETS.findall(self.rows['period'][0])
+        unit = stated[0] if stated else 's'
+        periods = [period_of(cell, unit) for cell in self._row('period')]
+        return {name: one for name, one in zip(names, periods) if math.isfinite(one)}
+
+    def _properties(self) -> dict[str, Property]:
+        found: dict[str, Property] = {}
+        wide = [line for line, row in self.wide if sum(map(bool, row)) > 2]
+        for line, _ in self.lines:
+            key, value = ('', '') if line in wide else _key_and_value(line, self.separator)
+            kind = property_of(key)
+            if kind and value and not (kind in found or kind in self.rows):
+                stated = BRACKETS.findall(key)
+                text = f'{value} {stated[0]}' if stated and kind in ('period', 'rate') else value
+                found[kind] = Property(text=text, row=line.row)
+        return found
+
+    def _period(self, properties: Mapping[str, Property]) -> tuple[float, int]:
+        """Return the period [s] that the head states for the file, and the row that does so."""
+        if 'period' in properties:
+            stated = properties['period']
+            return period_of(stated.text, 's'), stated.row
+        if 'rate' in properties:
+            stated = properties['rate']
+            return period_of(stated.text, 'Hz'), stated.row
+        for line, _ in self.lines:
+            if match := REMARK.search(line.text):
+                return period_of(match['number'], match['unit']), line.row
+        return math.nan, 0
+
+
+def _key_and_value(line: Line, separator: str) -> tuple[str, str]:
+    """Return key and value of a line such as `key: value`, empty for any other."""
+    text = line.text.strip().lstrip('#%/*; \t').strip() or ' '
+    cells = [cell for cell in line.cells if cell]
+    if line.cells:
+        return (cells[0].rstrip(':='), cells[1]) if len(cells) > 1 else ('', '')
+    signs = [
+        sign for sign in (separator, '\t', ';', ':', '=', ',') if sign.strip() or sign == '\t'
+    ]
+    for pattern in (r'^([^:=;\t,]{2,40}?)\s*[:=;\t]\s*(.+)$', r'^([^,]{2,40}?)\s*,\s*(.+)$'):
+        if signs and (match := re.match(pattern, text)):
+            value = re.split(r'[;\t]', match[2].strip())[0].strip(' ,"')
+            return match[1].strip(' "'), value
+    return '', ''
+
+
+def _known(row: Sequence[str]) -> int:
+    return sum(bool(read_name(cell).kind) for cell in row)
 
 
 def _is_of_numbers(row: Sequence[str]) -> bool:
-    return 2 * sum(bool(NUMBER.fullmatch(cell)) for cell in row) > _filled(row)
+    return 2 * sum(_kind(cell) == 'n' for cell in row) > sum(map(bool, row))
 
 
 def _is_of_units(row: Sequence[str]) -> bool:
-    return 2 * sum(is_unit(cell) for cell in row) >= _filled(row)
+    filled = [cell for cell in row if cell]
+    return bool(filled) and 2 * sum(is_unit(cell) for cell in filled) >= len(filled)

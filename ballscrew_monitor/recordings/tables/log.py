@@ -8,7 +8,8 @@ Topics are `joint_states` with speed, position and torque of each screw, `<axis>
 
 """
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
+import dataclasses
 import math
 from pathlib import Path
 from typing import Any
@@ -36,7 +37,8 @@ from ballscrew_monitor.recordings.tables import times
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.messages import (
     column_of,
-    JOINTS,
+    joints_topic,
+    Pattern,
     patterns_of,
     serialised,
     STAMP,
@@ -71,11 +73,15 @@ class TableLog(Bag):
         """
         self._series = read_series(path, mapping, shown)
         self.facts = _facts_of(path, mapping, self._series)
-        self._patterns, self._columns = patterns_of(self._series.mapping)
+        self._patterns, self._columns = patterns_of(self._series)
         self.path, self.files, self.metadata = path, [path], self.facts.texts()
         self.count = self._series.count
         self.topics = {
-            name: TopicInfo(type_name=type_name_of(pattern), encoding='cdr', count=self.count)
+            name: TopicInfo(
+                type_name=type_name_of(pattern.message),
+                encoding='cdr',
+                count=self._series.counts[pattern.group],
+            )
             for name, pattern in self._patterns.items()
         }
         self.start_time, self.end_time = self._series.begin, self._series.end
@@ -89,25 +95,40 @@ class TableLog(Bag):
     def batches(self, topics: Collection[str]) -> Iterator[Batch]:
         """Yield the messages of `topics` that the rows are."""
         wanted = [name for name in self._patterns if name in topics]
-        begin = 0
-        for rows in self._blocks():
-            count = len(rows.stamps)
-            row = np.arange(begin, begin + count)
-            found = {}
-            for number, name in enumerate(wanted):
-                messages = serialised(self._patterns[name], self._columns, rows)
+        begin = done = 0
+        for groups in self._blocks():
+            stamps = [groups[self._patterns[name].group].stamps for name in wanted]
+            order = np.lexsort(
+                [
+                    np.repeat(np.arange(len(wanted)), [len(each) for each in stamps]),
+                    np.concatenate([np.zeros(0, np.int64), *stamps]),
+                ]
+            )
+            place = np.empty(len(order), np.int64)
+            place[order] = begin + np.arange(len(order))
+            found, at = {}, 0
+            for name, each in zip(wanted, stamps, strict=True):
+                pattern, count, end = self._patterns[name], len(each), at + len(each)
+                rows = groups[pattern.group]
+                messages = serialised(pattern.message, self._columns, rows)
                 found[name] = Messages(
                     data=messages.tobytes(),
                     channel=np.zeros(count, np.int64),
                     begin=np.arange(count) * messages.itemsize,
                     size=np.full(count, messages.itemsize),
-                    log_time=rows.stamps,
-                    place=row * len(wanted) + number,
-                    sequence=row,
+                    log_time=each,
+                    place=place[at:end],
+                    sequence=place[at:end] // max(len(wanted), 1),
                 )
-            begin += count
-            until = END if begin == self.count else int(rows.stamps[-1])
-            yield Batch(topics=found, until=until, done=begin / self.count)
+                at = end
+            begin += len(order)
+            done += sum(len(rows.stamps) for rows in groups)
+            until = (
+                END
+                if done == self.count
+                else max(int(rows.stamps[-1]) for rows in groups if len(rows.stamps))
+            )
+            yield Batch(topics=found, until=until, done=done / self.count)
 
     def events(
         self, axes: list[Axis], period: int, notes: Notes, on_done: OnDone
@@ -117,28 +138,48 @@ class TableLog(Bag):
             [(number, one) for number, axis in enumerate(axes) for one in axis.inputs],
             key=lambda each: (each[1].source, each[0]),
         )
-        row = joined([self._event(one, notes, axis=number) for number, one in inputs])
+        parts = [
+            _Part(
+                row=joined([self._event(one, notes, axis=number) for number, one in held]),
+                inputs=[one for _, one in held],
+            )
+            for group in range(len(self._series.counts))
+            for held in [[each for each in inputs if self._pattern(each[1]).group == group]]
+        ]
         order, done = EventOrder(period), 0
-        for rows in _together(self._blocks(), most=max(AT_ONCE // len(row), 1)):
-            due = order.ticks(rows.stamps)
-            at = len(row) * np.searchsorted(rows.stamps, due['stamp'], 'right')
-            yield inserted(self._events(rows, row, [one for _, one in inputs]), at, due)
-            done += len(rows.stamps)
+        most = max(AT_ONCE // max(len(inputs), 1), 1)
+        for groups in _together(self._blocks(), most=most):
+            every = [self._events(rows, part) for rows, part in zip(groups, parts, strict=True)]
+            stamps = groups[0].stamps
+            events = every[0]
+            if len(groups) > 1:
+                stamps = np.unique(np.concatenate([rows.stamps for rows in groups]))
+                events = joined(every)
+                events = some(events, np.lexsort((events['source'], events['stamp'])))
+            due = order.ticks(stamps)
+            yield inserted(events, np.searchsorted(events['stamp'], due['stamp'], 'right'), due)
+            done += sum(len(rows.stamps) for rows in groups)
             on_done(done / self.count)
+
+    def _pattern(self, one: Input) -> Pattern:
+        return self._patterns[absolute(one.topic)]
 
     def _event(self, one: Input, notes: Notes, *, axis: int) -> Events:
         """Return what an input of an axis reads of any row, but for its time and number."""
-        read = one.read(self._patterns[absolute(one.topic)], now=STAMP, max_future=0)
+        read = one.read(self._pattern(one).message, now=STAMP, max_future=0)
         return event_of(read, notes, axis=axis, log_time=STAMP, place=0)
 
-    def _events(self, rows: Rows, row: Events, inputs: Sequence[Input]) -> Events:
-        """Return the events of some rows by stamp and source; those of any `row` are alike."""
+    def _events(self, rows: Rows, part: '_Part') -> Events:
+        """Return the events of some rows of a group by stamp and source."""
+        row, inputs = part.row, part.inputs
+        if not inputs:
+            return row
         events = repeated(row, len(rows.stamps))
         by_row = events.reshape(-1, len(row))
         for name in ('log_time', 'stamp', 'arrival'):
             by_row[name] = rows.stamps[:, None]
         for at, one in enumerate(inputs):
-            number = one.read_field(self._patterns[absolute(one.topic)])
+            number = one.read_field(self._pattern(one).message)
             name = column_of(number, self._columns) if isinstance(number, float) else ''
             if not name:
                 continue
@@ -151,15 +192,24 @@ class TableLog(Bag):
             events = some(events, np.lexsort((events['source'], events['stamp'])))
         return events
 
-    def _blocks(self) -> Iterator[Rows]:
+    def _blocks(self) -> Iterator[list[Rows]]:
         """Yield the rows in blocks, and compare the speeds with the positions beside them."""
-        fits = fits_of(self._series.mapping, self._series.usual_period)
-        for rows in self._series.blocks():
+        fits = fits_of(self._series)
+        for groups in self._series.blocks():
             for fit in fits:
-                fit.add(rows)
-            yield rows
+                for rows in groups:
+                    fit.add(rows)
+            yield groups
         for note in filter(None, (fit.note() for fit in fits)):
             self.remark(note)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class _Part:
+    """The inputs that read a group of columns, and the events of any of its rows."""
+
+    row: Events
+    inputs: list[Input]
 
 
 @batches.register
@@ -174,10 +224,14 @@ def _(
     return bag.events(axes, period, notes, on_done)
 
 
-def _together(blocks: Iterable[Rows], most: int) -> Iterator[Rows]:
+def _together(blocks: Iterable[list[Rows]], most: int) -> Iterator[list[Rows]]:
     """Yield rows in blocks of at most so many, or more if these are of one stamp."""
     held: Rows | None = None
-    for block in blocks:
+    for groups in blocks:
+        if len(groups) > 1:
+            yield groups
+            continue
+        block = groups[0]
         for begin in range(0, len(block.stamps), most):
             end = begin + most
             rows = block[begin:end]
@@ -186,10 +240,10 @@ def _together(blocks: Iterable[Rows], most: int) -> Iterator[Rows]:
                 held, rows = times.joined([held, rows[:same]]) if same else held, rows[same:]
                 if not len(rows.stamps):
                     continue
-                yield held
+                yield [held]
             held = rows
     if held is not None:
-        yield held
+        yield [held]
 
 
 def _facts_of(path: Path, stated: TableMap, series: Series) -> LogFacts:
@@ -209,7 +263,7 @@ def _parameters(mapping: TableMap, series: Series, notes: list[str]) -> dict[str
     names = [axis.name for axis in mapping.axes]
     values: dict[str, Any] = {'axes': names}
     for axis in mapping.axes:
-        values |= _axis_parameters(axis)
+        values |= _axis_parameters(axis, series)
     every = parameters.defaults(names)
     period = series.usual_period
     for name, default in every.items():
@@ -223,8 +277,10 @@ def _parameters(mapping: TableMap, series: Series, notes: list[str]) -> dict[str
     return values
 
 
-def _axis_parameters(axis: AxisMap) -> dict[str, Any]:
+def _axis_parameters(axis: AxisMap, series: Series) -> dict[str, Any]:
     values: dict[str, Any] = dict(axis.texts)
+    if group := series.of(axis, 'speed'):
+        values['speed.topic'] = joints_topic(group)
     by_node = axis.load_from == MOTOR_TORQUE
     if by_node:
         values |= {
@@ -242,7 +298,8 @@ def _axis_parameters(axis: AxisMap) -> dict[str, Any]:
         values['temperature.default'] = axis.temperature
     # A torque that the load was worked out from has nothing to be compared with.
     if by_node or ('torque' in axis.columns and axis.load_from != 'torque'):
-        joint = {'topic': JOINTS, 'type': type_name_of(JointState())}
+        topic = joints_topic(series.of(axis, 'torque'))
+        joint = {'topic': topic, 'type': type_name_of(JointState())}
         joint['field'] = f'effort[{axis.name}_axis]'
         values |= {f'torque.{key}': value for key, value in joint.items()}
     return {f'{axis.name}.{key}': value for key, value in values.items()}

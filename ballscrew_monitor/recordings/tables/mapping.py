@@ -24,6 +24,7 @@ from ballscrew_monitor.recordings.tables.quantities import (
     INPUTS,
     Layout,
     MOTION,
+    ORDERS,
     OTHER_SIGN,
     RATED,
     UNITS,
@@ -49,22 +50,24 @@ NUMBERS = {
     'rate_Hz': (1e-3, 1e5),
 }
 """Numbers of an axis, and of the time, with the least and the most allowed."""
-LINES = {'skip': (0, 1000), 'header_rows': (1, 2)}
+LINES = {'skip': (0, 1000), 'header_rows': (0, 2)}
 """Numbers of lines, with the least and the most allowed."""
 TEXTS = ('screw', 'oil', 'surface')
 PLACES = {
     'decimal': "`'.'` or `','`: decimal sign of columns in which no cell shows it, as 5.400 may "
     'be 5400; the other sign parts thousands',
-    'skip': 'lines before the names of the columns',
-    'header_rows': 'rows of names; 2 with the units or parts of names below',
+    'skip': 'lines before the names of the columns, if these are not found by themselves',
+    'header_rows': 'rows of names there: 2 with the units or parts of names below, 0 for a table '
+    'without names, whose columns are `column 1`, `column 2` and so on',
     'machine': 'name of the machine, a text: its axes have one history, whatever folder holds a '
     'log',
-    'time.column': 'column of the time, unit after `scale` and `offset`: `{column: Time, unit: s, '
-    'scale: 86400}` are days of a spreadsheet; texts such as 2026-01-02T03:04:05.5Z, '
-    '02.01.2026 03:04:05,5 or 03:04:05,5 are read as s, without a zone as UTC; a time '
-    'of day goes on through midnight',
+    'time.column': 'column of the time, unit after `scale` and `offset`; dates and times of day '
+    'are read as s, without a zone as UTC; a time of day goes on through midnight',
     'time.rate_Hz': 'instead of a column: rows at equal distances',
     'time.date': 'column of the days, if `column` holds the time of day',
+    'time.order': '`dmy` or `mdy`: order of day and month in dates that have no day above 12',
+    'AXIS.QUANTITY.time': 'column of the time of a quantity that has one of its own, in the unit '
+    'of `time`',
     'time.epoch': 'time of the first row, such as 2000-01-01T00:00:00Z; without it the column '
     'is a '
     'time since 1970',
@@ -101,12 +104,13 @@ PLACES = {
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Column:
-    """A column: its name, and its unit after factor and offset."""
+    """A column: its name, its unit after factor and offset, and that of its time, if its own."""
 
     name: str
     unit: str
     scale: float = 1.0
     offset: float = 0.0
+    time: str = ''
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -162,13 +166,15 @@ class TableMap:
 
     Column of the time, or the rate [Hz] of a log without one; `date` names the column of the days
     whose times the other says, if there is one; epoch [ns] of the first row, None when the log
-    tells it; `decimal` sign of numbers that may be read with either one, empty where not said;
+    tells it; `decimal` sign of numbers that may be read with either one, and `order` of day and
+    month, empty where not said;
     `content` is the map as it was written.
 
     """
 
-    layout: Layout
+    layout: Layout | None
     decimal: str
+    order: str
     time: Column | None
     date: str
     rate: float
@@ -186,8 +192,10 @@ class TableMap:
 
     @property
     def time_columns(self) -> list[str]:
-        """Return the names of the columns of the time, those of a date after it."""
-        return [self.time.name, *filter(None, [self.date])] if self.time else []
+        """Return the names of the columns of a time, that of a date after the first."""
+        own = [column.time for axis in self.axes for column in axis.columns.values()]
+        main = [self.time.name, self.date] if self.time else []
+        return list(dict.fromkeys(filter(None, [*main, *own])))
 
 
 def read_map(path: Path) -> TableMap:
@@ -234,6 +242,7 @@ def make_map(content: Any) -> TableMap:
     made = TableMap(
         layout=_layout(content),
         decimal=_decimal(content),
+        order=time.order(),
         time=time.column('time', at='time'),
         date=column_name(time.text('date')),
         rate=time.number('rate_Hz'),
@@ -257,14 +266,14 @@ def _check_machine(name: Any) -> None:
         raise InputError(f'machine is {name!r}, it must be a text, the name of the machine')
 
 
-def _layout(content: Mapping[str, Any]) -> Layout:
-    """Return where a map says that the names of the columns stand."""
+def _layout(content: Mapping[str, Any]) -> Layout | None:
+    """Return where a map says that the names of the columns stand, None if it does not."""
     found = {}
     for key, (low, high) in LINES.items():
         value = found[key] = content.get(key, getattr(Layout(), key))
         if not (isinstance(value, int) and low <= value <= high) or isinstance(value, bool):
             raise InputError(f'{key} is {value!r}, it must be a whole number, {low} to {high}')
-    return Layout(**found)
+    return Layout(**found) if set(LINES) & set(content) else None
 
 
 def _decimal(content: Mapping[str, Any]) -> str:
@@ -300,6 +309,14 @@ class _Part:
             raise InputError(f'{self._prefix}.{name} is {value!r}, it must be a text')
         return value
 
+    def order(self) -> str:
+        order = self.take('order', '')
+        if order not in ('', *ORDERS):
+            raise InputError(
+                f'{self._prefix}.order is {_said(order)}, it must be {" or ".join(ORDERS)}'
+            )
+        return str(order)
+
     def flag(self, name: str) -> bool:
         value = self.take(name, False)
         if not isinstance(value, bool):
@@ -309,7 +326,7 @@ class _Part:
     def column(self, kind: str, *, at: str = '') -> Column | None:
         """Return the column of a kind of quantity, `at` its place unless that is its name."""
         part = self if at else _Part(f'{self._prefix}.{kind}', self._values)
-        name, units = part.text('column'), UNITS[kind]
+        name, units, time = part.text('column'), UNITS[kind], '' if at else part.text('time')
         unit = part.take('unit')
         numbers = [part.take(key, default) for key, default in (('scale', 1.0), ('offset', 0.0))]
         if name and not (isinstance(unit, str) and unit in units):
@@ -322,8 +339,10 @@ class _Part:
             )
         if not name:
             return None
-        name = column_name(name)
-        return Column(name=name, unit=unit, scale=float(numbers[0]), offset=float(numbers[1]))
+        scale, offset = map(float, numbers)
+        return Column(
+            name=column_name(name), unit=unit, scale=scale, offset=offset, time=column_name(time)
+        )
 
 
 def _axis(name: str, values: dict[str, Any]) -> AxisMap:

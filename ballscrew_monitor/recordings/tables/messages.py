@@ -8,13 +8,13 @@ a field of a message reads of a pattern which column that is.
 
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
+import dataclasses
 import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.recordings.tables.mapping import TableMap
-from ballscrew_monitor.recordings.tables.series import quantities_of
+from ballscrew_monitor.recordings.tables.series import quantities_of, Series
 from ballscrew_monitor.recordings.tables.times import Rows
 from ballscrew_monitor.settings.parameters import absolute
 from geometry_msgs.msg import WrenchStamped
@@ -25,14 +25,27 @@ from sensor_msgs.msg import JointState, Temperature
 JOINTS = 'joint_states'
 STAMP = 1
 """Stamp of a pattern [ns], as a message without one has none."""
+OF_JOINTS = (('velocity', 'speed'), ('position', 'position'), ('effort', 'torque'))
+"""Fields of the joints, and the quantities in them."""
 CDR = np.frombuffer(b'\0\1\0\0', 'V4')  # little-endian
-Patterns = Mapping[str, Any]
-"""The pattern of each topic by its full name."""
 
 
-def patterns_of(mapping: TableMap) -> tuple[Patterns, list[str]]:
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Pattern:
+    """The pattern of a topic, and the group of columns that it is made of."""
+
+    message: Any
+    group: int
+
+
+def joints_topic(group: int) -> str:
+    """Return the name of the topic of the joints that a group of columns gives."""
+    return JOINTS if group == 0 else f'{JOINTS}_{group + 1}'
+
+
+def patterns_of(series: Series) -> tuple[dict[str, Pattern], list[str]]:
     """
-    Return the patterns of a table, the joints last, and the names of the columns by their places.
+    Return the pattern of each topic, the joints last, and names of the columns by their places.
 
     What no axis has is an empty list of the joints, and what one axis has not is NaN.
 
@@ -43,27 +56,39 @@ def patterns_of(mapping: TableMap) -> tuple[Patterns, list[str]]:
         columns.append(f'{axis}.{kind}')
         return float(len(columns))
 
-    patterns: dict[str, Any] = {}
-    known = {axis.name: quantities_of(axis) for axis in mapping.axes}
+    patterns: dict[str, Pattern] = {}
+    axes = series.mapping.axes
+    known = {
+        axis.name: {kind: series.of(axis, kind) for kind in quantities_of(axis)} for axis in axes
+    }
     for name, kinds in known.items():
         if 'temperature' in kinds:
             warmth = Temperature(temperature=place(name, 'temperature'))
-            patterns[absolute(f'{name}/oil_temperature')] = warmth
+            topic = absolute(f'{name}/oil_temperature')
+            patterns[topic] = Pattern(message=warmth, group=kinds['temperature'])
         if 'load' in kinds:
             wrench = WrenchStamped()
             wrench.header.frame_id = f'{name}_nut'
             wrench.wrench.force.x = place(name, 'load')
-            patterns[absolute(f'{name}/axial_load')] = wrench
-    joints = JointState(name=[f'{name}_axis' for name in known])
-    for field, kind in (('velocity', 'speed'), ('position', 'position'), ('effort', 'torque')):
-        if any(kind in kinds for kinds in known.values()):
-            places = [
-                place(name, kind) if kind in kinds else math.nan for name, kinds in known.items()
-            ]
-            setattr(joints, field, places)
-    patterns[absolute(JOINTS)] = joints
+            patterns[absolute(f'{name}/axial_load')] = Pattern(message=wrench, group=kinds['load'])
+    groups = {kinds[kind] for kinds in known.values() for _, kind in OF_JOINTS if kind in kinds}
+    for group in sorted(groups):
+        held = {
+            name: {kind for _, kind in OF_JOINTS if kinds.get(kind) == group}
+            for name, kinds in known.items()
+        }
+        held = {name: kinds for name, kinds in held.items() if kinds}
+        joints = JointState(name=[f'{name}_axis' for name in held])
+        for field, kind in OF_JOINTS:
+            if any(kind in kinds for kinds in held.values()):
+                places = [
+                    place(name, kind) if kind in kinds else math.nan
+                    for name, kinds in held.items()
+                ]
+                setattr(joints, field, places)
+        patterns[absolute(joints_topic(group))] = Pattern(message=joints, group=group)
     for pattern in patterns.values():
-        pattern.header.stamp.nanosec = STAMP
+        pattern.message.header.stamp.nanosec = STAMP
     return patterns, columns
 
 

@@ -23,12 +23,13 @@ AXIS = frozenset({'axis', 'achse'})
 SPINDLES = frozenset({'s', 'sp', 'spindle'})
 KINDS = {
     'speed': frozenset(
-        'velocity vel speed rpm omega feed geschwindigkeit geschw vorschub drehzahl'.split()
+        'velocity velo vel speed rpm omega feed frt '
+        'geschwindigkeit geschw vorschub drehzahl'.split()
     ),
-    'position': frozenset('position pos lage weg'.split()),
+    'position': frozenset('position pos posf lage weg stellung'.split()),
     'load': frozenset('force load thrust kraft'.split()),
-    'torque': frozenset('torque trq moment drehmoment'.split()),
-    'current': frozenset('current amps amp iq strom'.split()),
+    'torque': frozenset('torque trq tcmd effort moment drehmoment'.split()),
+    'current': frozenset('current curr cur amps amp iq strom'.split()),
     'temperature': frozenset('temperature temp temperatur'.split()),
     'time': frozenset(
         'time timestamp stamp t datetime date seconds elapsed clock ticks '
@@ -37,22 +38,55 @@ KINDS = {
 }
 # Words that make a column something else, whatever else its name says.
 OTHERS = frozenset(
-    'acceleration accel acc jerk voltage volt volts power error deviation feedrate rate override '
+    'acceleration accel acc jerk ffw diff dev cont ctrl voltage volt volts power error deviation '
+    'feedrate rate override '
     'program sequence number line block inertia bus count index status limit percent pct '
     'beschleunigung ruck spannung leistung fehler abweichung programm satz zeile nummer'.split()
 )
 ELSEWHERE = frozenset(
     'motor drive ambient cabinet winding room air coolant antrieb umgebung wicklung luft'.split()
 )
-MEASURED = frozenset('actual act feedback fb measured meas encoder real ist istwert'.split())
+MEASURED = frozenset('actual act feedback fb measured meas encoder enc real ist istwert'.split())
 WANTED = frozenset(
-    'command commanded cmd set setpoint target reference ref demand desired nominal soll '
-    'sollwert'.split()
+    'command commanded cmd com des vcmd set setpoint target reference ref demand desired nominal '
+    'soll sollwert'.split()
 )
 QUALIFIERS = frozenset('filtered smoothed mean average avg rms value wert'.split())
 PROCESSED = frozenset('output raw'.split())
 OF_THE_SCREW = frozenset('oil nut screw lubricant ballscrew öl oel mutter'.split())
-TELLS_NOTHING = MEASURED | WANTED | PROCESSED | OF_THE_SCREW | AXIS | {'achs', 'axial'}
+ENCODERS = frozenset(
+    'encoder enc scale glass linear direct indirect motor messsystem maßstab massstab'.split()
+)
+"""Words of one of several encoders of an axis, whose numbers name no axis."""
+SHORT = {
+    'v': 'speed', 'f': 'load', 'i': 'current', 'iq': 'current', 'm': 'torque', 'p': 'position',
+    's': 'position',
+}  # fmt: skip
+"""Letters of quantities that stand alone beside the letter of an axis."""
+JOINED = re.compile(
+    r'^(?:(?P<axis>[xyzXYZ]\d?)(?P<word>act[mw]?|com|abs|load|frt|[vfips])|(?P<letter>[vfipmVFIPM])'
+    r'(?P<of>[xyz]))(?![a-z])'
+)
+"""Axis and quantity in one word, as of MTConnect: Xact, X1actm, Zfrt; or Fx, vz."""
+LETTERED = re.compile(r'[\[(]([XYZxyz]\d?)[\])]')
+JOINED_WORDS = {
+    'act': 'act position',
+    'actm': 'act position',
+    'actw': 'position',
+    'abs': 'position',
+    'com': 'command position',
+    'frt': 'feed',
+    'load': 'percent',
+}
+TELLS_NOTHING = (
+    MEASURED
+    | WANTED
+    | PROCESSED
+    | OF_THE_SCREW
+    | AXIS
+    | (ENCODERS - ELSEWHERE)
+    | {'achs', 'axial', 'axes'}
+)
 TURNING = {'drehzahl': 'rev/min', 'omega': 'rad/s'}
 """Words of a speed that tell its unit, where nothing else does."""
 BY_UNIT = -4  # rank of a column of which the unit alone tells the quantity
@@ -78,21 +112,31 @@ class Named:
     rank: int
 
 
-def read_name(column: str) -> Named:
-    """Return what the name of a column says."""
-    words = words_of(column)
+def read_name(column: str, text: str = '') -> Named:
+    """Return what the name of a column says, or a longer text about it."""
+    told = LETTERED.sub(r' \1 ', JOINED.sub(_parted, text or column))
+    words = words_of(told)
     place, axis = _place(words)
     kind, rank = _kind(words), _rank(words)
+    if place == 'axis' and not kind and not OTHERS & set(words):
+        left = set(words_without_unit(told, '')) - {axis, axis[:1], axis[1:]} - MEASURED - WANTED
+        kind = SHORT.get(min(left), '') if len(left - AXIS) == 1 else ''
     if not kind and not OTHERS & set(words):
         kind = _kind_by_unit(column, place)
         rank += 0 if is_of_the_screw(column) else BY_UNIT
-    unit = unit_of(column, kind)
+    unit = unit_of(column, kind) or unit_of(told, kind)
     if kind == 'time' and not unit and words[:1] == ['seconds']:  # such as seconds_elapsed
         unit = 's'
     # In another unit than those of the quantity it is another quantity, such as a load in percent.
     if BRACKETS.search(column) and not unit:
         kind = ''
     return Named(column=column, place=place, axis=axis, kind=kind, unit=unit, rank=rank)
+
+
+def _parted(match: re.Match[str]) -> str:
+    """Return axis and quantity of a word that joins them, apart."""
+    axis, word = match['axis'] or match['of'], match['word'] or match['letter'].lower()
+    return f'{axis} {JOINED_WORDS.get(word, word)} '
 
 
 def is_of_the_screw(column: str) -> bool:
@@ -116,6 +160,7 @@ def axis_names(named: Sequence[Named]) -> dict[str, str]:
 
 
 def _place(words: Sequence[str]) -> tuple[str, str]:
+    lettered = bool(LINEAR & set(words))
     for number, (word, after) in enumerate(zip(words, [*words[1:], ''])):
         digits = after if after.isdigit() else ''
         if (
@@ -124,7 +169,9 @@ def _place(words: Sequence[str]) -> tuple[str, str]:
             or (word in ('axis', 'achse') and digits)
         ):
             return 'axis', word.replace('achse', 'axis') + digits
-        if word == 'spindle' or (number == 0 and word in SPINDLES):
+        if word in ('spindle', 'spindel', 'sp') or (
+            number == 0 and word in SPINDLES and not lettered
+        ):
             return 'spindle', ''
         if number == 0 and len(word) == 1 and digits:
             return ('rotary' if word in ROTARY else 'other'), ''
@@ -165,7 +212,10 @@ def word_of_the_axis(named: Named) -> str:
     """Return the words of a name that say neither quantity nor unit: which axis is left."""
     words = words_without_unit(named.column, named.kind)
     dull = TELLS_NOTHING | QUALIFIERS | ELSEWHERE | KINDS.get(named.kind, frozenset())
-    return '_'.join(word for word in words if word not in dull)
+    numbered = ENCODERS & set(words)
+    return '_'.join(
+        word for word in words if word not in dull and not (numbered and word.isdigit())
+    )
 
 
 def by_axis(named: Sequence[Named]) -> dict[str, list[Named]]:
@@ -186,13 +236,14 @@ def by_axis(named: Sequence[Named]) -> dict[str, list[Named]]:
     if not groups:
         return {'x': general}
     grouped = {one.column for group in groups.values() for one in group}
-    oil = [one for one in general if one.kind == 'temperature' and one.column not in grouped]
+    shared = INPUTS if len(groups) == 1 else ('temperature',)
+    oil = [one for one in general if one.kind in shared and one.column not in grouped]
     return {name: [*group, *oil] for name, group in groups.items()}
 
 
 def best(found: Sequence[Named]) -> dict[str, Named]:
     """Return for each kind the column that is most likely the measured quantity."""
-    ranked = sorted(found, key=lambda one: -one.rank)
+    ranked = sorted(found, key=lambda one: (one.place != 'axis', -one.rank))
     chosen: dict[str, Named] = {}
     for one in ranked:
         if one.kind in INPUTS:

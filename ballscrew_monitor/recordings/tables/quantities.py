@@ -8,6 +8,23 @@ import dataclasses
 from ballscrew_monitor.core import conversions
 from surrogate.files import printable
 
+DAY = 86400.0  # [s]
+EPOCHS = {
+    'filetime': (1e-7, -11_644_473_600.0),
+    'spreadsheet_days': (DAY, -25_569 * DAY),
+    'labview_s': (1.0, -2_082_844_800.0),
+    'datenum': (DAY, -719_529 * DAY),
+}
+"""
+Counts of times since other epochs: a unit of each [s], and their zero [s] since 1970.
+
+They are ticks of 100 ns since 1601, days since 1900, seconds since 1904, and days of MATLAB.
+
+"""
+SCALES = {unit: (factor, 0.0) for unit, factor in conversions.TIME_UNITS.items()} | EPOCHS
+"""Units of a time that a map states, each with its factor and shift [s]."""
+ORDERS = {'dmy': 'day, month', 'mdy': 'month, day'}
+"""Orders of a date in numbers that a map states, in words."""
 RATED = '%'  # of the rated torque, or of the current at which the motor gives it
 UNITS: dict[str, Mapping[str, float]] = {
     'speed': conversions.LINEAR_SPEED_UNITS | conversions.ROTARY_SPEED_UNITS,
@@ -16,7 +33,7 @@ UNITS: dict[str, Mapping[str, float]] = {
     'torque': {'N m': 1.0, RATED: 0.01},
     'current': conversions.CURRENT_UNITS | {RATED: 0.01},
     'temperature': conversions.TEMPERATURE_UNITS,
-    'time': conversions.TIME_UNITS,
+    'time': {unit: factor for unit, (factor, _) in SCALES.items()},
 }
 """Units of each kind of column; some need what a map states, as the lead or the rated torque."""
 MOTION = ('speed', 'position')

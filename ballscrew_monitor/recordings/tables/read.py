@@ -14,11 +14,14 @@ import dataclasses
 import difflib
 from pathlib import Path
 
-from ballscrew_monitor.recordings.tables.cells import Array, Cells, Reading
+from ballscrew_monitor.recordings.tables.cells import Array, Cells, empties, Reading
+from ballscrew_monitor.recordings.tables.clocks import moments_of
 from ballscrew_monitor.recordings.tables.quantities import Layout, OTHER_SIGN
-from ballscrew_monitor.recordings.tables.sources import layout_of, Source, source_of
+from ballscrew_monitor.recordings.tables.signs import decide, Decision
+from ballscrew_monitor.recordings.tables.sources import Source, source_of
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
+from numpy.typing import NDArray
 import polars as pl
 from surrogate.files import InputError
 
@@ -32,7 +35,8 @@ class Table:
     Chosen columns of a log that was looked through: how each is read, by name.
 
     `notes` says in a sentence each what could not be read; `left_out` says why of columns;
-    `doubts` says of numbers what else they may be, by the decimal sign that they would have then.
+    `doubts` says of numbers what else they may be, by the decimal sign that they would have then,
+    and of dates by the word `order`; `decision` is the decimal sign of the table.
 
     """
 
@@ -42,18 +46,28 @@ class Table:
     notes: tuple[str, ...]
     left_out: Mapping[str, str]
     doubts: Mapping[str, str]
-    _source: Source
+    decision: Decision
+    source: Source
 
     @property
     def first_row(self) -> int:
         """Return the row of the file in which the first cells stand."""
-        return self._source.first
+        return self.source.head.first
 
     def blocks(self, names: Collection[str] | None = None) -> Iterator[dict[str, Array]]:
         """Yield columns (None: all) in blocks of rows, NaN where there is no number, times [s]."""
         chosen = list(self.readings if names is None else names)
-        for block in self._source.blocks(chosen):
+        for block in self.source.blocks(chosen):
             yield {name: self.readings[name].numbers(block[name]) for name in chosen}
+
+    def blocks_with_holes(
+        self, names: Collection[str], hollow: str = ''
+    ) -> Iterator[tuple[dict[str, Array], NDArray[np.bool_] | None]]:
+        """Yield blocks as `blocks` does, and in which rows the column `hollow` has no sample."""
+        read = list(dict.fromkeys([*names, *filter(None, [hollow])]))
+        for block in self.source.blocks(read):
+            numbers = {name: self.readings[name].numbers(block[name]) for name in names}
+            yield numbers, empties(block[hollow]) if hollow else None
 
     def head(self, most: int) -> dict[str, Array]:
         """Return all columns, `most` of their rows."""
@@ -80,6 +94,7 @@ def open_table(
     *,
     layout: Layout | None = None,
     decimal: str = '',
+    order: str = '',
     optional: Collection[str] = (),
     shown: Shown = shown_progress,
 ) -> Table:
@@ -91,8 +106,10 @@ def open_table(
 
     """
     source = source_of(path, layout)
-    _check_names(source, names, layout or Layout())
-    table = look_through(source, names, decimal=decimal, optional=optional, shown=shown)
+    _check_names(source, names, layout)
+    table = look_through(
+        source, names, decimal=decimal, order=order, optional=optional, shown=shown
+    )
     for doubt in table.doubts.values():
         raise InputError(doubt)
     return table
@@ -103,12 +120,15 @@ def look_through(
     names: Collection[str],
     *,
     decimal: str = '',
+    order: str = '',
     optional: Collection[str] = (),
     shown: Shown = shown_progress,
 ) -> Table:
     """Look through columns that a table holds, as `open_table` does, but keep the doubts."""
     left_out: dict[str, str] = {}
-    found = {name: _cells(source, name, decimal) for name in names}
+    found = {
+        name: Cells(source.path, name, first_row=source.head.first, order=order) for name in names
+    }
     rows = 0
     with shown(source.rows, 'rows looked through') as show:
         for block in source.blocks(list(found)):
@@ -121,61 +141,81 @@ def look_through(
             show(rows / source.rows)
     if not rows:
         raise InputError(f'log {source.path} holds no row, at least two are needed')
+    decision = _decision(source, found, decimal)
+    shown_order = order or _order(source, found)
     readings: dict[str, Reading] = {}
+    doubts: dict[str, str] = {}
     for name, cells in found.items():
         if name in left_out:
             continue
         with _left_out(name, left_out, optional):
-            readings[name] = cells.reading()
+            readings[name] = cells.reading(decision.sign, shown_order)
+            for sign, doubt in decision.doubt(cells.where, cells.signs).items():
+                doubts.setdefault(sign, doubt)
+            if not shown_order and (doubt := cells.doubt()):
+                doubts.setdefault('order', doubt)
     return Table(
         path=source.path,
         readings=readings,
         rows=rows,
-        notes=tuple(one.note for one in readings.values() if one.note),
+        notes=(
+            *(one.note for one in readings.values() if one.note),
+            *_decided(source, found, decision),
+        ),
         left_out=left_out,
-        doubts={} if decimal else _doubts(source, found),
-        _source=source,
+        doubts=doubts,
+        decision=decision,
+        source=source,
     )
 
 
-def _cells(source: Source, name: str, decimal: str = '') -> Cells:
-    return Cells(source.path, name, source.separator, first_row=source.first, decimal=decimal)
+def _decided(source: Source, found: Mapping[str, Cells], decision: Decision) -> list[str]:
+    """Return in a sentence by what numbers are read that could be others, if there are any."""
+    cells = [one.signs.doubtful for one in found.values() if one.signs.doubtful]
+    if not cells or not decision.words:
+        return []
+    sign, cell = next(iter(cells[0].items()))
+    number = cell.number(decimal=sign == decision.sign, sign=sign)
+    return [f'log {source.path}: {decision.words}: {cell.words} is {number}']
 
 
-def _doubts(source: Source, found: Mapping[str, Cells]) -> dict[str, str]:
+def _order(source: Source, found: Mapping[str, Cells]) -> str:
+    """Return the order of day and month that dates of the log or its head show, else nothing."""
+    orders = {cells.order for cells in found.values()}
+    if 'start' in source.head.properties:
+        moments = moments_of(source.head.properties['start'].text)
+        orders |= {form.order for _, form in moments} if len(moments) == 1 else set()
+    orders.discard('')
+    return orders.pop() if len(orders) == 1 else ''
+
+
+def _decision(source: Source, found: Mapping[str, Cells], stated: str) -> Decision:
     """
-    Return what numbers may be others, as columns of the log differ in their sign or show none.
+    Return the decimal sign of a table; columns that are not read are asked where others doubt.
 
     Cells of a workbook are numbers, and those between commas have a decimal point.
 
     """
-    if not any(cells.signs.doubtful for cells in found.values()):
-        return {}
-    others = {name: _cells(source, name) for name in source.names() if name not in found}
-    head = source.head()
-    for name, cells in others.items():
-        if head[name].dtype == pl.String:
-            cells.add(head[name])
-    every = others | dict(found)
-    elsewhere = {
-        sign: f'{cell} of column {short(repr(name))}'
-        for name, cells in every.items()
-        for sign, cell in cells.signs.seen.items()
-    }
-    clear = [
-        sign
-        for sign in OTHER_SIGN
-        if source.separator in SURE_BETWEEN
-        or any(cells.signs.shows(sign) for cells in every.values())
-    ]
-    doubts: dict[str, str] = {}
-    for cells in found.values():
-        for sign, doubt in cells.signs.doubts(elsewhere, clear).items():
-            doubts.setdefault(sign, f'{cells.where} {doubt}')
-    return doubts
+    head = source.head
+    if 'decimal' in head.properties and not stated:
+        text = head.properties['decimal'].text.strip()
+        stated = text if text in OTHER_SIGN else {'comma': ',', 'point': '.'}.get(text.lower(), '')
+    signs = {name: cells.signs for name, cells in found.items()}
+    usual = '.' if head.separator in SURE_BETWEEN else ''
+    decision = decide(signs, stated, usual)
+    if decision.proofs or stated or not any(one.doubtful for one in signs.values()):
+        return decision
+    first = source.first_rows()
+    for name in source.names():
+        if name not in found and first[name].dtype == pl.String:
+            cells = Cells(source.path, name, first_row=head.first)
+            cells.add(first[name])
+            numbers = [one.good for one in cells.numbers]
+            signs |= {name: cells.signs} if 2 * max(numbers, default=0) > cells.count else {}
+    return decide(signs, stated, usual)
 
 
-def _check_names(source: Source, names: Collection[str], layout: Layout) -> None:
+def _check_names(source: Source, names: Collection[str], layout: Layout | None) -> None:
     """Raise InputError for a column that a log does not hold, with what may be meant."""
     held = source.names()
     for name in names:
@@ -184,11 +224,10 @@ def _check_names(source: Source, names: Collection[str], layout: Layout) -> None
                 f'{short(near)} may be meant'
                 for near in difflib.get_close_matches(name, held, n=1)
             ]
-            if (found := layout_of(source.path)) != layout:
-                hints.append(
-                    'the names look to stand elsewhere: write '
-                    f'`skip: {found.skip}` and `header_rows: {found.header_rows}` in the map'
-                )
+            if layout is not None and name in source_of(source.path).names():
+                hints.append('it is found without `skip` and `header_rows` in the map')
+            if not source.head.named:
+                hints.append('no line names them')
             raise InputError(
                 f'log {source.path}: column {short(repr(name))} is missing, the log holds '
                 f'{"; ".join([listed(held), *hints])}'

@@ -7,7 +7,7 @@ Speeds that do not make the positions beside them are told, with the unit in whi
 
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 import dataclasses
 import itertools
 import math
@@ -21,13 +21,15 @@ from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import open_table, Table
 from ballscrew_monitor.recordings.tables.time_gate import INSTEAD
-from ballscrew_monitor.recordings.tables.times import joined, line, Rows, Times
+from ballscrew_monitor.recordings.tables.times import groups_of, in_step, joined, line, Rows, Times
 from ballscrew_monitor.recordings.words import short, Shown, shown_progress
 from ballscrew_monitor.settings.parameters import MOTOR_TORQUE
 import numpy as np
 from surrogate.files import InputError
 from surrogate.units import TURN
 
+BETWEEN = 2.0  # [s] between runs, at least: longer than a sample is fresh
+LONG_GAP = 20.0  # times the usual time between rows, the same
 LONG = 3.0  # times the usual time between rows: across more the speed is not known
 FARTHEST = 1e100  # position in whatever unit, so that squares of what is moved have a sum
 ALIKE = 0.9  # squared correlation from which a speed and its position are of one motion
@@ -39,7 +41,8 @@ class Series:
     A log by rows: their number, the usual time between them [s], and what was wrong with it.
 
     `mapping` is that by which it is read, without the columns that hold nothing; `begin` and `end`
-    are the first and the last stamp [ns]. The rows themselves are read when they are asked for.
+    are the first and the last stamp [ns]. Columns of one time are a group, of which `places` names
+    that of each quantity. The rows themselves are read when they are asked for.
 
     """
 
@@ -49,25 +52,59 @@ class Series:
     end: int
     notes: tuple[str, ...]
     mapping: TableMap
-    _times: Times
+    places: Mapping[str, int]
+    _times: tuple[Times, ...]
 
-    def blocks(self) -> Iterator[Rows]:
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Return the rows of each group."""
+        return tuple(times.count for times in self._times)
+
+    def blocks(self) -> Iterator[list[Rows]]:
         """
-        Yield the rows in blocks, the columns by axis and quantity, such as `x.load`.
+        Yield the rows in blocks, a list of those of each group, the columns such as `x.load`.
 
         Speed [rad/s], position [rad] and torque [N m] of the screw, load on the nut [N] and oil
         temperature [degC], machine frame, NaN where not known: those of `quantities_of`.
 
         """
-        blocks: Iterable[tuple[Rows, slice]] = ((rows, slice(None)) for rows in self._times.rows())
-        if any('speed' not in axis.columns for axis in self.mapping.axes):
-            blocks = _with_neighbours(self._times.rows())
+        streams = [self._group(number, times) for number, times in enumerate(self._times)]
+        if len(streams) == 1:
+            yield from ([rows] for rows in streams[0])
+        else:
+            yield from in_step(streams)
+
+    def _group(self, number: int, times: Times) -> Iterator[Rows]:
+        """Yield the rows of a group."""
+        held = [
+            (axis, {kind for kind in quantities_of(axis) if self.of(axis, kind) == number})
+            for axis in self.mapping.axes
+        ]
+        blocks: Iterable[tuple[Rows, slice]] = ((rows, slice(None)) for rows in times.rows())
+        if any('speed' in kinds and 'speed' not in axis.columns for axis, kinds in held):
+            blocks = _with_neighbours(times.rows())
         for rows, part in blocks:
             columns: dict[str, Array] = {}
-            for axis in self.mapping.axes:
-                quantities = _axis(axis, rows, part, self.begin)
+            for axis, kinds in held:
+                quantities = _axis(axis, kinds, rows, part, self.begin)
                 columns |= {f'{axis.name}.{kind}': one for kind, one in quantities.items()}
             yield Rows(stamps=rows.stamps[part], columns=columns)
+
+    def of(self, axis: AxisMap, kind: str) -> int:
+        """Return the group in which a quantity of an axis is."""
+        return self.places[source_of(axis, kind)]
+
+
+def source_of(axis: AxisMap, kind: str) -> str:
+    """Return the column of which a quantity is made; an unknown one has that of the speed."""
+    held = axis.columns
+    motor = 'torque' if 'torque' in held else 'current'
+    choices = {
+        'speed': ('speed', 'position'),
+        'torque': (motor,),
+        'load': ('load', motor if axis.load_from in ('torque', 'current') else '', *MOTION),
+    }.get(kind, (kind,))
+    return next(held[one].name for one in choices if one in held)
 
 
 def quantities_of(axis: AxisMap) -> set[str]:
@@ -92,6 +129,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
         columns,
         layout=mapping.layout,
         decimal=mapping.decimal,
+        order=mapping.order,
         optional=columns,
         shown=shown,
     )
@@ -99,18 +137,63 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
         if name in table.left_out:
             raise InputError(f'{table.left_out[name]}: name a time that is read, or {INSTEAD}')
     _check_positions(path, mapping, table)
-    axes = tuple(_readable(axis, table.left_out) for axis in mapping.axes)
-    held = dataclasses.replace(mapping, axes=axes)
-    times = Times(table, held, shown)
+    axes = [_readable(axis, table.left_out) for axis in mapping.axes]
+    still = [_moving(axis, table) for axis in axes]
+    held = dataclasses.replace(mapping, axes=tuple(axis for axis, _ in still))
+    times = [Times(table, held, group, shown) for group in groups_of(table, held)]
+    _place(path, times)
+    notes = [note for one in times for note in one.notes()]
     return Series(
-        count=times.count,
-        usual_period=times.usual_period,
-        begin=times.begin,
-        end=times.end,
-        notes=(*_losses(mapping, table.left_out), *table.notes, *times.notes()),
+        count=sum(one.count for one in times),
+        usual_period=max(one.usual_period for one in times if one.count > 1),
+        begin=times[0].begin,
+        end=max(one.end for one in times),
+        notes=(
+            *_losses(mapping, table.left_out),
+            *filter(None, (note for _, note in still)),
+            *table.notes,
+            *dict.fromkeys(notes),
+        ),
         mapping=held,
-        _times=times,
+        places={name: at for at, one in enumerate(times) for name in one.group.columns},
+        _times=tuple(times),
     )
+
+
+def _moving(axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
+    """Return an axis without a speed of nothing but 0 beside a position that moves; a note."""
+    if not set(MOTION) <= set(axis.columns):
+        return axis, ''
+    speed, position = (table.readings[axis.columns[kind].name].extremes for kind in MOTION)
+    if speed.any() or position[0] == position[1]:
+        return axis, ''
+    columns = {kind: column for kind, column in axis.columns.items() if kind != 'speed'}
+    note = (
+        f'axis {axis.name}: {short(axis.columns["speed"].name)} is always 0 while the position '
+        'moves: the speed is the slope of the position'
+    )
+    return dataclasses.replace(axis, columns=columns), note
+
+
+def _place(path: Path, times: Sequence[Times]) -> None:
+    """Let the runs of all groups follow each other, and all stamps count from the first time."""
+    motion = [one for one in times if one.group.is_motion]
+    runs = len(motion[0].gate.runs)
+    for one in times:
+        if len(one.gate.runs) != runs > 1 or (one in motion and len(one.gate.runs) != runs):
+            raise InputError(
+                f'log {path}: time begins again {runs - 1} times for '
+                f'{short(motion[0].group.columns[0])} and {len(one.gate.runs) - 1} times for '
+                f'{short(one.group.columns[0])}: split the log there'
+            )
+    gap = max(BETWEEN, *(LONG_GAP * one.gate.step for one in motion))
+    alike = [one.gate.ends(gap) for one in times if len(one.gate.runs) == runs]
+    ends = [max(parts) for parts in zip(*alike, strict=True)]
+    for one in times:
+        one.place(gap, ends if len(times) > 1 else None)
+    begin = min(one.first for one in times)
+    for one in times:
+        one.since(begin)
 
 
 def _check_positions(path: Path, mapping: TableMap, table: Table) -> None:
@@ -166,8 +249,10 @@ def _with_neighbours(blocks: Iterable[Rows]) -> Iterator[tuple[Rows, slice]]:
         now = later
 
 
-def _axis(axis: AxisMap, rows: Rows, part: slice, begin: int) -> dict[str, Array]:
-    """Return the quantities of an axis in a part of the rows, by a log that begins at [ns]."""
+def _axis(
+    axis: AxisMap, known: Collection[str], rows: Rows, part: slice, begin: int
+) -> dict[str, Array]:
+    """Return known quantities of an axis in a part of the rows, by a log that begins at [ns]."""
 
     def column(kind: str, factor: float, part: slice = part) -> Array:
         found = axis.columns[kind]
@@ -176,26 +261,27 @@ def _axis(axis: AxisMap, rows: Rows, part: slice, begin: int) -> dict[str, Array
     def unit(kind: str) -> str:
         return axis.columns[kind].unit if kind in axis.columns else ''
 
-    held, known = axis.columns.keys(), quantities_of(axis)
+    held = axis.columns.keys()
     linear, rotary = conversions.LINEAR_POSITION_UNITS, conversions.ROTARY_POSITION_UNITS
     turned = _turned(unit('position'), linear, rotary, TURN / axis.lead)
     found: dict[str, Array] = {}
     if 'position' in known:
         found['position'] = column('position', turned)
-    if 'speed' in held:
+    if 'speed' in known and 'speed' in held:
         found['speed'] = column('speed', speed_factor(unit('speed'), axis.lead))
-    else:
+    elif 'speed' in known:
         position = column('position', turned, slice(None))
         found['speed'] = _slope(position, (rows.stamps - begin) / SECOND)[part]
+    kind = 'torque' if 'torque' in held else 'current'
     if 'torque' in known:
-        kind = 'torque' if 'torque' in held else 'current'
         found['torque'] = column(kind, axis.motor_torque(kind))
-    if 'load' in held:
+    if 'load' in known and 'load' in held:
         found['load'] = column('load', conversions.LOAD_UNITS[unit('load')])
-    elif axis.load_from in ('torque', 'current') and 'torque' in known:
-        found['load'] = force_of(found['torque'], lead=axis.lead, efficiency=axis.efficiency)
+    elif 'load' in known and axis.load_from in ('torque', 'current'):
+        torque = column(kind, axis.motor_torque(kind))
+        found['load'] = force_of(torque, lead=axis.lead, efficiency=axis.efficiency)
     elif 'load' in known:
-        found['load'] = np.full(len(found['speed']), math.nan)
+        found['load'] = np.full(len(rows.stamps[part]), math.nan)
     if 'temperature' in known:
         zero = conversions.TEMPERATURE_UNITS[unit('temperature')]
         found['temperature'] = column('temperature', 1.0) + zero + conversions.celsius(0.0)
@@ -233,17 +319,13 @@ def _slope(position: Array, seconds: Array) -> Array:
     return np.where(np.isfinite(slope), slope, math.nan)
 
 
-def fits_of(mapping: TableMap, usual_period: float) -> list['Fit']:
-    """
-    Return what compares speed and position of each axis that has both, without a row yet.
-
-    Rows `usual_period` [s] apart are usual in this table.
-
-    """
+def fits_of(series: Series) -> list['Fit']:
+    """Return what compares speed and position of each axis in rows that have both."""
     return [
-        Fit(axis, LONG * usual_period)
-        for axis in mapping.axes
-        if {'speed', 'position'} <= set(axis.columns)
+        Fit(axis, LONG * series.usual_period)
+        for axis in series.mapping.axes
+        if set(MOTION) <= set(axis.columns)
+        and series.of(axis, 'speed') == series.of(axis, 'position')
     ]
 
 
@@ -258,6 +340,8 @@ class Fit:
     def add(self, rows: Rows) -> None:
         """Take further rows."""
         steps, name = np.diff(rows.stamps) / SECOND, self._axis.name
+        if f'{name}.speed' not in rows.columns:
+            return
         speed, position = (rows.columns[f'{name}.{kind}'] for kind in MOTION)
         expected = (speed[1:] + speed[:-1]) / 2 * steps
         moved = np.diff(position)

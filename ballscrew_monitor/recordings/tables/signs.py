@@ -3,11 +3,12 @@
 """
 Decimal signs of texts: point or comma, of which the other one then parts thousands.
 
-In 5.400 the point may be either. A cell such as 12.35 or 1,234.5 shows which it is.
+In 5.400 the point may be either. A cell such as 12.35 or 1,234.5 shows which it is, for all
+numbers of a table.
 
 """
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Mapping
 import dataclasses
 import re
 
@@ -18,6 +19,10 @@ from numpy.typing import NDArray
 import polars as pl
 
 NAMES = {'.': 'point', ',': 'comma'}
+
+
+MARKS = r"[ '’\u00a0\u202f\ufffd]"
+"""What parts thousands besides a sign: blanks of whatever width, and apostrophes."""
 
 
 def thousands(part: str, groups: str = '') -> str:
@@ -31,11 +36,18 @@ def are(texts: pl.Series, pattern: str) -> NDArray[np.bool_]:
     return texts.str.contains(whole).fill_null(False).to_numpy()
 
 
+def grouped(sign: str) -> str:
+    """Return the pattern of numbers with a decimal sign whose thousands anything else parts."""
+    part, mark = re.escape(OTHER_SIGN[sign]), re.escape(sign)
+    return rf'[1-9]\d{{0,2}}(?:(?:{part}\d{{3}})+|(?:{MARKS}\d{{3}})+)(?:{mark}\d*)?'
+
+
 def _decimal(sign: str) -> str:
     """Return the pattern of numbers with a decimal sign, some of which may be without."""
     mark, groups = re.escape(sign), thousands(OTHER_SIGN[sign], '+')
+    marked = rf'[1-9]\d{{0,2}}(?:{MARKS}\d{{3}})+{mark}\d+'
     plain = rf'(?:\d+{mark}\d*|{mark}\d+)(?:[eE][-+]?\d+)?'
-    return rf'{plain}|{groups}{mark}\d*|{thousands(OTHER_SIGN[sign], "{2,}")}'
+    return rf'{plain}|{marked}|{groups}{mark}\d*|{thousands(OTHER_SIGN[sign], "{2,}")}'
 
 
 _DECIMAL = {sign: _decimal(sign) for sign in OTHER_SIGN}
@@ -52,81 +64,113 @@ class _Cell:
     def words(self) -> str:
         return f'{short(repr(self.text))} in row {self.row}'
 
+    def number(self, *, decimal: bool, sign: str) -> str:
+        """Return the number that the text is if a sign is decimal, or if it parts thousands."""
+        if decimal:
+            return f'{float(self.text.replace(sign, ".")):g}'
+        return str(int(self.text.replace(sign, '')))
+
     def readings(self, sign: str) -> str:
-        """Return the number that the text is if a sign is decimal, and if it parts thousands."""
-        return f'{float(self.text.replace(sign, ".")):g} or {int(self.text.replace(sign, ""))}'
+        """Return the numbers that the text may be."""
+        decimal, parted = (self.number(decimal=one, sign=sign) for one in (True, False))
+        return f'{decimal} or {parted}'
 
 
 class Signs:
-    """The first cell of a column in which each sign is surely decimal, and in which it may be."""
+    """Cells of a column in which each sign is surely decimal: their number, and the first."""
 
     def __init__(self) -> None:
         """Begin with no cell."""
+        self.counts = dict.fromkeys(OTHER_SIGN, 0)
         self._sure: dict[str, _Cell] = {}
         self._doubtful: dict[str, _Cell] = {}
 
-    def look(
-        self,
-        texts: pl.Series,
-        holding: Mapping[str, Callable[[], NDArray[np.bool_]]],
-        unread: NDArray[np.bool_],
-        row: int,
-    ) -> None:
-        """
-        Look at further cells, the first of them in a row of the file.
-
-        `holding` tells which of them hold each sign; `unread` are no numbers with either one.
-
-        """
-        for sign, other in OTHER_SIGN.items():
-            if sign in self._sure:
-                continue
-            places = np.flatnonzero(holding[sign]())
-            if unread.any():
-                places = np.union1d(places, np.flatnonzero(holding[other]() & unread))
-            if not len(places):
-                continue
-            some = texts.gather(places)
-            doubtful = are(some, thousands(sign))
-            sure = are(some, _DECIMAL[sign]) & ~doubtful
+    def look(self, texts: pl.Series, row: int) -> None:
+        """Look at further cells that hold a sign, the first of them in a row of the file."""
+        for sign in OTHER_SIGN:
+            doubtful = are(texts, thousands(sign))
+            sure = are(texts, _DECIMAL[sign]) & ~doubtful
+            self.counts[sign] += int(sure.sum())
             for cells, found in ((self._doubtful, doubtful), (self._sure, sure)):
                 if sign not in cells and found.any():
-                    at = int(places[found.argmax()])
+                    at = int(found.argmax())
                     cells[sign] = _Cell(text=texts[at].strip(), row=row + at)
 
     def shows(self, sign: str) -> bool:
         """Return True if a sign is decimal in a cell that cannot be read otherwise."""
         return sign in self._sure
 
-    @property
-    def seen(self) -> dict[str, str]:
-        """Return the signs that may be decimal in its numbers, each with a cell in words."""
-        return {sign: cell.words for sign, cell in (self._doubtful | self._sure).items()}
+    def first(self, sign: str) -> str:
+        """Return in words the first cell that surely has a decimal sign."""
+        return self._sure[sign].words
 
     @property
     def doubtful(self) -> dict[str, _Cell]:
         """Return the signs that may part thousands wherever they stand, each with a cell."""
         return {sign: cell for sign, cell in self._doubtful.items() if sign not in self._sure}
 
-    def doubts(self, elsewhere: Mapping[str, str], clear: Collection[str]) -> dict[str, str]:
-        """
-        Return what is not clear, by the sign that would be decimal instead, in words.
 
-        A sign that is `clear`, as the log shows elsewhere that it is decimal, is so unless the
-        numbers of the log hold the other one too: `elsewhere` says where.
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Decision:
+    """
+    The decimal sign of a whole table, empty where none is shown, and by how many cells it is so.
 
-        """
+    Where cells show both, no sign is that of the table, and `where` names one of each.
+
+    """
+
+    sign: str = ''
+    proofs: int = 0
+    where: str = ''
+
+    def doubt(self, where: str, signs: Signs) -> dict[str, str]:
+        """Return what is not clear of a column, by the sign that would be decimal instead."""
         found = {}
-        for sign, cell in self.doubtful.items():
-            other = OTHER_SIGN[sign]
-            if other in elsewhere:
-                why = f'have a decimal {NAMES[other]}, too, such as {elsewhere[other]}'
-            elif sign not in clear:
-                why = f'nowhere show whether the {NAMES[sign]} is decimal or parts thousands'
-            else:
+        for sign, cell in signs.doubtful.items():
+            if self.sign:
                 continue
+            other = OTHER_SIGN[sign]
+            why = self.where or (
+                f'for numbers of the log nowhere show whether the {NAMES[sign]} is decimal or '
+                'parts thousands'
+            )
             found[other] = (
-                f'holds {cell.words}, which is {cell.readings(sign)}, for numbers of the log '
-                f"{why}: state `decimal: '{other}'` or `decimal: '{sign}'` in the map"
+                f'{where} holds {cell.words}, which is {cell.readings(sign)}, {why}: state '
+                f"`decimal: '{other}'` or `decimal: '{sign}'` in the map"
             )
         return found
+
+    @property
+    def words(self) -> str:
+        """Return what was decided, empty if nothing was."""
+        if not self.sign or not self.proofs:
+            return ''
+        cells = 'cell' if self.proofs == 1 else 'cells'
+        return f'{NAMES[self.sign]} is decimal, proven by {self.proofs} {cells}'
+
+
+def decide(columns: Mapping[str, Signs], stated: str, usual: str) -> Decision:
+    """
+    Return the decimal sign of a table by all cells of its columns, by name.
+
+    A sign that the map or the head has `stated` counts; without any cell that shows one, the
+    `usual` one does, if there is such a thing.
+
+    """
+    counts = {sign: sum(one.counts[sign] for one in columns.values()) for sign in OTHER_SIGN}
+    if stated:
+        return Decision(sign=stated)
+    shown = [sign for sign, count in counts.items() if count]
+    if len(shown) == 1:
+        return Decision(sign=shown[0], proofs=counts[shown[0]])
+    if not shown:
+        maybe = {sign for one in columns.values() for sign in one.doubtful}
+        return Decision(sign=usual if maybe <= {usual} else '')
+    cells = [
+        f'{one.first(sign)} of column {short(repr(name))}'
+        for sign in shown
+        for name, one in list(columns.items())
+        if one.counts[sign]
+    ]
+    why = f'for other numbers have either sign, such as {cells[0]} and {cells[-1]}'
+    return Decision(where=why)

@@ -8,18 +8,19 @@ line feed, a carriage return or both. All is bounded before it is read.
 
 """
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator
 import contextlib
 import csv
 import dataclasses
-import functools
 import io
 import math
 from pathlib import Path
+import re
 from typing import Any, BinaryIO
 
-from ballscrew_monitor.recordings.tables import heads
+from ballscrew_monitor.recordings.tables import foreign, heads
 from ballscrew_monitor.recordings.tables.cells import first_line, readable
+from ballscrew_monitor.recordings.tables.heads import Head, Line
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.workbook import first_sheet, NUMBER
 import numpy as np
@@ -29,11 +30,14 @@ from surrogate import limits
 from surrogate.files import InputError
 
 HEAD = 65536  # [bytes] of a file that tell what it is
-LINES = 200  # of a table that tell where its names stand
+LINES = 2000  # of a table that tell where its numbers begin
 SHORT = 4096  # [bytes] of a block, in which a line usually ends
 BLOCK = 32768  # rows that are read at a time
 PART = 4 * limits.MEGA  # [bytes] of a text that are read at a time
 ZIP, PARQUET = b'PK\3\4', b'PAR1'
+EDGES = re.compile(rb'^[ \t]+|[ \t]+(?=\r?$)', re.M)
+SPACES = re.compile(rb'[ \t]+')
+"""Blanks at the ends of lines, and between cells that they part."""
 WIDE_MARKS = (b'\xff\xfe', b'\xfe\xff')
 NARROW_MARK = b'\xef\xbb\xbf'
 CODINGS = ('utf-8', 'cp1252', 'latin-1')
@@ -43,32 +47,29 @@ CODINGS = ('utf-8', 'cp1252', 'latin-1')
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Source:
     """
-    A table as it stands in a file: the separator of its cells if it has one, rows about.
+    A table as it stands in a file, what its head says, and its rows about.
 
-    Its first cells stand in the row `first` of the file; lines that begin with # do not count.
     The columns that are read may come to `most` [bytes]: those at rest take next to no room in a
-    file of Parquet, so that all of them together tell nothing.
-    `parts` reads some columns of a text part by part.
+    file of Parquet, so that all of them together tell nothing. `read` reads some columns part by
+    part.
 
     """
 
     path: Path
-    frame: pl.LazyFrame
-    separator: str
+    head: Head
     rows: int
-    first: int = 1
+    read: Callable[[list[str]], Iterator[pl.DataFrame]]
     most: float = math.inf
-    parts: Callable[[list[str]], Iterator[pl.DataFrame]] | None = None
 
     def names(self) -> list[str]:
         """Return the names of all columns."""
-        with readable(f'log {self.path} cannot be read'):
-            return self.frame.collect_schema().names()
+        return list(self.head.names)
 
-    def head(self) -> pl.DataFrame:
+    def first_rows(self) -> pl.DataFrame:
         """Return the first rows of all columns; raises InputError."""
         with readable(f'log {self.path} cannot be read'):
-            return self.frame.head(LINES).collect()
+            part = next(iter(self.read(self.names())), None)
+            return pl.DataFrame(schema=self.names()) if part is None else part.head(LINES)
 
     def blocks(self, names: Collection[str]) -> Iterator[pl.DataFrame]:
         """Yield the columns `names` in blocks of rows; none is empty. Raises InputError."""
@@ -80,9 +81,7 @@ class Source:
                 'the file'
             )
         with readable(f'log {self.path} cannot be read'):
-            chosen = self.frame.select(list(names))
-            batches = chosen.collect_batches(chunk_size=BLOCK, lazy=True)
-            for batch in self.parts(list(names)) if self.parts else batches:
+            for batch in self.read(list(names)):
                 yield from batch.iter_slices(BLOCK) if batch.height else ()
 
 
@@ -93,17 +92,22 @@ def source_of(path: Path, layout: Layout | None = None) -> Source:
         return _parquet(path)
     if head.startswith(ZIP):
         return _sheet(path, layout)
+    if kind := foreign.kind_of(head):
+        signals = foreign.read_signals(path, kind)
+        _check_columns(path, signals.frame.width)
+        frame = signals.frame.lazy()
+        return of_frame(path, frame, signals.head(), signals.frame.height, math.inf)
     return _text(path, layout, _Text.of(path, head))
 
 
-def layout_of(path: Path) -> Layout:
-    """Return where the names of the columns seem to stand in a file."""
-    head = _head_of(path)
-    if head.startswith(PARQUET):
-        return Layout()
-    if head.startswith(ZIP):
-        return heads.found_layout(_rows_of(_cells_of_sheet(path)))
-    return _Text.of(path, head).layout()
+def of_frame(path: Path, frame: pl.LazyFrame, head: Head, rows: int, most: float) -> Source:
+    """Return a table whose cells are in a frame that has a column for each name."""
+    named = frame.rename(dict(zip(frame.collect_schema().names(), head.names)))
+
+    def read(names: list[str]) -> Iterator[pl.DataFrame]:
+        yield from named.select(names).collect_batches(chunk_size=BLOCK, lazy=True)
+
+    return Source(path=path, head=head, rows=max(rows, 1), read=read, most=most)
 
 
 def _head_of(path: Path) -> bytes:
@@ -113,7 +117,7 @@ def _head_of(path: Path) -> bytes:
     except OSError as error:
         raise InputError(f'log {path} cannot be read: {error.strerror}') from None
     if not head.strip():
-        raise InputError(f'log {path} is empty, it must be a CSV, Parquet or xlsx file')
+        raise InputError(f'log {path} is empty, it must be a table or a file of signals')
     return head
 
 
@@ -124,32 +128,23 @@ def _parquet(path: Path) -> Source:
         names = frame.collect_schema().names()
     _check_columns(path, len(names))
     most = max(limits.most_unpacked(size), limits.WORKBOOK)
-    named = frame.rename(dict(zip(names, heads.unlike(names))))
-    return Source(path=path, frame=named, separator='', rows=max(rows, 1), most=most)
+    head = Head(names=heads.unlike(names), separator='', begin=0, first=1)
+    return of_frame(path, frame, head, rows, most)
 
 
 def _sheet(path: Path, layout: Layout | None) -> Source:
     """Return the first sheet of a workbook; raises ImportError without its reader."""
-    cells = _cells_of_sheet(path)
-    found = layout or Layout()
-    begin, end = found.skip, found.skip + found.header_rows
-    if cells.height < end:
-        raise InputError(f'log {path} has {cells.height} rows, none of them names its columns')
-    names = heads.names_of(_rows_of(cells[begin:end]))
-    frame = cells[end:].rename(dict(zip(cells.columns, names)))
-    return Source(
-        path=path, frame=frame.lazy(), separator='', rows=max(frame.height, 1), first=end + 1
-    )
-
-
-def _cells_of_sheet(path: Path) -> pl.DataFrame:
     cells = first_sheet(path)
     _check_columns(path, cells.width)
-    return cells
-
-
-def _rows_of(cells: pl.DataFrame) -> list[list[str]]:
-    return [[cell or '' for cell in row] for row in cells.head(LINES).iter_rows()]
+    rows = cells.head(LINES).iter_rows()
+    lines = [
+        Line(text='', row=number + 1, cells=tuple(cell or '' for cell in row))
+        for number, row in enumerate(rows)
+    ]
+    with _findable(path):
+        head = heads.find_head(lines, layout)
+    frame = cells[head.first - 1 :].select(cells.columns[: len(head.names)])
+    return of_frame(path, frame.lazy(), head, frame.height, math.inf)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -168,7 +163,7 @@ class _Text:
             content = _narrow(path, size)
             head, size = content[:HEAD], len(content)
         if b'\0' in head:
-            raise InputError(f'log {path} is no text, it must be a CSV, Parquet or xlsx file')
+            raise InputError(f'log {path} is no text, it must be a table or a file of signals')
         line_end = '\n' if b'\n' in head or b'\r' not in head else '\r'
         lines = max(head.count(line_end.encode()), 1) * size // len(head)
         return cls(path=path, content=content, line_end=line_end, lines_about=max(lines, 1))
@@ -176,19 +171,17 @@ class _Text:
     def stream(self) -> BinaryIO:
         return self.path.open('rb') if self.content is None else io.BytesIO(self.content)
 
-    def layout(self) -> Layout:
-        """Return where the names of the columns seem to stand."""
-        with self.lines() as lines:
-            return heads.found_in_lines([line for line, _ in zip(lines, range(LINES))])
+    def begin(self) -> int:
+        """Return where the text begins [bytes], after a mark of its coding."""
+        with self.stream() as stream:
+            return len(NARROW_MARK) if stream.read(len(NARROW_MARK)) == NARROW_MARK else 0
 
     @contextlib.contextmanager
     def lines(self) -> Iterator[Iterator[str]]:
-        """Give its lines."""
+        """Give its lines, a letter for each byte."""
         with self.stream() as stream:
-            if stream.read(len(NARROW_MARK)) != NARROW_MARK:
-                stream.seek(0)
-            # First a letter for each byte, so that no byte is a fault.
-            yield map(_decoded, io.TextIOWrapper(stream, CODINGS[-1], newline=self.line_end))
+            stream.seek(self.begin())
+            yield io.TextIOWrapper(stream, CODINGS[-1], newline=self.line_end)
 
 
 def _narrow(path: Path, size: int) -> bytes:
@@ -207,10 +200,13 @@ def _narrow(path: Path, size: int) -> bytes:
 def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     with text.stream() as stream:
         plain, comments = _look_at_lines(path, stream, text.line_end.encode())
-    found = layout or Layout()
-    with text.lines() as lines:
-        head = _named(path, lines, found)
+    lines, begins = _first_lines(text)
+    widest = max((line.text.count(sign) for line in lines for sign in ';\t|,'), default=0)
+    _check_columns(path, widest + 1)
+    with _findable(path):
+        head = heads.find_head(lines, layout)
     _check_columns(path, len(head.names))
+    blanks = head.separator == heads.BLANKS
     options: dict[str, Any] = {
         'separator': head.separator,
         # What it holds none of is not looked for, which takes as long as the cells themselves.
@@ -221,49 +217,58 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
         'infer_schema': False,
         'raise_if_empty': False,
     }
-    first = {'skip_lines': head.lines, 'skip_rows_after_header': found.header_rows - 1}
+    places = {name: at for at, name in enumerate(head.names)}
+    # Names for as many columns stand before each part.
+    line = head.separator.join(map(str, range(len(head.names)))) + text.line_end
 
-    def scanned(content: Path | bytes, **more: Any) -> pl.LazyFrame:
-        renamed = functools.partial(_renamed, head.names)
-        return pl.scan_csv(content, with_column_names=renamed, **options, **more)
-
-    def parts(names: list[str]) -> Iterator[pl.DataFrame]:
-        # Names for as many columns stand before each part but the first.
-        line = head.separator.join(map(str, range(len(source.names())))) + text.line_end
+    def read(names: list[str]) -> Iterator[pl.DataFrame]:
+        chosen = sorted(set(names), key=places.__getitem__)
+        options['columns'] = [places[name] for name in chosen]
+        called = {str(places[name]): name for name in chosen}
         with text.stream() as stream:
-            layout_of_part = first
-            for part in _parts(stream, text.line_end.encode(), line.encode(), head.first):
-                yield scanned(part, **layout_of_part).select(names).collect()
-                layout_of_part = {}
+            stream.seek(begins[head.begin])
+            for part in _parts(stream, text.line_end.encode()):
+                content = SPACES.sub(b' ', EDGES.sub(b'', part)) if blanks else part
+                cells = pl.read_csv(b''.join([line.encode(), content]), **options)
+                yield cells.rename(called).select(names)
 
-    source = Source(
-        path=path,
-        frame=scanned(path if text.content is None else text.content, **first),
-        separator=head.separator,
-        rows=text.lines_about,
-        first=head.first,
-        parts=parts,
-    )
-    return source
+    return Source(path=path, head=head, rows=text.lines_about, read=read)
 
 
-def _parts(stream: BinaryIO, line_end: bytes, line: bytes, first: int) -> Iterator[bytes]:
-    """
-    Yield a text in parts that end with a line, and begin with another one from the second on.
+def _first_lines(text: _Text) -> tuple[list[Line], list[int]]:
+    """Return the first lines of a text, those within quotes as one, and where each begins."""
+    lines, begins, at, number = [], [], text.begin(), 0
+    with text.lines() as stream:
+        for line in stream:
+            begin, row, at = at, number + 1, at + len(line)
+            number += 1
+            while line.count('"') % 2 and (more := next(stream, '')):
+                line, at, number = line + more, at + len(more), number + 1
+            lines.append(Line(text=_decoded(line), row=row))
+            begins.append(begin)
+            if len(lines) >= LINES or at > limits.MEGA:
+                break
+    return lines, [*begins, at]
 
-    The first has as many lines as the row `first`. Of a whole text, polars would read much ahead.
 
-    """
-    held, quoted, block, lines = [b''], False, stream.read(PART), 0
+@contextlib.contextmanager
+def _findable(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except (csv.Error, ValueError) as error:
+        raise InputError(f'log {path} cannot be read: {first_line(error)}') from None
+
+
+def _parts(stream: BinaryIO, line_end: bytes) -> Iterator[bytes]:
+    """Yield a text in parts that end with a line; of a whole one, polars would read much ahead."""
+    held, quoted, block = [b''], False, stream.read(PART)
     while block:
         following = stream.read(PART)
         end = _line_ends(block, line_end, quoted)[1] + 1 if following else len(block)
         quoted ^= _is_odd(block)
-        if lines < first:
-            lines += block.count(line_end)
-        if end and (lines >= first or not following):
+        if end:
             yield b''.join([*held, memoryview(block)[:end]])
-            held = [line, block[end:]]
+            held = [block[end:]]
         else:
             held.append(block)
         block = following
@@ -272,19 +277,6 @@ def _parts(stream: BinaryIO, line_end: bytes, line: bytes, first: int) -> Iterat
 def _is_odd(block: bytes) -> bool:
     """Return True if a text has an odd number of quotes."""
     return b'"' in block and block.count(b'"') % 2 == 1
-
-
-def _renamed(names: Sequence[str], held: Sequence[str]) -> list[str]:
-    """Return `names` for columns, and for those beyond what they are called there."""
-    count, most = len(names), len(held)
-    return [*names[:most], *held[count:]]
-
-
-def _named(path: Path, lines: Iterator[str], layout: Layout) -> heads.Head:
-    try:
-        return heads.read_head(lines, layout)
-    except (csv.Error, ValueError) as error:
-        raise InputError(f'log {path} cannot be read: {first_line(error)}') from None
 
 
 def _decoded(line: str) -> str:

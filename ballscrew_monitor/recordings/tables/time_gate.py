@@ -1,121 +1,293 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The gate of the times of a table: what no recording does, with the rows of the file."""
+"""
+The gate of the times of a table: in which runs they rise, and what no recording does.
 
+A row that is earlier than one before it came late if the time is back within a few rows. If it is
+not, the time begins again there: another run was appended, or a clock was set back for winter.
+
+"""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+import dataclasses
 import math
 
-from ballscrew_monitor.recordings.tables.estimates import Array, DAY
+from ballscrew_monitor.recordings.tables.estimates import Array, DAY, RARE, SHORTEST
 import numpy as np
 from numpy.typing import NDArray
 
 RowNumbers = NDArray[np.int64]
-Moment = tuple[float, int]
-"""A time [s] and its row in the file."""
-
 RATE = 1e5  # [Hz] no table has more rows in a second
-SHORTEST = 0.95 / RATE  # [s] between rows: a stored time since 1970 is only near the true one
 LONGEST = 10 * 365.25 * DAY  # [s] that a recording may last
 AGAIN = 10  # rows that rise, all earlier than one before them: more than a few that came late
+WINDOW = 512  # rows that are looked at together where some come late
+SHARED = 0.05  # of the rows that may have the time of the row before
+REGULAR = 0.8  # of the usual number of rows that share a time
+MOST = 0.9  # of the times that are shared by the usual number
+HOUR = 3600.0  # [s]
+CLOSE = 10.0  # [s] by which the fall of a clock may miss an hour
+RUNS = 1000  # more runs than any logger appends
 INSTEAD = 'state time.rate_Hz instead of time.column in the map'
+
+
+@dataclasses.dataclass(kw_only=True, slots=True)
+class Run:
+    """Rows whose time rises: the first in the file, their number, the first and last time [s]."""
+
+    row: int
+    rows: int
+    begin: float
+    end: float
+    shift: float = 0.0  # [s] of a clock that was set back
+    last: int = 0
 
 
 class TimeGate:
     """Times of the rows of a table, looked through in the order of the file."""
 
-    def __init__(self) -> None:
-        """Begin with no row."""
+    def __init__(self, *, wall: bool = False) -> None:
+        """Begin with no row; a clock on the `wall` may be set back by an hour."""
+        self._wall = wall
+        self.runs: list[Run] = []
+        self.clocks: list[tuple[int, float]] = []  # row from which a clock was set back [s]
+        self.count = self.late = 0
+        self._fallen = self._equal = 0
+        self._unordered = False
+        self._pending: list[tuple[float, int]] = []  # late rows at the end
+        self._before = 0.0  # time of the row before them [s]
+        self._last = np.zeros(0)
+        self._steps: Counter[float] = Counter()
+        self._shares: Counter[int] = Counter()
+        self._share = 0  # rows that have the last time
+        self._whole = False
         self._least, self._most = (math.inf, 0), (-math.inf, 0)
-        self._times, self._rows = np.zeros(0), np.zeros(0, np.int64)  # of the last row
-        self._steps = self._equal = self._fast = 0
-        self._first_equal: tuple[Moment, Moment] | None = None
-        self._first_fast: tuple[Moment, Moment] | None = None
-        self._again: tuple[Moment, Moment] | None = None
-        self._streak = 0  # rows that rise up to the last one, all late
-        self._fall: tuple[Moment, Moment] | None = None  # that the streak began with
-        self._first_fall: tuple[Moment, Moment] | None = None
-        self._rising, self._caught_up = 0, False
+        self._first_equal = self._first_fall = (0.0, 0.0, 0)
 
     def add(self, times: Array, rows: RowNumbers) -> None:
         """Take further times [s], all known, with their rows in the file."""
         if not len(times):
             return
-        joined = np.concatenate([self._times, times]), np.concatenate([self._rows, rows])
-        before = np.concatenate([[self._most[0]], times])[:-1]
-        with np.errstate(over='ignore'):  # a time too large for a stamp is refused elsewhere
-            self._add_steps(*joined)
-        self._add_late(*joined, times < np.maximum.accumulate(before))
         for at in (int(times.argmin()), int(times.argmax())):
             moment = float(times[at]), int(rows[at])
             self._least = min(self._least, moment, key=lambda one: one[0])
             self._most = max(self._most, moment, key=lambda one: one[0])
-        self._times, self._rows = times[-1:], rows[-1:]
+        self._add_steps(times, rows)
+        self.count += len(times)
+        if not self._unordered and len(self.runs) <= RUNS:
+            for begin in range(0, len(times), WINDOW):
+                end = begin + WINDOW
+                self._follow(times[begin:end], rows[begin:end])
 
     def _add_steps(self, times: Array, rows: RowNumbers) -> None:
-        """Count the steps between rows, and those that are too short."""
-        steps = np.abs(np.diff(times))
-        equal, fast = steps == 0.0, (steps > 0.0) & (steps < SHORTEST)
-        self._steps += len(steps)
+        """Count the steps between rows, and how many share each time."""
+        with np.errstate(over='ignore', invalid='ignore'):
+            steps = np.diff(times, prepend=self._last)
+        joined = len(times) - len(steps)  # 1 for the first row of all
+        equal, falls = steps == 0.0, steps < 0.0
+        if equal.any() and not self._equal:
+            at = int(equal.argmax()) + joined
+            self._first_equal = float(times[at]), float(times[at]), int(rows[at])
+        if falls.any() and not self._fallen:
+            at = int(falls.argmax()) + joined
+            before = float(times[at] - steps[at - joined])
+            self._first_fall = before, float(times[at]), int(rows[at])
         self._equal += int(equal.sum())
-        self._fast += int(fast.sum())
-        if self._first_equal is None and equal.any():
-            self._first_equal = _pair(times, rows, int(equal.argmax()))
-        if self._first_fast is None and fast.any():
-            self._first_fast = _pair(times, rows, int(fast.argmax()))
+        self._fallen += int(falls.sum())
+        begins = np.append(np.zeros(joined, np.int64), np.flatnonzero(~equal) + joined)
+        if len(begins):
+            cut = np.append(np.ones(joined, np.bool_), falls[~equal])  # of a run, maybe
+            shares = np.diff(begins, append=len(times))
+            if self._whole and not cut[0]:
+                self._shares[self._share + int(begins[0])] += 1
+            inner = shares[:-1][~cut[:-1] & ~cut[1:]]
+            self._shares.update({round(one): n for one, n in _counts(inner)})
+            self._share, self._whole = int(shares[-1]), not cut[-1]
+            rising = steps[steps > 0.0]
+            if len(self._steps) < 4 * WINDOW:
+                rounded = np.array([float(f'{step:.3g}') for step in rising[:WINDOW]])
+                self._steps.update(dict(_counts(rounded)))
+        else:
+            self._share += len(times)
+        self._last = times[-1:]
 
-    def _add_late(self, times: Array, rows: RowNumbers, late: NDArray[np.bool_]) -> None:
-        """Follow rows that rise though they are late; `times` may begin with the row before."""
-        carried = len(times) - len(late)
-        rising = times[1:] >= times[:-1]
-        self._rising += int(rising.sum())
-        if not late.any():
-            self._streak = 0
-            self._caught_up |= self._first_fall is not None
-            return
-        rising = rising if carried else np.append(False, rising)
-        follows = late & np.append(self._streak > 0, late[:-1]) & rising
-        places = np.arange(len(late))
-        begins = np.maximum.accumulate(np.where(late & ~follows, places, -self._streak))
-        lengths = np.where(late, places - begins + 1, 0)
-        for at in (int((lengths >= AGAIN).argmax()), len(late) - 1):
-            if lengths[at] and begins[at] >= 0:
-                self._fall = _pair(times, rows, int(begins[at]) + carried - 1)
-            if self._again is None and lengths[at] >= AGAIN:
-                self._again = self._fall
-        self._streak = int(lengths[-1])
-        first = 0
-        if self._first_fall is None:
-            first = int(late.argmax())
-            self._first_fall = _pair(times, rows, first + carried - 1)
-        self._caught_up |= self._first_fall is not None and not late[first:].all()
+    def _follow(self, times: Array, rows: RowNumbers) -> None:
+        """Follow the runs through a few rows."""
+        at = 0
+        if not self.runs:
+            self.runs.append(_run(times[0], rows[0]))
+        while at < len(times):
+            run = self.runs[-1]
+            moved = times[at:] + run.shift
+            if self._pending:
+                at += self._follow_late(moved, rows[at:])
+                continue
+            late = moved < np.maximum.accumulate(np.append(run.end, moved))[:-1]
+            ready = int(late.argmax()) if late.any() else len(late)
+            if ready:
+                run.end = max(run.end, float(moved[:ready].max()))
+                run.rows, run.last = run.rows + ready, int(rows[at + ready - 1])
+                self._before = float(moved[ready - 1])
+            at += ready
+            if at < len(times):
+                self._pending.append((float(moved[ready]), int(rows[at])))
+                at += 1
+
+    def _follow_late(self, moved: Array, rows: RowNumbers) -> int:
+        """Take rows after a late one; return how many."""
+        run = self.runs[-1]
+        up = moved >= run.end
+        most = AGAIN - len(self._pending)
+        taken = min(int(up.argmax()) if up.any() else len(up), most)
+        self._pending += zip(moved[:taken].tolist(), rows[:taken].tolist(), strict=True)
+        if len(self._pending) >= AGAIN:
+            self._begin_again()
+        elif taken < min(len(up), most):  # they were late
+            self._settle()
+        return taken
+
+    def _settle(self) -> None:
+        """Count the rows that wait as late ones of the last run."""
+        self.late += len(self._pending)
+        self.runs[-1].rows += len(self._pending)
+        self._pending = []
+
+    def _begin_again(self) -> None:
+        """Let the rows that wait begin a run, or go on by a clock that was set back."""
+        run, (first, row) = self.runs[-1], self._pending[0]
+        steps = np.diff([time for time, _ in self._pending])
+        self._unordered |= 2 * int((steps < 0.0).sum()) > len(steps)
+        fall = self._before - first
+        if self._wall and HOUR - CLOSE <= fall <= HOUR and abs(first - run.begin) > CLOSE:
+            run.shift += HOUR
+            self.clocks.append((row, HOUR))
+            run.rows += len(self._pending)
+            run.end = max(run.end, max(time for time, _ in self._pending) + HOUR)
+        else:
+            self.runs.append(_run(first - run.shift, row))
+            self.runs[-1].rows = len(self._pending)
+            self.runs[-1].end = max(time for time, _ in self._pending) - run.shift
+        self.runs[-1].last = self._pending[-1][1]
+        self._pending = []
+
+    def finish(self) -> None:
+        """Take the end of the file for that of the last run: few rows may be one, too."""
+        if self._pending:
+            times = np.array([time for time, _ in self._pending])
+            again = times[0] <= self.runs[-1].begin and (np.diff(times) >= 0.0).all()
+            self._unordered |= 2 * len(times) > self.count and not again
+            if again and len(times) > 1:
+                self._begin_again()
+            else:
+                self._settle()
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Return the least and the most time [s]."""
+        return self._least[0], self._most[0]
+
+    def shifts(self, gap: float, ends: Sequence[float] | None = None) -> dict[int, float]:
+        """Return what is added to the times from some rows on [s], so that no runs meet."""
+        found: dict[int, float] = {}
+        shift, end = 0.0, -math.inf
+        for number, run in enumerate(self.runs):
+            if number:
+                end = end if ends is None else max(end, ends[number - 1])
+                shift = end + gap - run.begin
+                found[run.row] = shift
+            for row, back in self.clocks:
+                if run.row < row <= run.last:
+                    found[row] = shift = shift + back
+            end = run.end + (found.get(run.row, 0.0) if number else 0.0)
+        return found
+
+    def ends(self, gap: float) -> list[float]:
+        """Return where each run ends if they lie a `gap` [s] apart [s]."""
+        ends: list[float] = []
+        end = -math.inf
+        for run in self.runs:
+            end = run.end if not ends else end + gap + run.end - run.begin
+            ends.append(end)
+        return ends
+
+    def words(self) -> list[str]:
+        """Return in a sentence each the runs, and where a clock was set back."""
+        found = [
+            f'the clock is set back by an hour in row {row}: times go on there'
+            for row, _ in self.clocks
+        ]
+        if len(self.runs) > 1:
+            listed = [
+                f'rows {run.row} to {run.last} ({run.end - run.begin:.4g} s)' for run in self.runs
+            ]
+            shown = listed if len(listed) <= AGAIN else [*listed[:AGAIN], '...']
+            found.append(
+                f'time begins again {len(self.runs) - 1} times: {len(self.runs)} runs are judged '
+                f'apart, {", ".join(shown)}'
+            )
+        return found
+
+    @property
+    def shared(self) -> float:
+        """Return the part of the rows that have the time of the row before [-], if not a few."""
+        return self._equal / (self.count - 1) if self._equal >= AGAIN else 0.0
+
+    def usual_share(self) -> tuple[float, float]:
+        """Return how many rows share each time and the step [s] to the next; 0 if irregular."""
+        usual, step, times = _median(self._shares), self.step, sum(self._shares.values())
+        near = {
+            count: n
+            for count, n in self._shares.items()
+            if abs(count - usual) <= max(1.0, (1.0 - REGULAR) * usual)
+        }
+        even = {one: n for one, n in self._steps.items() if abs(one / step - 1.0) < 0.5}
+        steps = sum(even.values())
+        all_near = sum(near.values())
+        if times < 2 or all_near < MOST * times or steps < MOST * sum(self._steps.values()):
+            return 0, 0.0
+        mean = sum(count * n for count, n in near.items()) / all_near
+        return mean, sum(one * n for one, n in even.items()) / steps
+
+    @property
+    def step(self) -> float:
+        """Return the usual step between times that differ [s], NaN where there is none."""
+        return _median(self._steps)
 
     def fault(self) -> tuple[str, str]:
-        """Return what no recording does, and the key that decides; empty if all is well."""
-        fault = self.fault_of_steps()
-        return fault if any(fault) else self.fault_of_span()
+        """Return what no recording of a motion does, and the key that decides; else empty."""
+        spread = self.shared > SHARED and self.usual_share()[0] > 1
+        shared = self.fault_of_shared() if self.shared > SHARED and not spread else ('', '')
+        faults = (self.fault_of_order(), shared, self.fault_of_rate(spread), self.fault_of_span())
+        return next(filter(any, faults), ('', ''))
 
-    def fault_of_steps(self) -> tuple[str, str]:
-        """Return a fault of the times as they follow each other, as `fault` does."""
-        if 2 * self._equal > self._steps and self._first_equal:
-            (time, row), (_, later) = self._first_equal
+    def fault_of_order(self) -> tuple[str, str]:
+        """Return the fault of times that do not rise, or begin again all the time."""
+        if self._unordered or len(self.runs) > RUNS:
+            before, time, row = self._first_fall
             return (
-                f'most rows have the time of the row before, such as rows {row} and {later} with '
-                f'{time:.12g} s',
-                f'name a finer time, or {INSTEAD}',
+                f'it does not rise: row {row} has {time:.12g} s after {before:.12g} s',
+                INSTEAD,
             )
-        never = not self._caught_up and 2 * self._rising > self._steps
-        if again := self._again or (self._first_fall if never else None):
-            (time, row), (earlier, later) = again
+        return '', ''
+
+    def fault_of_shared(self) -> tuple[str, str]:
+        """Return the fault of times that rows share."""
+        time, _, row = self._first_equal
+        return (
+            f'{self.shared:.0%} of the rows have the time of the row before, without a rule, such '
+            f'as row {row} with {time:.12g} s',
+            f'name a finer time, or {INSTEAD}',
+        )
+
+    def fault_of_rate(self, spread: bool = False) -> tuple[str, str]:
+        """Return the fault of rows that follow each other too fast or too slowly."""
+        if not self._steps:
+            return '', ''
+        step = self.step / (max(self.usual_share()[0], 1) if spread else 1)
+        if not SHORTEST <= step <= 1.0 / RARE:
             return (
-                f'time begins again in row {later}, with {earlier:.12g} s after {time:.12g} s in '
-                f'row {row}',
-                f'split the log there, or {INSTEAD}',
-            )
-        if 2 * (self._equal + self._fast) > self._steps and self._first_fast:
-            (time, row), (other, later) = self._first_fast
-            step = abs(other - time)
-            return (
-                f'rows {row} and {later} are {step:.3g} s apart, {1.0 / step:.3g} rows in a '
-                f'second, allowed are {RATE:.0f}',
+                f'its rows are {step:.3g} s apart, {1.0 / step:.3g} in a second, allowed are '
+                f'{RARE:g} to {RATE:.0f}',
                 f'correct time.unit or time.scale, or {INSTEAD}',
             )
         return '', ''
@@ -132,6 +304,17 @@ class TimeGate:
         return '', ''
 
 
-def _pair(times: Array, rows: RowNumbers, at: int) -> tuple[Moment, Moment]:
-    """Return a row and the next one."""
-    return (float(times[at]), int(rows[at])), (float(times[at + 1]), int(rows[at + 1]))
+def _run(time: float, row: int) -> Run:
+    return Run(row=int(row), rows=0, begin=float(time), end=float(time), last=int(row))
+
+
+def _median(counts: Mapping[float, int] | Mapping[int, int]) -> float:
+    """Return the median of values, each as often as it is counted; NaN of none."""
+    values = sorted(counts)
+    sums = np.cumsum([counts[value] for value in values])  # type: ignore[index]
+    return float(values[int(np.searchsorted(sums, sums[-1] / 2))]) if values else math.nan
+
+
+def _counts(values: NDArray[np.generic]) -> list[tuple[float, int]]:
+    found, counts = np.unique(values, return_counts=True)
+    return list(zip(found.tolist(), counts.tolist(), strict=True))

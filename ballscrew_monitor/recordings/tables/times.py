@@ -5,15 +5,17 @@
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 import dataclasses
 import math
+from typing import Any
 
-from ballscrew_monitor.core.conversions import SECOND, TIME_UNITS
+from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.estimates import is_of_a_day, Midnights
 from ballscrew_monitor.recordings.tables.mapping import Column, TableMap
+from ballscrew_monitor.recordings.tables.quantities import SCALES
 from ballscrew_monitor.recordings.tables.read import Table
 from ballscrew_monitor.recordings.tables.sources import BLOCK
-from ballscrew_monitor.recordings.tables.time_gate import TimeGate
-from ballscrew_monitor.recordings.words import short, Shown, shown_progress
+from ballscrew_monitor.recordings.tables.time_gate import REGULAR, SHARED, TimeGate
+from ballscrew_monitor.recordings.words import short, Shown
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
@@ -82,45 +84,224 @@ def _cut(rows: Rows) -> Iterator[Rows]:
         yield rows[begin:end]
 
 
+def in_step(streams: Sequence[Iterator[Rows]]) -> Iterator[list[Rows]]:
+    """Yield the rows of several streams, each in order, in lists of those up to one stamp."""
+    held = [next(stream, None) for stream in streams]
+    ended = [one is None for one in held]
+    while not all(ended):
+        latest = [
+            int(rows.stamps[-1])
+            for rows, done in zip(held, ended, strict=True)
+            if not done and rows is not None
+        ]
+        until, ready = min(latest), []
+        for number, rows in enumerate(held):
+            if rows is None:
+                continue
+            count = int(np.searchsorted(rows.stamps, until))
+            ready.append((number, rows[:count]))
+            held[number] = rows[count:]
+            if not ended[number] and rows.stamps[-1] == until:
+                more = next(streams[number], None)
+                ended[number] = more is None
+                held[number] = joined([rows[count:], *([] if more is None else [more])])
+        if any(len(rows.stamps) for _, rows in ready):
+            yield [rows for _, rows in ready]
+    yield [rows for rows in held if rows is not None]
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Group:
+    """
+    Columns that share their times: their names, and those of the time, that of a date after it.
+
+    `hollow` is a column in whose empty cells the others have none either, of `holes` rows; then
+    there is no sample of the group. `is_motion` says whether it holds a speed or position.
+
+    """
+
+    columns: tuple[str, ...]
+    time_columns: tuple[str, ...]
+    hollow: str = ''
+    holes: int = 0
+    is_motion: bool = True
+
+
+def groups_of(table: Table, mapping: TableMap) -> list[Group]:
+    """Return the columns that are read in groups of one time and the same empty cells."""
+    motion = {
+        column.name
+        for axis in mapping.axes
+        for kind, column in axis.columns.items()
+        if kind in ('speed', 'position')
+    }
+    found: dict[tuple[str, tuple[int, int]], list[str]] = {}
+    main = mapping.time.name if mapping.time else ''
+    for axis in mapping.axes:
+        for column in axis.columns.values():
+            key = (column.time or main, table.readings[column.name].holes)
+            found.setdefault(key, []).append(column.name)
+    groups = [
+        Group(
+            columns=tuple(dict.fromkeys(names)),
+            time_columns=tuple(filter(None, (time, mapping.date if time == main else ''))),
+            hollow=names[0] if holes[0] else '',
+            holes=holes[0],
+            is_motion=bool(motion & set(names)),
+        )
+        for (time, holes), names in found.items()
+    ]
+    return sorted(groups, key=lambda group: not group.is_motion)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Spread:
+    """Rows that share each stamp, spread over the time to the next one: usual number and step."""
+
+    usual: float
+    step: float  # [s]
+
+    @classmethod
+    def of(cls, gate: TimeGate) -> 'Spread | None':
+        """Return how rows are spread, None where they do not share stamps regularly."""
+        usual, step = gate.usual_share()
+        return cls(usual=usual, step=step) if usual > 1 else None
+
+    @property
+    def words(self) -> str:
+        """Return what was done."""
+        return (
+            f'{self.usual:.4g} rows share each time, {self.step:.4g} s apart: they were spread, '
+            f'{self.usual / self.step:.4g} rows in a second'
+        )
+
+    def blocks(
+        self, told: Iterable[tuple[int, Array, dict[str, Array]]]
+    ) -> Iterator[tuple[int, Array, dict[str, Array]]]:
+        """Yield blocks with their times spread; the rows of the last one wait for the next."""
+        held: tuple[int, Array, dict[str, Array]] | None = None
+        first = True
+        for row, times, columns in told:
+            if held is not None:
+                row = held[0]
+                times = np.concatenate([held[1], times])
+                columns = {
+                    name: np.concatenate([held[2][name], values])
+                    for name, values in columns.items()
+                }
+            ready = (
+                int(np.flatnonzero(times != times[-1])[-1]) + 1
+                if (times != times[-1]).any()
+                else 0
+            )
+            if ready:
+                spread = self._spread(times[:ready], float(times[ready]), first=first)
+                yield row, spread, {name: values[:ready] for name, values in columns.items()}
+                first = not self._follows(times[ready] - times[ready - 1])
+            held = (
+                row + ready,
+                times[ready:],
+                {name: values[ready:] for name, values in columns.items()},
+            )
+        if held is not None:
+            yield held[0], self._spread(held[1], math.inf, first=first), held[2]
+
+    def _follows(self, step: Any) -> Any:
+        """Return where a time follows the one before without a gap."""
+        return (step > 0.0) & (step < 1.5 * self.step)
+
+    def _spread(self, times: Array, following: float, *, first: bool) -> Array:
+        """Return times spread between those that rows share, the next of which is `following`."""
+        begins = np.flatnonzero(np.diff(times, prepend=math.nan) != 0.0)
+        counts = np.diff(begins, append=len(times))
+        steps = np.diff(times[begins], append=following)
+        last = ~self._follows(steps)  # of a run, or before a gap: some of its rows are missing
+        first_ones = np.append(first, last[:-1])
+        steps = np.where(last, self.step, steps)
+        places = np.arange(len(times)) - np.repeat(begins, counts)
+        whole = np.maximum(counts, self.usual)
+        cut = last | first_ones | (counts < REGULAR * self.usual)
+        full = np.where(cut, whole, counts)
+        late = np.where(first_ones, full - counts, 0.0)
+        each = steps / full
+        return np.asarray(times + np.repeat(each, counts) * (places + np.repeat(late, counts)))
+
+
 class Times:
     """
-    The times of a table, looked through once: which rows have one, and whether they rise.
+    The times of the rows of one group of columns, looked through once.
 
     `count` rows have one. Rows out of order are sorted: as many wait in memory as are between the
-    one that comes the latest and its place.
+    one that comes the latest and its place. A time that begins again is that of another run, and
+    rows that share a stamp are spread over the time up to the next.
 
     """
 
-    def __init__(self, table: Table, mapping: TableMap, shown: Shown = shown_progress) -> None:
+    def __init__(self, table: Table, mapping: TableMap, group: Group, shown: Shown) -> None:
         """Look through the times; raises InputError when they give no stamps."""
-        self._table, self._mapping = table, mapping
-        self.count = self._back = 0
-        self._begin, self._end, self._late = math.inf, -math.inf, 0.0
-        self._last = np.zeros(0)
-        self._steps = Steps()
-        gate = self._look(shown)
-        if self.count < 2:
+        self.group, self._table, self._mapping = group, table, mapping
+        self.gate = TimeGate(wall=self._is_wall())
+        self._spread: Spread | None = None
+        with shown(table.rows, 'times looked through') as show:
+            for row, times, _ in self._told(group.time_columns or list(group.columns)[:1]):
+                known = np.isfinite(times)
+                self.gate.add(times[known], row + np.flatnonzero(known))
+                show((row + len(times) - table.first_row) / table.rows)
+        self.gate.finish()
+        self.count, self._shown = self.gate.count, shown
+        if self.count < 2 and group.is_motion:
             raise InputError(
                 f'log {table.path} holds {self.count} rows with a time, at least two are needed'
             )
-        self._check()
-        if time := mapping.time:
-            self._check_gate(gate, time.name)
-        if self._back:
+        if self.count:
+            self._check(*self.gate.range)
+        if mapping.time:
+            self._check_gate()
+        self._shifts = dict[int, float]()
+        self._steps, self._begin, self._end = Steps(), math.inf, -math.inf
+
+    def place(self, gap: float, ends: Sequence[float] | None = None) -> None:
+        """
+        Place the runs `gap` [s] behind each other, after `ends` [s] where these are later.
+
+        Without as many ends as there are runs, the times stay as they are.
+
+        Then the steps between rows are known, and how late the latest row comes.
+
+        """
+        if ends is None or len(ends) == len(self.gate.runs):
+            self._shifts = self.gate.shifts(gap, ends)
+        else:
+            self.gate.runs = self.gate.runs[:1]
+        self._late, self._steps = 0.0, Steps()
+        for _, times, _ in self._placed(self.group.time_columns or list(self.group.columns)[:1]):
+            latest = np.maximum.accumulate(np.maximum(times, self._end))
+            self._begin = min(self._begin, float(times.min()))
+            with np.errstate(over='ignore'):  # what gives no stamp is refused afterwards
+                self._late = max(self._late, float((latest - times).max()))
+                self._end = float(latest[-1])
+                self._steps.add(np.clip((times - self._begin) * SECOND, -LARGEST, LARGEST))
+        self.first, self.last = self._begin, self._end
+
+    def since(self, begin: float) -> None:
+        """Let stamps count from the first time of the log [s]; raises InputError for others."""
+        self._begin = begin
+        self._check(begin, self.last)
+        if self._late:
             self._steps = Steps()
-            with shown(table.rows, 'rows put in order') as show:
+            with self._shown(self._table.rows, 'rows put in order') as show:
                 for rows in self.rows(show):
                     self._steps.add((rows.stamps - self.begin).astype(np.float64))
 
     @property
     def begin(self) -> int:
-        """Return the stamp of the first row [ns]."""
+        """Return the stamp of the first row of the log [ns]."""
         return int(self._stamps(np.array([self._begin]))[0])
 
     @property
     def end(self) -> int:
         """Return the stamp of the last row [ns]."""
-        return int(self._stamps(np.array([self._end]))[0])
+        return int(self._stamps(np.array([self.last]))[0])
 
     @property
     def usual_period(self) -> float:
@@ -130,13 +311,18 @@ class Times:
     def notes(self) -> list[str]:
         """Return what is odd about the times, a sentence each."""
         found, log = [], f'log {self._table.path}:'
-        if left_out := self._table.rows - self.count:
+        if left_out := self._table.rows - self.count - self.group.holes:
             found.append(f'{log} {left_out} rows without a time are left out')
-        if self._back:
+        if self.gate.late:
             found.append(
-                f'{log} {self._back} rows are earlier than the row before, they were sorted'
+                f'{log} {self.gate.late} rows are earlier than the row before, they were sorted'
             )
-        if gaps := self._steps.gaps():
+        if self._spread:
+            found.append(f'{log} {self._spread.words}')
+        found += [f'{log} {one}' for one in self.gate.words()]
+        if self.count < 2:
+            return found
+        if gaps := self._steps.gaps() - len(self.gate.runs) + 1:
             which = 'gap is' if gaps == 1 else 'gaps are'
             found.append(
                 f'{log} {gaps} {which} longer than {HUGE_GAP} rows, the longest is '
@@ -147,89 +333,67 @@ class Times:
 
     def rows(self, show: Callable[[float], None] = lambda share: None) -> Iterator[Rows]:
         """Yield the rows that have a time in the order of it, in blocks; show how far it is."""
-        if not self._back:
+        if not self._late:
             return self._as_written(show)
-        coarse = float(np.spacing(max(abs(self._begin), abs(self._end))))
+        coarse = float(np.spacing(max(abs(self.first), abs(self.last))))
         return _in_order(self._as_written(show), math.ceil((self._late + 4 * coarse) * SECOND))
 
     def _as_written(self, show: Callable[[float], None]) -> Iterator[Rows]:
-        row, midnights = 0, self._midnights()
-        for columns in self._table.blocks():
-            times = self._times(columns, row, midnights)
-            row += len(times)
-            show(row / self._table.rows)
+        names = list(dict.fromkeys([*self.group.time_columns, *self.group.columns]))
+        for row, times, columns in self._placed(names):
+            show((row + len(times) - self._table.first_row) / self._table.rows)
+            yield Rows(stamps=self._stamps(times), columns=columns)
+
+    def _placed(self, names: Collection[str]) -> Iterator[tuple[int, Array, dict[str, Array]]]:
+        """Yield blocks as `_told` does, with known times alone, in their runs and spread."""
+        told = self._known(names)
+        yield from self._spread.blocks(told) if self._spread else told
+
+    def _known(self, names: Collection[str]) -> Iterator[tuple[int, Array, dict[str, Array]]]:
+        starts = np.array(sorted(self._shifts), dtype=np.int64)
+        shifts = np.array([0.0, *(self._shifts[one] for one in starts.tolist())])
+        for row, times, columns in self._told(names):
             known = np.isfinite(times)
+            if len(starts):
+                rows = row + np.arange(len(times))
+                times = times + shifts[np.searchsorted(starts, rows, 'right')]
             if not known.all():
                 times = times[known]
                 columns = {name: values[known] for name, values in columns.items()}
             if len(times):
-                yield Rows(stamps=self._stamps(times), columns=columns)
-
-    def _look(self, shown: Shown) -> TimeGate:
-        """Look through the times of all rows."""
-        names, gate = self._mapping.time_columns, TimeGate()
-        with shown(self._table.rows, 'times looked through') as show:
-            for row, times, _ in self._told(names or list(self._table.readings)[:1]):
-                known = np.isfinite(times)
-                self._count(times[known])
-                gate.add(times[known], row + np.flatnonzero(known))
-                show((row + len(times) - self._table.first_row) / self._table.rows)
-        return gate
+                yield row, times, columns
 
     def _told(self, names: Collection[str]) -> Iterator[tuple[int, Array, dict[str, Array]]]:
         """Yield the row in the file of the first of a block, its times [s], and its columns."""
         row, midnights = 0, self._midnights()
-        for block in self._table.blocks(names):
+        for block, holes in self._table.blocks_with_holes(names, self.group.hollow):
             times = self._times(block, row, midnights)
+            if holes is not None:
+                times = np.where(holes, math.nan, times)
             yield row + self._table.first_row, times, block
             row += len(times)
 
-    def _check_gate(self, gate: TimeGate, name: str) -> None:
-        """
-        Raise InputError if times are such as no recording has.
+    def _check_gate(self) -> None:
+        """Raise InputError if times are such as no recording has; a slow signal refuses none."""
+        if self.gate.shared > SHARED:
+            self._spread = Spread.of(self.gate)
+        fault = self.gate.fault() if self.group.is_motion else self.gate.fault_of_span()
+        if any(fault):
+            where = f'log {self._table.path}: column {short(repr(self.group.time_columns[0]))}'
+            raise InputError(f'{where}: {fault[0]}: {fault[1]}')
 
-        The span is that of all rows. What the times of the rows do one by one is refused only of
-        those of the motion.
-
-        """
-        if not any(gate.fault()):
-            return
-        motion = [
-            (axis.columns.get('speed') or axis.columns['position']).name
-            for axis in self._mapping.axes
-        ]
-        of_motion = TimeGate()  # a slower signal may have rows of its own
-        for row, times, block in self._told([*self._mapping.time_columns, *motion]):
-            moves = np.any([np.isfinite(block[name]) for name in motion], axis=0)
-            known = np.isfinite(times) & moves
-            of_motion.add(times[known], row + np.flatnonzero(known))
-        steps, span = of_motion.fault_of_steps(), gate.fault_of_span()
-        fault, mend = steps if any(steps) else span
-        if fault:
-            where = f'log {self._table.path}: column {short(repr(name))}'
-            raise InputError(f'{where}: {fault}: {mend}')
-
-    def _count(self, times: Array) -> None:
-        """Count further times, all known."""
-        if not len(times):
-            return
-        before = np.concatenate([self._last, times])
-        latest = np.maximum.accumulate(np.maximum(times, self._end))
-        with np.errstate(over='ignore'):  # what gives no stamp is refused afterwards
-            self._back += int((np.diff(before) < 0.0).sum())
-            self._begin = min(self._begin, float(times.min()))
-            self._late = max(self._late, float((latest - times).max()))
-            self._end = float(latest[-1])
-            self._steps.add(np.clip(self._nanoseconds(times), -LARGEST, LARGEST))
-        self.count += len(times)
-        self._last = times[-1:]
+    def _is_wall(self) -> bool:
+        """Return True if the times are those of a clock on the wall, which may be set back."""
+        if self._mapping.time is None:
+            return False
+        reading = self._table.readings[self.group.time_columns[0]]
+        return reading.is_time and not reading.is_zoned
 
     def _midnights(self) -> Midnights | None:
         """Return what makes times of a day go on, None where the log has others, or dates."""
-        time = self._mapping.time
-        if time is None or self._mapping.date:
+        if self._mapping.time is None or self._mapping.date:
             return None
-        reading = self._table.readings[time.name]
+        reading = self._table.readings[self.group.time_columns[0]]
         return Midnights() if reading.is_time and is_of_a_day(reading.extremes) else None
 
     def _times(self, columns: dict[str, Array], row: int, midnights: Midnights | None) -> Array:
@@ -239,8 +403,10 @@ class Times:
             count = len(next(iter(columns.values())))
             return np.arange(row, row + count) / self._mapping.rate
         days = columns[self._mapping.date] if self._mapping.date else 0.0
-        told = columns[time.name] if midnights is None else midnights.passed(columns[time.name])
-        return days + line(told, time, TIME_UNITS[time.unit])
+        cells = columns[self.group.time_columns[0]]
+        factor, shift = SCALES[time.unit]
+        told = cells if midnights is None else midnights.passed(cells)
+        return days + line(told, time, factor) + shift
 
     def _nanoseconds(self, times: Array) -> Array:
         """Return times [ns] since the first of them, or since 1970 where the log tells it."""
@@ -250,16 +416,14 @@ class Times:
     def _stamps(self, times: Array) -> Stamps:
         return self._nanoseconds(times).astype(np.int64) + (self._mapping.epoch or 0)
 
-    def _check(self) -> None:
-        """Raise InputError unless the first and the last time give stamps."""
+    def _check(self, begin: float, end: float) -> None:
+        """Raise InputError unless the first and the last time [s] give stamps."""
         shift = self._mapping.epoch
-        first = self._begin if shift is None else 0.0
-        last = self._end if shift is None else self._end - self._begin
+        first, last = (begin, end) if shift is None else (0.0, end - begin)
         if last * SECOND + (shift or 0) >= LATEST or first * SECOND + (shift or 0) <= 0:
             raise InputError(
-                f'log {self._table.path}: its times are {self._begin:g} to {self._end:g} s, which '
-                'give no stamps after 1970 and before 2038: correct time.unit, or state a '
-                'time.epoch'
+                f'log {self._table.path}: its times are {begin:g} to {end:g} s, which give no '
+                'stamps after 1970 and before 2038: correct time.unit, or state a time.epoch'
             )
 
 

@@ -9,7 +9,6 @@ from ballscrew_monitor.recordings.tables.estimates import (
     period,
     position_unit,
     speed_unit,
-    time_unit,
 )
 from hypothesis import given
 from hypothesis import strategies as st
@@ -39,36 +38,6 @@ def test_the_largest_speed_tells_the_unit_where_nothing_else_does(largest, unit)
 def test_the_largest_place_tells_the_unit():
     assert position_unit(np.array([0.0, 2.0]))[0] == 'm'
     assert position_unit(np.array([0.0, -2.1]))[0] == 'mm'
-
-
-@pytest.mark.parametrize(
-    ('begin', 'step', 'expected'),
-    [
-        (1.7e9, 0.01, 's'),
-        (1.7e12, 10.0, 'ms'),
-        (1.7e15, 1e4, 'us'),
-        (1.7e18, 1e7, 'ns'),
-        (0.0, 0.01, ''),
-        (0.0, 0.5, ''),
-        (0.0, 1e-7, ''),
-        (45852.5, 1.0 / 86400, ''),
-        (5.0, 10.0, ''),
-        (0.0, 1.0, ''),
-        (0.0, 0.0, ''),
-        (0.0, 2.5, ''),
-        (1.7e9, 10.0, ''),
-        (1.34e17, 2e5, ''),
-        (6.4e17, 2e5, ''),
-    ],
-)
-def test_size_and_step_tell_the_unit_of_times_or_nothing_does(begin, step, expected):
-    """
-    Times since 1970 alone; others, with decimals or without, may be of any unit.
-
-    The last are ticks of 100 ns since 1601 and since the year 1.
-
-    """
-    assert time_unit(begin + step * np.arange(10.0)) == expected
 
 
 def test_times_rise_but_for_a_few():

@@ -1,55 +1,83 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Heads of tables: the names of the columns stand above the first full row of numbers."""
+"""Heads of tables: the block of numbers is found, and what stands above it names its columns."""
 
-from ballscrew_monitor.recordings.tables.heads import found_in_lines, names_of, read_head
+from ballscrew_monitor.recordings.tables.heads import find_head, Line
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from hypothesis import given, strategies
 import pytest
 
 
+def head_of(text, layout=None):
+    lines = [Line(text=line, row=number + 1) for number, line in enumerate(text.split('\n'))]
+    return find_head(lines, layout)
+
+
 @pytest.mark.parametrize(
-    ('text', 'skip', 'rows'),
+    ('text', 'names', 'first'),
     [
-        ('t,v\n0,1\n1,2', 0, 1),
-        ('# a comment\n\nt;v\n0;1\n1;2', 0, 1),
-        ('Maschine: 3\nt;v\n0;1\n1;2', 1, 1),
-        ('Rate;100\nKunde;Meier\n\nt;v;F\ns;mm/s;N\n0;1;2\n1;2;3', 3, 2),
-        ('made,on\nt,v,F\n0,1,2\n1,2,3', 1, 1),
-        ('a;b\nX;Y\n1,5;2,5\n1,6;2,6', 1, 1),
-        ('t;v\n[s];[mm/s]\n0;1\n1;2', 0, 2),
-        ('t;text\n0;x\n1;y', 0, 1),
-        ('1;2\n3;4', 0, 1),
-        ('', 0, 1),
-        ('only words', 0, 1),
-        ('t\tF\n2026-01-02T03:04:05Z\t-1e3\n', 0, 1),
-        ('Datum;Uhrzeit;v\n01.02.2026;03:04:05,5;1,5', 0, 1),
+        ('t,v\n0,1\n1,2', ['t', 'v'], 2),
+        ('# a comment\n\nt;v\n0;1\n1;2', ['t', 'v'], 4),
+        ('# t;v\n0;1\n1;2', ['t', 'v'], 2),
+        ('Maschine: 3\nt;v\n0;1\n1;2', ['t', 'v'], 3),
+        (
+            'Rate;100\nKunde;Meier\n\nt;v;F\ns;mm/s;N\n0;1;2\n1;2;3',
+            ['t [s]', 'v [mm/s]', 'F [N]'],
+            6,
+        ),
+        ('t;v;F\ns;mm/s;N\nREAL;REAL;INT\n0;1;2\n1;2;3', ['t [s]', 'v [mm/s]', 'F [N]'], 4),
+        ('made,on\nt,v,F\n0,1,2\n1,2,3', ['t', 'v', 'F'], 3),
+        ('t;v\n[s];[mm/s]\n0;1\n1;2', ['t [s]', 'v [mm/s]'], 3),
+        ('t;text\n0;x\n1;y', ['t', 'text'], 2),
+        ('1;2\n3;4', ['column 1', 'column 2'], 1),
+        ('t\tF\n2026-01-02T03:04:05Z\t-1e3\n', ['t', 'F'], 2),
+        ('Datum;Uhrzeit;v\n01.02.2026;03:04:05,5;1,5', ['Datum', 'Uhrzeit', 'v'], 2),
+        ('0 1.5  2\n1 1.6  2 \n', ['column 1', 'column 2', 'column 3'], 1),
+        ('Time\nX position\nX speed\n0 1.5 2\n1 1.6 2', ['Time', 'X position', 'X speed'], 4),
+        ('Column 1: Time [s]\nColumn 2: X speed\n0 2\n1 2', ['Time [s]', 'X speed'], 3),
+        ('sep=;\nt;v\n0,5;1\n1,5;2', ['t', 'v'], 3),
+        ('"Time (s)","X ""speed"""\n"0","1"\n"1","2"', ['Time (s)', 'X "speed"'], 2),
     ],
 )
-def test_names_stand_above_the_first_full_row_of_numbers(text, skip, rows):
-    assert found_in_lines(text.splitlines()) == Layout(skip=skip, header_rows=rows)
+def test_names_stand_above_the_numbers_in_whatever_way(text, names, first):
+    head = head_of(text)
+    assert (list(head.names), head.first) == (names, first)
+    assert head.named == (names[0] != 'column 1')
 
 
 @given(strategies.lists(strategies.text(max_size=20), max_size=9))
-def test_whatever_the_lines_are_there_is_a_layout_within_them(lines):
-    found = found_in_lines(lines)
-    assert 0 <= found.skip < max(len(lines), 1)
-    assert found.header_rows in (1, 2)
+def test_whatever_the_lines_are_there_is_a_head_within_them_or_none(lines):
+    try:
+        head = head_of('\n'.join(lines))
+    except ValueError:
+        return
+    assert head.begin <= sum(line.count('\n') + 1 for line in lines) + 1
+    assert len(set(head.names)) == len(head.names)
 
 
-def test_a_row_below_names_adds_units_or_words():
-    assert names_of([['v', 'F', 'x', 't'], ['mm/s', '[N]', 'left']]) == (
-        'v [mm/s]',
-        'F [N]',
-        'x left',
-        't',
-    )
-
-
-def test_a_name_of_several_lines_is_in_one_and_tells_no_separator():
-    head = read_head(iter(['"a;b,\n', 'c,,,,"\tF\n', '1\t2\n']), Layout())
-    assert (head.names, head.separator, head.lines) == (('a;b, c,,,,', 'F'), '\t', 0)
-    head = read_head(iter(['"never closed\n', 'x\n']), Layout())
-    assert head.names == ('never closed x',)
+def test_a_map_may_state_where_the_names_stand():
+    text = 'v;F;x;t\nmm/s;[N];left;\n1;2;3;4\n1;2;3;4'
+    head = head_of(text, Layout(header_rows=2))
+    assert head.names == ('v [mm/s]', 'F [N]', 'x left', 't')
+    assert head_of(text, Layout(skip=1)).names == ('mm/s', '[N]', 'left', '')
+    assert head_of(text, Layout(skip=2, header_rows=0)).names[0] == 'column 1'
     with pytest.raises(ValueError, match='no line names its columns'):
-        read_head(iter(['#\n', '\n']), Layout())
+        head_of('#\n\n', Layout())
+
+
+@pytest.mark.parametrize(
+    ('line', 'period'),
+    [
+        ('# Sampling period is 1000000 ns', 1e-3),
+        ('Sample rate: 250 Hz', 4e-3),
+        ('Sample time [ms];20', 0.02),
+        ('Abtastrate = 2 kHz', 5e-4),
+        ('dt;0,01', 0.01),
+        ('Operator: 12', None),
+    ],
+)
+def test_a_period_is_found_wherever_it_stands(line, period):
+    head = head_of(f'{line}\nX pos;X speed;X force\n1;2;3\n2;3;4\n3;4;5')
+    assert (
+        head.period == pytest.approx(period, nan_ok=True) if period else head.period != head.period
+    )

@@ -8,7 +8,6 @@ import tempfile
 import tracemalloc
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.judge import many
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import parameters_of
@@ -162,7 +161,7 @@ def test_any_parameters_read_a_table_as_they_read_its_bag(tmp_path, changes):
     assert states[0] == states[1]
 
 
-def test_an_empty_cell_is_refused_once_and_the_last_load_stays(tmp_path):
+def test_an_empty_cell_is_no_sample_and_the_last_load_stays(tmp_path):
     columns = {
         't': [0, 10, 20, 30],
         'v': [100.0, 100.0, None, 100.0],
@@ -173,9 +172,7 @@ def test_an_empty_cell_is_refused_once_and_the_last_load_stays(tmp_path):
     at = ~rows['tick']
     assert (rows['stamp'][at] - BEGIN).tolist() == [0, 10_000_000, 30_000_000]
     assert rows['axial_load'][at].tolist() == [-5.0, -5.0, -6.0]
-    refused = outcome.refused
-    assert refused[Source.SPEED][Why.NOT_A_NUMBER] == 1
-    assert refused[Source.LOAD][Why.NOT_A_NUMBER] == 2
+    assert not any(outcome.refused.values())
 
 
 @pytest.mark.parametrize('block', [1, 2, 1000])

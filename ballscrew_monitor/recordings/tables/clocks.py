@@ -1,0 +1,165 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Times as tables write them: texts of dates and hours, and numbers that count from an epoch.
+
+Each date, time of day and epoch is an entry of a table. A day and a month that may be either are
+two entries, and all cells decide between them.
+
+"""
+
+from collections.abc import Iterator
+import dataclasses
+import functools
+import re
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.tables.quantities import DAY
+import polars as pl
+
+KNOWN = (631_152_000.0, 4_102_444_800.0)  # [s] of the universal clock: 1990 to 2100
+DATES = (
+    ('', '%Y-%m-%d'),
+    ('', '%Y/%m/%d'),
+    ('', '%Y.%m.%d'),
+    ('', '%Y%m%d'),
+    ('', '%d.%m.%Y'),
+    ('', '%d.%m.%y'),
+    ('dmy', '%d/%m/%Y'),
+    ('mdy', '%m/%d/%Y'),
+    ('dmy', '%d-%m-%Y'),
+    ('mdy', '%m-%d-%Y'),
+    ('dmy', '%d/%m/%y'),
+    ('mdy', '%m/%d/%y'),
+    ('dmy', '%d-%m-%y'),
+    ('mdy', '%m-%d-%y'),
+    ('', '%d-%B-%Y'),
+    ('', '%d-%B-%y'),
+    ('', '%d %B %Y'),
+    ('', '%d. %B %Y'),
+    ('', '%B %d %Y'),
+    ('', '%Y-%B-%d'),
+    ('', '%Y %B %d'),
+)
+"""Dates, with the order of day and month where the other one is possible as well."""
+HOURS = (
+    '%H:%M:%S%.f',
+    '%I:%M:%S%.f %p',
+    '%H:%M:%S%.f%z',
+    '%H:%M:%S%.f %z',
+    '%H:%M',
+    '%I:%M %p',
+    '%H%M%S%.f',
+)
+"""Times of a day; the last one stands behind a date alone."""
+MONTHS = {
+    'Januar ': 'January ', 'Februar ': 'February ', 'März': 'March', 'Mär': 'March',
+    'Mrz': 'March', 'Maerz': 'March', 'Mai': 'May', 'Juni': 'June', 'Juli': 'July',
+    'Okt': 'Oct', 'Oktober': 'October', 'Dez': 'Dec', 'Dezember': 'December',
+}  # fmt: skip
+"""German names of months that differ from the English ones."""
+STEPS = (
+    (r'^\s+|\s+$', ''),
+    (r'(?i)^(?:mon|tue|wed|thu|fri|sat|sun|mo|di|mi|do|fr|sa|so)[a-z]*\.?,? +', ''),
+    (r'(\d)T(\d)', '$1 $2'),
+    (r'(?i)\s*(?:Z|UTC|GMT)$', ''),
+    (r'(\d:\d\d),(\d)', '$1.$2'),
+    (r'(\d:\d\d:\d\d):(\d)', '$1.$2'),
+    (r'(?i)\s*\b?([ap])\.? ?m\.?$', ' ${1}m'),
+    (r'([A-Za-z]{3,})\.', '$1'),
+    (r'(\d)[-_](\d\d?:)', '$1 $2'),
+    (r'[,\s_]+', ' '),
+)
+"""What is replaced in a text before its form is looked for, each only where it occurs."""
+SAMPLE = 60  # cells by which the forms of a column are found
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class TimeForm:
+    """
+    A form of times: its pattern, and the order of day and month where there is another one.
+
+    `steps` are the replacements that its texts need; `kind` says whether it is a `moment`, a
+    `day` or a time of a day, `hours`; `zoned` is a moment whose zone is written.
+
+    """
+
+    pattern: str
+    kind: str
+    order: str = ''
+    steps: tuple[tuple[str, str], ...] = ()
+    zoned: bool = False
+
+    def __call__(self, texts: pl.Series) -> pl.Series:
+        """Return texts as times since 1970 or midnight [s], null where one is of another form."""
+        return self._seconds(_replaced(texts, self.steps))
+
+    def _seconds(self, texts: pl.Series) -> pl.Series:
+        if self.kind == 'hours':
+            hours = texts.str.to_time(self.pattern, strict=False)
+            return hours.cast(pl.Int64).cast(pl.Float64) / SECOND
+        if self.kind == 'day':
+            days = texts.str.to_date(self.pattern, strict=False)
+            seconds = days.cast(pl.Int64).cast(pl.Float64) * DAY
+        else:
+            moments = texts.str.to_datetime(self.pattern, time_unit='ns', strict=False)
+            seconds = moments.cast(pl.Int64).cast(pl.Float64) / SECOND
+        return seconds.set(~seconds.is_between(*KNOWN).fill_null(True), None)
+
+
+def time_forms(texts: pl.Series) -> Iterator[tuple[TimeForm, ...]]:
+    """Yield the forms that some texts may have; those of one date in two orders together."""
+    filled = texts.drop_nulls().unique(maintain_order=True)
+    sample = filled.gather_every(max(len(filled) // SAMPLE, 1))
+    if not len(sample) or not sample.str.contains(r'\d').any():
+        return
+    steps = []
+    for step in STEPS:
+        replaced = _replaced(sample, [step])
+        if not replaced.equals(sample):
+            steps.append(step)
+            sample = replaced
+    english = sample.str.replace_many(MONTHS)
+    months = not english.equals(sample)
+    by_hours: dict[str, list[TimeForm]] = {}
+    signs = {letter for letter in ''.join(sample) if not letter.isalnum()}
+    for form, needed in _all_forms().items():
+        if not needed <= signs:
+            continue
+        made = dataclasses.replace(form, steps=(*steps, *([_GERMAN] if months else [])))
+        if made._seconds(english).null_count() < len(sample):
+            key = re.sub('%[dm]', '', form.pattern) if form.order else form.pattern
+            by_hours.setdefault(key, []).append(made)
+    yield from map(tuple, by_hours.values())
+
+
+_GERMAN = ('German months', '')
+
+
+def _replaced(texts: pl.Series, steps: object) -> pl.Series:
+    for pattern, replacement in steps:  # type: ignore[attr-defined]
+        if pattern == _GERMAN[0]:
+            texts = texts.str.replace_many(MONTHS)
+        else:
+            texts = texts.str.replace_all(pattern, replacement)
+    return texts
+
+
+@functools.cache
+def _all_forms() -> dict[TimeForm, set[str]]:
+    """Return all forms, and the signs that each needs."""
+    moments = (
+        TimeForm(pattern=f'{date} {hours}', kind='moment', order=order, zoned='%z' in hours)
+        for order, date in DATES
+        for hours in HOURS
+    )
+    of_day = (TimeForm(pattern=hours, kind='hours') for hours in HOURS[:-1] if '%z' not in hours)
+    days = (TimeForm(pattern=date, kind='day', order=order) for order, date in DATES)
+    return {form: set(re.sub(r'%\.?\w', '', form.pattern)) for form in (*moments, *of_day, *days)}
+
+
+def moments_of(text: str) -> list[tuple[float, TimeForm]]:
+    """Return the times that a text may be [s], each with its form."""
+    cells = pl.Series([text])
+    found = [(form(cells)[0], form) for forms in time_forms(cells) for form in forms]
+    return [(seconds, form) for seconds, form in found if seconds is not None]

@@ -1,0 +1,310 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Files of controls and measuring systems that are no rows of cells: JSON, XML, SHDR, MATLAB, HDF5.
+
+Each becomes a frame with a column for each signal, in memory, and its size is bounded before. A
+signal of other times than its neighbours has rows of its own.
+
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+import dataclasses
+import importlib
+import json
+import math
+from pathlib import Path
+import re
+from typing import Any
+from xml.etree import ElementTree
+
+from ballscrew_monitor.recordings.tables.cells import readable
+from ballscrew_monitor.recordings.tables.heads import Head, Property, unlike
+from ballscrew_monitor.recordings.tables.names import read_name
+import numpy as np
+import polars as pl
+from surrogate import limits
+from surrogate.files import InputError
+
+SHDR = re.compile(rb'^\d{4}-\d\d-\d\dT[\d:.]+Z?\|[^|\r\n\d.,+-][^|\r\n]*\|', re.M)
+STAMP = '%Y-%m-%dT%H:%M:%S%.f'
+HELD = 1.5  # times the usual time between changes, after which a value is repeated
+MOST_HELD = 100_000  # repeated values of a signal
+DOCUMENT = re.compile('<!(?:DOCTYPE|ENTITY)', re.I)
+SIGNATURES = ((b'TDSm', 'tdms'), (b'MDF     ', 'mdf'), (b'MATLAB 5.0', 'mat'), (b'\x89HDF', 'hdf'))
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Signals:
+    """Signals of a file as a frame, and what the file says besides them; a period in [s]."""
+
+    frame: pl.DataFrame
+    period: float = math.nan
+    start: str = ''
+
+    def head(self) -> Head:
+        """Return what the head of a text would say."""
+        properties = {'start': Property(text=self.start, row=1)} if self.start else {}
+        return Head(
+            names=unlike(self.frame.columns),
+            separator='',
+            begin=0,
+            first=1,
+            properties=properties,
+            period=self.period,
+        )
+
+
+def kind_of(head: bytes) -> str:
+    """Return what a file is by its first bytes, empty for rows of cells."""
+    for signature, kind in SIGNATURES:
+        if head.startswith(signature):
+            return kind
+    if head.startswith(b'MATLAB 7.3') or head[512:516] == b'\x89HDF':
+        return 'hdf'
+    text = head.lstrip(b'\xef\xbb\xbf \t\r\n')
+    if text[:1] in (b'{', b'['):
+        return 'json'
+    if text.startswith((b'<?xml', b'<')):
+        return 'xml'
+    lines = max(text[: len(text) // 2].count(b'\n'), 1)
+    return 'shdr' if 2 * len(SHDR.findall(text)) > lines else ''
+
+
+def read_signals(path: Path, kind: str) -> Signals:
+    """Return the signals of a file of a kind; raises InputError."""
+    most = limits.WORKBOOK if kind in ('mat', 'hdf', 'tdms', 'mdf') else limits.TABLE
+    if path.stat().st_size > most:
+        raise InputError(
+            f'log {path} has more than {most // limits.MEGA} MB, allowed for its kind: save its '
+            'signals as CSV or Parquet'
+        )
+    with readable(f'log {path} cannot be read', Exception):
+        signals = READERS[kind](path)
+    if not signals.frame.height:
+        raise InputError(f'log {path} holds no signal with numbers')
+    return signals
+
+
+def _json(path: Path) -> Signals:
+    content = json.loads(path.read_bytes())
+    header = content.get('Header') if isinstance(content, dict) else None
+    if isinstance(header, dict) and 'SignalListHFData' in header:
+        return _sinumerik_json(content)
+    if isinstance(content, dict):
+        lists = {key: value for key, value in content.items() if isinstance(value, list)}
+        records = [value for value in lists.values() if value and isinstance(value[0], dict)]
+        if not records:
+            return Signals(frame=_side_by_side(lists))
+        content = records[0]
+    return Signals(frame=pl.from_dicts(content, infer_schema_length=None))
+
+
+def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
+    """Return the fast signals of a data recorder: a row for each cycle of the control."""
+    header = content['Header']
+    names = []
+    for signal in header['SignalListHFData']:
+        name, axis = str(signal['Name']), str(signal.get('Axis', ''))
+        plain, letter = name.split('|')[0], axis if re.fullmatch(r'[A-Za-z]\d?', axis) else ''
+        names.append(f'{letter} {plain}' if letter else plain)
+    rows = [row for part in content['Payload'] for row in part.get('HFData', ())]
+    columns = list(zip(*rows, strict=True))
+    held = {name: list(column) for name, column in zip(unlike(names), columns, strict=True)}
+    start = str(header.get('Initial', {}).get('Time', ''))
+    period = float(header.get('CycleTimeMs') or math.nan) * 1e-3
+    return Signals(frame=pl.DataFrame(held, strict=False), period=period, start=start)
+
+
+def _xml(path: Path) -> Signals:
+    """Return the signals of a trace: names by their keys, and a record for each time."""
+    text = path.read_text('utf-8', errors='replace')
+    if DOCUMENT.search(text):
+        raise ValueError('it states a type of document')
+    root = ElementTree.fromstring(text)
+    named, keys, rows, start = {}, {}, [], ''
+    for element in root.iter():
+        tag, held = element.tag.rpartition('}')[2], element.attrib
+        if tag == 'signal' and 'key' in held:
+            parts = (held.get(one, '') for one in ('axis', 'axisName', 'name', 'description'))
+            unit = held.get('units') or held.get('unit') or ''
+            name = ' '.join(dict.fromkeys(part for part in parts if part))
+            named[held['key']] = f'{name} [{unit}]' if unit else name
+        elif tag == 'dataSignal' and 'id' in held:
+            keys[held['id']] = held.get('name') or named.get(held.get('key', ''), held['id'])
+        elif tag == 'frameHeader':
+            start = start or held.get('startTime', '')
+        elif tag == 'rec':
+            rows.append({keys.get(name, name): value for name, value in held.items()})
+    return Signals(frame=pl.from_dicts(rows, infer_schema_length=None), start=start)
+
+
+def _shdr(path: Path) -> Signals:
+    """Return the signals of lines of an adapter; a value that stays is repeated."""
+    found: dict[str, tuple[list[str], list[float]]] = {}
+    with path.open(encoding='utf-8', errors='replace') as stream:
+        for line in stream:
+            stamp, *rest = line.rstrip('\r\n').split('|')
+            for key, value in zip(rest[::2], rest[1::2], strict=False):
+                name = key.rpartition(':')[2]
+                if stamp[:1].isdigit() and read_name(name).kind:
+                    stamps, values = found.setdefault(name, ([], []))
+                    stamps.append(stamp.rstrip('Z'))
+                    values.append(_number(value))
+    frames = []
+    for name, (stamps, values) in found.items():
+        times = pl.Series(stamps).str.to_datetime(STAMP, time_unit='ns', strict=False)
+        frame = pl.DataFrame({'time': times, name: values}).drop_nulls('time').sort('time')
+        if frame[name].is_finite().sum() > 1:
+            frames.append(_held(frame.filter(pl.col(name).is_finite()), name))
+    return Signals(frame=_on_own_rows(frames))
+
+
+def _held(frame: pl.DataFrame, name: str) -> pl.DataFrame:
+    """Return changes of a value and, where it stays for long, its repetitions."""
+    times = frame['time'].cast(pl.Int64).to_numpy()
+    steps = np.diff(times)
+    usual = float(np.median(steps[steps > 0])) if (steps > 0).any() else math.inf
+    counts = np.where(steps > HELD * usual, np.ceil(steps / usual).astype(np.int64) - 1, 0)
+    if not math.isfinite(usual) or counts.sum() > MOST_HELD:
+        return frame
+    places = np.concatenate([np.arange(count) for count in counts.tolist()] or [np.zeros(0)])
+    later = np.repeat(times[1:], counts) - (np.repeat(counts, counts) - places) * usual
+    more = pl.DataFrame(
+        {
+            'time': pl.Series(later.astype(np.int64)).cast(pl.Datetime('ns')),
+            name: np.repeat(frame[name].to_numpy()[:-1], counts),
+        }
+    )
+    return pl.concat([frame, more]).sort('time').unique('time', keep='last', maintain_order=True)
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
+
+
+def _on_own_rows(frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
+    """Return signals with a time each as rows of one frame, empty where one has no sample."""
+    return pl.concat(frames, how='diagonal').sort('time') if frames else pl.DataFrame()
+
+
+def _mat(path: Path) -> Signals:
+    from scipy.io import loadmat
+
+    content = loadmat(path, squeeze_me=True, struct_as_record=False)
+    held = {key: value for key, value in content.items() if not key.startswith('__')}
+    return _arrays(dict(_flattened(held)))
+
+
+def _flattened(content: Mapping[str, Any], before: str = '') -> Iterable[tuple[str, Any]]:
+    """Yield the arrays of structures with their names, as `log.x.position`."""
+    for key, value in content.items():
+        name = f'{before}{key}'
+        if hasattr(value, '_fieldnames'):
+            fields = {field: getattr(value, field) for field in value._fieldnames}
+            yield from _flattened(fields, f'{name}.')
+        else:
+            yield name, value
+
+
+def _hdf(path: Path) -> Signals:
+    h5py = _optional('h5py', path, 'HDF5 and MATLAB 7.3')
+    found: dict[str, Any] = {}
+    with h5py.File(path, 'r') as file:
+
+        def visit(name: str, item: Any) -> None:
+            if isinstance(item, h5py.Dataset) and item.dtype.kind in 'iuf':
+                if item.size * 8 > limits.WORKBOOK:
+                    raise ValueError(f'{name} comes to more than {limits.WORKBOOK} bytes')
+                unit = item.attrs.get('unit', item.attrs.get('units', b''))
+                told = unit.decode() if isinstance(unit, bytes) else str(unit)
+                called = name.replace('/', '.')
+                found[f'{called} [{told}]' if told else called] = np.squeeze(item[()])
+            elif isinstance(item, h5py.Dataset) and item.dtype.names:
+                for field in item.dtype.names:
+                    found[f'{name.replace("/", ".")}.{field}'] = np.squeeze(item[field])
+
+        file.visititems(visit)
+    return _arrays(found)
+
+
+def _arrays(content: Mapping[str, Any]) -> Signals:
+    """Return arrays as signals: those of one length, and columns of a matrix, side by side."""
+    held: dict[str, Any] = {}
+    period, rates = math.nan, {'fs', 'rate', 'samplerate', 'samplingrate', 'frequency'}
+    periods = {'ts', 'dt', 'sampletime', 'period', 'samplingperiod'}
+    for name, value in content.items():
+        array, last = np.asarray(value), re.sub('[_ ]', '', name.rpartition('.')[2].lower())
+        if array.dtype.kind not in 'iufb':
+            continue
+        if array.ndim == 0 and float(array) > 0.0 and last in rates | periods:
+            period = 1.0 / float(array) if last in rates else float(array)
+        elif array.ndim == 1 and len(array) > 1:
+            held[name] = array.astype(np.float64)
+        elif array.ndim == 2 and min(array.shape) <= limits.COLUMNS:
+            tall = array if array.shape[0] >= array.shape[1] else array.T
+            for at in range(tall.shape[1]):
+                held[f'{name} {at + 1}'] = tall[:, at].astype(np.float64)
+    return Signals(frame=_side_by_side(held), period=period)
+
+
+def _side_by_side(columns: Mapping[str, Sequence[Any]]) -> pl.DataFrame:
+    """Return columns of several lengths as a frame; those of one length stand together."""
+    lengths = dict.fromkeys(len(column) for column in columns.values())
+    frames = [
+        pl.DataFrame(
+            {name: column for name, column in columns.items() if len(column) == length},
+            strict=False,
+        )
+        for length in lengths
+    ]
+    return pl.concat(frames, how='horizontal') if frames else pl.DataFrame()
+
+
+def _tdms(path: Path) -> Signals:
+    file = _optional('nptdms', path, 'TDMS', 'npTDMS').TdmsFile.read(path)
+    held: dict[str, Any] = {}
+    period = math.nan
+    for group in file.groups():
+        for channel in group.channels():
+            unit = channel.properties.get('unit_string', '')
+            held[f'{channel.name} [{unit}]' if unit else channel.name] = channel[:]
+            period = float(channel.properties.get('wf_increment', period))
+    return Signals(frame=_side_by_side(held), period=period)
+
+
+def _mdf(path: Path) -> Signals:
+    file = _optional('asammdf', path, 'MDF').MDF(path)
+    frames = []
+    for signal in file.iter_channels():
+        name = f'{signal.name} [{signal.unit}]' if signal.unit else signal.name
+        if signal.samples.dtype.kind in 'iuf' and signal.samples.ndim == 1:
+            frames.append(pl.DataFrame({'time [s]': signal.timestamps, name: signal.samples}))
+    frame = pl.concat(frames, how='diagonal').sort('time [s]') if frames else pl.DataFrame()
+    return Signals(frame=frame, start=str(file.header.start_time))
+
+
+def _optional(module: str, path: Path, what: str, package: str = '') -> Any:
+    """Return a module that users install for one kind of file; raises InputError without it."""
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        raise InputError(
+            f'log {path} is a file of {what}, which needs the package {package or module}: pip '
+            f'install {package or module}, or save its signals as CSV'
+        ) from None
+
+
+READERS: dict[str, Callable[[Path], Signals]] = {
+    'json': _json,
+    'xml': _xml,
+    'shdr': _shdr,
+    'mat': _mat,
+    'hdf': _hdf,
+    'tdms': _tdms,
+    'mdf': _mdf,
+}
+"""Readers of each kind of file; each returns all signals."""

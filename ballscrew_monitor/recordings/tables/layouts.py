@@ -1,0 +1,116 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Layouts of tables as controls write them: the words of their heads, each an entry of a table.
+
+A property is what a head says of the file or of a column: its name, unit, period or start.
+
+"""
+
+import dataclasses
+import re
+
+PROPERTIES: dict[str, frozenset[str]] = {
+    'name': frozenset(
+        'name names channel channelname signal signalname variable variablename kanal '
+        'kanalname bezeichnung messgröße messgroesse'.split()
+    ),
+    'symbol': frozenset('symbolname symbol'.split()),
+    'unit': frozenset('unit units einheit einheiten yunitlabel dimension'.split()),
+    'period': frozenset(
+        'sampletime sampleperiod samplingperiod samplingtime sampleinterval samplinginterval '
+        'deltax dx dt deltat cycletime cycletimems period interval timestep timeincrement '
+        'xincrement abtastzeit abtastintervall abtastperiode zykluszeit messtakt '
+        'taskcycletime'.split()
+    ),
+    'rate': frozenset(
+        'samplerate samplingrate samplefrequency samplingfrequency rate fs frequency abtastrate '
+        'abtastfrequenz messrate samplespersecond'.split()
+    ),
+    'start': frozenset(
+        'starttime start startdate startdatetime startoftrace startofrecord begin begintime '
+        'recorded recordedat recordingstart recordingtime measurementstart triggertime '
+        'timestamp datetime date datum startzeit startzeitpunkt beginn messbeginn '
+        'aufnahmezeit aufnahme messdatum erstellt created createdat'.split()
+    ),
+    'clock': frozenset('time uhrzeit zeit'.split()),
+    'decimal': frozenset('decimalseparator dezimaltrennzeichen decimal decimalsign'.split()),
+}
+"""Words of each property, without blanks and signs."""
+COLUMN = re.compile(
+    r'(?:column|col|channel|chan|ch|signal|kanal|spalte|curve|kurve)\W*(\d+)', re.I
+)
+"""The number of a column that a line of its own names."""
+REMARK = re.compile(
+    r'(?:sampl|abtast|cycle|zyklus|takt|period|interval|schritt)\D*?(?P<number>\d[\d.,]*)\s*'
+    r'(?P<unit>ns(?:ec)?|us(?:ec)?|[µμ]s|ms(?:ec)?|s(?:ec(?:onds?)?)?|k?Hz)\b',
+    re.I,
+)
+"""A period or rate that a remark states in a sentence."""
+PERIODS = {'n': 1e-9, 'u': 1e-6, 'µ': 1e-6, 'μ': 1e-6, 'm': 1e-3, 's': 1.0}
+RATES = {'h': 1.0, 'k': 1e3}
+"""First letters of units of a period [s] and of a rate [Hz]."""
+SEPARATED = re.compile(r'^\s*"?sep=(?P<sign>.)', re.I)
+"""The line by which a spreadsheet tells what separates cells."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Format:
+    """
+    A program that writes tables: how its heads are recognised, and what it leaves unsaid.
+
+    `mark` is found in the head; `times` are units of columns of the time by their names, and
+    `labelled` is that of a column of which the head says no more than the word for a name.
+
+    """
+
+    program: str
+    mark: re.Pattern[str]
+    times: tuple[tuple[str, str], ...] = ()
+    labelled: str = ''
+
+
+FORMATS = (
+    Format(
+        program='LabVIEW measurement file',
+        mark=re.compile('^LabVIEW Measurement', re.M),
+        times=(('X_Value', 's'),),
+    ),
+    Format(
+        program='TwinCAT Scope',
+        mark=re.compile(r'^"?(?:SymbolName|NetId|SymbolBased|SampleTime\[ms\])"?[\t;,]', re.M),
+        labelled='ms',
+    ),
+    Format(program='rostopic echo -p', mark=re.compile('^%time,', re.M), times=(('%time', 'ns'),)),
+    Format(
+        program='FANUC SERVO GUIDE', mark=re.compile(r'\b(?:TCMD|VCMD|POSF|SPEED|ERR)\b.*\(', re.M)
+    ),
+)
+"""Programs that are recognised by their heads."""
+
+
+def property_of(label: str) -> str:
+    """Return the property that a label of a head means, empty for any other."""
+    plain = re.sub(r'[\W\d_]+', '', re.sub(r'[\[(].*?[\])]', '', label).lower())
+    return next((kind for kind, words in PROPERTIES.items() if plain in words), '')
+
+
+def format_of(head: str) -> Format | None:
+    """Return the program that wrote a head, None for one that is not known."""
+    return next((one for one in FORMATS if one.mark.search(head)), None)
+
+
+def period_of(text: str, unit: str = '') -> float:
+    """Return the period [s] that a text states, in its own unit or another; NaN for none."""
+    match = re.match(r'\s*([\d.,]+(?:e[-+]?\d+)?)\s*([a-zµμ]*)', text, re.I)
+    stated = (match[2] if match else '') or unit
+    try:
+        number = float(match[1].replace(',', '.')) if match and match[1] else 0.0
+    except ValueError:
+        number = 0.0
+    letter = stated[:1].lower()
+    if number <= 0.0:
+        return float('nan')
+    if stated.lower().endswith('hz') and letter in RATES:
+        return 1.0 / (number * RATES[letter])
+    return number * PERIODS[letter] if letter in PERIODS else float('nan')

@@ -1,0 +1,112 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Files that are no rows of cells: the signals of controls and measuring systems."""
+
+import json
+import math
+import sys
+
+from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.series import read_series
+import h5py
+import numpy as np
+import pytest
+import scipy.io
+
+COUNT, STEP = 400, 0.002
+TIME = np.arange(COUNT) * STEP
+SPEED = 90.0 * np.sin(math.tau * TIME)  # [mm/s]
+PLACE = 150.0 + 90.0 / math.tau * (1.0 - np.cos(math.tau * TIME))  # [mm]
+
+
+def sinumerik_json(path):
+    names = [('CYCLE', 'CYCLE'), ('DES_POS|1', 'X'), ('ENC_POS|1', 'X'), ('CURRENT|1', 'X')]
+    signals = [{'Name': n, 'Type': 'DOUBLE', 'Axis': a, 'Address': n} for n, a in names]
+    rows = [[row, PLACE[row] + 0.01, PLACE[row], 1.5] for row in range(COUNT)]
+    header = {'CycleTimeMs': 2, 'SignalListHFData': signals}
+    header['Initial'] = {'Time': '2025-07-14T11:59:50.000Z', 'HFProbeCounter': 1}
+    parts = [{'HFData': rows[:250]}, {'LFData': []}, {'HFData': rows[250:]}]
+    path.write_text(json.dumps({'Header': header, 'Payload': parts}))
+
+
+def sinumerik_xml(path):
+    records = ''.join(
+        f'<rec time="{time:.4f}" f1="{place:.6f}" f2="1.5"/>' for time, place in zip(TIME, PLACE)
+    )
+    path.write_text(
+        '<?xml version="1.0"?><traceDataRoot><signals>'
+        '<signal key="a" name="X actual position" units="mm"/>'
+        '<signal key="b" name="X current" units="A"/></signals><traceData><dataFrame>'
+        '<dataSignal id="f1" key="a"/><dataSignal id="f2" key="b"/>'
+        f'{records}</dataFrame></traceData></traceDataRoot>'
+    )
+
+
+def matlab(path):
+    log = {'time_s': TIME, 'x': {'position_mm': PLACE, 'current_A': np.full(COUNT, 1.5)}}
+    scipy.io.savemat(path, {'log': log, 'note': 'of a mill'})
+
+
+def hdf(path):
+    with h5py.File(path, 'w') as file:
+        for name, unit, values in (('time', 's', TIME), ('position', 'mm', PLACE)):
+            file[f'x/{name}' if name == 'position' else name] = values
+            file[f'x/{name}' if name == 'position' else name].attrs['unit'] = unit
+        file['x/current'] = np.full(COUNT, 1.5)
+        file['x/current'].attrs['unit'] = 'A'
+
+
+WRITERS = {
+    'trace.json': sinumerik_json,
+    'trace.xml': sinumerik_xml,
+    'log.mat': matlab,
+    'log.h5': hdf,
+}
+
+
+@pytest.mark.parametrize('name', WRITERS)
+def test_signals_of_a_control_are_those_of_its_axis(name, tmp_path):
+    path = tmp_path / name
+    WRITERS[name](path)
+    content = guess(path).content
+    if name == 'trace.xml':  # which states no unit of its time
+        assert content['time'] == {'column': 'time', 'unit': None}
+        content['time']['unit'] = 's'
+    series = read_series(path, make_map(content))
+    (block,) = [rows for (rows,) in series.blocks()]
+    np.testing.assert_allclose(np.diff(block.stamps), STEP * 1e9, atol=1e3)
+    np.testing.assert_allclose(block.columns['x.position'], PLACE * math.tau / 10.0, rtol=1e-6)
+    middle = slice(5, -5)
+    np.testing.assert_allclose(
+        block.columns['x.speed'][middle], SPEED[middle] * math.tau / 10.0, atol=0.05
+    )
+    assert content['axes']['x']['current']['column']
+
+
+def test_values_on_change_stand_still_between(tmp_path):
+    path = tmp_path / 'mill.shdr'
+    lines = [f'2025-07-14T11:59:{50 + row / 10:06.3f}Z|Xact|{row}' for row in range(40)]
+    lines += ['2025-07-14T12:00:20.000Z|avail|AVAILABLE', '2025-07-14T12:00:20.000Z|Xact|40']
+    path.write_text('\n'.join(lines) + '\n')
+    series = read_series(path, make_map(guess(path).content))
+    rows = [rows for (rows,) in series.blocks()]
+    stamps = np.concatenate([one.stamps for one in rows])
+    speed = np.concatenate([one.columns['x.speed'] for one in rows])
+    still = (stamps - stamps[0] > 5e9) & (stamps - stamps[0] < 29e9)
+    assert np.diff(stamps).max() < 0.2e9
+    assert still.sum() > 200
+    np.testing.assert_allclose(speed[still], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ('content', 'key', 'module'),
+    [(b'TDSm\x0e', 'tdms', 'nptdms'), (b'MDF     4.10', 'mdf', 'asammdf')],
+)
+def test_a_reader_that_is_not_installed_is_named(
+    content, key, module, tmp_path, monkeypatch, refused
+):
+    monkeypatch.setitem(sys.modules, module, None)
+    path = tmp_path / 'log.bin'
+    path.write_bytes(content + bytes(64))
+    refused(key, guess, path)

@@ -1,0 +1,221 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Tables in layouts that were drawn: each is read right or refused, never read as other numbers.
+
+The writer below knows nothing of the reader: it makes a motion, and writes its numbers by a sign,
+a form of time, in groups of columns, below a preamble.
+
+"""
+
+import datetime as dt
+import math
+import random
+
+from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.series import read_series
+import numpy as np
+import pytest
+from surrogate.files import InputError
+
+BEGIN = dt.datetime(2025, 7, 14, 11, 59, 50, tzinfo=dt.UTC)
+ROWS = 60
+DRAWN = 40
+DAY = 86400.0
+
+
+def at(form, digits=3):
+    def write(seconds):
+        moment = BEGIN + dt.timedelta(seconds=seconds)
+        return moment.strftime(form).replace('FFF', f'{moment:%f}'[:digits])
+
+    return write
+
+
+def since(year, unit, digits):
+    zero = dt.datetime(year, 1, 1, tzinfo=dt.UTC)
+    before = (BEGIN - zero) // dt.timedelta(microseconds=1)
+    return lambda seconds: f'{(before + round(seconds * 1e6)) / 1e6 / unit:.{digits}f}'
+
+
+def ticks(seconds):
+    zero = dt.datetime(1601, 1, 1, tzinfo=dt.UTC)
+    return str(((BEGIN - zero) // dt.timedelta(microseconds=1) + round(seconds * 1e6)) * 10)
+
+
+def days(seconds):
+    zero = dt.datetime(1899, 12, 30, tzinfo=dt.UTC)
+    return f'{(BEGIN - zero).total_seconds() / DAY + seconds / DAY:.11f}'
+
+
+TIMES = {
+    'iso': ('Time', at('%Y-%m-%d %H:%M:%S.FFF')),
+    'iso T': ('timestamp', at('%Y-%m-%dT%H:%M:%S.FFFZ')),
+    'month first': ('Time', at('%m/%d/%Y %H:%M:%S.FFF')),
+    'month first, half days': ('Time', at('%m/%d/%Y %I:%M:%S.FFF %p')),
+    'day first': ('Date/Time', at('%d/%m/%Y %H:%M:%S.FFF')),
+    'dots': ('Zeit', at('%d.%m.%Y %H:%M:%S.FFF')),
+    'month in words': ('Time', at('%d-%b-%Y %H:%M:%S.FFF')),
+    'month before day in words': ('Time', at('%b %d %Y %H:%M:%S.FFF')),
+    'colon': ('Zeit', at('%Y-%m-%d %H:%M:%S:FFF')),
+    'hours': ('Uhrzeit', at('%H:%M:%S.FFF')),
+    's': ('Time [s]', lambda seconds: f'{seconds:.3f}'),
+    'ms': ('Time [ms]', lambda seconds: f'{1e3 * seconds:.1f}'),
+    'no unit': ('time', lambda seconds: f'{seconds:.3f}'),
+    'epoch s': ('Time', since(1970, 1.0, 3)),
+    'epoch ms': ('Time', since(1970, 1e-3, 0)),
+    'epoch us': ('Time', since(1970, 1e-6, 0)),
+    'labview': ('Time', since(1904, 1.0, 3)),
+    'ticks': ('Name', ticks),
+    'days': ('Time', days),
+}
+PREAMBLES = (
+    [],
+    ['Maschine: Fräse 3'],
+    ['Operator;A. Meier', 'Part;100'],
+    ['# made by a logger', '#'],
+    ['Export of the scope', '', 'Version 3.1', 'Channels 4', ''],
+    ['Drive 7, firmware 4.5.1, 12 bit'],
+)
+SIGNALS = {
+    'X position [mm]': lambda t: 150.0 + 2000.0 / math.tau * (1.0 - math.cos(math.tau * t / 2.0)),
+    'X speed [mm/min]': lambda t: (
+        60.0 * 1000.0 / math.tau * math.tau * math.sin(math.pi * t) / 1.0
+    ),
+    'X force [N]': lambda t: -2400.0 if math.sin(math.pi * t) >= 0.0 else 1200.0,
+}
+FORMS = {'X position [mm]': 4, 'X speed [mm/min]': 0, 'X force [N]': 0}
+
+
+def number(value, digits, sign, part):
+    """Return a number by a decimal sign, its thousands parted by something or nothing."""
+    text = f'{value:,.{digits}f}'
+    return text.translate(str.maketrans({',': part, '.': sign}))
+
+
+def layout(draw):
+    """Return a drawn layout."""
+    sign = draw.choice('.,')
+    other = {'.': ',', ',': '.'}[sign]
+    separators = [';', '\t', '|'] + ([','] if sign == '.' else [])
+    return {
+        'sign': sign,
+        'part': draw.choice(['', '', other, "'", '\u202f']),
+        'separator': draw.choice(separators),
+        'time': draw.choice(list(TIMES)),
+        'preamble': draw.choice(PREAMBLES),
+        'grouping': draw.choice(['one', 'one', 'groups', 'own rows']),
+        'units below': draw.random() < 0.2,
+        'quoted': draw.random() < 0.2,
+        'line end': draw.choice(['\n', '\r\n']),
+        'step': draw.choice([0.01, 0.02, 0.1]),
+    }
+
+
+def written(made):
+    """Return the text of a table in a layout, and its samples by the name of a column."""
+    name, clock = TIMES[made['time']]
+    step = made['step']
+    true = {
+        column: [(row * step, float(f'{f(row * step):.{FORMS[column]}f}')) for row in range(ROWS)]
+        for column, f in SIGNALS.items()
+    }
+    force = [(seconds + step / 2, value) for seconds, value in true['X force [N]']]
+    own = made['grouping'] != 'one'
+    true['X force [N]'] = force if own else true['X force [N]']
+
+    def cell(column, value):
+        text = number(value, FORMS[column], made['sign'], made['part'])
+        return f'"{text}"' if made['quoted'] or made['separator'] in text else text
+
+    def moment(seconds):
+        text = clock(seconds)
+        plain = text.replace('.', '', 1).isdigit()
+        return text.replace('.', made['sign']) if plain else text
+
+    columns = list(SIGNALS)
+    if made['grouping'] == 'groups':
+        names = [name, *columns[:2], name, columns[2]]
+        rows = [
+            [
+                moment(true[columns[0]][row][0]),
+                *(cell(each, true[each][row][1]) for each in columns[:2]),
+                moment(force[row][0]),
+                cell(columns[2], force[row][1]),
+            ]
+            for row in range(ROWS)
+        ]
+    elif own:
+        names = [name, *columns]
+        rows = []
+        for row in range(ROWS):
+            moved = [cell(each, true[each][row][1]) for each in columns[:2]]
+            rows.append([moment(true[columns[0]][row][0]), *moved, ''])
+            rows.append([moment(force[row][0]), '', '', cell(columns[2], force[row][1])])
+    else:
+        names = [name, *columns]
+        rows = [
+            [moment(row * step), *(cell(each, true[each][row][1]) for each in columns)]
+            for row in range(ROWS)
+        ]
+    heads = [names]
+    if made['units below']:
+        split = [each.partition(' [') for each in names]
+        heads = [[each for each, *_ in split], [unit.strip(']') for *_, unit in split]]
+    lines = [*made['preamble'], *(made['separator'].join(row) for row in [*heads, *rows])]
+    return made['line end'].join([*lines, '']), true
+
+
+SI = {
+    'x.position': ('X position [mm]', math.tau / 10.0),
+    'x.speed': ('X speed [mm/min]', math.tau / 10.0 / 60.0),
+    'x.load': ('X force [N]', 1.0),
+}
+
+
+def samples_of(path):
+    """Return the samples of a log by the first map of it; raises InputError."""
+    series = read_series(path, make_map(guess(path).content))
+    found = {}
+    for groups in series.blocks():
+        for rows in groups:
+            for name, values in rows.columns.items():
+                found.setdefault(name, []).append((rows.stamps, values))
+    return {
+        name: tuple(np.concatenate(part) for part in zip(*parts, strict=True))
+        for name, parts in found.items()
+    }
+
+
+def check(text, true, path):
+    """Return True if a table is read; raises AssertionError where its numbers are others."""
+    path.write_bytes(text.encode())
+    try:
+        found = samples_of(path)
+    except InputError:
+        return False
+    begin = min(stamps[0] for stamps, _ in found.values())
+    for name, (column, factor) in SI.items():
+        if name not in found:
+            continue
+        stamps, values = found[name]
+        known = np.isfinite(values)
+        times, numbers = (np.array(each) for each in zip(*true[column], strict=True))
+        assert len(values[known]) == len(numbers), name
+        np.testing.assert_allclose((stamps[known] - begin) / 1e9, times - 0.0, atol=2e-3)
+        np.testing.assert_allclose(values[known], numbers * factor, rtol=1e-9, atol=1e-9)
+    return True
+
+
+@pytest.mark.parametrize('part', range(8))
+def test_a_drawn_layout_is_read_right_or_refused(part, tmp_path):
+    draw, read = random.Random(part), 0
+    for _ in range(DRAWN):
+        made = layout(draw)
+        text, true = written(made)
+        try:
+            read += check(text, true, tmp_path / 'log.csv')
+        except AssertionError as error:
+            raise AssertionError(f'{made}: {error}\n{text[:600]}') from None
+    assert read >= 0.7 * DRAWN
