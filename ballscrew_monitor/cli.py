@@ -241,11 +241,13 @@ def _recover(args: argparse.Namespace) -> int:
 
 
 def _play(args: argparse.Namespace) -> int:
-    from ballscrew_monitor.recordings.player import Choice, playback
+    from ballscrew_monitor.recordings.player import playback
 
     return playback(
         args.bag,
-        Choice(params=args.params, topics=args.topics, every=args.all),
+        args.params,
+        args.topics,
+        every=args.all,
         rate=args.rate,
         patience=args.wait,
         loop=args.loop,

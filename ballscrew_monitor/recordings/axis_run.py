@@ -70,7 +70,12 @@ class AxisRun:
 
     def take(self, events: Events, *, states: bool = True) -> Iterator[AxisRows | Due]:
         """Judge events; yield their rows, and the states that are due."""
-        notes = _notes_by_source(events)
+        about = (events['kind'] == records.REFUSAL) & (events['why'] == Why.OTHER_JOINTS)
+        places = np.flatnonzero(about)
+        notes = {}  # places of messages about other joints and their notes, by input
+        for source in Source if len(places) else ():
+            mine = places[events['source'][places] == source]
+            notes[source] = mine, events['note'][mine]
         for judged in self._judge.judge(events, states=states):
             for place, row in self._told(judged):
                 self._hear_others(notes, place)
@@ -163,17 +168,6 @@ class AxisRun:
             for joints in self._notes.named(numbers[first:count]):
                 if len(named[source]) < MOST_OTHERS:
                     named[source][joints] = None
-
-
-def _notes_by_source(events: Events) -> dict[Source, tuple[Any, Any]]:
-    """Return where messages about other joints lie and their notes, of each input that has any."""
-    about = (events['kind'] == records.REFUSAL) & (events['why'] == Why.OTHER_JOINTS)
-    places = np.flatnonzero(about)
-    found = {}
-    for source in Source if len(places) else ():
-        mine = places[events['source'][places] == source]
-        found[source] = mine, events['note'][mine]
-    return found
 
 
 def judged_parts(runs: Sequence[AxisRun], events: Events, *, states: bool) -> Iterator[Part]:

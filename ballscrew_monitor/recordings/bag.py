@@ -36,19 +36,12 @@ from surrogate.files import InputError
 MOST_NAMED = 5  # topics in a sentence
 
 
-@dataclasses.dataclass(kw_only=True, slots=True)
-class Refused:
-    """Messages of one topic that do not decode: how many, and a sentence about the first."""
-
-    count: int
-    sentence: str
-
-
 class Bag:
     """
     An opened bag: its topics and its time span; the messages are read on demand.
 
-    `metadata` is what it says of itself, and `refused` counts by topic what did not decode.
+    `metadata` is what it says of itself; `refused` counts by topic the messages that did not
+    decode, with a sentence about the first.
 
     """
 
@@ -61,20 +54,24 @@ class Bag:
 
         """
         self.path = Path(path)
-        self.refused: dict[str, Refused] = {}
+        self.refused: dict[str, tuple[int, str]] = {}
         self.remarks: list[str] = []  # of those who read it
         self._salvage = salvage
         self._missing: list[str] = []
-        found = manifest(self.path, salvage=salvage)
-        self.storages = [one for one in map(self._open, found.files) if one is not None]
+        files, custom, counts = manifest(self.path, salvage=salvage)
+        self.storages = [one for one in map(self._open, files) if one is not None]
         self.files = [one.file for one in self.storages]
-        self.topics = self._all_topics()
+        self.topics: dict[str, TopicInfo] = {}
+        for storage in self.storages:
+            for name, info in storage.topics.items():
+                count = info.count + (self.topics[name].count if name in self.topics else 0)
+                self.topics[name] = dataclasses.replace(info, count=count)
         spans = [one.span for one in self.storages if one.span[1]]
         if not self.topics or not spans:
             what = '; '.join(self._missing) or 'at least one is needed'
             raise InputError(f'bag {self.path} holds no message, {what}')
-        self._compare(found.counts)
-        self.metadata = self._own_metadata() | found.custom
+        self._compare(counts)
+        self.metadata = self._own_metadata() | custom
         self.start_time = min(span[0] for span in spans)
         self.end_time = max(span[1] for span in spans)
 
@@ -93,8 +90,8 @@ class Bag:
         """Return a sentence for each file and topic of which not all could be read so far."""
         salvaged = [one.note for one in self.storages if one.note]
         refused = [
-            one.sentence + (f'; {one.count} such messages were refused' if one.count > 1 else '')
-            for one in self.refused.values()
+            sentence + (f'; {count} such messages were refused' if count > 1 else '')
+            for count, sentence in self.refused.values()
         ]
         return [*self._missing, *salvaged, *refused, *self.remarks]
 
@@ -105,8 +102,8 @@ class Bag:
             f'bag {self.path}: the message of {message.topic} at {at:.3f} s does not decode as '
             f'{self.topics[message.topic].type_name} ({len(message.data)} bytes, {reason})'
         )
-        known = self.refused.setdefault(message.topic, Refused(count=0, sentence=sentence))
-        known.count += 1
+        count, first = self.refused.get(message.topic, (0, sentence))
+        self.refused[message.topic] = count + 1, first
         return sentence
 
     def remark(self, sentence: str) -> None:
@@ -167,15 +164,6 @@ class Bag:
         if kind == 'sqlite3':
             return SqliteStorage(file)
         return McapStorage(file, salvage=self._salvage)
-
-    def _all_topics(self) -> dict[str, TopicInfo]:
-        topics: dict[str, TopicInfo] = {}
-        for one in self.storages:
-            for name, info in one.topics.items():
-                known = topics.get(name)
-                count = info.count + (known.count if known else 0)
-                topics[name] = dataclasses.replace(info, count=count)
-        return topics
 
     def _compare(self, stated: Mapping[str, int]) -> None:
         """Note of which topics the files hold another number of messages than is stated."""

@@ -3,10 +3,8 @@
 """Files of a bag and their kinds, by metadata.yaml and by their first bytes."""
 
 import contextlib
-import dataclasses
 from pathlib import Path, PurePath
 import re
-from typing import Any
 
 from surrogate.files import InputError
 from surrogate.limits import read_text
@@ -30,13 +28,8 @@ OWN = 'ballscrew_monitor'
 """Name of the metadata record in which an MCAP file holds what this program says of it."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Manifest:
-    """Files of a bag in order, and of its metadata the custom data and the messages by topic."""
-
-    files: tuple[Path, ...]
-    custom: dict[str, str]
-    counts: dict[str, int]
+Manifest = tuple[list[Path], dict[str, str], dict[str, int]]
+"""Files of a bag in order, and of its metadata the custom data and the messages by topic."""
 
 
 def kind_of(file: Path) -> str:
@@ -63,20 +56,21 @@ def is_table(path: Path) -> bool:
 def manifest(path: Path, *, salvage: bool) -> Manifest:
     """Return the files of the bag at `path`; raises InputError when there is none."""
     if path.is_file():
-        return Manifest(files=(path,), custom={}, counts={})
+        return [path], {}, {}
     if not path.is_dir():
         raise InputError(f'bag {path} does not exist, it must be a bag directory or an MCAP file')
     metadata = path / 'metadata.yaml'
-    found = _read_metadata(metadata) if metadata.is_file() else None
-    files = found.files if found else tuple(_bag_files(path))
+    files, custom, counts = (
+        _read_metadata(metadata) if metadata.is_file() else (_bag_files(path), {}, {})
+    )
     unfinished = sorted(path.glob(f'*{ACTIVE}'), key=_by_number)
     if not files and salvage:
-        files = tuple(unfinished)
+        files = unfinished
     if not files:
         names = ', '.join(file.name for file in unfinished)
         hint = f', only the unfinished {names}' if names else ''
         raise InputError(f'bag {path} holds no MCAP file and no sqlite3 file{hint}')
-    return found or Manifest(files=files, custom={}, counts={})
+    return files, custom, counts
 
 
 def _bag_files(path: Path) -> list[Path]:
@@ -105,19 +99,17 @@ def _read_metadata(metadata: Path) -> Manifest:
         raise InputError(f'bag {bag} is compressed as {packing}, it must be zstd')
     if not isinstance(names, list):
         raise InputError(f'{metadata} is not a rosbag2 metadata file: it names no list of files')
-    return Manifest(
-        files=tuple(_place(bag, str(name)) for name in names),
-        custom={str(key): str(value) for key, value in custom.items()},
-        counts=_stated_counts(content),
+    counts = {}
+    with contextlib.suppress(*NO_METADATA):  # those that count well
+        counts = {
+            str(one['topic_metadata']['name']): int(one['message_count'])
+            for one in content['topics_with_message_count']
+        }
+    return (
+        [_place(bag, str(name)) for name in names],
+        {str(key): str(value) for key, value in custom.items()},
+        counts,
     )
-
-
-def _stated_counts(content: Any) -> dict[str, int]:
-    """Return the messages by topic as metadata count them, nothing unless they do so well."""
-    with contextlib.suppress(*NO_METADATA):
-        topics = content['topics_with_message_count']
-        return {str(one['topic_metadata']['name']): int(one['message_count']) for one in topics}
-    return {}
 
 
 def _place(bag: Path, name: str) -> Path:

@@ -52,20 +52,16 @@ def plain(record: Any) -> Any:
 
     """
     if dataclasses.is_dataclass(record):
-        return _plain_fields(record)
+        made: dict[str, Any] = {}
+        for key, spec in keys(record).items():
+            value = getattr(record, spec.name)
+            made[key] = spec.metadata.get('form', plain)(value)
+            if spec.metadata.get('because') and (value is None or not math.isfinite(value)):
+                made[f'{key}_reason'] = getattr(record, spec.metadata['because'])
+        return made
     if isinstance(record, Mapping):
         return {_name(key): plain(value) for key, value in record.items()}
     return [plain(one) for one in record] if isinstance(record, list | tuple) else record
-
-
-def _plain_fields(record: Any) -> dict[str, Any]:
-    made: dict[str, Any] = {}
-    for key, spec in keys(record).items():
-        value = getattr(record, spec.name)
-        made[key] = spec.metadata.get('form', plain)(value)
-        if spec.metadata.get('because') and (value is None or not math.isfinite(value)):
-            made[f'{key}_reason'] = getattr(record, spec.metadata['because'])
-    return made
 
 
 def _name(key: Any) -> Any:

@@ -62,16 +62,8 @@ class LogFacts:
 
     def sentences(self) -> list[str]:
         """Return what is to be said wherever the log is judged."""
-        groups = grouped(self._assumed_by_axis())
-        return [
-            *self.notes,
-            *(f'assumed of {self.source}, {whose}: {", ".join(told)}' for whose, told in groups),
-        ]
-
-    def _assumed_by_axis(self) -> dict[str, list[str]]:
-        """Return by axis what is assumed, that about no axis with each of them."""
         axes = self.mapping.get('axes', {}).keys()
-        return {
+        assumed = {  # by axis, what is about none with each of them
             axis: [
                 f'{one.key.removeprefix(f"{axis}.")} = {one.value}'
                 for one in self.assumptions
@@ -79,6 +71,13 @@ class LogFacts:
             ]
             for axis in axes
         }
+        return [
+            *self.notes,
+            *(
+                f'assumed of {self.source}, {whose}: {", ".join(told)}'
+                for whose, told in grouped(assumed)
+            ),
+        ]
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -173,20 +172,15 @@ def _not_default(values: Mapping[str, Any]) -> frozenset[str]:
 
 
 def _parameters_text(given: Mapping[str, Any]) -> str:
-    return _text({f'/**/{parameters.NODE_NAME}': {'ros__parameters': _nested(given)}})
-
-
-def _text(value: Any) -> str:
-    return value if isinstance(value, str) else yaml.dump(value, Dumper=_Quoting, sort_keys=False)
-
-
-def _nested(flat: Mapping[str, Any]) -> dict[str, Any]:
-    """Return parameters by full name as sections within sections."""
     nested: dict[str, Any] = {}
-    for name, value in flat.items():
+    for name, value in given.items():
         *groups, leaf = name.split('.')
         place = nested
         for group in groups:
             place = place.setdefault(group, {})
         place[leaf] = value
-    return nested
+    return _text({f'/**/{parameters.NODE_NAME}': {'ros__parameters': nested}})
+
+
+def _text(value: Any) -> str:
+    return value if isinstance(value, str) else yaml.dump(value, Dumper=_Quoting, sort_keys=False)

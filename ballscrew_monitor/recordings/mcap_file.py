@@ -150,10 +150,23 @@ class McapFile:
         sequence: Integers,
     ) -> None:
         """Append messages, which lie in `data` [bytes] and are published when they are logged."""
-        heads = _heads(channel, size, log_time, sequence)
+        heads = np.empty(len(sequence), MESSAGE_FIELDS)
+        heads['code'], heads['length'] = Opcode.MESSAGE, size + MESSAGE.size - BEFORE_LENGTH
+        heads['channel'], heads['sequence'] = channel, sequence
+        heads['log_time'] = heads['publish_time'] = log_time
         raw = np.empty(heads.nbytes + int(size.sum()), np.uint8)
         compiled_join()(heads.view(np.uint8), np.frombuffer(data, np.uint8), begin, size, raw)
-        self._add_records(heads, raw.data)
+        ends = np.cumsum(heads['length'].astype(np.int64) + BEFORE_LENGTH)
+        first, done = 0, 0
+        while first < len(heads):
+            room = done + self._chunk_size - len(self._data)
+            exceeding = int(np.searchsorted(ends, room, side='right'))
+            last = min(exceeding + 1, len(heads))
+            begins = np.concatenate(([done], ends[first:last]))
+            end = int(begins[-1])
+            self._index(heads[first:last], begins[:-1] - done + len(self._data))
+            self._grow(raw.data[done:end])
+            first, done = last, end
 
     def flush(self) -> None:
         """End the chunk, and let the system have all that was written."""
@@ -174,20 +187,6 @@ class McapFile:
         raw += b''.join(map(_bytes, offsets))
         crc = zlib.crc32(struct.pack('<BQQQ', Opcode.FOOTER, 20, begin, at), zlib.crc32(raw))
         self._stream.write(raw + _bytes(records.Footer(begin, at, crc)) + MCAP0_MAGIC)
-
-    def _add_records(self, heads: NDArray[np.void], raw: memoryview) -> None:
-        """Append messages as they stand in a file, by their heads, chunk by chunk."""
-        ends = np.cumsum(heads['length'].astype(np.int64) + BEFORE_LENGTH)
-        first, done = 0, 0
-        while first < len(heads):
-            room = done + self._chunk_size - len(self._data)
-            exceeding = int(np.searchsorted(ends, room, side='right'))
-            last = min(exceeding + 1, len(heads))
-            begins = np.concatenate(([done], ends[first:last]))
-            end = int(begins[-1])
-            self._index(heads[first:last], begins[:-1] - done + len(self._data))
-            self._grow(raw[done:end])
-            first, done = last, end
 
     def _index(self, heads: NDArray[np.void], places: Integers) -> None:
         """Note messages that go into the chunk at some places [bytes]."""
@@ -211,7 +210,6 @@ class McapFile:
             self._end_chunk()
 
     def _clear(self) -> None:
-        """Begin a chunk."""
         self._data = bytearray()
         self._pairs: dict[int, bytearray] = {}
         self._begin = self._end = 0
@@ -252,7 +250,6 @@ class McapFile:
         self._clear()
 
     def _summary(self) -> Sequence[tuple[Opcode, Sequence[records.McapRecord]]]:
-        """Return the groups of records that end the file."""
         statistics = records.Statistics(
             attachment_count=0,
             channel_count=len(self._channels),
@@ -292,19 +289,7 @@ def compiled_join() -> Any:
     return compiled(join_messages)
 
 
-def _heads(
-    channel: Integers, size: Integers, log_time: Integers, sequence: Integers
-) -> NDArray[np.void]:
-    """Return what stands before messages of some sizes [bytes]."""
-    heads = np.empty(len(sequence), MESSAGE_FIELDS)
-    heads['code'], heads['length'] = Opcode.MESSAGE, size + MESSAGE.size - BEFORE_LENGTH
-    heads['channel'], heads['sequence'] = channel, sequence
-    heads['log_time'] = heads['publish_time'] = log_time
-    return heads
-
-
 def _bytes(record: records.McapRecord) -> bytes:
-    """Return a record as it stands in a file."""
     builder = RecordBuilder()
     record.write(builder)
     raw: bytes = builder.end()

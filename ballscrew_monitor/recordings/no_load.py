@@ -11,7 +11,6 @@ window means, because samples within a window share the ripple of one revolution
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-import dataclasses
 import itertools
 import math
 
@@ -35,26 +34,11 @@ FEWEST_WINDOWS = 3  # in a bin
 NO_FUTURE_LIMIT = 1 << 62  # [ns]: in a recording a stamp may differ from the log time
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class SteadyWindow:
-    """Means of a steady window: speed [rad/s], torque [N m], temperature [K] or NaN."""
-
-    speed: float
-    torque: float
-    temperature: float
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Series:
-    """Samples by time [s]."""
-
-    time: Array
-    value: Array
-
-    def between(self, begin: float, end: float) -> 'Series':
-        """Return the samples from `begin` up to `end` [s]."""
-        first, last = np.searchsorted(self.time, [begin, end])
-        return Series(time=self.time[first:last], value=self.value[first:last])
+Series = tuple[Array, Array]
+"""Times of samples [s], which rise, and their values."""
+STATISTICS = 'speed', 'torque', 'temperature'
+"""Means of a window: speed [rad/s], torque [N m], temperature [K], NaN without one."""
+Window = tuple[float, float, float]
 
 
 def speed_channel(topic: str, field: str, unit: str, lead: float) -> OpenInput:
@@ -90,8 +74,12 @@ def read_no_load(
 
     """
     series, refused = _read(bag, channels)
-    windows = list(_windows(series))
-    steady = list(_steady(windows))
+    windows = _windows(series)
+    steady = [
+        window
+        for before, window in itertools.pairwise(windows)
+        if before and window and abs(window[0] / before[0] - 1) <= STEADY
+    ]
     bins = [group for group in _bins(steady) if len(group) >= FEWEST_WINDOWS]
     if not bins:
         raise InputError(
@@ -144,60 +132,51 @@ def _input(bag: Bag, channel: OpenInput) -> Input:
 
 def _series(samples: list[tuple[int, float]]) -> Series:
     ordered = sorted(samples)
-    return Series(
-        time=np.array([conversions.seconds(stamp) for stamp, _ in ordered]),
-        value=np.array([value for _, value in ordered]),
-    )
+    times = np.array([conversions.seconds(stamp) for stamp, _ in ordered])
+    return times, np.array([value for _, value in ordered])
 
 
-def _windows(series: Mapping[Source, Series]) -> Iterator[SteadyWindow | None]:
-    """Yield the windows of the recording in turn, None for one that is not steady in itself."""
+def _windows(series: Mapping[Source, Series]) -> list[Window | None]:
+    """Return the windows of the recording in turn, None for one that is not steady in itself."""
     speed, torque = series[Source.SPEED], series[Source.TORQUE]
-    begin = max(speed.time[0], torque.time[0])
-    number = int((min(speed.time[-1], torque.time[-1]) - begin) / WINDOW)
-    for place in range(number):
+    begin = max(speed[0][0], torque[0][0])
+    windows: list[Window | None] = []
+    for place in range(int((min(speed[0][-1], torque[0][-1]) - begin) / WINDOW)):
         span = (begin + place * WINDOW, begin + (place + 1) * WINDOW)
-        turned, pulled = speed.between(*span), torque.between(*span)
-        if min(len(turned.time), len(pulled.time)) < FEWEST_SAMPLES or not _keeps(turned):
-            yield None
-            continue
-        yield SteadyWindow(
-            speed=float(turned.value.mean()),
-            torque=float(pulled.value.mean()),
-            temperature=_held(series.get(Source.TEMPERATURE), span[1]),
-        )
+        (time, speeds), (_, torques) = _between(speed, *span), _between(torque, *span)
+        window = None
+        if min(len(speeds), len(torques)) >= FEWEST_SAMPLES and _is_steady(time, speeds):
+            heat = math.nan
+            if Source.TEMPERATURE in series:  # the last one before, or the first
+                times, values = series[Source.TEMPERATURE]
+                heat = float(values[max(0, int(np.searchsorted(times, span[1])) - 1)])
+            window = float(speeds.mean()), float(torques.mean()), heat
+        windows.append(window)
+    return windows
 
 
-def _keeps(turned: Series) -> bool:
-    """Tell whether the speed keeps its sign and does not drift."""
-    mean = float(turned.value.mean())
-    time = turned.time - turned.time.mean()
-    drift = float(time @ turned.value) / float(time @ time) * WINDOW
-    signs = np.sign(turned.value)
+def _between(series: Series, begin: float, end: float) -> Series:
+    """Return the samples from `begin` up to `end` [s]."""
+    time, value = series
+    first, last = np.searchsorted(time, [begin, end])
+    return time[first:last], value[first:last]
+
+
+def _is_steady(time: Array, speed: Array) -> bool:
+    mean = float(speed.mean())
+    time = time - time.mean()
+    drift = float(time @ speed) / float(time @ time) * WINDOW
+    signs = np.sign(speed)
     return bool(
         abs(mean) >= SLOWEST and (signs == signs[0]).all() and abs(drift) <= STEADY * abs(mean)
     )
 
 
-def _held(series: Series | None, time: float) -> float:
-    """Return the last value before a time [s], the first where there is none yet."""
-    if series is None:
-        return math.nan
-    return float(series.value[max(0, int(np.searchsorted(series.time, time)) - 1)])
-
-
-def _steady(windows: list[SteadyWindow | None]) -> Iterator[SteadyWindow]:
-    """Yield the windows that follow one of the same speed."""
-    for before, window in itertools.pairwise(windows):
-        if before and window and abs(window.speed / before.speed - 1) <= STEADY:
-            yield window
-
-
-def _bins(windows: list[SteadyWindow]) -> Iterator[list[SteadyWindow]]:
+def _bins(windows: list[Window]) -> Iterator[list[Window]]:
     """Yield groups of windows of one direction whose speeds differ by less than the width."""
-    group: list[SteadyWindow] = []
-    for window in sorted(windows, key=lambda one: (one.speed < 0, abs(one.speed))):
-        if group and not 0 < window.speed / group[0].speed <= 1 + BIN:
+    group: list[Window] = []
+    for window in sorted(windows, key=lambda one: (one[0] < 0, abs(one[0]))):
+        if group and not 0 < window[0] / group[0][0] <= 1 + BIN:
             yield group
             group = []
         group.append(window)
@@ -205,19 +184,16 @@ def _bins(windows: list[SteadyWindow]) -> Iterator[list[SteadyWindow]]:
         yield group
 
 
-def _columns(bins: list[list[SteadyWindow]]) -> dict[str, Array]:
+def _columns(bins: list[list[Window]]) -> dict[str, Array]:
     """Return the means of the bins; their standard errors share one scatter of windows."""
     count = np.array([len(group) for group in bins])
-    squares = sum(float(np.var([one.torque for one in group])) * len(group) for group in bins)
+    squares = sum(float(np.var([torque for _, torque, _ in group])) * len(group) for group in bins)
     scatter = math.sqrt(squares / float((count - 1).sum()))
-
-    def mean(name: str) -> Array:
-        return np.array([np.mean([getattr(one, name) for one in group]) for group in bins])
-
-    columns = {'speed': mean('speed'), 'torque': mean('torque')}
+    means = {
+        name: np.array([np.mean([window[place] for window in group]) for group in bins])
+        for place, name in enumerate(STATISTICS)
+    }
+    temperature = means.pop('temperature')
     if scatter > 0:
-        columns['torque_std'] = scatter / np.sqrt(count)
-    temperature = mean('temperature')
-    if np.isfinite(temperature).all():
-        columns['temperature'] = temperature
-    return columns
+        means['torque_std'] = scatter / np.sqrt(count)
+    return means | ({'temperature': temperature} if np.isfinite(temperature).all() else {})

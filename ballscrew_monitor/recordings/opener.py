@@ -21,7 +21,14 @@ def opened_log(path: Path, *, mapping: Path | None = None, shown: Shown = shown_
     if not path.exists():
         raise InputError(f'log {path} does not exist, it must be a bag or a table')
     if path.is_dir() or is_bag(path):
-        _check_bag(path, mapping)
+        if mapping is not None:
+            raise InputError(f'log {path} is a bag, a map is for tables')
+        if path.is_dir() and not is_bag(path) and not any(path.glob(f'*{ACTIVE}')):
+            tables = sorted(file.name for file in path.iterdir() if is_table(file))
+            hint = (
+                f'; its tables, such as {tables[0]}, are to be named one by one' if tables else ''
+            )
+            raise InputError(f'{path} holds no log, neither a bag nor a file of one{hint}')
         return Bag(path, salvage=True)
     if not is_table(path):
         raise InputError(
@@ -37,12 +44,3 @@ def opened_log(path: Path, *, mapping: Path | None = None, shown: Shown = shown_
     from ballscrew_monitor.recordings.tables.mapping import read_map
 
     return TableLog(path, read_map(mapping), shown)
-
-
-def _check_bag(path: Path, mapping: Path | None) -> None:
-    if mapping is not None:
-        raise InputError(f'log {path} is a bag, a map is for tables')
-    if path.is_dir() and not is_bag(path) and not any(path.glob(f'*{ACTIVE}')):
-        tables = sorted(file.name for file in path.iterdir() if is_table(file))
-        hint = f'; its tables, such as {tables[0]}, are to be named one by one' if tables else ''
-        raise InputError(f'{path} holds no log, neither a bag nor a file of one{hint}')

@@ -7,12 +7,14 @@ Plays a bag over DDS: the serialised messages as they are, and `/clock` from the
 sees a message from its future. In a loop each pass goes on from the end of the one before:
 `/clock` and every stamp in the messages are shifted by whole passes. The messages are offered
 reliably and to latecomers: a subscriber that asks for less gets them as such, and none is refused.
-`playback` does that alone, in the domain of the environment, for whoever listens.
+`playback` does that alone, in the domain of the environment, for whoever listens. It compares what
+is played with what the monitors take by their own diagnostics: their inputs are best effort, so
+the middleware does not hold the player back for them.
 
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 import dataclasses
 import itertools
 from pathlib import Path
@@ -25,17 +27,18 @@ from ballscrew_monitor.core.fields import message_class
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from ballscrew_monitor.recordings.bag import Bag, Message
-from ballscrew_monitor.recordings.following import DIAGNOSTICS, Following
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.parameters import absolute, input_topics
 from ballscrew_monitor.settings.qos import started_node
 from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rclpy.duration import Duration
 from rclpy.exceptions import InvalidTopicNameException
 from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from rclpy.serialization import deserialize_message, serialize_message
+from rclpy.time import Time as RclTime
 from rclpy.validate_full_topic_name import validate_full_topic_name
 from rosgraph_msgs.msg import Clock
 from surrogate.files import InputError, printable
@@ -52,6 +55,14 @@ DATA_QOS = QoSProfile(
     reliability=QoSReliabilityPolicy.RELIABLE,
     durability=QoSDurabilityPolicy.TRANSIENT_LOCAL,
 )
+DIAGNOSTICS, PART = '/diagnostics', ': Inputs'
+TAKEN, LOST, MATCHED = ' received [-]', ' lost [-]', ' publishers [-]'
+FRESH = ('Speed state', 'OK')
+FIRST_WORD, LAST_WORD = 2.0, 5.0  # [s] that a monitor may take to tell what it has taken
+POLL = 0.05  # [s]
+DEPTH = 1000  # messages of monitors that may wait
+Counts = Mapping[str, int]
+"""Messages by the input of an axis and whether they are taken or lost."""
 
 
 class Player:
@@ -125,7 +136,10 @@ class Player:
             self._publishers[message.topic].publish(message.data)
             self.sent[message.topic] += 1
             self.lateness = max(self.lateness, time.monotonic() - due)
-        self._deliver()
+        # Reliable subscribers are to have all: what is under way dies with its publisher.
+        deadline = time.monotonic() + DELIVERY
+        for publisher in self._publishers.values():
+            publisher.wait_for_all_acked(Duration(seconds=max(0.0, deadline - time.monotonic())))
         return True
 
     def _messages(self, loop: bool) -> Iterator[Message]:
@@ -140,12 +154,6 @@ class Player:
                     log_time=message.log_time + number * length,
                     data=shifted(message.data, kinds[message.topic], number * length),
                 )
-
-    def _deliver(self) -> None:
-        """Wait until reliable subscribers have all: what is under way dies with its publisher."""
-        deadline = time.monotonic() + DELIVERY
-        for publisher in self._publishers.values():
-            publisher.wait_for_all_acked(Duration(seconds=max(0.0, deadline - time.monotonic())))
 
     def run_on(self, finished: Callable[[], bool], timeout: float, stop: threading.Event) -> bool:
         """
@@ -202,24 +210,128 @@ def _times(part: Any) -> Iterator[Time]:
             yield from _times(getattr(part, name))
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Choice:
-    """What is to be played: `every` topic, those in `topics`, or the inputs in a file."""
+class Following:
+    """What the monitors have taken and lost since the first that was heard of them."""
 
-    params: Path
-    topics: Sequence[str] | None = None
-    every: bool = False
+    def __init__(self, node: Node, topics: Mapping[tuple[str, str], str]) -> None:
+        """Listen on a node, which is spun here alone; `topics` by axis and input, if known."""
+        self._node, self._topics = node, topics
+        self._first: dict[str, Counts] = {}
+        self._last: dict[str, Counts] = {}
+        self._resting: set[str] = set()  # monitors whose counts do after the end
+        self._unmatched: set[str] = set()  # those that miss the publisher of an input
+        self._end = 2**63
+        node.create_subscription(DiagnosticArray, DIAGNOSTICS, self._hear, DEPTH)
+
+    def begin(self) -> None:
+        """
+        Wait a little for what the monitors have taken before, and until they know the player.
+
+        Without a monitor it does not wait.
+
+        """
+        deadline = time.monotonic() + FIRST_WORD
+        while (not self._first or self._unmatched) and time.monotonic() < deadline:
+            if not self._node.count_publishers(DIAGNOSTICS):
+                break
+            self._take(POLL)
+
+    def settle(self, end: int, run_on: Callable[[Callable[[], bool], float], object]) -> None:
+        """
+        Let the clock run on until the counts of all monitors rest after the `end` [ns].
+
+        Their speeds are stale then: a tick comes after all that waits.
+
+        """
+        self._end = end
+
+        def rest() -> bool:
+            self._take()
+            return self._resting == self._last.keys()
+
+        if self._first:
+            run_on(rest, LAST_WORD)
+
+    def complaint(self, rate: float, sent: Mapping[str, int]) -> str:
+        """
+        Return which input has lost most at a `rate` [-], of how many; empty if none has.
+
+        Of an input whose topic is known all that was `sent` on it counts, of another one what the
+        monitor knows to be lost: it cannot know that of the last messages.
+
+        """
+        found = []
+        for name, counts in self._last.items():
+            where = name.removesuffix(PART)
+            for source in (one.removesuffix(TAKEN) for one in counts if one.endswith(TAKEN)):
+                taken = self._gained(name, source + TAKEN)
+                if not taken:  # it listens to something else
+                    continue
+                key = where.rpartition(': ')[2], source.lower()
+                count = sent.get(self._topics.get(key, ''), 0) or taken + self._gained(
+                    name, source + LOST
+                )
+                found.append((count - taken, taken, count, where, source.lower()))
+        lost, taken, count, where, source = max(found, default=(0, 0, 0, '', ''))
+        if lost <= 0:
+            return ''
+        return (
+            f'{where} did not follow at {rate:g}x: it took {taken} of {count} messages of its '
+            f'{source}; lower --rate'
+        )
+
+    def _gained(self, name: str, one: str) -> int:
+        return self._last[name].get(one, 0) - self._first[name].get(one, 0)
+
+    def _hear(self, message: DiagnosticArray) -> None:
+        late = RclTime.from_msg(message.header.stamp).nanoseconds > self._end
+        for status in message.status:
+            if not status.name.endswith(PART):
+                continue
+            counts = _counts(status)
+            fresh = any((pair.key, pair.value) == FRESH for pair in status.values)
+            if late and not fresh and counts == self._last.get(status.name):
+                self._resting.add(status.name)
+            missing = any(
+                pair.key.endswith(MATCHED) and pair.value == '0' for pair in status.values
+            )
+            (self._unmatched.add if missing else self._unmatched.discard)(status.name)
+            self._first.setdefault(status.name, counts)
+            self._last[status.name] = counts
+
+    def _take(self, patience: float = 0.0) -> None:
+        """Take a word of a monitor if one has come within a time [s]."""
+        assert self._node.executor is not None
+        self._node.executor.spin_once(timeout_sec=patience)
 
 
-def playback(path: Path, choice: Choice, *, rate: float, patience: float, loop: bool) -> int:
+def _counts(status: DiagnosticStatus) -> Counts:
+    return {
+        pair.key: int(pair.value)
+        for pair in status.values
+        if pair.key.endswith((TAKEN, LOST)) and pair.value.isdecimal()
+    }
+
+
+def playback(
+    path: Path,
+    params: Path,
+    wanted: Sequence[str] | None = None,
+    *,
+    every: bool,
+    rate: float,
+    patience: float,
+    loop: bool,
+) -> int:
     """
     Play the bag at `path` to whom listens within `patience` [s]; return the exit code.
 
-    A bag that has lost its end is played up to there, and said to be so.
+    What is played is `every` topic, the `wanted` ones, or the inputs in the file `params`. A bag
+    that has lost its end is played up to there, and said to be so.
 
     """
     bag = Bag(path, salvage=True)
-    topics = playable(bag, chosen(bag, choice))
+    topics = playable(bag, chosen(bag, params, wanted, every=every))
     stop = threading.Event()
     with interrupts(stop) as interrupted:
         with started_node('ballscrew_player', enable_rosout=True) as node:
@@ -227,24 +339,26 @@ def playback(path: Path, choice: Choice, *, rate: float, patience: float, loop: 
             say(*told)
             player = Player(node, bag, rate=rate, topics=topics)
             # What a monitor said when the bag was recorded tells nothing of those of now.
-            known = _topics_by_input(choice)
+            known = {} if every or wanted is not None else _topics_by_input(params)
             following = None if DIAGNOSTICS in topics else Following(node, known)
             code = _play(player, topics, patience, stop, loop, following)
             say(*(note for note in bag.notes if note not in told))
         return SIGNALLED + interrupted[0] if interrupted else code
 
 
-def chosen(bag: Bag, choice: Choice) -> list[str]:
+def chosen(
+    bag: Bag, params: Path, topics: Sequence[str] | None = None, *, every: bool = False
+) -> list[str]:
     """Return the topics of the bag to be played; raises InputError if there is none of them."""
-    if choice.every:
+    if every:
         return [topic for topic in bag.topics if topic != CLOCK]
-    if choice.topics is not None:
-        wanted, whose = list(map(absolute, choice.topics)), 'the topics asked for'
+    if topics is not None:
+        wanted, whose = list(map(absolute, topics)), 'the topics asked for'
     else:
-        wanted = list(input_topics(parameters.read_file(choice.params)))
-        whose = f'the inputs in {choice.params}'
+        wanted = list(input_topics(parameters.read_file(params)))
+        whose = f'the inputs in {params}'
     missing = [topic for topic in wanted if topic not in bag.topics]
-    if missing and (choice.topics or len(missing) == len(wanted)):
+    if missing and (topics or len(missing) == len(wanted)):
         raise InputError(
             f'bag {bag.path}: of {whose} it holds no {", ".join(missing)}, it holds '
             f'{", ".join(sorted(bag.topics))}: give --topics, --all or another --params'
@@ -254,11 +368,8 @@ def chosen(bag: Bag, choice: Choice) -> list[str]:
     return [topic for topic in dict.fromkeys(wanted) if topic in bag.topics]
 
 
-def _topics_by_input(choice: Choice) -> dict[tuple[str, str], str]:
-    """Return the topic of each axis and input, where the inputs of the parameters are played."""
-    if choice.every or choice.topics is not None:
-        return {}
-    values = parameters.read_file(choice.params)
+def _topics_by_input(params: Path) -> dict[tuple[str, str], str]:
+    values = parameters.read_file(params)
     return {
         (axis, source): absolute(values[f'{axis}.{source}.topic'])
         for axis in values['axes']

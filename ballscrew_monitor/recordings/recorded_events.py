@@ -150,11 +150,6 @@ def _first(bag: Bag) -> tuple[EventMessage, dict[str, Snapshot]]:
     return _FIRST[bag]
 
 
-def _of_batch(topics: Mapping[str, Any], topic: str) -> list[EventMessage]:
-    found = topics.get(topic)
-    return [] if found is None else [read(data) for data in found.contents()]
-
-
 def _snapshots(message: EventMessage) -> dict[str, Snapshot]:
     """Return the snapshots of a message by axis; raises InputError for any other text."""
     found: dict[str, Snapshot] = {}
@@ -202,7 +197,8 @@ class RecordedEvents:
         """
         for batch in batches(self._bag, [self._topic], as_written=True):
             parts: list[EventMessage] = []
-            for message in _of_batch(batch.topics, self._topic):
+            found = batch.topics.get(self._topic)
+            for message in [] if found is None else [read(data) for data in found.contents()]:
                 if self._next is not None and message.number != self._next:
                     self._miss(message)
                 snapshots = _snapshots(message)

@@ -44,17 +44,6 @@ def _topic(axis: str, name: str, kind: str, offer: Offer) -> Topic:
     return Topic(name=output(axis, name), type_name=f'ballscrew_msgs/msg/{kind}', offer=offer)
 
 
-def _qos(offer: Offer) -> QoSProfile:
-    """Return the subscription that gets all that is offered."""
-    reliability, durability, _ = offer.value
-    return QoSProfile(
-        history=QoSHistoryPolicy.KEEP_LAST,
-        depth=DEPTH,
-        reliability=getattr(QoSReliabilityPolicy, reliability.upper()),
-        durability=getattr(QoSDurabilityPolicy, durability.upper()),
-    )
-
-
 class Recorder:
     """Subscribes on a node, which somebody else spins, and writes what arrives."""
 
@@ -87,11 +76,18 @@ class Recorder:
 
     def _subscribe(self, topic: Topic, listener: Callable[[bytes], None] | None) -> Any:
         self._writer.add_topic(topic)
+        reliability, durability, _ = topic.offer.value
+        all_that_is_offered = QoSProfile(
+            history=QoSHistoryPolicy.KEEP_LAST,
+            depth=DEPTH,
+            reliability=getattr(QoSReliabilityPolicy, reliability.upper()),
+            durability=getattr(QoSDurabilityPolicy, durability.upper()),
+        )
         return self._node.create_subscription(
             message_class(topic.type_name),
             topic.name,
             functools.partial(self._on_message, topic.name, listener),
-            _qos(topic.offer),
+            all_that_is_offered,
             raw=True,
         )
 

@@ -94,7 +94,6 @@ def _topics(file: Path) -> tuple[dict[int, tuple[Channel, Schema]], str]:
 
 
 def _copy(file: Path, topics: dict[int, tuple[Channel, Schema]], writer: BagWriter) -> None:
-    """Copy messages and what the file says of itself."""
     for channel, schema in topics.values():
         said = channel.metadata
         profiles = _profiles(said.get('offered_qos_profiles', ''))
@@ -117,7 +116,6 @@ def _copy(file: Path, topics: dict[int, tuple[Channel, Schema]], writer: BagWrit
 
 
 def _profiles(text: str) -> list[dict[str, Any]]:
-    """Return what a topic offers, nothing if that is no list of profiles."""
     with contextlib.suppress(InputError):
         found = plain_values(text)
         if isinstance(found, list) and all(isinstance(one, dict) for one in found):

@@ -72,7 +72,6 @@ class EventGatherer:
     """Makes messages of the events of many turns, each behind the last snapshots."""
 
     def __init__(self) -> None:
-        """Begin with nothing gathered."""
         self._notes: dict[int, str] = {}
         self._turns: list[Frame] = []
         self._number = 0
@@ -126,7 +125,6 @@ class Retention:
     """Keeps what is to be kept of the frames that it takes."""
 
     def __init__(self, folder: Path, settings: KeepSettings) -> None:
-        """Keep recordings in `folder`."""
         self._folder = folder
         self._settings = settings
         self._topics: dict[int, Topic] = {}
@@ -171,7 +169,13 @@ class Retention:
 
     def _take(self, frame: Frame, now: float) -> None:
         if frame.kind is FrameKind.TOPIC:
-            self._announce(frame)
+            stated = json.loads(frame.body)
+            topic = Topic(
+                name=stated['name'], type_name=stated['type'], offer=Offer[stated['offer']]
+            )
+            self._topics[frame.topic] = topic
+            if self._writer is not None:
+                self._writer.add_topic(topic)
         elif frame.kind is FrameKind.TRIGGER:
             self._trigger(frame, now)
         elif frame.kind is FrameKind.MESSAGE:
@@ -190,47 +194,32 @@ class Retention:
             self._writer.sync()
         self._synced = now
 
-    def _announce(self, frame: Frame) -> None:
-        stated = json.loads(frame.body)
-        topic = Topic(name=stated['name'], type_name=stated['type'], offer=Offer[stated['offer']])
-        self._topics[frame.topic] = topic
-        if self._writer is not None:
-            self._writer.add_topic(topic)
-
     def _keep(self, frame: Frame, now: float) -> None:
         if self._settings.always:
-            self._write_always(frame, now)
+            if frame.kind is FrameKind.BEGIN:
+                begun, size = self._part
+                longest = 2.0 * now - begun - self._opened > self._settings.longest
+                if self._writer is not None and (
+                    longest or 2 * self._size - size > self._settings.largest
+                ):
+                    self._finish()
+                if self._writer is None:
+                    self._open(frame.log_time, now)
+                self._part = now, self._size
+            if self._writer is not None:
+                self._write(frame)
         else:
-            self._write_around(frame, now)
-
-    def _write_always(self, frame: Frame, now: float) -> None:
-        """Write a message; a recording ends at the snapshots after which it would be too long."""
-        if frame.kind is FrameKind.BEGIN:
-            begun, size = self._part
-            longest = 2.0 * now - begun - self._opened > self._settings.longest
-            if self._writer is not None and (
-                longest or 2 * self._size - size > self._settings.largest
-            ):
-                self._finish()
-            if self._writer is None:
-                self._open(frame.log_time, now)
-            self._part = now, self._size
-        if self._writer is not None:
-            self._write(frame)
-
-    def _write_around(self, frame: Frame, now: float) -> None:
-        if self._writer is not None:
-            self._write(frame)
-            if now >= self._until or self._size >= self._settings.largest:
-                self._finish()
-        if frame.kind is FrameKind.BEGIN:
-            self._segments.append(Segment(now))
-            self._forget(now)
-        if self._segments:
-            self._segments[-1].add(frame)
+            if self._writer is not None:
+                self._write(frame)
+                if now >= self._until or self._size >= self._settings.largest:
+                    self._finish()
+            if frame.kind is FrameKind.BEGIN:
+                self._segments.append(Segment(now))
+                self._forget(now)
+            if self._segments:
+                self._segments[-1].add(frame)
 
     def _forget(self, now: float) -> None:
-        """Forget the oldest segments that are not needed to reach back far enough."""
         segments = self._segments
         while len(segments) > 1 and (
             now - segments[1].begin >= self._settings.before
@@ -251,8 +240,17 @@ class Retention:
 
     def _open(self, log_time: int, now: float) -> None:
         self._make_room()
-        directory = self._free_folder(log_time)
-        self._writer = BagWriter(directory, directory.name, chunk_size=WHOLE_CHUNK_SIZE)
+        moment = datetime.datetime.fromtimestamp(max(log_time, 0) // SECOND, datetime.UTC)
+        name = moment.strftime('%Y%m%dT%H%M%SZ')
+        number, path = 1, self._folder / name  # of the time of the first message, in UTC
+        while True:
+            try:
+                path.mkdir(parents=True)
+                break
+            except FileExistsError:  # made before, by another process perhaps
+                number += 1
+                path = self._folder / f'{name}_{number}'
+        self._writer = BagWriter(path, path.name, chunk_size=WHOLE_CHUNK_SIZE)
         for topic in self._topics.values():
             self._writer.add_topic(topic)
         self._opened, self._size, self.problem = now, 0, ''
@@ -274,18 +272,7 @@ class Retention:
         if writer is not None:
             end(writer)
 
-    def _free_folder(self, log_time: int) -> Path:
-        """Return a folder named by the time [ns] of the first message, in UTC."""
-        moment = datetime.datetime.fromtimestamp(max(log_time, 0) // SECOND, datetime.UTC)
-        name = moment.strftime('%Y%m%dT%H%M%SZ')
-        number, path = 1, self._folder / name
-        while not _is_made(path):
-            number += 1
-            path = self._folder / f'{name}_{number}'
-        return path
-
     def _make_room(self) -> None:
-        """Remove the oldest recordings until all are below the limit with one more."""
         sizes = {
             path: sum(file.stat().st_size for file in path.iterdir())
             for path in self._folder.glob('*')
@@ -301,15 +288,6 @@ class Retention:
             if not any(path.iterdir()):
                 path.rmdir()
             del sizes[path]
-
-
-def _is_made(path: Path) -> bool:
-    """Make a folder; return False if somebody has made it before, another process perhaps."""
-    try:
-        path.mkdir(parents=True)
-    except FileExistsError:
-        return False
-    return True
 
 
 def main() -> None:

@@ -83,23 +83,16 @@ class SqliteStorage(Storage):
                 raise sqlite3.DatabaseError(f'no table of {", ".join(names)}')
             found = {number: rest for number, *rest in database.execute(COUNTS)}
             ((total,),) = database.execute('SELECT count(*) FROM messages')
-        known = {number: row for number, row in self._topic_rows().items() if number in found}
-        self._take(found, known)
-        self._lost(total - sum(found[number][0] for number in known), total)
-
-    def _take(self, found: dict[int, list[int]], known: dict[int, tuple[str, str, str]]) -> None:
-        """Take the topics, and the span of the messages that are of one."""
+        lost, times = total, list[int]()
         for number, (name, kind, form) in self._topic_rows().items():
-            count = found[number][0] if number in known else 0
+            count, *span = found.get(number, [0])
             self.topics[name] = TopicInfo(type_name=kind, encoding=form, count=count)
-        times = [time for number in known for time in found[number][1:]]
+            lost, times = lost - count, times + span
         if times:
             self.span = (min(times), max(times))
-
-    def _lost(self, count: int, total: int) -> None:
-        if count:
+        if lost:
             self.note = (
-                f'bag {self.file}: {count} of its {total} rows are of an unknown topic or hold no '
+                f'bag {self.file}: {lost} of its {total} rows are of an unknown topic or hold no '
                 'message: they are left out'
             )
 
@@ -131,7 +124,6 @@ def _damaged(file: Path, error: BaseException) -> InputError:
 
 
 def _journals(file: Path) -> list[Path]:
-    """Return the journals beside a file that are not empty."""
     place = file.resolve()  # where SQLite puts them
     beside = [place.with_name(place.name + ending) for ending in (LOG, ROLLBACK)]
     return [path for path in beside if size_of(path)]

@@ -112,7 +112,22 @@ class McapStorage(Storage):
             if not salvage:
                 raise
             self.is_indexed = False
-            self._read_whole()
+            counts: Counter[str] = Counter()
+            begin = end = 0
+            lost = ''
+            try:
+                for message in self._written():
+                    begin = min(begin, message.log_time) if counts else message.log_time
+                    end = max(end, message.log_time)
+                    counts[message.topic] += 1
+            except RecordDamage as damage:
+                lost = damage.lost and f', {damage.lost}'
+            self._take_topics(counts)
+            self.span = (begin, end)
+            self.note = (
+                f'bag {self.file} is truncated or damaged: used are the {counts.total()} messages '
+                f'of {(end - begin) * 1e-9:.1f} s that are whole{lost}'
+            )
             if not self.topics:
                 raise
 
@@ -198,27 +213,7 @@ class McapStorage(Storage):
         self._take_topics(counts)
         self.span = (statistics.message_start_time, statistics.message_end_time)
 
-    def _read_whole(self) -> None:
-        """Read all up to the first damage once, for topics, span and the note."""
-        counts: Counter[str] = Counter()
-        begin = end = 0
-        lost = ''
-        try:
-            for message in self._written():
-                begin = min(begin, message.log_time) if counts else message.log_time
-                end = max(end, message.log_time)
-                counts[message.topic] += 1
-        except RecordDamage as damage:
-            lost = damage.lost and f', {damage.lost}'
-        self._take_topics(counts)
-        self.span = (begin, end)
-        self.note = (
-            f'bag {self.file} is truncated or damaged: used are the {counts.total()} messages '
-            f'of {(end - begin) * 1e-9:.1f} s that are whole{lost}'
-        )
-
     def _take_topics(self, counts: Counter[str]) -> None:
-        """Take the topics of all channels, with the number of the messages of each."""
         for channel in self._channels.values():
             schema = self._schemas.get(channel.schema_id)
             self.topics[channel.topic] = TopicInfo(

@@ -18,7 +18,6 @@ from ballscrew_monitor.report import page
 from ballscrew_monitor.report.judging import AxisCase, badness
 from ballscrew_monitor.report.row_table import RowTable
 import numpy as np
-from numpy.typing import NDArray
 import polars as pl
 import polars.selectors as cs
 
@@ -103,13 +102,10 @@ def fine_record(rows: pl.DataFrame) -> dict[str, Any]:
         'count': time.size,
         'columns': {one.name: page.packed(one) for one in rows.select(NUMBERS)},
     }
-    return record if _is_even(time) else record | {'time': page.packed(time)}
-
-
-def _is_even(time: NDArray[np.float64]) -> bool:
     even = np.linspace(time[0], time[-1], time.size)
     step = (time[-1] - time[0]) / max(1, time.size - 1)
-    return bool(np.abs(time - even).max() <= EVEN * step)
+    is_even = np.abs(time - even).max() <= EVEN * step
+    return record if is_even else record | {'time': page.packed(time)}
 
 
 PAGE_BYTES = 4_950_000

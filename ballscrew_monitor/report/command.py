@@ -110,7 +110,6 @@ def _print_one(
 
 
 def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Records, int]:
-    """Write the report of a recording."""
     from ballscrew_monitor.report.log_report import report_log
 
     bag = opened_log(log, mapping=args.map)
@@ -131,7 +130,6 @@ def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Rec
 def _report_many(
     logs: Sequence[Path], args: argparse.Namespace, nominal: Path
 ) -> tuple[Records, int]:
-    """Write a report of each recording and the page over all."""
     from ballscrew_monitor.report.many_logs import INDEX, report_logs
 
     entries = report_logs(
@@ -164,7 +162,6 @@ def _reported(folder: Path, args: argparse.Namespace) -> Records:
 
 
 def _silences(bag: Bag, values: Mapping[str, Any], log: LogCase) -> list[str]:
-    """Return a sentence for each axis on which nothing was judged."""
     if not log.unjudged:
         return []
     axes = {axis.name: axis for axis in axes_for(bag, with_types(values, bag.types))}

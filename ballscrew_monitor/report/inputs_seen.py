@@ -1,6 +1,11 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Findings on each input of an axis, and contradictions to its stated unit."""
+"""
+Findings on each input of an axis, and contradictions to its stated unit.
+
+Where its sign or size contradicts the others, what to write is said too, and where.
+
+"""
 
 from collections.abc import Iterable, Sequence
 import dataclasses
@@ -17,9 +22,8 @@ from ballscrew_monitor.messages.reasons import slow_reason
 from ballscrew_monitor.recordings.declared import unwritten, written
 from ballscrew_monitor.recordings.words import duration, number
 from ballscrew_monitor.report.judging import AxisCase, InputSetting
-from ballscrew_monitor.report.mends import contradictions
 from ballscrew_monitor.report.survey import Gaps
-from surrogate.units import RPM, TURN
+from surrogate.units import MILLI, RPM, TURN
 
 MEASURED = 'measured'
 LAG_TOLD = 0.01  # [s] between stamp and arrival from which on it is told
@@ -49,6 +53,21 @@ REFUSALS = {
     Why.NOT_DECODED: 'that do not decode',
     Why.HOLE: 'too long after the position before',
 }
+
+WORDS = {Source.LOAD: 'axial load', Source.TORQUE: 'motor torque'}
+TURNED = {
+    Source.SPEED: 'load and motor torque drive it the other way',
+    Source.LOAD: 'the motor torque falls where it asks for more, or it drives the nut both ways',
+    Source.TORQUE: 'it brakes where friction must be overcome',
+}
+"""Reasons to think that the sign of an input is turned."""
+TOLERANT = 30.0  # factor by which friction may miss that of the model
+UNITS_APART = {
+    (1e3, 1.0): (Source.LOAD, 'kN', 'unit: kN'),
+    (1e-3, 1.0): (Source.LOAD, 'N', 'unit: N'),
+    (1e3, 1e3): (Source.TORQUE, 'N mm', 'scale: 0.001'),
+}
+"""Torque over what the load needs, and friction over that of the model: the unit that is meant."""
 
 
 class Trouble(enum.Enum):
@@ -212,7 +231,6 @@ def _origin(case: AxisCase, source: Source) -> str:
 
 
 def _without_topic(case: AxisCase, source: Source, sources: frozenset[PointSource]) -> InputSeen:
-    """Return where the numbers of an input without a topic come from."""
     if PointSource.DERIVED in sources:
         span = case.survey.inputs[source]
         origin = case.load_origin
@@ -264,7 +282,6 @@ def _hints(case: AxisCase, source: Source, setting: InputSetting, heard: Heard) 
 
 
 def _of_time(status: InputStatus, parameter: str) -> Sequence[str]:
-    """Return that an input comes too seldom, or with stamps of another clock."""
     hints = []
     if status.slow:
         hints.append(f'{parameter}: it {slow_reason(status.longest_gap, parameter)}')
@@ -281,7 +298,6 @@ def _of_time(status: InputStatus, parameter: str) -> Sequence[str]:
 def _of_speed(
     case: AxisCase, setting: InputSetting, heard: Heard, parameter: str, cure: str
 ) -> Sequence[str]:
-    """Return that the axis never moves or moves too fast to be true."""
     if math.isnan(heard.high):
         return []
     fastest = _amount(setting.unit, setting, heard)
@@ -309,3 +325,46 @@ def _of_speed(
 def _amount(unit: str, setting: InputSetting, heard: Heard) -> float:
     """Return the largest amount of the screw speed [rad/s] if the numbers were in a unit."""
     return max(abs(setting.scalings[unit](value)) for value in (heard.low, heard.high))
+
+
+def contradictions(case: AxisCase, source: Source, parameter: str) -> Sequence[str]:
+    """Return that sign or size of an input contradicts the others, and what may mend it."""
+    factor = case.balance.factor
+    if source is case.balance.turned:
+        said = f'{parameter}: its sign looks turned ({TURNED[source]})'
+        return [f'{said}: {_write(case, source, "scale: -1")}, or 1 if it is -1']
+    if source is not Source.LOAD or math.isnan(factor):
+        return []
+    said = (
+        f'{parameter}: the motor torque changes {number(factor)} times as much as this load '
+        f'needs at a lead of {case.surface.lead * MILLI:g} mm'
+    )
+    return [f'{said}: {_mend_of_size(case)}']
+
+
+def _mend_of_size(case: AxisCase) -> str:
+    """Return the unit that explains how torque and load differ in size, else what to check."""
+    friction = case.balance.friction
+    fitting = [
+        meant
+        for (factor, times), meant in UNITS_APART.items()
+        if _is_near(case.balance.factor, factor)
+        and (math.isnan(friction) or _is_near(friction, times, TOLERANT))
+    ]
+    if len(fitting) != 1:
+        return 'check unit and scale of both, the lead, and a gear between motor and screw'
+    source, unit, value = fitting[0]
+    return f'the {WORDS[source]} looks like {unit}: {_write(case, source, value)}'
+
+
+def _is_near(value: float, other: float, within: float = 2.0) -> bool:
+    return other / within < value < other * within
+
+
+def _write(case: AxisCase, source: Source, value: str) -> str:
+    """Return where a value is to be written, in the map or among the parameters."""
+    name = source.name.lower()
+    if case.facts.is_mapped:
+        return f'write `{value}` for axes.{case.axis}.{case.facts.column_of(name)} in the map'
+    key, _, amount = value.partition(': ')
+    return f'set {case.axis}.{name}.{key} to {amount}'

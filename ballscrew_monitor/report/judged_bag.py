@@ -73,7 +73,6 @@ class Answers:
     """Makes messages of states: the state, an event, and diagnostics as often as the node does."""
 
     def __init__(self) -> None:
-        """Begin with no axis known."""
         self._causes: dict[str, Code] = {}  # of the event that is active, or of the last one
         self._latest: dict[str, TimedState] = {}
         self._said: dict[str, Any] = {}

@@ -271,7 +271,14 @@ class CaseMaker:
             },
             outcome=outcome,
             survey=survey,
-            history=self._told(),
+            history=None
+            if self._history is None
+            else self._history.history(
+                self._axis,
+                surface_file(self._axis, self._values),
+                self._settings,
+                machine=self._machine,
+            ),
             onset=self._onset(survey.oil.mean),
             balance=self._balancer.result(),
             **known,
@@ -284,13 +291,6 @@ class CaseMaker:
             rcs=limits.rcs, efficiency=limits.efficiency, light_load=limits.light_load
         )
         return onset_of_surface(self._surface, None if math.isnan(oil) else oil, zone)
-
-    def _told(self) -> 'AxisHistory | None':
-        """Return what its health rests on, if that was gathered."""
-        if self._history is None:
-            return None
-        file = surface_file(self._axis, self._values)
-        return self._history.history(self._axis, file, self._settings, machine=self._machine)
 
     def _setting(self, source: Source) -> InputSetting:
         prefix, values = f'{self._axis}.{source.name.lower()}', self._values
@@ -319,8 +319,7 @@ def judge_log(
     Judge a recording and return what is said of it; its rows are kept in `rows`, if anywhere.
 
     `on_state` is handed each state that would be published; `health` gathers that of each axis.
-    Raises InputError when it cannot be
-    read with the parameters.
+    Raises InputError when it cannot be read with the parameters.
 
     """
     machine = parameters.machine or str(folder_of(bag.path))

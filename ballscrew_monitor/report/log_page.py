@@ -77,7 +77,6 @@ def tiles(case: AxisCase, summary: Summary) -> Markup:
 
 
 def _travel(case: AxisCase, summary: Summary) -> tuple[str, str]:
-    """Return how far the axis moved, in the unit in which its log speaks."""
     turns = number(summary.revolutions, 4)
     if not case.speaks_feed:
         return turns, 'revolutions'

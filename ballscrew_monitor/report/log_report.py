@@ -154,7 +154,6 @@ def report_log(
                 on_state=add_state,
                 health=HistoryMaker,
             )
-        store.end()
         with new_file(made / logs.STATES) as partial:
             store.write(partial)
         on_share(STORED_SHARE)

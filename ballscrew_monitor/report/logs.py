@@ -90,7 +90,6 @@ def bears_name_of_bag(folder: Path) -> bool:
 
 
 def _are_parts(files: Sequence[Path]) -> bool:
-    """Tell whether files are by their names all parts of one bag that was split."""
     parts = [_PART.fullmatch(_stem(file.name)) for file in files]
     found = [(part[1], int(part[2])) for part in parts if part is not None]
     numbers = sorted(number for _, number in found)
@@ -104,7 +103,6 @@ def _stem(name: str) -> str:
 
 
 def _hint(folder: Path) -> str:
-    """Return what else is to be said of a folder without a recording that holds tables."""
     tables = _files(folder, TABLES)
     if not tables:
         return ''
@@ -128,7 +126,6 @@ def _files(folder: Path, endings: tuple[str, ...]) -> list[Path]:
 
 
 def _held(folder: Path) -> list[Path]:
-    """Return what a folder holds in order of names, but for the products of a report."""
     products = PRODUCTS if (folder / PAGE).is_file() else ()
     return sorted(path for path in folder.iterdir() if path.name not in products)
 

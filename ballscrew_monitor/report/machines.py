@@ -32,11 +32,11 @@ def folder_of(log: Path) -> Path:
 
     """
     folder = Path(os.path.abspath(log if log.is_dir() else log.parent))
-    return (folder.parent if _is_recording(folder) else folder).resolve()
-
-
-def _is_recording(folder: Path) -> bool:
-    return (folder / 'metadata.yaml').is_file() or bears_name_of_bag(folder)
+    return (
+        folder.parent
+        if (folder / 'metadata.yaml').is_file() or bears_name_of_bag(folder)
+        else folder
+    ).resolve()
 
 
 def machine_names(axes: Iterable[MachineAxis]) -> dict[str, str]:

@@ -61,7 +61,6 @@ class ReadingShare:
     """Tells from a worker how far a recording is, of which a table is first read in passes."""
 
     def __init__(self) -> None:
-        """Begin with a recording that need not be read first."""
         self._passes = 0
 
     @contextlib.contextmanager

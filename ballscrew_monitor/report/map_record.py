@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The operating map of an axis for page and picture: zone, borders, time spent, warnings."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 import dataclasses
 import math
 from typing import Any
@@ -69,23 +69,13 @@ class MapLine:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class MapMark:
-    """A warning: its number, its place [rev/min], [N], and what its page shows of time [s]."""
-
-    number: int
-    speed: float
-    load: float
-    begin: float
-    end: float
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class OperatingMap:
     """
     The map of an axis at an oil temperature [degC], between speeds [rev/min] and loads [N].
 
     Rows of the cells of zone (a code) and dwell [s] are of a load, columns of a speed. Points of
-    lines are speed and load in turn, NaN where one is interrupted. `others`: borders at other
+    lines are speed and load in turn, NaN where one is interrupted. `events`: the worst warnings by
+    number, place [rev/min], [N] and what the page shows of time [s]. `others`: borders at other
     temperatures are among the lines; `banded`: so is the range of that in force. `feed`: how far
     the axis moves in a revolution [m] if its log speaks of that, else None.
 
@@ -101,7 +91,7 @@ class OperatingMap:
     zone: Array = written(form=_zone_record)
     lines: Sequence[MapLine]
     dwell: Array = written(form=_dwell_record)
-    events: Sequence[MapMark]
+    events: Sequence[Mapping[str, Any]]
 
 
 def operating_map(case: AxisCase) -> OperatingMap:
@@ -132,7 +122,16 @@ def operating_map(case: AxisCase) -> OperatingMap:
         zone=zone_cells(field, limits),
         lines=lines,
         dwell=_dwell(case, speeds, loads),
-        events=list(_marks(case)),
+        events=[
+            {
+                'number': event.event_id,
+                'speed': abs(event.speed) / RPM,
+                'load': opposing_load(event.axial_load, direction_of(event.speed)),
+                **dict(zip(('begin', 'end'), case.shown(event))),
+            }
+            for event in reversed(case.worst_first[:MARKED])  # the worst last, to be on top
+            if event.place
+        ],
     )
 
 
@@ -223,18 +222,6 @@ def _cell(value: pl.Expr, edges: Array) -> pl.Expr:
     last = len(edges) - 1
     place = pl.when(value == edges[-1]).then(last - 1).otherwise(place)
     return pl.when(value.is_finite() & place.is_between(0, last - 1)).then(place)
-
-
-def _marks(case: AxisCase) -> Iterable[MapMark]:
-    """Return where the worst samples of the worst events were, the worst last, to be on top."""
-    for event in reversed(case.worst_first[:MARKED]):
-        if event.place:
-            yield MapMark(
-                number=event.event_id,
-                speed=abs(event.speed) / RPM,
-                load=opposing_load(event.axial_load, direction_of(event.speed)),
-                **dict(zip(('begin', 'end'), case.shown(event))),
-            )
 
 
 def map_legend(case: AxisCase, chart: OperatingMap) -> list[tuple[tuple[str, ...], str]]:

@@ -50,11 +50,15 @@ class Field:
 
     def middles(self) -> 'Field':
         """Return the numbers amid each four points of the grid."""
+        means = {}
+        for name in NAMES:
+            of = getattr(self, name)
+            means[name] = 0.25 * (of[1:, 1:] + of[1:, :-1] + of[:-1, 1:] + of[:-1, :-1])
         return Field(
             speed=np.sqrt(self.speed[1:] * self.speed[:-1]),
             load=0.5 * (self.load[1:] + self.load[:-1]),
             band=self.band,
-            **{name: _amid(getattr(self, name)) for name in NAMES},
+            **means,
         )
 
 
@@ -67,10 +71,6 @@ def is_optimal(load: Array, rcs: Array, efficiency: Array, limits: Limits) -> ND
     """
     light = np.abs(load) < limits.light_load
     return (rcs < limits.rcs) & (light | (efficiency >= limits.efficiency))
-
-
-def _amid(values: Array) -> Array:
-    return 0.25 * (values[1:, 1:] + values[1:, :-1] + values[:-1, 1:] + values[:-1, :-1])
 
 
 def sample(

@@ -48,6 +48,7 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
     axes = [line.key for _, line in listed]
     titles = axis_titles(axes)
     bad = [one for one in entries if one.result is None]
+    failures = (element('li', element('b', one.name), f': {one.failure}') for one in bad)
     first, trends = _health(entries, titles)
     notes = [*notes, *filter(None, [folders_note(axes)])]
     body = element(
@@ -56,7 +57,8 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
         *first,
         _verdict(entries, listed),
         *(element('p', f'{note[:1].upper()}{note[1:]}.') for note in notes),
-        *_failures(bad),
+        *([element('h2', 'Recordings that could not be read')] if bad else []),
+        *([element('ul', *failures)] if bad else []),
         *([element('h2', 'Normal or worse, over dates')] if trends else []),
         *trends,
         *_trends(listed, titles),
@@ -81,7 +83,6 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
 
 
 def _health(entries: Sequence[LogEntry], titles: Titles) -> tuple[list[Markup], list[Markup]]:
-    """Return what is said first of axes with several recordings, and their trends and peers."""
     found = [
         read_history(one) for entry in entries if entry.result for one in entry.result.histories
     ]
@@ -109,13 +110,6 @@ def _verdict(entries: Sequence[LogEntry], listed: Sequence[Listed]) -> Markup:
     sentence += f'; {counted(lost, "recording")} could not be read.' if lost else '.'
     kind = 'bad' if counts['bad'] else 'unknown' if counts['unknown'] or lost else 'good'
     return element('div', element('p', sentence, class_='sentence'), class_=f'verdict {kind}')
-
-
-def _failures(bad: Sequence[LogEntry]) -> Iterable[Markup]:
-    if bad:
-        yield element('h2', 'Recordings that could not be read')
-        items = (element('li', element('b', one.name), f': {one.failure}') for one in bad)
-        yield element('ul', *items)
 
 
 def _row(one: LogEntry, line: AxisLine, title: str) -> TableRow:
@@ -154,7 +148,6 @@ def _date(begins: float) -> str:
 
 
 def _trends(listed: Sequence[Listed], titles: Titles) -> Iterable[Markup]:
-    """Yield how each axis with a date in at least two recordings did over them."""
     axes = dict.fromkeys(line.key for _, line in listed)
     pictures = [
         _trend(titles[axis], [pair for pair in listed if pair[1].key == axis]) for axis in axes

@@ -87,7 +87,18 @@ def _draw_axis(part: SubFigure, case: AxisCase, chart: OperatingMap) -> None:
 
 def _draw_map(axes: Axes, case: AxisCase, chart: OperatingMap) -> None:
     axes.set_xscale('log')
-    _draw_cells(axes, chart)
+    zone = np.ma.masked_not_equal(chart.zone, map_record.OPTIMAL)
+    axes.pcolormesh(*_edges(chart, zone), zone, cmap=ListedColormap([COLOURS['zone']]))
+    longest = map_record.longest_dwell(chart.dwell)
+    heat = [to_rgba(COLOURS['heat'], opacity) for opacity in (0.1, DARKEST)]
+    axes.pcolormesh(
+        *_edges(chart, chart.dwell),
+        np.ma.masked_equal(chart.dwell, 0.0),
+        cmap=LinearSegmentedColormap.from_list('heat', heat),
+        norm=LogNorm(vmin=longest * 10.0**-DECADES, vmax=longest),
+    )
+    light = {'facecolor': 'none', 'edgecolor': COLOURS['hatch'], 'hatch': '..', 'linewidth': 0.0}
+    axes.axhspan(-chart.light_load, chart.light_load, **light)
     for line in chart.lines:
         colour, width, dash = STYLES[line.kind]
         dashes = _dashes(dash)
@@ -95,7 +106,9 @@ def _draw_map(axes: Axes, case: AxisCase, chart: OperatingMap) -> None:
     _name_lines(axes, chart)
     for mark in chart.events:
         circle = {'boxstyle': 'circle', 'facecolor': 'white', 'edgecolor': COLOURS['outside']}
-        axes.text(mark.speed, mark.load, str(mark.number), bbox=circle, zorder=8, **CENTRED)
+        axes.text(
+            mark['speed'], mark['load'], str(mark['number']), bbox=circle, zorder=8, **CENTRED
+        )
     axes.set(xlim=chart.speed, ylim=chart.load)
     _draw_speeds(axes, chart)
     axes.set_ylabel('axial load [N]: assists | opposes')
@@ -121,22 +134,6 @@ def _ticks(chart: OperatingMap, unit: float) -> tuple[list[float], list[str]]:
     low, high = (unit * speed for speed in chart.speed)
     ticks = [tick for tick in TICKS if low <= tick <= high]
     return [tick / unit for tick in ticks], [f'{tick:g}' for tick in ticks]
-
-
-def _draw_cells(axes: Axes, chart: OperatingMap) -> None:
-    """Draw optimal zone, time spent and light load, as the page does."""
-    zone = np.ma.masked_not_equal(chart.zone, map_record.OPTIMAL)
-    axes.pcolormesh(*_edges(chart, zone), zone, cmap=ListedColormap([COLOURS['zone']]))
-    longest = map_record.longest_dwell(chart.dwell)
-    heat = [to_rgba(COLOURS['heat'], opacity) for opacity in (0.1, DARKEST)]
-    axes.pcolormesh(
-        *_edges(chart, chart.dwell),
-        np.ma.masked_equal(chart.dwell, 0.0),
-        cmap=LinearSegmentedColormap.from_list('heat', heat),
-        norm=LogNorm(vmin=longest * 10.0**-DECADES, vmax=longest),
-    )
-    light = {'facecolor': 'none', 'edgecolor': COLOURS['hatch'], 'hatch': '..', 'linewidth': 0.0}
-    axes.axhspan(-chart.light_load, chart.light_load, **light)
 
 
 def _edges(chart: OperatingMap, cells: Any) -> tuple[Any, Any]:
@@ -186,7 +183,6 @@ def _legend(axes: Axes, entries: list[Any], height: float) -> None:
 
 
 def _draw_bars(axes: Axes, case: AxisCase, rows: pl.DataFrame) -> None:
-    """Draw zone, warning and regime as bars, the warnings with the numbers of the worst."""
     edges = np.append(rows['time'], rows['time'][-1])
     for place, (key, _, colours) in enumerate(reversed(BARS)):
         cmap = ListedColormap([COLOURS[colour] for colour in colours])

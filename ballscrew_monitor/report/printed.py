@@ -61,7 +61,6 @@ def _line(head: str, text: str) -> str:
 
 
 def _input_text(seen: InputSeen) -> str:
-    """Return source, span, rate and troubles of an input."""
     parts = [seen.origin]
     if math.isfinite(seen.low):
         parts.append(f'{number(seen.low, 4)} to {number(seen.high, 4)} {shown_unit(seen.unit)}')
@@ -75,31 +74,16 @@ def _input_text(seen: InputSeen) -> str:
 
 def printed_records(summary: Mapping[str, Any]) -> dict[str, Any]:
     """Return of the summary of a recording what is printed: its axes, with their totals first."""
-    return {
-        key: {'axis': key} | _with_totals(one) if isinstance(one, Mapping) else one
-        for key, one in summary['axes'].items()
-    }
-
-
-def _with_totals(record: Mapping[str, Any]) -> dict[str, Any]:
-    rest = {key: value for key, value in record.items() if key != 'totals'}
-    return {**(record['totals'] or {}), **rest}
+    records = dict(summary['axes'])
+    for axis, record in records.items():
+        if isinstance(record, Mapping):
+            rest = {key: value for key, value in record.items() if key != 'totals'}
+            records[axis] = {'axis': axis, **(record['totals'] or {}), **rest}
+    return records
 
 
 def summary_record(log: LogCase) -> dict[str, Any]:
     """Return what the report says as plain data; a number that is not known has a reason."""
-    return {
-        'log': log.name,
-        'parameters': log.parameters,
-        'unjudged_axes': log.unjudged,
-        'axes': _axis_records(log),
-        'assumptions': {key: dict(one) for key, one in log.assumptions.items()},
-        'notes': list(log.notes),
-    }
-
-
-def _axis_records(log: LogCase) -> dict[str, Any]:
-    """Return the records of all axes; an axis without rows is None, with its reason."""
     records: dict[str, Any] = {}
     cases = {case.axis: case for case in log.axes}
     for axis, verdict in zip([*cases, *log.empty], verdicts_of(log), strict=True):
@@ -107,7 +91,14 @@ def _axis_records(log: LogCase) -> dict[str, Any]:
         records |= (
             {axis: axis_record(known, verdict)} if known else without(axis, verdict.sentence)
         )
-    return records
+    return {
+        'log': log.name,
+        'parameters': log.parameters,
+        'unjudged_axes': log.unjudged,
+        'axes': records,
+        'assumptions': {key: dict(one) for key, one in log.assumptions.items()},
+        'notes': list(log.notes),
+    }
 
 
 def axis_record(case: AxisCase, verdict: AxisVerdict) -> dict[str, Any]:

@@ -68,7 +68,6 @@ def checks(cases: Sequence[AxisCase]) -> Iterable[Markup]:
 
 
 def _assumed_names(case: AxisCase) -> Iterable[str]:
-    """Yield in words what is assumed of an axis."""
     if case.nominal:
         yield from (KEYS['screw'], KEYS['oil'])
     if case.load_origin:
@@ -81,7 +80,6 @@ def _assumed_names(case: AxisCase) -> Iterable[str]:
 
 
 def _assumed_name(key: str, value: object) -> str:
-    """Return in words what is assumed by its place in a map."""
     shown = f'{value:g}' if isinstance(value, float) else str(value)
     if key == 'efficiency' and isinstance(value, float):
         shown = f'{100.0 * value:g} %'
@@ -145,7 +143,6 @@ def _leads(case: AxisCase) -> list[tuple[str, str, str]]:
 
 
 def _conditions(case: AxisCase) -> list[tuple[str, str, str]]:
-    """Return where oil temperature and load come from."""
     rows = []
     for seen in inputs_seen(case):
         if seen.source in (Source.TEMPERATURE, Source.LOAD):
@@ -245,7 +242,11 @@ def _trouble_table(seen: Sequence[InputSeen]) -> Iterable[Markup]:
 def gaps_part(case: AxisCase, most: int = MOST_ROWS) -> Markup:
     """Return how long what could not be judged, and the longest gaps in the speed, `most` rows."""
     survey = case.survey
-    times = [(_reason_text(reason), time) for reason, time in survey.reasons.items()]
+    words = {Reason.JUDGED: 'judged', Reason.STANDSTILL: Reason.STANDSTILL.text}
+    times = [
+        (words.get(reason, f'not judged: {reason.text}'), time)
+        for reason, time in survey.reasons.items()
+    ]
     if survey.rest:
         times.append((f'not judged: {REST}', survey.rest))
     rows = [
@@ -263,13 +264,6 @@ def gaps_part(case: AxisCase, most: int = MOST_ROWS) -> Markup:
         table(('State', 'Time [s]', 'Of the recording'), rows),
         *_gap_table(case, most),
     )
-
-
-def _reason_text(reason: Reason) -> str:
-    if reason is Reason.JUDGED:
-        return 'judged'
-    still = reason is Reason.STANDSTILL
-    return reason.text if still else f'not judged: {reason.text}'
 
 
 def _gap_table(case: AxisCase, most: int) -> Iterable[Markup]:

@@ -275,7 +275,12 @@ class Surveyor:
             by_stamp=by_stamp,
             shift=0 if by_stamp else sums.last_log - sums.last,
             inputs={source: _extremes(sums, source) for source in Source},
-            sources={source: _sources(sums, source) for source in Source},
+            sources={
+                source: frozenset(
+                    origin for origin in PointSource if sums.sources[source * ORIGINS + origin]
+                )
+                for source in Source
+            },
             opposing=_extremes(sums, OPPOSING),
             oil=_extremes(sums, OIL),
             reasons=_by_reason(sums.reason_time),
@@ -303,11 +308,6 @@ def _extremes(sums: RowSums, span: int) -> Extremes:
 
 def _rms(sums: RowSums, span: int) -> float:
     return math.sqrt(sums.squares[span] / sums.count[span]) if sums.count[span] else NAN
-
-
-def _sources(sums: RowSums, source: int) -> frozenset[PointSource]:
-    begin = source * ORIGINS
-    return frozenset(origin for origin in PointSource if sums.sources[begin + origin])
 
 
 def _by_reason(times: list[int]) -> dict[Reason, float]:

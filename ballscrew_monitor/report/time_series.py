@@ -5,11 +5,11 @@
 from collections.abc import Iterable
 import itertools
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 from ballscrew_monitor.core.conversions import celsius, SECOND
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.core.judgement import Level, Limits, PointSource, Zone
+from ballscrew_monitor.core.judgement import Level, PointSource, Zone
 from ballscrew_monitor.judge.records import LIGHT_LOAD, STANDSTILL
 from ballscrew_monitor.report import buckets
 from ballscrew_monitor.report.buckets import AxisBudget
@@ -174,8 +174,9 @@ def row_columns(case: AxisCase, numbers: Iterable[str]) -> list[pl.Expr]:
     unjudged = pl.col('gates') & (STANDSTILL | LIGHT_LOAD) != 0
     line = pl.col('stamp' if case.survey.by_stamp else 'log_time')
     measured = pl.col('motor_torque_source') == PointSource.MEASURED
+    turn = RPM / case.surface.lead if case.speaks_feed else RPM  # one of the unit [rad/s]
     known = {
-        'speed': _unless(_is_held('speed'), buckets.over(pl.col('speed'), _motion(case).amount)),
+        'speed': _unless(_is_held('speed'), buckets.over(pl.col('speed'), turn)),
         'load': _unless(_is_held('axial_load'), pl.col('axial_load')),
         'temperature': _unless(_is_held('temperature'), pl.col('temperature') + celsius(0.0)),
         'efficiency': _unless(unjudged, 100.0 * pl.col('efficiency')),
@@ -195,7 +196,6 @@ def row_columns(case: AxisCase, numbers: Iterable[str]) -> list[pl.Expr]:
 
 
 def _rank(name: str) -> pl.Expr:
-    """Return how bad a code is."""
     return pl.sum_horizontal(
         (pl.col(name) == code).cast(pl.UInt8) * pl.lit(rank, pl.UInt8)
         for code, rank in RANKS[name].items()
@@ -248,31 +248,13 @@ def _merged(stretches: Iterable[tuple[float, float]]) -> list[tuple[float, float
 
 def panels(case: AxisCase) -> list[dict[str, Any]]:
     """Return the panels of the numbers of an axis, in their order."""
-    keys, every = _numbers(case), _all_panels(case.settings.limits, _motion(case))
-    return [panel for panel in every if panel['series'][0]['key'] in keys]
-
-
-class _Motion(NamedTuple):
-    """How a panel shows a speed: title, unit, how much [rad/s] one is, and what is beside it."""
-
-    title: str
-    unit: str
-    amount: float
-    beside: dict[str, Any] | None = None
-
-
-def _motion(case: AxisCase) -> _Motion:
-    """Return the unit in which the log of an axis speaks: of its feed, or of its screw."""
-    if not case.speaks_feed:
-        return _Motion('Screw speed', 'rev/min', RPM)
-    lead = case.surface.lead
-    return _Motion('Feed', 'm/min', RPM / lead, {'unit': 'rev/min', 'factor': 1.0 / lead})
-
-
-def _all_panels(limits: Limits, motion: _Motion) -> list[dict[str, Any]]:
-    percent = 100.0 * limits.efficiency
-    return [
-        _panel(motion.title, motion.unit, [_line('speed', 'speed')], beside=motion.beside),
+    limits, percent = case.settings.limits, 100.0 * case.settings.limits.efficiency
+    motion = _panel('Screw speed', 'rev/min', [_line('speed', 'speed')])
+    if case.speaks_feed:
+        beside = {'unit': 'rev/min', 'factor': 1.0 / case.surface.lead}
+        motion = _panel('Feed', 'm/min', [_line('speed', 'speed')], beside=beside)
+    every = [
+        motion,
         _panel('Axial load, positive along the axis', 'N', [_line('load', 'load')]),
         _panel('Oil temperature', '°C', [_line('temperature', 'oil')], height=110),
         _panel(
@@ -307,6 +289,8 @@ def _all_panels(limits: Limits, motion: _Motion) -> list[dict[str, Any]]:
             ],
         ),
     ]
+    keys = _numbers(case)
+    return [panel for panel in every if panel['series'][0]['key'] in keys]
 
 
 def _panel(title: str, unit: str, series: list[dict[str, Any]], **more: Any) -> dict[str, Any]:

@@ -38,7 +38,6 @@ class Frame:
     """Places in a drawing of dates and shares."""
 
     def __init__(self, marks: Sequence[Mark], normal: float, tolerance: float) -> None:
-        """Hold all marks, and what is normal."""
         self.first, self.last = (pick(one.at for one in marks) for pick in (min, max))
         seen = [part for one in marks for part in (one.value, one.low, one.high)]
         seen += [normal - tolerance, normal + tolerance]
@@ -63,11 +62,23 @@ def trend(marks: Sequence[Mark], *, normal: float = 0.0, tolerance: float = 0.0)
     """Return the drawing of marks in the order of their dates; nothing for less than two."""
     if len(marks) < 2 or marks[0].at == marks[-1].at:
         return Markup()
-    frame = Frame(marks, normal, tolerance)
+    frame, band = Frame(marks, normal, tolerance), []
+    if tolerance > 0.0:
+        top, bottom = (frame.up(normal + sign * tolerance) for sign in (1, -1))
+        band.append(
+            element(
+                'rect',
+                x=LEFT,
+                y=f'{top:.1f}',
+                width=WIDTH - LEFT - RIGHT,
+                height=f'{bottom - top:.1f}',
+                class_='fill-zone',
+            )
+        )
     places = ' '.join(f'{frame.across(one.at):.1f},{frame.up(one.value):.1f}' for one in marks)
     return element(
         'svg',
-        *_normal(frame, normal, tolerance),
+        *band,
         *_axes(frame),
         *(_interval(frame, one) for one in marks if math.isfinite(one.low + one.high)),
         element('polyline', points=places, class_='line-trend'),
@@ -78,21 +89,7 @@ def trend(marks: Sequence[Mark], *, normal: float = 0.0, tolerance: float = 0.0)
     )
 
 
-def _normal(frame: Frame, normal: float, tolerance: float) -> Iterator[Markup]:
-    if tolerance > 0.0:
-        top, bottom = (frame.up(normal + sign * tolerance) for sign in (1, -1))
-        yield element(
-            'rect',
-            x=LEFT,
-            y=f'{top:.1f}',
-            width=WIDTH - LEFT - RIGHT,
-            height=f'{bottom - top:.1f}',
-            class_='fill-zone',
-        )
-
-
 def _axes(frame: Frame) -> Iterator[Markup]:
-    """Yield the grid of shares, and the first, the middle and the last date."""
     for number in range(TICKS):
         value = frame.low + (frame.high - frame.low) * number / (TICKS - 1)
         y = f'{frame.up(value):.1f}'

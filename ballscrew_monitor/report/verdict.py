@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The verdict on an axis in one sentence: how long outside the zone, why, and what to do."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 import dataclasses
 import enum
 
@@ -107,7 +107,6 @@ def _verdict(case: AxisCase) -> AxisVerdict:
 
 
 def _unmoved(case: AxisCase) -> AxisVerdict:
-    """Return that nothing can be said of an axis for which no motion is known."""
     reason = _longest(case.survey.reasons)
     if never_moved(case):
         limit = case.settings.limits.standstill_speed
@@ -183,7 +182,6 @@ def _outside(case: AxisCase, summary: Summary, more: str) -> AxisVerdict:
 
 
 def _why(events: tuple[EventRecord, ...]) -> str:
-    """Return what was wrong, in words and with its worst value."""
     metal = [event for event in events if event.quantity == RCS]
     loss = [event for event in events if event.quantity == 'efficiency']
     parts = []
@@ -204,29 +202,20 @@ def _why(events: tuple[EventRecord, ...]) -> str:
 
 
 def _advice(case: AxisCase) -> str:
-    """Return the strictest advice for each cause, empty where there is none."""
+    """Return for each cause the strictest advice to run faster and to run slower, if any."""
     events = [event for event in case.worst_first if event.advice]
     parts = []
     for quantity in dict.fromkeys(event.quantity for event in events):
         advised = [event for event in events if event.quantity == quantity]
-        parts += [_strictest_of(group) for group in _by_strictness(advised) if group]
+        slowest_first = sorted(advised, key=lambda event: abs(event.target_speed))
+        fastest_first = sorted(advised, key=lambda event: -abs(event.target_speed))
+        slower = [event for event in slowest_first if abs(event.target_speed) < abs(event.speed)]
+        faster = [event for event in fastest_first if event not in slower]
+        for first, *rest in filter(None, (faster, slower)):
+            others = f', the strictest of {len(rest) + 1}' if rest else ''
+            place = f' (at {first.place})' if first.place else ''
+            parts.append(f'as in warning {first.event_id}{others}{place}, {first.advice}')
     return f'{list_of(parts)}.' if parts else ''
-
-
-def _by_strictness(events: Sequence[EventRecord]) -> tuple[list[EventRecord], list[EventRecord]]:
-    """Return those to run faster in and those to run slower in, the strictest first."""
-    slowest_first = sorted(events, key=lambda event: abs(event.target_speed))
-    fastest_first = sorted(events, key=lambda event: -abs(event.target_speed))
-    slower = [event for event in slowest_first if abs(event.target_speed) < abs(event.speed)]
-    return [event for event in fastest_first if event not in slower], slower
-
-
-def _strictest_of(events: Sequence[EventRecord]) -> str:
-    """Return the advice on the first of some events, and what it is among them."""
-    first = events[0]
-    others = f', the strictest of {len(events)}' if len(events) > 1 else ''
-    place = f' (at {first.place})' if first.place else ''
-    return f'as in warning {first.event_id}{others}{place}, {first.advice}'
 
 
 def _unjudged_part(case: AxisCase, summary: Summary) -> str:

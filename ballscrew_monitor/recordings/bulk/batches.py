@@ -25,7 +25,7 @@ from mcap.records import ChunkIndex
 import numpy as np
 from surrogate import limits
 
-BATCH = 4 * 1024 * 1024  # [bytes] of chunks that are looked at together
+BATCH = 1024 * 1024  # [bytes] of chunks that are looked at together
 MESSAGES = 16384  # of a bag without chunks that are looked at together
 PLACES = 32  # bits for the place of a message in its chunk
 END = 2**63 - 1
@@ -132,29 +132,23 @@ def _by_chunk(chunks: Sequence[_Chunk], names: Sequence[str]) -> Iterator[Batch]
     size = 0
     counts: dict[McapStorage, Counter[str]] = {}
     for number, chunk in enumerate(chunks, 1):
-        found = _placed(chunk)
+        found = chunk.storage.chunk(chunk.stream, chunk.place)
+        found = dataclasses.replace(
+            found,
+            channel=chunk.topics[found.channel],
+            place=(chunk.rank << PLACES) + found.begin,  # in the bag
+        )
         waiting.append(found)
         size += len(found.data)
-        counts.setdefault(chunk.storage, Counter()).update(_count(found, names))
+        numbers = np.bincount(found.channel[found.channel >= 0], minlength=len(names))
+        read = dict(zip(names, numbers.tolist(), strict=True))
+        counts.setdefault(chunk.storage, Counter()).update(read)
         if size >= BATCH or number == len(chunks):
             until = END if number == len(chunks) else chunks[number].place.message_start_time
             yield Batch(topics=_by_topic(waiting, names), until=until, done=number / len(chunks))
             waiting, size = [], 0
     for storage, count in counts.items():
         storage.compare(names, count)
-
-
-def _count(found: Messages, names: Sequence[str]) -> dict[str, int]:
-    """Return the number of messages by topic, whose numbers are their channels."""
-    count = np.bincount(found.channel[found.channel >= 0], minlength=len(names))
-    return dict(zip(names, count.tolist(), strict=True))
-
-
-def _placed(chunk: _Chunk) -> Messages:
-    """Return the messages of a chunk at their places in the bag, as channels their topics."""
-    found = chunk.storage.chunk(chunk.stream, chunk.place)
-    place = (chunk.rank << PLACES) + found.begin
-    return dataclasses.replace(found, channel=chunk.topics[found.channel], place=place)
 
 
 def _by_topic(parts: Sequence[Messages], names: Sequence[str]) -> dict[str, Messages]:
@@ -191,7 +185,6 @@ def _by_message(bag: Bag, messages: Iterator[Message], names: Sequence[str]) -> 
 
 
 def _part(messages: Iterator[Message]) -> list[Message]:
-    """Return the next messages that are looked at together."""
     part, size = list[Message](), 0
     for message in itertools.islice(messages, MESSAGES):
         part.append(message)

@@ -131,7 +131,12 @@ def read_chunk(stream: BinaryIO, place: ChunkIndex) -> Messages:
         if length > LONGEST:
             raise ChunkDamage(f'it has {length} bytes, allowed are {LONGEST}')
         data = _records(stream.read(place.chunk_length), place.uncompressed_size)
-        return _messages(data, _starts(data, length))
+        most = min(limits.RECORDS, length)  # the reason is that of `mcap_records.walked`
+        starts = np.empty(min(most, len(data) // SHORTEST) + 1, dtype=np.int64)
+        count = int(compiled_record_walk()(np.frombuffer(data, np.uint8), starts, most))
+        if count in DEFECTS:
+            raise ChunkDamage(DEFECTS[count].format(most=most))
+        return _messages(data, starts[:count])
     except ChunkDamage:
         raise
     except DAMAGE as error:
@@ -147,16 +152,6 @@ def _records(raw: bytes, size: int) -> bytes:
     if size < chunk.uncompressed_size <= limits.CHUNK:
         raise ChunkDamage(f'it states {chunk.uncompressed_size} bytes, the index {size}')
     return chunk_data(chunk)
-
-
-def _starts(data: bytes, stored: int) -> Integers:
-    """Return where message records begin in a chunk of `stored` [bytes]; raises ChunkDamage."""
-    most = min(limits.RECORDS, stored)  # the reason is that of `mcap_records.walked`
-    starts = np.empty(min(most, len(data) // SHORTEST) + 1, dtype=np.int64)
-    count = int(compiled_record_walk()(np.frombuffer(data, np.uint8), starts, most))
-    if count in DEFECTS:
-        raise ChunkDamage(DEFECTS[count].format(most=most))
-    return starts[:count]
 
 
 @functools.cache

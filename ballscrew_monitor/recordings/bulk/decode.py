@@ -8,7 +8,7 @@ that does not decode is counted and named.
 
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 import contextlib
 import itertools
 import math
@@ -66,17 +66,14 @@ def _fault(bag: Bag, axis: Axis, one: Input) -> str:
         return joint_reason(absent, parameter)
     if absent is not None:
         return short_text(absent)
-    gap = _usual_gap(bag, absolute(one.topic))
+    times = [
+        message.log_time for message in itertools.islice(bag.messages([absolute(one.topic)]), SEEN)
+    ]
+    gaps = sorted(after - before for before, after in itertools.pairwise(times))
+    gap = gaps[len(gaps) // 2] if gaps else 0
     if gap <= axis.monitor.settings.timeouts[one.source]:
         return ''
     return f'{name} {slow_reason(seconds(gap), parameter)}'
-
-
-def _usual_gap(bag: Bag, topic: str) -> int:
-    """Return the time between two messages of a topic [ns] that half of the first keep."""
-    times = [message.log_time for message in itertools.islice(bag.messages([topic]), SEEN)]
-    gaps = sorted(after - before for before, after in itertools.pairwise(times))
-    return gaps[len(gaps) // 2] if gaps else 0
 
 
 def named_instead(bag: Bag, one: Input) -> str:
@@ -88,7 +85,7 @@ def named_instead(bag: Bag, one: Input) -> str:
 
 
 def _absence(bag: Bag, one: Input) -> OtherJoints | TooShort | None:
-    """Return what the first messages of the topic of an input hold, if not its field."""
+    """Return what the first messages of the topic of an input hold together, if not its field."""
     readings: list[OtherJoints | TooShort] = []
     for message in bag.messages([absolute(one.topic)]):
         decoded = _decoded(message, one.message_type)
@@ -99,17 +96,11 @@ def _absence(bag: Bag, one: Input) -> OtherJoints | TooShort | None:
             readings.append(reading)
         if len(readings) == SEEN:
             break
-    return _joined(readings) if readings else None
-
-
-def _joined(readings: Sequence[OtherJoints | TooShort]) -> OtherJoints | TooShort:
-    """Return one absence for all: the joints of all messages, or the first array."""
-    first = readings[0]
-    others = [one for one in readings if isinstance(one, OtherJoints)]
+    first = readings[0] if readings else None
     if not isinstance(first, OtherJoints):
         return first
-    names = sorted({name for one in others for name in one.names})
-    return OtherJoints(first.array, first.joint, tuple(names))
+    names = {name for one in readings if isinstance(one, OtherJoints) for name in one.names}
+    return OtherJoints(first.array, first.joint, tuple(sorted(names)))
 
 
 Reader = tuple[int, Axis, Input]

@@ -130,7 +130,6 @@ class Layout:
                 self._pass(member)
 
     def _wanted(self, member: str) -> None:
-        """Add the step to the number itself."""
         kind, count, most = _parts(member)
         if kind not in KINDS:
             raise NoLayout
@@ -143,7 +142,6 @@ class Layout:
         self._steps.append(_Step(NUMBERS, _size(kind), count, most, wanted))
 
     def _pass(self, member: str) -> None:
-        """Add the steps through a member that is not wanted."""
         kind, count, most = _parts(member)
         if kind in KINDS:
             self._steps.append(_Step(NUMBERS, _size(kind), count, most))
@@ -283,14 +281,12 @@ def _has_head(data: Any, at: int) -> bool:
 
 
 def _word(data: Any, at: int) -> Any:
-    """Return the number of four bytes."""
     low = np.int64(data[at]) | np.int64(data[at + 1]) << 8
     high = np.int64(data[at + 2]) | np.int64(data[at + 3]) << 8
     return low | high << 16
 
 
 def _number(data: Any, at: int, size: int) -> Any:
-    """Return the bits of a number of 1, 2, 4 or 8 bytes."""
     if size == 8:
         return np.uint64(_word(data, at)) | np.uint64(_word(data, at + 4)) << np.uint64(32)
     if size == 4:

@@ -140,7 +140,6 @@ class EventOrder:
         return some(rest, _by_stamp(_keys_of(rest)))
 
     def _pass(self, leaving: _Keys) -> None:
-        """Remember the largest stamp that has left."""
         if len(leaving.stamp):
             last = int(leaving.stamp.max())
             self._past = max(self._past, (last, int(leaving.source[leaving.stamp == last].max())))

@@ -13,7 +13,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import message_class, stamp_of
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.player import Choice, chosen, PAUSE, playable, Player
+from ballscrew_monitor.recordings.player import chosen, PAUSE, playable, Player
 from ballscrew_monitor.settings.parameters import input_topics, read_file
 from mcap.writer import Writer
 import pytest
@@ -85,10 +85,10 @@ def listener(domain, short_bag, wait_for):
 GATED = f"""
 import sys
 from ballscrew_monitor.cli import main
-from ballscrew_monitor.recordings import following
+from ballscrew_monitor.recordings import player
 from ballscrew_monitor.recordings.player import Player
 
-following.FIRST_WORD = following.LAST_WORD = {DEADLINE}
+player.FIRST_WORD = player.LAST_WORD = {DEADLINE}
 messages_of = Player._messages
 
 def gated(*args):
@@ -253,9 +253,9 @@ def test_inputs_are_played_unless_told_otherwise(foreign_bag, capsys, refused, s
     bag = Bag(foreign_bag)
     params = ROOT / 'config' / 'nominal_cycle.yaml'
     inputs = set(input_topics(read_file(params)))
-    assert set(chosen(bag, Choice(params=params))) == inputs < set(bag.topics)
-    assert chosen(bag, Choice(params=params, topics=['note', '/note'])) == ['/note']
-    every = chosen(bag, Choice(params=params, every=True))
+    assert set(chosen(bag, params)) == inputs < set(bag.topics)
+    assert chosen(bag, params, ['note', '/note']) == ['/note']
+    every = chosen(bag, params, every=True)
     assert set(every) == set(bag.topics)
     assert set(playable(bag, every)) == set(bag.topics) - {'/drive', '/achse-1'}
     assert capsys.readouterr().out == says('played_drive_message')
@@ -266,11 +266,11 @@ def test_topics_that_the_bag_does_not_hold_are_named(foreign_bag, tmp_path, caps
     bag, params = Bag(foreign_bag), tmp_path / 'params.yaml'
     form = '/**:\n  ros__parameters:\n    x: {{speed: {{topic: {}}}, load: {{topic: {}}}}}\n'
     params.write_text(form.format('joint_states', 'force'))
-    assert chosen(bag, Choice(params=params)) == ['/joint_states']
+    assert chosen(bag, params) == ['/joint_states']
     assert capsys.readouterr().out == 'the bag holds no /force\n'
     params.write_text(form.format('motion', 'force'))
-    for choice in (Choice(params=params), Choice(params=params, topics=['/note', '/motion'])):
-        refused('holds_motion_holds', chosen, bag, choice)
+    for topics in (None, ['/note', '/motion']):
+        refused('holds_motion_holds', chosen, bag, params, topics)
 
 
 def test_a_bag_of_any_machine_is_played(domain, listener, foreign_bag):

@@ -101,7 +101,6 @@ def make_table(path, blocks):
     table = RowTable(path)
     for block in blocks:
         table.add(block.rows)
-    table.end()
     return table
 
 
@@ -175,7 +174,7 @@ def make_case(
     known = known or {}
     facts = AxisFacts(**{key: one for key, one in known.items() if key in AXIS_FACTS})
     flags = {key: one for key, one in known.items() if key not in AXIS_FACTS}
-    table = make_table(folders.mktemp('rows') / 'rows.arrow', blocks)
+    table = make_table(folders.mktemp('rows') / 'x.rows', blocks)
     return maker.case(outcome, rows=table, facts=facts, **flags)
 
 

@@ -43,8 +43,8 @@ def test_the_border_is_where_the_surface_has_the_limit_and_the_zone_on_both_side
 def test_a_warning_is_marked_at_its_worst_sample(judged):
     event = judged.event(3, 0.0, 0.49, speed=-50.0, axial_load=700.0)  # backward, against it
     (mark,) = operating_map(judged.case([judged.rows()], [event])).events
-    assert (mark.number, mark.load) == (3, 700.0)
-    assert mark.speed == pytest.approx(50.0 * 30.0 / np.pi)
+    assert (mark['number'], mark['load']) == (3, 700.0)
+    assert mark['speed'] == pytest.approx(50.0 * 30.0 / np.pi)
     unknown = judged.event(4, 0.0, 0.49, speed=np.nan)
     assert operating_map(judged.case([judged.rows()], [unknown])).events == []
 
@@ -55,8 +55,8 @@ def test_only_the_worst_warnings_are_marked(judged):
         for n in range(40)
     ]
     marks = operating_map(judged.case([judged.rows()], events)).events
-    assert [one.number for one in marks] == list(range(21, 41))
-    assert [round(one.speed * np.pi / 30.0) for one in marks] == list(range(70, 90))
+    assert [one['number'] for one in marks] == list(range(21, 41))
+    assert [round(one['speed'] * np.pi / 30.0) for one in marks] == list(range(70, 90))
 
 
 def test_other_temperatures_have_a_border_of_their_own(judged):

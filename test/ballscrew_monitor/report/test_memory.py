@@ -42,7 +42,6 @@ def bags(tmp_path_factory):
 def small_batches(monkeypatch):
     monkeypatch.setattr(batches, 'BATCH', 150_000)
     monkeypatch.setattr(bag_writer, 'WHOLE_CHUNK_SIZE', 20_000)
-    monkeypatch.setattr(row_table, 'BATCH', 500)
     monkeypatch.setattr(row_table, 'PART', 1000)
 
 
