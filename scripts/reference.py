@@ -237,6 +237,7 @@ def fault_page() -> str:
     codes = (
         'Every status of `/diagnostics` has its code as the value `Code`; a number keeps its '
         'meaning for ever. If a status names several faults, the code is that of the first one. '
+        '`REFUSED`, `GLITCHES` and `LOST` stay for ten seconds after the last such message. '
         'A code above 0 beside the level OK is a warning that is shelved or that '
         '`warning.policy` does not ask for, or a health that is not known.'
     )

@@ -324,12 +324,16 @@ def _set_up(file: Path, size: int, *journal: str) -> sqlite3.Connection:
     return database
 
 
+class OtherVersion(ValueError):
+    """A database is of a version that is not known."""
+
+
 def is_empty(database: sqlite3.Connection, version: int) -> bool:
     """Return True if a database has no table; raises ValueError for what nobody has left."""
     ((found,),) = database.execute('PRAGMA user_version')
     ((tables,),) = database.execute('SELECT count(*) FROM sqlite_master')
     if found != version and (found or tables):
-        raise ValueError(f'{OTHER_VERSION} ({found}, known is {version})')
+        raise OtherVersion(f'{OTHER_VERSION} ({found}, known is {version})')
     ((fault,),) = database.execute('PRAGMA quick_check(1)')
     if fault != 'ok':
         raise ValueError(fault.splitlines()[-1])
@@ -363,7 +367,7 @@ def set_file_aside(file: Path, why: Exception) -> str:
         aside.unlink(missing_ok=True)
         if one.exists():
             one.replace(aside)
-    what = str(why) if str(why).startswith(OTHER_VERSION) else f'{DAMAGED} ({why})'
+    what = str(why) if isinstance(why, OtherVersion) else f'{DAMAGED} ({why})'
     return f'{file} {what}, moved to {file.name}.aside'
 
 

@@ -3,6 +3,7 @@
 """Conventions that no linter knows: units, headers, versions, manifests and what is collected."""
 
 import ast
+import functools
 from functools import cache
 from importlib.metadata import requires
 from pathlib import Path
@@ -11,6 +12,7 @@ import runpy
 import subprocess
 import sys
 import tomllib
+import types
 from xml.etree import ElementTree
 
 from packaging.requirements import Requirement
@@ -49,6 +51,19 @@ HOMES = 'home root tmp work Users'.split()
 MACHINE = re.compile(rf'(?<![\w.])/(?:{"|".join(HOMES)})/\w+')
 HANG = 'DEADLINE = 600.0  # [s] which only ends a hang'
 FIXED_TIMEOUT = re.compile(r'^ +timeout=\d|\.(?:run|communicate|wait|join|result)\(.*timeout=\d')
+# How logic would read a sentence, and the attributes that hold one.
+READERS = {*'count endswith find index partition removeprefix rpartition split startswith'.split()}
+MATCHES = ast.In, ast.NotIn
+SAID = set('advice message msg reason refusal sentence text verdict'.split())
+WORDS = re.compile(r'[a-z]+[ :,]+[a-z]+[ :,]+[a-z]+|[a-z]: $')
+# Sentences that are shortened where they are shown, and those of rcl, which has no codes.
+SHOWN = (
+    'ballscrew_monitor/report/overview.py',
+    'ballscrew_monitor/settings/parameters.py',
+    'surrogate/datasheet.py',
+    'surrogate/identify/record.py',
+    'surrogate/parameters.py',
+)
 # Python packages by the names that a ROS machine knows them by.
 ROSDEP = {
     'matplotlib': 'python3-matplotlib',
@@ -193,6 +208,37 @@ def paths_of_a_machine(text):
             yield number, path
 
 
+def texts_of_constants(paths):
+    """Return the texts that names in capitals stand for in some files, by their names."""
+    return {
+        target.id: node.value.value
+        for path in paths
+        for node in syntax(text_of(path)).body
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant)
+        for target in node.targets
+        if isinstance(target, ast.Name) and isinstance(node.value.value, str)
+    }
+
+
+def sentences_that_are_read(text, constants=types.MappingProxyType({})):
+    """Yield where words decide: a code or a number is what logic may read."""
+    for node in ast.walk(syntax(text)):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            words, read = node.args, node.func.value
+            if node.func.attr not in READERS or not words:
+                continue
+        elif isinstance(node, ast.Compare) and isinstance(node.ops[0], MATCHES):
+            words, read = [node.left], node.comparators[0]
+        else:
+            continue
+        texts = [constants.get(getattr(word, 'id', None), '') for word in words]
+        texts += [word.value for word in words if isinstance(word, ast.Constant)]
+        is_worded = any(isinstance(text, str) and WORDS.search(text) for text in texts)
+        is_said = isinstance(node, ast.Call) and getattr(read, 'attr', '') in SAID
+        if is_worded or is_said or ast.unparse(read) in ('str(error)', 'str(why)'):
+            yield node.lineno, ast.unparse(node)
+
+
 def functions_of_tests(text):
     return [
         node
@@ -217,6 +263,13 @@ def other_deadlines(text):
             yield number, deadline[0]
         if FIXED_TIMEOUT.search(line):
             yield number, line.strip()
+
+
+def test_no_logic_reads_a_sentence():
+    """Whoever improves the English must not change what the program does."""
+    constants = texts_of_constants(PACKAGES)
+    check = functools.partial(sentences_that_are_read, constants=constants)
+    report([line for line in offenders(check, PACKAGES) if not line.startswith(SHOWN)])
 
 
 def test_docstrings_say_units():
@@ -259,6 +312,10 @@ NUT = 'class Nut:\n    lead: float\n\n    def turn(self, end_speed: Array): ...\
         (missing_header, f'#!/bin/sh\n{HEADER}', []),
         *((paths_of_a_machine, f'a\nb = "/{home}/me/b"', [2]) for home in HOMES),
         (paths_of_a_machine, '../tmp/a docs/work/b', []),
+        (sentences_that_are_read, "if 'not configured: ' in text: ...", [1]),
+        (sentences_that_are_read, "event.text.endswith(', by the torque')", [1]),
+        (sentences_that_are_read, 'event.advice.startswith(ACKNOWLEDGED)', [1]),
+        (sentences_that_are_read, "axis.partition('.')\nif 'x' in names: ...", []),
         (hidden_tests, 'def test_a(): ...\n\n\ndef test_a(): ...', [4]),
         (hidden_tests, 'def test_a(): ...\n\n\ndef a(): ...\n\n\ndef a(): ...', []),
         (other_deadlines, 'DEADLINE = 60.0  # [s]\nrun(\n    timeout=9.0)\n', [1, 3]),

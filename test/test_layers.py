@@ -304,6 +304,15 @@ def test_surrogate_loads_no_ros():
     assert 'ballscrew_monitor' not in loaded
 
 
+def test_judgement_health_and_store_load_no_messages():
+    """Messages are a form that others read: nothing that decides or keeps is made of them."""
+    rooms = ('core', 'judge', 'health')
+    paths = [path for path in MODULES['ballscrew_monitor'] if room(name_of(path)) in rooms]
+    modules = [*map(name_of, paths), 'ballscrew_monitor.node.solver', 'surrogate.store']
+    loaded = loaded_by(f'import {", ".join(modules)}')
+    assert not [name for name in loaded if name.split('.')[0].endswith('_msgs')]
+
+
 @pytest.mark.parametrize(
     ('module', 'heavy'),
     [

@@ -21,6 +21,7 @@ from ballscrew_monitor.clients.doctor import spun
 from ballscrew_monitor.core.conversions import direction_of, opposing_load
 from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
 from ballscrew_monitor.recordings.words import say
+from ballscrew_monitor.settings.parameters import REFUSALS
 from ballscrew_monitor.settings.qos import started_node
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import OperatingPoint, PointResult
@@ -148,12 +149,12 @@ class _Conversation:
 
     def _hear_refusals(self) -> list[str]:
         """Return the list to which the node's log adds why it refuses a solve from now on."""
-        begin, refusals = f'solve of axis {self._question.axis} rejected: ', list[str]()
+        refusals = list[str]()
         now = self._node.get_clock().now().nanoseconds
 
         def hear(line: Log) -> None:
-            if line.msg.startswith(begin) and Time.from_msg(line.stamp).nanoseconds >= now:
-                refusals.append(line.msg.removeprefix(begin))
+            if line.name.endswith(f'.{REFUSALS}') and Time.from_msg(line.stamp).nanoseconds >= now:
+                refusals.append(line.msg)
 
         self._node.create_subscription(Log, '/rosout', hear, LOG_QOS)
         return refusals

@@ -28,8 +28,8 @@ SCAN_POINTS = 64
 HALVINGS = 20
 NAN = math.nan
 VALID = int(Validity.VALID)
-SURELY, PERHAPS = 'surely', 'perhaps'
-"""How sure it is that asperities carry."""
+CARRY = '', 'perhaps', 'surely'
+"""How sure it is that asperities carry, by the numbers of OutOfZone.CARRY_."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -117,7 +117,7 @@ class Advisor:
         if math.isnan(least) or not here >= self.limits.rcs:
             return ''
         sure = surface.lookup(abs(self.speed) / least, *place).rcs >= self.limits.rcs
-        return SURELY if sure else PERHAPS
+        return CARRY[2 if sure else 1]
 
     def _speed(self) -> float:
         """Return the nearest screw speed [rad/s] that clears at this load; NaN for none."""

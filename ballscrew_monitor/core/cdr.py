@@ -60,22 +60,19 @@ def _row(fields: Sequence[tuple[str, Any]]) -> Encoder:
     names, kinds = zip(*fields)
     values = operator.attrgetter(*names)
     codes = [FORMATS[kind.typename] for kind in kinds]
-    packs = [_padded(codes, begin) for begin in range(LARGEST)]
+    packs = []
+    for begin in range(LARGEST):  # each number stands at a multiple of its size
+        layout = '<'
+        for code in codes:
+            gap = -(begin + struct.calcsize(layout)) % struct.calcsize(f'<{code}')
+            layout += 'x' * gap + code
+        packs.append(struct.Struct(layout).pack)
 
     def encode(data: bytearray, message: Any) -> None:
         pack, found = packs[len(data) % LARGEST], values(message)
         data += pack(*found) if len(names) > 1 else pack(found)
 
     return encode
-
-
-def _padded(codes: Sequence[str], begin: int) -> Callable[..., bytes]:
-    """Return what packs numbers from a `begin` [bytes] on, each at a multiple of its size."""
-    layout = '<'
-    for code in codes:
-        gap = -(begin + struct.calcsize(layout)) % struct.calcsize(f'<{code}')
-        layout += 'x' * gap + code
-    return struct.Struct(layout).pack
 
 
 def _field(name: str, encode_value: Encoder) -> Encoder:

@@ -20,14 +20,25 @@ STATUSES = (
 
 
 class Fault(Worded):
-    """What is wrong, its number and in words, and what to do; NONE where nothing is wrong."""
+    """
+    What is wrong, its number and in words, and what to do; NONE where nothing is wrong.
+
+    Of an input, `said` follows its name or stands for it, before the cure. `detail` says of one
+    refused message why, by the numbers of its refusal.
+
+    """
 
     cure: str
+    said: str
+    detail: str
 
-    def __new__(cls, number: int, text: str, cure: str = '') -> Self:
-        """Return the member of a number, a text and a cure."""
+    def __new__(
+        cls, number: int, text: str, cure: str = '', said: str = '', detail: str = ''
+    ) -> Self:
+        """Return the member of a number and its texts."""
         member = int.__new__(cls, number)
         member._value_, member.text, member.cure = number, text, cure
+        member.said, member.detail = said, detail
         return member
 
     @property
@@ -37,11 +48,7 @@ class Fault(Worded):
 
     NONE = 0, 'nothing is wrong'
     NOT_SET = (1, 'no message was set', 'report it with the log of the node')
-    NOT_CONFIGURED = (
-        2,
-        'not configured, or shut down',
-        'correct the parameter or the file that the message names; then configure and activate',
-    )
+    NOT_CONFIGURED = (2, 'not configured, or shut down', 'configure and activate the node')
     INACTIVE = (3, 'the node is inactive, nothing is judged', 'activate the node')
     NOTHING_YET = (4, 'nothing has been judged yet', 'wait for an input; see Inputs')
     CLOCK_STANDS = (5, 'the clock stands still', 'play /clock, or set use_sim_time to false')
@@ -51,6 +58,11 @@ class Fault(Worded):
         'a defect: report the message and the trace in the log; the node goes on with the '
         'next message, other axes are not affected, and the error stays until the node is '
         'configured again',
+    )
+    NOT_BUILT = (
+        7,
+        'not configured, because a parameter or a file is wrong',
+        'correct the parameter or the file that the message names; then configure and activate',
     )
 
     RCS_HIGH = (
@@ -131,47 +143,69 @@ class Fault(Worded):
     INPUT_NOT_A_NUMBER = (
         211,
         'an input is not a finite number',
-        'repair the source, or read another field',
+        'mend its source or read another field',
+        'it is not a finite number',
+        'the field holds {first}, it must be a finite number: mend the source',
     )
     INPUT_FUTURE = (
         212,
         'the stamps of an input lie ahead of the clock',
-        'synchronise the clocks, or raise max_future',
+        'set the clocks alike or raise max_future',
+        'its stamps lie ahead of the clock',
+        'the stamp is {first:.3g} s ahead of the clock, allowed is max_future, {second:.3g} s: '
+        'set the clocks of both machines alike, or raise max_future',
     )
     INPUT_OTHER_CLOCK = (
         213,
         'the stamps of an input are of the wall clock, the node on simulated',
-        'set use_sim_time to false, or stamp with /clock',
+        'stamp with /clock or unset use_sim_time',
+        'its stamps are of the wall clock and the node runs on simulated time',
+        'the stamps are of the wall clock and the node runs on simulated time: set use_sim_time '
+        'to false, or stamp with /clock',
     )
     INPUT_TOO_SHORT = (
         214,
         'the array of an input ends before the element',
-        'let the source fill the array; if it states positions only, read positions',
+        'let the source fill it',
+        'its array ends before the element',
     )
     INPUT_IMPLAUSIBLE = (
         215,
         'an input is beyond the plausible range',
-        'correct unit or scale, or raise limits.plausible_speed or limits.plausible_load',
+        'mend the source, its unit or scale, or raise limits.plausible_speed or '
+        'limits.plausible_load',
+        'it is beyond the plausible range',
+        '{name} {first:.4g} {unit} is beyond the plausible {most:.4g} {unit}: mend the source, '
+        'its unit or scale, or raise limits.plausible_{name}',
     )
     INPUT_NOT_DECODED = (
         216,
         'the messages of an input do not decode',
-        'record the messages with the type of their publisher',
+        'record them with the type of their publisher',
+        'its messages do not decode',
+        'the message does not decode: it is truncated, or of another definition of its type',
     )
     INPUT_HOLE = (
         217,
         'the positions of an input come less often than its timeout allows',
         'raise speed.timeout',
+        'its positions come less often than its timeout allows',
+        'no position for {first:.3g} s, so no speed follows: send more, or raise speed.timeout',
     )
     INPUT_NEGATIVE = (
         218,
         'the stamps of an input are negative',
-        'correct the clock of the source',
+        'mend the clock of its source',
+        'its stamps are negative',
+        'the stamp is negative: mend the clock of the source',
     )
     INPUT_SEVERAL = (
         219,
         'several publishers send an input',
-        'stop all but one of the nodes that are named, or set one_source to false',
+        'stop all but one or set one_source to false',
+        'several publishers send it',
+        'several publishers send this input, and one is allowed: stop all but one, or set '
+        'one_source to false',
     )
     REFUSED = (
         231,
@@ -181,23 +215,28 @@ class Fault(Worded):
     GLITCHES = (
         232,
         'samples beyond the plausible range were refused',
-        'a glitch of the sensor, or a wrong unit; stays for ten seconds after the last one',
+        'mend the source, its unit or scale, or raise limits.plausible_speed or '
+        'limits.plausible_load',
+        'samples beyond the plausible range were refused',
     )
     LOST = (
         233,
         'messages are lost on the way',
-        'lower the rate, raise publish_period, use fewer axes, or give the node priority; '
-        'stays for ten seconds',
+        'lower their rate, raise publish_period, or give the node fewer axes or more of the '
+        'processor',
+        'messages are lost on the way',
     )
     SIMULATED_STAMPS = (
         234,
         'stamps are of simulated time, the node on the wall clock',
-        'the source follows /clock: set use_sim_time to true',
+        'set use_sim_time',
+        'stamps are of simulated time and the node runs on the wall clock',
     )
     LAG = (
         235,
         'stamps lag behind their arrival',
-        'synchronise the clock of the source, or raise max_lag; the samples are judged',
+        'set the clocks alike, or raise max_lag',
+        'stamps lag behind their arrival',
     )
     SLOW = (
         236,
@@ -207,13 +246,14 @@ class Fault(Worded):
     SOURCES_UNKNOWN = (
         237,
         'loss is unknown, and whether one source alone sends an input',
-        'let the topic have one publisher, or use a middleware that numbers messages',
+        'let the topic have one publisher, or a middleware that numbers messages',
+        'loss is unknown, and so is whether one source alone sends it',
     )
     LOSS_UNKNOWN = (
         238,
         'loss is unknown',
-        'use a middleware that numbers messages; appears for a moment when a publisher '
-        'comes or goes',
+        'let the topic have one publisher that numbers its messages',
+        'loss is unknown',
     )
 
     RELOAD_REFUSED = (

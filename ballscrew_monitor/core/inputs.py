@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 
 from ballscrew_monitor.core import fields
 from ballscrew_monitor.core.conversions import Scaling, SECOND, seconds
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.fields import FieldReader, MessageClass, OtherJoints, TooShort
 
 Axis = TypeVar('Axis')
@@ -57,18 +58,6 @@ class Why(enum.IntEnum):
     HOLE = 7  # no speed follows from a position and one long before it
     NEGATIVE = 8  # a stamp below zero, which no clock shows
     SEVERAL = 9  # several publishers send the input, and one is allowed
-
-
-_CURES = {
-    Why.NOT_DECODED: 'the message does not decode: it is truncated, or of another definition of '
-    'its type',
-    Why.NEGATIVE: 'the stamp is negative: mend the clock of the source',
-    Why.OTHER_CLOCK: 'the stamps are of the wall clock and the node runs on simulated time: '
-    'set use_sim_time to false, or stamp with /clock',
-    Why.SEVERAL: 'several publishers send this input, and one is allowed: stop all but one, or '
-    'set one_source to false',
-}
-"""What refusals without numbers say."""
 
 
 class InputState(enum.IntEnum):
@@ -264,57 +253,27 @@ def refusal_text(
     array in the path `field` its length and which of these arrays it is.
 
     """
-    if why is Why.IMPLAUSIBLE and source in _UNITS:
-        jumps = not math.isnan(second)
-        return jump_text(first, second, most) if jumps else implausible_text(source, first, most)
-    if why is Why.HOLE:
-        return hole_text(first)
-    if why is Why.FUTURE:
-        return _future_text(first, second)
-    arrays = fields.arrays_of(field) if why is Why.TOO_SHORT else []
-    if second in range(len(arrays)) and first >= 0.0:
-        return short_text(TooShort(*arrays[int(second)], int(first)))
-    if why is Why.NOT_A_NUMBER:
-        return f'the field holds {first}, it must be a finite number: mend the source'
-    return _CURES.get(why, '')
-
-
-def implausible_text(source: Source, value: float, most: float) -> str:
-    """Return why a sample [SI] whose amount is above `most` [SI] is refused, and the cure."""
-    name, unit = source.name.lower(), _UNITS[source]
-    return (
-        f'{name} {value:.4g} {unit} is beyond the plausible {most:.4g} {unit}: mend the '
-        f'source, its unit or scale, or raise limits.plausible_{name}'
-    )
-
-
-def jump_text(change: float, gap: float, most: float) -> str:
-    """Return why a position [rad] that has changed so far in a time [s] is refused."""
-    return (
-        f'the position jumps by {change:.4g} rad of the screw within {gap:.3g} s, '
-        f'plausible is a speed of {most:.4g} rad/s: mend the source, or set speed.wrap to the '
-        'position at which it starts over'
-    )
-
-
-def hole_text(gap: float) -> str:
-    """Return why no speed follows from a position that comes after a gap [s]."""
-    text = f'no position for {gap:.3g} s, so no speed follows'
-    return f'{text}: send more, or raise speed.timeout'
+    name, unit = source.name.lower(), _UNITS.get(source, '')
+    if why is Why.IMPLAUSIBLE and not math.isnan(second):
+        return (
+            f'the position jumps by {first:.4g} rad of the screw within {second:.3g} s, '
+            f'plausible is a speed of {most:.4g} rad/s: mend the source, or set speed.wrap to the '
+            'position at which it starts over'
+        )
+    if why is Why.TOO_SHORT:
+        arrays = fields.arrays_of(field)
+        known = second in range(len(arrays)) and first >= 0.0
+        return short_text(TooShort(*arrays[int(second)], int(first))) if known else ''
+    if why is Why.IMPLAUSIBLE and not unit:
+        return ''
+    detail = Fault[f'INPUT_{why.name}'].detail
+    return detail.format(first=first, second=second, most=most, name=name, unit=unit)
 
 
 def short_text(found: TooShort) -> str:
     """Return why an array gives no number, and the cure."""
     holds = f'has {found.length} elements and no [{found.key}]' if found.length else 'is empty'
     return f'{found.array} {holds} in its messages: let the source fill it, or read another field'
-
-
-def _future_text(ahead: float, allowed: float) -> str:
-    """Return why a stamp so far ahead of the clock [s] is refused, and the cure."""
-    return (
-        f'the stamp is {ahead:.3g} s ahead of the clock, allowed is max_future, '
-        f'{allowed:.3g} s: set the clocks of both machines alike, or raise max_future'
-    )
 
 
 def ordered(

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The words of a judgement: sources, validity, levels, zones, gates, limits and findings."""
+"""The words of a judgement: sources, validity, levels, zones, gates and limits."""
 
 import dataclasses
 import enum
@@ -11,7 +11,6 @@ from surrogate.files import InputError
 
 NAN = math.nan
 DOMINANT_RCS = 0.5  # [-] from here on asperities carry the larger part of the load
-FROM_TORQUE = ', efficiency judged from a load derived from the motor torque'
 
 
 class PointSource(enum.IntEnum):
@@ -80,6 +79,16 @@ class Code(enum.IntEnum):
     OUT_OF_RANGE = 3
     INPUT_LOST = 4
     MODEL_RANGE = 5  # reserved by the message; no surface says so yet
+
+
+class EventEnd(enum.IntEnum):
+    """How a stay outside the optimal zone ended; OutOfZone.ENDING_."""
+
+    UNKNOWN = 0  # or it has not ended
+    CLEARED = 1
+    ACKNOWLEDGED = 2
+    STOPPED = 3
+    RESTARTED = 4
 
 
 class WarningPolicy(enum.StrEnum):
@@ -185,27 +194,3 @@ def efficiency_to_clear(limits: Limits) -> float:
 def _check(name: str, value: float, good: bool, allowed: str) -> None:
     if not good:
         raise InputError(f'limit {name} is {value!r}, it must be {allowed}')
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Finding:
-    """One thing worth saying; value and limit in `unit`, NaN if not known."""
-
-    code: Code
-    severity: Severity
-    value: float = NAN
-    limit: float = NAN
-    unit: str = '-'
-    text: str = ''
-
-
-def violation(code: Code, value: float, limit: float, *, derived: bool = False) -> Finding:
-    """Return the finding that a criterion is not met; a `derived` load is named."""
-    if code is Code.UNKNOWN:
-        return Finding(code=code, severity=Severity.UNKNOWN)
-    if code is Code.RCS_HIGH:
-        text = f'asperities carry too much: RCS {value:.3g}, limit {limit:.3g}'
-    else:
-        text = f'too much power is lost: efficiency {value:.3g}, limit {limit:.3g}'
-        text += FROM_TORQUE if derived else ''
-    return Finding(code=code, severity=Severity.WARN, value=value, limit=limit, text=text)

@@ -55,7 +55,13 @@ def link_reason(link: Link, parameter: str, *, seen: bool = False) -> str:
         if seen:
             return f'the publisher on {link.topic} is gone'
         return f'no publisher yet on {link.topic}: start it, or set {parameter}.topic'
-    return _type_reason(link, parameter) or _qos_reason(link)
+    types = types_of(link)
+    carried = f'{link.topic} carries {" and ".join(types)}'
+    if not link.type_name and len(types) != 1:
+        return f'{carried}: set {parameter}.type to one of them'
+    if link.type_name and link.type_name not in types:
+        return f'{carried}, expected is {link.type_name}: set {parameter}.type to {types[0]}'
+    return _qos_reason(link)
 
 
 def several_reason(link: Link, parameter: str) -> str:
@@ -75,21 +81,15 @@ def types_of(link: Link) -> list[str]:
     return sorted({publisher.type_name for publisher in link.publishers})
 
 
-def _type_reason(link: Link, parameter: str) -> str:
-    """Return why no publisher has the type that is asked for; empty if one has."""
-    types = types_of(link)
-    if link.type_name in types or (not link.type_name and len(types) == 1):
-        return ''
-    carried = f'{link.topic} carries {" and ".join(types)}'
-    if not link.type_name:
-        return f'{carried}: set {parameter}.type to one of them'
-    return f'{carried}, expected is {link.type_name}: set {parameter}.type to {types[0]}'
-
-
 def _qos_reason(link: Link) -> str:
     """Return what no publisher of the type offers of the QoS that is asked for."""
+    policies = (('reliability', RELIABLE, BEST_EFFORT), ('durability', TRANSIENT_LOCAL, VOLATILE))
     unfit = [
-        _unfit(link, publisher)
+        [
+            (policy, asked, offered)
+            for policy, asked, offered in policies
+            if (getattr(link, policy), getattr(publisher, policy)) == (asked, offered)
+        ]
         for publisher in link.publishers
         if publisher.type_name == link.type_name
     ]
@@ -100,16 +100,3 @@ def _qos_reason(link: Link) -> str:
         f'QoS does not fit on {link.topic}, offered is {offered} and asked for is {asked}: '
         f'set qos_overrides.{link.topic}.subscription.{policy} to {offered}'
     )
-
-
-def _unfit(link: Link, publisher: Publisher) -> list[tuple[str, str, str]]:
-    """Return each policy in which the link asks for more than is offered, and both values."""
-    pairs = (
-        ('reliability', link.reliability, publisher.reliability, (RELIABLE, BEST_EFFORT)),
-        ('durability', link.durability, publisher.durability, (TRANSIENT_LOCAL, VOLATILE)),
-    )
-    return [
-        (policy, asked, offered)
-        for policy, asked, offered, unfit in pairs
-        if (asked, offered) == unfit
-    ]

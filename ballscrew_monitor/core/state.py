@@ -16,7 +16,7 @@ import math
 from ballscrew_monitor.core.advice import Advice, Advisor
 from ballscrew_monitor.core.conversions import nanoseconds, SECOND, seconds
 from ballscrew_monitor.core.inputs import Source, YEAR
-from ballscrew_monitor.core.judgement import Code, Finding, Limits, Severity
+from ballscrew_monitor.core.judgement import Code, EventEnd, Limits
 from surrogate.files import InputError
 from surrogate.units import TURN
 
@@ -25,8 +25,6 @@ LONGEST_SHELVING = 86400 * SECOND
 """No warning is shelved longer than this [ns], however the clock is set."""
 LONGEST_REASON, LONGEST_NAME = 500, 200
 """Characters of a reason, which a state carries, and of a name."""
-ACKNOWLEDGED = 'acknowledged'
-"""Begin of the ending of an event that somebody has acknowledged."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -90,12 +88,41 @@ class MonitorSettings:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Ending:
+    """How an event ended; the `name` of who acknowledged it, and the `reason`, where stated."""
+
+    kind: EventEnd = EventEnd.UNKNOWN
+    name: str = ''
+    reason: str = ''
+
+    @property
+    def text(self) -> str:
+        """Return why the node ended the event, empty if the axis came back."""
+        match self.kind:
+            case EventEnd.ACKNOWLEDGED:
+                by = f' by {self.name}' if self.name else ''
+                return f'acknowledged{by}{f": {self.reason}" if self.reason else ""}'
+            case EventEnd.STOPPED:
+                return (
+                    'ended by the node, not by the axis, nothing is judged any more: '
+                    f'{self.reason}'
+                )
+            case EventEnd.RESTARTED:
+                return 'ended by a restart of the node'
+        return ''
+
+
+NOT_ENDED, CLEARED = Ending(), Ending(kind=EventEnd.CLEARED)
+NAMELESS = Ending(kind=EventEnd.ACKNOWLEDGED)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Event:
     """
     One stay outside the optimal zone; stamps [ns], event 0: there was no event yet.
 
-    `ending` says why the node ended it, empty if the axis came back. The first reading of
-    `advice` takes milliseconds.
+    `worst_value` and the `limit` that it breaks [-], by the criterion of the `code`; the
+    efficiency may rest on a `derived` load. The first reading of `advice` takes milliseconds.
 
     """
 
@@ -103,10 +130,12 @@ class Event:
     active: bool = False
     stamp: int = 0
     start: int = 0
+    code: Code = Code.UNKNOWN
     worst_value: float = NAN
-    cause: Finding = Finding(code=Code.UNKNOWN, severity=Severity.UNKNOWN)
+    limit: float = NAN
+    derived: bool = False
     advisor: Advisor | None = None
-    ending: str = ''
+    ending: Ending = NOT_ENDED
 
     @property
     def advice(self) -> Advice:
@@ -193,27 +222,10 @@ def shelve(now: int, duration: float, reason: str) -> Shelving:
     return Shelving(until=now + nanoseconds(duration), reason=reason)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Acknowledgement:
-    """Who has seen a warning, and why it ends; empty where that was not said."""
-
-    name: str = ''
-    reason: str = ''
-
-    @property
-    def ending(self) -> str:
-        """Return why an event ends by it."""
-        by = f' by {self.name}' if self.name else ''
-        why = f': {self.reason}' if self.reason else ''
-        return f'{ACKNOWLEDGED}{by}{why}'
-
-
-NAMELESS = Acknowledgement()
-
-
-def acknowledgement(name: str, reason: str) -> Acknowledgement:
+def acknowledgement(name: str, reason: str) -> Ending:
     """Return that of a name; raises InputError for a missing name and for texts too long."""
-    return Acknowledgement(
+    return Ending(
+        kind=EventEnd.ACKNOWLEDGED,
         name=_line(name, 'name', 'who', 1, LONGEST_NAME),
         reason=_line(reason, 'reason', 'why', 0, LONGEST_REASON),
     )

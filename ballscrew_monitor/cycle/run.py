@@ -25,12 +25,14 @@ import threading
 import time
 from typing import Any
 
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.interrupts import DONE, FAILED, interrupts, SIGNALLED
 from ballscrew_monitor.cycle import outcome as outcomes
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import confined, NodeProcess, ros_environment
 from ballscrew_monitor.cycle.outcome import LOG, Outcome, Plan, RECORDING, speed_health
 from ballscrew_monitor.cycle.status import progress_bar, state_cells, StatusLine
+from ballscrew_monitor.messages.diagnostics import code_of
 from ballscrew_monitor.recordings.bag_writer import BagWriter
 from ballscrew_monitor.recordings.player import Player
 from ballscrew_monitor.recordings.recorder import recorded_topics, Recorder
@@ -39,7 +41,7 @@ from ballscrew_monitor.report.logs import remove_report
 from ballscrew_monitor.settings.parameters import absolute, input_topics, output
 from ballscrew_monitor.settings.qos import started_node
 from ballscrew_msgs.msg import BallScrewState
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.serialization import deserialize_message
 from surrogate.files import InputError
 
@@ -127,7 +129,7 @@ class Supervision:
     def _on_diagnostics(self, data: bytes) -> None:
         if len(self._active) < len(self._plan.expected):
             for status in deserialize_message(data, DiagnosticArray).status:
-                if status.level == DiagnosticStatus.ERROR and 'not configured: ' in status.message:
+                if code_of(status) == Fault.NOT_BUILT:
                     self._reason = status.message
 
     def _wait_until_ready(self, stop: threading.Event) -> None:
@@ -171,7 +173,13 @@ class Supervision:
                 self._check_node()
                 if status.due(now) and self._states:
                     self._show(status, now)
-                if self._player.elapsed >= self._plan.bag.duration and self._all_received():
+                # The states say that every speed message of the bag has been taken.
+                if self._player.elapsed >= self._plan.bag.duration and all(
+                    axis.name in self._states
+                    and speed_health(self._state(axis.name)).received
+                    >= self._plan.bag.topics[absolute(axis.inputs[-1].topic)].count
+                    for axis in self._plan.axes
+                ):
                     self._settled.set()
 
     def _show(self, status: StatusLine, now: float) -> None:
@@ -184,15 +192,6 @@ class Supervision:
 
     def _state(self, axis: str) -> BallScrewState:
         return deserialize_message(self._states[axis], BallScrewState)
-
-    def _all_received(self) -> bool:
-        """Return True if the states say that every speed message of the bag has been taken."""
-        return all(
-            axis.name in self._states
-            and speed_health(self._state(axis.name)).received
-            >= self._plan.bag.topics[absolute(axis.inputs[-1].topic)].count
-            for axis in self._plan.axes
-        )
 
     def _check_node(self) -> None:
         code = self._process.returncode

@@ -15,8 +15,17 @@ from ballscrew_monitor.core.advice import interpreted, Nearest
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source, StampSource
 from ballscrew_monitor.core.judgement import Level
-from ballscrew_monitor.core.memory import Memory as Kept
-from ballscrew_monitor.core.state import Event, MonitorSettings, NOT_SHELVED, Shelving, Totals
+from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.core.state import (
+    Ending,
+    Event,
+    MonitorSettings,
+    NAMELESS,
+    NOT_ENDED,
+    NOT_SHELVED,
+    Shelving,
+    Totals,
+)
 from ballscrew_monitor.judge import views
 from ballscrew_monitor.judge.inputs import least_lag, SPEED
 from ballscrew_monitor.judge.point import set_answer, set_point
@@ -108,7 +117,7 @@ class Monitor:
         self.memory = Memory()
         self.speeds, self.positions = SlopeRing(), SlopeRing()
         self.shelve_reason = ''
-        self.ending = ''
+        self.ending = NOT_ENDED
         self.joints = JointNames()
         self.nearest: Nearest = interpreted
         self._event = EventRecord()
@@ -150,7 +159,7 @@ class Monitor:
         slopes = self.speeds, self.positions
         found = step(self._tables, self.numbers, self.memory, *slopes, self._event, self._row)
         if self.memory.event_number != number:
-            self.ending = ''
+            self.ending = NOT_ENDED
         self.moved = self.memory.event_start[ACTIVE] - start if active else 0
         self.row = None if found == NOTHING else self._row
         if found != STATE:
@@ -203,26 +212,22 @@ class Monitor:
         self.shelve_reason = shelving.reason
 
     @property
-    def kept(self) -> Kept:
+    def kept(self) -> AxisRecord:
         """Return what is to be kept over a restart."""
-        event = self.event
-        if event.active:
-            event = dataclasses.replace(event, stamp=int(self.memory.stamp))
-        return Kept(totals=self.totals, event=event, shelving=self.shelving)
+        return views.kept_of(self.memory, self.event, self._settings.axis, self.shelve_reason)
 
-    def take_up(self, kept: Kept) -> None:
+    def take_up(self, kept: AxisRecord) -> None:
         """Go on with what was kept; what has been added up meanwhile counts too."""
         memory = self.memory
-        views.add_totals(memory, kept.totals)
+        views.add_totals(memory, kept)
         if memory.event_number:
-            memory.event_number += kept.event.number
+            memory.event_number += kept.event
         else:
-            views.keep_event(memory, kept.event)
-            self.ending = kept.event.ending
+            self.ending = views.take_up_event(memory, kept)
         if not memory.shelved_until:
-            self.shelving = kept.shelving
+            self.shelving = Shelving(until=kept.until_ns, reason=kept.reason)
 
-    def acknowledge(self, now: int, ending: str = '') -> Event | None:
+    def acknowledge(self, now: int, ending: Ending = NAMELESS) -> Event | None:
         """
         Set the level back to UNKNOWN; return the event that this ends, if any.
 

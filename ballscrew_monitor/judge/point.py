@@ -94,7 +94,12 @@ def _set_derived_load(
 
 def set_answer(tables: Any, settings: Any, row: Any) -> None:
     """Set what the surface says of a row; that of a derived load tells whether there is one."""
-    if not _is_complete(row):
+    loading, source = row.axial_load, row.axial_load_source
+    if row.derived != 0:
+        loading, source = row.motor_torque, row.motor_torque_source
+    is_number = math.isfinite(row.speed + loading + row.temperature)
+    is_held = row.speed_source == HELD or source == HELD or row.temperature_source == HELD
+    if is_held or not is_number:  # what is only held is never judged
         leave(row, NO_INPUT)
     elif row.direction == NO_DIRECTION:
         leave(row, 0)
@@ -109,19 +114,6 @@ def opposing_load(row: Any) -> float:
     """Return the load [N] of a row that opposes its motion."""
     # Subtracted from zero: a zero load must not become -0.0.
     return 0.0 - row.axial_load if row.direction == POSITIVE else row.axial_load
-
-
-def _is_complete(row: Any) -> bool:
-    """Tell whether every number is there and none is only held; a held one is never judged."""
-    loading, source = row.axial_load, row.axial_load_source
-    if row.derived != 0:
-        loading, source = row.motor_torque, row.motor_torque_source
-    return (
-        math.isfinite(row.speed + loading + row.temperature)
-        and row.speed_source != HELD
-        and source != HELD
-        and row.temperature_source != HELD
-    )
 
 
 def set_words(settings: Any, row: Any) -> None:

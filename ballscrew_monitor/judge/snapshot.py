@@ -11,8 +11,8 @@ from typing import Any
 from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import Source, StampSource, Why
-from ballscrew_monitor.core.judgement import Code, Level, Zone
-from ballscrew_monitor.core.state import MonitorSettings
+from ballscrew_monitor.core.judgement import Code, EventEnd, Level, Zone
+from ballscrew_monitor.core.state import Ending, MonitorSettings
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.judge.records import Memory
 from ballscrew_monitor.judge.slopes import MOST, SlopeRing
@@ -48,7 +48,7 @@ def snapshot(monitor: Monitor) -> dict[str, Any]:
             if heard
         },
         'shelve_reason': monitor.shelve_reason,
-        'ending': monitor.ending,
+        'ending': [monitor.ending.kind.name, monitor.ending.name, monitor.ending.reason],
     }
 
 
@@ -69,7 +69,8 @@ def restored(taken: Mapping[str, Any], surface: Surface, settings: MonitorSettin
             others = (OtherJoints(array, joint, tuple(names)) for array, joint, *names in heard)
             monitor.joints.named[Source[name]] = dict.fromkeys(others)
         monitor.shelve_reason = str(taken['shelve_reason'])
-        monitor.ending = str(taken['ending'])
+        kind, name, reason = taken['ending']
+        monitor.ending = Ending(kind=EventEnd[kind], name=str(name), reason=str(reason))
         _check(monitor)
     except (AttributeError, KeyError, TypeError, ValueError, binascii.Error) as error:
         raise InputError(f'the memory is damaged: {error}') from None

@@ -5,12 +5,21 @@
 import math
 from typing import Any
 
-from ballscrew_monitor.core import inputs, judgement
+from ballscrew_monitor.core import inputs
 from ballscrew_monitor.core.advice import Advisor, interpreted, Nearest
 from ballscrew_monitor.core.conversions import Direction, seconds
 from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource, Why
-from ballscrew_monitor.core.judgement import Code, Zone
-from ballscrew_monitor.core.state import Event, MonitorSettings, Totals
+from ballscrew_monitor.core.judgement import Code, EventEnd, Zone
+from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.core.state import (
+    CLEARED,
+    Ending,
+    Event,
+    MonitorSettings,
+    NOT_ENDED,
+    TIMES,
+    Totals,
+)
 from ballscrew_monitor.judge.inputs import is_fresh, least_lag, SLOW_GAPS
 from ballscrew_monitor.judge.records import NOT_KNOWN, RATE_SAMPLES, SHOWN, WHYS
 from ballscrew_monitor.judge.zone import ACTIVE
@@ -30,20 +39,18 @@ def event_of(
     memory: Any,
     surface: Surface,
     settings: MonitorSettings,
-    ending: str = '',
+    ending: Ending = NOT_ENDED,
     nearest: Nearest = interpreted,
 ) -> Event:
     """
-    Return the excursion that is active or was the last; `ending` is why the node ended it.
+    Return the excursion that is active or was the last; `ending` is how the node ended it.
 
     Advice on it is found by `nearest`.
 
     """
     if not memory.event_number:
         return Event()
-    code = Code(int(memory.event_code[ACTIVE]))
-    worst, limit = float(memory.event_worst[ACTIVE]), float(memory.event_limit[ACTIVE])
-    cause = judgement.violation(code, worst, limit, derived=bool(memory.event_derived[ACTIVE]))
+    active = bool(memory.event_active)
     speed, load = float(memory.event_speed[ACTIVE]), float(memory.event_load[ACTIVE])
     temperature = float(memory.event_temperature[ACTIVE])
     advisor = Advisor(
@@ -58,23 +65,50 @@ def event_of(
     )
     return Event(
         number=int(memory.event_number),
-        active=bool(memory.event_active),
+        active=active,
         stamp=int(memory.event_stamp),
         start=int(memory.event_start[ACTIVE]),
-        worst_value=worst,
-        cause=cause,
+        code=Code(int(memory.event_code[ACTIVE])),
+        worst_value=float(memory.event_worst[ACTIVE]),
+        limit=float(memory.event_limit[ACTIVE]),
+        derived=bool(memory.event_derived[ACTIVE]),
         advisor=advisor if math.isfinite(speed + load + temperature) else None,
-        ending=ending,
+        ending=ending if active or ending.kind else CLEARED,
     )
 
 
-def keep_event(memory: Any, event: Event) -> None:
-    """Put an excursion that was kept over a restart into a memory."""
-    memory.event_number, memory.event_active = event.number, event.active
-    memory.event_stamp, memory.event_start[ACTIVE] = event.stamp, event.start
-    memory.event_code[ACTIVE] = int(event.cause.code)
-    memory.event_worst[ACTIVE], memory.event_limit[ACTIVE] = event.worst_value, event.cause.limit
-    memory.event_derived[ACTIVE] = int(event.cause.text.endswith(judgement.FROM_TORQUE))
+def kept_of(memory: Any, event: Event, axis: str, shelve_reason: str) -> AxisRecord:
+    """Return what is to be kept of an axis over a restart; its `event` is that of the memory."""
+    totals = totals_of(memory)
+    return AxisRecord(
+        axis=axis,
+        **{f'{name}_ns': getattr(totals, name) for name in (*TIMES, 'since')},
+        angle_rad=totals.angle,
+        energy_lost_J=totals.energy_lost,
+        event=event.number,
+        active=event.active,
+        stamp_ns=int(memory.stamp) if event.active else event.stamp,
+        start_ns=event.start,
+        cause=event.code.name,
+        worst_value=event.worst_value,
+        limit=event.limit,
+        derived=event.derived,
+        ending=event.ending.kind.name,
+        ended_by=event.ending.name,
+        end_reason=event.ending.reason,
+        until_ns=int(memory.shelved_until),
+        reason=shelve_reason if memory.shelved_until else '',
+    )
+
+
+def take_up_event(memory: Any, kept: AxisRecord) -> Ending:
+    """Put an excursion that was kept over a restart into a memory; return how it ended."""
+    memory.event_number, memory.event_active = kept.event, kept.active
+    memory.event_stamp, memory.event_start[ACTIVE] = kept.stamp_ns, kept.start_ns
+    memory.event_code[ACTIVE] = int(Code[kept.cause])
+    memory.event_worst[ACTIVE], memory.event_limit[ACTIVE] = kept.worst_value, kept.limit
+    memory.event_derived[ACTIVE] = int(kept.derived)
+    return Ending(kind=EventEnd[kept.ending], name=kept.ended_by, reason=kept.end_reason)
 
 
 def totals_of(memory: Any) -> Totals:
@@ -89,15 +123,15 @@ def totals_of(memory: Any) -> Totals:
     )
 
 
-def add_totals(memory: Any, kept: Totals) -> None:
+def add_totals(memory: Any, kept: AxisRecord) -> None:
     """Add totals that were kept over a restart."""
-    memory.running_time += kept.running_time
-    memory.unjudged_time += kept.unjudged_time
+    memory.running_time += kept.running_time_ns
+    memory.unjudged_time += kept.unjudged_time_ns
     for name, (part, place) in _PARTS.items():
-        getattr(memory, part)[place] += getattr(kept, name)
-    memory.angle += kept.angle
-    memory.energy_lost += kept.energy_lost
-    memory.since = kept.since or memory.since
+        getattr(memory, part)[place] += getattr(kept, f'{name}_ns')
+    memory.angle += kept.angle_rad
+    memory.energy_lost += kept.energy_lost_J
+    memory.since = kept.since_ns or memory.since
 
 
 def clear_totals(memory: Any) -> None:
@@ -141,6 +175,13 @@ def input_status_of(
     lag = int(least_lag(memory, source)) if lag_known else 0
     causes = source * WHYS
     newest = max(memory.refused_last[slice(causes, causes + WHYS)])
+    taken = int(memory.span_taken[source] + memory.before_taken[source])
+    refused = int(memory.span_refused[source] + memory.before_refused[source])
+    refusal = ''
+    if why != NOT_KNOWN:
+        numbers = float(memory.refusal_first[source]), float(memory.refusal_second[source])
+        most = float(settings.plausible[source])
+        refusal = inputs.refusal_text(source, Why(why), *numbers, most=most, field=field)
     return InputStatus(
         source=source,
         state=input_state_of(memory, settings, source, now),
@@ -161,29 +202,11 @@ def input_status_of(
         else tuple(
             cause for cause in Why if 0 <= now - memory.refused_last[causes + cause] < SHOWN
         ),
-        refused_share=_refused_share(memory, source),
+        refused_share=refused / taken if taken else 0.0,
         why=None if why == NOT_KNOWN else Why(why),
-        refusal='' if why == NOT_KNOWN else _refusal_text(memory, settings, source, field),
+        refusal=refusal,
         joints=joints if memory.others[source] else None,
     )
-
-
-def _refusal_text(memory: Any, settings: Any, source: Source, field: str) -> str:
-    """Return why the last message of an input was refused."""
-    return inputs.refusal_text(
-        source,
-        Why(int(memory.refusal[source])),
-        float(memory.refusal_first[source]),
-        float(memory.refusal_second[source]),
-        most=float(settings.plausible[source]),
-        field=field,
-    )
-
-
-def _refused_share(memory: Any, source: Source) -> float:
-    taken = int(memory.span_taken[source] + memory.before_taken[source])
-    refused = int(memory.span_refused[source] + memory.before_refused[source])
-    return refused / taken if taken else 0.0
 
 
 def _rate(memory: Any, source: Source) -> float:

@@ -47,6 +47,7 @@ BUSY = (
     'publish_period, or give some axes a node of their own'
 )
 PARTS = ('Lubrication', 'Inputs', 'Surface')
+LONGEST_CODE = 10  # characters of a code; more are none
 Inputs = tuple[InputStatus, ...]
 
 
@@ -76,11 +77,18 @@ _LEVELS = {Standing.GOOD: OK, Standing.DEGRADED: WARN, Standing.LOST: STALE}
 def failed(
     node: str, axis: str, reason: str, code: Fault = Fault.NOT_CONFIGURED
 ) -> list[DiagnosticStatus]:
-    """Return the statuses of an axis that cannot work for `reason`; `node` is its full name."""
+    """Return the statuses of an axis that cannot work for a `reason`; `node` is its full name."""
     made = [DiagnosticStatus(name=f'{node.lstrip("/")}: {axis}: {part}') for part in PARTS]
     for status in made:
         _say(status, StatusSummary(ERROR, reason, code))
     return made
+
+
+def code_of(status: DiagnosticStatus) -> int:
+    """Return the code of the fault that a diagnostic status states, 0 for none."""
+    texts = [pair.value for pair in status.values if pair.key == 'Code']
+    codes = [int(text) for text in texts if len(text) < LONGEST_CODE and text.isdecimal()]
+    return codes[0] if codes else 0
 
 
 def _say(status: DiagnosticStatus, said: StatusSummary) -> None:

@@ -92,20 +92,25 @@ def findings(
     surroundings: Surroundings, inputs: Iterable[InputFacts], seconds: float
 ) -> list[str]:
     """Return a sentence for all that is wrong, after listening for `seconds` [s]."""
-    inputs = tuple(inputs)
-    found = [*_of_surroundings(surroundings)]
-    for facts in inputs:
-        found += _of_input(facts, surroundings, seconds)
-    return found + _of_rates(inputs)
-
-
-def _of_surroundings(around: Surroundings) -> list[str]:
-    found = []
+    inputs, around, found = tuple(inputs), surroundings, []
     if not around.nodes:
         found.append(f'nobody else is seen in ROS domain {around.domain}: {_elsewhere(around)}')
     if around.use_sim_time and '/clock' not in around.topics:
         found.append(
             'use_sim_time is true and nobody publishes /clock: play /clock, or set it to false'
+        )
+    for facts in inputs:
+        found += _of_input(facts, around, seconds)
+    rates = [
+        facts.heard.status.rate
+        for facts in inputs
+        if facts.heard is not None and facts.source in (Source.SPEED, Source.LOAD)
+    ]
+    total = math.fsum(rate for rate in rates if math.isfinite(rate))
+    if total > SAFE_RATE:
+        found.append(
+            f'speed and load come {total:.0f} times a second in all, safe are {SAFE_RATE:g}: '
+            'lower their rates, or give some axes a node of their own'
         )
     return found
 
@@ -131,7 +136,10 @@ def _of_input(facts: InputFacts, around: Surroundings, seconds: float) -> list[s
     found = []
     reason = link_reason(facts.link, facts.parameter)
     if reason:
-        found.append(f'{facts.parameter}: {reason}{_instead(facts, around)}')
+        # A topic that may be meant instead of one that nobody publishes.
+        topic = '' if facts.link.publishers else near_topic(facts.link, around.topics)
+        instead = f' to {topic} ({" and ".join(around.topics[topic])})' if topic else ''
+        found.append(f'{facts.parameter}: {reason}{instead}')
     if facts.problem and not (reason and facts.link.publishers):
         found.append(f'{facts.parameter}: {facts.problem}: {_readable(facts)}')
     if facts.heard is not None:
@@ -144,14 +152,6 @@ def _readable(facts: InputFacts) -> str:
     if not facts.numbers:
         return f'set {facts.parameter}.type, or {facts.parameter}.field'
     return f'set {facts.parameter}.field, numbers are {", ".join(facts.numbers)}'
-
-
-def _instead(facts: InputFacts, around: Surroundings) -> str:
-    """Return a topic that may be meant instead of one that nobody publishes."""
-    if facts.link.publishers:
-        return ''
-    topic = near_topic(facts.link, around.topics)
-    return f' to {topic} ({" and ".join(around.topics[topic])})' if topic else ''
 
 
 def near_topic(link: Link, topics: Mapping[str, tuple[str, ...]]) -> str:
@@ -193,9 +193,12 @@ def unit_doubts(facts: InputFacts, heard: Heard) -> list[str]:
     numbers = (
         f'{heard.low:.4g} to {heard.high:.4g}' if heard.low < heard.high else f'{heard.low:.4g}'
     )
+    span = facts.known
+    if facts.source is Source.TEMPERATURE:
+        span = celsius(span[0]), celsius(span[1])
     said = (
         f'{facts.parameter}: {numbers} {facts.unit} is far outside the surface '
-        f'({_range_text(facts)})'
+        f'({span[0]:.4g} to {span[1]:.4g} {SI_UNITS[facts.source]})'
     )
     if not others:
         return [f'{said}: set {facts.parameter}.scale, or build a wider surface']
@@ -212,26 +215,3 @@ def _suits(facts: InputFacts, heard: Heard, unit: str) -> bool:
         return all(low <= value <= high for value in values)
     most = PLAUSIBLE * max(map(abs, facts.known))
     return all(abs(value) <= most for value in values)
-
-
-def _range_text(facts: InputFacts) -> str:
-    assert facts.known is not None
-    low, high = facts.known
-    if facts.source is Source.TEMPERATURE:
-        low, high = celsius(low), celsius(high)
-    return f'{low:.4g} to {high:.4g} {SI_UNITS[facts.source]}'
-
-
-def _of_rates(inputs: tuple[InputFacts, ...]) -> list[str]:
-    rates = [
-        facts.heard.status.rate
-        for facts in inputs
-        if facts.heard is not None and facts.source in (Source.SPEED, Source.LOAD)
-    ]
-    total = math.fsum(rate for rate in rates if math.isfinite(rate))
-    if total <= SAFE_RATE:
-        return []
-    return [
-        f'speed and load come {total:.0f} times a second in all, safe are {SAFE_RATE:g}: lower '
-        'their rates, or give some axes a node of their own'
-    ]

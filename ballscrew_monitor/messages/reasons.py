@@ -8,7 +8,7 @@ only those to be written.
 
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 import difflib
 import enum
 import math
@@ -25,21 +25,6 @@ ROUND = (1.0, 2.0, 5.0, 10.0)  # leading digits of a timeout that is proposed
 MOST_TIMEOUT = 3600.0  # [s] as the parameter allows it
 SHARE = 0.01  # [-] of refused messages from which on they are warned of
 _FAULTS = (InputState.STALE, InputState.MISSING, InputState.BAD, InputState.UNKNOWN)
-_PLAUSIBLE = (
-    'mend the source, its unit or scale, or raise limits.plausible_speed or limits.plausible_load'
-)
-_REFUSED = {
-    Why.NOT_A_NUMBER: 'it is not a finite number, mend its source or read another field',
-    Why.FUTURE: 'its stamps lie ahead of the clock, set the clocks alike or raise max_future',
-    Why.OTHER_CLOCK: 'its stamps are of the wall clock and the node runs on simulated time, '
-    'stamp with /clock or unset use_sim_time',
-    Why.NOT_DECODED: 'its messages do not decode, record them with the type of their publisher',
-    Why.IMPLAUSIBLE: f'it is beyond the plausible range, {_PLAUSIBLE}',
-    Why.NEGATIVE: 'its stamps are negative, mend the clock of its source',
-    Why.SEVERAL: 'several publishers send it, stop all but one or set one_source to false',
-    Why.TOO_SHORT: 'its array ends before the element, let the source fill it',
-    Why.HOLE: 'its positions come less often than its timeout allows, raise speed.timeout',
-}
 Cure = Callable[[InputStatus, Link | None, str], str]
 
 
@@ -52,11 +37,8 @@ def _refused(status: InputStatus, link: Link | None, parameter: str) -> str:
 def _refusal_reason(why: Why, link: Link | None, parameter: str) -> str:
     if why is Why.SEVERAL and link is not None:
         return several_reason(link, parameter)
-    return _REFUSED[why]
-
-
-def _slow(status: InputStatus, link: Link | None, parameter: str) -> str:
-    return slow_reason(status.longest_gap, parameter)
+    code = Fault[f'INPUT_{why.name}']
+    return f'{code.said}, {code.cure}'
 
 
 def _is_refused(status: InputStatus) -> bool:
@@ -65,42 +47,21 @@ def _is_refused(status: InputStatus) -> bool:
     return bool(others) and status.refused_share >= SHARE
 
 
-_TROUBLES: tuple[tuple[Callable[[InputStatus, Link | None], Any], str | Cure, Fault], ...] = (
-    (lambda status, link: _is_refused(status), _refused, Fault.REFUSED),
-    (
-        lambda status, link: status.glitching,
-        f'samples beyond the plausible range were refused: {_PLAUSIBLE}',
-        Fault.GLITCHES,
+Happens = Callable[[InputStatus, Link | None], Any]
+_TROUBLES: dict[Fault, tuple[Happens, Cure | None]] = {
+    Fault.REFUSED: (lambda status, link: _is_refused(status), _refused),
+    Fault.GLITCHES: (lambda status, link: status.glitching, None),
+    Fault.LOST: (lambda status, link: status.losing, None),
+    Fault.SIMULATED_STAMPS: (lambda status, link: status.lag > seconds(YEAR), None),
+    Fault.LAG: (lambda status, link: status.lagging, None),
+    Fault.SLOW: (
+        lambda status, link: status.slow,
+        lambda status, link, parameter: slow_reason(status.longest_gap, parameter),
     ),
-    (
-        lambda status, link: status.losing,
-        'messages are lost on the way: lower their rate, raise publish_period, or give the node '
-        'fewer axes or more of the processor',
-        Fault.LOST,
-    ),
-    (
-        lambda status, link: status.lag > seconds(YEAR),
-        'stamps are of simulated time and the node runs on the wall clock: set use_sim_time',
-        Fault.SIMULATED_STAMPS,
-    ),
-    (
-        lambda status, link: status.lagging,
-        'stamps lag behind their arrival: set the clocks alike, or raise max_lag',
-        Fault.LAG,
-    ),
-    (lambda status, link: status.slow, _slow, Fault.SLOW),
-    (
-        lambda status, link: link is not None and link.several is None,
-        'loss is unknown, and so is whether one source alone sends it: let the topic have one '
-        'publisher, or a middleware that numbers messages',
-        Fault.SOURCES_UNKNOWN,
-    ),
-    (
-        lambda status, link: status.lost is None,
-        'loss is unknown: let the topic have one publisher that numbers its messages',
-        Fault.LOSS_UNKNOWN,
-    ),
-)
+    Fault.SOURCES_UNKNOWN: (lambda status, link: link is not None and link.several is None, None),
+    Fault.LOSS_UNKNOWN: (lambda status, link: status.lost is None, None),
+}
+"""Faults of inputs that are judged, the worst first: when each happens, and what says it."""
 
 
 class Standing(enum.Enum):
@@ -127,25 +88,23 @@ def summary(
             for status in faulty
         ]
         return Standing.LOST, '; '.join(texts), fault_code(faulty[0])
-    for happens, text, code in _TROUBLES:
+    for code, (happens, cure) in _TROUBLES.items():
         found = [status for status in inputs if happens(status, links.get(status.source))]
         if found:
-            return Standing.DEGRADED, _trouble(axis, found, links, text), code
-    remarks = _remarks(axis, inputs, links)
-    return Standing.GOOD, '; '.join([Standing.GOOD.value, *remarks]), Fault.NONE
-
-
-def _remarks(
-    axis: str, inputs: tuple[InputStatus, ...], links: Mapping[Source, Link]
-) -> Iterator[str]:
-    """Yield what is worth a word of inputs that are well."""
+            return (
+                Standing.DEGRADED,
+                _trouble(axis, found, links, cure or f'{code.said}: {code.cure}'),
+                code,
+            )
+    remarks = [Standing.GOOD.value]
     few = [status for status in inputs if status.refusing]
     if few:
-        yield f'a few {_trouble(axis, few, links, _refused)}'
+        remarks.append(f'a few {_trouble(axis, few, links, _refused)}')
     for status in inputs:
         link = links.get(status.source)
         if link is not None and link.several:
-            yield f'{status.source.name.lower()} comes from {senders(link)}'
+            remarks.append(f'{status.source.name.lower()} comes from {senders(link)}')
+    return Standing.GOOD, '; '.join(remarks), Fault.NONE
 
 
 def _parameter(axis: str, source: Source) -> str:

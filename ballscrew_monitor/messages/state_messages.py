@@ -13,11 +13,12 @@ from typing import Any
 
 from ballscrew_monitor.core import conversions, judgement
 from ballscrew_monitor.core import state as states
-from ballscrew_monitor.core.advice import Advice
+from ballscrew_monitor.core.advice import CARRY
 from ballscrew_monitor.core.conversions import celsius, Direction, SECOND, seconds
 from ballscrew_monitor.core.inputs import InputStatus, Source
 from ballscrew_monitor.core.judgement import (
     Code,
+    EventEnd,
     Gate,
     Level,
     PointSource,
@@ -36,7 +37,6 @@ from surrogate.surface import Regime, Surface
 
 TIERS = {'closed_form': msg.PointResult.TIER_CLOSED_FORM, 'full': msg.PointResult.TIER_FULL}
 NAN = math.nan
-NO_ADVICE = Advice()
 
 
 def _names(message: type[Any], kind: str) -> tuple[str, ...]:
@@ -104,39 +104,44 @@ def findings_of(row: Any, limits: judgement.Limits, reason: str) -> list[msg.Fin
     """Return what is wrong with the instant of a row; `reason` is why it has no answer."""
     rcs, efficiency = float(row.rcs), float(row.efficiency)
     still, light = row.gates & STANDSTILL, row.gates & LIGHT_LOAD
-    findings: list[judgement.Finding] = []
+    findings: list[msg.Finding] = []
     if row.zone == Zone.OUTSIDE and rcs >= limits.rcs:
-        findings.append(judgement.violation(Code.RCS_HIGH, rcs, limits.rcs))
+        findings.append(violation(Code.RCS_HIGH, rcs, limits.rcs))
     if row.zone == Zone.OUTSIDE and not light and efficiency < limits.efficiency:
+        derived = bool(row.derived)
         findings.append(
-            judgement.violation(
-                Code.EFFICIENCY_LOW, efficiency, limits.efficiency, derived=bool(row.derived)
-            )
+            violation(Code.EFFICIENCY_LOW, efficiency, limits.efficiency, derived=derived)
         )
     lost = row.validity == PointValidity.NO_INPUT
     if row.zone == Zone.UNKNOWN and (not still or lost):
         findings.append(
-            judgement.Finding(
-                code=Code.INPUT_LOST if lost else Code.OUT_OF_RANGE,
-                severity=Severity.ERROR if lost else Severity.WARN,
-                text=reason or 'the surface holds no number here',
+            finding(
+                Code.INPUT_LOST if lost else Code.OUT_OF_RANGE,
+                Severity.ERROR if lost else Severity.WARN,
+                reason or 'the surface holds no number here',
             )
         )
-    return [finding_message(finding) for finding in findings]
+    return findings
 
 
-def finding_message(finding: judgement.Finding, advice: Advice = NO_ADVICE) -> msg.Finding:
-    """Return a finding as a message, with the advice on it."""
-    return msg.Finding(
-        code=int(finding.code),
-        severity=int(finding.severity),
-        value=float(finding.value),
-        limit=float(finding.limit),
-        unit=finding.unit,
-        text=finding.text,
-        target_speed=float(advice.target_speed),
-        target_load=NAN,  # no load is ever advised
-    )
+def finding(code: Code, severity: Severity, text: str) -> msg.Finding:
+    """Return a finding that has no numbers; no load is ever advised."""
+    nothing = dict.fromkeys(('value', 'limit', 'target_speed', 'target_load'), NAN)
+    return msg.Finding(code=int(code), severity=int(severity), unit='-', text=text, **nothing)
+
+
+def violation(code: Code, value: float, limit: float, *, derived: bool = False) -> msg.Finding:
+    """Return the finding that a criterion is not met [-]; a `derived` load is named."""
+    if code is Code.RCS_HIGH:
+        text = f'asperities carry too much: RCS {value:.3g}, limit {limit:.3g}'
+    elif code is not Code.UNKNOWN:
+        text = f'too much power is lost: efficiency {value:.3g}, limit {limit:.3g}'
+        text += ', efficiency judged from a load derived from the motor torque' if derived else ''
+    else:
+        return finding(code, Severity.UNKNOWN, '')
+    message = finding(code, Severity.WARN, text)
+    message.value, message.limit = float(value), float(limit)
+    return message
 
 
 def fill_window(message: msg.WindowStatistics, memory: Any) -> None:
@@ -197,7 +202,16 @@ def fill_state(message: msg.BallScrewState, row: Any, monitor: Monitor) -> tuple
     fill_totals(message.totals, monitor.totals)
     for part, status in zip(message.inputs, inputs):
         fill_input(part, status)
-    _fill_judgement(message, row, monitor.settings.limits, reason)
+    limits = monitor.settings.limits
+    message.level, message.zone = int(row.level), int(row.zone)
+    fill_time(message.level_since, int(row.level_since))
+    message.event_id = int(row.event_id)
+    message.findings = findings_of(row, limits, reason)
+    message.active_gates = [int(gate) for gate in Gate if gate and row.gates & 1 << gate - 1]
+    message.rcs_limit = float(limits.rcs)
+    message.efficiency_limit = float(limits.efficiency)
+    message.light_load_limit = float(limits.light_load)
+    message.standstill_limit = float(limits.standstill_speed)
     message.judged = int(monitor.memory.judged)
     measured = row.motor_torque_source == PointSource.MEASURED
     message.measured_torque = torque = float(row.motor_torque) if measured else NAN
@@ -213,21 +227,6 @@ def fill_shelving(message: msg.BallScrewState, shelving: states.Shelving) -> Non
     message.shelved = shelving.until != 0
     fill_time(message.shelved_until, shelving.until)
     message.shelve_reason = shelving.reason
-
-
-def _fill_judgement(
-    message: msg.BallScrewState, row: Any, limits: judgement.Limits, reason: str
-) -> None:
-    message.level = int(row.level)
-    fill_time(message.level_since, int(row.level_since))
-    message.event_id = int(row.event_id)
-    message.zone = int(row.zone)
-    message.findings = findings_of(row, limits, reason)
-    message.active_gates = [int(gate) for gate in Gate if gate and row.gates & 1 << gate - 1]
-    message.rcs_limit = float(limits.rcs)
-    message.efficiency_limit = float(limits.efficiency)
-    message.light_load_limit = float(limits.light_load)
-    message.standstill_limit = float(limits.standstill_speed)
 
 
 def plain_values(state: msg.BallScrewState) -> dict[str, float | str | bool]:
@@ -250,10 +249,16 @@ def out_of_zone_message(axis: str, event: Event, *, shelved: bool) -> msg.OutOfZ
         active=event.active,
         duration=seconds(event.stamp - event.start),
         worst_value=float(event.worst_value),
-        cause=finding_message(event.cause, event.advice),
-        advice=event.ending or event.advice.text,
+        cause=violation(event.code, event.worst_value, event.limit, derived=event.derived),
+        advice=event.ending.text or event.advice.text,
         shelved=shelved,
+        ending=int(event.ending.kind),
+        carry=CARRY.index(event.advice.carry),
     )
+    message.cause.target_speed = float(event.advice.target_speed)
+    if event.ending.kind is EventEnd.ACKNOWLEDGED:
+        message.acknowledged_by = event.ending.name
+        message.acknowledge_reason = event.ending.reason
     message.header.frame_id = axis
     fill_time(message.header.stamp, event.stamp)
     fill_time(message.start, event.start)

@@ -7,10 +7,10 @@ import functools
 from typing import Any
 
 from ballscrew_monitor.core.conversions import clock_text, seconds
-from ballscrew_monitor.core.judgement import Level
-from ballscrew_monitor.core.state import Acknowledgement, NAMELESS, NOT_SHELVED, Shelving
+from ballscrew_monitor.core.judgement import EventEnd, Level
+from ballscrew_monitor.core.state import Ending, NAMELESS, NOT_SHELVED, Shelving
 from ballscrew_monitor.judge.records import Row
-from ballscrew_monitor.messages.state_messages import out_of_zone_message
+from ballscrew_monitor.messages.state_messages import out_of_zone_message, violation
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts, totals_facts
 from ballscrew_monitor.settings.axis import Axis
@@ -81,19 +81,20 @@ class Alarm:
         self.publish()
         if event.active:
             advice = f'; {event.advice.text}' if event.advice.text else ''
-            self._warn(f'event {event.number}: {event.cause.text}{advice}')
+            cause = violation(event.code, event.worst_value, event.limit, derived=event.derived)
+            self._warn(f'event {event.number}: {cause.text}{advice}')
         elif monitor.level is Level.OK:
             self._say(f'event {event.number} is over')
 
     def end(self, reason: str) -> bool:
         """End the event that is active, because nothing is judged any more; tell if one was."""
         monitor = self._axis.monitor
-        why = f'ended by the node, not by the axis, nothing is judged any more: {reason}'
-        ended = monitor.acknowledge(self._now, why) is not None
+        ending = Ending(kind=EventEnd.STOPPED, reason=reason)
+        ended = monitor.acknowledge(self._now, ending) is not None
         if ended:
             # Past the lifecycle: the publisher of an inactive node is mute.
             self._speak(functools.partial(Publisher.publish, self._publisher))
-            self._warn(f'event {monitor.event.number}: {why}')
+            self._warn(f'event {monitor.event.number}: {ending.text}')
             self._note_event(Kind.EVENT_END)
         self.remember()
         return ended
@@ -102,9 +103,9 @@ class Alarm:
         """Wait until all subscribers have the last message, at most for a `duration`."""
         self._publisher.wait_for_all_acked(duration)
 
-    def acknowledge(self, by: Acknowledgement = NAMELESS) -> None:
+    def acknowledge(self, by: Ending = NAMELESS) -> None:
         """Set the level back to UNKNOWN and end the event, because somebody has seen it."""
-        ended = self._axis.monitor.acknowledge(self._now, by.ending)
+        ended = self._axis.monitor.acknowledge(self._now, by)
         number = self._axis.monitor.event.number
         self._note(Kind.ACKNOWLEDGE, event=number, name=by.name, reason=by.reason)
         if ended is not None:
@@ -113,7 +114,7 @@ class Alarm:
 
     def reset_totals(self) -> None:
         """Set the sums to zero; what they were is in the log."""
-        totals = self._axis.monitor.kept.totals
+        totals = self._axis.monitor.totals
         self._axis.monitor.reset_totals()
         self._note(Kind.RESET_TOTALS, totals=totals_facts(totals))
 
@@ -141,19 +142,19 @@ class Alarm:
 
     def remember(self) -> None:
         """Keep the sums, the event and the shelving."""
-        self._kept.remember(self._axis.name, self._axis.monitor.kept)
+        self._kept.remember(self._axis.monitor.kept)
 
     @property
     def _now(self) -> int:
         return self._node.get_clock().now().nanoseconds
 
     def _note_event(self, kind: Kind, **facts: Any) -> None:
-        event = self._axis.monitor.event
-        self._note(kind, stamp=event.stamp, **event_facts(event), **facts)
+        monitor = self._axis.monitor
+        said = event_facts(monitor.kept, monitor.event.advice.text)
+        self._note(kind, stamp=monitor.event.stamp, **said, **facts)
 
     def _note(self, kind: Kind, **facts: Any) -> None:
-        memory = self._axis.monitor.kept
-        self._kept.note(kind, self._axis.name, memory=memory, **facts)
+        self._kept.note(kind, self._axis.name, record=self._axis.monitor.kept, **facts)
 
     # Two functions: rclpy ties one severity to one place in the code.
     def _say(self, text: str) -> None:

@@ -159,42 +159,38 @@ class AxisHealths:
         while worker.damage:
             self._kept.state.damage.append(worker.damage.popleft())
         while worker.done:
-            made = worker.done.popleft()
-            name = made.health.axis
-            self._last[name] = made.health
-            self._latched[name].health.publish(made.message)
-            self._record(f'~/{name}/health', made.message)
+            health, message = worker.done.popleft()
+            name = health.axis
+            self._last[name] = health
+            self._latched[name].health.publish(message)
+            self._record(f'~/{name}/health', message)
 
     def _serve(self, axis: str, request: Any, response: Any) -> Any:
+        """Name a baseline, and assess with it soon; answer what was done."""
         try:
-            response.message = self._name_baseline(axis, request)
-            response.success = True
+            if axis not in self._keepers or self._worker is None:
+                raise InputError(
+                    f'the health of axis {axis} is not followed: the node must be active, '
+                    f'{axis}.health.enabled true, and state_dir not empty'
+                )
+            self._worker.take_store()
+            said = self._keepers[axis].name_baseline(
+                self._now,
+                begin=stamp_of(request.begin),
+                end=stamp_of(request.end),
+                running_in=request.running_in,
+                reason=request.reason,
+                screw=self._publishers[axis].surface.screw_name,
+            )
+            self._kept.note(Kind.SET_BASELINE, axis, reason=request.reason)
+            self._node.get_logger().info(f'axis {axis}: {said}: {request.reason}')
+            self._due[axis] = 0.0
+            response.success, response.message = True, said
         except InputError as error:
             response.message = str(error)
         except Exception as error:  # noqa: BLE001 such as a store that cannot be written
             response.message = f'the baseline is not kept: {error}'
         return response
-
-    def _name_baseline(self, axis: str, request: Any) -> str:
-        """Name a baseline, and assess with it soon; return what was done."""
-        if axis not in self._keepers or self._worker is None:
-            raise InputError(
-                f'the health of axis {axis} is not followed: the node must be active, '
-                f'{axis}.health.enabled true, and state_dir not empty'
-            )
-        self._worker.take_store()
-        said = self._keepers[axis].name_baseline(
-            self._now,
-            begin=stamp_of(request.begin),
-            end=stamp_of(request.end),
-            running_in=request.running_in,
-            reason=request.reason,
-            screw=self._publishers[axis].surface.screw_name,
-        )
-        self._kept.note(Kind.SET_BASELINE, axis, reason=request.reason)
-        self._node.get_logger().info(f'axis {axis}: {said}: {request.reason}')
-        self._due[axis] = 0.0
-        return said
 
     def _policy(self, name: str) -> WarningPolicy:
         return WarningPolicy(self._values[f'{name}.warning.policy'])

@@ -268,16 +268,15 @@ class AxisPublisher:
         results: list[PointResult] | None = []
         for begin in range(0, len(points), AT_ONCE):
             end = begin + AT_ONCE
-            some = self.guarded('an evaluation', self._evaluated, points[begin:end])
+            some: list[PointResult] | None = self.guarded(
+                'an evaluation', list, map(self._evaluate, points[begin:end])
+            )
             results = None if results is None or some is None else results + some
             meanwhile()
         if results is None:
             response.message = self.defect
         else:
             response.success, response.results = True, results
-
-    def _evaluated(self, points: Sequence[OperatingPoint]) -> list[PointResult]:
-        return [self._evaluate(one) for one in points]
 
     def _evaluate(self, point: OperatingPoint) -> PointResult:
         result = PointResult()
@@ -358,7 +357,7 @@ class AxisPublisher:
             self.axis.name,
             self._last,
             self._inputs,
-            self.axis.monitor.event.cause.code,
+            self.axis.monitor.event.code,
             self.axis.surface,
             links=links,
             clock_stands=stood > self.settings.timeouts[Source.SPEED],
@@ -368,7 +367,7 @@ class AxisPublisher:
         )
 
     def _summaries(self) -> tuple[diagnostics.StatusSummary, ...]:
-        cause = self.axis.monitor.event.cause.code
+        cause = self.axis.monitor.event.code
         return diagnostics.summaries(self._message, self._inputs, cause, self._links, self._policy)
 
     @property

@@ -13,7 +13,7 @@ import functools
 from typing import Any
 
 from ballscrew_monitor.core.conversions import clock_text
-from ballscrew_monitor.core.state import Acknowledgement, acknowledgement, NAMELESS, shelve
+from ballscrew_monitor.core.state import acknowledgement, Ending, NAMELESS, shelve
 from ballscrew_monitor.messages.state_messages import fill_time
 from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.settings.axis import reload_surface
@@ -112,7 +112,7 @@ class AxisServices:
             publisher.guarded('a reset of its totals', publisher.alarm.reset_totals)
         return f'set the totals to zero of {_names(publishers)}'
 
-    def _acknowledge(self, publishers: Publishers, by: Acknowledgement = NAMELESS) -> str:
+    def _acknowledge(self, publishers: Publishers, by: Ending = NAMELESS) -> str:
         """Set the levels back to UNKNOWN and end the events."""
         for publisher in publishers.values():
             publisher.guarded('an acknowledgement', publisher.alarm.acknowledge, by)

@@ -162,7 +162,14 @@ class EventRecorder:
             self._lost_at = steady if self._lost_at is None else self._lost_at
             if steady - self._lost_at < self._pause:
                 return ''
-            self._restart(steady)
+            assert self._start is not None
+            self._started_at = steady
+            self.close()
+            self._process, self._lost_at = self._start(), None
+            self._pause = min(2 * self._pause, LONGEST_RESTART)
+            self._topics.clear()
+            self._notes.clear()
+            self._hole = True
         mended = self._hole and not self._process.lost and self._process.flush()
         if mended:
             self._hole, self._hole_over = False, steady
@@ -177,16 +184,6 @@ class EventRecorder:
         if self._process is not None:
             self._process.close()
             self._process = None
-
-    def _restart(self, steady: int) -> None:
-        assert self._start is not None
-        self._started_at = steady
-        self.close()
-        self._process, self._lost_at = self._start(), None
-        self._pause = min(2 * self._pause, LONGEST_RESTART)
-        self._topics.clear()
-        self._notes.clear()
-        self._hole = True
 
     def _note(self, joints: OtherJoints) -> int:
         """Return the number of the joints that a message names; one kind too many has none."""

@@ -16,7 +16,7 @@ from pathlib import Path
 import queue
 import sqlite3
 import threading
-from typing import Any, NamedTuple
+from typing import Any
 
 from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.health.assess import HealthSettings
@@ -106,13 +106,6 @@ class Job:
     assesses: bool
 
 
-class Assessed(NamedTuple):
-    """The health of an axis, and the message that says it."""
-
-    health: Health
-    message: AxisHealth
-
-
 class HealthWorker:
     """A thread that keeps and assesses; it begins with the first job, and holds the store."""
 
@@ -121,7 +114,7 @@ class HealthWorker:
         self.store = store
         self.problem = ''
         self.damage: deque[str] = deque()  # sentences on what was set aside
-        self.done: deque[Assessed] = deque(maxlen=MOST_JOBS)
+        self.done: deque[tuple[Health, AxisHealth]] = deque(maxlen=MOST_JOBS)  # and its message
         self._is_held = is_held
         self._jobs: queue.Queue[Job | None] = queue.Queue(MOST_JOBS)
         self._companions: dict[str, Companions | str] = {}
@@ -175,14 +168,10 @@ class HealthWorker:
         self.take_store()
         job.keeper.keep(today)
         if job.assesses and not self._ending:
-            companions = self._companions_of(job)
+            known = job.surface.base_sha256
+            if known not in self._companions:  # the surfaces at other preloads
+                self._companions[known] = companions_beside(job.file(), job.surface)
+            companions = self._companions[known]
             made = job.keeper.assess(job.now, job.surface, companions, job.settings, over=job.over)
             said = health_message(made, surface_id=surface_id(job.surface), policy=job.policy)
-            self.done.append(Assessed(made, said))
-
-    def _companions_of(self, job: Job) -> Companions | str:
-        """Return the surfaces at other preloads; they are looked for once for each surface."""
-        known = job.surface.base_sha256
-        if known not in self._companions:
-            self._companions[known] = companions_beside(job.file(), job.surface)
-        return self._companions[known]
+            self.done.append((made, said))

@@ -144,19 +144,16 @@ class Intake(Waitable):
             types = {publisher.type_name for publisher in publishers_on(self._node, name)}
             if known is not None:
                 types = {known.type_name}
-            if len(types) == 1:
-                self._close(axis, one, types.pop())
-
-    def _close(self, axis: Axis, one: OpenInput, type_name: str) -> None:
-        """Read an open input as messages of a type, or note why that does not work."""
-        self._problems.pop((axis.name, one.source), None)
-        try:
-            closed = one.close(type_name)
-        except InputError as error:
-            self._problems[axis.name, one.source] = str(error)
-            return
-        self._open.remove((axis, one))
-        self._read(axis, closed)
+            if len(types) != 1:
+                continue
+            self._problems.pop((axis.name, one.source), None)
+            try:
+                closed = one.close(types.pop())
+            except InputError as error:
+                self._problems[axis.name, one.source] = str(error)
+                continue
+            self._open.remove((axis, one))
+            self._read(axis, closed)
 
     def __enter__(self) -> None:
         """Keep what the executor waits for, also when it is closed meanwhile."""
@@ -264,7 +261,10 @@ class Intake(Waitable):
 
     def drain(self) -> bool:
         """Hand over all that waits, oldest first; return whether that was anything."""
-        begin, step = time.monotonic(), self._system_step()
+        begin, step = time.monotonic(), 0
+        if self._clock is None:  # by how much [ns] the clock of the system was set
+            before = time.monotonic_ns()
+            step = self._system_steps.take(time.time_ns(), before, time.monotonic_ns())
         arrivals = self._waiting()
         if not arrivals:
             self._hand_over([], step)
@@ -288,18 +288,21 @@ class Intake(Waitable):
         self._worked(time.monotonic() - begin, len(arrivals))
         return True
 
-    def _system_step(self) -> int:
-        """Return by how much [ns] the clock of the system was set since the last look, 0: not."""
-        if self._clock is not None:
-            return 0
-        before = time.monotonic_ns()
-        return self._system_steps.take(time.time_ns(), before, time.monotonic_ns())
-
     def _hand_over(self, heard: list[Heard], step: int) -> None:
-        """Hand over what was heard as one turn, and begin the next one; note a step after it."""
+        """
+        Hand over what was heard as one turn, and begin the next one; note a step after it.
+
+        Steps of the clock are left out of what has begun, where the speed has come again.
+
+        """
         if heard:
             turn = ordered([event for one in heard for event in self._judged(one)])
-            self._leave_out_steps(turn)
+            for axis, event in turn if self._clock_steps else ():
+                if isinstance(event, InputSample) and event.source is Source.SPEED:
+                    leap = self._clock_steps.pop(axis.name, 0)
+                    # Back: the stamps alone tell the judgement.
+                    if leap > 0 and axis.monitor.leave_out(leap, event):
+                        self._left_out(axis, leap)
             self._recorder.hear(heard)
             self._recorder.take(turn, heard[-1][1], time.monotonic_ns())
             self._recorder.flush()  # whatever becomes of the node with these events
@@ -311,15 +314,6 @@ class Intake(Waitable):
             for axis in self._axes:
                 self._clock_steps[axis.name] = self._clock_steps.get(axis.name, 0) + step
             self._stepped(step, self.now)
-
-    def _leave_out_steps(self, turn: list[AxisEvent]) -> None:
-        """Leave steps of the clock out of what has begun, where the speed has come again."""
-        for axis, event in turn if self._clock_steps else ():
-            if isinstance(event, InputSample) and event.source is Source.SPEED:
-                step = self._clock_steps.pop(axis.name, 0)
-                # Back: the stamps alone tell the judgement.
-                if step > 0 and axis.monitor.leave_out(step, event):
-                    self._left_out(axis, step)
 
     def _show(self, shown: Any) -> int:
         """Take a time of `/clock`; return by how much it leaps [ns], 0 if it goes on as before."""

@@ -5,7 +5,7 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Protocol
 
-from ballscrew_monitor.core.memory import after_restart, AxisRecord, Memory, memory_of, record_of
+from ballscrew_monitor.core.memory import after_restart, AxisRecord
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_records import entry_of, event_facts, Kind
@@ -65,21 +65,20 @@ class KeptAxes:
         axis: str | None = None,
         *,
         stamp: int | None = None,
-        memory: Memory | None = None,
+        record: AxisRecord | None = None,
         **facts: Any,
     ) -> None:
-        """Write an entry and the memory of its axis; its stamp [ns] is now unless stated."""
+        """Write an entry and the record of its axis; its stamp [ns] is now unless stated."""
         if self.state.folder is None:
             return
         if stamp is None:
             stamp = self._node.get_clock().now().nanoseconds
-        record = None if axis is None or memory is None else record_of(axis, memory)
         self.state.keep(record, entry_of(kind, axis, stamp, facts))
 
-    def remember(self, axis: str, memory: Memory) -> None:
-        """Keep what is remembered of an axis."""
+    def remember(self, record: AxisRecord) -> None:
+        """Keep the record of an axis."""
         if self.state.folder is not None:
-            self.state.keep(record_of(axis, memory))
+            self.state.keep(record)
 
     def restore(self, axes: Iterable[str] | None = None) -> None:
         """Take up what was kept of all axes, or late of some, and say what came of that."""
@@ -88,26 +87,28 @@ class KeptAxes:
             publisher = self._publishers[name]
             if said := publisher.guarded('what was kept of it', self._restore, publisher, late):
                 self._node.get_logger().info(f'axis {name}: {said}')
-        self._log()
+        # What is wrong is logged when that has changed.
+        problem, before = self.state.problem, self._said
+        self._said = problem
+        if problem and problem != before:
+            self._node.get_logger().warning(f'state_dir: {problem}')
+        elif before and not problem:
+            self._node.get_logger().info('state_dir: all is kept again')
 
     def _restore(self, publisher: KeptAxis, late: bool) -> str:
+        """Take up what is known from before; an event that was interrupted is over."""
         axis = publisher.axis
-        axis.monitor.take_up(self._recall(axis.name, late=late))
+        before = self.state.recall(AxisRecord(axis=axis.name), late=late)
+        record = after_restart(before)
+        if record is not before:
+            facts = event_facts(record)
+            self.note(Kind.EVENT_END, axis.name, stamp=record.stamp_ns, record=record, **facts)
+        axis.monitor.take_up(record)
         self._remember(axis)
         return publisher.restore(late=late)
 
     def _remember(self, axis: Axis) -> None:
-        self.remember(axis.name, axis.monitor.kept)
-
-    def _recall(self, axis: str, *, late: bool) -> Memory:
-        """Return what is known of an axis from before; an event that was interrupted is over."""
-        before = memory_of(self.state.recall(AxisRecord(axis=axis), late=late))
-        memory = after_restart(before)
-        if memory is not before:
-            event = memory.event
-            facts = event_facts(event)
-            self.note(Kind.EVENT_END, axis, stamp=event.stamp, memory=memory, **facts)
-        return memory
+        self.remember(axis.monitor.kept)
 
     def remember_all(self) -> None:
         """Keep the sums, events and shelvings of all axes."""
@@ -133,12 +134,3 @@ class KeptAxes:
         self._looks += 1
         if self._looks % round(PERIOD / LOOK) == 0:
             self.remember_all()
-
-    def _log(self) -> None:
-        """Log what is wrong when that has changed."""
-        problem, before = self.state.problem, self._said
-        self._said = problem
-        if problem and problem != before:
-            self._node.get_logger().warning(f'state_dir: {problem}')
-        elif before and not problem:
-            self._node.get_logger().info('state_dir: all is kept again')

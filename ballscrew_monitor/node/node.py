@@ -8,6 +8,7 @@ import traceback
 from typing import Any
 
 from ballscrew_monitor.core.conversions import nanoseconds, seconds
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.inputs import InputSample, Refusal
 from ballscrew_monitor.core.tick_grid import TickGrid
 from ballscrew_monitor.judge.records import Row
@@ -192,22 +193,15 @@ class BallscrewMonitor(LifecycleNode):
             self._guard,
             self._heartbeat.vitals.work,
             self._on_step,
-            self._on_left_out,
+            lambda axis, step: self._recording.snapshot([axis.name], 'clock'),
         )
+        # A timer on the system clock stops when that is set back, for as long as it was set back.
+        clock = self.get_clock() if self.get_parameter('use_sim_time').value else self._steady
         self._tick_timer = self.create_timer(
-            self._values['tick_period'], self._on_tick, clock=self._tick_clock()
+            self._values['tick_period'], self._on_tick, clock=clock
         )
         self._publish_diagnostics()
         return result
-
-    def _tick_clock(self) -> Clock:
-        """
-        Return what the ticks are timed by: simulated time at its own rate, or the steady clock.
-
-        A timer on the system clock stops when that is set back, for as long as it was set back.
-
-        """
-        return self.get_clock() if self.get_parameter('use_sim_time').value else self._steady
 
     @_reported
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -284,10 +278,6 @@ class BallscrewMonitor(LifecycleNode):
         text = f'the clock was set {step_text(step)}'
         self.get_logger().warning(text)
         self._kept.note(Kind.CLOCK_STEP, stamp=now, by_s=seconds(step), text=text)
-
-    def _on_left_out(self, axis: Axis, step: int) -> None:
-        """Let a recording know that a step [ns] was left out of what has begun."""
-        self._recording.snapshot([axis.name], 'clock')
 
     def _guard(
         self, axis: Axis, place: str, call: Callable[..., Any], *args: Any, **named: Any
@@ -366,7 +356,8 @@ class BallscrewMonitor(LifecycleNode):
                 links = self._intake.links(publisher.axis) if self._intake else None
                 made += publisher.statuses(links=links, stood=stood)
             else:
-                made += diagnostics.failed(node, name, self._failed.get(name, self._reason))
+                code = Fault.NOT_BUILT if name in self._failed else Fault.NOT_CONFIGURED
+                made += diagnostics.failed(node, name, self._failed.get(name, self._reason), code)
         return made + self._healths.statuses(axes) + self._recording.statuses()
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:

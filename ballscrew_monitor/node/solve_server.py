@@ -28,6 +28,7 @@ from ballscrew_monitor.messages.state_messages import fill_result, read_point, T
 from ballscrew_monitor.messages.unjudged import reason_of
 from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.node.solver import Done, End, Job, MOST_WAITING, Solver, Step
+from ballscrew_monitor.settings.parameters import REFUSALS
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import PointResult
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
@@ -81,7 +82,7 @@ class SolveServer:
             node,
             SolveOperatingPoint,
             '~/solve',
-            execute_callback=_answer_nothing,
+            execute_callback=lambda handle: SolveOperatingPoint.Result(),  # never asked for
             goal_callback=self._on_goal,
             handle_accepted_callback=self._on_accepted,
             cancel_callback=lambda handle: CancelResponse.ACCEPT,
@@ -107,7 +108,8 @@ class SolveServer:
         if not refusal:
             return GoalResponse.ACCEPT
         # Each is logged, since who has sent the goal reads the reason there.
-        self._node.get_logger().warning(f'solve of axis {request.axis} rejected: {refusal}')
+        logger = self._node.get_logger().get_child(REFUSALS)
+        logger.warning(f'solve of axis {request.axis} rejected: {refusal}')
         return GoalResponse.REJECT
 
     def _wanted(self, request: Any) -> tuple[AxisPublisher | str, Row | str]:
@@ -179,11 +181,6 @@ class SolveServer:
         self._server.notify_execute(handle, functools.partial(_end_goal, result=result, end=end))
 
 
-def _answer_nothing(handle: ServerGoalHandle) -> Any:
-    """Stand where rclpy wants a callback; goals are answered by `SolveServer`."""
-    return SolveOperatingPoint.Result()
-
-
 def _end_goal(handle: ServerGoalHandle, *, result: Any, end: End) -> Any:
     if end is End.SOLVED:
         handle.succeed()
@@ -241,7 +238,13 @@ def result_message(axis: AxisPublisher, row: Row, done: Done) -> Any:
     if done.end is End.SOLVED and done.result['converged']:
         load = solved_at(row).opposing_load
         full = read_solved(done.result, opposing_load=load, lead=axis.surface.lead)
-        _fill_full(result, axis, full, answer)
+        solved = with_numbers(answer, full, rcs_limit=axis.settings.limits.rcs)
+        fill_result(result.full, solved, PointResult.TIER_FULL, '')
+        _fill_comparison(result, compare(full, answer))
+        result.efficiency_stderr = float(full.efficiency_stderr)
+        result.rcs_stderr = float(full.rcs_stderr)
+        result.success = True
+        result.corrected, result.correction = axis.correct(answer, full)
     return result
 
 
@@ -252,16 +255,6 @@ def read_solved(solved: Mapping[str, Any], *, opposing_load: float, lead: float)
     return solved_point(
         *(means, spread, spread), worst_contact=worst, opposing_load=opposing_load, lead=lead
     )
-
-
-def _fill_full(result: Any, axis: AxisPublisher, full: SurfacePoint, answer: Row) -> None:
-    solved = with_numbers(answer, full, rcs_limit=axis.settings.limits.rcs)
-    fill_result(result.full, solved, PointResult.TIER_FULL, '')
-    _fill_comparison(result, compare(full, answer))
-    result.efficiency_stderr = float(full.efficiency_stderr)
-    result.rcs_stderr = float(full.rcs_stderr)
-    result.success = True
-    result.corrected, result.correction = axis.correct(answer, full)
 
 
 def _fill_comparison(result: Any, comparison: Comparison) -> None:

@@ -11,16 +11,16 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import celsius, seconds
 from ballscrew_monitor.core.fault_codes import cause_code
-from ballscrew_monitor.core.memory import AxisRecord, check_record, Memory, record_of
-from ballscrew_monitor.core.state import Event, TIMES, Totals
+from ballscrew_monitor.core.judgement import Code, EventEnd, Severity
+from ballscrew_monitor.core.memory import AxisRecord, check_record
+from ballscrew_monitor.core.state import Ending, TIMES, Totals
 from ballscrew_monitor.judge.full_point import KeptSolve, Solve
 from ballscrew_monitor.judge.records import Row
+from ballscrew_monitor.messages.state_messages import violation
 from surrogate.files import InputError, to_json
 from surrogate.limits import read_json
 from surrogate.store import Table
 
-EVENT = tuple('event start_ns worst_value cause severity value limit unit text ending'.split())
-"""What an entry says of an event, by the names of its record."""
 SOLVE = {
     'speed': 'speed_rad_s',
     'opposing_load': 'opposing_load_N',
@@ -121,13 +121,24 @@ def by_key(records: Iterable[Record]) -> Records:
     return {(type(one), one.axis): one for one in records}
 
 
-def event_facts(event: Event) -> dict[str, Any]:
-    """Return what an entry says of an event, besides its stamp."""
-    record = record_of('', Memory(event=event))
-    return {name: getattr(record, name) for name in EVENT} | {
-        'code': int(cause_code(event.cause.code)),
-        'duration_s': seconds(event.stamp - event.start),
-        'advice': event.advice.text,
+def event_facts(record: AxisRecord, advice: str = '') -> dict[str, Any]:
+    """Return what an entry says of the event of an axis and the advice on it."""
+    code, kind = Code[record.cause], EventEnd[record.ending]
+    cause = violation(code, record.worst_value, record.limit, derived=record.derived)
+    return {
+        'event': record.event,
+        'start_ns': record.start_ns,
+        'worst_value': record.worst_value,
+        'cause': record.cause,
+        'severity': Severity(cause.severity).name,
+        'value': cause.value,
+        'limit': cause.limit,
+        'unit': cause.unit,
+        'text': cause.text,
+        'ending': Ending(kind=kind, name=record.ended_by, reason=record.end_reason).text,
+        'code': int(cause_code(code)),
+        'duration_s': seconds(record.stamp_ns - record.start_ns),
+        'advice': advice,
     }
 
 

@@ -127,7 +127,7 @@ def open_topic(
     subscription = node.create_subscription(
         kind,
         name,
-        _never_called,
+        lambda message: None,  # never called: the intake takes the messages itself
         qos or input_qos(),
         callback_group=group,
         # Only some middlewares would name one of another type: the graph does.
@@ -174,7 +174,3 @@ def _count(loss: LossCounter, event: Any) -> None:
     """
     if event.total_count > 1 or event.current_count != loss.publishers:
         loss.match(event.current_count)
-
-
-def _never_called(message: Any) -> None:
-    """Stand where rclpy wants a callback; the intake takes the messages itself."""

@@ -47,7 +47,11 @@ def page_command(args: argparse.Namespace, nominal: Path) -> int:
     with interrupts(threading.Event()) as stopped, bound_socket(options) as bound:
         options = dataclasses.replace(options, port=bound.getsockname()[1])
         with contextlib.ExitStack() as stack:
-            begin = _begin_log(args, nominal) if args.log else _begin_node(options, stack)
+            if args.log:
+                begin = _begin_log(args, nominal)
+            else:
+                node = stack.enter_context(started_node('ballscrew_page'))
+                begin = lambda hub: LiveSource(node, hub, options)  # noqa: E731
             asyncio.run(_serve(options, bound, begin, lambda: bool(stopped)))
     return DONE
 
@@ -76,12 +80,6 @@ def _begin_log(args: argparse.Namespace, nominal: Path) -> Begin:
         axes = recorded_axes(bag, parameters, on_done)
     say(*parameters.notes, *bag.notes)
     return lambda hub: Recording(hub, axes)
-
-
-def _begin_node(options: PageOptions, stack: contextlib.ExitStack) -> Begin:
-    """Join the ROS graph; return what follows its nodes."""
-    node = stack.enter_context(started_node('ballscrew_page'))
-    return lambda hub: LiveSource(node, hub, options)
 
 
 class LiveSource:
@@ -123,7 +121,15 @@ def _checked(args: argparse.Namespace) -> PageOptions:
     if not 0 <= args.port <= 0xFFFF:
         raise InputError(f'--port is {args.port}, allowed is 0 to 65535, 0 for any that is free')
     if args.cert is not None:
-        _check_certificate(args.cert, args.key)
+        try:
+            ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(
+                args.cert, args.key
+            )
+        except OSError as error:  # that of TLS is one too
+            raise InputError(
+                f'--cert {args.cert} and --key {args.key} cannot be used: '
+                f'{error.strerror or error}'
+            ) from None
     return PageOptions(
         host=args.host,
         port=args.port,
@@ -135,14 +141,6 @@ def _checked(args: argparse.Namespace) -> PageOptions:
         acting=args.allow_acting,
         oils=tuple(map(Surface.load, args.oils)),
     )
-
-
-def _check_certificate(cert: Path, key: Path) -> None:
-    try:
-        ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(cert, key)
-    except OSError as error:  # that of TLS is one too
-        why = error.strerror or error
-        raise InputError(f'--cert {cert} and --key {key} cannot be used: {why}') from None
 
 
 async def _serve(

@@ -9,9 +9,9 @@ list of these. What a node says as a sentence alone is free: it stays as it is, 
 """
 
 from collections.abc import Sequence
+import math
 from typing import Any
 
-from ballscrew_monitor.core.advice import Advice, PERHAPS, SURELY
 from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.page.components import ENGLISH, languages
 from surrogate.files import InputError
@@ -21,8 +21,6 @@ Phrase = dict[str, Any]
 Said = str | Phrase
 """A phrase, or an empty text where nothing is said."""
 KEYS_OF_REASON = {int(reason): f'reason_{reason.name.lower()}' for reason in Reason}
-DOUBTS = '', SURELY, PERHAPS
-"""How sure it is that asperities carry, as an advice says it."""
 
 
 def phrase(key: str, **values: Any) -> Phrase:
@@ -80,15 +78,9 @@ def detailed(what: Phrase, why: str) -> Phrase:
     return phrase('with_detail', what=what, why=free(why)) if why else what
 
 
-def advised(sentence: str, target_speed: float) -> Said:
-    """
-    Return the advice of an event by the amount of its speed [rad/s], NaN for none.
-
-    A `sentence` that is no advice, such as why the node ended the event, stays free.
-
-    """
-    for doubt in DOUBTS:
-        if sentence and Advice(target_speed=target_speed, carry=doubt).text == sentence:
-            advice = phrase('advice_speed', speed={'speed': abs(target_speed) / RPM})
-            return phrase(f'advice_{doubt}', advice=advice) if doubt else advice
-    return free(sentence) if sentence else ''
+def advised(target_speed: float, carry: str) -> Said:
+    """Return an advice by its speed [rad/s], NaN for none, and how sure asperities `carry`."""
+    if not math.isfinite(target_speed):
+        return ''
+    advice = phrase('advice_speed', speed={'speed': abs(target_speed) / RPM})
+    return phrase(f'advice_{carry}', advice=advice) if carry else advice

@@ -78,10 +78,6 @@ def _fresh(judged: NDArray[Any], name: str) -> Array:
     return np.where(judged[f'{name}_source'] == PointSource.HELD, np.nan, judged[name])
 
 
-def _codes_of(judged: NDArray[Any]) -> NDArray[np.uint8]:
-    return np.column_stack([judged[name] for name in CODES]).astype(np.uint8)
-
-
 class RecordedAxis:
     """One axis of a recording and its view."""
 
@@ -161,7 +157,7 @@ def _event_record(event: EventRecord, stamp: float) -> dict[str, Any]:
         'limit': event.limit,
         'active': stamp < begin + event.duration,
         'shelved': False,
-        'advice': advised(event.advice, event.target_speed),
+        'advice': advised(event.target_speed, event.carry),
         'acknowledged': False,
         'acknowledged_by': '',
     }
@@ -256,7 +252,8 @@ class CourseKeeper:
     def add(self, axis: str, rows: NDArray[Any]) -> None:
         """Take rows: those of which the node publishes a state are kept."""
         published = rows[rows['published']]
-        self._parts.setdefault(axis, []).append((_rows_of(published), _codes_of(published)))
+        codes = np.column_stack([published[name] for name in CODES]).astype(np.uint8)
+        self._parts.setdefault(axis, []).append((_rows_of(published), codes))
 
     def table(self, axis: str) -> None:
         """Return none: no report is made."""

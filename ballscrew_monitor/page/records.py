@@ -5,11 +5,10 @@
 import math
 from typing import Any
 
-from ballscrew_monitor.core.advice import Advice
+from ballscrew_monitor.core.advice import CARRY
 from ballscrew_monitor.core.conversions import Direction, opposing_load, seconds, signed
 from ballscrew_monitor.core.inputs import InputState
 from ballscrew_monitor.core.judgement import Level, PointSource, PointValidity, Reason, Zone
-from ballscrew_monitor.core.state import ACKNOWLEDGED
 from ballscrew_monitor.judge.zone import BY_VALIDITY
 from ballscrew_monitor.messages.health_messages import stamp_of
 from ballscrew_monitor.page.health_phrases import advice_phrase, verdict_phrase
@@ -25,7 +24,6 @@ from ballscrew_monitor.page.phrases import (
 )
 from ballscrew_msgs import msg
 from ballscrew_msgs.msg import BallScrewState
-from diagnostic_msgs.msg import DiagnosticStatus
 from surrogate.units import RPM
 
 # A code of another version of the interface is unknown, like 0.
@@ -40,7 +38,6 @@ Pair = tuple[float, float]
 OF_TORQUE = Reason.NO_DIRECTION, Reason.LOAD_OUT_OF_RANGE
 """What is said of a point in motion whose load the motor torque does not tell."""
 NAN = math.nan
-LONGEST_CODE = 10  # characters of a code; more are none
 
 
 def row_of(state: BallScrewState) -> list[float]:
@@ -196,10 +193,9 @@ def health_record(health: msg.AxisHealth) -> dict[str, Any]:
 
 def event_record(event: msg.OutOfZone) -> dict[str, Any]:
     """Return an event."""
-    speed = event.cause.target_speed
-    advice, ending = str(event.advice), ''
-    if advice.startswith(ACKNOWLEDGED):
-        advice, ending = Advice(target_speed=speed).text, advice
+    carry = CARRY[event.carry] if event.carry < len(CARRY) else ''
+    by_node = event.ending in (msg.OutOfZone.ENDING_STOPPED, msg.OutOfZone.ENDING_RESTARTED)
+    by = filter(None, (event.acknowledged_by, event.acknowledge_reason))
     return {
         'id': event.event_id,
         'begin': seconds(stamp_of(event.start)),
@@ -209,9 +205,9 @@ def event_record(event: msg.OutOfZone) -> dict[str, Any]:
         'limit': event.cause.limit,
         'active': event.active,
         'shelved': event.shelved,
-        'advice': advised(advice, speed),
-        'acknowledged': bool(ending),
-        'acknowledged_by': ending.partition(' by ')[2],
+        'advice': free(event.advice) if by_node else advised(event.cause.target_speed, carry),
+        'acknowledged': event.ending == msg.OutOfZone.ENDING_ACKNOWLEDGED,
+        'acknowledged_by': ': '.join(by),
     }
 
 
@@ -239,13 +235,6 @@ def range_record(speed: Pair, load: Pair, temperature: Pair) -> dict[str, float]
         'temperature_low_degC': temperature[0],
         'temperature_high_degC': temperature[1],
     }
-
-
-def code_of(status: DiagnosticStatus) -> int:
-    """Return the code of the fault that a diagnostic status states, 0 for none."""
-    texts = [pair.value for pair in status.values if pair.key == 'Code']
-    codes = [int(text) for text in texts if len(text) < LONGEST_CODE and text.isdecimal()]
-    return codes[0] if codes else 0
 
 
 def place_of(name: str) -> tuple[str, str, str] | None:

@@ -20,6 +20,7 @@ import threading
 import time
 from typing import Any
 
+from ballscrew_monitor.messages.diagnostics import code_of
 from ballscrew_monitor.node.topic import Apart, open_topic
 from ballscrew_monitor.page import records
 from ballscrew_monitor.page.axis_view import AxisView
@@ -169,7 +170,7 @@ class RosSide:
                 views = [link.view for link in self._links.values() if link.view.node == node]
                 for view in views:
                     if axis in ('', view.axis):
-                        self._later(view.hear_code, part, records.code_of(status))
+                        self._later(view.hear_code, part, code_of(status))
 
 
 def _act_all(acts: Iterable[tuple[Any, ...]]) -> None:

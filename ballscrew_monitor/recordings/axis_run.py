@@ -7,7 +7,7 @@ import operator
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why
-from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.core.state import Event, NOT_ENDED
 from ballscrew_monitor.judge import records, views
 from ballscrew_monitor.judge.many import Judged, ManyJudge
 from ballscrew_monitor.judge.monitor import MOST_OTHERS
@@ -141,7 +141,7 @@ class AxisRun:
             number = monitor.memory.event_number
             monitor.memory = from_array(records.Memory, memory)
             if monitor.memory.event_number != number:
-                monitor.ending = ''
+                monitor.ending = NOT_ENDED
             yield int(judged.places[at]), from_array(records.Row, judged.rows[at])
 
     def _note(self, event: Event, *, until: int | None = None) -> None:

@@ -42,7 +42,7 @@ def kind_of(file: Path) -> str:
 
 
 def is_bag(path: Path) -> bool:
-    """Tell whether something is to be opened as a bag: a directory of one, or a file of it."""
+    """Return True if something is to be opened as a bag: a directory of one, or a file of it."""
     if path.is_dir():
         return (path / 'metadata.yaml').is_file() or bool(_bag_files(path))
     return path.name.endswith((*ENDINGS, ACTIVE)) or (
@@ -51,7 +51,7 @@ def is_bag(path: Path) -> bool:
 
 
 def is_table(path: Path) -> bool:
-    """Tell whether something is to be read as a table: a file that is one by name or content."""
+    """Return True if something is to be read as a table: a file that is one by name or content."""
     return path.is_file() and (path.suffix.lower() in TABLES or kind_of(path) == 'parquet')
 
 

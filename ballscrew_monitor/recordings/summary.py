@@ -12,7 +12,7 @@ from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import Event, TIMES, Totals
-from ballscrew_monitor.recordings.declared import plain, written
+from ballscrew_monitor.recordings.declared import plain, unwritten, written
 from ballscrew_monitor.recordings.words import number, share
 from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
 from surrogate.surface import REGIMES
@@ -48,6 +48,7 @@ class EventRecord:
     axial_load: float = written('N', default=math.nan, compare=False)
     target_speed: float = written('rad_s', default=math.nan, compare=False)
     advice: str
+    carry: str = unwritten(default='', compare=False)
 
     @property
     def place(self) -> str:
@@ -96,7 +97,7 @@ class Summary:
 
     @property
     def says_nothing(self) -> bool:
-        """Tell whether nothing of a motion was judged; at standstill there is nothing to judge."""
+        """Return True if no motion was judged; at standstill there is nothing to judge."""
         return not self.judged or not self.optimal_time + self.outside_time
 
     def record(self) -> dict[str, Any]:
@@ -224,7 +225,8 @@ def event_record(event: Event, *, until: int) -> EventRecord:
         advice=event.advice.text,
         speed=math.nan if point is None else point.speed,
         axial_load=math.nan if point is None else point.axial_load,
-        **_said(event, event.cause, event.advice),
+        carry=event.advice.carry,
+        **_said(event, event, event.advice),
     )
 
 

@@ -14,7 +14,7 @@ from ballscrew_monitor.messages import state_messages
 from ballscrew_monitor.messages.diagnostics import statuses, summaries
 from ballscrew_monitor.recordings.axis_run import TimedState
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bag_writer import BagWriter, whole_bag
+from ballscrew_monitor.recordings.bag_writer import whole_bag
 from ballscrew_monitor.recordings.bulk.batches import batches, END
 from ballscrew_monitor.recordings.recorder import DIAGNOSTICS, recorded_topics
 from ballscrew_monitor.settings.parameters import input_topics, NODE_NAME, output, with_types
@@ -42,31 +42,24 @@ def judged_bag(
         for topic in recorded_topics(values):
             if topic.type_name:  # of the recording of a node without the messages of its inputs
                 writer.add_topic(topic)
-        growing = _Growing(bag, values, writer)
-        yield growing.add
-        growing.copy_inputs(END)
+        inputs, answers = batches(bag, input_topics(values)), Answers()
+        until = 0  # [ns] all inputs logged before that are there
 
+        def copy_inputs(log_time: int) -> None:
+            nonlocal until
+            while until <= log_time and (batch := next(inputs, None)) is not None:
+                writer.write_batch(batch)
+                until = batch.until
 
-class _Growing:
-    """A judged bag, to which inputs are added as far as the judging has come."""
+        def add_state(state: TimedState) -> None:
+            """Add what the node would say with a state, behind the inputs up to its log time."""
+            at = state.log_time
+            copy_inputs(at)
+            for topic, message in answers.messages(state):
+                writer.write(topic, serialized(message), log_time=at, publish_time=at)
 
-    def __init__(self, bag: Bag, values: Mapping[str, Any], writer: BagWriter) -> None:
-        self._inputs = batches(bag, input_topics(values))
-        self._until = 0  # [ns] all inputs logged before that are there
-        self._answers, self._writer = Answers(), writer
-
-    def add(self, state: TimedState) -> None:
-        """Add what the node would say with a state, behind the inputs up to its log time."""
-        self.copy_inputs(state.log_time)
-        at = state.log_time
-        for topic, message in self._answers.messages(state):
-            self._writer.write(topic, serialized(message), log_time=at, publish_time=at)
-
-    def copy_inputs(self, log_time: int) -> None:
-        """Add all inputs up to a log time [ns]."""
-        while self._until <= log_time and (batch := next(self._inputs, None)) is not None:
-            self._writer.write_batch(batch)
-            self._until = batch.until
+        yield add_state
+        copy_inputs(END)
 
 
 class Answers:

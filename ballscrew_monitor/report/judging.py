@@ -122,7 +122,7 @@ class AxisCase:
 
     @property
     def speaks_feed(self) -> bool:
-        """Tell whether the log gives the motion of the nut, not that of the screw."""
+        """Return True if the log gives the motion of the nut, not that of the screw."""
         if self.facts.motion_unit:
             return self.facts.motion_unit in LINEAR_UNITS
         return Source.SPEED in self.inputs and self.inputs[Source.SPEED].as_feed
@@ -161,7 +161,7 @@ class AxisCase:
 
     @property
     def is_silent(self) -> bool:
-        """Tell whether nothing was judged, or nothing of what moved."""
+        """Return True if nothing was judged, or nothing of what moved."""
         summary = self.outcome.summary()
         return summary is None or summary.says_nothing
 
@@ -203,7 +203,7 @@ class LogCase:
 
     @property
     def judged(self) -> bool:
-        """Tell whether something was judged on at least one axis."""
+        """Return True if something was judged on at least one axis."""
         return len(self.unjudged) < len(self.axes) + len(self.empty)
 
 

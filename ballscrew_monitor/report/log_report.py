@@ -119,7 +119,7 @@ class LogResult:
 
     @property
     def judged(self) -> bool:
-        """Tell whether something was judged on at least one axis."""
+        """Return True if something was judged on at least one axis."""
         return len(self.unjudged) < len(self.lines)
 
 

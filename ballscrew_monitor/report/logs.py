@@ -34,10 +34,12 @@ def find_logs(
     for path in paths:
         held = _recordings(path, tables, out)
         if not held:
-            endings = (*ENDINGS, *TABLES) if tables else ENDINGS
+            endings, there = (*ENDINGS, *TABLES) if tables else ENDINGS, _files(path, TABLES)
+            hint = '--guess > map.yaml, then --map map.yaml'
             raise InputError(
                 f'folder {path} holds no recording, it must hold bags or files of '
-                f'{" or ".join(endings)}{_hint(path)}'
+                f'{" or ".join(endings)}'
+                + (f'; for its tables: ballscrew import {there[0]} {hint}' if there else '')
             )
         found += held
     return list(dict.fromkeys(found))
@@ -67,7 +69,7 @@ def map_for(log: Path, mapping: Path | None, *, alone: bool) -> Path | None:
 
 def is_one_bag(folder: Path, *, tables: bool = False, out: Path | None = None) -> bool:
     """
-    Tell whether a folder is one bag: with metadata, or no more than the parts of one.
+    Return True if a folder is one bag: with metadata, or no more than the parts of one.
 
     Parts are numbered from 0 without a gap. Tables beside them count if `tables`; `out` does not.
 
@@ -100,15 +102,6 @@ def _stem(name: str) -> str:
     """Return the name of a file without its ending; points before that belong to the name."""
     endings = (ending for ending in (*ENDINGS, ACTIVE, *TABLES) if name.endswith(ending))
     return name.removesuffix(next(endings, ''))
-
-
-def _hint(folder: Path) -> str:
-    tables = _files(folder, TABLES)
-    if not tables:
-        return ''
-    return (
-        f'; for its tables: ballscrew import {tables[0]} --guess > map.yaml, then --map map.yaml'
-    )
 
 
 def _folders(folder: Path, out: Path | None) -> list[Path]:

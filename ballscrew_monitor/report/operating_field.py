@@ -41,7 +41,7 @@ class Field:
     band: tuple[float, float]
 
     def is_optimal(self, limits: Limits) -> NDArray[np.bool_]:
-        """Tell where limits are kept."""
+        """Return True where limits are kept."""
         return is_optimal(self.load[:, None], self.rcs, self.efficiency, limits)
 
     def judged_efficiency(self, light_load: float) -> Array:
@@ -64,7 +64,7 @@ class Field:
 
 def is_optimal(load: Array, rcs: Array, efficiency: Array, limits: Limits) -> NDArray[np.bool_]:
     """
-    Tell where limits are kept; below the light load only RCS counts.
+    Return True where limits are kept; below the light load only RCS counts.
 
     Opposing load [N]; RCS and efficiency [-].
 

@@ -14,7 +14,7 @@ from ballscrew_monitor.report.health_part import health_trends, peers_table, ver
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
 from ballscrew_monitor.report.logs import PAGE
 from ballscrew_monitor.report.machines import axis_titles, folders_note, MachineAxis
-from ballscrew_monitor.report.page import element, joined, Markup, page, table, TableCell, TableRow
+from ballscrew_monitor.report.page import element, Markup, page, table, TableCell, TableRow
 from ballscrew_monitor.report.trend import Mark, trend
 
 SCRIPTS = ('format.js', 'table.js', 'overview.js')
@@ -32,7 +32,7 @@ class LogEntry:
 
     @property
     def is_bad(self) -> bool:
-        """Tell whether nothing was judged on any axis."""
+        """Return True if nothing was judged on any axis."""
         return self.result is None or not self.result.judged
 
 
@@ -148,28 +148,24 @@ def _date(begins: float) -> str:
 
 
 def _trends(listed: Sequence[Listed], titles: Titles) -> Iterable[Markup]:
-    axes = dict.fromkeys(line.key for _, line in listed)
-    pictures = [
-        _trend(titles[axis], [pair for pair in listed if pair[1].key == axis]) for axis in axes
-    ]
-    if any(pictures):
+    """Yield how each axis with a date in at least two recordings did over them."""
+    pictures = []
+    for axis in dict.fromkeys(line.key for _, line in listed):
+        own = [pair for pair in listed if pair[1].key == axis]
+        marks = [
+            _mark(one, line)
+            for one, line in own
+            if math.isfinite(line.begins + line.outside_time) and line.running_time > 0.0
+        ]
+        if drawn := trend(marks):
+            times = (line.running_time for _, line in own if math.isfinite(line.running_time))
+            most = max(one.value for one in marks)
+            text = f'{duration(math.fsum(times))} in motion; the highest point is {percent(most)}.'
+            pictures += [element('h3', f'Axis {titles[axis]}'), drawn]
+            pictures.append(element('p', text, class_='muted'))
+    if pictures:
         yield element('h2', 'Share of the motion outside the optimal zone, over dates')
-        yield from filter(None, pictures)
-
-
-def _trend(axis: str, listed: Sequence[Listed]) -> Markup:
-    marks = [
-        _mark(one, line)
-        for one, line in listed
-        if math.isfinite(line.begins + line.outside_time) and line.running_time > 0.0
-    ]
-    drawn = trend(marks)
-    if not drawn:
-        return Markup()
-    total = math.fsum(line.running_time for _, line in listed if math.isfinite(line.running_time))
-    most = max(one.value for one in marks)
-    text = f'{duration(total)} in motion; the highest point is {percent(most)}.'
-    return joined(element('h3', f'Axis {axis}'), drawn, element('p', text, class_='muted'))
+        yield from pictures
 
 
 def _mark(one: LogEntry, line: AxisLine) -> Mark:

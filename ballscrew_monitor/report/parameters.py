@@ -48,12 +48,12 @@ class AxisFacts:
 
     @property
     def is_mapped(self) -> bool:
-        """Tell whether its inputs are columns of a table, as a map says."""
+        """Return True if its inputs are columns of a table, as a map says."""
         return 'lead_mm' in self.stated or 'lead_mm' in self.assumed  # no map is without it
 
     @property
     def torque_from_current(self) -> bool:
-        """Tell whether its motor torque is a current times the torque constant of the map."""
+        """Return True if its motor torque is a current times the torque constant of the map."""
         named = self.stated | set(self.assumed)
         return 'current.column' in named and 'torque.column' not in named
 

@@ -98,7 +98,7 @@ class RowTable:
         for name, column in COLUMNS.items():
             stored[name] = rows[column.field]
         with self._path.open('ab') as file:
-            stored.tofile(file)
+            file.write(stored.tobytes())
         self.rows += len(rows)
 
     def parts(self, *, ahead: int = 0) -> Iterator[pl.DataFrame]:

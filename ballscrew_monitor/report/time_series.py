@@ -112,7 +112,7 @@ def event_bytes(case: AxisCase, budget: AxisBudget) -> float:
 
 
 def _is_short(case: AxisCase, buckets: int) -> bool:
-    """Tell whether all samples are kept, because they are no more than the rows of buckets."""
+    """Return True if all samples are kept, because they are no more than the rows of buckets."""
     return case.survey.rows <= 2 * buckets
 
 
@@ -139,7 +139,9 @@ def _columns(
     near = table.collect(
         lambda part: part.with_columns(columns[0]).filter(is_near).select('time', *columns[1:])
     )
-    return coarse, near.sort('time', maintain_order=True), width
+    # As a rule they are in order, and a copy of what is near takes room.
+    is_sorted = near['time'].is_sorted()
+    return coarse, near if is_sorted else near.sort('time', maintain_order=True), width
 
 
 def _longest_step(case: AxisCase) -> float:
@@ -154,7 +156,7 @@ def _fine(
     longest = fine_bytes / _bytes_per_second(case)
     while near is not None:
         shown, stretches = _worst_stretches(case, longest)
-        parts = [near.filter(buckets.between([stretch])) for stretch in stretches]
+        parts = (near.filter(buckets.between([stretch])) for stretch in stretches)
         records = [
             buckets.fine_record(buckets.with_breaks(part, _longest_step(case)))
             for part in parts

@@ -122,7 +122,7 @@ def _unmoved(case: AxisCase) -> AxisVerdict:
 
 
 def never_moved(case: AxisCase) -> bool:
-    """Tell whether the speed is known for most of the time and the screw always stood still."""
+    """Return True if the speed is known for most of the time and the screw always stood still."""
     summary = case.outcome.summary()
     if summary is not None and summary.running_time:
         return False

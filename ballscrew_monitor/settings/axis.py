@@ -208,7 +208,16 @@ def reload_surface(axis: Axis, values: Mapping[str, Any]) -> Surface:
 
 def settings_of(name: str, values: Mapping[str, Any], surface: Surface) -> MonitorSettings:
     """Return the settings of the monitor; some limits are in parts of those of the surface."""
-    prefix = f'{name}.limits.'
+    prefix, unit, positions = f'{name}.limits.', values[f'{name}.speed.unit'], None
+    if unit in POSITION_UNITS:
+        positions = PositionSettings(
+            window=nanoseconds(values[f'{name}.speed.window']),
+            wrap=values[f'{name}.speed.wrap'] * conversions.screw_turn(unit, lead=surface.lead),
+        )
+    largest = {
+        Source.SPEED: surface.speed_range[1],
+        Source.LOAD: max(map(abs, surface.load_range)),
+    }
     return MonitorSettings(
         axis=name,
         limits=Limits(
@@ -232,10 +241,13 @@ def settings_of(name: str, values: Mapping[str, Any], surface: Surface) -> Monit
         one_source=values[f'{name}.one_source'],
         speed_allowed=values[f'{name}.advice.speed'],
         tick_period=nanoseconds(values['tick_period']),
-        plausible=_plausible_of(name, values, surface),
+        plausible={
+            source: values[f'{prefix}plausible_{source.name.lower()}'] or PLAUSIBLE * most
+            for source, most in largest.items()
+        },
         fields={source: values[f'{name}.{source.name.lower()}.field'] for source in Source},
         derivation=derivation_of(name, values),
-        positions=_positions_of(name, values, surface.lead),
+        positions=positions,
     )
 
 
@@ -280,28 +292,6 @@ def _torque_unit(name: str, values: Mapping[str, Any]) -> float:
         return conversions.torque_unit(values[f'{name}.torque.unit'], **motor)
     except InputError as error:
         raise InputError(f'parameters {name}.torque: {error}') from None
-
-
-def _positions_of(name: str, values: Mapping[str, Any], lead: float) -> PositionSettings | None:
-    unit = values[f'{name}.speed.unit']
-    if unit not in POSITION_UNITS:
-        return None
-    return PositionSettings(
-        window=nanoseconds(values[f'{name}.speed.window']),
-        wrap=values[f'{name}.speed.wrap'] * conversions.screw_turn(unit, lead=lead),
-    )
-
-
-def _plausible_of(name: str, values: Mapping[str, Any], surface: Surface) -> dict[Source, float]:
-    """Return the largest plausible speed [rad/s] and load [N], as stated or by the surface."""
-    largest = {
-        Source.SPEED: surface.speed_range[1],
-        Source.LOAD: max(map(abs, surface.load_range)),
-    }
-    return {
-        source: values[f'{name}.limits.plausible_{source.name.lower()}'] or PLAUSIBLE * most
-        for source, most in largest.items()
-    }
 
 
 def scaling_of(name: str, values: Mapping[str, Any], source: Source, lead: float) -> Scaling:

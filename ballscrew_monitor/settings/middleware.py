@@ -47,8 +47,14 @@ def check_middleware(
             f'{CHOICE} is {chosen}, which is not installed, allowed is {", ".join(sorted(known))}'
             ': unset it, or install the package of that name'
         )
-    for server in _servers(environment) if discovers else ():
-        _check_server(server)
+    servers = environment.get(SERVERS, '').split(';') if _is_fast_dds(environment) else []
+    for server in filter(None, servers if discovers else ()):
+        parts = _SERVER.fullmatch(server)
+        if parts is None or not 0 < int(parts['port'] or SERVER_PORT) <= 0xFFFF:
+            raise InputError(
+                f'{SERVERS} names {server!r}, a server must be HOST:PORT such as '
+                f'127.0.0.1:{SERVER_PORT}, several with a semicolon between them'
+            )
 
 
 def installed(environment: Mapping[str, str]) -> set[str]:
@@ -62,22 +68,6 @@ def installed(environment: Mapping[str, str]) -> set[str]:
 
 def _is_fast_dds(environment: Mapping[str, str]) -> bool:
     return environment.get(CHOICE, '') in ('', *FAST_DDS)
-
-
-def _servers(environment: Mapping[str, str]) -> list[str]:
-    """Return the discovery servers that are named, as far as the middleware asks them."""
-    if not _is_fast_dds(environment):
-        return []
-    return [server for server in environment.get(SERVERS, '').split(';') if server]
-
-
-def _check_server(server: str) -> None:
-    parts = _SERVER.fullmatch(server)
-    if parts is None or not 0 < int(parts['port'] or SERVER_PORT) <= 0xFFFF:
-        raise InputError(
-            f'{SERVERS} names {server!r}, a server must be HOST:PORT such as '
-            f'127.0.0.1:{SERVER_PORT}, several with a semicolon between them'
-        )
 
 
 def loopback(environment: Mapping[str, str] = os.environ) -> dict[str, str]:

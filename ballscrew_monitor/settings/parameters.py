@@ -20,6 +20,8 @@ from surrogate import limits
 from surrogate.files import InputError
 
 NODE_NAME = 'ballscrew_monitor'
+REFUSALS = 'solve_rejected'
+"""Child of the node's logger that says why a solve is rejected."""
 MOTOR_TORQUE = LOAD_SOURCES[1]
 OPTIONAL = (Source.TEMPERATURE, Source.TORQUE)
 # Parameters, or first parts of their names, that any node may be given; they are not of the table.

@@ -23,7 +23,7 @@ from surrogate.files import canonical_json
 from surrogate.store import (
     BAD,
     is_passing,
-    OTHER_VERSION,
+    OtherVersion,
     PARTS,
     readable,
     set_file_aside,
@@ -168,7 +168,7 @@ class TaskStore:
                 sentence = f'in use by another build of {self._out}'
             elif is_passing(error):
                 sentence = f'cannot be written, {error}'
-            elif code == sqlite3.SQLITE_NOTADB or str(error).startswith(OTHER_VERSION):
+            elif code == sqlite3.SQLITE_NOTADB or isinstance(error, OtherVersion):
                 sentence = f'not a store of results, {clean} it'
             else:
                 self._rescue(error)

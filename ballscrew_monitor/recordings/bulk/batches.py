@@ -119,7 +119,7 @@ def _chunks(stack: contextlib.ExitStack, bag: Bag, topics: Collection[str]) -> l
 
 
 def _is_packed(stream: BinaryIO, place: ChunkIndex) -> bool:
-    """Tell whether the messages of a chunk are compressed each by itself."""
+    """Return True if the messages of a chunk are compressed each by itself."""
     try:
         found = read_chunk(stream, place)
     except ChunkDamage:

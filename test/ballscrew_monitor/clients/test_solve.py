@@ -115,11 +115,18 @@ def test_what_the_node_cannot_solve_is_a_sentence_and_exit_code_1(node):
     node.start()
     place = ('--speed-rpm', 955, '--load-N', 500)
     for arguments, sentence in (
-        (('--axis', 'q', *place), "ballscrew: axis 'q' is unknown, known are: x\n"),
-        (('--axis', 'x'), 'ballscrew: no valid sample of speed and load\n'),
+        (
+            ('--axis', 'q', *place),
+            "ballscrew: solve of axis q rejected: axis 'q' is unknown, known are: x\n",
+        ),
+        (
+            ('--axis', 'x'),
+            'ballscrew: solve of axis x rejected: no valid sample of speed and load\n',
+        ),
         (
             ('--axis', 'x', '--speed-rpm', 0, '--load-N', 500),
-            'ballscrew: the speed of the point is 0 rev/min, a solve needs motion\n',
+            'ballscrew: solve of axis x rejected: the speed of the point is 0 rev/min, '
+            'a solve needs motion\n',
         ),
     ):
         assert ask(node, *arguments) == (1, '', sentence)

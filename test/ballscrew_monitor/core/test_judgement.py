@@ -9,6 +9,7 @@ from ballscrew_monitor.core.inputs import InputState, StampSource
 from ballscrew_monitor.core.judgement import (
     Code,
     ContactState,
+    EventEnd,
     Gate,
     Level,
     PointSource,
@@ -17,7 +18,14 @@ from ballscrew_monitor.core.judgement import (
     Severity,
     Zone,
 )
-from ballscrew_msgs.msg import BallScrewState, Finding, InputHealth, OperatingPoint, PointResult
+from ballscrew_msgs.msg import (
+    BallScrewState,
+    Finding,
+    InputHealth,
+    OperatingPoint,
+    OutOfZone,
+    PointResult,
+)
 import pytest
 from surrogate.surface import Regime
 
@@ -53,6 +61,7 @@ def test_limits_without_meaning_are_refused(core, changes, match, refused):
         (Zone, BallScrewState, 'ZONE_'),
         (Gate, BallScrewState, 'GATE_'),
         (Code, Finding, 'CODE_'),
+        (EventEnd, OutOfZone, 'ENDING_'),
         (Severity, Finding, 'SEVERITY_'),
     ],
 )

@@ -5,10 +5,10 @@
 import math
 
 from ballscrew_monitor.core.conversions import clock_text, SECOND
+from ballscrew_monitor.core.judgement import EventEnd
 from ballscrew_monitor.core.state import (
-    ACKNOWLEDGED,
-    Acknowledgement,
     acknowledgement,
+    Ending,
     LONGEST_SHELVING,
     NAMELESS,
     NOT_SHELVED,
@@ -18,6 +18,7 @@ from ballscrew_monitor.core.state import (
 import pytest
 
 NOW = 1_800_000_000 * SECOND
+SEEN = EventEnd.ACKNOWLEDGED
 
 
 def test_it_holds_until_its_time_and_not_at_it():
@@ -61,16 +62,17 @@ def test_what_is_refused(now, duration, reason, sentence, refused):
 
 def test_an_acknowledgement_is_one_line_each():
     by = acknowledgement(' Ada\nByron ', '\tnut  is ordered\n')
-    assert by == Acknowledgement(name='Ada Byron', reason='nut is ordered')
-    assert acknowledgement('A' * 200, ' \n') == Acknowledgement(name='A' * 200)
+    assert by == Ending(kind=SEEN, name='Ada Byron', reason='nut is ordered')
+    assert acknowledgement('A' * 200, ' \n') == Ending(kind=SEEN, name='A' * 200)
     assert acknowledgement('A', 'x' * 500).reason == 'x' * 500
 
 
 def test_an_event_ends_by_who_and_why(says):
-    by = Acknowledgement(name='Ada', reason='nut is ordered')
-    assert by.ending == says('by_name_and_reason')
-    assert Acknowledgement(name='Ada').ending == says('by_name')
-    assert NAMELESS.ending == ACKNOWLEDGED == says('by_nobody')
+    by = Ending(kind=SEEN, name='Ada', reason='nut is ordered')
+    assert by.text == says('by_name_and_reason')
+    assert Ending(kind=SEEN, name='Ada').text == says('by_name')
+    assert NAMELESS.text == says('by_nobody')
+    assert [Ending(kind=kind).text for kind in (EventEnd.UNKNOWN, EventEnd.CLEARED)] == ['', '']
 
 
 @pytest.mark.parametrize(

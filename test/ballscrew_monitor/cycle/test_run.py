@@ -15,17 +15,20 @@ import threading
 import types
 
 from ballscrew_monitor.cli import main
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
 from ballscrew_monitor.cycle.outcome import plan
-from ballscrew_monitor.cycle.run import run
+from ballscrew_monitor.cycle.run import run, Supervision
+from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.settings.parameters import read_file
 from ballscrew_msgs.msg import BallScrewState
+from diagnostic_msgs.msg import DiagnosticArray
 import polars as pl
 import pytest
-from rclpy.serialization import deserialize_message
+from rclpy.serialization import deserialize_message, serialize_message
 from rosbags.highlevel import AnyReader
 from surrogate import child
 
@@ -276,3 +279,20 @@ def test_parameters_that_the_node_would_refuse_are_refused_first(short_bag, tmp_
     params.write_text("/**/ballscrew_monitor:\n  ros__parameters:\n    x:\n      oil: 'olive'\n")
     refused('surface_shipped_screw', plan, short_bag, params, tmp_path / 'out', 1.0)
     assert [path.name for path in tmp_path.iterdir()] == ['params.yaml']
+
+
+@pytest.mark.parametrize(
+    ('code', 'sentence', 'is_final'),
+    [
+        (Fault.NOT_BUILT, 'whatever the sentence says', True),
+        (Fault.NOT_CONFIGURED, 'not configured: yet', False),
+    ],
+)
+def test_an_axis_that_cannot_be_built_is_known_by_its_code(code, sentence, is_final):
+    """Whoever rewords the sentence does not make the run wait for a node that has given up."""
+    run_so_far = types.SimpleNamespace(
+        _active=set(), _plan=types.SimpleNamespace(expected={'x': 1}), _reason=''
+    )
+    array = DiagnosticArray(status=diagnostics.failed('/n', 'x', sentence, code))
+    Supervision._on_diagnostics(run_so_far, serialize_message(array))
+    assert run_so_far._reason == (sentence if is_final else '')

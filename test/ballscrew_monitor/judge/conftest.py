@@ -8,14 +8,12 @@ import types
 
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.core.memory import Memory
+from ballscrew_monitor.core.memory import AxisRecord
 from ballscrew_monitor.core.state import (
-    Event,
     LoadDerivation,
     MonitorSettings,
     PositionSettings,
     Shelving,
-    Totals,
 )
 from ballscrew_monitor.judge.monitor import Monitor
 import numpy as np
@@ -110,7 +108,15 @@ def settings_of(text):
 
 def kept_of(text):
     known = json.loads(text)
-    shelving = Shelving(until=known['shelved_until'], reason='kept')
-    return Memory(
-        totals=Totals(**known['totals']), event=Event(**known['event']), shelving=shelving
+    places = {'angle': 'angle_rad', 'energy_lost': 'energy_lost_J'}
+    totals = {places.get(name, f'{name}_ns'): value for name, value in known['totals'].items()}
+    event = known['event']
+    return AxisRecord(
+        axis='x',
+        event=event.pop('number'),
+        active=event.pop('active', False),
+        **{f'{name}_ns': stamp for name, stamp in event.items()},
+        **totals,
+        until_ns=known['shelved_until'],
+        reason='kept',
     )

@@ -9,9 +9,9 @@ from ballscrew_monitor.core.advice import SCAN_POINTS
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
-from ballscrew_monitor.core.judgement import Code, Level, violation, Zone
-from ballscrew_monitor.core.memory import Memory
-from ballscrew_monitor.core.state import Event, Shelving, Totals
+from ballscrew_monitor.core.judgement import Code, EventEnd, Level, Zone
+from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.core.state import Ending, Event, NAMELESS, NOT_ENDED, Shelving
 from ballscrew_monitor.judge import records
 from ballscrew_monitor.judge.monitor import EARLIEST, fill, LATEST, MOST_OTHERS, within
 from ballscrew_monitor.judge.views import SOURCES
@@ -22,18 +22,26 @@ import pytest
 
 STEP = SECOND // 100
 START = 1000 * SECOND
-KEPT = Memory(
-    totals=Totals(running_time=5 * SECOND, optimal_time=5 * SECOND, angle=7.5, since=SECOND),
-    event=Event(
-        number=7,
-        stamp=20,
-        start=10,
-        worst_value=0.5,
-        cause=violation(Code.EFFICIENCY_LOW, 0.5, 0.75, derived=True),
-        ending='why',
-    ),
-    shelving=Shelving(until=START + 10 * SECOND, reason='nut is ordered'),
+KEPT = AxisRecord(
+    axis='x',
+    running_time_ns=5 * SECOND,
+    optimal_time_ns=5 * SECOND,
+    angle_rad=7.5,
+    since_ns=SECOND,
+    event=7,
+    stamp_ns=20,
+    start_ns=10,
+    cause=Code.EFFICIENCY_LOW.name,
+    worst_value=0.5,
+    limit=0.75,
+    derived=True,
+    ending=EventEnd.ACKNOWLEDGED.name,
+    ended_by='Ada',
+    end_reason='why',
+    until_ns=START + 10 * SECOND,
+    reason='nut is ordered',
 )
+SHELVED = Shelving(until=KEPT.until_ns, reason=KEPT.reason)
 
 
 def slow_is_bad(core, memory=None, **limits):
@@ -72,12 +80,13 @@ def test_an_event_begins_and_ends_with_its_facts(core):
     event = edge.event
     assert (event.number, event.active, event.start) == (1, True, begin)
     assert event.stamp == edge.stamp == begin + SECOND // 2
-    assert (event.cause.code, event.worst_value) == (Code.RCS_HIGH, 1.0)
+    assert (event.code, event.worst_value) == (Code.RCS_HIGH, 1.0)
     assert event.advice.target_speed == pytest.approx(30.0, rel=1e-5)
     assert event.advice.text.startswith('at this load run at 286 rev/min')
     states = core.feed(monitor, core.motion(40.0, start=begin + SECOND, count=120))
     (over,) = [state.event for state in states if state.event is not None]
     assert (over.number, over.active, over.start) == (1, False, begin)
+    assert (event.ending.kind, over.ending.kind) == (EventEnd.UNKNOWN, EventEnd.CLEARED)
     assert over.stamp == begin + 2 * SECOND
     assert {state.event_id for state in states} == {1}
 
@@ -105,7 +114,7 @@ def test_advice_comes_and_goes_with_the_parameter(core):
     monitor.settings = dataclasses.replace(monitor.settings, speed_allowed=False)
     assert monitor.event.advice.text == ''
     assert math.isnan(monitor.event.advice.target_speed)
-    assert (monitor.event.cause, monitor.event.start) == (before.cause, before.start)
+    assert (monitor.event.code, monitor.event.start) == (before.code, before.start)
     monitor.settings = dataclasses.replace(monitor.settings, speed_allowed=True)
     assert monitor.event == before
 
@@ -133,9 +142,7 @@ def test_worst_value_limit_and_place_are_of_one_sample(core, course, raise_delay
     event, (speed, force, rcs, efficiency) = monitor.event, course[worst]
     value, limit = (rcs, 0.25) if code == Code.RCS_HIGH else (efficiency, 0.75)
     assert (event.active, event.start) == (True, START)
-    assert (event.cause.code, event.cause.value, event.worst_value) == (code, value, value)
-    assert event.cause.limit == limit
-    assert f'{value:.3g}, limit {limit:.3g}' in event.cause.text
+    assert (event.code, event.worst_value, event.limit) == (code, value, limit)
     point = event.advisor
     assert (point.speed, point.axial_load, point.temperature) == (speed, -force, 313.15)
 
@@ -146,10 +153,10 @@ def test_the_limit_of_the_worst_sample_stays_with_it(core):
     limits = core.limits(rcs=0.375, raise_delay=0)
     monitor.settings = dataclasses.replace(monitor.settings, limits=limits)
     core.feed(monitor, core.motion(11.0, start=START + STEP))
-    assert (monitor.event.worst_value, monitor.event.cause.limit) == (0.5, 0.25)
+    assert (monitor.event.worst_value, monitor.event.limit) == (0.5, 0.25)
     monitor.surface.numbers = {'rcs': 0.75}
     core.feed(monitor, core.motion(12.0, start=START + 2 * STEP))
-    assert (monitor.event.worst_value, monitor.event.cause.limit) == (0.75, 0.375)
+    assert (monitor.event.worst_value, monitor.event.limit) == (0.75, 0.375)
     assert monitor.event.advisor.speed == 12.0
 
 
@@ -229,16 +236,18 @@ def test_a_stay_too_short_is_no_event(core):
 def test_an_acknowledged_warning_comes_back_as_a_new_event(core):
     monitor = slow_is_bad(core)
     core.feed(monitor, core.motion(10.0, count=51))
-    ended = monitor.acknowledge(START + SECOND, 'seen')
+    seen = Ending(kind=EventEnd.ACKNOWLEDGED, name='Ada')
+    ended = monitor.acknowledge(START + SECOND, seen)
     assert (ended.number, ended.active, ended.stamp) == (1, False, START + SECOND)
-    assert (ended.ending, monitor.level) == ('seen', Level.UNKNOWN)
+    assert (ended.ending, monitor.level) == (seen, Level.UNKNOWN)
     assert monitor.acknowledge(START + SECOND) is None
     core.feed(monitor, core.motion(10.0, start=START + SECOND, count=51))
     event = monitor.event
-    assert (event.number, event.active, event.ending) == (2, True, '')
+    assert (event.number, event.active, event.ending) == (2, True, NOT_ENDED)
     monitor, samples = slow_is_bad(core), core.motion(10.0, count=51)
     core.feed(monitor, samples)
     ended = monitor.acknowledge(START - 10 * SECOND)
+    assert ended.ending == NAMELESS
     assert (ended.start, ended.stamp) == (START, samples[-1].stamp)
     (state,) = core.feed(monitor, core.motion(40.0, start=samples[-1].stamp + STEP))
     assert state.level_since <= state.stamp
@@ -296,10 +305,11 @@ def test_a_monitor_goes_on_where_another_one_ended(core):
     assert states[0].event.number == 8
     assert states[-1].totals.running_time == 5 * SECOND + STEP
     assert states[-1].totals.since == SECOND
-    assert monitor.shelving == KEPT.shelving
+    assert monitor.shelving == SHELVED
     assert states[-1].level == Level.WARN
-    kept = monitor.kept.event
-    assert (kept.active, kept.stamp) == (True, START + STEP)
+    kept = monitor.kept
+    assert (kept.event, kept.active, kept.stamp_ns) == (8, True, START + STEP)
+    assert (kept.ending, kept.ended_by) == (EventEnd.UNKNOWN.name, '')
 
 
 def test_what_was_added_up_before_a_late_memory_counts_too(core):
@@ -307,12 +317,12 @@ def test_what_was_added_up_before_a_late_memory_counts_too(core):
     core.feed(monitor, core.motion(10.0, count=3))
     monitor.take_up(KEPT)
     assert (monitor.event.number, monitor.event.active) == (8, True)
-    assert monitor.kept.totals.running_time == 5 * SECOND + 2 * STEP
-    assert monitor.shelving == KEPT.shelving
+    assert monitor.kept.running_time_ns == 5 * SECOND + 2 * STEP
+    assert monitor.shelving == SHELVED
 
 
 def test_a_shelved_warning_is_judged_and_counted_as_ever(core):
-    shelved, plain = (slow_is_bad(core, memory, raise_delay=0) for memory in (KEPT, Memory()))
+    shelved, plain = (slow_is_bad(core, memory, raise_delay=0) for memory in (KEPT, None))
     events = core.motion(10.0, count=20)
     for one, other in zip(core.feed(shelved, events), core.feed(plain, events), strict=True):
         assert (one.level, one.zone, one.judged) == (other.level, other.zone, other.judged)

@@ -9,7 +9,8 @@ import math
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, Why
-from ballscrew_monitor.core.state import LoadDerivation, PositionSettings, Shelving
+from ballscrew_monitor.core.judgement import EventEnd
+from ballscrew_monitor.core.state import Ending, LoadDerivation, PositionSettings, Shelving
 from ballscrew_monitor.judge.records import Memory, MEMORY_LAYOUT
 from ballscrew_monitor.judge.slopes import SlopeRing
 from ballscrew_monitor.judge.snapshot import restored, snapshot
@@ -83,7 +84,7 @@ def test_the_monitor_goes_on_as_if_nothing_had_happened(core, stream, derived, d
     cut = data.draw(st.integers(0, len(stream)))
     core.feed(first, stream[:cut])
     if data.draw(st.booleans()):
-        first.acknowledge(START, 'seen')
+        first.acknowledge(START, Ending(kind=EventEnd.STOPPED, reason='seen'))
     second = through_json(first)
     assert second.kept == first.kept
     for event in stream[cut:]:

@@ -6,7 +6,8 @@ import math
 
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
-from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.core.judgement import EventEnd
+from ballscrew_monitor.core.state import Ending, Event
 from ballscrew_monitor.messages import state_messages
 from ballscrew_monitor.messages.state_messages import empty_state, fill_state
 from ballscrew_msgs import msg
@@ -86,12 +87,18 @@ def test_a_used_message_keeps_nothing_of_the_state_before(core):
     assert 'above the surface' in fresh.result.reason
 
 
-def test_an_event_as_a_message_and_that_there_was_none(core):
+def test_an_event_as_a_message_and_that_there_was_none(core, says):
     _, monitor = one_row(core, surface=core.surface(rcs=0.5), limits=core.limits(raise_delay=0))
     message = over_the_wire(state_messages.out_of_zone_message('x', monitor.event, shelved=True))
     assert (message.axis, message.event_id, message.active) == ('x', 1, True)
     assert (message.start.sec, message.duration, message.worst_value) == (1_000_000_000, 0.0, 0.5)
     assert message.cause.code == msg.Finding.CODE_RCS_HIGH
+    assert message.cause.text == says('asperities')
+    assert message.ending == msg.OutOfZone.ENDING_UNKNOWN
+    ended = monitor.acknowledge(STAMP, Ending(kind=EventEnd.ACKNOWLEDGED, name='A', reason='b'))
+    message = over_the_wire(state_messages.out_of_zone_message('x', ended, shelved=False))
+    assert message.ending == msg.OutOfZone.ENDING_ACKNOWLEDGED
+    assert (message.acknowledged_by, message.acknowledge_reason) == ('A', 'b')
     message = over_the_wire(state_messages.out_of_zone_message('x', Event(), shelved=False))
     assert (message.event_id, message.active, message.duration) == (0, False, 0.0)
     assert math.isnan(message.worst_value)

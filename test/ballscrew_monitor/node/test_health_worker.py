@@ -184,7 +184,7 @@ def test_a_store_that_no_node_has_left_is_set_aside(
     wait_for(lambda: worker.done, 'the assessment')
     (said,) = worker.damage
     assert said.endswith(f'moved to {FILE}.aside')
-    assert worker.done[0].health.condition is Condition.UNKNOWN
+    assert worker.done[0][0].condition is Condition.UNKNOWN
     assert (tmp_path / f'{FILE}.aside').exists()
 
 

@@ -12,11 +12,10 @@ import sqlite3
 from ballscrew_monitor import cli
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fault_codes import Fault
-from ballscrew_monitor.core.memory import Memory, record_of, RESTARTED
-from ballscrew_monitor.core.state import Event, Totals
+from ballscrew_monitor.core.memory import AxisRecord
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_database import FILE, read_entries
-from ballscrew_msgs.msg import BallScrewState
+from ballscrew_msgs.msg import BallScrewState, OutOfZone
 from ballscrew_msgs.srv import AcknowledgeAlarm, ShelveAlarm
 from diagnostic_msgs.msg import DiagnosticStatus
 import pytest
@@ -93,13 +92,13 @@ class Axis:
         return [entry.record() for entry in read_entries(self.folder)]
 
 
-def test_a_node_that_is_killed_in_an_event_goes_on(axis):
+def test_a_node_that_is_killed_in_an_event_goes_on(axis, says):
     known = 0.0
     for number in range(1, KILLS + 1):
         axis.start()
         last = axis.node.until(lambda: axis.events and axis.events[0], 'the last event')
         assert (last.event_id, last.active) == (number - 1, False)
-        assert last.advice == (RESTARTED if number > 1 else '')
+        assert last.advice == (says('restarted') if number > 1 else '')
         first = axis.move(SLOW, lambda state: state.judged, 'a state')
         assert first.totals.running_time >= known
         axis.begin(number)
@@ -108,7 +107,7 @@ def test_a_node_that_is_killed_in_an_event_goes_on(axis):
     lines = [(line['kind'], line.get('event'), line.get('ending')) for line in axis.log()]
     expected = [('event_begin', number, '') for number in range(1, KILLS + 1)]
     assert [line for line in lines if line[0] == 'event_begin'] == expected
-    wanted = [('event_end', number, RESTARTED) for number in range(1, KILLS)]
+    wanted = [('event_end', number, says('restarted')) for number in range(1, KILLS)]
     assert [line for line in lines if line[0] == 'event_end'] == wanted
     assert [line[0] for line in lines].count('node_start') == KILLS
 
@@ -168,9 +167,9 @@ def test_a_directory_that_is_mounted_later_is_taken_up(axis, tmp_path):
     axis.node.until(
         lambda: axis.node.levels('State directory')[-1:] == [(DiagnosticStatus.WARN, bad)]
     )
-    before = Memory(totals=Totals(running_time=7 * SECOND, since=1), event=Event(number=41))
+    before = AxisRecord(axis='x', running_time_ns=7 * SECOND, since_ns=1, event=41)
     mounted = RestartState(tmp_path / 'mounted' / 'state')
-    mounted.keep(record_of('x', before))
+    mounted.keep(before)
     mounted.close()
     disk.unlink()
     (tmp_path / 'mounted').rename(disk)
@@ -212,7 +211,10 @@ def test_an_acknowledgement_keeps_who_and_why(axis, capsys, says):
     answer = node.call(AcknowledgeAlarm, 'acknowledge_as', **ask)
     assert (answer.success, answer.message) == (True, says('acknowledged'))
     node.until(lambda: not axis.events[-1].active, 'the end of the event')
-    assert axis.events[-1].advice == says('acknowledged_by')
+    ended = axis.events[-1]
+    assert (ended.ending, ended.acknowledged_by) == (OutOfZone.ENDING_ACKNOWLEDGED, 'Ada')
+    assert ended.acknowledge_reason == 'nut is ordered'
+    assert ended.advice == says('acknowledged_by')
     assert math.isfinite(axis.events[-1].cause.target_speed)
     seen = [one for one in axis.log() if one['kind'] == 'acknowledge'][0]
     assert (seen['event'], seen['name'], seen['reason']) == (1, 'Ada', 'nut is ordered')

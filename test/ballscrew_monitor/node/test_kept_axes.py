@@ -21,8 +21,9 @@ import types
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
-from ballscrew_monitor.core.memory import AxisRecord, Memory, record_of, RESTARTED
-from ballscrew_monitor.core.state import Event, Totals
+from ballscrew_monitor.core.judgement import EventEnd
+from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.core.state import Ending
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.node.alarm import Alarm
 from ballscrew_monitor.node.kept_axes import KeptAxes, PERIOD
@@ -98,7 +99,7 @@ class Machine:
 
     @property
     def running_time(self):
-        return self.monitor.kept.totals.running_time
+        return self.monitor.kept.running_time_ns
 
 
 def live(machine, pipe):
@@ -137,7 +138,11 @@ def ended_by_a_restart(folder):
     """Return the events in the log that a kill has hit; it keeps the newest entries alone."""
     with contextlib.suppress(InputError):  # killed before there was a file
         entries = [entry.record() for entry in read_entries(Path(folder))]
-        return [one['event'] for one in entries if one.get('ending') == RESTARTED]
+        return [
+            one['event']
+            for one in entries
+            if one.get('ending') == Ending(kind=EventEnd.RESTARTED).text
+        ]
     return []
 
 
@@ -229,7 +234,7 @@ def test_an_event_and_its_number_are_one_commit(machine, monkeypatch):
 
 
 def test_what_an_earlier_node_left_is_taken_up_late(machine):
-    before = Memory(totals=Totals(running_time=7 * SECOND), event=Event(number=41, active=True))
+    before = AxisRecord(axis='x', running_time_ns=7 * SECOND, event=41, active=True)
     machine.move(SLOW)
     machine.move(SLOW)
     assert machine.monitor.event.number == 1
@@ -238,7 +243,7 @@ def test_what_an_earlier_node_left_is_taken_up_late(machine):
     assert machine.monitor.event.number == 1
     assert machine.running_time == STEP
     assert 'axis x: abc late' in machine.said
-    machine.state._found = by_key([record_of('x', before)])
+    machine.state._found = by_key([before])
     machine.look()
     assert machine.monitor.event.number == 42
     assert machine.running_time == 7 * SECOND + STEP

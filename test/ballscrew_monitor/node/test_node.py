@@ -10,6 +10,7 @@ import signal
 from types import SimpleNamespace
 
 from ballscrew_monitor.core.conversions import nanoseconds
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.inputs import Input, InputSample, Source
 from ballscrew_monitor.cycle.domain import free_domain
@@ -205,6 +206,10 @@ def test_a_failed_configure_leaves_the_node_alive_with_the_reason(node, name, va
     )
     assert level == DiagnosticStatus.ERROR
     assert message.startswith('not configured: ')
+    said = [status for array in node.told for status in array.status]
+    assert Fault.NOT_BUILT in {
+        diagnostics.code_of(one) for one in said if one.name.endswith('x: Surface')
+    }
     assert node.lifecycle() == 'unconfigured'
     assert reason in node.output.read_text()
     assert node.stop(signal.SIGTERM) == 0

@@ -10,8 +10,8 @@ import types
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fault_codes import Fault
-from ballscrew_monitor.core.judgement import Code, Severity
-from ballscrew_monitor.core.state import Event
+from ballscrew_monitor.core.judgement import Code, EventEnd
+from ballscrew_monitor.core.memory import AxisRecord
 from ballscrew_monitor.node.state_records import (
     CORRECTIONS,
     Corrections,
@@ -32,8 +32,8 @@ SOLVE = types.SimpleNamespace(
 
 
 def test_an_entry_says_what_when_where_and_why():
-    event = Event(number=4, stamp=3 * SECOND, start=SECOND)
-    record = entry_of(Kind.EVENT_END, 'x', event.stamp, event_facts(event)).record()
+    kept = AxisRecord(axis='x', event=4, stamp_ns=3 * SECOND, start_ns=SECOND)
+    record = entry_of(Kind.EVENT_END, 'x', kept.stamp_ns, event_facts(kept)).record()
     assert list(record)[:5] == ['time', 'stamp_ns', 'axis', 'kind', 'event']
     assert record['time'].endswith('+00:00')
     assert (record['stamp_ns'], record['axis']) == (3 * SECOND, 'x')
@@ -79,7 +79,7 @@ def test_every_record_of_the_state_comes_back_from_its_row(data):
     named = {
         'event': st.integers(0, 2**32 - 1),
         'cause': st.sampled_from([code.name for code in Code]),
-        'severity': st.sampled_from([severity.name for severity in Severity]),
+        'ending': st.sampled_from([end.name for end in EventEnd]),
         'solves': st.just(Corrections.of('x', 'abc', [SOLVE]).solves),
     }
     for table in TABLES.values():

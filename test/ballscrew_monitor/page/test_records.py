@@ -5,11 +5,10 @@
 import json
 import math
 
-from ballscrew_monitor.core.advice import Advice
+from ballscrew_monitor.core.advice import Advice, CARRY
 from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.judgement import PointSource, PointValidity
-from ballscrew_monitor.core.memory import RESTARTED
-from ballscrew_monitor.core.state import Acknowledgement, NAMELESS
+from ballscrew_monitor.messages.diagnostics import code_of
 from ballscrew_monitor.page import records
 from ballscrew_monitor.page.history import COLUMNS
 from ballscrew_monitor.page.phrases import advised
@@ -26,10 +25,10 @@ TARGET = Advice(target_speed=-600.0 * RPM)
 ADVICE = Advice(target_speed=-600.0 * RPM, carry='surely')
 
 
-def event_of(words, advice):
-    """Return the last word on an event, with the numbers of an advice."""
-    event = msg.OutOfZone(event_id=3, advice=words)
-    event.cause.target_speed, event.cause.target_load = advice.target_speed, math.nan
+def event_of(target, **more):
+    """Return the last word on an event, with the codes and numbers of an advice."""
+    event = msg.OutOfZone(event_id=3, carry=CARRY.index(target.carry), **more)
+    event.cause.target_speed, event.cause.target_load = target.target_speed, math.nan
     return event
 
 
@@ -149,10 +148,12 @@ def test_inputs_without_a_sample_are_named(derived, held, names):
     assert [one['key'] for one in inputs] == [f'input_{name}' for name in names]
 
 
-@pytest.mark.parametrize(('words', 'key'), [(ADVICE.text, 'advice_surely'), ('the end', None)])
-def test_advice_is_said_by_its_numbers_and_why_an_event_ended_in_words(page_parts, words, key):
-    view = page_parts.axis()
-    view.hear_event(records.event_record(event_of(words, ADVICE)))
+@pytest.mark.parametrize(
+    ('ending', 'key'), [('CLEARED', 'advice_surely'), ('STOPPED', None), ('RESTARTED', None)]
+)
+def test_advice_is_said_by_its_numbers_and_why_an_event_ended_in_words(page_parts, ending, key):
+    view, code = page_parts.axis(), getattr(msg.OutOfZone, f'ENDING_{ending}')
+    view.hear_event(records.event_record(event_of(ADVICE, advice='the end', ending=code)))
     (told,) = page_parts.read(view.events_frame())[0]['events']
     assert told['advice'].get('key') == key
     assert key or told['advice'] == {'free': 'the end'}
@@ -164,32 +165,40 @@ def test_advice_is_said_by_its_numbers_and_why_an_event_ended_in_words(page_part
 def test_a_fault_is_told_by_its_code_unless_the_screen_says_it_already(page_parts, code, told):
     view = page_parts.axis()
     status = DiagnosticStatus(values=[KeyValue(key='Code', value=str(code))])
-    view.hear_code('Inputs', records.code_of(status))
+    view.hear_code('Inputs', code_of(status))
     assert page_parts.read(view.news(0.0, 0.0)[-1])[0]['faults'] == told
-    assert records.code_of(DiagnosticStatus()) == 0
+    assert code_of(DiagnosticStatus()) == 0
 
 
 @pytest.mark.parametrize('value', ['', '-1', 'x', '\u00b2', '9' * 5000])
 def test_a_code_that_is_no_number_of_a_fault_is_none(value):
-    assert records.code_of(DiagnosticStatus(values=[KeyValue(key='Code', value=value)])) == 0
+    assert code_of(DiagnosticStatus(values=[KeyValue(key='Code', value=value)])) == 0
 
 
 @given(name=st.text(min_size=1), reason=st.text(), advice=st.sampled_from([Advice(), TARGET]))
 def test_an_event_says_by_whom_it_was_acknowledged_and_keeps_its_advice(name, reason, advice):
     """Whoever did it, on this page or elsewhere; one that ended by itself was not."""
-    event = event_of(Acknowledgement(name=name, reason=reason).ending, advice)
+    seen = msg.OutOfZone.ENDING_ACKNOWLEDGED
+    event = event_of(advice, ending=seen, acknowledged_by=name, acknowledge_reason=reason)
     record = records.event_record(event)
     assert record['acknowledged']
     assert record['acknowledged_by'] == (f'{name}: {reason}' if reason else name)
-    assert record['advice'] == advised(advice.text, advice.target_speed)
-    event.advice = NAMELESS.ending
+    assert record['advice'] == advised(advice.target_speed, advice.carry)
+    event.acknowledged_by = event.acknowledge_reason = ''
     record = records.event_record(event)
     assert (record['acknowledged'], record['acknowledged_by']) == (True, '')
-    for words in filter(None, (advice.text, RESTARTED)):
-        event.advice = words
-        record = records.event_record(event)
-        assert not record['acknowledged']
-        assert (record['advice'] == {'free': words}) is (words == RESTARTED)
+
+
+@given(
+    text=st.sampled_from(['acknowledged by Ada', 'ended by a restart of the node', 'bestätigt']),
+    ending=st.integers(0, 255),
+)
+def test_how_an_event_ended_is_read_from_its_code_alone(text, ending):
+    """Whatever its sentence says, also by a code of another version."""
+    record = records.event_record(event_of(ADVICE, advice=text, ending=ending))
+    assert record['acknowledged'] == (ending == msg.OutOfZone.ENDING_ACKNOWLEDGED)
+    by_node = ending in (msg.OutOfZone.ENDING_STOPPED, msg.OutOfZone.ENDING_RESTARTED)
+    assert (record['advice'] == {'free': text}) == by_node
 
 
 def test_diagnostics_of_axes_are_told_from_others():

@@ -222,7 +222,7 @@ def test_states_and_outcome_are_those_of_a_monitor_alone(happened, cut):
         assert axis.monitor.kept == other.kept
         changed = alone()
         changed.monitor = restored(snapshot(axis.monitor), AXIS.surface, AXIS.monitor.settings)
-        ended = [one.acknowledge(now, 'seen') for one in (changed.monitor, other)]
+        ended = [one.acknowledge(now) for one in (changed.monitor, other)]
         assert repr(ended[0]) == repr(ended[1])
         run.change(changed)
         axis = changed

@@ -15,8 +15,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, ordered, Source
 from ballscrew_monitor.core.judgement import Level
-from ballscrew_monitor.core.memory import Memory
-from ballscrew_monitor.core.state import Event, Shelving, Totals
+from ballscrew_monitor.core.memory import AxisRecord
 from ballscrew_monitor.judge.full_point import SolvedAt
 from ballscrew_monitor.judge.records import EVENT, EVENTS_VERSION, MEMORY_VERSION
 from ballscrew_monitor.messages.state_messages import empty_state, fill_state
@@ -342,10 +341,18 @@ def test_what_is_kept_late_is_followed(tmp_path):
     node = SmallNode(tmp_path)
     live(node, seconds=3)
     node.axes['z'].monitor.take_up(
-        Memory(
-            totals=Totals(running_time=7 * SECOND, angle=3.0, since=5),
-            event=Event(number=41, stamp=3, start=2, ending='long ago'),
-            shelving=Shelving(until=BEGIN + 600 * SECOND, reason='known'),
+        AxisRecord(
+            axis='z',
+            running_time_ns=7 * SECOND,
+            angle_rad=3.0,
+            since_ns=5,
+            event=41,
+            stamp_ns=3,
+            start_ns=2,
+            ending='STOPPED',
+            end_reason='long ago',
+            until_ns=BEGIN + 600 * SECOND,
+            reason='known',
         )
     )
     node.snapshot('kept', ['z'])
@@ -434,7 +441,7 @@ def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path)
     for name, outcome in (('x', x), ('z', z)):
         monitor = node.axes[name].monitor
         assert (outcome.axis, outcome.judged) == (name, monitor.memory.judged)
-        assert outcome.totals == monitor.kept.totals
+        assert outcome.totals == monitor.totals
         assert len(outcome.events) == monitor.event.number
         assert sum(len(one.rows) for one in blocks if one.axis == name) == outcome.rows
     assert not any(one.active for one in x.events[:-1])

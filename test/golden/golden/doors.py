@@ -20,6 +20,7 @@ import struct
 import zlib
 
 from ballscrew_monitor import cli
+from ballscrew_monitor.messages.diagnostics import code_of
 from ballscrew_monitor.page import records
 from ballscrew_monitor.page.hub import Browser, Hub
 from ballscrew_monitor.page.recording import recorded_axes, Recording
@@ -244,7 +245,7 @@ def page_records(message):
     elif kind == 'DiagnosticArray':
         for status in message.status:
             place = records.place_of(status.name)
-            yield 'code', [*(place or ()), records.code_of(status)]
+            yield 'code', [*(place or ()), code_of(status)]
 
 
 def read_frame(made):
