@@ -43,6 +43,17 @@ WORKBOOK = 512 * MEGA
 Largest workbook, unpacked, and text of UTF-16, which are read at once; what columns of a Parquet
 file may always come to [byte].
 """
+CELLS = {'xlsx': 80, 'parquet': 8}
+"""What a cell of a table takes in memory while a file of a kind is read [byte], as measured."""
+SPARSE = 640 * MEGA
+"""What the rows x columns of any workbook may take while they are read [byte]."""
+MEMORY = 1600 * MEGA
+"""What those of the largest workbook may take [byte], and the process that reads it, too."""
+FOOTER = 2000
+"""
+Longest footer of a Parquet file that is read at once [byte]: a level takes six bytes, and 400
+levels do no harm.
+"""
 SURFACE = 256 * 2**20
 """Largest surface file, and the most that it may come to when unpacked [byte]."""
 
