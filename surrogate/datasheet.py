@@ -122,7 +122,7 @@ class Checked:
             value, rules = getattr(self, spec.name), spec.metadata
             if value is None and spec.default is not None:
                 raise InputError(f'{where}: {key_of(spec)} is missing, a value is needed')
-            if 'text' in rules and not isinstance(value, str):
+            if 'text' in rules and not isinstance(value, str | None):
                 raise InputError(f'{where}: {spec.name} is {value!r}, allowed is a text')
             if value is not None and 'low' in rules:
                 for number in value if 'many' in rules else (value,):

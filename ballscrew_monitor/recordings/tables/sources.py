@@ -75,7 +75,7 @@ class Source:
 
     def blocks(self, names: Collection[str]) -> Iterator[pl.DataFrame]:
         """Yield the columns `names` in blocks of rows; none is empty. Raises InputError."""
-        come_to = limits.CELLS['parquet'] * self.rows * len(names)
+        come_to = limits.PARQUET_CELL * self.rows * len(names)
         if come_to > self.most:
             raise InputError(
                 f'log {self.path}: {len(names)} columns of {self.rows} rows come to '

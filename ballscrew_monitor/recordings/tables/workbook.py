@@ -28,7 +28,7 @@ from surrogate import limits
 from surrogate.child import result_apart
 from surrogate.files import InputError
 
-CELL_SIZE = limits.CELLS['xlsx']
+CELL_SIZE = limits.XLSX_CELL
 UNPACKABLE = (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError, OSError)
 NO_DAY = '1899-12-31 '
 """Day that a sheet adds to a time of day."""
