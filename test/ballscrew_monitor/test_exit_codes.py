@@ -94,11 +94,12 @@ def test_no_number_of_a_map_or_of_parameters_is_a_fault_of_the_program(folder, k
     places = [match.span() for match in VALUE.finditer(whole)]
     begin, end = places[int(place * len(places))]
     changed = whole[:begin] + text + whole[end:]
-    at = folder()
-    log, mapping = written(at, mapping=changed if kind == 'map' else MAP)
-    params = at / 'params.yaml'
-    params.write_text(PARAMS if kind == 'map' else changed, encoding='utf-8')
-    assert code_of('replay', log, '--map', mapping, '--params', params) in SOUND
+    log, mapping = written(folder(), mapping=changed if kind == 'map' else MAP)
+    command = ['replay', log, '--map', mapping]
+    if kind == 'parameters':
+        command = ['replay', ROOT / 'bags' / 'nominal_cycle', '--params', log.with_name('p.yaml')]
+        command[-1].write_text(changed, encoding='utf-8')
+    assert code_of(*command) in SOUND
 
 
 LIST, STRUCT = pl.List, lambda kind: pl.Struct({'a': kind})
