@@ -26,6 +26,8 @@ import threading
 import time
 from typing import Any, Self
 
+from surrogate.files import InputError
+
 ONE_THREAD = ('MKL_NUM_THREADS', 'NUMBA_NUM_THREADS', 'OMP_NUM_THREADS', 'OPENBLAS_NUM_THREADS')
 # Set by the ROS wheels for their own process; a child finds its libraries itself.
 WHEEL_VARIABLES = ('LD_LIBRARY_PATH', '_ROS_WHEELS_BOOTSTRAP_COMPLETE')
@@ -107,12 +109,19 @@ class Worker:
         niceness: int = 0,
         memory: int = 0,
         environment: Mapping[str, str] | None = None,
+        quiet: bool = False,
     ) -> None:
-        """Start it; `memory` [B] is the most that it may use, 0 any. Raises OSError."""
+        """
+        Start it; `memory` [B] is the most that it may use, 0 any; a `quiet` one shows nothing.
+
+        Raises OSError.
+
+        """
         self._process: Any = start(
             *(WORKER, str(niceness), str(memory)),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL if quiet else None,
             env=one_thread_environment() if environment is None else environment,
             text=True,
         )
@@ -157,6 +166,34 @@ class Worker:
             code = self._process.wait()
         killed, ended = f'was killed by signal {-code}', f'ended with exit code {code}'
         hear(self, {'lost': killed if code < 0 else ended})
+
+
+def result_apart(task: str, inputs: Mapping[str, Any], *, memory: int, failure: str) -> Any:
+    """
+    Return the result of a task, `module:function`, that reads what may kill its process.
+
+    It runs in a child that may use `memory` [B]. Raises InputError: `failure` and how the child
+    ended, or the sentence of the task; and OSError if there can be no child.
+
+    """
+    heard: queue.SimpleQueue[Frame] = queue.SimpleQueue()
+    worker = Worker(lambda _, frame: heard.put(frame), memory=memory, quiet=True)
+    try:
+        worker.send({'task': task, 'inputs': dict(inputs)})
+        frame = heard.get()
+        while not frame.keys() & {'result', 'lost'}:
+            frame = heard.get()
+    finally:
+        worker.kill()
+    if 'lost' in frame:
+        raise InputError(
+            f'{failure}: its reader {frame["lost"]}, it may use {memory / 1e6:.0f} MB of memory'
+        )
+    if sentence := frame['sentence']:
+        lacking = sentence.startswith(MemoryError.__name__)
+        reason = f'{failure}: it may use {memory / 1e6:.0f} MB of memory, it needs more'
+        raise InputError(reason if lacking else sentence)
+    return frame['result']
 
 
 class Workers:

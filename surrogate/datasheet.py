@@ -116,10 +116,14 @@ class Checked:
     WHERE: ClassVar[str] = ''
 
     def __post_init__(self) -> None:
-        """Raise InputError for a value that is not allowed; None is absent."""
+        """Raise InputError for a value that is not allowed; None is absent where it may be."""
         where = self.WHERE or type(self).__name__.lower()
         for spec in fields(self):  # type: ignore[arg-type]
             value, rules = getattr(self, spec.name), spec.metadata
+            if value is None and spec.default is not None:
+                raise InputError(f'{where}: {key_of(spec)} is missing, a value is needed')
+            if 'text' in rules and not isinstance(value, str | None):
+                raise InputError(f'{where}: {spec.name} is {value!r}, allowed is a text')
             if value is not None and 'low' in rules:
                 for number in value if 'many' in rules else (value,):
                     _check_range(where, spec, number / rules['factor'] - rules['shift'])

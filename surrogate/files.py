@@ -3,7 +3,8 @@
 """Files for every folder: bad input in a sentence, complete files, strict JSON, shown texts."""
 
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from itertools import takewhile
 import json
 import math
 import os
@@ -21,30 +22,50 @@ class InputError(ValueError):
 
 
 @contextmanager
+def new_folder(path: str | Path) -> Iterator[Path]:
+    """
+    Make a folder and those above it, and yield it; raises OSError.
+
+    When the block raises, those among them that are empty are taken away again.
+
+    """
+    path = Path(path)
+    missing = list(takewhile(lambda folder: not folder.exists(), (path, *path.parents)))
+    path.mkdir(parents=True, exist_ok=True)
+    try:
+        yield path
+    except BaseException:
+        with suppress(OSError):  # the first that is not empty, or gone already
+            for folder in missing:
+                folder.rmdir()
+        raise
+
+
+@contextmanager
 def new_file(path: str | Path) -> Iterator[Path]:
     """
     Yield a path to write to, which takes the place of `path` when the block ends.
 
-    Its directory is made. Raises OSError when it cannot be written, or `path` is something else
-    than a regular file; then, and when the block raises, what was there before is as it was and
-    nothing half-written stays.
+    Its directory is made, as by `new_folder`. Raises OSError when it cannot be written, or `path`
+    is something else than a regular file; then, and when the block raises, what was there before
+    is as it was and nothing half-written stays.
 
     """
     path = Path(path)
     if path.exists() and not path.is_file():
         raise OSError(0, 'it is not a regular file', str(path))
-    path.parent.mkdir(parents=True, exist_ok=True)
-    number, name = tempfile.mkstemp(dir=path.parent, prefix=f'.{path.stem}.', suffix=path.suffix)
-    temporary = Path(name)
-    try:
-        os.close(number)
-        yield temporary
-        with temporary.open('rb') as file:
-            os.fsync(file.fileno())
-        temporary.chmod(0o644)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    with new_folder(path.parent) as folder:
+        number, name = tempfile.mkstemp(dir=folder, prefix=f'.{path.stem}.', suffix=path.suffix)
+        temporary = Path(name)
+        try:
+            os.close(number)
+            yield temporary
+            with temporary.open('rb') as file:
+                os.fsync(file.fileno())
+            temporary.chmod(0o644)
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
 
 
 def replace_file(path: str | Path, content: bytes) -> None:

@@ -43,6 +43,19 @@ WORKBOOK = 512 * MEGA
 Largest workbook, unpacked, and text of UTF-16, which are read at once; what columns of a Parquet
 file may always come to [byte].
 """
+XLSX_CELL = 80
+"""What a cell of a workbook takes in memory while it is read, as measured [B]."""
+PARQUET_CELL = 8
+"""What a cell of a Parquet file takes in memory while it is read [B]."""
+SPARSE = 640 * MEGA
+"""What rows x columns x cell of any workbook may come to [byte]."""
+MEMORY = 1600 * MEGA
+"""What those of the largest workbook may come to, and the process that reads a table [byte]."""
+FOOTER = 2000
+"""
+Longest footer of a Parquet file that is read at once [B]: a level takes six bytes, and 400
+levels do no harm.
+"""
 SURFACE = 256 * 2**20
 """Largest surface file, and the most that it may come to when unpacked [byte]."""
 

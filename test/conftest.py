@@ -61,6 +61,7 @@ SLOW = (
     'ballscrew_monitor/report/test_buckets.py',
     'ballscrew_monitor/report/test_time_series.py',
     'ballscrew_monitor/test_cli.py',
+    'ballscrew_monitor/test_exit_codes.py',
     'ballscrew_monitor/test_hostile.py',
     'ballscrew_monitor/test_mutations.py',
     'ballscrew_monitor/test_signals.py',

@@ -93,6 +93,7 @@ THEMES = {
     'ballscrew_monitor/recordings/test_black_box.py',
     'ballscrew_monitor/recordings/test_compatibility.py',
     'ballscrew_monitor/report/test_memory.py',
+    'ballscrew_monitor/test_exit_codes.py',
     'ballscrew_monitor/test_hostile.py',
     'ballscrew_monitor/test_mutations.py',
     'ballscrew_monitor/test_signals.py',

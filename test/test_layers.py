@@ -45,7 +45,8 @@ FLOORS = (
 )
 """Folders of the online half, the lowest first; those beside each other do not meet."""
 OFFLINE_FLOORS = (
-    ('units', 'files', 'progress', 'results', 'child'),
+    ('units', 'files', 'progress', 'results'),
+    ('child',),
     ('worker', 'store'),
     ('limits',),
     ('plain_yaml',),

@@ -22,6 +22,7 @@ from ballscrew_monitor.node.heartbeat import Heartbeat
 from ballscrew_monitor.node.intake import Intake
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.parameter_store import is_kept, ParameterStore
+from ballscrew_monitor.node.printable_log import printable_logger
 from ballscrew_monitor.node.restart_state import RestartState, state_directory
 from ballscrew_monitor.node.solve_server import SolveServer
 from ballscrew_monitor.node.state_records import Kind, step_text
@@ -60,6 +61,7 @@ class BallscrewMonitor(LifecycleNode):
     def __init__(self, **kwargs: Any) -> None:
         """Declare everything; raises InputError for a bad parameter."""
         super().__init__(parameters.NODE_NAME, **kwargs)
+        printable_logger(self.get_logger())
         # Held by others too, so both are filled and cleared and never replaced.
         self._axis_publishers: dict[str, AxisPublisher] = {}
         self._active = self._finalized = False

@@ -20,6 +20,8 @@ LARGEST_MESSAGE = 65_536  # [byte] from a browser; beyond, its socket is closed 
 MOST_CONNECTIONS = 300
 FIRST_WORDS = 10.0  # [s] for a connection to ask for something
 LONGEST_WAIT = 30.0  # [s] for an answer, and then for all of the next request
+LONGEST_LIFE = 30.0  # [s] of a connection, after which it takes no further request
+MOST_UNREAD = 1_000_000  # [byte] for a browser that wants answers to its pings and does not read
 LAST_WORDS = 2  # [s] for connections to end
 
 
@@ -71,7 +73,7 @@ class PatientProtocol(H11Protocol):
     A connection that is ended if no request comes in time, or no answer is given and taken.
 
     What comes besides a whole head, such as a part of a body that nobody waits for, is no request.
-    A live socket stays.
+    After `LONGEST_LIFE` it ends with the answer that is under way. A live socket stays.
 
     """
 
@@ -79,10 +81,12 @@ class PatientProtocol(H11Protocol):
         """Begin to wait for the head of the first request."""
         super().connection_made(transport)
         self._timer = self.loop.call_later(FIRST_WORDS, self._end)
+        self._life = self.loop.call_later(LONGEST_LIFE, self._retire)
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Wait no more."""
         self._timer.cancel()
+        self._life.cancel()
         super().connection_lost(exc)
 
     def handle_events(self) -> None:
@@ -101,9 +105,23 @@ class PatientProtocol(H11Protocol):
         self._timer.cancel()
         self._timer = self.loop.call_later(LONGEST_WAIT, self._end)
 
+    def _retire(self) -> None:
+        if self.transport.get_protocol() is self and not self.transport.is_closing():
+            self.shutdown()
+
     def _end(self) -> None:
         if self.transport.get_protocol() is self:
             self.transport.abort()  # it would wait for what is not taken to be taken
+
+
+class BoundedSocket(WebSocketsSansIOProtocol):
+    """A live socket that is ended if it asks for answers to pings and does not read them."""
+
+    def handle_ping(self) -> None:
+        """Answer a ping."""
+        super().handle_ping()
+        if self.transport.get_write_buffer_size() > MOST_UNREAD:
+            self.transport.abort()
 
 
 class QuietServer(uvicorn.Server):
@@ -123,7 +141,7 @@ def server_of(options: PageOptions, app: Any) -> QuietServer:
         server_header=False,
         proxy_headers=False,
         http=PatientProtocol,
-        ws=WebSocketsSansIOProtocol,
+        ws=BoundedSocket,
         ws_max_size=LARGEST_MESSAGE,
         ws_per_message_deflate=False,
         limit_concurrency=MOST_CONNECTIONS,

@@ -9,13 +9,14 @@ with it is one sentence in an InputError.
 
 """
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
 import heapq
 from pathlib import Path
 
-from ballscrew_monitor.recordings.bag_files import kind_of, manifest, OWN, ZSTD
+from ballscrew_monitor.recordings.bag_files import kind_of, manifest, of_ros1, OWN
+from ballscrew_monitor.recordings.log_times import with_believed_log_times
 from ballscrew_monitor.recordings.mcap_records import read_metadata
 from ballscrew_monitor.recordings.sqlite_storage import SqliteStorage
 from ballscrew_monitor.recordings.storages import (
@@ -24,16 +25,21 @@ from ballscrew_monitor.recordings.storages import (
     Message,
     Storage,
     TopicInfo,
+    whole,
 )
-from ballscrew_monitor.recordings.unpacking import (
-    scratch_folder,
-    unpack_file,
-    Unpackable,
-    unpacked,
-)
+from ballscrew_monitor.recordings.unpacking import scratch_folder, unpack_file
 from surrogate.files import InputError
 
 MOST_NAMED = 5  # topics in a sentence
+CONVERTED = {
+    'ros1': 'rosbags-convert makes a bag of ROS 2 out of the .bag that it was made of '
+    '(pip install rosbags)'
+}
+"""How messages of another encoding become such of ROS 2."""
+WRITTEN_AGAIN = (
+    'write its messages again by mcap_ros2.writer (pip install mcap-ros2-support), or save them '
+    'as CSV for ballscrew import'
+)
 
 
 class Bag:
@@ -59,19 +65,25 @@ class Bag:
         self._salvage = salvage
         self._missing: list[str] = []
         files, custom, counts = manifest(self.path, salvage=salvage)
-        self.storages = [one for one in map(self._open, files) if one is not None]
+        self._is_split = len(files) > 1
+        self.storages: Sequence[Storage] = [
+            one for one in map(self._open, files) if one is not None
+        ]
         self.files = [one.file for one in self.storages]
         self.topics: dict[str, TopicInfo] = {}
         for storage in self.storages:
             for name, info in storage.topics.items():
                 count = info.count + (self.topics[name].count if name in self.topics else 0)
                 self.topics[name] = dataclasses.replace(info, count=count)
-        spans = [one.span for one in self.storages if one.span[1]]
-        if not self.topics or not spans:
+        if not any(info.count for info in self.topics.values()):
             what = '; '.join(self._missing) or 'at least one is needed'
             raise InputError(f'bag {self.path} holds no message, {what}')
+        self._check_encodings()
         self._compare(counts)
         self.metadata = self._own_metadata() | custom
+        self.storages, disbelief = with_believed_log_times(self.path, self.storages)
+        self.remarks += filter(None, [disbelief])
+        spans = [one.span for one in self.storages if one.span[1]]
         self.start_time = min(span[0] for span in spans)
         self.end_time = max(span[1] for span in spans)
 
@@ -127,7 +139,7 @@ class Bag:
         """Yield messages of `topics` in the order of the files; raises InputError on damage."""
         wanted = set(self.topics if topics is None else topics)
         for one in self.storages:
-            yield from map(_whole, one.messages(wanted, as_written=True))
+            yield from map(whole, one.messages(wanted, as_written=True))
 
     def messages(self, topics: Collection[str] | None = None) -> Iterator[Message]:
         """Yield messages of `topics` (None: all) by log time; raises InputError on damage."""
@@ -137,14 +149,14 @@ class Bag:
                 stack.enter_context(contextlib.closing(one.messages(wanted)))
                 for one in self.storages
             ]
-            yield from map(_whole, heapq.merge(*streams, key=lambda one: one.log_time))
+            yield from map(whole, heapq.merge(*streams, key=lambda one: one.log_time))
 
     def _open(self, file: Path) -> Storage | None:
         """Return an opened file; None for one that is lost, if that is allowed."""
         try:
             return self._storage(file)
         except InputError as error:
-            if not self._salvage or file == self.path:
+            if not self._salvage or not self._is_split:
                 raise
             self._missing.append(f'{error}; it is left out')
             return None
@@ -160,10 +172,17 @@ class Bag:
                 file = unpack_file(file, scratch_folder(self), salvage=self._salvage)
                 kind = kind_of(file)
         if kind == 'rosbag1':
-            raise InputError(f'bag {file} is of ROS 1, it must be converted to rosbag2')
+            raise of_ros1(file)
         if kind == 'sqlite3':
             return SqliteStorage(file)
         return McapStorage(file, salvage=self._salvage)
+
+    def _check_encodings(self) -> None:
+        """Raise InputError if no topic holds messages as ROS 2 encodes them."""
+        held = [(name, info) for name, info in sorted(self.topics.items()) if info.count]
+        if held and all(info.encoding not in ('cdr', '') for _, info in held):
+            name, info = held[0]
+            raise InputError(f'bag {self.path}: topic {name} {other_encoding(info.encoding)}')
 
     def _compare(self, stated: Mapping[str, int]) -> None:
         """Note of which topics the files hold another number of messages than is stated."""
@@ -190,7 +209,7 @@ class Bag:
     def _own_metadata(self) -> dict[str, str]:
         """Return the record of this program in the first MCAP file, if it is whole."""
         first = self.storages[0]
-        if not isinstance(first, McapStorage) or first.note:
+        if not isinstance(first, McapStorage) or not first.is_indexed or first.note:
             return {}
         found: dict[str, str] = {}
         try:
@@ -204,22 +223,18 @@ class Bag:
         return found
 
 
-def _whole(message: Message) -> Message:
-    """Return a message, unpacked if it was packed alone; what cannot be does not decode."""
-    if message.data[:4] != ZSTD:  # no serialised message begins so: its first byte is zero
-        return message
-    try:
-        return dataclasses.replace(message, data=unpacked(message.data))
-    except Unpackable:
-        return message
-
-
 def _objection(found: TopicInfo, type_name: str) -> str:
     """Return what is wrong with a topic that must be of a type, nothing if it is right."""
+    if found.encoding != 'cdr':
+        return other_encoding(found.encoding)
     if not found.type_name:
         return 'states no type: its schema is missing'
     if found.type_name != type_name:
         return f'is of type {found.type_name}, it must be {type_name}'
-    if found.encoding != 'cdr':
-        return f'is encoded as {found.encoding}, it must be cdr'
     return '' if found.count else 'holds no message, at least one is needed'
+
+
+def other_encoding(encoding: str) -> str:
+    """Return what is said of a topic of another encoding than that of ROS 2."""
+    how = CONVERTED.get(encoding, WRITTEN_AGAIN)
+    return f'is encoded as {encoding or "nothing"}, it must be cdr, that of ROS 2: {how}'

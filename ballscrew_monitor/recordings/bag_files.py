@@ -3,8 +3,9 @@
 """Files of a bag and their kinds, by metadata.yaml and by their first bytes."""
 
 import contextlib
-from pathlib import Path, PurePath
+from pathlib import Path, PureWindowsPath
 import re
+import shlex
 
 from surrogate.files import InputError
 from surrogate.limits import read_text
@@ -15,6 +16,7 @@ MAGIC = {
     b'SQLite format 3\0': 'sqlite3',
     b'\x28\xb5\x2f\xfd': 'zstd',
     b'#ROSBAG V': 'rosbag1',
+    b'#ROSRECORD V': 'rosbag1',
     b'PAR1': 'parquet',
 }
 """Kinds of files by how they begin."""
@@ -48,7 +50,7 @@ def is_bag(path: Path) -> bool:
     if path.is_dir():
         return (path / 'metadata.yaml').is_file() or bool(_bag_files(path))
     return path.name.endswith((*ENDINGS, ACTIVE)) or (
-        path.is_file() and kind_of(path) in (*STORAGES, 'zstd')
+        path.is_file() and kind_of(path) in (*STORAGES, 'zstd', 'rosbag1')
     )
 
 
@@ -77,8 +79,22 @@ def manifest(path: Path, *, salvage: bool) -> Manifest:
     return files, custom, counts
 
 
+def of_ros1(file: Path) -> InputError:
+    """Return what is said of a bag of ROS 1."""
+    source, target = (shlex.quote(str(path)) for path in (file, file.with_suffix('')))
+    return InputError(
+        f'bag {file} is of ROS 1, it must be converted to ROS 2: rosbags-convert --src {source} '
+        f'--dst {target} --dst-typestore ros2_jazzy does so (pip install rosbags)'
+    )
+
+
 def _bag_files(path: Path) -> list[Path]:
-    return sorted((file for file in path.iterdir() if file.name.endswith(ENDINGS)), key=_by_number)
+    return sorted((file for file in path.iterdir() if _is_part(file)), key=_by_number)
+
+
+def _is_part(file: Path) -> bool:
+    is_old = file.name.endswith('.bag') and file.is_file() and kind_of(file) == 'rosbag1'
+    return file.name.endswith(ENDINGS) or is_old
 
 
 def _by_number(file: Path) -> list[str | int]:
@@ -90,32 +106,37 @@ def _by_number(file: Path) -> list[str | int]:
 def _read_metadata(metadata: Path) -> Manifest:
     try:
         content = plain_values(read_text(metadata))['rosbag2_bagfile_information']
-        kind, names = content['storage_identifier'], content['relative_file_paths']
-        packing = content.get('compression_format') or 'zstd'
+        kind, names = content.get('storage_identifier'), content['relative_file_paths']
+        packing = str(content.get('compression_format') or 'zstd')
         custom = dict(content.get('custom_data') or {})
     except NO_METADATA as error:
         reason = ' '.join(str(error).split())
         raise InputError(f'{metadata} is not a rosbag2 metadata file: {reason}') from None
     bag = metadata.parent
-    if kind not in STORAGES:
-        raise InputError(f'bag {bag} is stored as {kind}, it must be {" or ".join(STORAGES)}')
-    if packing != 'zstd':
-        raise InputError(f'bag {bag} is compressed as {packing}, it must be zstd')
     if not isinstance(names, list):
         raise InputError(f'{metadata} is not a rosbag2 metadata file: it names no list of files')
+    files = [_place(bag, str(name)) for name in names]
+    if not any(file.is_file() and kind_of(file) for file in files):  # the first bytes decide
+        _check_stated(bag, str(kind or ''), packing)
     counts = {}
     with contextlib.suppress(*NO_METADATA):  # those that count well
         counts = {
             str(one['topic_metadata']['name']): int(one['message_count'])
             for one in content['topics_with_message_count']
         }
-    return (
-        [_place(bag, str(name)) for name in names],
-        {str(key): str(value) for key, value in custom.items()},
-        counts,
-    )
+    return (files, {str(key): str(value) for key, value in custom.items()}, counts)
+
+
+def _check_stated(bag: Path, kind: str, packing: str) -> None:
+    """Raise InputError if a bag states a storage that is not read."""
+    if kind and kind.lower() not in STORAGES:
+        raise InputError(f'bag {bag} is stored as {kind}, it must be {" or ".join(STORAGES)}')
+    if packing.lower() != 'zstd':
+        raise InputError(f'bag {bag} is compressed as {packing}, it must be zstd')
 
 
 def _place(bag: Path, name: str) -> Path:
-    """Return where a file is: old metadata name the folder of the bag, too."""
-    return bag / name if (bag / name).is_file() else bag / PurePath(name).name
+    """Return where a file is: old metadata name the folder of the bag, those of Windows by \\."""
+    windows = PureWindowsPath(name)
+    places = (bag / name, bag / windows.as_posix())
+    return next((place for place in places if place.is_file()), bag / windows.name)

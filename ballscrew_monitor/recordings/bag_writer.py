@@ -32,7 +32,7 @@ from ballscrew_monitor.recordings.mcap_file import (
     type_hash,
 )
 import numpy as np
-from surrogate.files import InputError, replace_file
+from surrogate.files import InputError, new_folder, replace_file
 import yaml
 
 ACTIVE = '.active'
@@ -294,8 +294,18 @@ def whole_bag(directory: Path, name: str, *, compress: bool = True) -> Iterator[
 
     """
     directory = directory.resolve()
-    with _growing(directory, name) as folder:
-        writer = BagWriter(Path(folder), name, compress=compress, chunk_size=WHOLE_CHUNK_SIZE)
+    # It grows in `directory`, or beside it if that is yet to be made.
+    place = directory if directory.is_dir() else directory.parent
+    with contextlib.ExitStack() as stack:
+        try:
+            if directory.is_file():
+                raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
+            stack.enter_context(new_folder(place))
+            growing = tempfile.TemporaryDirectory(dir=place, prefix=f'.{name}.')
+        except OSError as error:
+            raise _unwritable(directory, error) from None
+        folder = Path(stack.enter_context(growing))
+        writer = BagWriter(folder, name, compress=compress, chunk_size=WHOLE_CHUNK_SIZE)
         try:
             yield writer
             writer.close()
@@ -303,20 +313,8 @@ def whole_bag(directory: Path, name: str, *, compress: bool = True) -> Iterator[
             writer.abandon()
         directory.mkdir(exist_ok=True)
         (directory / METADATA).unlink(missing_ok=True)  # not of this bag until its own comes
-        for file in sorted(Path(folder).iterdir()):
+        for file in sorted(folder.iterdir()):
             file.replace(directory / file.name)
-
-
-def _growing(directory: Path, name: str) -> 'tempfile.TemporaryDirectory[str]':
-    """Return where a bag grows: in `directory`, or beside it if that is yet to be made."""
-    place = directory if directory.is_dir() else directory.parent
-    try:
-        if directory.is_file():
-            raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
-        place.mkdir(parents=True, exist_ok=True)
-        return tempfile.TemporaryDirectory(dir=place, prefix=f'.{name}.')
-    except OSError as error:
-        raise _unwritable(directory, error) from None
 
 
 def _unwritable(directory: Path, error: OSError) -> InputError:

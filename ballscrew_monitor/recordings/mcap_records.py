@@ -41,6 +41,7 @@ DAMAGE = (
 MAGIC_SIZE = 8  # [bytes] at the begin and at the end of a file
 RECORD = struct.Struct('<BQ')  # operation code and length of what follows
 FOOTER = struct.Struct('<BQQQI')  # code, length, begin of summary and its offsets, checksum
+FOOTER_HEAD = [2, FOOTER.size - RECORD.size]
 KINDS: dict[int, Any] = {3: Schema, 4: Channel, 12: Metadata}
 """Records that are read besides messages and chunks, by their operation codes."""
 MESSAGE, CHUNK, DATA_END = 5, 6, 15
@@ -58,14 +59,25 @@ class RecordDamage(ValueError):
             self.lost = f'the last {end - place} bytes, from byte {place} on, are left out'
 
 
+class NoSummary(McapError):
+    """A file that does without a summary, or whose summary leaves out what its channels are."""
+
+
 def read_summary(stream: BinaryIO) -> Summary:
-    """Return the summary of a file; raises one of `DAMAGE`, also if it contradicts itself."""
+    """
+    Return the summary of a file.
+
+    Raises NoSummary for a file that has none, and one of `DAMAGE` for one that contradicts itself.
+
+    """
     whole = stream.seek(0, io.SEEK_END)
     if whole < FOOTER.size + 2 * MAGIC_SIZE:
         raise McapError('it has no summary')
     stream.seek(-(FOOTER.size + MAGIC_SIZE), io.SEEK_END)
-    _, _, begin, _, checksum = FOOTER.unpack(stream.read(FOOTER.size))
+    *head, begin, _, checksum = FOOTER.unpack(stream.read(FOOTER.size))
     size = stream.tell() - begin
+    if not begin and head == FOOTER_HEAD:
+        raise NoSummary('it has no summary')
     if not begin or not 0 < size <= limits.SUMMARY:
         raise McapError('it has no summary')
     stream.seek(begin)
@@ -74,10 +86,21 @@ def read_summary(stream: BinaryIO) -> Summary:
     stream.seek(0)
     reader = SeekingReader(stream, record_size_limit=limits.SUMMARY)
     summary = reader.get_summary()
-    if summary is None or summary.statistics is None:
+    if summary is None:
         raise McapError('it has no summary')
+    if summary.statistics is None or _leaves_out_channels(summary):
+        raise NoSummary('its summary tells nothing of its messages')
     _check(summary, whole)
     return summary
+
+
+def _leaves_out_channels(summary: Summary) -> bool:
+    """Return True if messages are counted but channels or schemas are not repeated."""
+    statistics = summary.statistics
+    assert statistics is not None
+    has_none = statistics.message_count and statistics.channel_count and not summary.channels
+    has_schemas = bool(summary.schemas) or not statistics.schema_count
+    return bool(has_none) or not has_schemas
 
 
 def _check(summary: Summary, size: int) -> None:

@@ -11,7 +11,8 @@ import contextlib
 from pathlib import Path
 from typing import Any
 
-from ballscrew_monitor.recordings.bag_files import kind_of
+from ballscrew_monitor.recordings.bag import other_encoding
+from ballscrew_monitor.recordings.bag_files import kind_of, of_ros1
 from ballscrew_monitor.recordings.bag_writer import ACTIVE, BagWriter, whole_bag
 from ballscrew_monitor.recordings.mcap_records import RecordDamage, whole_records
 from mcap.records import Channel, Metadata, Schema
@@ -20,10 +21,15 @@ from surrogate.files import InputError
 from surrogate.plain_yaml import plain_values
 
 SUFFIX = '.mcap'
-SQLITE = (
-    '{file} is a sqlite3 file of a bag, only MCAP files are recovered: ballscrew replay reads '
-    'that of a recorder that was killed as it is, sqlite3 {file} .recover mends a damaged one'
-)
+OTHERS = {
+    'sqlite3': '{file} is a sqlite3 file of a bag, only MCAP files are recovered: ballscrew '
+    'replay reads that of a recorder that was killed as it is, sqlite3 {file} .recover mends a '
+    'damaged one',
+    'zstd': '{file} is packed by zstd, only MCAP files are recovered: ballscrew replay reads a '
+    'packed file as it is; zstd -d {file} unpacks it',
+    'parquet': '{file} is a Parquet file, only MCAP files are recovered',
+}
+"""What is said of files of other kinds."""
 
 
 def recover(path: Path) -> tuple[Path, int, float, str]:
@@ -40,23 +46,36 @@ def recover(path: Path) -> tuple[Path, int, float, str]:
     file = _unfinished(path) if path.is_dir() else path
     if not file.is_file():
         raise InputError(f'{file} does not exist, it must be an MCAP file or the folder of one')
-    if kind_of(file) == 'sqlite3':
-        raise InputError(SQLITE.format(file=file))
+    _check_kind(file)
     target = _target(file)
     if target.exists():
         raise InputError(f'{target} is there already, it would be written over: move it away')
     topics, lost = _topics(file)
     if not topics:
         raise InputError(f'{file} holds no message that is whole, nothing can be recovered')
+    for channel, _ in topics.values():
+        if channel.message_encoding != 'cdr':
+            raise InputError(
+                f'{file}: topic {channel.topic} {other_encoding(channel.message_encoding)}'
+            )
     with whole_bag(target.parent, target.name.removesuffix(SUFFIX)) as writer:
         _copy(file, topics, writer)
     return target, writer.total, (writer.last - writer.first) * 1e-9, lost
 
 
+def _check_kind(file: Path) -> None:
+    """Raise InputError if a file is of another kind than MCAP by its first bytes."""
+    kind = kind_of(file)
+    if kind == 'rosbag1':
+        raise of_ros1(file)
+    if kind in OTHERS:
+        raise InputError(OTHERS[kind].format(file=file))
+
+
 def _unfinished(folder: Path) -> Path:
     found = sorted(folder.glob(f'*{SUFFIX}{ACTIVE}'))
     if not found and (stored := sorted(folder.glob('*.db3'))):
-        raise InputError(SQLITE.format(file=stored[0]))
+        raise InputError(OTHERS['sqlite3'].format(file=stored[0]))
     if len(found) != 1:
         raise InputError(f'{folder} holds {len(found)} unfinished recordings, it must be one')
     return found[0]

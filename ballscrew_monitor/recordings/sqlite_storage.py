@@ -28,7 +28,7 @@ SELECT topic_id, timestamp, data FROM messages
     AND typeof(data) = 'blob' AND length(data) <= {limits.MESSAGE}
 """
 """Rows that are messages, of whatever topic."""
-ORDER = 'ORDER BY timestamp, id'
+BY_LOG_TIME, AS_WRITTEN = 'ORDER BY timestamp, id', 'ORDER BY id'
 COUNTS = (
     f'SELECT topic_id, count(*), min(timestamp), max(timestamp) FROM ({MESSAGES})'
     ' GROUP BY topic_id'
@@ -60,13 +60,14 @@ class SqliteStorage(Storage):
             self._remark(remark)
 
     def messages(self, wanted: Collection[str], *, as_written: bool = False) -> storages.Stream:
-        """Yield the messages, see `Storage`; they were written by log time, too."""
+        """Yield the messages, see `Storage`."""
         topics = {
             number: name for number, (name, *_) in self._topic_rows().items() if name in wanted
         }
         marks = ', '.join('?' for _ in topics)
+        order = AS_WRITTEN if as_written else BY_LOG_TIME
         with self._opened() as database:
-            rows = database.execute(f'{MESSAGES} AND topic_id IN ({marks}) {ORDER}', [*topics])
+            rows = database.execute(f'{MESSAGES} AND topic_id IN ({marks}) {order}', [*topics])
             for number, time, data in rows:
                 yield Message(topic=topics[number], data=data, log_time=time, publish_time=time)
 

@@ -18,7 +18,7 @@ import operator
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from ballscrew_monitor.recordings.bag_files import MAGIC
+from ballscrew_monitor.recordings.bag_files import MAGIC, ZSTD
 from ballscrew_monitor.recordings.bulk.chunks import (
     chunk_indexes,
     ChunkDamage,
@@ -27,10 +27,12 @@ from ballscrew_monitor.recordings.bulk.chunks import (
 )
 from ballscrew_monitor.recordings.mcap_records import (
     DAMAGE,
+    NoSummary,
     read_summary,
     RecordDamage,
     whole_records,
 )
+from ballscrew_monitor.recordings.unpacking import Unpackable, unpacked
 from mcap.records import Channel, ChunkIndex, Schema
 from mcap.records import Message as McapMessage
 from surrogate import limits
@@ -111,22 +113,12 @@ class McapStorage(Storage):
         except InputError:
             if not salvage:
                 raise
-            self.is_indexed = False
-            counts: Counter[str] = Counter()
-            begin = end = 0
-            lost = ''
-            try:
-                for message in self._written():
-                    begin = min(begin, message.log_time) if counts else message.log_time
-                    end = max(end, message.log_time)
-                    counts[message.topic] += 1
-            except RecordDamage as damage:
-                lost = damage.lost and f', {damage.lost}'
-            self._take_topics(counts)
-            self.span = (begin, end)
+            lost = self._read_through()
+            begin, end = self.span
+            count = sum(info.count for info in self.topics.values())
             self.note = (
-                f'bag {self.file} is truncated or damaged: used are the {counts.total()} messages '
-                f'of {(end - begin) * 1e-9:.1f} s that are whole{lost}'
+                f'bag {self.file} is truncated or damaged: used are the {count} messages '
+                f'of {(end - begin) * 1e-9:.1f} s that are whole{lost and f", {lost}"}'
             )
             if not self.topics:
                 raise
@@ -203,7 +195,12 @@ class McapStorage(Storage):
 
     def _read_topics(self) -> None:
         with damage_is_input(self.file), self.file.open('rb') as stream:
-            summary = read_summary(stream)
+            try:
+                summary = read_summary(stream)
+            except NoSummary:
+                if lost := self._read_through():
+                    raise InputError(self._damaged(lost)) from None
+                return
         statistics = summary.statistics
         assert statistics is not None
         self._schemas, self._channels = summary.schemas, summary.channels
@@ -212,6 +209,23 @@ class McapStorage(Storage):
             counts[channel.topic] += statistics.channel_message_counts.get(number, 0)
         self._take_topics(counts)
         self.span = (statistics.message_start_time, statistics.message_end_time)
+
+    def _read_through(self) -> str:
+        """Take topics and time span from the messages themselves; return what is lost, if any."""
+        self.is_indexed = False
+        counts: Counter[str] = Counter()
+        begin = end = 0
+        lost = ''
+        try:
+            for message in self._written():
+                begin = min(begin, message.log_time) if counts else message.log_time
+                end = max(end, message.log_time)
+                counts[message.topic] += 1
+        except RecordDamage as damage:
+            lost = damage.lost
+        self._take_topics(counts)
+        self.span = (begin, end)
+        return lost
 
     def _take_topics(self, counts: Counter[str]) -> None:
         for channel in self._channels.values():
@@ -263,6 +277,16 @@ class _Waiting:
             *_, message = heapq.heappop(self._held)
             self._size -= len(message.data) + OBJECT
             yield message
+
+
+def whole(message: Message) -> Message:
+    """Return a message, unpacked if it was packed alone; what cannot be does not decode."""
+    if message.data[:4] != ZSTD:  # no serialised message begins so: its first byte is zero
+        return message
+    try:
+        return dataclasses.replace(message, data=unpacked(message.data))
+    except Unpackable:
+        return message
 
 
 def by_log_time(messages: Iterable[Message]) -> Iterator[Message]:

@@ -201,7 +201,6 @@ def _records(
 def _write(out: Path, records: Mapping[str, Any], courses: Mapping[str, Sequence[Health]]) -> None:
     from ballscrew_monitor.report.health_picture import draw_health, MOST_DRAWN  # slow to load
 
-    out.mkdir(parents=True, exist_ok=True)
     replace_file(out / RECORD, json_text(records).encode())
     draw_health(dict(list(courses.items())[:MOST_DRAWN]), out / PICTURE)
     print(f'{out / RECORD} and {out / PICTURE}')

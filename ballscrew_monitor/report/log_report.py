@@ -36,7 +36,7 @@ from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.printed import summary_record
 from ballscrew_monitor.report.row_table import RowStore
 from ballscrew_monitor.report.verdict import AxisVerdict, verdicts_of
-from surrogate.files import json_text, new_file, replace_file
+from surrogate.files import json_text, new_file, new_folder, replace_file
 
 PREFIX, LOCK = '.rows-', 'lock'
 
@@ -44,18 +44,18 @@ PREFIX, LOCK = '.rows-', 'lock'
 @contextlib.contextmanager
 def scratch_folder(directory: Path) -> Iterator[Path]:
     """Give a folder in `directory` until the block ends, and remove what was left of others."""
-    directory.mkdir(parents=True, exist_ok=True)
-    remove_left(directory)
-    # Named before it is there, so that no interrupt comes between its making and the `try`.
-    folder = directory / f'{PREFIX}{uuid.uuid4().hex}'
-    try:
-        folder.mkdir(mode=0o700)
-        with (folder / LOCK).open('w') as lock:
-            with contextlib.suppress(OSError):  # without locks there, nobody removes what is left
-                fcntl.flock(lock, fcntl.LOCK_EX)
-            yield folder
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
+    with new_folder(directory):
+        remove_left(directory)
+        # Named before it is there, so that no interrupt comes between its making and the `try`.
+        folder = directory / f'{PREFIX}{uuid.uuid4().hex}'
+        try:
+            folder.mkdir(mode=0o700)
+            with (folder / LOCK).open('w') as lock:
+                with contextlib.suppress(OSError):  # without locks, nobody removes what is left
+                    fcntl.flock(lock, fcntl.LOCK_EX)
+                yield folder
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def remove_left(directory: Path) -> None:

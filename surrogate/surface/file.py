@@ -260,6 +260,7 @@ def _has_sound_header(data: SurfaceData) -> bool:
         and all(isinstance(raceway[word], str) for word in ('lay', 'state', 'traced'))
         and all(math.isfinite(number) for number in numbers)
         and all(0 < number < math.inf for number in above_zero)
+        and isinstance(data.header['load_breaks'], list)
         and set(data.header['load_breaks']) <= set(data.load.tolist())
         and slowest < fastest
         and s[0] + data.log_onset.max() <= slowest + rounding

@@ -49,6 +49,20 @@ def test_a_terminal_that_lacks_a_character_shows_a_mark(short_bag):
     assert ' ?C, ' in done.stdout
 
 
+@pytest.mark.parametrize('command', ['replay', 'health', 'run'])
+def test_a_recording_that_is_refused_in_its_middle_leaves_no_folder(
+    short_bag, tmp_path, capsys, command
+):
+    damaged, out = tmp_path / 'damaged.mcap', tmp_path / 'new' / 'out'
+    data = bytearray((short_bag / 'short.mcap').read_bytes())
+    data[3 * len(data) // 10] ^= 0x55
+    damaged.write_bytes(data)
+    log = ['--bag', str(damaged)] if command == 'run' else [str(damaged)]
+    assert cli.main([command, *log, '--params', str(PARAMS), '--out', str(out)]) == 2
+    assert 'is truncated or damaged' in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == [damaged]
+
+
 def test_a_replay_that_judges_nothing_is_a_failure(short_bag, tmp_path, capsys, says):
     params = tmp_path / 'params.yaml'
     text = PARAMS.read_text(encoding='utf-8')

@@ -270,6 +270,7 @@ class Hostile:
             ('wide_returns', f'{names}\r1\r'),
             ('long', f't,v\n1,{"9" * 4_100_000}\n'),
             ('long_return', f't,v\r1,{"9" * 4_100_000}\r'),
+            ('longest', f't,v\n1,2\n{"9," * 25_000_000}\n'),
             ('long_name', f'{"n" * 100_000},v\x1b[31m\n1,2\n'),
             ('longer_name', f'"{"n" * 1_000_000}",v\n1,2\n'),
             ('long_cell', f'x_speed,t\n{"9" * 100_000}x,2\n'),
@@ -319,6 +320,7 @@ REFUSED = (
     *('large', 'laughing_bag', 'deep_bag', 'dated_bag', 'laughing_parameters', 'deep_parameters'),
     *('dated_parameters', 'laughing_metadata', 'deep_metadata', 'dated_sheet', 'twice'),
     *('laughing_map', 'deep_map', 'dated_map', 'wide', 'wide_returns', 'long', 'long_return'),
+    'longest',
     *('long_name', 'longer_name', 'long_cell', 'wide_letters', 'packed_sheet', 'far_cell'),
 )
 DAMAGED = ('zstd_frame', 'zstd_both', 'zstd_endless', 'lz4_chunk', 'lz4_both')

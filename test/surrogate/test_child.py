@@ -10,7 +10,14 @@ import subprocess
 import sys
 
 import pytest
-from surrogate.child import one_thread_environment, path_to_this_code, start, stop, Workers
+from surrogate.child import (
+    one_thread_environment,
+    path_to_this_code,
+    result_apart,
+    start,
+    stop,
+    Workers,
+)
 
 DEADLINE = 600.0  # [s] which only ends a hang
 ROOT = Path(__file__).resolve().parents[2]
@@ -24,6 +31,22 @@ import signal, subprocess, sys
 signal.signal(signal.SIGINT, signal.SIG_IGN)
 print(subprocess.Popen([sys.executable, '-c', 'import signal; signal.pause()']).pid, flush=True)
 signal.pause()
+"""
+DEADLY = """
+import os, signal
+from surrogate.files import InputError
+class Panic(BaseException):
+    pass
+def abort(inputs):
+    os.abort()
+def panic(inputs):
+    raise Panic('capacity overflow')
+def overflow(inputs):
+    os.kill(os.getpid(), signal.SIGSEGV)
+def refuse(inputs):
+    raise InputError(inputs['sentence'])
+def fill(inputs):
+    return {'size': len(bytearray(inputs['size']))}
 """
 PARENT = """
 import subprocess, sys
@@ -44,6 +67,7 @@ def modules(tmp_path, monkeypatch):
     monkeypatch.setenv('PYTHONPATH', f'{ROOT}{os.pathsep}{tmp_path}')
     (tmp_path / 'waits.py').write_text(WAITS)
     (tmp_path / 'stubborn.py').write_text(STUBBORN)
+    (tmp_path / 'deadly.py').write_text(DEADLY)
 
 
 @pytest.fixture
@@ -112,6 +136,30 @@ def test_a_worker_that_cannot_be_started_is_lost():
         begun, lost = frames_of(workers, 'a')
     assert begun['begun'].endswith('/-')
     assert lost == {'lost': 'cannot be started, Resource temporarily unavailable'}
+
+
+@pytest.mark.parametrize(
+    ('task', 'ending'),
+    [
+        ('abort', 'was killed by signal 6'),
+        ('overflow', 'was killed by signal 11'),
+        ('panic', 'ended with exit code 1'),
+    ],
+)
+def test_a_task_that_ends_its_process_is_a_sentence(capfd, refused, task, ending):
+    with refused('lost', ending=ending):
+        result_apart(f'deadly:{task}', {}, memory=10**9, failure='log a.xlsx cannot be read')
+    assert capfd.readouterr() == ('', '')
+
+
+def test_a_task_apart_has_so_much_memory_and_its_refusal_is_its_own(refused):
+    asked = {'memory': 500_000_000, 'failure': 'log a.xlsx cannot be read'}
+    result = result_apart('deadly:fill', {'size': 100_000_000}, **asked)
+    assert result == {'size': 100_000_000}
+    with refused('no_memory'):
+        result_apart('deadly:fill', {'size': 1_000_000_000}, **asked)
+    with refused('of_task'):
+        result_apart('deadly:refuse', {'sentence': 'log a.xlsx lists no sheet'}, **asked)
 
 
 def test_no_child_outlives_its_parent():

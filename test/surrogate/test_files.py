@@ -4,7 +4,8 @@
 
 import os
 
-from surrogate.files import printable, replace_file
+import pytest
+from surrogate.files import new_file, new_folder, printable, replace_file
 
 
 def test_a_file_is_made_with_its_directory_and_replaced(tmp_path, refused):
@@ -30,6 +31,34 @@ def test_a_failure_leaves_what_was_there(tmp_path, monkeypatch, refused):
     refused('space_left_device', replace_file, path, b'two')
     assert path.read_bytes() == b'one'
     assert list(tmp_path.iterdir()) == [path]
+
+
+class Refused(Exception):
+    """What ends a block."""
+
+
+@pytest.mark.parametrize('make', [new_folder, lambda folder: new_file(folder / 'file')])
+def test_what_is_refused_leaves_no_empty_folder(tmp_path, make):
+    with pytest.raises(Refused), make(tmp_path / 'a' / 'b'):
+        raise Refused
+    assert not list(tmp_path.iterdir())
+    (tmp_path / 'a').mkdir()
+    with pytest.raises(Refused), make(tmp_path / 'a' / 'b' / 'c'):
+        raise Refused
+    assert list(tmp_path.rglob('*')) == [tmp_path / 'a']
+
+
+def test_what_is_refused_leaves_what_was_written(tmp_path):
+    kept = tmp_path / 'a' / 'b' / 'kept'
+
+    def write_and_refuse():
+        with new_folder(kept.parent / 'c'):
+            kept.touch()
+            raise Refused
+
+    with pytest.raises(Refused):
+        write_and_refuse()
+    assert list(kept.parent.iterdir()) == [kept]
 
 
 def test_a_text_cannot_steer_a_terminal():

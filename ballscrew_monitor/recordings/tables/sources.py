@@ -8,7 +8,7 @@ line feed, a carriage return or both. All is bounded before it is read.
 
 """
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 import contextlib
 import csv
 import dataclasses
@@ -22,11 +22,13 @@ from ballscrew_monitor.recordings.tables import foreign, heads
 from ballscrew_monitor.recordings.tables.cells import first_line, readable
 from ballscrew_monitor.recordings.tables.heads import Head, Line
 from ballscrew_monitor.recordings.tables.quantities import Layout
-from ballscrew_monitor.recordings.tables.workbook import first_sheet, NUMBER
+from ballscrew_monitor.recordings.tables.workbook import first_sheet
+from ballscrew_monitor.recordings.words import short
 import numpy as np
 from numpy.typing import NDArray
 import polars as pl
 from surrogate import limits
+from surrogate.child import result_apart
 from surrogate.files import InputError
 
 HEAD = 65536  # [bytes] of a file that tell what it is
@@ -73,7 +75,7 @@ class Source:
 
     def blocks(self, names: Collection[str]) -> Iterator[pl.DataFrame]:
         """Yield the columns `names` in blocks of rows; none is empty. Raises InputError."""
-        come_to = NUMBER * self.rows * len(names)
+        come_to = limits.PARQUET_CELL * self.rows * len(names)
         if come_to > self.most:
             raise InputError(
                 f'log {self.path}: {len(names)} columns of {self.rows} rows come to '
@@ -122,14 +124,56 @@ def _head_of(path: Path) -> bytes:
 
 
 def _parquet(path: Path) -> Source:
-    frame, size = pl.scan_parquet(path), path.stat().st_size
-    with readable(f'log {path} cannot be read'):
-        rows = int(frame.select(pl.len()).collect().item())
-        names = frame.collect_schema().names()
+    rows, names = _shape_of_parquet(path)
     _check_columns(path, len(names))
-    most = max(limits.most_unpacked(size), limits.WORKBOOK)
+    most = max(limits.most_unpacked(path.stat().st_size), limits.WORKBOOK)
     head = Head(names=heads.unlike(names), separator='', begin=0, first=1)
-    return of_frame(path, frame, head, rows, most)
+    return of_frame(path, pl.scan_parquet(path), head, rows, most)
+
+
+def _shape_of_parquet(path: Path) -> tuple[int, list[str]]:
+    """Return rows and names of columns; a long footer may nest so deep that its reader dies."""
+    inputs, failure = {'path': str(path)}, f'log {path} cannot be read'
+    with path.open('rb') as stream:
+        stream.seek(max(path.stat().st_size - len(PARQUET) - 4, 0))
+        length = int.from_bytes(stream.read(4), 'little')
+    if length > limits.FOOTER:
+        task = f'{__name__}:parquet_shape'
+        shape = result_apart(task, inputs, memory=limits.MEMORY, failure=failure)
+    else:
+        shape = parquet_shape(inputs)
+    return shape['rows'], shape['names']
+
+
+def parquet_shape(inputs: Mapping[str, str]) -> dict[str, Any]:
+    """Return rows and names of columns of the Parquet file `path`; raises InputError."""
+    with readable(f'log {inputs["path"]} cannot be read', Exception):
+        frame = pl.scan_parquet(inputs['path'])
+        rows = int(frame.select(pl.len()).collect().item())
+        schema = frame.collect_schema()
+    for name, kind in schema.items():
+        if not _is_within(limits.DEPTH, kind):
+            raise InputError(
+                f'log {inputs["path"]}: column {short(repr(name))} nests deeper than '
+                f'{limits.DEPTH}, it must hold numbers: leave it out of the file'
+            )
+    return {'rows': rows, 'names': schema.names()}
+
+
+def _is_within(depth: int, kind: Any) -> bool:
+    """Return True if a type nests no deeper than a depth."""
+    kinds = [kind]
+    for _ in range(depth + 1):
+        if not kinds:
+            return True
+        kinds = [inner for kind in kinds for inner in _inner(kind)]
+    return not kinds
+
+
+def _inner(kind: Any) -> list[Any]:
+    if isinstance(kind, pl.Struct):
+        return [field.dtype for field in kind.fields]
+    return [kind.inner] if isinstance(kind, pl.List | pl.Array) else []
 
 
 def _sheet(path: Path, layout: Layout | None) -> Source:
@@ -181,7 +225,23 @@ class _Text:
         """Give its lines, a letter for each byte."""
         with self.stream() as stream:
             stream.seek(self.begin())
-            yield io.TextIOWrapper(stream, CODINGS[-1], newline=self.line_end)
+            text = io.TextIOWrapper(stream, CODINGS[-1], newline=self.line_end)
+            yield _bounded(self.path, text)
+
+
+def _bounded(path: Path, text: io.TextIOWrapper) -> Iterator[str]:
+    """Yield the lines of a text; raises InputError for one that is longer than allowed."""
+    while line := text.readline(limits.LINE + 1):
+        if len(line) > limits.LINE:
+            raise _too_long(path)
+        yield line
+
+
+def _too_long(path: Path) -> InputError:
+    return InputError(
+        f'log {path} has a line of more than {limits.LINE // limits.MEGA} MB, a table has '
+        'shorter ones'
+    )
 
 
 def _narrow(path: Path, size: int) -> bytes:
@@ -242,7 +302,7 @@ def _first_lines(text: _Text) -> tuple[list[Line], list[int]]:
         for line in stream:
             begin, row, at = at, number + 1, at + len(line)
             number += 1
-            while line.count('"') % 2 and (more := next(stream, '')):
+            while line.count('"') % 2 and at <= limits.MEGA and (more := next(stream, '')):
                 line, at, number = line + more, at + len(more), number + 1
             lines.append(Line(text=_decoded(line), row=row))
             begins.append(begin)
@@ -307,10 +367,7 @@ def _look_at_lines(path: Path, stream: BinaryIO, line_end: bytes) -> tuple[bool,
         first, last = _line_ends(block, line_end, quoted)
         length += len(block) if first < 0 else first
         if length > limits.LINE:
-            raise InputError(
-                f'log {path} has a line of more than {limits.LINE // limits.MEGA} MB, a table '
-                'has shorter ones'
-            )
+            raise _too_long(path)
         if first >= 0:
             length = len(block) - last - 1
         quoted ^= _is_odd(block)

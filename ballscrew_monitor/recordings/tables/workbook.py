@@ -4,16 +4,19 @@
 The first sheet of a workbook (xlsx) as texts; what it comes to is known before it is read.
 
 The reader makes a rectangle of all cells, the empty ones too, so that one cell far off fills the
-memory. What the sheet says of its size may be wrong: the references of the cells tell it.
+memory. What the sheet says of its size may be wrong: the references of the cells tell it. It reads
+in a process of its own, which may use so much memory and no more.
 
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+import functools
 import importlib
 from pathlib import Path
 import re
 import sys
-from typing import IO
+import tempfile
+from typing import Any, IO
 from xml.parsers import expat
 import zipfile
 import zlib
@@ -22,9 +25,10 @@ from ballscrew_monitor.recordings.tables.cells import readable
 from ballscrew_monitor.recordings.words import short
 import polars as pl
 from surrogate import limits
+from surrogate.child import result_apart
 from surrogate.files import InputError
 
-NUMBER = 8  # [bytes] of a cell
+CELL_SIZE = limits.XLSX_CELL
 UNPACKABLE = (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError, OSError)
 NO_DAY = '1899-12-31 '
 """Day that a sheet adds to a time of day."""
@@ -33,15 +37,34 @@ CELL = re.compile(rb'[<:]c[\s/>]')
 COLUMN, ROW = '[A-Za-z]{1,7}', '[0-9]{1,19}'
 PLAIN_CELL = re.compile(f'<c r="({COLUMN})({ROW})"'.encode())
 LETTERS = 26
+SIZES = CELL_SIZE // 8  # of a sheet unpacked: a cell is written in eight bytes and more
 VALUES = ('v', 'is')  # elements that hold the value of a cell
 
 
 def first_sheet(path: Path) -> pl.DataFrame:
     """Return the cells of the first sheet; raises InputError, ImportError without its reader."""
-    fastexcel = importlib.import_module('fastexcel')  # it is optional
+    importlib.import_module('fastexcel')  # it is optional
     _check_size(path)
+    state = path.stat()
+    return _read_apart(path.resolve(), str(path), state.st_mtime_ns, state.st_size)
+
+
+@functools.lru_cache(maxsize=1)  # a log is opened again and again; its cells are a file in memory
+def _read_apart(place: Path, shown: str, *state: int) -> pl.DataFrame:
+    with tempfile.TemporaryDirectory(prefix='ballscrew_sheet_') as folder:
+        target = Path(folder) / 'cells.arrow'
+        inputs = {'path': shown, 'target': str(target)}
+        failure = f'log {shown} cannot be read'
+        task = f'{__name__}:write_cells'
+        result_apart(task, inputs, memory=limits.MEMORY, failure=failure)
+        return pl.read_ipc(target)  # its memory is the file, which stays though its name goes
+
+
+def write_cells(inputs: Mapping[str, str]) -> dict[str, Any]:
+    """Write the cells of the first sheet of the workbook `path` to `target`; raises InputError."""
+    path = inputs['path']
     with readable(f'log {path} cannot be read', Exception):
-        names = fastexcel.read_excel(path).sheet_names
+        names = importlib.import_module('fastexcel').read_excel(path).sheet_names
     if not names:
         raise InputError(f'log {path} lists no sheet, the workbook is damaged: save it as CSV')
     with readable(f'log {path} cannot be read', Exception):
@@ -53,7 +76,9 @@ def first_sheet(path: Path) -> pl.DataFrame:
             drop_empty_rows=False,
             drop_empty_cols=False,
         )
-    return cells.select(pl.all().cast(pl.String).str.strip_prefix(NO_DAY))
+        texts = cells.select(pl.all().cast(pl.String).str.strip_prefix(NO_DAY))
+        texts.write_ipc(inputs['target'])
+    return {}
 
 
 def _check_size(path: Path) -> None:
@@ -64,7 +89,7 @@ def _check_size(path: Path) -> None:
         if not sheets:  # the reader takes other workbooks, too
             raise InputError(f'{failure}: it holds no sheet of xlsx')
         for part, size in sheets:
-            _check_cells(path, archive, part, max(size, limits.CHUNK))
+            _check_cells(path, archive, part, min(max(size * SIZES, limits.SPARSE), limits.MEMORY))
 
 
 def _sheets(path: Path, archive: zipfile.ZipFile) -> list[tuple[zipfile.ZipInfo, int]]:
@@ -95,17 +120,18 @@ def _check_cells(path: Path, archive: zipfile.ZipFile, part: zipfile.ZipInfo, mo
     try:
         with archive.open(part) as stream:
             cells = _plain_cells(_whole_tags(stream))
-        if cells is None or NUMBER * cells.count > most:
+        if cells is None or CELL_SIZE * cells.count > most:
             with archive.open(part) as stream:
                 cells = _cells(_whole_tags(stream))
     except (expat.ExpatError, ValueError) as error:
         raise InputError(f'log {path} cannot be read, {short(part.filename)}: {error}') from None
-    if NUMBER * cells.count > most:
+    if CELL_SIZE * cells.count > most:
+        come_to, allowed = CELL_SIZE * cells.count / limits.MEGA, most / limits.MEGA
         raise InputError(
             f'log {path}: the cells of {short(part.filename)} lie within {cells.height} rows and '
-            f'{cells.width} columns, which come to {NUMBER * cells.count / limits.MEGA:.0f} MB at '
-            f'{NUMBER} bytes for a cell, allowed are {most / limits.MEGA:.0f} MB: clear the cells '
-            'far off, or save the sheet as CSV'
+            f'{cells.width} columns, which come to {come_to:.0f} MB at {CELL_SIZE} bytes for a '
+            f'cell, allowed are {allowed:.0f} MB: clear the cells far off, or save the sheet as '
+            'CSV'
         )
 
 

@@ -7,7 +7,14 @@ import contextlib
 import socket
 
 from ballscrew_monitor.page import server
-from ballscrew_monitor.page.server import FIRST_WORDS, LONGEST_WAIT, PageOptions, PatientProtocol
+from ballscrew_monitor.page.server import (
+    FIRST_WORDS,
+    LONGEST_LIFE,
+    LONGEST_WAIT,
+    MOST_UNREAD,
+    PageOptions,
+    PatientProtocol,
+)
 import pytest
 from uvicorn.server import ServerState
 
@@ -41,6 +48,9 @@ class Transport(asyncio.Transport):
     def abort(self):
         self.is_aborted = True
 
+    def get_write_buffer_size(self):
+        return len(self.text)  # nothing is ever read
+
     def get_protocol(self):
         return self.protocol
 
@@ -55,7 +65,10 @@ class Transport(asyncio.Transport):
 
 
 async def answer(scope, receive, send):
-    """Answer at once, and leave the body where it is."""
+    """Answer at once, and leave the body where it is; hold a live socket."""
+    if scope['type'] == 'websocket':
+        await send({'type': 'websocket.accept'})
+        await asyncio.Event().wait()
     if scope['path'] == '/never':
         await asyncio.Event().wait()
     await send({'type': 'http.response.start', 'status': 200, 'headers': []})
@@ -152,7 +165,7 @@ def test_a_part_of_a_head_keeps_no_connection_that_was_answered(run):
     run(talk)
 
 
-def test_requests_one_by_one_keep_a_connection(run):
+def test_requests_one_by_one_keep_a_connection_but_not_for_ever(run):
     async def talk(connection):
         for number in range(5):
             await connection.hear(GET + b'\r\n')
@@ -161,6 +174,51 @@ def test_requests_one_by_one_keep_a_connection(run):
             await connection.settle()
         assert not connection.transport.is_closed
         assert not connection.transport.is_aborted
+        for _ in range(3):
+            await connection.hear(GET + b'\r\n')
+            connection.loop.now += 4.0
+            await connection.settle()
+        assert connection.loop.now > LONGEST_LIFE
+        assert connection.transport.is_closed
+
+    run(talk)
+
+
+@pytest.mark.parametrize('promised', [b'', b'Content-Length: 100\r\n'])
+def test_a_connection_ends_with_the_answer_that_is_under_way(run, promised):
+    async def talk(connection):
+        connection.loop.now += FIRST_WORDS / 2
+        await connection.hear(GET.replace(b'/healthz', b'/never') + promised + b'\r\n')
+        connection.loop.now += LONGEST_WAIT - 0.1
+        await connection.settle()
+        assert connection.loop.now > LONGEST_LIFE
+        assert not connection.transport.is_closed
+        assert not connection.transport.is_aborted
+        assert await connection.is_ended_after(0.1)
+
+    run(talk)
+
+
+UPGRADE = (
+    b'GET /live HTTP/1.1\r\nHost: here\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n'
+    b'Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\n\r\n'
+)
+PING = b'\x89\xfd\0\0\0\0' + bytes(125)  # of the greatest length, masked by zeros
+
+
+def test_pings_whose_answers_are_not_read_end_a_live_socket(run):
+    async def talk(connection):
+        await connection.hear(UPGRADE)
+        live = connection.transport.protocol
+        for _ in range(MOST_UNREAD // len(PING)):
+            live.data_received(PING)
+        assert b'101 Switching Protocols' in connection.transport.text
+        assert not connection.transport.is_aborted
+        for _ in range(MOST_UNREAD // len(PING) // 10):
+            live.data_received(PING)
+        assert connection.transport.is_aborted
+        live.connection_lost(None)
+        await connection.settle()
 
     run(talk)
 

@@ -151,7 +151,7 @@ def test_a_whole_bag_is_there_when_it_is_complete_or_not_at_all(tmp_path, refuse
     folder = tmp_path / 'new' / 'bag'
     with pytest.raises(KeyboardInterrupt):
         break_off(folder, KeyboardInterrupt)
-    assert not [*folder.parent.iterdir()]
+    assert not folder.parent.exists()
     with whole_bag(folder, 'bag') as writer:
         write(writer, 2)
         assert not folder.exists()

@@ -144,3 +144,13 @@ def test_types_that_are_not_installed_and_what_a_file_says_of_itself_are_kept(tm
     assert said == {OWN: {'source': 'mill.csv'}, 'of others': {'key': 'value'}}
     stated = yaml.safe_load((path.parent / 'metadata.yaml').read_text())
     assert stated['rosbag2_bagfile_information']['custom_data'] == {'source': 'mill.csv'}
+
+
+@pytest.mark.parametrize(
+    ('key', 'begin'), [('of_zstd', b'\x28\xb5\x2f\xfd'), ('of_parquet', b'PAR1')]
+)
+def test_a_file_of_another_kind_is_named(tmp_path, refused, key, begin):
+    path = tmp_path / 'a.mcap'
+    path.write_bytes(begin + bytes(500))
+    with refused(key, file=path):
+        recover(path)

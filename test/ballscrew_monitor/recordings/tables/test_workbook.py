@@ -9,7 +9,7 @@ import types
 import zipfile
 
 from ballscrew_monitor.recordings.tables import workbook
-from ballscrew_monitor.recordings.tables.workbook import first_sheet
+from ballscrew_monitor.recordings.tables.workbook import first_sheet, write_cells
 import openpyxl
 import polars as pl
 import pytest
@@ -138,28 +138,44 @@ class Panic(BaseException):
     """As a reader raises it that is not written in Python."""
 
 
-def test_a_panic_of_the_reader_is_a_sentence_and_an_interrupt_is_none(book, refused, monkeypatch):
+def test_a_panic_of_the_reader_is_a_sentence_and_an_interrupt_is_none(
+    book, tmp_path, refused, monkeypatch
+):
     raised = []
 
     def read(*arguments, **named):
         raise raised.pop()
 
     monkeypatch.setattr(pl, 'read_excel', read)
+    inputs = {'path': str(book()), 'target': str(tmp_path / 'cells')}
     for error in (Panic('capacity overflow'), IndexError('capacity overflow')):
         raised.append(error)
-        refused('panic', first_sheet, book())
+        refused('panic', write_cells, inputs)
     for error in (KeyboardInterrupt(), SystemExit(3), GeneratorExit()):
         raised.append(error)
         with pytest.raises(type(error)):
-            first_sheet(book())
+            write_cells(inputs)
+
+
+def test_a_reader_that_needs_too_much_memory_is_a_sentence(book, refused, monkeypatch):
+    monkeypatch.setattr(limits, 'MEMORY', 1000)
+    refused('memory', first_sheet, book())
+
+
+def test_a_workbook_is_read_once_as_long_as_it_is_the_same(book, monkeypatch):
+    path = book()
+    cells = first_sheet(path)
+    monkeypatch.setattr(workbook, 'result_apart', None)
+    assert first_sheet(path) is cells
 
 
 def test_what_a_cell_comes_to_is_that_of_the_whole_sheet(book, monkeypatch, refused):
     path = book()
     size = len(zipfile.ZipFile(path).read('xl/worksheets/sheet1.xml'))
     monkeypatch.setattr(limits, 'CHUNK', 0)
+    monkeypatch.setattr(limits, 'SPARSE', 0)
     monkeypatch.setattr(limits, 'PACKING', 100)
-    monkeypatch.setattr(workbook, 'NUMBER', size // 8)
+    monkeypatch.setattr(workbook, 'CELL_SIZE', 10 * size // 8)
     assert first_sheet(path).rows() == ROWS
-    monkeypatch.setattr(workbook, 'NUMBER', size // 8 + 1)
+    monkeypatch.setattr(workbook, 'CELL_SIZE', 10 * size // 8 + 1)
     refused('eight_cells', first_sheet, path)
