@@ -41,9 +41,12 @@ class Bag:
     An opened bag: its topics and its time span; the messages are read on demand.
 
     `metadata` is what it says of itself; `refused` counts by topic the messages that did not
-    decode, with a sentence about the first.
+    decode, with a sentence about the first. `promised` counts by topic the messages that its own
+    metadata state, empty without any; those that are `absent` are not in its files.
 
     """
+
+    absent = 'counted by metadata.yaml and not in the files'
 
     def __init__(self, path: str | Path, *, salvage: bool = False) -> None:
         """
@@ -70,6 +73,7 @@ class Bag:
         if not self.topics or not spans:
             what = '; '.join(self._missing) or 'at least one is needed'
             raise InputError(f'bag {self.path} holds no message, {what}')
+        self.promised: Mapping[str, int] = counts
         self._compare(counts)
         self.metadata = self._own_metadata() | custom
         self.start_time = min(span[0] for span in spans)

@@ -159,7 +159,8 @@ class AxisOutcome:
 
     `first` and `last` are stamps of states [ns]; `events` in order, one that is still on as far
     as it is known; `inputs` as they stood at the last row, `refused` messages by input and
-    why; `reason` tells why the last row has no answer, if it has none.
+    why; `reason` tells why the last row has no answer, if it has none. `heard` are all messages
+    that reached an input, `others` those of them about other joints.
 
     """
 
@@ -175,6 +176,8 @@ class AxisOutcome:
     refused: Mapping[Source, Mapping[Why, int]]
     limits: Limits
     reason: str = ''
+    heard: Mapping[Source, int] = dataclasses.field(default_factory=dict)
+    others: Mapping[Source, int] = dataclasses.field(default_factory=dict)
 
     def summary(self) -> Summary | None:
         """Return the summary, None without a state."""

@@ -30,6 +30,7 @@ from ballscrew_monitor.report.health_history import HistoryMaker
 from ballscrew_monitor.report.inputs_seen import hints_on
 from ballscrew_monitor.report.judged_bag import judged_bag
 from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare
+from ballscrew_monitor.report.ledger import unjudged_share
 from ballscrew_monitor.report.log_page import maps_of, report_page
 from ballscrew_monitor.report.machines import MachineAxis
 from ballscrew_monitor.report.parameters import LogParameters
@@ -105,7 +106,8 @@ class LogResult:
     """
     What became of a recording: a line for each axis, and those on which nothing was judged.
 
-    `hints` say what contradicts itself among the inputs; `histories` are what the health of its
+    `hints` say what contradicts itself among the inputs; `unjudged_share` is the largest share of
+    an axis that was not judged [-]; `histories` are what the health of its
     axes rests on, as plain data.
 
     """
@@ -115,6 +117,7 @@ class LogResult:
     unjudged: Sequence[str]
     notes: Sequence[str] = ()
     hints: Sequence[str] = ()
+    unjudged_share: float = 1.0
     histories: Sequence[dict[str, Any]] = ()
 
     @property
@@ -194,6 +197,7 @@ def _result(log: LogCase) -> LogResult:
         unjudged=log.unjudged,
         notes=log.notes,
         hints=hints_on(log.axes),
+        unjudged_share=unjudged_share(log),
         histories=[dataclasses.asdict(one.history) for one in log.axes if one.history],
     )
 

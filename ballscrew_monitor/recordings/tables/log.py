@@ -62,6 +62,8 @@ AT_ONCE = 32768  # events that are made at a time: they stay in the cache
 class TableLog(Bag):
     """A table read by a map; what its rows say of the map is a remark once all are read."""
 
+    absent = 'rows without a time'
+
     def __init__(self, path: Path, mapping: TableMap, shown: Shown = shown_progress) -> None:
         """
         Look through the table at `path`, and show how far that is.
@@ -74,6 +76,7 @@ class TableLog(Bag):
         self._patterns, self._columns = patterns_of(self._series.mapping)
         self.path, self.files, self.metadata = path, [path], self.facts.texts()
         self.count = self._series.count
+        self.promised = dict.fromkeys(self._patterns, self._series.rows)
         self.topics = {
             name: TopicInfo(type_name=type_name_of(pattern), encoding='cdr', count=self.count)
             for name, pattern in self._patterns.items()

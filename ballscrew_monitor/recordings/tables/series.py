@@ -36,7 +36,8 @@ ALIKE = 0.9  # squared correlation from which a speed and its position are of on
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Series:
     """
-    A log by rows: their number, the usual time between them [s], and what was wrong with it.
+    A log by rows: the number of those with a time, and of all `rows` of the file; the usual time
+    between them [s], and what was wrong with it.
 
     `mapping` is that by which it is read, without the columns that hold nothing; `begin` and `end`
     are the first and the last stamp [ns]. The rows themselves are read when they are asked for.
@@ -44,6 +45,7 @@ class Series:
     """
 
     count: int
+    rows: int
     usual_period: float
     begin: int
     end: int
@@ -104,6 +106,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     times = Times(table, held, shown)
     return Series(
         count=times.count,
+        rows=table.rows,
         usual_period=times.usual_period,
         begin=times.begin,
         end=times.end,
