@@ -97,7 +97,7 @@ class InputSeen:
     gaps: Gaps = Gaps()
     slow: bool = False
     hints: tuple[str, ...] = ()
-    ledger: Ledger | None = None
+    ledger: Ledger | None = written(because='silence', default=None)
     lost: int | None = written(because='uncounted', default=None)
     numbered: bool = unwritten(default=False)
     lag: float = written('s', because='unstamped', default=math.nan)

@@ -62,7 +62,8 @@ class Ledger:
     @property
     def unjudged_share(self) -> float:
         """Return the share that was not judged [-], NaN where nothing was to be."""
-        return 1.0 - self.judged / self.expected if self.expected > 0 else math.nan
+        left = self.expected - self.judged
+        return left / self.expected if self.expected > 0 else math.nan
 
     @property
     def words(self) -> str:

@@ -5,6 +5,7 @@
 from collections.abc import Mapping
 import dataclasses
 import enum
+import math
 
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Reason
@@ -17,6 +18,13 @@ from ballscrew_monitor.report.survey import REST
 UNKNOWN_PART = 0.5  # of the motion that is not judged, from which on there is no verdict
 OUTSIDE_PART = 0.5  # of the judged motion that is outside, from which on nothing is good
 TOLD_PART = 0.01  # of the motion that is not judged, from which on the verdict says so
+BEYOND = (
+    Reason.SPEED_BELOW_RANGE,
+    Reason.SPEED_ABOVE_RANGE,
+    Reason.LOAD_OUT_OF_RANGE,
+    Reason.TEMPERATURE_OUT_OF_RANGE,
+)
+"""Reasons outside of the surface."""
 REMEDIES = {
     Reason.NO_DIRECTION: 'record a motion of the axis',
     Reason.SPEED_BELOW_RANGE: 'build a surface that begins at a slower speed, '
@@ -99,8 +107,9 @@ def _verdict(case: AxisCase) -> AxisVerdict:
     if not summary.events and (ledger := speed_ledger(case)):
         if ledger.unjudged_share > UNKNOWN_PART:
             return _hardly_read(case, ledger)
-        optimal = summary.optimal_time / summary.running_time
-        if unjudged and optimal < 1.0 - OUTSIDE_PART and not _mostly_outside(summary):
+        beyond = math.fsum(case.survey.moving.get(reason, 0.0) for reason in BEYOND)
+        away = summary.outside_time + beyond > OUTSIDE_PART * summary.running_time
+        if beyond and away and not _mostly_outside(summary):
             return _hardly_optimal(case, summary)
     more = _unjudged_part(case, summary) if unjudged > TOLD_PART else ''
     if not summary.outside_time:
@@ -175,7 +184,7 @@ def _hardly_read(case: AxisCase, ledger: Ledger) -> AxisVerdict:
 
 
 def _hardly_optimal(case: AxisCase, summary: Summary) -> AxisVerdict:
-    """Return that an axis was not seen in its zone for most of its motion."""
+    """Return that an axis was outside of zone or surface for most of its motion."""
     reason = _longest(case.survey.moving)
     return AxisVerdict(
         sentence=f'axis {case.axis} was in its optimal zone for '
