@@ -9,6 +9,7 @@ import math
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.declared import unwritten, written
+from ballscrew_monitor.recordings.summary import MessageCounts
 from ballscrew_monitor.report.judging import AxisCase, LogCase
 
 REFUSALS = {
@@ -73,24 +74,23 @@ class Ledger:
 
 def ledger_of(case: AxisCase, source: Source) -> Ledger:
     """Return the ledger of an input of an axis that has a topic."""
-    setting, outcome = case.inputs[source], case.outcome
-    status = next(one for one in outcome.inputs if one.source is source)
-    heard = outcome.heard.get(source, status.received)
-    others = outcome.others.get(source, 0)
+    setting, messages = case.inputs[source], _messages(case, source)
+    heard, others = messages.heard, messages.others
     present = heard if setting.present is None else setting.present
-    lost = (status.lost or 0) if case.numbered else 0
-    promised = heard + lost if case.numbered and status.lost is not None else setting.promised
-    refused = outcome.refused.get(source, {})
-    left_out = status.dropped - sum(refused.values()) - others
+    promised, lost = setting.promised, 0
+    if case.numbered and messages.lost is not None:
+        lost = messages.lost
+        promised = heard + lost
+    absent = 0 if promised is None else promised - present - lost
     losses = {
-        setting.absent: 0 if promised is None or case.numbered else promised - present,
+        setting.absent: absent,
         LOST: lost,
         UNREAD: present - heard,
         REFUSALS[Why.OTHER_JOINTS]: others,
-        **{REFUSALS[why]: count for why, count in refused.items()},
-        NO_SLOPE if setting.from_position else OUT_OF_ORDER: left_out,
+        **{REFUSALS[why]: count for why, count in messages.refused.items()},
+        NO_SLOPE if setting.from_position else OUT_OF_ORDER: messages.left_out,
     }
-    judged = status.received - status.dropped
+    judged = messages.good
     if source is Source.SPEED:
         samples = case.survey.samples
         judged = sum(samples.get(reason, 0) for reason in NO_VERDICTS)
@@ -105,6 +105,13 @@ def ledger_of(case: AxisCase, source: Source) -> Ledger:
         losses={reason: count for reason, count in losses.items() if count > 0},
         others=others,
     )
+
+
+def _messages(case: AxisCase, source: Source) -> MessageCounts:
+    if source in case.outcome.messages:
+        return case.outcome.messages[source]
+    status = next(one for one in case.outcome.inputs if one.source is source)
+    return MessageCounts(heard=status.received, left_out=status.dropped)
 
 
 def speed_ledger(case: AxisCase) -> Ledger | None:
