@@ -60,14 +60,17 @@ def _check(logs: Sequence[Path], args: argparse.Namespace) -> None:
                 'out --map'
             )
         read_map(args.map)
-    if not 0.0 <= args.most_unjudged <= 100.0:
-        raise InputError(
-            f'--most-unjudged-percent is {args.most_unjudged:g}, allowed is 0 to 100 %'
-        )
+    check_most_unjudged(args.most_unjudged)
     if args.params is not None:
         read_file(args.params)
     if args.out is not None and args.out.exists() and not args.out.is_dir():
         raise InputError(f'output {args.out} is a file, it must be a directory')
+
+
+def check_most_unjudged(percentage: float) -> None:
+    """Raise InputError for a share that no recording has."""
+    if not 0.0 <= percentage <= 100.0:
+        raise InputError(f'--most-unjudged-percent is {percentage:g}, allowed is 0 to 100 %')
 
 
 def _replay(logs: Sequence[Path], args: argparse.Namespace, nominal: Path) -> tuple[Records, int]:
@@ -155,12 +158,13 @@ def _report_many(
             records |= without(str(log), entry.failure)
         else:
             records[str(log)] = _reported(args.out / entry.folder, args)
-    bad = sum(_is_bad(log, entry, args) for log, entry in zip(logs, entries, strict=True))
+    bad = sum(is_bad(entry, log, args) for log, entry in zip(logs, entries, strict=True))
     print(f'{counted(len(entries), "recording")}, {bad} bad, overview in {args.out / INDEX}')
     return records, FAILED if bad else DONE
 
 
-def _is_bad(log: Path, entry: 'LogEntry', args: argparse.Namespace) -> bool:
+def is_bad(entry: 'LogEntry', log: Path, args: argparse.Namespace) -> bool:
+    """Return True if a recording was not read, or not judged as far as is asked for."""
     result = entry.result
     if result is None or entry.is_bad:
         return True

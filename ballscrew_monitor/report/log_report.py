@@ -27,10 +27,10 @@ from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report import logs
 from ballscrew_monitor.report.health_history import HistoryMaker
-from ballscrew_monitor.report.inputs_seen import hints_on
+from ballscrew_monitor.report.inputs_seen import hints_on, inputs_seen, NAMES
 from ballscrew_monitor.report.judged_bag import judged_bag
 from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare
-from ballscrew_monitor.report.ledger import unjudged_share
+from ballscrew_monitor.report.ledger import speed_ledger, unjudged_share
 from ballscrew_monitor.report.log_page import maps_of, report_page
 from ballscrew_monitor.report.machines import MachineAxis
 from ballscrew_monitor.report.parameters import LogParameters
@@ -45,6 +45,7 @@ PREFIX, LOCK = '.rows-', 'lock'
 @contextlib.contextmanager
 def scratch_folder(directory: Path) -> Iterator[Path]:
     """Give a folder in `directory` until the block ends, and remove what was left of others."""
+    is_new = not directory.exists()
     directory.mkdir(parents=True, exist_ok=True)
     remove_left(directory)
     # Named before it is there, so that no interrupt comes between its making and the `try`.
@@ -57,6 +58,9 @@ def scratch_folder(directory: Path) -> Iterator[Path]:
             yield folder
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+        if is_new:
+            with contextlib.suppress(OSError):  # that of a report which was made stays
+                directory.rmdir()
 
 
 def remove_left(directory: Path) -> None:
@@ -79,7 +83,8 @@ class AxisLine:
     What an overview says of an axis of a recording, and its machine.
 
     `begins` [s] since 1970, time recorded, in motion and outside [s], NaN where not known; the
-    worst event in words, and its depth [-].
+    worst event in words, and its depth [-]. How many samples of the speed there should be, how
+    many were judged, and why no others; what to do, and the inputs that were not measured.
 
     """
 
@@ -94,6 +99,11 @@ class AxisLine:
     worst: str = ''
     depth: float = math.nan
     machine: str = ''
+    expected: int = 0
+    judged: int = 0
+    losses: str = ''
+    remedy: str = ''
+    unmeasured: Sequence[str] = ()
 
     @property
     def key(self) -> MachineAxis:
@@ -205,12 +215,19 @@ def _result(log: LogCase) -> LogResult:
 def _axis_line(key: MachineAxis, verdict: AxisVerdict, case: AxisCase | None) -> AxisLine:
     machine, axis = key
     standing = verdict.standing.value
-    said = AxisLine(axis=axis, standing=standing, verdict=verdict.whole, machine=machine)
+    said = AxisLine(
+        axis=axis, standing=standing, verdict=verdict.whole, machine=machine, remedy=verdict.remedy
+    )
     if case is None:
         return said
     summary, worst = case.outcome.summary(), next(iter(case.worst_first), None)
+    ledger = speed_ledger(case)
     return dataclasses.replace(
         said,
+        expected=ledger.expected if ledger else 0,
+        judged=ledger.judged if ledger else 0,
+        losses=ledger.words if ledger else '',
+        unmeasured=[NAMES[one.source] for one in inputs_seen(case) if not one.measured],
         begins=case.begins,
         recorded=case.survey.span,
         running_time=math.nan if summary is None else summary.running_time,
