@@ -90,6 +90,8 @@ def add_check(parser: Parser) -> None:
     parser.add_argument('--screw', metavar='NAME|FILE', help=text)
     text = 'oil datasheet (default the one in the folder, else iso_vg_68)'
     parser.add_argument('--oil', metavar='NAME|FILE', help=text)
+    text = 'recordings in the folder that ran without process force, for an identification'
+    parser.add_argument('--free-run', nargs='+', metavar='NAME', default=[], help=text)
     text = 'tier of a surface that is missing: solved contacts in a minute (default), or seconds'
     parser.add_argument('--tier', choices=('full', 'closed_form'), default='full', help=text)
     _add_file(parser, '--map', 'FILE', 'map of all tables (default: guessed for each, and kept)')

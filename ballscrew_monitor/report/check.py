@@ -41,6 +41,7 @@ from surrogate.units import MILLI
 
 MAPS, SURFACES, SHEETS = 'maps', 'surfaces', 'sheets'
 OIL = 'iso_vg_68'
+UNCERTAINTY = 0.1  # [N m] of a torque whose map is guessed
 
 
 @dataclasses.dataclass(slots=True)
@@ -49,6 +50,7 @@ class _Log:
 
     path: Path
     folder: str
+    is_free: bool = False
     guess: Guess | None = None
     mapping: Path | None = None
     params: Path | None = None
@@ -82,7 +84,11 @@ def check_command(args: argparse.Namespace, nominal: Path) -> int:
                 say(f'{entry.name}: {entry.failure}')
         for step in steps:
             print(printable(f'to do: {step}'))
-        bad = sum(is_bad(entry, Path(entry.name), args) for entry in entries)
+        bad = sum(
+            is_bad(entry, Path(entry.name), args)
+            for entry in entries
+            if entry.folder not in checked.free
+        )
         print(f'{counted(len(entries), "recording")}, {bad} bad, page in {args.out / INDEX}')
     if args.json:
         print(json_text(_record(entries, checked, steps)))
@@ -120,8 +126,10 @@ def _check(
     args: argparse.Namespace,
     nominal: Path,
 ) -> tuple[list[LogEntry], Checked]:
+    free = _free_paths(paths, args.free_run)
     logs = [
-        _Log(path=path, folder=name) for path, name in zip(paths, folder_names(paths), strict=True)
+        _Log(path=path, folder=name, is_free=path in free)
+        for path, name in zip(paths, folder_names(paths), strict=True)
     ]
     for log in logs:
         _open(log, sheets, args, nominal)
@@ -158,6 +166,7 @@ def _check(
     checked = Checked(
         sheets=None if sheets is None else (sheets[0].name, sheets[1].name),
         is_oil_known=args.oil is not None or bool(sheets and sheets[1].name != OIL),
+        free=frozenset(log.folder for log in logs if log.is_free and not log.failure),
         runs=tuple(runs),
         surfaces=surfaces,
         used={
@@ -172,6 +181,15 @@ def _check(
     return entries, checked
 
 
+def _free_paths(paths: Sequence[Path], names: Sequence[str]) -> list[Path]:
+    """Return the recordings that are named as free runs; raises InputError for another name."""
+    for name in names:
+        if not any(path.name == name for path in paths):
+            held = ', '.join(path.name for path in paths)
+            raise InputError(f'--free-run is {name}, the folder holds {held}')
+    return [path for path in paths if path.name in names]
+
+
 def _open(
     log: _Log, sheets: tuple[Screw, Lubricant] | None, args: argparse.Namespace, nominal: Path
 ) -> None:
@@ -179,6 +197,8 @@ def _open(
     try:
         if is_table(log.path) and args.map is None:
             log.guess = _with_sheets(guess(log.path), sheets)
+            if log.is_free:
+                log.guess = _as_free_run(log.guess)
             if log.guess.unstated:
                 log.failure = '; '.join(log.guess.unstated)
             return
@@ -206,6 +226,20 @@ def _with_sheets(first: Guess, sheets: tuple[Screw, Lubricant] | None) -> Guess:
     return dataclasses.replace(first, content=first.content | {'axes': axes, 'assumed': assumed})
 
 
+def _as_free_run(first: Guess) -> Guess:
+    """Return a guessed map that takes no torque for a load: all of it is friction."""
+    axes, assumed = {}, dict(first.content['assumed'])
+    for name, one in first.content['axes'].items():
+        axes[name] = one
+        if 'torque' in one and 'load' not in one:
+            axes[name] = one | {'load': {'from': 'motor_torque'}, 'always_free': True}
+            for key in ('load.from', 'efficiency'):
+                assumed.pop(f'{name}.{key}', None)
+            why = 'no log says it; of a motor that tells its own torque'
+            assumed[f'{name}.torque_uncertainty_Nm'] = {'value': UNCERTAINTY, 'reason': why}
+    return dataclasses.replace(first, content=first.content | {'axes': axes, 'assumed': assumed})
+
+
 def _free_runs(
     logs: Sequence[_Log], sheets: tuple[Screw, Lubricant], out: Path
 ) -> Iterator[FreeRun]:
@@ -227,7 +261,7 @@ def _free_runs(
                     continue
                 sheet = out / SHEETS / f'{sheets[0].name}_{axis}.yaml'
                 with contextlib.suppress(InputError):
-                    run = identified(bag, values, axis, sheets, sheet)
+                    run = identified(bag, values, axis, sheets, sheet, is_free=log.is_free)
                     if run is not None:
                         known |= {axis} if run.sheet else set()
                         yield run

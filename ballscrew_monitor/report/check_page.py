@@ -4,6 +4,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 import dataclasses
+from pathlib import Path
 from urllib.parse import quote
 
 from ballscrew_monitor.recordings.words import NONE
@@ -27,13 +28,15 @@ class Checked:
     """
     What a check rests on.
 
-    Names of the sheets of screw and oil, None without one; free runs; surfaces by axis; the map or
+    Names of the sheets of screw and oil, None without one; folders of recordings that are said to
+    be `free`, which need not be judged, and what they gave; surfaces by axis; the map or
     parameters that were used by folder; what a guess could not state, by recording.
 
     """
 
     sheets: tuple[str, str] | None
     is_oil_known: bool
+    free: frozenset[str]
     runs: tuple[FreeRun, ...]
     surfaces: Mapping[str, str]
     used: Mapping[str, str]
@@ -44,7 +47,7 @@ def check_parts(entries: Sequence[LogEntry], checked: Checked) -> list[Markup]:
     """Return the parts of the page beside those of an overview."""
     return [
         element('h2', 'What to do next, and what to record'),
-        element('ul', *(element('li', f'{one}.') for one in next_steps(entries, checked))),
+        element('ul', *(element('li', _sentence(one)) for one in next_steps(entries, checked))),
         element('h2', 'What was read'),
         table(
             ('Recording', 'Axis', 'Expected', 'Judged', 'Reasons of the differences', 'Map'),
@@ -59,10 +62,15 @@ def check_parts(entries: Sequence[LogEntry], checked: Checked) -> list[Markup]:
     ]
 
 
+def _sentence(step: str) -> str:
+    return step if step.endswith('?') else f'{step}.'
+
+
 def next_steps(entries: Sequence[LogEntry], checked: Checked) -> list[str]:
     """Return what to do and what to record, each once, what hinders a verdict first."""
     steps = [f'{name}: {why}' for name, whys in checked.unstated.items() for why in whys]
-    lines = [line for one in entries if one.result for line in one.result.lines]
+    judged = [one for one in entries if one.result and one.folder not in checked.free]
+    lines = [line for one in judged if one.result for line in one.result.lines]
     steps += [f'Axis {line.axis}: {line.remedy.rstrip(".")}' for line in lines if line.remedy]
     steps += [hint for one in entries if one.result for hint in one.result.hints]
     if checked.sheets is None:
@@ -73,7 +81,8 @@ def next_steps(entries: Sequence[LogEntry], checked: Checked) -> list[str]:
     elif not checked.is_oil_known:
         steps.append(f'State the oil, --oil: {checked.sheets[1]} was assumed')
     for name, words in NEEDED.items():
-        axes = list(dict.fromkeys(line.axis for line in lines if name in line.unmeasured))
+        measured = {line.axis for line in lines if name not in line.unmeasured}
+        axes = dict.fromkeys(line.axis for line in lines if line.axis not in measured)
         if axes:
             steps.append(f'Record {words} of axis {", ".join(axes)}')
     if not any(run.sheet for run in checked.runs):
@@ -105,7 +114,7 @@ def _surfaces(checked: Checked) -> Iterator[Markup]:
     for axis, file in checked.surfaces.items():
         surface = Surface.load(file)
         onset = onset_of_surface(surface).sentence()
-        yield element('p', f'Axis {axis}: {file}, tier {surface.tier}. {onset}.')
+        yield element('p', f'Axis {axis}: {Path(file).name}, tier {surface.tier}. {onset}.')
     if not checked.surfaces:
         yield element('p', 'Each recording was judged with the surface that it names.')
 
@@ -119,4 +128,6 @@ def _zone(entries: Sequence[LogEntry]) -> Iterator[Markup]:
         read_history(one) for entry in entries if entry.result for one in entry.result.histories
     ]
     for own in by_axis(histories).values():
+        if len(own) > 1:  # it stands first on the page
+            continue
         yield verdict_box(list(healths(own))[-1])

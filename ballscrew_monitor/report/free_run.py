@@ -20,7 +20,7 @@ from surrogate.parameters import Lubricant, Screw
 RECORD = (
     'Record a free run: no process force, the motor torque, at least five constant speeds in both '
     'directions, two seconds or more each (ballscrew fingerprint prints such a program); then '
-    'friction beside the contacts is identified'
+    'friction beside the contacts is identified (--free-run names a log that is one)'
 )
 
 
@@ -35,13 +35,19 @@ class FreeRun:
 
 
 def identified(
-    bag: Bag, values: Mapping[str, Any], axis: str, sheets: tuple[Screw, Lubricant], out: Path
+    bag: Bag,
+    values: Mapping[str, Any],
+    axis: str,
+    sheets: tuple[Screw, Lubricant],
+    out: Path,
+    *,
+    is_free: bool = False,
 ) -> FreeRun | None:
     """
     Identify the parasitic torque by a recording, and write the screw with it to `out`.
 
     Returns None if the recording is no free run of the axis: without speed and motor torque, with
-    a measured load above the light one, or with a load that is not known.
+    a measured load above the light one, or with a load that is not known, unless `is_free`.
 
     """
     from surrogate.datasheet_writer import write_sheet
@@ -51,7 +57,7 @@ def identified(
     from surrogate.identify.record import identification_record, identified_screw, page
 
     screw, oil = sheets
-    if not _is_free(bag, values, axis, screw):
+    if not _is_free(bag, values, axis, screw, is_free):
         return None
     wanted = [Source.SPEED, Source.TORQUE]
     if is_configured(axis, values, Source.TEMPERATURE):
@@ -76,10 +82,14 @@ def identified(
     return FreeRun(log=name, axis=axis, text=text, sheet=out)
 
 
-def _is_free(bag: Bag, values: Mapping[str, Any], axis: str, screw: Screw) -> bool:
+def _is_free(
+    bag: Bag, values: Mapping[str, Any], axis: str, screw: Screw, is_stated: bool
+) -> bool:
     speed, torque = Source.SPEED, Source.TORQUE
     if not is_configured(axis, values, torque) or values[f'{axis}.speed.unit'] in POSITION_UNITS:
         return False
+    if is_stated:
+        return True
     if not is_configured(axis, values, Source.LOAD):
         return bool(values[f'{axis}.health.always_free'])
     light = values[f'{axis}.limits.light_load_fraction'] * screw.preload
