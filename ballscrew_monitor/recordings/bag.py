@@ -73,11 +73,11 @@ class Bag:
         if not self.topics or not spans:
             what = '; '.join(self._missing) or 'at least one is needed'
             raise InputError(f'bag {self.path} holds no message, {what}')
-        self.promised: Mapping[str, int] = counts
         self._compare(counts)
         self.metadata = self._own_metadata() | custom
         self.start_time = min(span[0] for span in spans)
         self.end_time = max(span[1] for span in spans)
+        self.promised: Mapping[str, int] = counts
 
     @property
     def duration(self) -> float:

@@ -126,43 +126,12 @@ def _check(
     args: argparse.Namespace,
     nominal: Path,
 ) -> tuple[list[LogEntry], Checked]:
-    free = _free_paths(paths, args.free_run)
-    logs = [
-        _Log(path=path, folder=name, is_free=path in free)
-        for path, name in zip(paths, folder_names(paths), strict=True)
-    ]
-    for log in logs:
-        _open(log, sheets, args, nominal)
-    if all(log.failure for log in logs):
-        if not any(log.guess for log in logs):
-            more = f' (and {len(logs) - 1} more)' if len(logs) > 1 else ''
-            raise InputError(f'nothing in {args.folder} can be read: {logs[0].failure}{more}')
-    for log in logs:
-        if log.guess:
-            log.mapping = args.out / MAPS / f'{log.folder}.yaml'
-            _write(log.mapping, log.guess.text)
-        elif log.mapping and not log.failure:
-            text = log.mapping.read_text(encoding='utf-8')
-            log.mapping = args.out / MAPS / f'{log.folder}.yaml'
-            _write(log.mapping, text)
+    """Do all that a check does with recordings; return their entries, and what these rest on."""
+    logs = _opened(paths, sheets, args, nominal)
+    _write_maps(logs, args.out)
     runs = list(_free_runs(logs, sheets, args.out)) if sheets else []
     surfaces = _give_surfaces(logs, sheets, runs, args) if sheets else {}
-    readable = [
-        LogToReport(log=log.path, folder=log.folder, params=log.params, mapping=log.mapping)
-        for log in logs
-        if not log.failure
-    ]
-    reported = (
-        report_each(readable, args.out, nominal=nominal, workers=args.workers, dask=args.dask)
-        if readable
-        else []
-    )
-    found = {entry.folder: entry for entry in reported}
-    entries = [
-        found.get(log.folder)
-        or LogEntry(name=log.path.name, folder=log.folder, failure=log.failure)
-        for log in logs
-    ]
+    entries = _entries(logs, args, nominal)
     checked = Checked(
         sheets=None if sheets is None else (sheets[0].name, sheets[1].name),
         is_oil_known=args.oil is not None or bool(sheets and sheets[1].name != OIL),
@@ -174,11 +143,66 @@ def _check(
         },
         unstated={log.path.name: log.guess.unstated for log in logs if log.guess},
     )
-    page = overview_page(
-        entries, title=f'Check of {args.folder.name}', parts=check_parts(entries, checked)
-    )
-    replace_file(args.out / INDEX, page.encode())
+    title, parts = f'Check of {args.folder.resolve().name}', check_parts(entries, checked)
+    replace_file(args.out / INDEX, overview_page(entries, title=title, parts=parts).encode())
     return entries, checked
+
+
+def _opened(
+    paths: Sequence[Path],
+    sheets: tuple[Screw, Lubricant] | None,
+    args: argparse.Namespace,
+    nominal: Path,
+) -> list[_Log]:
+    """Return recordings with their guess or their bag; raises InputError if none is readable."""
+    free = _free_paths(paths, args.free_run)
+    logs = [
+        _Log(path=path, folder=name, is_free=path in free)
+        for path, name in zip(paths, folder_names(paths), strict=True)
+    ]
+    bar = Progress(len(logs), 'recordings opened')
+    try:
+        for number, log in enumerate(logs):
+            bar.show(number, len(logs))
+            _open(log, sheets, args, nominal)
+    finally:
+        bar.close()
+    if all(log.failure and not log.guess for log in logs):
+        more = f' (and {len(logs) - 1} more)' if len(logs) > 1 else ''
+        raise InputError(f'nothing in {args.folder} can be read: {logs[0].failure}{more}')
+    return logs
+
+
+def _write_maps(logs: Sequence[_Log], out: Path) -> None:
+    """Keep the map of each table that is judged, and of each that waits for a value."""
+    for log in logs:
+        text = log.guess.text if log.guess else ''
+        if log.mapping and not log.failure:
+            text = log.mapping.read_text(encoding='utf-8')
+        if text:
+            log.mapping = out / MAPS / f'{log.folder}.yaml'
+            _write(log.mapping, text)
+        elif log.failure:
+            log.mapping = None
+
+
+def _entries(logs: Sequence[_Log], args: argparse.Namespace, nominal: Path) -> list[LogEntry]:
+    """Report what can be judged; return an entry of each recording."""
+    readable = [
+        LogToReport(log=log.path, folder=log.folder, params=log.params, mapping=log.mapping)
+        for log in logs
+        if not log.failure
+    ]
+    reported = []
+    if readable:
+        pool = {'workers': args.workers, 'dask': args.dask}
+        reported = report_each(readable, args.out, nominal=nominal, **pool)
+    found = {entry.folder: entry for entry in reported}
+    return [
+        found.get(log.folder)
+        or LogEntry(name=log.path.name, folder=log.folder, failure=log.failure)
+        for log in logs
+    ]
 
 
 def _free_paths(paths: Sequence[Path], names: Sequence[str]) -> list[Path]:

@@ -45,7 +45,6 @@ PREFIX, LOCK = '.rows-', 'lock'
 @contextlib.contextmanager
 def scratch_folder(directory: Path) -> Iterator[Path]:
     """Give a folder in `directory` until the block ends, and remove what was left of others."""
-    is_new = not directory.exists()
     directory.mkdir(parents=True, exist_ok=True)
     remove_left(directory)
     # Named before it is there, so that no interrupt comes between its making and the `try`.
@@ -58,9 +57,6 @@ def scratch_folder(directory: Path) -> Iterator[Path]:
             yield folder
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-        if is_new:
-            with contextlib.suppress(OSError):  # that of a report which was made stays
-                directory.rmdir()
 
 
 def remove_left(directory: Path) -> None:

@@ -10,7 +10,6 @@ from ballscrew_monitor import cli
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.report.free_run import identified
-from ballscrew_monitor.report.log_report import scratch_folder
 from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.settings.parameters import read_file
 import pytest
@@ -148,13 +147,3 @@ def test_a_free_run_tells_how_much_more_drag_there_is(tmp_path):
 def test_a_run_under_load_is_none_unless_somebody_says_so(tmp_path):
     assert run_of(tmp_path, 'cut', 0.6, load=-1500.0) is None
     assert run_of(tmp_path, 'cut', 0.6, load=-1500.0, is_free=True) is not None
-
-
-def test_a_report_that_fails_leaves_no_folder_and_one_that_was_there(tmp_path):
-    for there in (False, True):
-        folder = tmp_path / 'out'
-        if there:
-            folder.mkdir()
-        with pytest.raises(ValueError, match='broken'), scratch_folder(folder):
-            raise ValueError('broken')
-        assert folder.exists() is there
