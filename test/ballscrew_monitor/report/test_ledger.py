@@ -165,7 +165,7 @@ def test_rows_of_a_table_are_counted_as_messages_are(tmp_path, capsys):
         tmp_path / 'feed.csv',
         lambda row: (
             '' if 100 <= row < 120 else f'{row / 100}',
-            '' if 200 <= row < 230 else '-1000',
+            'nan' if 200 <= row < 230 else '-1000',
         ),
     )
     assert cli.main([*arguments, '--json']) == 1
@@ -196,7 +196,7 @@ def test_rows_of_a_table_are_counted_as_messages_are(tmp_path, capsys):
 def test_the_share_that_is_allowed_decides_the_exit_code(tmp_path, capsys, unknown, option, code):
     arguments = table(
         tmp_path / 'feed.csv',
-        lambda row: (f'{row / 100}', '' if 100 <= row < 100 + unknown else '-1000'),
+        lambda row: (f'{row / 100}', 'nan' if 100 <= row < 100 + unknown else '-1000'),
     )
     assert cli.main([*arguments, *option]) == code
     assert ('--most-unjudged-percent' in capsys.readouterr().err) == bool(code)
