@@ -132,6 +132,13 @@ def _replay(args: argparse.Namespace) -> int:
     return replay_command(args, options.PARAMS)
 
 
+def _check(args: argparse.Namespace) -> int:
+    from ballscrew_monitor.report.check import check_command
+
+    raise_signals()
+    return check_command(args, options.PARAMS)
+
+
 def _health(args: argparse.Namespace) -> int:
     from ballscrew_monitor.report.health_command import health_command
 
@@ -263,6 +270,7 @@ def _page(args: argparse.Namespace) -> int:
 COMMANDS = {
     'run': (_run, 'play a bag into the real node over DDS and record what it says'),
     'replay': (_replay, 'judge a log without DDS, faster than real time'),
+    'check': (_check, 'go from a folder of logs and a datasheet to one page'),
     'health': (_health, 'tell whether axes are normal or worse, by their logs over months'),
     'fingerprint': (_fingerprint, 'print a reference run for `health` as a part program'),
     'import': (_import, 'make a bag of a machine log: CSV, Parquet or xlsx'),
@@ -276,5 +284,5 @@ COMMANDS = {
 """Handler and help of each command; `options` adds what it may be told."""
 DISCOVERING = (_solve, _doctor, _play, _page)
 """Commands that need others in the ROS graph."""
-WITH_ROS = (_run, _replay, _health, _import, *DISCOVERING)
+WITH_ROS = (_run, _replay, _check, _health, _import, *DISCOVERING)
 """Commands that need ROS; they put in order themselves what a signal would leave behind."""

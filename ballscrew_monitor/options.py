@@ -18,7 +18,9 @@ Parser = argparse.ArgumentParser
 ENDINGS = {
     'run': 'Exit code 1: the node failed, or samples were lost.',
     'replay': 'Exit code 0: some motion was judged on at least one axis of each recording. 1: '
-    'nothing was judged or nothing moved; of several recordings, at least one could not be read.',
+    'nothing was judged or nothing moved, or more samples of an axis stayed unjudged than '
+    '--most-unjudged-percent allows; of several recordings, at least one could not be read.',
+    'check': 'Exit code 1: as of replay.',
     'health': 'Exit code 1: no recording of several could be judged.',
     'solve': 'Exit code 1: not converged, rejected, timed out, or no node found. 130, 143: the '
     'solve is withdrawn.',
@@ -46,6 +48,11 @@ def _add_params(parser: Parser) -> None:
     _add_file(parser, '--params', 'FILE', text, default=PARAMS)
 
 
+def _add_most_unjudged(parser: Parser) -> None:
+    text = 'share of the speed samples of an axis that may stay unjudged (default 5)'
+    _add_number(parser, '--most-unjudged-percent', 'P', text, dest='most_unjudged', default=5.0)
+
+
 def _add_rate(parser: Parser) -> None:
     _add_number(parser, '--rate', None, 'bag time over wall time (default 1)', default=1.0)
 
@@ -71,6 +78,28 @@ def add_replay(parser: Parser) -> None:
     text = f'parameters of the node (default those that the log carries, else {PARAMS_TEXT})'
     _add_file(parser, '--params', 'FILE', text)
     _add_file(parser, '--out', 'DIR', 'directory for the report, its tables and data')
+    _add_most_unjudged(parser)
+    _add_switch(parser, '--json', 'print JSON')
+    add_workers(parser)
+
+
+def add_check(parser: Parser) -> None:
+    """Add what `ballscrew check` may be told."""
+    _add_file(parser, 'folder', 'FOLDER', 'folder of logs, and of the sheets of screw and oil')
+    text = 'screw datasheet (default the one in the folder, else the shipped nominal one)'
+    parser.add_argument('--screw', metavar='NAME|FILE', help=text)
+    text = 'oil datasheet (default the one in the folder, else iso_vg_68)'
+    parser.add_argument('--oil', metavar='NAME|FILE', help=text)
+    text = 'recordings in the folder that ran without process force, for an identification'
+    parser.add_argument('--free-run', nargs='+', metavar='NAME', default=[], help=text)
+    text = 'tier of a surface that is missing: solved contacts in a minute (default), or seconds'
+    parser.add_argument('--tier', choices=('full', 'closed_form'), default='full', help=text)
+    _add_file(parser, '--map', 'FILE', 'map of all tables (default: guessed for each, and kept)')
+    text = f'parameters of bags (default those that a bag carries, else {PARAMS_TEXT})'
+    _add_file(parser, '--params', 'FILE', text)
+    text = 'directory for the page, reports, maps and surfaces (default %(default)s)'
+    _add_file(parser, '--out', 'DIR', text, default=Path('check'))
+    _add_most_unjudged(parser)
     _add_switch(parser, '--json', 'print JSON')
     add_workers(parser)
 

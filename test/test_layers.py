@@ -158,6 +158,16 @@ def beyond_the_lookup(path, named):
         'recordings': {'surrogate.progress'},
         # The page over many recordings, on the workers of the sweeps, and the style of pictures.
         'report': {'surrogate.progress'} | PLOTTING | TASKS,
+        # One command goes from logs by way of sheets and surfaces to a page.
+        'check.py': {'surrogate.builder.tiers', 'surrogate.parameters', 'surrogate.surface.file'},
+        'free_run.py': {
+            'surrogate.datasheet_writer',
+            'surrogate.identify.data',
+            'surrogate.identify.fit',
+            'surrogate.identify.model',
+            'surrogate.identify.record',
+            'surrogate.parameters',
+        },
     }
     allowed = LOOKUP | more.get(path.name, set()) | more.get(path.parent.name, set())
     offline = [(line, name) for line, name in named if name.split('.')[0] == 'surrogate']

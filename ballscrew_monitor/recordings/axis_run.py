@@ -13,8 +13,14 @@ from ballscrew_monitor.judge.many import Judged, ManyJudge
 from ballscrew_monitor.judge.monitor import MOST_OTHERS
 from ballscrew_monitor.messages.state_messages import empty_state, fill_state, out_of_zone_message
 from ballscrew_monitor.messages.unjudged import reason_of
-from ballscrew_monitor.recordings.bulk.events import Events, Notes, places_of_axis, some
-from ballscrew_monitor.recordings.summary import AxisOutcome, event_record
+from ballscrew_monitor.recordings.bulk.events import (
+    Events,
+    Notes,
+    places_of_axis,
+    some,
+    TICK_SOURCE,
+)
+from ballscrew_monitor.recordings.summary import AxisOutcome, event_record, MessageCounts
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 import numpy as np
@@ -66,13 +72,19 @@ class AxisRun:
         self._events: dict[int, tuple[Event, int]] = {}  # and until when it is known
         self._rows = self._states = self._first = self._last = 0
         self._last_row: Any = None
+        self._heard = np.zeros(TICK_SOURCE + 1, np.int64)  # messages by source
+        self._others = np.zeros(TICK_SOURCE + 1, np.int64)
+        self._before = _counts(axis)  # of a node that had judged before
         self._ended: Event | None = None  # by something else than a sample, and not told yet
 
     def take(self, events: Events, *, states: bool = True) -> Iterator[AxisRows | Due]:
         """Judge events; yield their rows, and the states that are due."""
         about = (events['kind'] == records.REFUSAL) & (events['why'] == Why.OTHER_JOINTS)
         places = np.flatnonzero(about)
+        self._heard += _by_source(events)
         notes = {}  # places of messages about other joints and their notes, by input
+        if len(places):
+            self._others += _by_source(events[places])
         for source in Source if len(places) else ():
             mine = places[events['source'][places] == source]
             notes[source] = mine, events['note'][mine]
@@ -132,6 +144,20 @@ class AxisRun:
             refused=views.refused_of(monitor.memory),
             limits=monitor.settings.limits,
             reason=reason,
+            messages={source: self._messages(source) for source in Source},
+        )
+
+    def _messages(self, source: Source) -> MessageCounts:
+        before, now = self._before[source], _counts(self.axis)[source]
+        refused = {why: now.refused[why] - before.refused.get(why, 0) for why in now.refused}
+        others = int(self._others[source])
+        left_out = now.left_out - before.left_out - others
+        return MessageCounts(
+            heard=int(self._heard[source]),
+            others=others,
+            refused={why: count for why, count in refused.items() if count > 0},
+            left_out=max(left_out, 0),
+            lost=None if now.lost is None else max(now.lost - (before.lost or 0), 0),
         )
 
     def _told(self, judged: Judged) -> Iterator[tuple[int, records.Row]]:
@@ -168,6 +194,23 @@ class AxisRun:
             for joints in self._notes.named(numbers[first:count]):
                 if len(named[source]) < MOST_OTHERS:
                     named[source][joints] = None
+
+
+def _counts(axis: Axis) -> dict[Source, MessageCounts]:
+    """Return what an axis has counted so far, messages of other joints among those left out."""
+    memory, refused = axis.monitor.memory, views.refused_of(axis.monitor.memory)
+    return {
+        source: MessageCounts(
+            refused=refused[source],
+            left_out=int(memory.dropped[source]) - sum(refused[source].values()),
+            lost=int(memory.lost[source]) if memory.lost_known[source] else None,
+        )
+        for source in refused
+    }
+
+
+def _by_source(events: Events) -> NDArray[np.int64]:
+    return np.bincount(events['source'], minlength=TICK_SOURCE + 1)
 
 
 def judged_parts(runs: Sequence[AxisRun], events: Events, *, states: bool) -> Iterator[Part]:

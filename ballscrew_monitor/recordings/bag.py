@@ -47,9 +47,12 @@ class Bag:
     An opened bag: its topics and its time span; the messages are read on demand.
 
     `metadata` is what it says of itself; `refused` counts by topic the messages that did not
-    decode, with a sentence about the first.
+    decode, with a sentence about the first. `promised` counts by topic the messages that its own
+    metadata state, empty without any; those that are `absent` are not in its files.
 
     """
+
+    absent = 'counted by metadata.yaml and not in the files'
 
     def __init__(self, path: str | Path, *, salvage: bool = False) -> None:
         """
@@ -86,6 +89,7 @@ class Bag:
         spans = [one.span for one in self.storages if one.span[1]]
         self.start_time = min(span[0] for span in spans)
         self.end_time = max(span[1] for span in spans)
+        self.promised: Mapping[str, int] = counts
 
     @property
     def duration(self) -> float:

@@ -56,12 +56,16 @@ def plain(record: Any) -> Any:
         for key, spec in keys(record).items():
             value = getattr(record, spec.name)
             made[key] = spec.metadata.get('form', plain)(value)
-            if spec.metadata.get('because') and (value is None or not math.isfinite(value)):
+            if spec.metadata.get('because') and not _is_known(value):
                 made[f'{key}_reason'] = getattr(record, spec.metadata['because'])
         return made
     if isinstance(record, Mapping):
         return {_name(key): plain(value) for key, value in record.items()}
     return [plain(one) for one in record] if isinstance(record, list | tuple) else record
+
+
+def _is_known(value: Any) -> bool:
+    return math.isfinite(value) if isinstance(value, int | float) else value is not None
 
 
 def _name(key: Any) -> Any:

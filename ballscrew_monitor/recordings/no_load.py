@@ -96,6 +96,15 @@ def read_no_load(
     return _columns(bins), tuple(notes)
 
 
+def largest(bag: Bag, channels: Sequence[OpenInput]) -> dict[Source, float]:
+    """Return the largest amount of each source in a bag [SI], NaN of one without a sample."""
+    series, _ = _read(bag, channels)
+    return {
+        source: float(np.max(np.abs(values), initial=0.0)) if len(values) else math.nan
+        for source, (_, values) in series.items()
+    }
+
+
 def _read(bag: Bag, channels: Sequence[OpenInput]) -> tuple[dict[Source, Series], int]:
     """Return the samples of every source in the order of their stamps, and how many were bad."""
     inputs = [_input(bag, channel) for channel in channels]

@@ -153,13 +153,36 @@ class Summary:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class MessageCounts:
+    """
+    What became of the messages of an input in a recording.
+
+    All that were `heard`, those of other joints, refused, by why, and left out as out of order or
+    without a slope; how many were `lost` on their way to a node, None where that is not known.
+
+    """
+
+    heard: int = 0
+    others: int = 0
+    refused: Mapping[Why, int] = dataclasses.field(default_factory=dict)
+    left_out: int = 0
+    lost: int | None = None
+
+    @property
+    def good(self) -> int:
+        """Return how many gave a value."""
+        return self.heard - self.others - sum(self.refused.values()) - self.left_out
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class AxisOutcome:
     """
     What a recording comes to for one axis.
 
     `first` and `last` are stamps of states [ns]; `events` in order, one that is still on as far
     as it is known; `inputs` as they stood at the last row, `refused` messages by input and
-    why; `reason` tells why the last row has no answer, if it has none.
+    why; `reason` tells why the last row has no answer, if it has none; `messages` of the recording
+    alone, where a node had heard others before it.
 
     """
 
@@ -175,6 +198,7 @@ class AxisOutcome:
     refused: Mapping[Source, Mapping[Why, int]]
     limits: Limits
     reason: str = ''
+    messages: Mapping[Source, MessageCounts] = dataclasses.field(default_factory=dict)
 
     def summary(self) -> Summary | None:
         """Return the summary, None without a state."""

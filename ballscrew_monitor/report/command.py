@@ -18,8 +18,9 @@ from ballscrew_monitor.recordings.bulk.decode import silence
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.replay import axes_for
 from ballscrew_monitor.recordings.tables.mapping import read_map
-from ballscrew_monitor.recordings.words import counted, say, shown_progress
+from ballscrew_monitor.recordings.words import counted, percent, say, shown_progress
 from ballscrew_monitor.report.judging import AxisCase, judge_log, LogCase
+from ballscrew_monitor.report.ledger import unjudged_share
 from ballscrew_monitor.report.logs import find_logs, left_out, PAGE, SUMMARY
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_monitor.report.printed import log_lines, printed_records, summary_record, without
@@ -29,6 +30,7 @@ from surrogate.files import InputError, json_text, printable
 from surrogate.surface import SurfaceError
 
 if TYPE_CHECKING:  # the rest asks for packages that printing does not need
+    from ballscrew_monitor.report.log_report import LogResult
     from ballscrew_monitor.report.overview import LogEntry
 
 Records = dict[str, Any]
@@ -58,10 +60,17 @@ def _check(logs: Sequence[Path], args: argparse.Namespace) -> None:
                 'out --map'
             )
         read_map(args.map)
+    check_most_unjudged(args.most_unjudged)
     if args.params is not None:
         read_file(args.params)
     if args.out is not None and args.out.exists() and not args.out.is_dir():
         raise InputError(f'output {args.out} is a file, it must be a directory')
+
+
+def check_most_unjudged(percentage: float) -> None:
+    """Raise InputError for a share that no recording has."""
+    if not 0.0 <= percentage <= 100.0:
+        raise InputError(f'--most-unjudged-percent is {percentage:g}, allowed is 0 to 100 %')
 
 
 def _replay(logs: Sequence[Path], args: argparse.Namespace, nominal: Path) -> tuple[Records, int]:
@@ -106,7 +115,7 @@ def _print_one(
     say(*_silences(bag, parameters.values, found))
     if not args.json:
         print(printable('\n'.join(log_lines(found))))
-    return printed_records(summary_record(found)), DONE if found.judged else FAILED
+    return printed_records(summary_record(found)), _code(log, found, unjudged_share(found), args)
 
 
 def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Records, int]:
@@ -124,7 +133,7 @@ def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Rec
         print(printable(line.verdict))
     say(*(f'check {hint}' for hint in result.hints))
     print(f'report in {args.out / PAGE}')
-    return _reported(args.out, args), DONE if result.judged else FAILED
+    return _reported(args.out, args), _code(log, result, result.unjudged_share, args)
 
 
 def _report_many(
@@ -149,9 +158,28 @@ def _report_many(
             records |= without(str(log), entry.failure)
         else:
             records[str(log)] = _reported(args.out / entry.folder, args)
-    bad = sum(entry.is_bad for entry in entries)
+    bad = sum(is_bad(entry, log, args) for log, entry in zip(logs, entries, strict=True))
     print(f'{counted(len(entries), "recording")}, {bad} bad, overview in {args.out / INDEX}')
     return records, FAILED if bad else DONE
+
+
+def is_bad(entry: 'LogEntry', log: Path, args: argparse.Namespace) -> bool:
+    """Return True if a recording was not read, or not judged as far as is asked for."""
+    result = entry.result
+    if result is None or entry.is_bad:
+        return True
+    return _code(log, result, result.unjudged_share, args) == FAILED
+
+
+def _code(log: Path, judged: 'LogCase | LogResult', share: float, args: argparse.Namespace) -> int:
+    """Return the exit code of a recording that was judged; say what share was not, if too much."""
+    most = args.most_unjudged / 100.0
+    if judged.judged and share > most:
+        say(
+            f'{log}: {percent(share)} of the samples of the speed of an axis were not judged, '
+            f'allowed are {percent(most)} (--most-unjudged-percent)'
+        )
+    return DONE if judged.judged and share <= most else FAILED
 
 
 def _reported(folder: Path, args: argparse.Namespace) -> Records:

@@ -22,6 +22,7 @@ from ballscrew_monitor.messages.reasons import slow_reason
 from ballscrew_monitor.recordings.declared import unwritten, written
 from ballscrew_monitor.recordings.words import duration, number
 from ballscrew_monitor.report.judging import AxisCase, InputSetting
+from ballscrew_monitor.report.ledger import Ledger, ledger_of, REFUSALS
 from ballscrew_monitor.report.survey import Gaps
 from surrogate.units import MILLI, RPM, TURN
 
@@ -41,18 +42,6 @@ OF_MOTOR = {
     'current': {'torque_constant_Nm_per_A': 'torque constant', 'torque_rated_Nm': 'rated torque'},
 }
 """Places of a map that make a torque of what a column holds, with their words."""
-REFUSALS = {
-    Why.OTHER_JOINTS: 'of other joints',
-    Why.NOT_A_NUMBER: 'not a number',
-    Why.FUTURE: 'stamped in the future',
-    Why.OTHER_CLOCK: 'stamped by another clock',
-    Why.NEGATIVE: 'stamped before zero',
-    Why.SEVERAL: 'sent by several publishers',
-    Why.TOO_SHORT: 'too short an array',
-    Why.IMPLAUSIBLE: 'beyond what is plausible',
-    Why.NOT_DECODED: 'that do not decode',
-    Why.HOLE: 'too long after the position before',
-}
 
 WORDS = {Source.LOAD: 'axial load', Source.TORQUE: 'motor torque'}
 TURNED = {
@@ -90,7 +79,8 @@ class InputSeen:
     stated; what was refused, by why; how many messages were `left_out` as out of order or of other
     joints, and how many were `lost` on the way, None if that is not known, as in all recordings
     that are not `numbered`. In the end its stamps lay `lag` [s] behind their arrival, NaN without
-    stamps, and it came too seldom for its timeout if `slow`. `hints` say what looks wrong.
+    stamps, and it came too seldom for its timeout if `slow`. `hints` say what looks wrong. Without
+    a topic it has no `ledger`.
 
     """
 
@@ -107,6 +97,7 @@ class InputSeen:
     gaps: Gaps = Gaps()
     slow: bool = False
     hints: tuple[str, ...] = ()
+    ledger: Ledger | None = written(because='silence', default=None)
     lost: int | None = written(because='uncounted', default=None)
     numbered: bool = unwritten(default=False)
     lag: float = written('s', because='unstamped', default=math.nan)
@@ -191,6 +182,7 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
         slow=status.slow,
         gaps=case.survey.gaps[source],
         hints=tuple(_hints(case, source, setting, heard)),
+        ledger=ledger_of(case, source),
     )
 
 

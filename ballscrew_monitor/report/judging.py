@@ -33,7 +33,7 @@ from ballscrew_monitor.settings.axis import (
     settings_of,
     surface_file,
 )
-from ballscrew_monitor.settings.parameters import is_configured
+from ballscrew_monitor.settings.parameters import absolute, input_topics, is_configured
 from numpy.typing import NDArray
 from surrogate.surface import ContactOnset, onset_of_surface, Surface, ZoneLimits
 
@@ -68,7 +68,9 @@ class InputSetting:
     How an input was read: topic, field, unit, and the line to SI of every unit.
 
     A speed `from_position` is worked out; its unit is that of the speed. `as_feed`: it is of the
-    nut, not of the screw.
+    nut, not of the screw. The recording promises so many messages of the topic, None if it states
+    no number, and its files hold `present`, None if it holds events instead; `absent` says what
+    the others are.
 
     """
 
@@ -78,6 +80,9 @@ class InputSetting:
     scalings: Mapping[str, Scaling]
     from_position: bool = False
     as_feed: bool = False
+    promised: int | None = None
+    present: int | None = None
+    absent: str = Bag.absent
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -184,7 +189,8 @@ class LogCase:
 
     `name` as its reader knows it, `parameters` where they came from; axes with rows, and the names
     of those without any; assumptions by what they are about, with value and reason; notes on the
-    recording itself; the machine that it is of.
+    recording itself; the machine that it is of. `unread` has the number of messages of each topic
+    that no input is read from.
 
     """
 
@@ -195,6 +201,7 @@ class LogCase:
     assumptions: Assumed = dataclasses.field(default_factory=dict)
     notes: Sequence[str] = ()
     machine: str = ''
+    unread: Mapping[str, int] = dataclasses.field(default_factory=dict)
 
     @property
     def unjudged(self) -> list[str]:
@@ -257,15 +264,20 @@ class CaseMaker:
         if self._history is not None:
             self._history.add(rows)
 
-    def case(self, outcome: AxisOutcome, **known: Any) -> AxisCase:
-        """Return the axis as it is after at least one row; `known` are more of its fields."""
+    def case(self, outcome: AxisOutcome, bag: Bag | None = None, **known: Any) -> AxisCase:
+        """
+        Return the axis as it is after at least one row; `known` are more of its fields.
+
+        `bag` holds the messages of its inputs, None if they were recorded as events.
+
+        """
         survey = self._surveyor.result()
         return AxisCase(
             axis=self._axis,
             surface=self._surface,
             settings=self._settings,
             inputs={
-                source: self._setting(source)
+                source: self._setting(source, bag)
                 for source in Source
                 if is_configured(self._axis, self._values, source)
             },
@@ -292,10 +304,13 @@ class CaseMaker:
         )
         return onset_of_surface(self._surface, None if math.isnan(oil) else oil, zone)
 
-    def _setting(self, source: Source) -> InputSetting:
+    def _setting(self, source: Source, bag: Bag | None) -> InputSetting:
         prefix, values = f'{self._axis}.{source.name.lower()}', self._values
         unit = values[f'{prefix}.unit']
         scalings = scalings_of(self._axis, values, source, self._surface.lead)
+        counts, topic = {}, absolute(values[f'{prefix}.topic'])
+        if bag is not None and topic in bag.topics:
+            counts = {'promised': bag.promised.get(topic), 'present': bag.topics[topic].count}
         return InputSetting(
             topic=values[f'{prefix}.topic'],
             field=values[f'{prefix}.field'],
@@ -303,6 +318,8 @@ class CaseMaker:
             scalings=scalings,
             from_position=unit in POSITION_UNITS,
             as_feed=unit in LINEAR_UNITS,
+            absent=Bag.absent if bag is None else bag.absent,
+            **counts,
         )
 
 
@@ -341,6 +358,7 @@ def judge_log(
         axes=[
             makers[one.axis].case(
                 one,
+                None if numbered else bag,
                 rows=None if rows is None else rows.table(one.axis),
                 facts=parameters.axes.get(one.axis, AxisFacts()),
                 nominal=parameters.nominal,
@@ -353,6 +371,11 @@ def judge_log(
         assumptions=parameters.assumptions,
         notes=[*parameters.notes, *bag.notes],
         machine=machine,
+        unread={
+            topic: info.count
+            for topic, info in bag.topics.items()
+            if not numbered and topic not in input_topics(parameters.values)
+        },
     )
 
 

@@ -27,9 +27,10 @@ from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report import logs
 from ballscrew_monitor.report.health_history import HistoryMaker
-from ballscrew_monitor.report.inputs_seen import hints_on
+from ballscrew_monitor.report.inputs_seen import hints_on, inputs_seen, NAMES
 from ballscrew_monitor.report.judged_bag import judged_bag
 from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare
+from ballscrew_monitor.report.ledger import speed_ledger, unjudged_share
 from ballscrew_monitor.report.log_page import maps_of, report_page
 from ballscrew_monitor.report.machines import MachineAxis
 from ballscrew_monitor.report.parameters import LogParameters
@@ -78,7 +79,8 @@ class AxisLine:
     What an overview says of an axis of a recording, and its machine.
 
     `begins` [s] since 1970, time recorded, in motion and outside [s], NaN where not known; the
-    worst event in words, and its depth [-].
+    worst event in words, and its depth [-]. How many samples of the speed there should be, how
+    many were judged, and why no others; what to do, and the inputs that were not measured.
 
     """
 
@@ -93,6 +95,11 @@ class AxisLine:
     worst: str = ''
     depth: float = math.nan
     machine: str = ''
+    expected: int = 0
+    judged: int = 0
+    losses: str = ''
+    remedy: str = ''
+    unmeasured: Sequence[str] = ()
 
     @property
     def key(self) -> MachineAxis:
@@ -105,7 +112,8 @@ class LogResult:
     """
     What became of a recording: a line for each axis, and those on which nothing was judged.
 
-    `hints` say what contradicts itself among the inputs; `histories` are what the health of its
+    `hints` say what contradicts itself among the inputs; `unjudged_share` is the largest share of
+    an axis that was not judged [-]; `histories` are what the health of its
     axes rests on, as plain data.
 
     """
@@ -115,6 +123,7 @@ class LogResult:
     unjudged: Sequence[str]
     notes: Sequence[str] = ()
     hints: Sequence[str] = ()
+    unjudged_share: float = 1.0
     histories: Sequence[dict[str, Any]] = ()
 
     @property
@@ -194,6 +203,7 @@ def _result(log: LogCase) -> LogResult:
         unjudged=log.unjudged,
         notes=log.notes,
         hints=hints_on(log.axes),
+        unjudged_share=unjudged_share(log),
         histories=[dataclasses.asdict(one.history) for one in log.axes if one.history],
     )
 
@@ -201,12 +211,19 @@ def _result(log: LogCase) -> LogResult:
 def _axis_line(key: MachineAxis, verdict: AxisVerdict, case: AxisCase | None) -> AxisLine:
     machine, axis = key
     standing = verdict.standing.value
-    said = AxisLine(axis=axis, standing=standing, verdict=verdict.whole, machine=machine)
+    said = AxisLine(
+        axis=axis, standing=standing, verdict=verdict.whole, machine=machine, remedy=verdict.remedy
+    )
     if case is None:
         return said
     summary, worst = case.outcome.summary(), next(iter(case.worst_first), None)
+    ledger = speed_ledger(case)
     return dataclasses.replace(
         said,
+        expected=ledger.expected if ledger else 0,
+        judged=ledger.judged if ledger else 0,
+        losses=ledger.words if ledger else '',
+        unmeasured=[NAMES[one.source] for one in inputs_seen(case) if not one.measured],
         begins=case.begins,
         recorded=case.survey.span,
         running_time=math.nan if summary is None else summary.running_time,

@@ -82,6 +82,16 @@ def size_of(log: Path) -> int:
     return max(1, sum(file.stat().st_size for file in files if file.is_file()))
 
 
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class LogToReport:
+    """A recording with its parameters, its map and a folder of its own."""
+
+    log: Path
+    folder: str
+    params: Path | None
+    mapping: Path | None
+
+
 def report_logs(
     logs: Sequence[Path],
     out: Path,
@@ -99,24 +109,35 @@ def report_logs(
     The map is for tables alone; `notes` are sentences for the page.
 
     """
-    inputs = {
-        name: {
-            'log': os.path.abspath(log),  # a link belongs to the machine where it lies
-            'out': str((out / name).resolve()),
-            'params': _text(params),
-            # It is for tables; one recording has it for certain, and is refused if it is a bag.
-            'map': _text(map_for(log, mapping, alone=len(logs) == 1)),
-            'nominal': str(nominal),
-        }
+    # A map is for tables; one recording has it for certain, and is refused if it is a bag.
+    alone = len(logs) == 1
+    whole = [
+        LogToReport(
+            log=log, folder=name, params=params, mapping=map_for(log, mapping, alone=alone)
+        )
         for log, name in zip(logs, folder_names(logs), strict=True)
-    }
-    outcomes = _outcomes(inputs, workers, dask)
-    entries = [
-        entry_of(log.name, folder, outcomes[folder])
-        for log, folder in zip(logs, inputs, strict=True)
     ]
+    entries = report_each(whole, out, nominal=nominal, workers=workers, dask=dask)
     replace_file(out / INDEX, overview_page(entries, notes).encode())
     return entries
+
+
+def report_each(
+    logs: Sequence[LogToReport], out: Path, *, nominal: Path, workers: int | None, dask: str | None
+) -> list[LogEntry]:
+    """Write a report of each of several recordings; return their entries."""
+    inputs = {
+        one.folder: {
+            'log': os.path.abspath(one.log),  # a link belongs to the machine where it lies
+            'out': str((out / one.folder).resolve()),
+            'params': _text(one.params),
+            'map': _text(one.mapping),
+            'nominal': str(nominal),
+        }
+        for one in logs
+    }
+    outcomes = _outcomes(inputs, workers, dask)
+    return [entry_of(one.log.name, one.folder, outcomes[one.folder]) for one in logs]
 
 
 def _outcomes(

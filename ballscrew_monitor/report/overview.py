@@ -41,8 +41,19 @@ Titles = Mapping[MachineAxis, str]
 """Names of axes, with their machine where several have one of that name."""
 
 
-def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str:
-    """Return the page over recordings, with sentences about what is not among them."""
+def overview_page(
+    entries: Sequence[LogEntry],
+    notes: Sequence[str] = (),
+    *,
+    title: str = '',
+    parts: Sequence[Markup] = (),
+) -> str:
+    """
+    Return the page over recordings, with sentences about what is not among them.
+
+    `parts` come below the verdict; the page bears a `title` of its own, if any.
+
+    """
     listed = [(one, line) for one in entries if one.result for line in one.result.lines]
     listed.sort(key=lambda pair: -math.inf if math.isnan(pair[1].begins) else pair[1].begins)
     axes = [line.key for _, line in listed]
@@ -53,10 +64,11 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
     notes = [*notes, *filter(None, [folders_note(axes)])]
     body = element(
         'main',
-        element('h1', f'Ball screw reports: {counted(len(entries), "recording")}'),
+        element('h1', title or f'Ball screw reports: {counted(len(entries), "recording")}'),
         *first,
         _verdict(entries, listed),
         *(element('p', f'{note[:1].upper()}{note[1:]}.') for note in notes),
+        *parts,
         *([element('h2', 'Recordings that could not be read')] if bad else []),
         *([element('ul', *failures)] if bad else []),
         *([element('h2', 'Normal or worse, over dates')] if trends else []),
@@ -70,6 +82,7 @@ def overview_page(entries: Sequence[LogEntry], notes: Sequence[str] = ()) -> str
                 'Axis',
                 'Begins (UTC)',
                 'Recorded',
+                'Judged',
                 'In motion',
                 'Outside [%]',
                 'Warnings',
@@ -127,6 +140,7 @@ def _row(one: LogEntry, line: AxisLine, title: str) -> TableRow:
             title,
             TableCell(_date(line.begins), kind='short'),
             _time(line.recorded),
+            TableCell(f'{line.judged} of {line.expected}', kind='short', value=line.judged),
             _time(line.running_time),
             TableCell(percent(part).removesuffix(' %'), kind='number', value=part),
             TableCell(str(line.warnings), kind='short', value=line.warnings),

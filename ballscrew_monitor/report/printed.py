@@ -11,6 +11,7 @@ from ballscrew_monitor.recordings.declared import plain
 from ballscrew_monitor.recordings.words import number, shown_unit
 from ballscrew_monitor.report.inputs_seen import inputs_seen, InputSeen, NAMES, Trouble
 from ballscrew_monitor.report.judging import AxisCase, LogCase
+from ballscrew_monitor.report.ledger import Ledger, speed_ledger
 from ballscrew_monitor.report.survey import REST
 from ballscrew_monitor.report.verdict import AxisVerdict, verdict_of, verdicts_of
 
@@ -47,6 +48,7 @@ def axis_lines(case: AxisCase) -> Iterator[str]:
     yield from (_line('check', hint) for one in seen for hint in one.hints)
     yield from [] if summary is None else map(case.in_its_unit, summary.lines())
     yield from (_line('input', _input_text(one)) for one in seen)
+    yield from (_line('ledger', _ledger_text(one)) for one in seen if one.ledger)
     yield from (
         _line('not judged', f'{number(time, 4)} s: {reason.text}')
         for reason, time in sorted(case.survey.reasons.items(), key=lambda item: -item[1])
@@ -72,6 +74,17 @@ def _input_text(seen: InputSeen) -> str:
     return f'{NAMES[seen.source].lower()}: {", ".join(parts)}'
 
 
+def _ledger_text(seen: InputSeen) -> str:
+    ledger = seen.ledger
+    assert ledger is not None
+    promised = 'no number' if ledger.promised is None else str(ledger.promised)
+    rest = f'; {ledger.words}' if ledger.losses else ''
+    return (
+        f'{NAMES[seen.source].lower()}: {promised} promised, {ledger.present} present, '
+        f'{ledger.read} read, {ledger.judged} judged{rest}'
+    )
+
+
 def printed_records(summary: Mapping[str, Any]) -> dict[str, Any]:
     """Return of the summary of a recording what is printed: its axes, with their totals first."""
     records = dict(summary['axes'])
@@ -95,6 +108,7 @@ def summary_record(log: LogCase) -> dict[str, Any]:
         'log': log.name,
         'parameters': log.parameters,
         'unjudged_axes': log.unjudged,
+        'unread_topics': dict(log.unread),
         'axes': records,
         'assumptions': {key: dict(one) for key, one in log.assumptions.items()},
         'notes': list(log.notes),
@@ -112,6 +126,7 @@ def axis_record(case: AxisCase, verdict: AxisVerdict) -> dict[str, Any]:
         'contact_onset': verdict.contact,
         'model': {'tier': surface.tier, 'screw': surface.screw_name, 'oil': surface.oil_name},
         'recorded_s': survey.span,
+        **_share(speed_ledger(case)),
         **(
             without('totals', 'no state was reached')
             if summary is None
@@ -124,6 +139,12 @@ def axis_record(case: AxisCase, verdict: AxisVerdict) -> dict[str, Any]:
         'torque_residual': plain(survey.torque),
         'inputs': plain({one.source: one for one in inputs_seen(case)}),
     }
+
+
+def _share(ledger: Ledger | None) -> dict[str, Any]:
+    if ledger is None or math.isnan(ledger.unjudged_share):
+        return without('unjudged_share', 'the recording holds no speed')
+    return {'unjudged_share': ledger.unjudged_share}
 
 
 def without(name: str, reason: str) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from ballscrew_monitor.recordings.words import counted, duration, NONE, number, 
 from ballscrew_monitor.report.buckets import MOST_ROWS
 from ballscrew_monitor.report.inputs_seen import hints_on, inputs_seen, InputSeen, NAMES, Trouble
 from ballscrew_monitor.report.judging import AxisCase
+from ballscrew_monitor.report.ledger import Ledger
 from ballscrew_monitor.report.page import element, joined, Markup, table, TableCell, TableRow
 from ballscrew_monitor.report.survey import REST
 from surrogate.units import MILLI
@@ -204,6 +205,11 @@ def inputs_part(case: AxisCase) -> Markup:
             (_input_row(one) for one in seen),
         ),
         *_trouble_table(seen),
+        element('h3', 'What became of each message'),
+        table(
+            ('Input', 'Promised', 'Present', 'Read', 'Judged', 'Reasons of the differences'),
+            (_ledger_row(one, one.ledger) for one in seen if one.ledger),
+        ),
         element(
             'p', 'Only these columns of the recording were read for this page.', class_='muted'
         ),
@@ -225,6 +231,13 @@ def _input_row(seen: InputSeen) -> TableRow:
             seen.refused or 'none' if seen.place else '',
         )
     )
+
+
+def _ledger_row(seen: InputSeen, ledger: Ledger) -> TableRow:
+    promised = NONE if ledger.promised is None else str(ledger.promised)
+    numbers = promised, str(ledger.present), str(ledger.read), str(ledger.judged)
+    cells = (TableCell(text, kind='number') for text in numbers)
+    return TableRow((NAMES[seen.source], *cells, ledger.words))
 
 
 def _trouble_table(seen: Sequence[InputSeen]) -> Iterable[Markup]:

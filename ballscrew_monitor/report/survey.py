@@ -81,9 +81,10 @@ class Survey:
     `first` and `last` [ns] on the time line, of the stamps or, `by_stamp` false, of the log, and
     `shift` [ns] from stamps to it. Spans of measured inputs in SI; of load that opposes motion [N]
     and temperature [K] in motion. `reasons` [s] of all rows, `moving` [s] of the samples in motion
-    alone; `uncounted` [s] before the next row where that came after the timeout of the speed.
-    `gaps` of all inputs, that of the speed between two samples, that of any other from its timeout
-    on; `speed_gaps`, the longest of them first, as start and length [ns]. `energy` [J] by zone.
+    alone, `samples` the number of all that are no ticks; `uncounted` [s] before the next row where
+    that came after the timeout of the speed. `gaps` of all inputs, that of the speed between two
+    samples, that of any other from its timeout on; `speed_gaps`, the longest of them first, as
+    start and length [ns]. `energy` [J] by zone.
 
     """
 
@@ -99,6 +100,7 @@ class Survey:
     oil: Extremes
     reasons: dict[Reason, float]
     moving: dict[Reason, float]
+    samples: dict[Reason, int]
     uncounted: float
     gaps: dict[Source, Gaps]
     speed_gaps: tuple[tuple[int, int], ...]
@@ -143,6 +145,7 @@ class RowSums:
     moving_time: list[int] = many(len(Reason), 0)
     uncounted: int = 0
     energy: list[float] = many(len(Zone), 0.0)
+    samples: list[int] = many(len(Reason), 0)
     # the last row
     stamp: int = 0
     reason: int = 0
@@ -198,6 +201,8 @@ def _add_numbers(sums: Any, row: Any, standstill: float) -> None:
     sums.power = power if moving and math.isfinite(power) else 0.0
     sums.stamp, sums.reason, sums.zone = row.stamp, row.reason, row.zone
     sums.moved = moving and not row.tick
+    if not row.tick:
+        sums.samples[row.reason] += 1
     if not moving:
         return
     _add(sums, OIL, row.temperature)
@@ -285,6 +290,7 @@ class Surveyor:
             oil=_extremes(sums, OIL),
             reasons=_by_reason(sums.reason_time),
             moving=_by_reason(sums.moving_time),
+            samples={reason: count for reason, count in zip(Reason, sums.samples) if count},
             uncounted=sums.uncounted / SECOND,
             gaps={source: Gaps(count=count, time=time / SECOND) for source, (count, time) in gaps}
             | {Source.SPEED: Gaps(count=self._gap_count, time=self._gap_time / SECOND)},

@@ -5,17 +5,26 @@
 from collections.abc import Mapping
 import dataclasses
 import enum
+import math
 
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 from ballscrew_monitor.recordings.words import counted, duration, list_of, percent, share
 from ballscrew_monitor.report.judging import AxisCase, LogCase, RCS
+from ballscrew_monitor.report.ledger import Ledger, speed_ledger
 from ballscrew_monitor.report.survey import REST
 
 UNKNOWN_PART = 0.5  # of the motion that is not judged, from which on there is no verdict
 OUTSIDE_PART = 0.5  # of the judged motion that is outside, from which on nothing is good
 TOLD_PART = 0.01  # of the motion that is not judged, from which on the verdict says so
+BEYOND = (
+    Reason.SPEED_BELOW_RANGE,
+    Reason.SPEED_ABOVE_RANGE,
+    Reason.LOAD_OUT_OF_RANGE,
+    Reason.TEMPERATURE_OUT_OF_RANGE,
+)
+"""Reasons outside of the surface."""
 REMEDIES = {
     Reason.NO_DIRECTION: 'record a motion of the axis',
     Reason.SPEED_BELOW_RANGE: 'build a surface that begins at a slower speed, '
@@ -95,6 +104,13 @@ def _verdict(case: AxisCase) -> AxisVerdict:
     whole = max(summary.running_time, case.survey.possible_motion)
     if whole - judged > UNKNOWN_PART * whole and not summary.events:
         return _hardly_judged(case, judged, whole)
+    if not summary.events and (ledger := speed_ledger(case)):
+        if ledger.unjudged_share > UNKNOWN_PART:
+            return _hardly_read(case, ledger)
+        beyond = math.fsum(case.survey.moving.get(reason, 0.0) for reason in BEYOND)
+        away = summary.outside_time + beyond > OUTSIDE_PART * summary.running_time
+        if beyond and away and not _mostly_outside(summary):
+            return _hardly_optimal(case, summary)
     more = _unjudged_part(case, summary) if unjudged > TOLD_PART else ''
     if not summary.outside_time:
         return AxisVerdict(
@@ -156,11 +172,37 @@ def _hardly_judged(case: AxisCase, judged: float, whole: float) -> AxisVerdict:
     )
 
 
+def _hardly_read(case: AxisCase, ledger: Ledger) -> AxisVerdict:
+    """Return how many samples of the speed were judged of those that there should be."""
+    part = percent(ledger.judged / ledger.expected)
+    reasons = _longest({key: time for key, time in case.survey.reasons.items() if time})
+    return AxisVerdict(
+        sentence=f'of {ledger.expected} samples of the speed of axis {case.axis} {ledger.judged} '
+        f'({part}) were judged: {ledger.words}.',
+        remedy=_remedy(reasons) or 'Record it again, or find the files that are missing.',
+    )
+
+
+def _hardly_optimal(case: AxisCase, summary: Summary) -> AxisVerdict:
+    """Return that an axis was outside of zone or surface for most of its motion."""
+    reason = _longest(case.survey.moving)
+    return AxisVerdict(
+        sentence=f'axis {case.axis} was in its optimal zone for '
+        f'{share(summary.optimal_time, summary.running_time)} of its motion: it was outside for '
+        f'{duration(summary.outside_time)}{_unjudged_part(case, summary)}.',
+        remedy=_remedy(reason),
+    )
+
+
+def _mostly_outside(summary: Summary) -> bool:
+    judged = summary.optimal_time + summary.outside_time
+    return summary.outside_time > OUTSIDE_PART * judged
+
+
 def _outside(case: AxisCase, summary: Summary, more: str) -> AxisVerdict:
     part = share(summary.outside_time, summary.running_time)
     time = f'{duration(summary.outside_time)} ({part} of its motion)'
-    judged = summary.optimal_time + summary.outside_time
-    if not summary.events and summary.outside_time > OUTSIDE_PART * judged:
+    if not summary.events and _mostly_outside(summary):
         return AxisVerdict(
             standing=VerdictKind.BAD,
             sentence=f'axis {case.axis} was outside its optimal zone for {time}, each time too '

@@ -64,6 +64,8 @@ AT_ONCE = 32768  # events that are made at a time: they stay in the cache
 class TableLog(Bag):
     """A table read by a map; what its rows say of the map is a remark once all are read."""
 
+    absent = 'rows without a time'
+
     def __init__(self, path: Path, mapping: TableMap, shown: Shown = shown_progress) -> None:
         """
         Look through the table at `path`, and show how far that is.
@@ -76,6 +78,9 @@ class TableLog(Bag):
         self._patterns, self._columns = patterns_of(self._series)
         self.path, self.files, self.metadata = path, [path], self.facts.texts()
         self.count = self._series.count
+        self.promised = {
+            name: self._series.rows[pattern.group] for name, pattern in self._patterns.items()
+        }
         self.topics = {
             name: TopicInfo(
                 type_name=type_name_of(pattern.message),

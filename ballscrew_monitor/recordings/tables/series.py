@@ -38,7 +38,8 @@ ALIKE = 0.9  # squared correlation from which a speed and its position are of on
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Series:
     """
-    A log by rows: their number, the usual time between them [s], and what was wrong with it.
+    A log by rows: the number of those with a time, and of the `rows` of each group in the file; the
+    usual time between them [s], and what was wrong with it.
 
     `mapping` is that by which it is read, without the columns that hold nothing; `begin` and `end`
     are the first and the last stamp [ns]. Columns of one time are a group, of which `places` names
@@ -47,6 +48,7 @@ class Series:
     """
 
     count: int
+    rows: tuple[int, ...]
     usual_period: float
     begin: int
     end: int
@@ -145,6 +147,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     notes = [note for one in times for note in one.notes()]
     return Series(
         count=sum(one.count for one in times),
+        rows=tuple(table.rows - one.group.holes for one in times),
         usual_period=max(one.usual_period for one in times if one.count > 1),
         begin=times[0].begin,
         end=max(one.end for one in times),

@@ -37,7 +37,8 @@ def test_an_axis_without_a_sample_is_named_and_the_other_is_judged(short_bag, tm
     )
     out = tmp_path / 'out'
     arguments = ['replay', str(short_bag), '--params', str(params), '--out', str(out)]
-    assert cli.main(arguments) == 0
+    assert cli.main(arguments) == 1
+    assert cli.main([*arguments, '--most-unjudged-percent', '100']) == 0
     assert 'nothing was judged on axis y' in capsys.readouterr().err
     assert json.loads((out / 'summary.json').read_text())['unjudged_axes'] == ['y']
 
