@@ -9,16 +9,13 @@ from health_parts.axis_year import (
     axis_year,
     DAY,
     drive_torque,
-    fresh_grease,
-    hall_temperature,
     indicated_torque,
     NEW_YEAR,
     SCHEDULES,
     stepped,
-    wandering,
 )
 from health_parts.faults import CLEAN, FAULTS
-from health_parts.machine import CELSIUS, draw_machine, MOUNTED
+from health_parts.machine import draw_machine, MOUNTED
 import numpy as np
 import pytest
 
@@ -144,42 +141,12 @@ def test_torque_has_whole_steps():
     assert stepped(np.array([0.24, -0.26]), 0.1) == pytest.approx([0.2, -0.3])
 
 
-def test_hall_swings_by_its_amplitude_over_the_year():
-    """The days at the same hour: cold in mid January, warm half a year later."""
-    day = 15.0 + np.array([0.0, 182.5 - 0.5, 365.0])
-    cold, warm, again = hall_temperature(day, 6.0)
-    assert 0.5 * (warm - cold) == pytest.approx(6.0, abs=1.6)  # the half day has 1.5 K itself
-    assert again == pytest.approx(cold, abs=1e-9)
-    year = hall_temperature(np.arange(365.0) + 0.45, 6.0)
-    assert 0.5 * np.ptp(year) == pytest.approx(6.0, rel=1e-3)
-    assert np.mean(year) == pytest.approx(CELSIUS + 21.0, abs=0.01)
-
-
 def test_oil_warms_up_during_a_log():
     """By less than a cold start would, as the axis has moved before."""
     year = axis_year(1)
     cold = year.machine.warm_up * (1.0 - math.exp(-150.0 / year.machine.warm_up_time))
     rises = [np.mean(log.temperature[-200:]) - np.mean(log.temperature[:200]) for log in year.logs]
     assert 0.0 < np.mean(rises) < cold * year.machine.thermometer_share
-
-
-def test_wander_has_unit_variance_and_fifteen_weeks():
-    rng = np.random.default_rng(1)
-    day = np.arange(0.0, 364.0, 7.0)
-    walks = np.stack([wandering(day, rng) for _ in range(2000)])
-    assert np.std(walks, axis=0) == pytest.approx(np.ones(len(day)), abs=0.06)
-    together = np.mean(walks[:, 0] * walks[:, 15])
-    assert together == pytest.approx(math.exp(-1.0), abs=0.06)
-
-
-def test_grease_comes_every_quarter_and_wears_off():
-    day = np.arange(0.0, 364.0, 0.25)
-    fresh = fresh_grease(day, np.random.default_rng(1))
-    comes = np.flatnonzero(np.diff(fresh) > 0.5)
-    assert 3 <= len(comes) <= 5
-    assert np.all(np.diff(day[comes]) > 70.0)
-    assert np.all((fresh >= 0.0) & (fresh <= 1.0))
-    assert fresh[comes + 1 + 4 * 18] == pytest.approx(fresh[comes + 1] * math.exp(-3.0))
 
 
 @pytest.mark.parametrize('axis', ['vertical', 'constant'])
