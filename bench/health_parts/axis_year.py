@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 import math
 
+from health_parts.along import table_position, worn_place
 from health_parts.cycles import cutting, feed_passes, Motion, motion, Move, varied
 from health_parts.faults import CLEAN, Fault, joined
 from health_parts.machine import Array, catalogue_drag, Condition, draw_machine, friction, Machine
@@ -48,7 +49,8 @@ class Log:
     time: Array  # [s] from the start
     speed: Array  # [rad/s]
     torque: Array  # [N m]
-    position: Array  # [m]
+    position: Array  # [m] by the motor
+    table: Array | None  # [m] position of the table by its scale
     load: Array | None  # [N] external, towards positive
     temperature: Array | None  # [K]
 
@@ -97,6 +99,7 @@ def axis_year(
     size: str | None = None,
     load: bool = True,
     temperature: bool = True,
+    scale: bool = False,
     wander: float | None = None,
     scatter: float | None = None,
     days: float = 364.0,
@@ -104,8 +107,8 @@ def axis_year(
     """
     Return the year of a seed; two faults of one seed have machine, weather and noise in common.
 
-    Programmes are passes and cutting, axes horizontal, vertical and constant. Load and temperature
-    tell whether the log has these columns; wander and scatter replace the drawn ones, as standard
+    Programmes are passes and cutting, axes horizontal, vertical and constant. Load, temperature
+    and scale of the table tell whether the log has these columns; wander and scatter replace the drawn ones, as standard
     deviations over the friction.
 
     """
@@ -126,6 +129,7 @@ def axis_year(
     columns = measure(
         machine, plan, time, motions, weather, state, np.random.default_rng([seed, 3])
     )
+    tables = tables_of(seed, machine, weather, motions, time, state) if scale else None
     logs = tuple(
         Log(
             start=NEW_YEAR + round(date * DAY),
@@ -133,6 +137,7 @@ def axis_year(
             speed=columns['speed'][k],
             torque=columns['torque'][k],
             position=motions[k].position,
+            table=None if tables is None else tables[k],
             load=columns['load'][k] if load else None,
             temperature=columns['temperature'][k] if temperature else None,
         )
@@ -176,6 +181,7 @@ def measure(
     turns = position / machine.size.lead
     drag = drag * (1.0 + 0.03 * np.sin(2.0 * math.pi * position / machine.stroke + 1.0))
     drag = drag * (1.0 + 0.03 * np.sin(2.0 * math.pi * turns))
+    drag = drag * worn_place(position / machine.stroke, state.worn)
     torque = drive_torque(machine, speed, acceleration, drag, force)
     noise = machine.torque_noise * catalogue_drag(machine.size, machine.preload)
     torque = torque + noise * rng.standard_normal(shape)
@@ -190,6 +196,24 @@ def measure(
         'torque': stepped(indicated, machine.torque_step),
         'temperature': stepped(seen + 0.05 * rng.standard_normal(shape), 0.1),
     }
+
+
+def tables_of(
+    seed: int,
+    machine: Machine,
+    weather: Weather,
+    motions: Sequence[Motion],
+    time: Array,
+    condition: Condition,
+) -> list[Array]:
+    """Return the position [m] of the table in each log, by its scale."""
+    rng = np.random.default_rng([seed, 4])
+    play = np.broadcast_to(condition.play, (len(motions), 1))[:, 0]
+    warm = machine.warm_up * weather.warmth
+    return [
+        table_position(moved, time, machine.size.lead, play=play[k], warm=warm[k], rng=rng)
+        for k, moved in enumerate(motions)
+    ]
 
 
 def drive_torque(

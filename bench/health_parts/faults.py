@@ -54,14 +54,17 @@ FAULTS = {
         Fault(name='load gain', part='load_gain', size=0.85, ramp=0.0),
         Fault(name='guideway +25 %', part='guideway', size=1.25),
         Fault(name='support bearing', part='bearing', size=1.6),
+        Fault(name='worn place', part='worn', size=1.3),
+        Fault(name='play 20 um', part='play', size=20e-6),
     )
 }
 
 
 def joined(first: Condition, second: Condition) -> Condition:
-    """Return both conditions at once: their factors multiplied, their zeros added."""
+    """Return both conditions at once: their factors multiplied, zeros and plays added."""
     both = {
         field.name: getattr(first, field.name) * getattr(second, field.name)
         for field in fields(Condition)
     }
-    return Condition(**both | {'zero': first.zero + second.zero})
+    added = {name: getattr(first, name) + getattr(second, name) for name in ('zero', 'play')}
+    return Condition(**both | added)

@@ -100,6 +100,8 @@ class Condition:
     torque_constant: float | Array = 1.0
     zero: float | Array = 0.0  # offset of the torque, over the catalogue's drag
     load_gain: float | Array = 1.0
+    worn: float | Array = 1.0  # friction where the stroke is worn
+    play: float | Array = 0.0  # [m] backlash of nut and bearings
     every: float | Array = 1.0  # of all friction: scatter of a day
 
 
