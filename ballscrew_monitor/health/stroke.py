@@ -19,9 +19,11 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.health.bands import day_of, load_band, speed_band
 from ballscrew_monitor.health.history import two_ways
 from ballscrew_monitor.health.records import Cell, CellKind, LoadSource, Stretch
+from ballscrew_monitor.judge.inputs import MEASURED
 from ballscrew_monitor.judge.records import STANDSTILL
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.units import TURN
 
 Array = NDArray[np.float64]
 Stamps = NDArray[np.int64]
@@ -88,10 +90,10 @@ class StrokeSums:
         """Count the samples of stretches that have ended, in their order."""
         values, stamps = self._waiting
         last = 0
-        for stretch in stretches:
+        for stretch in (each for each in stretches if each.speed != 0.0):
             end = stretch.start + round(stretch.duration * SECOND)
             first, last = np.searchsorted(stamps, [stretch.start, end])
-            if stretch.speed != 0.0 and last > first:
+            if last > first:
                 self._count(stretch, values[first:last])
         self._waiting = values[last:], stamps[last:]
 
@@ -238,7 +240,21 @@ class ReversalSums:
         ]
 
 
-def motion_of(rows: NDArray[Any], lead: float) -> tuple[NDArray[np.bool_], Array]:
-    """Return which rows (an array of ROW) are samples of motion, and the speed of all [m/s]."""
+class Motion(NamedTuple):
+    """Samples of motion: stamps [ns], speed of the table [m/s], measured torque [N m] or NaN."""
+
+    stamps: Stamps
+    speed: Array
+    torque: Array
+
+
+def motion_of(rows: NDArray[Any], lead: float) -> Motion:
+    """Return the samples of motion among rows (an array of ROW); lead [m]."""
     moves = ~rows['tick'] & (rows['gates'] & STANDSTILL == 0) & np.isfinite(rows['speed'])
-    return moves, rows['speed'] * lead / (2.0 * math.pi)
+    moving = rows[moves]
+    measured = moving['motor_torque_source'] == MEASURED
+    return Motion(
+        stamps=moving['stamp'].copy(),
+        speed=moving['speed'] * lead / TURN,
+        torque=np.where(measured, moving['motor_torque'], math.nan),
+    )

@@ -108,8 +108,8 @@ def axis_year(
     Return the year of a seed; two faults of one seed have machine, weather and noise in common.
 
     Programmes are passes and cutting, axes horizontal, vertical and constant. Load, temperature
-    and scale of the table tell whether the log has these columns; wander and scatter replace the drawn ones, as standard
-    deviations over the friction.
+    and scale tell whether the log has these columns, the last one the position of the table;
+    wander and scatter replace the drawn ones, as standard deviations over the friction.
 
     """
     machine = draw_machine(seed, size=size, axis=axis)

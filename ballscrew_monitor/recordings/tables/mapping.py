@@ -71,6 +71,8 @@ PLACES = {
     'AXIS.speed': 'column of the speed, of the nut in a linear unit or of the screw; this or '
     '`position`',
     'AXIS.position': 'column of the position; without a speed its slope replaces it',
+    'AXIS.table_position': 'column of the position of the table by its own scale: beside '
+    '`position`, that of the motor, it gives the lost motion at reversals',
     'AXIS.load': 'column of the force on the nut, positive along the axis; or `{from: current}`, '
     '`{from: torque}`, `{from: motor_torque}`, `{unknown: reason}`',
     'AXIS.torque': 'column of the torque at the screw, in N m or % of the rated one',

@@ -12,6 +12,7 @@ RATED = '%'  # of the rated torque, or of the current at which the motor gives i
 UNITS: dict[str, Mapping[str, float]] = {
     'speed': conversions.LINEAR_SPEED_UNITS | conversions.ROTARY_SPEED_UNITS,
     'position': conversions.LINEAR_POSITION_UNITS | conversions.ROTARY_POSITION_UNITS,
+    'table_position': conversions.LINEAR_POSITION_UNITS,
     'load': conversions.LOAD_UNITS,
     'torque': {'N m': 1.0, RATED: 0.01},
     'current': conversions.CURRENT_UNITS | {RATED: 0.01},

@@ -55,8 +55,9 @@ class Series:
         """
         Yield the rows in blocks, the columns by axis and quantity, such as `x.load`.
 
-        Speed [rad/s], position [rad] and torque [N m] of the screw, load on the nut [N] and oil
-        temperature [degC], machine frame, NaN where not known: those of `quantities_of`.
+        Speed [rad/s], position [rad] and torque [N m] of the screw, position of the table [m],
+        load on the nut [N] and oil temperature [degC], machine frame, NaN where not known: those
+        of `quantities_of`.
 
         """
         blocks: Iterable[tuple[Rows, slice]] = ((rows, slice(None)) for rows in self._times.rows())
@@ -72,7 +73,7 @@ class Series:
 
 def quantities_of(axis: AxisMap) -> set[str]:
     """Return what is known of an axis by rows: its speed, and what the log holds otherwise."""
-    held = {'speed', *({'position', 'temperature'} & set(axis.columns))}
+    held = {'speed', *({'position', 'table_position', 'temperature'} & set(axis.columns))}
     motor = {kind for kind in ('torque', 'current') if kind in axis.columns}
     if 'torque' in motor or (motor and math.isfinite(axis.motor_torque('current'))):
         held.add('torque')
@@ -182,6 +183,8 @@ def _axis(axis: AxisMap, rows: Rows, part: slice, begin: int) -> dict[str, Array
     found: dict[str, Array] = {}
     if 'position' in known:
         found['position'] = column('position', turned)
+    if 'table_position' in known:
+        found['table_position'] = column('table_position', linear[unit('table_position')])
     if 'speed' in held:
         found['speed'] = column('speed', speed_factor(unit('speed'), axis.lead))
     else:
