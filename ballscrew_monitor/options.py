@@ -19,7 +19,8 @@ ENDINGS = {
     'run': 'Exit code 1: the node failed, or samples were lost.',
     'replay': 'Exit code 0: some motion was judged on at least one axis of each recording. 1: '
     'nothing was judged or nothing moved; of several recordings, at least one could not be read.',
-    'health': 'Exit code 1: no recording of several could be judged.',
+    'health': 'Exit code 1: no recording of several could be judged; with collect, at least one '
+    'could not.',
     'solve': 'Exit code 1: not converged, rejected, timed out, or no node found. 130, 143: the '
     'solve is withdrawn.',
     'doctor': 'Exit code 1: findings. 2: a file that the node refuses.',
@@ -77,7 +78,10 @@ def add_replay(parser: Parser) -> None:
 
 def add_health(parser: Parser) -> None:
     """Add what `ballscrew health` may be told."""
-    text = 'bag directory or file, a folder of them; a table with --map; state_dir of a node'
+    text = (
+        'bag directory or file, a folder of them; a table with --map; state_dir of a node; a '
+        'folder of collected logs. As first word, collect: keep what the logs hold in --out'
+    )
     _add_file(parser, 'logs', 'LOG', text, nargs='+')
     _add_file(parser, '--map', 'FILE', MAP_TEXT)
     text = f'parameters of the node (default those that a log carries, else {PARAMS_TEXT})'
@@ -88,8 +92,10 @@ def add_health(parser: Parser) -> None:
     parser.add_argument('--baseline', nargs=2, metavar=('FROM', 'TO'), help=text)
     text = 'let the advice name other speeds, as advice.speed does: the process is free'
     _add_switch(parser, '--speed-advice', text)
-    _add_file(parser, '--out', 'DIR', 'directory for health.json and health.png')
+    text = 'directory for health.json and health.png; with collect, for what is kept'
+    _add_file(parser, '--out', 'DIR', text)
     _add_switch(parser, '--json', 'print JSON')
+    add_workers(parser)
 
 
 def add_fingerprint(parser: Parser) -> None:

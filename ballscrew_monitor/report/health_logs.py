@@ -135,7 +135,8 @@ def read_history(plain: Mapping[str, Any]) -> AxisHistory:
     cells = np.zeros(len(columns['start']), dtype=CELL)
     for name in CELL.names or ():
         cells[name] = [np.nan if one is None else one for one in columns[name]]
-    summary = LogSummary(*(kept.pop(name) for name in ('machine', 'axis', 'start', 'end')), cells)
+    names = ('machine', 'axis', 'start', 'end')
+    summary = LogSummary(**{name: kept.pop(name) for name in names}, cells=cells)
     bins = [
         SpectrumBin(
             axial_load=one.pop('axial_load', np.nan), wear_time=tuple(one.pop('wear_time')), **one

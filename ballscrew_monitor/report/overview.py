@@ -9,7 +9,8 @@ import math
 from urllib.parse import quote
 
 from ballscrew_monitor.recordings.words import counted, duration, NONE, percent
-from ballscrew_monitor.report.health_history import by_axis, healths, peers_among, read_history
+from ballscrew_monitor.report.health_history import healths, peers_among
+from ballscrew_monitor.report.health_logs import by_axis, read_history
 from ballscrew_monitor.report.health_part import health_trends, peers_table, verdict_box
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
 from ballscrew_monitor.report.logs import PAGE
