@@ -72,8 +72,8 @@ def assess_axes(
     Return the health of each axis after each of its logs, those that can be assessed.
 
     An axis that cannot be assessed is named and stops no other one. `titles` name the axes in
-    sentences, `options` are those of `health_history.healths`. Raises InputError for the only axis,
-    SurfaceError if a scheduler is lost.
+    sentences, `options` are those of `health_history.healths`. Raises InputError for the only
+    axis, SurfaceError if a scheduler is lost.
 
     """
     names = {titles[key]: key for key in axes}

@@ -110,7 +110,7 @@ def collect(logs: Sequence[Path], folder: Path, given: Given, workers: Workers) 
 def map_logs(
     logs: Sequence[Path], given: Given, workers: Workers, on_log: OnLog, *, alone: bool
 ) -> None:
-    """Judge each log in a task and hand over what it holds, in any order; `alone`: there is one."""
+    """Judge each log in a task, and hand over what it holds; `alone`: no other one is named."""
     names = {os.path.abspath(log): log for log in logs}
     inputs = {name: _inputs(name, log, given, alone=alone) for name, log in names.items()}
     bar = Progress(len(names), 'recordings')
