@@ -12,7 +12,6 @@ from collections.abc import Iterable, Iterator, Sequence
 import math
 from typing import NamedTuple
 
-from ballscrew_monitor.health.bands import WEEK
 from ballscrew_monitor.health.history import calmed, Effects, effects_of, History
 from ballscrew_monitor.health.mixed import Estimate, estimate, Logs, weights_of
 from ballscrew_monitor.health.records import Condition, TOLERANCE
@@ -30,8 +29,8 @@ SPARSE = 20.0
 """Days between logs from which two of them count as now."""
 BLOCK_DAYS = 56.0
 """Days over which logs between baseline and now share one change."""
-MERGED = 3.0
-"""Days within which logs count as one, or as a week where they are older than a block."""
+MERGED, MERGED_OLD = 2.5, 6.0
+"""Days within which logs count as one; the second where they are older than a block."""
 NO_CHANGE, WITHIN_TOLERANCE = 5e-4, 0.01
 """
 Probabilities at which a change is worse: that there is none, and that it is within the tolerance.
@@ -140,10 +139,10 @@ def _chosen(logs: Logs, which: NDArray[np.bool_]) -> Logs:
 
 
 def binned(logs: Logs) -> Logs:
-    """Return logs with those of three days as one, and of a week where they are older."""
+    """Return logs with those of some days as one, and of a week where they are older."""
     age = logs.time[-1] - logs.time
-    width = np.where(age > BLOCK_DAYS, float(WEEK), MERGED)
-    begin, bins = logs.time[0] - 1.0, []
+    width = np.where(age > BLOCK_DAYS, MERGED_OLD, MERGED)
+    begin, bins = -math.inf, []
     for at, (time, length) in enumerate(zip(logs.time.tolist(), width.tolist(), strict=True)):
         if time - begin >= length:
             bins.append([at])

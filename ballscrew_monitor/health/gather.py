@@ -18,6 +18,7 @@ row by row, recordings compile it.
 """
 
 import dataclasses
+import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND

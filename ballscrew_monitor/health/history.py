@@ -21,8 +21,6 @@ from numpy.typing import NDArray
 from surrogate.units import TURN
 
 Array = NDArray[np.float64]
-MERGED = 3.0
-"""Days within which logs count as one: what they share is the day."""
 USUAL_TIME = 2.0
 """Time in a group and direction at which it weighs half [s]."""
 BOTH, ONE_WAY = 0, 1
