@@ -24,6 +24,10 @@ NODE_ROWS = (
     ParameterRow('autostart', True, change=NEVER).says(
         'Configure and activate at start; false under a lifecycle manager.'
     ),
+    ParameterRow('machine', '', change=NEVER).says(
+        'Name of the machine: axes have one history for each machine; empty: the folder of a log, '
+        'or state_dir.'
+    ),
     ParameterRow('localhost', False, change=NEVER).says(
         'Bind every port of the node to 127.0.0.1: no other machine reaches it.'
     ),

@@ -52,6 +52,7 @@ NUMBERS = {
 LINES = {'skip': (0, 1000), 'header_rows': (1, 2)}
 """Numbers of lines, with the least and the most allowed."""
 TEXTS = ('screw', 'oil', 'surface')
+DATES = ('name', 'header', 'modified')
 PLACES = {
     'decimal': "`'.'` or `','`: decimal sign of columns in which no cell shows it, as 5.400 may "
     'be 5400; the other sign parts thousands',
@@ -59,6 +60,9 @@ PLACES = {
     'header_rows': 'rows of names; 2 with the units or parts of names below',
     'machine': 'name of the machine, a text: its axes have one history, whatever folder holds a '
     'log',
+    'date_from': 'instead of `time.epoch`: the date of the first row is that in the `name` of the '
+    'file or else of its folder (2025-07-14, 20250714_115950, 14.07.2025), in its `header`, or '
+    'that at which the file was `modified`; UTC',
     'time.column': 'column of the time, unit after `scale` and `offset`: `{column: Time, unit: s, '
     'scale: 86400}` are days of a spreadsheet; texts such as 2026-01-02T03:04:05.5Z, '
     '02.01.2026 03:04:05,5 or 03:04:05,5 are read as s, without a zone as UTC; a time '
@@ -164,7 +168,8 @@ class TableMap:
 
     Column of the time, or the rate [Hz] of a log without one; `date` names the column of the days
     whose times the other says, if there is one; epoch [ns] of the first row, None when the log
-    tells it; `decimal` sign of numbers that may be read with either one, empty where not said;
+    tells it; `date_from` says where the date of the first row stands, if anywhere; `decimal` sign
+    of numbers that may be read with either one, empty where not said;
     `content` is the map as it was written.
 
     """
@@ -175,6 +180,7 @@ class TableMap:
     date: str
     rate: float
     epoch: int | None
+    date_from: str
     axes: tuple[AxisMap, ...]
     assumptions: tuple[Assumption, ...]
     parameters: Mapping[str, Any]
@@ -218,7 +224,8 @@ def _read(path: Path) -> TableMap:
 
 def make_map(content: Any) -> TableMap:
     """Return a map made of its content; raises InputError when that is not right."""
-    known = ('log', 'time', 'axes', 'assumed', 'parameters', 'machine', *LINES, 'decimal')
+    known = ('log', 'time', 'axes', 'assumed', 'parameters', 'machine', 'date_from')
+    known += (*LINES, 'decimal')
     _check_keys('the map', content, known)
     if 'machine' in content:
         _check_machine(content['machine'])
@@ -231,7 +238,9 @@ def make_map(content: Any) -> TableMap:
     assumptions = _assumptions(content.get('assumed') or {})
     stated = _flatten(content.get('time') or {}, 'time') | _flatten(axes, '')
     values = _joined(stated, assumptions)
-    epoch = values.pop('time.epoch', None)
+    epoch, date_from = values.pop('time.epoch', None), _date_from(content, stated)
+    if date_from:  # an assumed epoch gives way
+        epoch, assumptions = None, tuple(one for one in assumptions if one.key != 'time.epoch')
     time = _Part('time', values)
     made = TableMap(
         layout=_layout(content),
@@ -240,6 +249,7 @@ def make_map(content: Any) -> TableMap:
         date=column_name(time.text('date')),
         rate=time.number('rate_Hz'),
         epoch=None if epoch is None else _epoch(epoch),
+        date_from=date_from,
         axes=tuple(_axis(str(name), values) for name in axes),
         assumptions=assumptions,
         parameters=_flatten(content.get('parameters') or {}, ''),
@@ -257,6 +267,16 @@ def make_map(content: Any) -> TableMap:
 def _check_machine(name: Any) -> None:
     if not isinstance(name, str) or not name.strip():
         raise InputError(f'machine is {name!r}, it must be a text, the name of the machine')
+
+
+def _date_from(content: Mapping[str, Any], stated: Mapping[str, Any]) -> str:
+    """Return where a map says that the date of a log stands, empty where it does not."""
+    place = content.get('date_from', '')
+    if 'date_from' in content and place not in DATES:
+        raise InputError(f'date_from is {_said(place)}, allowed are {", ".join(DATES)}')
+    if place and 'time.epoch' in stated:
+        raise InputError('date_from and time.epoch both date the first row, one must go')
+    return str(place)
 
 
 def _layout(content: Mapping[str, Any]) -> Layout:

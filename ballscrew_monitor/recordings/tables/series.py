@@ -16,6 +16,7 @@ from pathlib import Path
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables.cells import Array
+from ballscrew_monitor.recordings.tables.dates import dated
 from ballscrew_monitor.recordings.tables.estimates import FACTOR, NEAR
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.quantities import MOTION
@@ -87,6 +88,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     Raises InputError when it cannot be read by the map.
 
     """
+    mapping = dated(path, mapping)
     columns = mapping.columns
     table = open_table(
         path,

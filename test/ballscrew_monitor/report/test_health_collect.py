@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Logs collected in a folder: only new ones, one damaged entry hides only itself, a lost cluster."""
+"""Logs collected in a folder: only new ones; a damaged entry hides itself; a lost cluster."""
 
 import math
 from pathlib import Path
@@ -50,9 +50,7 @@ def write_log(path, *, epoch='2026-01-05T06:00:00Z', machine='mill 3', friction=
             for tick in range(round(300.0 / feed / 0.05)):
                 place = feed * 0.05 * tick
                 place = place if way > 0 else 300.0 - place
-                rows.append(
-                    f'{clock:.3f},{way * speed},{place:.4f},{way * friction:.6f},0.0,40.0'
-                )
+                rows.append(f'{clock:.3f},{way * speed},{place:.4f},{way * friction:.6f},0.0,40.0')
                 clock += 0.05
             for _ in range(20):
                 rows.append(f'{clock:.3f},0.0,{150 + 150 * way},0.0,0.0,40.0')
