@@ -89,7 +89,9 @@ class HistoryMaker:
     ) -> AxisHistory:
         """Return what came of all rows."""
         self._take(self._collector.finish())
-        cells = list(self._cells.values()) or [nothing(self._first, self._missing)]
+        cells = list(self._cells.values())
+        if all(cell.kind != CellKind.MOTION for cell in cells):
+            cells.append(nothing(self._first, self._missing))
         cells += self._stroke.cells(self._first) + self._reversals.cells(self._first)
         return AxisHistory(
             summary=LogSummary(machine, axis, self._first, self._last, array_of(cells)),
