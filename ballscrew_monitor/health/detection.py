@@ -31,13 +31,15 @@ BLOCK_DAYS = 56.0
 """Days over which logs between baseline and now share one change."""
 MERGED, MERGED_OLD = 2.5, 6.0
 """Days within which logs count as one; the second where they are older than a block."""
-NO_CHANGE, WITHIN_TOLERANCE = 5e-4, 0.01
+NO_CHANGE, WITHIN_TOLERANCE = 3e-4, 0.01
 """
 Probabilities at which a change is worse: that there is none, and that it is within the tolerance.
 
 At these, one clean year of a hundred ends in a false alarm.
 
 """
+RUNNING_IN = 0.1
+"""Loss that a new screw may have while it runs in, in the days of the baseline [-]."""
 SLIGHT = 0.005
 """Probability of no change at which an axis has slightly changed."""
 NARROW = 0.08
@@ -101,13 +103,17 @@ def look(history: History, *, baseline_days: float = BASELINE_DAYS) -> Look:
         return Look(index, time, reason=reason)
     before, blocks = _before(logs.time, parts, baseline_days), parts
     weight = weights_of(logs.until(len(before)), before, warm=history.warm)
-    return _look(index, time, estimate(logs, blocks, weight, warm=history.warm), blocks)
+    found = estimate(logs, blocks, weight, warm=history.warm)
+    provisional = time - logs.time[0] <= baseline_days
+    return _look(index, time, found, blocks, RUNNING_IN if provisional else TOLERANCE)
 
 
-def _look(index: int, time: float, found: Estimate, blocks: NDArray[np.int64]) -> Look:
+def _look(
+    index: int, time: float, found: Estimate, blocks: NDArray[np.int64], usual_loss: float
+) -> Look:
     sign = -1 if found.value < 0.0 else 1
-    none = found.beyond(0.0, sign)
-    raised = none < NO_CHANGE and found.beyond(TOLERANCE, sign) < WITHIN_TOLERANCE
+    none, usual = found.beyond(0.0, sign), usual_loss if sign < 0 else TOLERANCE
+    raised = none < NO_CHANGE and found.beyond(usual, sign) < WITHIN_TOLERANCE
     reach = NORMAL_95 * found.deviation
     shifted = abs(found.value) > reach and 0.5 * math.erfc(
         abs(found.value) / found.deviation / math.sqrt(2.0)
