@@ -28,7 +28,7 @@ SCATTERS = (0.005, 0.008, 0.012, 0.018, 0.025, 0.035, 0.05)
 SCATTER_WEIGHTS = (0.3, 0.7, 1.0, 1.0, 0.9, 0.5, 0.2)
 WANDERS = (0.003, 0.007, 0.011, 0.015, 0.02, 0.026, 0.033)
 """Standard deviations of the wander that are weighed [-]."""
-WANDER_WEIGHTS = (0.8, 1.0, 1.0, 1.0, 0.7, 0.5, 0.3)
+WANDER_WEIGHTS = (0.8, 1.0, 1.0, 1.0, 0.8, 0.6, 0.4)
 CORRELATION_TIME = 105.0
 """Time over which the wander is forgotten [days]."""
 YEAR, SEASON = 365.25, 0.057

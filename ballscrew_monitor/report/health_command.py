@@ -13,7 +13,6 @@ import sys
 from typing import Any
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED
-from ballscrew_monitor.health.baseline import HOUR
 from ballscrew_monitor.health.records import Health, Quantity
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import FILE, read_health
@@ -138,14 +137,14 @@ def _healths(
     """Return the course of each axis."""
     options = _options(args)
     return {
-        axis: list(healths(own, title=titles[axis], **options))
+        axis: healths(own, title=titles[axis], **options)
         for axis, own in by_axis(histories).items()
     }
 
 
 def _options(args: argparse.Namespace) -> dict[str, Any]:
     return {
-        'over': args.baseline_hours * HOUR,
+        'baseline_days': args.baseline_days,
         'days': None if args.baseline is None else days_of(*args.baseline),
         'speed_allowed': args.speed_advice,
     }
