@@ -86,8 +86,8 @@ def add_health(parser: Parser) -> None:
     _add_file(parser, '--map', 'FILE', MAP_TEXT)
     text = f'parameters of the node (default those that a log carries, else {PARAMS_TEXT})'
     _add_file(parser, '--params', 'FILE', text)
-    text = 'motion of the first logs that is normal (default 0.16, ten minutes)'
-    _add_number(parser, '--baseline-hours', 'H', text, default=0.16)
+    text = 'days of the first logs that are normal (default 91), three logs at least'
+    _add_number(parser, '--baseline-days', 'D', text, default=91.0)
     text = 'days that are normal, both included, UTC (default: the first ones in motion)'
     parser.add_argument('--baseline', nargs=2, metavar=('FROM', 'TO'), help=text)
     text = 'let the advice name other speeds, as advice.speed does: the process is free'

@@ -31,13 +31,15 @@ BLOCK_DAYS = 56.0
 """Days over which logs between baseline and now share one change."""
 MERGED, MERGED_OLD = 2.5, 6.0
 """Days within which logs count as one; the second where they are older than a block."""
-NO_CHANGE, WITHIN_TOLERANCE = 5e-4, 0.01
+NO_CHANGE, WITHIN_TOLERANCE = 4e-4, 0.01
 """
 Probabilities at which a change is worse: that there is none, and that it is within the tolerance.
 
 At these, one clean year of a hundred ends in a false alarm.
 
 """
+RUNNING_IN = 0.1
+"""Loss that a new screw may have while it runs in, in the days of the baseline [-]."""
 SLIGHT = 0.005
 """Probability of no change at which an axis has slightly changed."""
 NARROW = 0.08
@@ -45,7 +47,7 @@ NARROW = 0.08
 RECOVERY = 56.0
 """Days within the tolerance after which a latched condition ends."""
 NORMAL_95 = 1.959964
-ALARM_SIGMAS, TOLERANCE_SIGMAS, MISSED_SIGMAS = 3.29, 2.33, 0.6
+ALARM_SIGMAS, TOLERANCE_SIGMAS, MISSED_SIGMAS = 3.35, 2.33, 0.6
 """Normal quantiles of the two probabilities, and what a loss found in nine of ten has beyond."""
 
 
@@ -55,7 +57,8 @@ class Look(NamedTuple):
 
     `change` with its 95 % interval `low` to `high` is relative [-]; `raised` is the sign of a change
     that is worse, 0 for none; `shifted` that of one that is proven at all. `smallest` is the loss
-    that nine of ten times shows within eight weeks [-]. `logs` are those of baseline and now.
+    that nine of ten times shows within eight weeks [-]. `baseline` and `now` count logs, the first
+    up to `baseline_end`, the last from `now_begin` on [days].
     NaN where nothing is compared, for the `reason`.
 
     """
@@ -71,8 +74,9 @@ class Look(NamedTuple):
     slope: float = math.nan
     baseline: int = 0
     now: int = 0
+    baseline_end: float = math.nan
+    now_begin: float = math.nan
     reason: str = ''
-    evidence: float = 0.0
 
     @property
     def is_known(self) -> bool:
@@ -101,20 +105,25 @@ def look(history: History, *, baseline_days: float = BASELINE_DAYS) -> Look:
         return Look(index, time, reason=reason)
     before, blocks = _before(logs.time, parts, baseline_days), parts
     weight = weights_of(logs.until(len(before)), before, warm=history.warm)
-    return _look(index, time, estimate(logs, blocks, weight, warm=history.warm), blocks)
+    found = estimate(logs, blocks, weight, warm=history.warm)
+    provisional = time - logs.time[0] <= baseline_days
+    return _look(index, logs.time, found, blocks, RUNNING_IN if provisional else TOLERANCE)
 
 
-def _look(index: int, time: float, found: Estimate, blocks: NDArray[np.int64]) -> Look:
+def _look(
+    index: int, times: Array, found: Estimate, blocks: NDArray[np.int64], usual_loss: float
+) -> Look:
     sign = -1 if found.value < 0.0 else 1
-    none = found.beyond(0.0, sign)
-    raised = none < NO_CHANGE and found.beyond(TOLERANCE, sign) < WITHIN_TOLERANCE
+    none, usual = found.beyond(0.0, sign), usual_loss if sign < 0 else TOLERANCE
+    raised = none < NO_CHANGE and found.beyond(usual, sign) < WITHIN_TOLERANCE
     reach = NORMAL_95 * found.deviation
-    shifted = abs(found.value) > reach and 0.5 * math.erfc(
-        abs(found.value) / found.deviation / math.sqrt(2.0)
-    ) < SLIGHT
+    shifted = (
+        abs(found.value) > reach
+        and 0.5 * math.erfc(abs(found.value) / found.deviation / math.sqrt(2.0)) < SLIGHT
+    )
     return Look(
         index=index,
-        time=time,
+        time=float(times[-1]),
         change=math.expm1(found.value),
         low=math.expm1(found.value - reach),
         high=math.expm1(found.value + reach),
@@ -124,6 +133,8 @@ def _look(index: int, time: float, found: Estimate, blocks: NDArray[np.int64]) -
         slope=found.slope,
         baseline=int((blocks == 0).sum()),
         now=int((blocks == blocks.max()).sum()),
+        baseline_end=float(times[blocks == 0][-1]),
+        now_begin=float(times[blocks == blocks.max()][0]) - MERGED,
     )
 
 
@@ -194,9 +205,7 @@ def _now(time: Array) -> int:
     return min(wanted, len(time) - FEWEST_LOGS)
 
 
-def _before(
-    time: Array, blocks: NDArray[np.int64], baseline_days: float
-) -> NDArray[np.int64]:
+def _before(time: Array, blocks: NDArray[np.int64], baseline_days: float) -> NDArray[np.int64]:
     """Return the blocks of the logs that tell the scatter: baseline, and up to eight weeks ago."""
     last = int((blocks < blocks.max()).sum())
     old = int((time <= time[-1] - BLOCK_DAYS).sum())

@@ -49,8 +49,9 @@ class History:
     The friction of an axis, an entry of each array for log and group, NaN where it did not run.
 
     `time` [days since 1970] and `start` [ns] of each log; `friction` and `offset` [N m], speed
-    [rad/s], load [N, against the motion or in the machine frame], temperature [K]; `weight` [-];
-    `standstill` [N m] of each log. `is_free`: no load was measured, and none was declared.
+    [rad/s], load [N, against the motion of the first direction], the `ideal` torque of a load that
+    opposes [N m], temperature [K]; `weight` [-]; `standstill` [N m] of each log. `load_known`:
+    the load was measured, or the motion known to be free.
 
     """
 
@@ -60,6 +61,7 @@ class History:
     offset: Array
     speed: Array
     load: Array
+    ideal: Array
     temperature: Array
     weight: Array
     standstill: Array
@@ -77,7 +79,7 @@ class History:
         return dataclasses.replace(self, **{name: getattr(self, name)[:count] for name in names})
 
 
-PARTS = ('friction', 'offset', 'speed', 'load', 'temperature', 'weight')
+PARTS = ('friction', 'offset', 'speed', 'load', 'ideal', 'temperature', 'weight')
 
 
 def history_of(cells: NDArray[Any], lead: float) -> History | None:
@@ -106,6 +108,7 @@ class _Entry(NamedTuple):
     offset: float
     speed: float
     load: float
+    ideal: float
     temperature: float
     weight: float
     warm: bool
@@ -162,6 +165,7 @@ def _entry(start: int, group: Group, cells: list[Any], lead: float) -> _Entry:
         offset=sum(torque) / 2.0 if len(cells) == 2 else math.nan,
         speed=sum(abs(float(cell['speed'])) for cell in cells) / len(cells),
         load=-ways[0] * loads[0],
+        ideal=sum(way * part for way, part in zip(ways, ideal, strict=True)) / len(cells),
         temperature=sum(float(cell['temperature']) for cell in cells) / len(cells),
         weight=least * least * time / (time + USUAL_TIME),
         warm=all(bool(cell['temperature_measured']) for cell in cells),

@@ -28,13 +28,16 @@ SCATTERS = (0.005, 0.008, 0.012, 0.018, 0.025, 0.035, 0.05)
 SCATTER_WEIGHTS = (0.3, 0.7, 1.0, 1.0, 0.9, 0.5, 0.2)
 WANDERS = (0.003, 0.007, 0.011, 0.015, 0.02, 0.026, 0.033)
 """Standard deviations of the wander that are weighed [-]."""
-WANDER_WEIGHTS = (0.8, 1.0, 1.0, 1.0, 0.7, 0.5, 0.3)
+WANDER_WEIGHTS = (0.8, 1.0, 1.0, 1.0, 0.8, 0.6, 0.4)
 CORRELATION_TIME = 105.0
 """Time over which the wander is forgotten [days]."""
 YEAR, SEASON = 365.25, 0.057
 """Period [days] and standard deviation [-] of the season where no temperature is measured."""
-FREE = 0.3
-"""Standard deviation of a change that is not known at all [-]."""
+FREE, BETWEEN = 0.3, 0.06
+"""Standard deviation of a change now, and of one between baseline and now [-]."""
+
+RUNNING_IN, RUNNING_IN_TIME = 0.04, 25.0
+"""Standard deviation of what a new screw loses [-], and time over which it does so [days]."""
 
 
 class Logs(NamedTuple):
@@ -127,19 +130,21 @@ class Fit(NamedTuple):
 
 def fit(logs: Logs, blocks: NDArray[np.int64], *, warm: bool = True) -> Fit:
     """
-    Return the fixed effects: level, slope less its prior, and the change of each block but 0.
+    Return the fixed effects: level, slope less its prior, running-in, changes of blocks but 0.
 
     By generalised least squares with priors. `warm`: the temperature was measured.
 
     """
     pairs, count = grid(), len(logs.time)
     last = int(blocks.max())
-    design = np.zeros((count, 2 + last))
+    design = np.zeros((count, 3 + last))
     design[:, 0], design[:, 1] = 1.0, logs.warmth
+    design[:, 2] = np.exp((logs.time[0] - logs.time) / RUNNING_IN_TIME)
     for block in range(1, last + 1):
-        design[blocks == block, 1 + block] = 1.0
-    prior = np.full(2 + last, 1.0 / FREE**2)
-    prior[0], prior[1] = 1e-2, SLOPE_DOUBT**-2.0
+        design[blocks == block, 2 + block] = 1.0
+    prior = np.full(3 + last, BETWEEN**-2.0)
+    prior[-1] = FREE**-2.0
+    prior[:3] = 1e-2, SLOPE_DOUBT**-2.0, RUNNING_IN**-2.0
     effect = logs.effect - SLOPE * logs.warmth
     random = covariance(logs, pairs, warm=warm)
     white = np.linalg.inv(random)

@@ -19,8 +19,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.health.bands import day_of, load_band, speed_band
 from ballscrew_monitor.health.history import two_ways
 from ballscrew_monitor.health.records import Cell, CellKind, LoadSource, Stretch
-from ballscrew_monitor.judge.inputs import MEASURED
-from ballscrew_monitor.judge.records import STANDSTILL
+from ballscrew_monitor.health.rows import has_torque_many, moves_many
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.units import TURN
@@ -250,11 +249,9 @@ class Motion(NamedTuple):
 
 def motion_of(rows: NDArray[Any], lead: float) -> Motion:
     """Return the samples of motion among rows (an array of ROW); lead [m]."""
-    moves = ~rows['tick'] & (rows['gates'] & STANDSTILL == 0) & np.isfinite(rows['speed'])
-    moving = rows[moves]
-    measured = moving['motor_torque_source'] == MEASURED
+    moving = rows[moves_many(rows) & np.isfinite(rows['speed'])]
     return Motion(
         stamps=moving['stamp'].copy(),
         speed=moving['speed'] * lead / TURN,
-        torque=np.where(measured, moving['motor_torque'], math.nan),
+        torque=np.where(has_torque_many(moving), moving['motor_torque'], math.nan),
     )

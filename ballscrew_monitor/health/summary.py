@@ -16,12 +16,15 @@ import math
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.health.bands import day_of, FIRST_DAY, load_band, period_of, speed_band
-from ballscrew_monitor.health.records import Cell, CELL, CellKind, LoadSource, Missing, Stretch
+from ballscrew_monitor.health.records import CELL, Cell, CellKind, LoadSource, Missing, Stretch
 from ballscrew_monitor.health.rows import DAY
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.surface import Surface
 from surrogate.surface.records import from_array
 
+SURFACE_DIGITS = 16
+"""Digits of the hash of a surface without its corrections."""
 MOST_PLACES = 400
 """Cells of one period; those with the fewest stretches go first."""
 MEANS = ('speed', 'ripple', 'axial_load', 'temperature', 'motor_torque', 'backlash')
@@ -217,3 +220,8 @@ def _drop_rare(cells: Cells, period: tuple[int, int]) -> int:
     for key in rare:
         del cells[key]
     return len(rare)
+
+
+def surface_id(surface: Surface) -> str:
+    """Return the name of a surface by its hash: full solves that correct it make no other one."""
+    return surface.base_sha256[:SURFACE_DIGITS]

@@ -42,7 +42,7 @@ def verdict_phrase(health: AxisHealth) -> Said:
 
 def advice_phrase(health: AxisHealth) -> Said:
     """Return what to do about the likely causes; an advice on oil or feed is free."""
-    _, likely = explained(math.nan, health.causes)
+    _, likely = explained(health.causes)
     codes = [CAUSES.get(cause.code) for cause in likely]
     if health.condition != AxisHealth.CONDITION_WORSE or not codes or None in codes:
         return free(health.advice) if health.advice else ''
@@ -54,7 +54,7 @@ def advice_phrase(health: AxisHealth) -> Said:
 
 
 def _why(health: AxisHealth, known: Known) -> Phrase:
-    certainty, likely = explained(known[DRAG].value, health.causes)
+    certainty, likely = explained(health.causes)
     why = f'why_{certainty.name.lower()}'
     if not likely:
         return phrase(why)

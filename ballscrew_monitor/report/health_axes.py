@@ -18,14 +18,7 @@ from ballscrew_monitor.health.records import (
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.report.health_collect import run_mapped, Workers
 from ballscrew_monitor.report.health_folder import axis_folders, read_axis
-from ballscrew_monitor.report.health_history import healths
-from ballscrew_monitor.report.health_logs import (
-    AxisHistory,
-    by_axis,
-    check_starts,
-    plain_history,
-    read_history,
-)
+from ballscrew_monitor.report.health_history import AxisHistory, by_axis, healths, read_history
 from ballscrew_monitor.report.machines import MachineAxis
 from surrogate.files import InputError, to_json
 from surrogate.progress import Progress
@@ -57,7 +50,7 @@ def joined_axes(
 def logged_axes(histories: Sequence[AxisHistory]) -> dict[MachineAxis, Inputs]:
     """Return for each axis the logs that its task is given."""
     return {
-        key: {'histories': [to_json(plain_history(one)) for one in own]}
+        key: {'histories': [to_json(dataclasses.asdict(one)) for one in own]}
         for key, own in by_axis(histories).items()
     }
 
@@ -107,10 +100,8 @@ def assess_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
         histories, notes = read_axis(Path(inputs['folder']))
         if not histories:
             raise InputError(f'axis {title}: none of its collected logs can be read: {notes[0]}')
-        histories = [one for own in by_axis(histories).values() for one in own]
     else:
         histories = [read_history(plain) for plain in inputs['histories']]
-    check_starts(histories, title)
     options = dict(inputs['options'])
     if options.get('days') is not None:
         options['days'] = tuple(options['days'])

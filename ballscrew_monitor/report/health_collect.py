@@ -9,6 +9,7 @@ so that a run which was stopped goes on with the next one.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+import dataclasses
 import os.path
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -22,12 +23,7 @@ from ballscrew_monitor.report.health_folder import (
     keep,
     LogIdentity,
 )
-from ballscrew_monitor.report.health_logs import (
-    AxisHistory,
-    HistoryMaker,
-    plain_history,
-    read_history,
-)
+from ballscrew_monitor.report.health_history import AxisHistory, HistoryMaker, read_history
 from ballscrew_monitor.report.inputs_seen import hints_on
 from ballscrew_monitor.report.judging import judge_log, OnShare
 from ballscrew_monitor.report.logs import map_for
@@ -178,7 +174,7 @@ def collect_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     collected = judged(Path(inputs['log']), given, reading.tell_judged, shown=reading)
     plain: dict[str, Any] = to_json(
         {
-            'histories': [plain_history(history) for history in collected.histories],
+            'histories': [dataclasses.asdict(history) for history in collected.histories],
             'notes': collected.notes,
         }
     )

@@ -12,7 +12,6 @@ import sys
 from typing import Any
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED
-from ballscrew_monitor.health.baseline import HOUR
 from ballscrew_monitor.health.records import Health, Quantity
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import FILE, read_health
@@ -27,9 +26,8 @@ from ballscrew_monitor.report.health_axes import (
 )
 from ballscrew_monitor.report.health_collect import collect, Collected, Given, map_logs, Workers
 from ballscrew_monitor.report.health_folder import is_health_folder
-from ballscrew_monitor.report.health_history import peers_among
+from ballscrew_monitor.report.health_history import AxisHistory, peers_among
 from ballscrew_monitor.report.health_kept import kept_healths, stored_axis
-from ballscrew_monitor.report.health_logs import AxisHistory
 from ballscrew_monitor.report.logs import find_logs
 from ballscrew_monitor.report.machines import axis_titles, folders_note, machine_names, MachineAxis
 from ballscrew_monitor.settings.parameters import read_file
@@ -129,7 +127,7 @@ def check_output(out: Path) -> None:
 
 def _options(args: argparse.Namespace) -> dict[str, Any]:
     return {
-        'over': args.baseline_hours * HOUR,
+        'baseline_days': args.baseline_days,
         'days': None if args.baseline is None else days_of(*args.baseline),
         'speed_allowed': args.speed_advice,
     }

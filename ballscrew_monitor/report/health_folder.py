@@ -11,6 +11,7 @@ written down to 0, so a log is complete once that one is there.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+import dataclasses
 import hashlib
 import json
 import os
@@ -22,7 +23,7 @@ from urllib.parse import quote, unquote
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.records import CELL
 from ballscrew_monitor.health.summary import date_text
-from ballscrew_monitor.report.health_logs import AxisHistory, plain_history, read_history
+from ballscrew_monitor.report.health_history import AxisHistory, read_history
 import polars as pl
 from surrogate.files import InputError, new_file, to_json
 from surrogate.limits import MEGA
@@ -36,7 +37,7 @@ LONGEST_NAME = 200
 LARGEST = 8 * MEGA
 """Largest file of one log [byte]."""
 MOST_CELLS = 100_000
-FACTS = ('machine', 'axis', 'cells')  # have columns of their own
+COLUMNS = ('machine', 'axis', 'log', 'cells')  # fields with columns of their own
 
 
 class LogIdentity(NamedTuple):
@@ -110,19 +111,18 @@ def keep(
 
 def frame_of(history: AxisHistory) -> pl.DataFrame:
     """Return the columns of a history."""
-    plain = plain_history(history)
-    facts = json.dumps(to_json({k: v for k, v in plain.items() if k not in FACTS}))
-    count = len(history.summary.cells)
-    names = {'machine': plain['machine'], 'axis': plain['axis'], 'log': plain['log']}
+    plain, cells = dataclasses.asdict(history), history.summary.cells
+    facts = json.dumps(to_json({k: v for k, v in plain.items() if k not in COLUMNS}))
+    count, names = len(cells), {name: plain[name] for name in ('machine', 'axis', 'log')}
     return pl.DataFrame(
-        {name: history.summary.cells[name] for name in CELL.names or ()}
+        {name: cells[name] for name in CELL.names or ()}
         | {name: [text] * count for name, text in names.items()}
         | {'facts': [facts, *[None] * (count - 1)]}
     )
 
 
 def _place(folder: Path, history: AxisHistory) -> Path:
-    day = date_text(day_of(history.summary.start))
+    day = date_text(day_of(history.first))
     machine, axis = (_name(text) for text in history.key)
     return folder / f'{MACHINE}{machine}' / f'{AXIS}{axis}' / f'{DAY}{day}'
 
@@ -197,9 +197,9 @@ def _read(path: Path) -> AxisHistory:
     if not 0 < len(frame) <= MOST_CELLS:
         raise _damaged(path, f'it has {len(frame)} rows, allowed are 1 to {MOST_CELLS}')
     facts: Mapping[str, Any] = json.loads(frame['facts'][0])
-    names = {name: frame[name][0] for name in ('machine', 'axis')}
-    cells = {name: frame[name].to_list() for name in CELL.names or ()}
-    return read_history({**facts, **names, 'cells': cells})
+    names = {name: frame[name][0] for name in ('machine', 'axis', 'log')}
+    cells = frame.select(CELL.names or ()).to_dicts()
+    return read_history({**facts, **names, 'cells': [to_json(cell) for cell in cells]})
 
 
 def _damaged(path: Path, why: str) -> InputError:

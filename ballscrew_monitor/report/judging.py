@@ -40,7 +40,7 @@ from numpy.typing import NDArray
 from surrogate.surface import ContactOnset, onset_of_surface, Surface, ZoneLimits
 
 if TYPE_CHECKING:  # they ask for packages that printing does not need
-    from ballscrew_monitor.report.health_logs import AxisHistory, HistoryMaker
+    from ballscrew_monitor.report.health_history import AxisHistory, HistoryMaker
     from ballscrew_monitor.report.row_table import RowTable
 
 RCS = 'RCS'

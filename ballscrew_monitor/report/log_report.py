@@ -26,7 +26,7 @@ from ballscrew_monitor.recordings.declared import keys, plain
 from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report import logs
-from ballscrew_monitor.report.health_logs import HistoryMaker, plain_history
+from ballscrew_monitor.report.health_history import HistoryMaker
 from ballscrew_monitor.report.inputs_seen import hints_on
 from ballscrew_monitor.report.judged_bag import judged_bag
 from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare
@@ -195,7 +195,7 @@ def _result(log: LogCase) -> LogResult:
         unjudged=log.unjudged,
         notes=log.notes,
         hints=hints_on(log.axes),
-        histories=[plain_history(one.history) for one in log.axes if one.history],
+        histories=[dataclasses.asdict(one.history) for one in log.axes if one.history],
     )
 
 

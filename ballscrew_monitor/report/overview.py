@@ -9,8 +9,7 @@ import math
 from urllib.parse import quote
 
 from ballscrew_monitor.recordings.words import counted, duration, NONE, percent
-from ballscrew_monitor.report.health_history import healths, peers_among
-from ballscrew_monitor.report.health_logs import by_axis, read_history
+from ballscrew_monitor.report.health_history import by_axis, healths, peers_among, read_history
 from ballscrew_monitor.report.health_part import health_trends, peers_table, verdict_box
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
 from ballscrew_monitor.report.logs import PAGE
@@ -87,9 +86,7 @@ def _health(entries: Sequence[LogEntry], titles: Titles) -> tuple[list[Markup], 
         read_history(one) for entry in entries if entry.result for one in entry.result.histories
     ]
     courses = [
-        list(healths(own, title=titles[axis]))
-        for axis, own in by_axis(found).items()
-        if len(own) > 1
+        healths(own, title=titles[axis]) for axis, own in by_axis(found).items() if len(own) > 1
     ]
     peers = peers_among(found, titles)
     first = [verdict_box(course[-1]) for course in courses]

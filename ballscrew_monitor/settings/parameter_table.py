@@ -260,8 +260,8 @@ AXIS_ROWS = (
     ParameterRow('health.period', 3600.0, 's', 1.0, 1e6, LIVE).says(
         'Time between two assessments of health.'
     ),
-    ParameterRow('health.baseline_hours', 8.0, 'h', 0.1, 1e4, LIVE).says(
-        'Motion over which a baseline is learned, on complete days.'
+    ParameterRow('health.baseline_days', 91.0, 'd', 1.0, 1e4, LIVE).says(
+        'Days whose logs are the baseline, from the first one on; three logs at least.'
     ),
     ParameterRow('plain_topics', False).says(
         'Publish efficiency, RCS, film ratio, regime and warning as topics of std_msgs too.'

@@ -17,7 +17,7 @@ from ballscrew_monitor.report.health_folder import (
     read_axis,
     read_entry,
 )
-from ballscrew_monitor.report.health_logs import check_starts
+from ballscrew_monitor.report.health_history import check_starts
 from ballscrew_monitor.report.machines import MachineAxis
 import numpy as np
 import polars as pl
@@ -111,7 +111,7 @@ def test_an_entry_holds_the_friction_of_the_log(collected):
     stroke = cells[cells['kind'] == CellKind.STROKE]
     assert stroke['motor_torque'] == pytest.approx(FRICTION)
     assert len(stroke) == 8  # 300 mm in steps of 40 mm
-    assert history.summary.start == 1_767_592_800 * 10**9
+    assert history.first == 1_767_592_800 * 10**9
 
 
 def test_a_log_that_is_there_is_not_judged_again(collected, judgements, capsys):
@@ -164,7 +164,7 @@ def test_a_damaged_entry_hides_only_itself(tmp_path, damage, capsys):
         bad.write_bytes(b'' if damage == 'empty' else b'no table')
     (path,) = axis_folders(folder).values()
     (history,), (note,) = read_axis(path)
-    assert history.summary.cells['start'][0] == read_entry(good).summary.start
+    assert history.first == read_entry(good).first
     assert note.startswith(f'{bad} is damaged and left out (')
     assert note.endswith('): delete it, and collect its log again')
 
