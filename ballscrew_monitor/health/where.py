@@ -29,6 +29,8 @@ SURE = 1.9
 FEWEST_STEPS = 3
 LEAST_LOST = 2e-6
 """Growth of the lost motion that is worth a note [m]."""
+ENCODERS = 0.5e-6
+"""Half width of what two encoders and the fit leave of a lost motion of zero [m]."""
 YEAR = 365.25
 LOST, LOST_CHANGE, LOST_TREND = 'lost motion', 'lost motion change', 'lost motion trend'
 NO_BASELINE = 'not known yet: it needs two logs in the baseline, and two after it'
@@ -104,7 +106,7 @@ def lost_motion(cells: NDArray[Any], baseline: Baseline | None) -> tuple[Sequenc
     scatter = math.sqrt(float(np.sum(np.diff(lost) ** 2)) / (2.0 * freedom))
     spread = student(freedom) * scatter
     now = lost[-NOW:]
-    width = spread / math.sqrt(len(now))
+    width = math.hypot(spread / math.sqrt(len(now)), ENCODERS)
     rests = f'{int(cells["stretches"].sum())} reversals in {len(lost)} logs'
     apart = time - time.mean()
     slope = float(apart @ lost / (apart @ apart)) * YEAR

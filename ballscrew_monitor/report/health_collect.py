@@ -106,15 +106,24 @@ def collect(logs: Sequence[Path], folder: Path, given: Given, workers: Workers) 
 def map_logs(
     logs: Sequence[Path], given: Given, workers: Workers, on_log: OnLog, *, alone: bool
 ) -> None:
-    """Judge each log in a task, and hand over what it holds; `alone`: no other one is named."""
+    """
+    Judge each log in a task, and hand over what it holds; `alone`: no other one is named.
+
+    A note that an earlier log has, too, is left out.
+
+    """
     names = {os.path.abspath(log): log for log in logs}
     inputs = {name: _inputs(name, log, given, alone=alone) for name, log in names.items()}
     bar = Progress(len(names), 'recordings')
     progress = LogsProgress({name: size_of(log) for name, log in names.items()}, bar)
+    told: set[str] = set()
 
     def report(outcome: TaskOutcome) -> None:
         progress.done(outcome.name)
-        on_log(names[outcome.name], _collected(outcome))
+        collected = _collected(outcome)
+        notes = [note for note in collected.notes if note not in told]
+        told.update(notes)
+        on_log(names[outcome.name], collected._replace(notes=notes))
 
     try:
         run_mapped(collect_task, inputs, workers, report, progress.tell)
