@@ -169,8 +169,8 @@ def _check_starts(ordered: Sequence[AxisHistory]) -> None:
     for log, other in zip(ordered[:-1], ordered[1:], strict=True):
         if log.first == other.first:
             raise InputError(
-                f'axis {log.axis}: two recordings begin at {clock_text(log.first)}, so their order '
-                'is not known: state date_from in the map (name, header or modified)'
+                f'axis {log.axis}: two recordings begin at {clock_text(log.first)}, so their '
+                'order is not known: give them dates'
             )
 
 
