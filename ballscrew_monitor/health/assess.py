@@ -141,8 +141,8 @@ def course_of(kept: Kept, lead: float, settings: HealthSettings) -> Course:
 
 
 def _onset(history: History, seen: Look) -> int:
-    effects = effects_of(history.until(seen.index + 1))
-    return onset_of(effects, seen.baseline, seen.index, seen.slope if history.warm else 0.0)
+    effects = effects_of(history.until(seen.log + 1))
+    return onset_of(effects, seen.baseline, seen.log, seen.slope if history.warm else 0.0)
 
 
 def _earlier(axis: str, seen: Course, at: int, surface: Surface) -> Health:

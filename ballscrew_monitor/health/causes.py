@@ -151,7 +151,7 @@ def causes_of(groups: GroupChange, marks: Marks, reported: float, preload: float
     covariance = SHARED**2 + np.diag(
         groups.deviation**2 + (PATTERN_DOUBT * np.abs(groups.change)) ** 2
     )
-    inverse = np.linalg.inv(covariance)
+    inverse: Array = np.linalg.inv(covariance).astype(float)
     fits = [_fit(one, groups, inverse, preload) for one in CANDIDATES]
     allowed = [_objection(fit, marks, reported, size) for fit in fits]
     least = min(

@@ -136,11 +136,9 @@ def gains_of(history: History) -> Array:
         return np.full(len(history.start), np.nan)
     table = np.array(columns)
     seen = np.isfinite(table)
-    return np.asarray(
-        np.where(
-            seen.any(axis=0), np.nansum(table, axis=0) / np.maximum(seen.sum(axis=0), 1), np.nan
-        )
-    )
+    count = seen.sum(axis=0)
+    mean = np.nansum(table, axis=0) / np.maximum(count, 1)
+    return np.asarray(np.where(count > 0, mean, np.nan))
 
 
 def shift(values: Array, before: NDArray[np.bool_], now: NDArray[np.bool_]) -> Shift:

@@ -53,17 +53,17 @@ ALARM_SIGMAS, TOLERANCE_SIGMAS, MISSED_SIGMAS = 3.35, 2.33, 0.6
 
 class Look(NamedTuple):
     """
-    Comparison of the last logs until `index` with the baseline.
+    Comparison of the last logs until `log` with the baseline.
 
-    `change` with its 95 % interval `low` to `high` is relative [-]; `raised` is the sign of a change
-    that is worse, 0 for none; `shifted` that of one that is proven at all. `smallest` is the loss
-    that nine of ten times shows within eight weeks [-]. `baseline` and `now` count logs, the first
+    `change` with its 95 % interval `low` to `high` is relative [-]; `raised` is the sign of a
+    change that is worse, 0 for none; `shifted` that of one that is proven at all. `smallest` is
+    the loss that nine of ten times shows within eight weeks [-]. `baseline` and `now` count logs, the first
     up to `baseline_end`, the last from `now_begin` on [days].
     NaN where nothing is compared, for the `reason`.
 
     """
 
-    index: int
+    log: int
     time: float
     change: float = math.nan
     low: float = math.nan
@@ -122,7 +122,7 @@ def _look(
         and 0.5 * math.erfc(abs(found.value) / found.deviation / math.sqrt(2.0)) < SLIGHT
     )
     return Look(
-        index=index,
+        log=index,
         time=float(times[-1]),
         change=math.expm1(found.value),
         low=math.expm1(found.value - reach),

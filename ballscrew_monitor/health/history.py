@@ -247,11 +247,11 @@ def two_ways(values: Array, weight: Array) -> tuple[Array, Array]:
 
 def connected(seen: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return which rows share columns with the first row, directly or over others."""
-    rows = np.zeros(len(seen), dtype=bool)
+    rows: NDArray[np.bool_] = np.zeros(len(seen), dtype=bool)
     rows[int(seen.any(axis=1).argmax())] = True
     while True:
         columns = seen[rows].any(axis=0)
-        more = seen[:, columns].any(axis=1)
+        more = np.asarray(seen[:, columns].any(axis=1))
         if (more == rows).all():
             return rows
         rows = more

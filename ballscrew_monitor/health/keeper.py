@@ -37,7 +37,7 @@ class HealthKeeper:
         self._aged: int | None = None
 
     def gather(self, found: Collected, today: int) -> None:
-        """Take what has ended; motion that is not of `today`, in days since 1970, does not count."""
+        """Take what has ended; motion of another day than `today`, since 1970, does not count."""
         for stretch in found.stretches:
             self._note(add(self._cells, stretch, today=today))
         for one in found.bins:

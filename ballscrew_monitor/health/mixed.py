@@ -31,10 +31,10 @@ WANDERS = (0.003, 0.007, 0.011, 0.015, 0.02, 0.026, 0.033)
 WANDER_WEIGHTS = (0.8, 1.0, 1.0, 1.0, 0.8, 0.6, 0.4)
 CORRELATION_TIME = 105.0
 """Time over which the wander is forgotten [days]."""
-YEAR, SEASON = 365.25, 0.057
+YEAR, SEASON = 365.25, 0.06
 """Period [days] and standard deviation [-] of the season where no temperature is measured."""
-FREE, BETWEEN = 0.3, 0.06
-"""Standard deviation of a change now, and of one between baseline and now [-]."""
+FREE, BETWEEN, LEVEL = 0.3, 0.15, 10.0
+"""Standard deviation of a change now, of one before, and of the level itself [-]."""
 
 RUNNING_IN, RUNNING_IN_TIME = 0.04, 25.0
 """Standard deviation of what a new screw loses [-], and time over which it does so [days]."""
@@ -121,42 +121,55 @@ def grid() -> Grid:
 
 
 class Fit(NamedTuple):
-    """Posterior of the fixed effects for each pair of a grid, and their likelihood."""
+    """Posterior of the effects for each pair of a grid, and the likelihood of the pair."""
 
     mean: Array
     covariance: Array
     likelihood: Array
 
 
+def effects(logs: Logs, blocks: NDArray[np.int64], *, warm: bool) -> tuple[Array, Array]:
+    """
+    Return the columns of all effects with a prior, and their prior standard deviations.
+
+    Level, slope, running-in, two of the season without a temperature, then a change of each block
+    but 0.
+
+    """
+    phase = 2.0 * math.pi * logs.time / YEAR
+    columns = [
+        np.ones(len(logs.time)),
+        logs.warmth,
+        np.exp((logs.time[0] - logs.time) / RUNNING_IN_TIME),
+        *([] if warm else [np.cos(phase), np.sin(phase)]),
+        *(np.where(blocks == block, 1.0, 0.0) for block in range(1, int(blocks.max()) + 1)),
+    ]
+    known = [LEVEL, SLOPE_DOUBT, RUNNING_IN, *([] if warm else [SEASON, SEASON])]
+    between = [BETWEEN] * (len(columns) - len(known) - 1)
+    deviations = [*known, *between, *([FREE] if blocks.max() else [])]
+    return np.stack(columns, axis=1), np.array(deviations)
+
+
 def fit(logs: Logs, blocks: NDArray[np.int64], *, warm: bool = True) -> Fit:
     """
-    Return the fixed effects: level, slope less its prior, running-in, changes of blocks but 0.
+    Return the effects of logs, the slope less its prior mean, by generalised least squares.
 
-    By generalised least squares with priors. `warm`: the temperature was measured.
+    `blocks` numbers the logs, see `estimate`. `warm`: the temperature was measured.
 
     """
-    pairs, count = grid(), len(logs.time)
-    last = int(blocks.max())
-    design = np.zeros((count, 3 + last))
-    design[:, 0], design[:, 1] = 1.0, logs.warmth
-    design[:, 2] = np.exp((logs.time[0] - logs.time) / RUNNING_IN_TIME)
-    for block in range(1, last + 1):
-        design[blocks == block, 2 + block] = 1.0
-    prior = np.full(3 + last, BETWEEN**-2.0)
-    prior[-1] = FREE**-2.0
-    prior[:3] = 1e-2, SLOPE_DOUBT**-2.0, RUNNING_IN**-2.0
+    pairs = grid()
+    design, deviations = effects(logs, blocks, warm=warm)
     effect = logs.effect - SLOPE * logs.warmth
-    random = covariance(logs, pairs, warm=warm)
+    random = covariance(logs, pairs)
     white = np.linalg.inv(random)
     left = design.T @ white  # (pairs, columns, logs)
-    normal = left @ design + np.diag(prior)
+    normal = left @ design + np.diag(deviations**-2.0)
     posterior = np.linalg.inv(normal)
     pull = left @ effect
     mean = np.einsum('gij,gj->gi', posterior, pull)
     chi = np.einsum('i,gij,j->g', effect, white, effect) - np.einsum('gi,gi->g', pull, mean)
     determinants = np.linalg.slogdet(random)[1] + np.linalg.slogdet(normal)[1]
-    determinants -= np.log(prior).sum()
-    return Fit(mean, posterior, -0.5 * (determinants + chi))
+    return Fit(mean, posterior, np.asarray(-0.5 * (determinants + chi)))
 
 
 def weights_of(logs: Logs, blocks: NDArray[np.int64], *, warm: bool = True) -> Array:
@@ -170,8 +183,8 @@ def estimate(
     """
     Return the change of the last block of logs against the first one.
 
-    `blocks` numbers the logs: 0 is the baseline, the last one is now, and each between has a change
-    of its own. `weight` is that of each pair of the grid.
+    `blocks` numbers the logs: 0 is the baseline, the last one is now, and each between has a
+    change of its own. `weight` is that of each pair of the grid.
 
     """
     pairs = grid()
@@ -180,8 +193,8 @@ def estimate(
     share = 1.0 / logs.noise[now]
     share = share / share.sum()
     spread = pairs.scatter**2 * float(share**2 @ logs.noise[now])
-    contrast = np.zeros(mean.shape[1])
-    contrast[0], contrast[1] = 1.0, float(share @ logs.warmth[now])
+    contrast = share @ effects(logs, blocks, warm=warm)[0][now]
+    contrast[2], contrast[-1] = 0.0, 0.0
     level = np.einsum('i,gij,j->g', contrast, posterior, contrast)
     effect = float(share @ (logs.effect - SLOPE * logs.warmth)[now])
     return Estimate(
@@ -193,13 +206,12 @@ def estimate(
     )
 
 
-def covariance(logs: Logs, pairs: Grid, *, warm: bool = True) -> Array:
+def covariance(logs: Logs, pairs: Grid) -> Array:
     """Return the covariance of the effects of logs for each pair of a grid."""
     apart = np.abs(logs.time[:, None] - logs.time)
     wander = pairs.wander[:, None, None] ** 2 * np.exp(-apart / CORRELATION_TIME)
     scatter = pairs.scatter[:, None, None] ** 2 * np.diag(logs.noise)
-    season = 0.0 if warm else SEASON**2 * np.cos(2.0 * math.pi * apart / YEAR)
-    return np.asarray(wander + scatter + season)
+    return np.asarray(wander + scatter)
 
 
 def _weights(logarithms: Array) -> Array:

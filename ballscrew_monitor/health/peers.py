@@ -78,7 +78,7 @@ def _level(cells: NDArray[Any], lead: float) -> dict[Any, float]:
         return {}
     effects = effects_of(history)
     now = float(np.mean(effects.logs.effect[-LATEST:]))
-    seen = (history.weight[-LATEST:] > 0.0).any(axis=0)
+    seen = (history.weight[-LATEST:].sum(axis=0) > 0.0).tolist()
     pairs = zip(history.groups, effects.groups, seen, strict=True)
     return {group: float(level) + now for group, level, known in pairs if known}
 

@@ -37,9 +37,9 @@ class Stretch:
     """
     A stretch of steady motion or of rest: means over its samples, a record of numbers.
 
-    start [ns], duration [s]; speed [rad/s], signed, 0 at rest, and its `ripple` about the mean [-];
-    axial_load [N]; temperature [K], measured or assumed; motor_torque [N m]; `load_source` is the
-    number of a LoadSource.
+    start [ns], duration [s]; speed [rad/s], signed, 0 at rest, and its `ripple` from sample to
+    sample [-]; axial_load [N]; temperature [K], measured or assumed; motor_torque [N m];
+    `load_source` is the number of a LoadSource.
 
     """
 
@@ -51,7 +51,7 @@ class Stretch:
     axial_load: float = NAN
     temperature: float = NAN
     motor_torque: float = NAN
-    load_source: int = LoadSource.MEASURED
+    load_source: int = int(LoadSource.MEASURED)
     temperature_measured: bool = True
 
 
@@ -93,13 +93,13 @@ class Cell:
     start: int = 0
     first_day: int = 0
     days: int = 1
-    kind: int = CellKind.MOTION
+    kind: int = int(CellKind.MOTION)
     speed_band: int = 0
     load_band: int = 0
     direction: int = 0
-    load_source: int = LoadSource.MEASURED
+    load_source: int = int(LoadSource.MEASURED)
     temperature_measured: bool = True
-    missing: int = Missing.NONE
+    missing: int = int(Missing.NONE)
     stretches: int = 0
     duration: float = 0.0
     speed: float = NAN
@@ -266,8 +266,8 @@ class Health:
     What is said of an axis at the time `stamp` [ns].
 
     `since` [ns] is the date of the change that is latched, 0 for none. `quantities` by name;
-    causes in the order of their weight, the excluded ones last; `verdict` is one sentence, `advice`
-    what to do, empty for nothing; `notes` tell what is not known, and why.
+    causes in the order of their weight, the excluded ones last; `verdict` is one sentence,
+    `advice` what to do, empty for nothing; `notes` tell what is not known, and why.
 
     """
 

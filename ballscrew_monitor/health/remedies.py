@@ -201,7 +201,7 @@ def _feed(programme: Programme) -> Remedy:
             speed=one.speed,
             axial_load=one.axial_load,
             temperature=one.temperature,
-            direction=Direction.POSITIVE if one.place.direction > 0 else Direction.NEGATIVE,
+            direction=Direction.POSITIVE if one.direction > 0 else Direction.NEGATIVE,
             surface=programme.surface,
             limits=programme.limits,
             speed_allowed=True,

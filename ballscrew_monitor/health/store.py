@@ -3,12 +3,13 @@
 """
 Store of health: `health.sqlite3` in the directory of a node.
 
-Cells of days, spectrum and baselines of every axis, so that a node that is killed loses at most what it
-had not written. The directory belongs to the node by the lock of its state.
+Cells of days, spectrum and baselines of every axis, so that a node that is killed loses at most
+what it had not written. The directory belongs to the node by the lock of its state.
 
 """
 
 from collections.abc import Iterable
+import math
 from pathlib import Path
 import threading
 from typing import Any
@@ -21,7 +22,7 @@ from surrogate.files import InputError
 from surrogate.store import opened_to_read, readable, SHARE, Store, Table
 
 FILE = 'health.sqlite3'
-VERSION = 2
+VERSION = 1
 LIMIT = 20_000_000
 """Size [B] that the history of one axis may have."""
 MOST_BASELINES = 20
@@ -29,7 +30,8 @@ MOST_BASELINES = 20
 
 
 def _check_cell(cell: Cell) -> None:
-    if cell.days < 1 or cell.stretches < 0 or abs(cell.direction) > 1:
+    numbers = cell.speed, cell.axial_load, cell.temperature, cell.motor_torque
+    if cell.days < 1 or cell.stretches < 0 or abs(cell.direction) > 1 or math.inf in numbers:
         raise ValueError(f'a cell of {cell.stretches} stretches')
 
 

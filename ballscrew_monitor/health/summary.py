@@ -115,11 +115,11 @@ def cell_of(stretch: Stretch, start: int) -> Cell:
     return Cell(
         start=start,
         first_day=day_of(start),
-        kind=CellKind.MOTION if moves else CellKind.STANDSTILL,
+        kind=int(CellKind.MOTION if moves else CellKind.STANDSTILL),
         speed_band=speed_band(abs(stretch.speed)) if moves else 0,
         load_band=0 if derived or not moves else load_band(stretch.axial_load),
         direction=(stretch.speed > 0.0) - (stretch.speed < 0.0),
-        load_source=stretch.load_source,
+        load_source=int(stretch.load_source),
         temperature_measured=stretch.temperature_measured,
         stretches=1,
         duration=stretch.duration,
@@ -133,7 +133,7 @@ def cell_of(stretch: Stretch, start: int) -> Cell:
 
 def nothing(start: int, why: Missing) -> Cell:
     """Return the cell of a log from `start` [ns] on without motion that counts."""
-    return Cell(start=start, first_day=day_of(start), kind=CellKind.NOTHING, missing=why)
+    return Cell(start=start, first_day=day_of(start), kind=int(CellKind.NOTHING), missing=int(why))
 
 
 def clock_objection(day: int, today: int | None) -> str:
@@ -165,7 +165,9 @@ def merged(cell: Cell, other: Cell) -> Cell:
     squares = cell.torque_squares + other.torque_squares
     if math.isfinite(between):
         squares += cell.stretches * other.stretches / max(stretches, 1) * between * between
-    means = {name: _mean(getattr(cell, name), getattr(other, name), share) for name in MEANS}
+    means: dict[str, Any] = {
+        name: _mean(getattr(cell, name), getattr(other, name), share) for name in MEANS
+    }
     return dataclasses.replace(
         cell, stretches=stretches, duration=duration, torque_squares=squares, **means
     )

@@ -65,9 +65,9 @@ def verdict_of(
     if condition is Condition.UNKNOWN:
         return f'Axis {axis}: its friction has changed by {change}, which does not tell yet.'
     state = 'is worse' if condition is Condition.WORSE else 'has slightly changed'
-    date = f'since about {date_words(since)}, ' if since else ''
+    date = f'since about {date_words(since)} ' if since else ''
     if drag.low * drag.high <= 0.0:
-        return f'Axis {axis} {state}: {date}but its friction is back, changed by {change}.'
+        return f'Axis {axis} {state}: {date}it changed, and is now back at {change}.'
     return f'Axis {axis} {state}: {date}its friction is {lower_or_higher(drag)}; {_why(causes)}.'
 
 
@@ -132,13 +132,15 @@ def input_notes(marks: Marks) -> list[str]:
         rest = marks.standstill
         seen = ', and the torque at rest has moved' if rest.is_proven(LEAST_OFFSET) else ''
         notes.append(
-            f'the torques of both directions have moved apart by {100 * marks.offset.value:+.0f} % '
-            f'of the friction{seen}: check the zero of the torque, and weight or counterbalance'
+            f'the torques of both directions have moved by {100 * marks.offset.value:+.0f} % of '
+            f'the friction against each other{seen}: check the zero of the torque, and weight '
+            'or counterbalance'
         )
     if marks.gain.is_proven(LEAST_GAIN):
+        change = 100.0 * math.expm1(marks.gain.value)
         notes.append(
-            f'the torque over the measured load has changed by {100 * math.expm1(marks.gain.value):+.0f} '
-            '%: check the gain of the load, and the torque constant'
+            f'the torque over the measured load has changed by {change:+.0f} %: '
+            'check the gain of the load, and the torque constant'
         )
     return notes
 
