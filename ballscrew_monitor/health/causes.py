@@ -86,42 +86,42 @@ CANDIDATES = (
         CauseCode.PRELOAD_LOST,
         -1,
         of_preload,
-        'preload is lost ({least:.0%} of it or more, if the nut is the cause)',
+        'preload is lost ({least:.0f} % of it or more, if the nut is the cause)',
         'less preload lowers the friction at all speeds alike',
     ),
     Candidate(
         CauseCode.TORQUE_CONSTANT,
         0,
         alike,
-        'the torque constant is another one ({size:+.0%} of torque)',
+        'the torque constant is another one ({share:+.0f} % of torque)',
         'another torque constant changes all torques by one factor, over the load as well',
     ),
     Candidate(
         CauseCode.OIL_THINNER,
         -1,
         of_viscosity,
-        'the oil is thinner, or warmer than measured: {size:.0%} of its viscosity',
+        'the oil is thinner, or warmer than measured: {share:.0f} % of its viscosity',
         'a thinner oil moves the curve of friction over speed',
     ),
     Candidate(
         CauseCode.OIL_THICKER,
         1,
         of_viscosity,
-        'the oil is thicker, or colder than measured: {size:.0%} of its viscosity',
+        'the oil is thicker, or colder than measured: {share:.0f} % of its viscosity',
         'a thicker oil moves the curve of friction over speed',
     ),
     Candidate(
         CauseCode.FILM_STARVED,
         1,
         low_speed,
-        'the film is starved: friction at low speed is {size:+.0%}',
+        'the film is starved: friction at low speed is {share:+.0f} %',
         'a starved film raises the friction at low speed',
     ),
     Candidate(
         CauseCode.WIPER,
         0,
         constant,
-        'the drag of a wiper, seal, guideway or bearing has changed ({torque:+.2g} N m)',
+        'the drag of a wiper, seal, guideway or bearing has changed ({size:+.2g} N m)',
         'a wiper or a guideway has one torque at all speeds',
     ),
 )
@@ -207,7 +207,7 @@ def _too_far(fit: Fit, least: float) -> str:
 def _cause(fit: Fit, why: str, groups: GroupChange, least: float) -> Cause:
     size = _size(fit, groups)
     text = why or fit.candidate.text.format(
-        least=1.0 - size.high, size=size.value, torque=size.value
+        least=100.0 * (1.0 - size.high), size=size.value, share=100.0 * size.value
     )
     return Cause(
         code=fit.candidate.code,

@@ -13,7 +13,7 @@ import math
 from typing import NamedTuple
 
 from ballscrew_monitor.health.history import calmed, Effects, effects_of, History
-from ballscrew_monitor.health.mixed import Estimate, estimate, Logs, weights_of
+from ballscrew_monitor.health.mixed import Estimate, estimate, Logs, SLOPE, weights_of
 from ballscrew_monitor.health.records import Condition, TOLERANCE
 import numpy as np
 from numpy.typing import NDArray
@@ -57,8 +57,8 @@ class Look(NamedTuple):
 
     `change` with its 95 % interval `low` to `high` is relative [-]; `raised` is the sign of a
     change that is worse, 0 for none; `shifted` that of one that is proven at all. `smallest` is
-    the loss that nine of ten times shows within eight weeks [-]. `baseline` and `now` count logs, the first
-    up to `baseline_end`, the last from `now_begin` on [days].
+    the loss that nine of ten times shows within eight weeks [-]. `baseline` and `now` count logs,
+    the first up to `baseline_end`, the last from `now_begin` on [days].
     NaN where nothing is compared, for the `reason`.
 
     """
@@ -103,7 +103,7 @@ def look(history: History, *, baseline_days: float = BASELINE_DAYS) -> Look:
         known = len(logs.time)
         reason = f'{known} logs so far, a baseline needs {FEWEST_LOGS} and then two more'
         return Look(index, time, reason=reason)
-    before, blocks = _before(logs.time, parts, baseline_days), parts
+    before, blocks = _before(logs.time, parts, baseline_days), cut_at_step(parts, logs)
     weight = weights_of(logs.until(len(before)), before, warm=history.warm)
     found = estimate(logs, blocks, weight, warm=history.warm)
     provisional = time - logs.time[0] <= baseline_days
@@ -196,6 +196,26 @@ def blocks_of(time: Array, baseline_days: float) -> NDArray[np.int64] | None:
     return blocks
 
 
+def cut_at_step(blocks: NDArray[np.int64], logs: Logs) -> NDArray[np.int64]:
+    """Return blocks cut where the effects have their largest step, lest it counts as a slope."""
+    middle = (blocks > 0) & (blocks < blocks.max())
+    if not middle.any():
+        return blocks
+    step = step_of(logs.effect - SLOPE * logs.warmth, int((blocks == 0).sum()))
+    later = middle & (np.arange(len(blocks)) >= step)
+    cut = 2 * blocks + later
+    return np.asarray(np.unique(cut, return_inverse=True)[1], dtype=np.int64)
+
+
+def step_of(values: Array, first: int) -> int:
+    """Return where the values have one step, by least squares; at `first` at the earliest."""
+    sums = [
+        float(np.var(values[:at]) * at + np.var(values[at:]) * (len(values) - at))
+        for at in range(first, len(values))
+    ]
+    return first + int(np.argmin(sums))
+
+
 def _now(time: Array) -> int:
     """Return the number of logs that count as now: four, or two where they come monthly."""
     if len(time) <= FEWEST_LOGS + 2:
@@ -266,10 +286,4 @@ def onset_of(effects: Effects, blocks_from: int, index: int, slope: float) -> in
 
     """
     values = effects.logs.effect - slope * effects.logs.warmth
-    values = values[: index + 1]
-    first = min(max(blocks_from, 1), index)
-    sums = [
-        float(np.var(values[:at]) * at + np.var(values[at:]) * (len(values) - at))
-        for at in range(first, index + 1)
-    ]
-    return first + int(np.argmin(sums))
+    return step_of(values[: index + 1], min(max(blocks_from, 1), index))

@@ -36,7 +36,7 @@ YEAR, SEASON = 365.25, 0.06
 FREE, BETWEEN, LEVEL = 0.3, 0.15, 10.0
 """Standard deviation of a change now, of one before, and of the level itself [-]."""
 
-RUNNING_IN, RUNNING_IN_TIME = 0.04, 25.0
+RUNNING_IN, RUNNING_IN_TIME = 0.03, 25.0
 """Standard deviation of what a new screw loses [-], and time over which it does so [days]."""
 
 

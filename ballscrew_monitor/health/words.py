@@ -86,8 +86,9 @@ def date_words(stamp: int) -> str:
 
 def percent(quantity: Quantity) -> str:
     """Return a relative change as people read it, with its interval."""
-    value, low, high = (100.0 * part for part in (quantity.value, quantity.low, quantity.high))
-    return f'{value:+.0f} % ({low:+.0f} to {high:+.0f} %)'
+    ends = (quantity.value, quantity.low, quantity.high)
+    value, low, high = (round(100.0 * part) for part in ends)
+    return f'{value:+d} % ({low:+d} to {high:+d} %)'
 
 
 class Certainty(enum.Enum):
