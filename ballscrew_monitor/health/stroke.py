@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Where on the screw: friction along the stroke, and lost motion at reversals, as cells of a log.
+Friction along the stroke, and lost motion at reversals, as cells of the summary of a log.
 
 The stroke is cut into steps on a fixed grid, so that those of one log are those of another one.
 The friction of a step is half the difference of the torques of both directions there, so that
@@ -31,7 +31,7 @@ FINEST = 0.01
 MOST_STEPS = 12
 """Steps of the travel of a log: 6 to 12, so a tenth or so."""
 LONGEST_TRAVEL = 100.0
-"""Travel above which a position is none on a screw, as that of a turntable [m]."""
+"""Travel beyond any stroke, as a turntable has [m]: such a position has no cells."""
 FEWEST_SAMPLES = 3
 """Samples of a step in each direction that its friction needs."""
 MOST_ROWS = 1 << 20

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Where on the screw an axis has changed: friction along the stroke, lost motion and its trend.
+Places of a screw that have changed: friction along the stroke, lost motion and its trend.
 
 The friction of a step counts over that of the whole stroke in the same log, so that temperature,
 wander and torque constant cancel. The scatter is that of logs about their means, common to all

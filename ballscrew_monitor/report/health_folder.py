@@ -29,7 +29,7 @@ from surrogate.files import InputError, new_file, to_json
 from surrogate.limits import MEGA
 
 VERSION = 1
-"""Version of what is collected; logs of another one are collected anew."""
+"""Version of what is collected; logs of another one are collected again."""
 MACHINE, AXIS, DAY = 'machine=', 'axis=', 'day='
 NAME = re.compile(r'(?P<log>[0-9a-f]{16})-(?P<version>[0-9a-f]{16})-(?P<left>\d+)\.parquet')
 LONGEST_NAME = 200

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Where on the screw: a place of the stroke that is worn, and the play between motor and table.
+A place of the stroke that is worn, and the play between motor and table.
 
 Steel grows by 11.5e-6 per kelvin. A screw of accuracy grade 5 has a travel variation of 23 um over
 300 mm and 8 um in a turn (ISO 3408-3). Stiffness and skew of the encoders are assumed.

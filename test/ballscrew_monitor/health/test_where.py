@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Where on the screw, told of years of axes by catalogues and textbooks, which share no law with it.
+Places of a screw in years of axes by catalogues and textbooks, which share no law with it.
 
 The generator stands in `bench/health_parts`: a worn place is a raised cosine there, and the table
 follows the motor by a play operator, with pitch errors, growth, skew and noise.

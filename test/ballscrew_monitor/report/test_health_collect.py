@@ -2,12 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Logs collected in a folder: only new ones; a damaged entry hides itself; a lost cluster."""
 
+import dataclasses
+import datetime
+import json
 import math
 from pathlib import Path
+import re
+import shutil
 
 from ballscrew_monitor.cli import main
-from ballscrew_monitor.health.records import CELL, CellKind
+from ballscrew_monitor.health.records import Baseline, CELL, CellKind, Condition, Health, Quantity
 from ballscrew_monitor.report import health_collect
+from ballscrew_monitor.report.health_axes import read_health
 from ballscrew_monitor.report.health_collect import collect, Given, Workers
 from ballscrew_monitor.report.health_folder import (
     axis_folders,
@@ -22,7 +28,7 @@ from ballscrew_monitor.report.machines import MachineAxis
 import numpy as np
 import polars as pl
 import pytest
-from surrogate.files import InputError
+from surrogate.files import InputError, to_json
 from surrogate.surface import SurfaceError
 
 NOMINAL = Path('config/nominal_cycle.yaml')
@@ -256,3 +262,74 @@ def test_the_command_needs_logs_and_a_place(capsys, says):
     assert main(['health', 'collect', '--out', 'kept']) == 2
     lines = capsys.readouterr().err.splitlines()
     assert [line.partition(': ')[2] for line in lines] == [says('collect_needs')] * 2
+
+
+@pytest.fixture
+def two_machines(tmp_path):
+    """Return a folder with weeks of logs of two machines, collected, and the logs."""
+    folder, logs = tmp_path / 'kept', tmp_path / 'logs'
+    for machine in ('mill 3', 'mill 4'):
+        for week in range(8):
+            day = datetime.date(2026, 1, 5) + datetime.timedelta(weeks=week)
+            epoch = f'{day}T06:00:00Z' if machine == 'mill 3' else '2000-01-01T00:00:00Z'
+            log, mapping = write_log(
+                logs / machine[-1] / f'{day}.csv', epoch=epoch, machine=machine
+            )
+            collect([log], folder, Given(None, mapping, NOMINAL), Workers())
+    return folder, logs
+
+
+def test_an_axis_that_is_no_history_stops_no_other_one(two_machines, capsys):
+    folder, _ = two_machines
+    assert main(['health', str(folder), '--json']) == 0
+    captured = capsys.readouterr()
+    (name,) = json.loads(captured.out)
+    assert name == 'x of mill 3'
+    assert 'axis x of mill 4: 8 of 8 logs begin at the same instant' in captured.err
+
+
+def test_collected_logs_and_logs_named_are_assessed_alike(two_machines, capsys):
+    folder, logs = two_machines
+    assert main(['health', str(folder), '--json']) == 0
+    kept = json.loads(capsys.readouterr().out)['x of mill 3']
+    mapping = next((logs / '3').glob('*.yaml'))
+    text = mapping.read_text().replace('time: {', 'date_from: name\ntime: {')
+    mapping.write_text(re.sub(', epoch: [^}]*', '', text))
+    assert main(['health', str(logs / '3'), '--map', str(mapping), '--json']) == 0
+    named = json.loads(capsys.readouterr().out)['x']
+    assert len(kept['course']) == len(named['course']) == 8
+    assert {key: kept['quantities'][key] for key in kept['quantities']} == named['quantities']
+    assert kept['condition'] == named['condition']
+
+
+def test_an_axis_that_is_named_twice_is_refused(two_machines, tmp_path, capsys):
+    folder, _ = two_machines
+    other = tmp_path / 'copy'
+    shutil.copytree(folder, other)
+    assert main(['health', str(folder), str(other)]) == 2
+    assert 'stands in' in capsys.readouterr().err
+
+
+def test_health_survives_plain_data():
+    health = Health(
+        axis='x',
+        stamp=5,
+        condition=Condition.WORSE,
+        verdict='a verdict',
+        since=3,
+        quantities=[Quantity(name='a', value=1.0, low=0.5, high=2.0), Quantity(name='b')],
+        causes=[
+            Cause(
+                code=CauseCode.WIPER,
+                size=Quantity(name='c', unit='N m', value=0.1),
+                weight=0.7,
+                excluded=False,
+                text='a wiper',
+            )
+        ],
+        baseline=Baseline(begin=1, end=2, reason='named'),
+        notes=['a note'],
+    )
+    plain = json.loads(json.dumps(to_json(dataclasses.asdict(health))))
+    again = read_health(plain)
+    assert repr(again) == repr(health)
