@@ -11,7 +11,16 @@ import re
 import shutil
 
 from ballscrew_monitor.cli import main
-from ballscrew_monitor.health.records import Baseline, CELL, CellKind, Condition, Health, Quantity
+from ballscrew_monitor.health.records import (
+    Baseline,
+    Cause,
+    CauseCode,
+    CELL,
+    CellKind,
+    Condition,
+    Health,
+    Quantity,
+)
 from ballscrew_monitor.report import health_collect
 from ballscrew_monitor.report.health_axes import read_health
 from ballscrew_monitor.report.health_collect import collect, Given, Workers
