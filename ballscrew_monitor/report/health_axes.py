@@ -95,7 +95,7 @@ def assess_axes(
 
 def assess_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Return as plain data the health of one axis after each of its logs: a task of a worker."""
-    title, notes = inputs['title'], []
+    title, notes = inputs['title'], list[str]()
     if 'folder' in inputs:
         histories, notes = read_axis(Path(inputs['folder']))
         if not histories:

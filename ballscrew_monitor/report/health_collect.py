@@ -29,7 +29,6 @@ from ballscrew_monitor.report.judging import judge_log, OnShare
 from ballscrew_monitor.report.logs import map_for
 from ballscrew_monitor.report.many_logs import LogsProgress, ReadingShare, size_of
 from ballscrew_monitor.report.parameters import parameters_for
-from surrogate.child import Task
 from surrogate.files import InputError, to_json
 from surrogate.progress import Progress
 from surrogate.surface import SurfaceError
@@ -48,7 +47,7 @@ class Given(NamedTuple):
 class Workers(NamedTuple):
     """Number of processes, None for all cores, and the address of a Dask scheduler, if any."""
 
-    count: int | None = None
+    number: int | None = None
     dask: str | None = None
 
 
@@ -132,7 +131,7 @@ def map_logs(
 
 
 def run_mapped(
-    task: Task,
+    task: Callable[[Mapping[str, Any]], dict[str, Any]],
     inputs: Mapping[str, Mapping[str, Any]],
     workers: Workers,
     report: Callable[[TaskOutcome], None],
@@ -140,7 +139,7 @@ def run_mapped(
 ) -> None:
     """Run a task on named inputs: on workers, or here where they are few and none is asked for."""
     if workers != Workers() or len(inputs) > FEW:
-        with open_pool(workers.count, workers.dask, on_share=on_share) as pool:
+        with open_pool(workers.number, workers.dask, on_share=on_share) as pool:
             run_tasks(pool, task, inputs, report=report)
         return
     for name, given in inputs.items():

@@ -334,7 +334,7 @@ def judge_log(
             outcomes.append(part)
         else:
             if part.axis not in makers:
-                make = health
+                make: Callable[..., HistoryMaker] | None = health
                 if health is not None and along_stroke:
                     positions = positions_of(bag, part.axis, parameters.values)
                     make = functools.partial(health, log=str(bag.path), positions=positions)

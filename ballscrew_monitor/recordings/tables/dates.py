@@ -93,9 +93,9 @@ def _moment(date: re.Match[str], time: re.Match[str] | None) -> datetime.datetim
         for name, other in (('year', 'year_last'), ('month', 'month_second'), ('day', 'day_first'))
     )
     parts = ('hour', 'minute', 'second')
-    of_day = [int(time[name] or 0) for name in parts] if time is not None else [0, 0, 0]
+    hour, minute, second = (0 if time is None else int(time[name] or 0) for name in parts)
     try:
-        return datetime.datetime(year, month, day, *of_day, tzinfo=datetime.UTC)
+        return datetime.datetime(year, month, day, hour, minute, second, tzinfo=datetime.UTC)
     except ValueError:
         return None
 

@@ -52,6 +52,7 @@ NUMBERS = {
 LINES = {'skip': (0, 1000), 'header_rows': (1, 2)}
 """Numbers of lines, with the least and the most allowed."""
 TEXTS = ('screw', 'oil', 'surface')
+TOP_TEXTS = ('machine', 'date_from', 'decimal')
 DATES = ('name', 'header', 'modified')
 PLACES = {
     'decimal': "`'.'` or `','`: decimal sign of columns in which no cell shows it, as 5.400 may "
@@ -224,8 +225,7 @@ def _read(path: Path) -> TableMap:
 
 def make_map(content: Any) -> TableMap:
     """Return a map made of its content; raises InputError when that is not right."""
-    known = ('log', 'time', 'axes', 'assumed', 'parameters', 'machine', 'date_from')
-    known += (*LINES, 'decimal')
+    known = ('log', 'time', 'axes', 'assumed', 'parameters', *TOP_TEXTS, *LINES)
     _check_keys('the map', content, known)
     if 'machine' in content:
         _check_machine(content['machine'])
