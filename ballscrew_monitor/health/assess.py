@@ -169,7 +169,7 @@ def _latest(
     today, at = day_of(now), len(seen.looks) - 1
     here = seen.looks[-1] if seen.looks else None
     condition, since = Condition.UNKNOWN, 0
-    drag = _drag(here) if here else unknown(DRAG, '-', missing_reason(kept.cells))
+    drag = _drag(here) if here else unknown(DRAG, '-', _missing(kept))
     causes: Sequence[Cause] = ()
     marks = None
     if here is not None:
@@ -221,6 +221,12 @@ def _latest(
         baseline=known,
         notes=[note for note in notes if note],
     )
+
+
+def _missing(kept: Kept) -> str:
+    if kept.baselines and (kept.cells['direction'] != 0).any():
+        return 'not known yet: no log since the baseline was named'
+    return missing_reason(kept.cells)
 
 
 def _last(kept: Kept) -> int:

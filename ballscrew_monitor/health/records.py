@@ -196,7 +196,6 @@ class CauseCode(enum.IntEnum):
     LOAD_SIGN_OR_UNIT = 8
     TORQUE_CONSTANT = 9
     SENSOR_OFFSET = 10
-    BEARING_OR_GUIDEWAY = 11
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -44,7 +44,6 @@ ADVICE = {
     CauseCode.LOAD_SIGN_OR_UNIT: 'check sign, unit and zero of the axial load; scale -1 turns it',
     CauseCode.TORQUE_CONSTANT: 'check torque constant and gear ratio',
     CauseCode.SENSOR_OFFSET: 'set the zero of the torque sensor',
-    CauseCode.BEARING_OR_GUIDEWAY: 'look at guideway and support bearings',
 }
 
 
@@ -95,7 +94,7 @@ class Certainty(enum.Enum):
     """How sure the cause of a change is, in words around it."""
 
     NONE = 'the cause is not told'
-    LIKELY = 'the cause is that {}'
+    LIKELY = 'most likely {}'
     SURE = 'the cause is that {}'
 
 
