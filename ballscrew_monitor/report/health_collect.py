@@ -118,11 +118,11 @@ def map_logs(
     told: set[str] = set()
 
     def report(outcome: TaskOutcome) -> None:
-        progress.done(outcome.name)
-        collected = _collected(outcome)
+        collected = _collected(outcome, names[outcome.name])
         notes = [note for note in collected.notes if note not in told]
         told.update(notes)
         on_log(names[outcome.name], collected._replace(notes=notes))
+        progress.done(outcome.name)
 
     try:
         run_mapped(collect_task, inputs, workers, report, progress.tell)
@@ -168,9 +168,9 @@ def _path(text: str | None) -> Path | None:
     return None if text is None else Path(text)
 
 
-def _collected(outcome: TaskOutcome) -> Collected:
+def _collected(outcome: TaskOutcome, log: Path) -> Collected:
     if outcome.result is None:
-        return Collected([], [], outcome.sentence)
+        return Collected([], [], outcome.sentence.replace(outcome.name, str(log)))
     histories = [read_history(plain) for plain in outcome.result['histories']]
     return Collected(histories, outcome.result['notes'])
 
