@@ -13,6 +13,7 @@ import dataclasses
 import math
 from typing import Any, NamedTuple
 
+from ballscrew_monitor.core.conversions import clock_text
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import changed_screw, in_force, motion_by_day
@@ -109,9 +110,37 @@ def course(
 
     """
     seen = course_of(kept, surface.lead, settings)
-    earlier = [_earlier(axis, seen, at, surface) for at in range(len(seen.looks) - 1)]
+    places = {} if seen.history is None else dict(_numbered(seen.history.start))
+    begun = kept.cells['start'][kept.cells['start'] >= seen.baseline.begin]
+    *starts, _ = np.unique(begun).tolist() or [0]
+    earlier = [
+        _earlier(axis, seen, places[start], surface)
+        if start in places
+        else _silent(axis, start, kept)
+        for start in starts
+    ]
     stamp = _last(kept) if now is None else now
     return [*earlier, _latest(axis, stamp, seen, kept, surface, settings)]
+
+
+def _numbered(starts: NDArray[np.int64]) -> list[tuple[int, int]]:
+    return [(start, at) for at, start in enumerate(starts.tolist())]
+
+
+def _silent(axis: str, start: int, kept: Kept) -> Health:
+    """Return the health after a log without motion that counts."""
+    drag = unknown(DRAG, '-', missing_reason(kept.cells[kept.cells['start'] == start]))
+    return _unknown(axis, start, drag)
+
+
+def _unknown(axis: str, stamp: int, drag: Quantity) -> Health:
+    return Health(
+        axis=axis,
+        stamp=stamp,
+        condition=Condition.UNKNOWN,
+        verdict=verdict_of(axis, Condition.UNKNOWN, drag, (), 0),
+        quantities=[drag],
+    )
 
 
 def assess(
@@ -122,8 +151,14 @@ def assess(
     return _latest(axis, now, seen, kept, surface, settings)
 
 
+def without_order(axis: str, start: int) -> Health:
+    """Return the health of an axis of which two recordings begin at one `start` [ns]."""
+    reason = f'not known: two recordings begin at {clock_text(start)}, so their order is not known'
+    return _unknown(axis, start, unknown(DRAG, '-', reason))
+
+
 def course_of(kept: Kept, lead: float, settings: HealthSettings) -> Course:
-    """Return the looks at what is kept, since the baseline in force."""
+    """Return the looks at all logs since the baseline in force; `lead` [m] of the screw."""
     baseline = in_force(kept.baselines, motion_by_day(kept.spectrum), settings.baseline_days)
     cells = kept.cells[kept.cells['start'] >= baseline.begin]
     history = history_of(cells, lead)

@@ -51,7 +51,7 @@ class Candidate(NamedTuple):
 
 
 def alike(groups: GroupChange, preload: float) -> Array:
-    """Return the pattern of a factor: all friction alike."""
+    """Return the pattern of a factor: all friction alike, whatever the preload [N]."""
     return np.ones(len(groups.change))
 
 
@@ -63,17 +63,17 @@ def of_preload(groups: GroupChange, preload: float) -> Array:
 
 
 def constant(groups: GroupChange, preload: float) -> Array:
-    """Return the pattern of a constant drag."""
+    """Return the pattern of a constant drag, whatever the preload [N]."""
     return np.asarray(float(groups.friction.mean()) / groups.friction)
 
 
 def low_speed(groups: GroupChange, preload: float) -> Array:
-    """Return the pattern of a film that carries less: friction at low speed."""
+    """Return the pattern of a starved film: friction at low speed, at any preload [N]."""
     return np.asarray((groups.speed.min() / groups.speed) ** LOW_SPEED)
 
 
 def of_viscosity(groups: GroupChange, preload: float) -> Array:
-    """Return the pattern of a viscosity: speed times viscosity makes the friction (Stribeck)."""
+    """Return the pattern of a viscosity, which moves the curve over speed; any preload [N]."""
     speed, friction = np.log(groups.speed), np.log(groups.friction)
     if np.ptp(speed) < 0.7:
         return np.zeros(len(speed))

@@ -39,7 +39,7 @@ ADVICE = {
     'intended change of oil',
     CauseCode.WARMER_THAN_MEASURED: 'check the temperature sensor, and cooling',
     CauseCode.FILM_STARVED: 'lubricate now, and check the lubricator',
-    CauseCode.WIPER: 'look at wipers, covers and bearings',
+    CauseCode.WIPER: 'look at wipers, covers, guideway and bearings',
     CauseCode.CHURNING: 'look for too much grease or oil in the nut',
     CauseCode.LOAD_SIGN_OR_UNIT: 'check sign, unit and zero of the axial load; scale -1 turns it',
     CauseCode.TORQUE_CONSTANT: 'check torque constant and gear ratio',

@@ -7,6 +7,7 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
+from ballscrew_monitor.core.conversions import clock_text
 from ballscrew_monitor.health.records import (
     Baseline,
     Cause,
@@ -102,6 +103,7 @@ def assess_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
             raise InputError(f'axis {title}: none of its collected logs can be read: {notes[0]}')
     else:
         histories = [read_history(plain) for plain in inputs['histories']]
+    notes += filter(None, [same_start_note(histories, title)])
     options = dict(inputs['options'])
     if options.get('days') is not None:
         options['days'] = tuple(options['days'])
@@ -109,6 +111,21 @@ def assess_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
         to_json(dataclasses.asdict(one)) for one in healths(histories, title=title, **options)
     ]
     return {'course': course, 'notes': notes}
+
+
+def same_start_note(histories: Sequence[AxisHistory], title: str) -> str:
+    """Return in a sentence how to date logs of one axis that begin at the same instant, or ''."""
+    ordered = sorted(histories, key=lambda each: each.first)
+    for log, other in zip(ordered[:-1], ordered[1:], strict=True):
+        if log.first == other.first:
+            count = sum(each.first == log.first for each in ordered)
+            return (
+                f'axis {title}: {count} of {len(ordered)} logs begin at the same instant, '
+                f'{clock_text(log.first)}, such as {log.log} and {other.log}, which is no history: '
+                'state date_from: name, header or modified in the map of the logs, or name a log '
+                'once'
+            )
+    return ''
 
 
 def read_health(plain: Mapping[str, Any]) -> Health:

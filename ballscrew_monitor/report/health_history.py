@@ -7,10 +7,9 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
-from ballscrew_monitor.core.conversions import clock_text
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import MonitorSettings
-from ballscrew_monitor.health.assess import course, HealthSettings, Kept
+from ballscrew_monitor.health.assess import course, HealthSettings, Kept, without_order
 from ballscrew_monitor.health.baseline import named
 from ballscrew_monitor.health.collect import Collected, Collector
 from ballscrew_monitor.health.detection import BASELINE_DAYS
@@ -24,7 +23,6 @@ from ballscrew_monitor.health.summary import add, array_of, nothing
 from ballscrew_monitor.report.machines import MachineAxis
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.files import InputError
 from surrogate.surface import Surface
 
 
@@ -164,12 +162,14 @@ def healths(
     `title` names the axis in sentences if its own name does not tell it apart from others.
     The baseline is that of `days`, begin and end [ns], or of the first `baseline_days`. Life and
     causes are those of the surface of the last recording. Its parameters let the advice name
-    another speed, or `speed_allowed` does. Raises InputError for recordings that begin at once.
+    another speed, or `speed_allowed` does. Recordings that begin at one instant have no order and
+    are no history.
 
     """
     ordered = sorted(histories, key=lambda one: one.first)
-    check_starts(ordered, title)
     last = ordered[-1]
+    if same := _same_start(ordered):
+        return [without_order(title or last.axis, same)]
     surface = Surface.load(Path(last.surface))
     settings = HealthSettings(
         limits=last.limits,
@@ -189,17 +189,10 @@ def healths(
     return course(title or last.axis, kept, surface, settings)
 
 
-def check_starts(ordered: Sequence[AxisHistory], title: str = '') -> None:
-    """Raise InputError for logs of one axis, by their starts, of which two begin at one time."""
-    for log, other in zip(ordered[:-1], ordered[1:], strict=True):
-        if log.first == other.first:
-            count = sum(each.first == log.first for each in ordered)
-            named = f', such as {log.log} and {other.log}' if log.log else ''
-            raise InputError(
-                f'axis {title or log.axis}: {count} of {len(ordered)} logs begin at the same '
-                f'instant, {clock_text(log.first)}{named}, which is no history: state date_from: '
-                'name, header or modified in the map of the logs, or name a log once'
-            )
+def _same_start(ordered: Sequence[AxisHistory]) -> int:
+    """Return the first instant [ns] at which two recordings begin, 0 for none."""
+    pairs = zip(ordered[:-1], ordered[1:], strict=True)
+    return next((log.first for log, other in pairs if log.first == other.first), 0)
 
 
 def health_after(history: AxisHistory) -> Health:

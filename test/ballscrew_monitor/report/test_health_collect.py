@@ -22,7 +22,7 @@ from ballscrew_monitor.health.records import (
     Quantity,
 )
 from ballscrew_monitor.report import health_collect
-from ballscrew_monitor.report.health_axes import read_health
+from ballscrew_monitor.report.health_axes import read_health, same_start_note
 from ballscrew_monitor.report.health_collect import collect, Given, Workers
 from ballscrew_monitor.report.health_folder import (
     axis_folders,
@@ -32,12 +32,11 @@ from ballscrew_monitor.report.health_folder import (
     read_axis,
     read_entry,
 )
-from ballscrew_monitor.report.health_history import check_starts
 from ballscrew_monitor.report.machines import MachineAxis
 import numpy as np
 import polars as pl
 import pytest
-from surrogate.files import InputError, to_json
+from surrogate.files import to_json
 from surrogate.surface import SurfaceError
 
 NOMINAL = Path('config/nominal_cycle.yaml')
@@ -213,14 +212,13 @@ def test_logs_that_begin_at_one_instant_are_no_history(tmp_path, says):
         log, mapping = write_log(tmp_path / 'logs' / name, epoch='2000-01-01T00:00:00Z')
         collect([log], folder, Given(None, mapping, NOMINAL), Workers())
     histories, _ = read_axis(next(iter(axis_folders(folder).values())))
-    with pytest.raises(InputError) as caught:
-        check_starts(histories, 'x')
     logs = sorted(str(tmp_path / 'logs' / name) for name in ('a.csv', 'b.csv'))
     found = sorted(history.log for history in histories)
     assert found == logs
-    assert str(caught.value) == says(
+    assert same_start_note(histories, 'x') == says(
         'begin_at_one_instant', first=histories[0].log, second=histories[1].log
     )
+    assert same_start_note(histories[:1], 'x') == ''
 
 
 def test_a_cluster_that_is_lost_ends_in_a_sentence_and_the_next_run_goes_on(
@@ -288,12 +286,14 @@ def two_machines(tmp_path):
     return folder, logs
 
 
-def test_an_axis_that_is_no_history_stops_no_other_one(two_machines, capsys):
+def test_an_axis_without_dates_is_not_known_and_stops_no_other_one(two_machines, capsys):
     folder, _ = two_machines
     assert main(['health', str(folder), '--json']) == 0
     captured = capsys.readouterr()
-    (name,) = json.loads(captured.out)
-    assert name == 'x of mill 3'
+    records = json.loads(captured.out)
+    assert list(records) == ['x of mill 3', 'x of mill 4']
+    assert 'two recordings begin at 2000-01-01' in records['x of mill 4']['verdict']
+    assert 'two recordings begin at' not in records['x of mill 3']['verdict']
     assert 'axis x of mill 4: 8 of 8 logs begin at the same instant' in captured.err
 
 
