@@ -121,9 +121,9 @@ def same_start_note(histories: Sequence[AxisHistory], title: str) -> str:
             count = sum(each.first == log.first for each in ordered)
             return (
                 f'axis {title}: {count} of {len(ordered)} logs begin at the same instant, '
-                f'{clock_text(log.first)}, such as {log.log} and {other.log}, which is no history: '
-                'state date_from: name, header or modified in the map of the logs, or name a log '
-                'once'
+                f'{clock_text(log.first)}, such as {log.log} and {other.log}, which is no '
+                'history: state date_from: name, header or modified in the map of the logs, or '
+                'name a log once'
             )
     return ''
 
