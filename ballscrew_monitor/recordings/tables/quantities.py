@@ -20,6 +20,8 @@ UNITS: dict[str, Mapping[str, float]] = {
     'time': conversions.TIME_UNITS,
 }
 """Units of each kind of column; some need what a map states, as the lead or the rated torque."""
+NAMED_BY_MAPS = ('table_position',)
+"""Kinds that no name of a column tells, so that maps alone name them."""
 MOTION = ('speed', 'position')
 OTHER_SIGN = {'.': ',', ',': '.'}
 """Decimal signs, each with the one that then parts thousands."""

@@ -121,11 +121,7 @@ def test_a_map_that_dates_wrongly_is_refused(key, changes, refused):
 def test_a_log_without_a_date_is_refused(tmp_path, refused):
     log = write(tmp_path / 'log_0001.csv')
     os.utime(log, (0, 1000))
-    for place, key in (
-        ('name', 'no_name'),
-        ('header', 'no_header'),
-        ('modified', 'no_modified'),
-    ):
+    for place, key in (('name', 'no_name'), ('header', 'no_header'), ('modified', 'no_modified')):
         with refused(key, log=log):
             TableLog(log, make_map(content(date_from=place)))
 
