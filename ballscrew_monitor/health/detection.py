@@ -29,8 +29,12 @@ SPARSE = 20.0
 """Days between logs from which two of them count as now."""
 BLOCK_DAYS = 56.0
 """Days over which logs between baseline and now share one change."""
-MERGED, MERGED_OLD = 2.5, 6.0
-"""Days within which logs count as one; the second where they are older than a block."""
+A_DAY, MERGED, MERGED_OLD, FEW = 0.75, 2.5, 6.0, 60
+"""
+Days within which logs count as one: of up to 60 logs those of a day, else those of some days, and
+of a week where they are older than a block.
+
+"""
 NO_CHANGE, WITHIN_TOLERANCE = 4e-4, 0.01
 """
 Probabilities at which a change is worse: that there is none, and that it is within the tolerance.
@@ -153,6 +157,7 @@ def binned(logs: Logs) -> Logs:
     """Return logs with those of some days as one, and of a week where they are older."""
     age = logs.time[-1] - logs.time
     width = np.where(age > BLOCK_DAYS, MERGED_OLD, MERGED)
+    width = np.full(len(age), A_DAY) if len(age) <= FEW else width
     begin, bins = -math.inf, []
     for at, (time, length) in enumerate(zip(logs.time.tolist(), width.tolist(), strict=True)):
         if time - begin >= length:

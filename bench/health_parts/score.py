@@ -174,7 +174,7 @@ class Score:
 def print_table(table: Sequence[Score]) -> None:
     """Print the lines as a table of Markdown."""
     print(
-        '| logs | change | years | friction in the end | found | delay | false alarms in 100 years '
+        '| logs | change | years | friction in the end | found | delay | false alarms, 100 years '
         '| interval holds | half width, a quarter, end | cause told, right |'
     )
     print('|---|---|---|---|---|---|---|---|---|---|')

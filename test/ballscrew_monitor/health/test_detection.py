@@ -91,12 +91,13 @@ def test_three_monthly_runs_are_a_baseline_and_two_are_now():
 
 
 def test_logs_of_some_days_are_one_and_no_more_sure_than_three():
-    days = np.arange(20.0)
-    found = binned(Logs(days, days, np.zeros(20), np.ones(20)))
-    assert len(found.time) == 7
+    days = np.arange(100.0)
+    found = binned(Logs(days, days, np.zeros(100), np.ones(100)))
+    assert len(found.time) == 8 + 19  # weeks, and three days each
     assert found.noise.min() == pytest.approx(1.0 / 3.0)
-    old = binned(Logs(np.r_[days, 100.0], np.r_[days, 1.0], np.zeros(21), np.ones(21)))
-    assert len(old.time) == 5
+    hours = np.arange(40.0) / 2.0
+    few = binned(Logs(hours, hours, np.zeros(40), np.ones(40)))
+    assert few.time == pytest.approx(np.arange(20.0) + 0.25)
 
 
 def test_the_smallest_loss_grows_with_the_doubt():
