@@ -21,7 +21,8 @@ ENDINGS = {
     'nothing was judged or nothing moved, or more samples of an axis stayed unjudged than '
     '--most-unjudged-percent allows; of several recordings, at least one could not be read.',
     'check': 'Exit code 1: as of replay.',
-    'health': 'Exit code 1: no recording of several could be judged.',
+    'health': 'Exit code 1: no recording of several could be judged; with collect, at least one '
+    'could not.',
     'solve': 'Exit code 1: not converged, rejected, timed out, or no node found. 130, 143: the '
     'solve is withdrawn.',
     'doctor': 'Exit code 1: findings. 2: a file that the node refuses.',
@@ -106,19 +107,24 @@ def add_check(parser: Parser) -> None:
 
 def add_health(parser: Parser) -> None:
     """Add what `ballscrew health` may be told."""
-    text = 'bag directory or file, a folder of them; a table with --map; state_dir of a node'
+    text = (
+        'bag directory or file, a folder of them; a table with --map; state_dir of a node; a '
+        'folder of collected logs. As first word, collect: keep what the logs hold in --out'
+    )
     _add_file(parser, 'logs', 'LOG', text, nargs='+')
     _add_file(parser, '--map', 'FILE', MAP_TEXT)
     text = f'parameters of the node (default those that a log carries, else {PARAMS_TEXT})'
     _add_file(parser, '--params', 'FILE', text)
-    text = 'motion of the first logs that is normal (default 0.16, ten minutes)'
-    _add_number(parser, '--baseline-hours', 'H', text, default=0.16)
+    text = 'days of the first logs that are normal (default 91), three logs at least'
+    _add_number(parser, '--baseline-days', 'D', text, default=91.0)
     text = 'days that are normal, both included, UTC (default: the first ones in motion)'
     parser.add_argument('--baseline', nargs=2, metavar=('FROM', 'TO'), help=text)
     text = 'let the advice name other speeds, as advice.speed does: the process is free'
     _add_switch(parser, '--speed-advice', text)
-    _add_file(parser, '--out', 'DIR', 'directory for health.json and health.png')
+    text = 'directory for health.json and health.png; with collect, for what is kept'
+    _add_file(parser, '--out', 'DIR', text)
     _add_switch(parser, '--json', 'print JSON')
+    add_workers(parser)
 
 
 def add_fingerprint(parser: Parser) -> None:

@@ -14,6 +14,7 @@ import argparse
 from collections import Counter
 import contextlib
 import json
+import math
 import os
 from pathlib import Path
 import random
@@ -25,10 +26,10 @@ from typing import Any
 
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import child_environment, ros_environment
-from ballscrew_monitor.health.points import add, model_torque
 from ballscrew_monitor.health.records import KeptHealth, Stretch
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import HealthStore, read_health
+from ballscrew_monitor.health.summary import add
 from ballscrew_monitor.node.state_database import read_entries
 from ballscrew_msgs.msg import BallScrewState
 from geometry_msgs.msg import WrenchStamped
@@ -36,7 +37,6 @@ from node_parts.peer import FAST, LOAD, SLOW, TURNING
 import rclpy
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
-from surrogate.surface import shipped_surface, Surface
 
 STATE = '/ballscrew_monitor/x/state'
 RATE = 100.0  # [Hz] of speed and of load
@@ -92,11 +92,10 @@ class Machine:
 
 def live(folder: Path) -> None:
     """Keep some days of health in a `folder`, of which the node makes its baseline."""
-    surface, today = Surface.load(shipped_surface()), time.time_ns() // DAY
-    points: dict[Any, Any] = {}
+    today = time.time_ns() // DAY
+    cells: dict[Any, Any] = {}
     for day in range(today - DAYS, today):
         for speed in (FAST, -FAST, 0.3 * FAST, -0.3 * FAST):
-            torque = model_torque(surface, speed, LOAD, WARM)
             stretch = Stretch(
                 start=day * DAY,
                 duration=LONG,
@@ -104,13 +103,13 @@ def live(folder: Path) -> None:
                 speed=speed,
                 axial_load=LOAD,
                 temperature=WARM,
-                motor_torque=torque,
+                motor_torque=math.copysign(0.3, speed),
             )
             for _ in range(3):
-                add(points, stretch, surface, day)
+                add(cells, stretch)
     with contextlib.closing(HealthStore(folder)) as store:
         store.load()
-        store.add('x', points.values())
+        store.add('x', cells.values())
 
 
 def start(folder: Path, domain: int) -> subprocess.Popen[bytes]:

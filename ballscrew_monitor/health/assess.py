@@ -1,30 +1,35 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Normal or worse: what is kept of an axis, held against its baseline.
+Health of an axis by the summaries of its logs: a condition after each, and causes of a change.
 
-The condition is worse only where the change of the drag, or the loss of preload, lies beyond the
-tolerance with 99.9 % confidence, so that a look every day for years seldom warns of nothing.
+The change is found by the history of the axis alone. Surface and sheet explain it, and tell life
+and lubrication.
 
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 import dataclasses
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from ballscrew_monitor.core.conversions import clock_text
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.bands import day_of
-from ballscrew_monitor.health.baseline import changed_screw, motion_by_day
-from ballscrew_monitor.health.calibration import calibrated
-from ballscrew_monitor.health.causes import carrying, causes_of, FEWEST_GROUPS, fits_of
-from ballscrew_monitor.health.change import Change, Days, parts_of, select
-from ballscrew_monitor.health.companions import Companions
+from ballscrew_monitor.health.baseline import changed_screw, in_force, motion_by_day
+from ballscrew_monitor.health.causes import causes_of
+from ballscrew_monitor.health.change import changes_of, Marks, marks_of
 from ballscrew_monitor.health.damage import rated_of
-from ballscrew_monitor.health.detector import note_on_runs
-from ballscrew_monitor.health.energy import energy_quantities, student
-from ballscrew_monitor.health.evidence import is_certain
-from ballscrew_monitor.health.faults import input_fault
+from ballscrew_monitor.health.detection import (
+    BASELINE_DAYS,
+    Latched,
+    latched,
+    Look,
+    look,
+    onset_of,
+)
+from ballscrew_monitor.health.energy import energy_quantities
+from ballscrew_monitor.health.history import effects_of, History, history_of
 from ballscrew_monitor.health.life import life_quantities, shaft_notes, unknown
 from ballscrew_monitor.health.lubrication import (
     boundary_note,
@@ -33,297 +38,324 @@ from ballscrew_monitor.health.lubrication import (
     severity_quantities,
     usual_boundary,
 )
-from ballscrew_monitor.health.model import Model
-from ballscrew_monitor.health.onset import onset_note, onset_of
-from ballscrew_monitor.health.preload import preload_of
 from ballscrew_monitor.health.records import (
     Baseline,
     Cause,
-    ComparablePoint,
+    Cell,
+    CellKind,
     Condition,
     Health,
+    LoadSource,
     Quantity,
     SpectrumBin,
-    TOLERANCE,
 )
 from ballscrew_monitor.health.remedies import remedies_of
 from ballscrew_monitor.health.rows import DAY
-from ballscrew_monitor.health.words import advice_of, verdict_of
+from ballscrew_monitor.health.summary import cells_of
+from ballscrew_monitor.health.where import where_on_screw
+from ballscrew_monitor.health.words import advice_of, input_notes, missing_reason, verdict_of
+import numpy as np
+from numpy.typing import NDArray
 from surrogate.surface import Surface
 
-NARROW = 0.1
-"""Half width of an interval of the drag that holds 0, up to which an axis is normal [-]."""
-SURE = 1.9
-"""Half width of the 99.9 % interval over that of 95 %."""
-RECENT = 28
-"""Days that count as now, if the last week has too little [-]."""
-SHORT = 7
-FEWEST_STRETCHES = 10
-"""Stretches in common places that a comparison needs."""
-DRAG = 'drag change'
+RECENT, SHORT = 28, 7
+"""Days whose programme counts as that of now; the longer where the shorter has too little."""
+FEWEST_CELLS = 10
+DRAG, SMALLEST = 'drag change', 'smallest loss shown'
+CHANGED = (Condition.WORSE, Condition.SLIGHTLY_CHANGED)
+NEW_PROGRAMME = 0.5
+"""Share of the motion at places that the baseline lacks, from which the programme changed [-]."""
+ALARM_RATE = 'some one clean year of a hundred ends in a false alarm'
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class HealthSettings:
     """
-    What health is told: limits of the zone, and what the machine allows.
+    Settings of an assessment: limits of the zone, and what the machine allows.
 
-    `speed_allowed`: advice may name another speed, which a process may not allow. Where an axis is
-    `always_free` of process force, its readings come daily.
+    `speed_allowed`: advice may name another speed, which a process may not allow. The baseline has
+    the logs of the first `baseline_days`.
 
     """
 
     limits: Limits
     speed_allowed: bool = False
-    always_free: bool = False
+    baseline_days: float = BASELINE_DAYS
 
 
-class Compared(NamedTuple):
+class Kept(NamedTuple):
+    """All that is kept of an axis: cells as an array of CELL, spectrum, and baselines in order."""
+
+    cells: NDArray[Any]
+    spectrum: Sequence[SpectrumBin] = ()
+    baselines: Sequence[Baseline] = ()
+
+
+class Course(NamedTuple):
+    """Looks at a history with the condition that is latched after each."""
+
+    history: History | None
+    looks: Sequence[Look]
+    states: Sequence[Latched]
+    baseline: Baseline
+
+
+def course(
+    axis: str, kept: Kept, surface: Surface, settings: HealthSettings, *, now: int | None = None
+) -> list[Health]:
     """
-    The recent days against the baseline, each quantity with its interval.
+    Return the health of an axis after each of its logs, the last one at `now` [ns].
 
-    `change` is that of the last week, or of `month`, the last 28 days, where that has too little;
-    both are None where there is no comparison, and `reason` says why.
+    The last one has all quantities, the others the change of the drag.
 
     """
+    seen = course_of(kept, surface.lead, settings)
+    places = {} if seen.history is None else dict(_numbered(seen.history.start))
+    begun = kept.cells['start'][kept.cells['start'] >= seen.baseline.begin]
+    *starts, _ = np.unique(begun).tolist() or [0]
+    earlier = [
+        _earlier(axis, seen, places[start], surface)
+        if start in places
+        else _silent(axis, start, kept)
+        for start in starts
+    ]
+    stamp = _last(kept) if now is None else now
+    return [*earlier, _latest(axis, stamp, seen, kept, surface, settings)]
 
-    model: Model
-    change: Change | None
-    month: Change | None
-    reason: str
-    drag: Quantity
-    preload: Quantity
-    condition: Condition
-    causes: Sequence[Cause]
+
+def _numbered(starts: NDArray[np.int64]) -> list[tuple[int, int]]:
+    return [(start, at) for at, start in enumerate(starts.tolist())]
+
+
+def _silent(axis: str, start: int, kept: Kept) -> Health:
+    """Return the health after a log without motion that counts."""
+    drag = unknown(DRAG, '-', missing_reason(kept.cells[kept.cells['start'] == start]))
+    return _unknown(axis, start, drag)
+
+
+def _unknown(axis: str, stamp: int, drag: Quantity) -> Health:
+    return Health(
+        axis=axis,
+        stamp=stamp,
+        condition=Condition.UNKNOWN,
+        verdict=verdict_of(axis, Condition.UNKNOWN, drag, (), 0),
+        quantities=[drag],
+    )
 
 
 def assess(
-    axis: str,
-    now: int,
-    baseline: Baseline | str,
-    points: Sequence[ComparablePoint],
-    spectrum: Sequence[SpectrumBin],
-    surface: Surface,
-    companions: Companions | str,
-    settings: HealthSettings,
+    axis: str, kept: Kept, surface: Surface, settings: HealthSettings, *, now: int
 ) -> Health:
-    """
-    Return the health of an axis at `now` [ns].
+    """Return the health of an axis at `now` [ns]."""
+    seen = course_of(kept, surface.lead, settings)
+    return _latest(axis, now, seen, kept, surface, settings)
 
-    `baseline` is one, or a sentence why there is none yet; so are `companions`. `points` and
-    `spectrum` are all that is kept.
 
-    """
-    today = day_of(now)
-    known = baseline if isinstance(baseline, Baseline) else None
-    compared = compare(baseline, points, today, surface, companions)
-    model, change, month, reason, drag, preload, condition, causes = compared
-    onset = onset_of(month, *held_points(known, points, today), model, reason)
-    recent = recent_of(points, today)
-    found = [
-        *_drags(change, drag, reason),
-        preload,
-        onset,
-        *_others(points, spectrum, surface, known, today, settings),
+def without_order(axis: str, start: int) -> Health:
+    """Return the health of an axis of which two recordings begin at one `start` [ns]."""
+    reason = f'not known: two recordings begin at {clock_text(start)}, so their order is not known'
+    return _unknown(axis, start, unknown(DRAG, '-', reason))
+
+
+def course_of(kept: Kept, lead: float, settings: HealthSettings) -> Course:
+    """Return the looks at all logs since the baseline in force; `lead` [m] of the screw."""
+    baseline = in_force(kept.baselines, motion_by_day(kept.spectrum), settings.baseline_days)
+    cells = kept.cells[kept.cells['start'] >= baseline.begin]
+    history = history_of(cells, lead)
+    if history is None:
+        return Course(None, (), (), baseline)
+    learned = not kept.baselines or not kept.baselines[-1].end
+    begin = int(history.start[0]) if learned else baseline.begin
+    days = settings.baseline_days if learned else (baseline.end - int(history.start[0])) / DAY
+    end = begin + round(days * DAY) if learned else baseline.end
+    count = len(history.start)
+    looks = [look(history.until(at), baseline_days=days) for at in range(1, count + 1)]
+    onsets = [_onset(history, one) if one.raised or one.shifted else -1 for one in looks]
+    baseline = dataclasses.replace(baseline, begin=begin, end=end)
+    return Course(history, looks, latched(looks, onsets), baseline)
+
+
+def _onset(history: History, seen: Look) -> int:
+    effects = effects_of(history.until(seen.log + 1))
+    return onset_of(effects, seen.baseline, seen.log, seen.slope if history.warm else 0.0)
+
+
+def _earlier(axis: str, seen: Course, at: int, surface: Surface) -> Health:
+    assert seen.history is not None
+    here, state = seen.looks[at], seen.states[at]
+    causes, _ = _explained(seen, at, surface)
+    since, drag = _since(seen, at), _drag(here)
+    return Health(
+        axis=axis,
+        stamp=int(seen.history.start[at]),
+        condition=state.condition,
+        verdict=verdict_of(axis, state.condition, drag, causes, since),
+        advice=advice_of(state.condition, causes),
+        since=since,
+        quantities=[drag],
+        causes=causes,
+        baseline=seen.baseline,
+    )
+
+
+def _latest(
+    axis: str, now: int, seen: Course, kept: Kept, surface: Surface, settings: HealthSettings
+) -> Health:
+    today, at = day_of(now), len(seen.looks) - 1
+    here = seen.looks[-1] if seen.looks else None
+    condition, since = Condition.UNKNOWN, 0
+    drag = _drag(here) if here else unknown(DRAG, '-', _missing(kept))
+    causes: Sequence[Cause] = ()
+    marks = None
+    if here is not None:
+        condition, since = seen.states[-1].condition, _since(seen, at)
+        causes, marks = _explained(seen, at, surface)
+    points = [
+        cell
+        for cell in cells_of(kept.cells[kept.cells['kind'] == CellKind.MOTION])
+        if cell.load_source != LoadSource.DERIVED and cell.first_day <= today
     ]
-    alarms = [
-        onset_note(onset, TOLERANCE, SURE),
-        note_on_runs(points, motion_by_day(spectrum), model, always_free=settings.always_free),
-    ]
+    spectrum = [one for one in kept.spectrum if one.first_day <= today]
+    known = seen.baseline if here is not None and here.is_known else None
     usual = usual_boundary(points, known, surface, today)
-    if condition is Condition.WORSE or any(alarms):
+    if condition in CHANGED:
         usual = None
-    notes = [
-        '' if usual is None else boundary_note(usual),
-        *_notes(surface, known, recent, change),
-        *alarms,
-    ]
+    recent = recent_of(points, today)
     remedy = remedies_of(
         recent, surface, settings.limits, speed_allowed=settings.speed_allowed
     ).text
+    where = where_on_screw(
+        kept.cells[kept.cells['start'] >= seen.baseline.begin],
+        None if seen.history is None else seen.baseline,
+    )
+    notes = [
+        '' if usual is None else boundary_note(usual),
+        *where.notes,
+        *_notes(surface, seen, here, marks),
+        *_shaft(surface, recent),
+    ]
+    rated = rated_of(surface.header)
     return Health(
         axis=axis,
         stamp=now,
         condition=condition,
-        verdict=verdict_of(axis, condition, drag, preload, causes),
+        verdict=verdict_of(axis, condition, drag, causes, since),
         advice=advice_of(condition, causes) or (remedy if usual is None else ''),
-        quantities=found,
+        since=since,
+        quantities=[
+            drag,
+            _smallest(here),
+            _preload(condition, causes),
+            *life_quantities(spectrum, rated, today),
+            lubrication_rate(points, surface, rated, today),
+            *severity_quantities(spectrum, known, today),
+            *energy_quantities(spectrum, known, today),
+            *where.quantities,
+        ],
         causes=causes,
         baseline=known,
-        notes=[one for one in notes if one],
+        notes=[note for note in notes if note],
     )
 
 
-def compare(
-    baseline: Baseline | str,
-    points: Sequence[ComparablePoint],
-    today: int,
-    surface: Surface,
-    companions: Companions | str,
-) -> Compared:
-    """Return how the days before the end of `today` compare with the baseline."""
-    known = baseline if isinstance(baseline, Baseline) else None
-    model = Model(
-        surface,
-        companions if isinstance(companions, Companions) else None,
-        None if known is None else calibrated(known.points, surface),
+def _missing(kept: Kept) -> str:
+    if kept.baselines and (kept.cells['direction'] != 0).any():
+        return 'not known yet: no log since the baseline was named'
+    return missing_reason(kept.cells)
+
+
+def _last(kept: Kept) -> int:
+    return (int(kept.cells['first_day'].max()) + 1) * DAY - 1
+
+
+def _since(seen: Course, at: int) -> int:
+    """Return the date [ns] since which the condition is latched, 0 for none."""
+    assert seen.history is not None
+    since = seen.states[at].since
+    return int(seen.history.start[since]) if since >= 0 else 0
+
+
+def _drag(here: Look) -> Quantity:
+    if not here.is_known:
+        return unknown(DRAG, '-', f'not known yet: {here.reason}')
+    return Quantity(
+        name=DRAG,
+        value=here.change,
+        low=here.low,
+        high=here.high,
+        evidence=f'the last {here.now} logs against {here.baseline} of the baseline',
     )
-    days = None if known is None else Days(known.points, _since(known, points), model)
-    week, month = (_change(days, today - length) for length in (SHORT, RECENT))
-    change = week or month
-    reason = _reason(baseline, points, recent_of(points, today), change)
-    fits = [] if month is None else fits_of(month, model)
-    causes = [] if month is None else causes_of(month, fits)
-    preload = preload_of(change, model, reason, companions, causes)
-    if change is not None:
-        causes = carrying(causes, fits, change, model)
-    condition = _condition(days, change, month, model)
-    drag = _drag(change, reason)
-    return Compared(model, change, month, reason, drag, preload, condition, causes)
 
 
-def held_points(
-    baseline: Baseline | None, points: Sequence[ComparablePoint], today: int
-) -> tuple[Sequence[ComparablePoint], Sequence[ComparablePoint]]:
-    """Return the points of the baseline, and those of the 28 days that are held against it."""
-    if baseline is None:
-        return (), ()
-    later = _since(baseline, points)
-    return baseline.points, [one for one in later if one.first_day > today - RECENT]
+def _smallest(here: Look | None) -> Quantity:
+    if here is None or not here.is_known:
+        return unknown(SMALLEST, '-', 'not known yet: nothing is compared')
+    size = here.smallest
+    text = f'found within eight weeks in nine of ten cases; {ALARM_RATE}'
+    return Quantity(name=SMALLEST, value=size, low=size, high=size, evidence=text)
 
 
-def _since(baseline: Baseline, points: Sequence[ComparablePoint]) -> list[ComparablePoint]:
-    return [one for one in points if one.first_day * DAY >= baseline.end]
+def _preload(condition: Condition, causes: Sequence[Cause]) -> Quantity:
+    """Return the share of the preload that is left, where its loss alone explains a change."""
+    told = [cause for cause in causes if not cause.excluded]
+    if condition in CHANGED and [cause.size.name for cause in told] == ['preload']:
+        return dataclasses.replace(
+            told[0].size, evidence='a bound by the loss of drag, which follows the preload'
+        )
+    return unknown('preload', '-', 'not known: drag alone does not tell it from other causes')
 
 
-def _change(days: Days | None, after: int) -> Change | None:
-    """Return the change of the days after one, None where it has too few stretches."""
-    change = None if days is None else days.change(after + 1)
-    return change if change is not None and change.stretches >= FEWEST_STRETCHES else None
+def _explained(seen: Course, at: int, surface: Surface) -> tuple[list[Cause], Marks | None]:
+    """Return the causes of a change that is latched and still proven, and marks of inputs."""
+    assert seen.history is not None
+    here, state = seen.looks[at], seen.states[at]
+    if not here.is_known:
+        return [], None
+    history = seen.history.until(at + 1)
+    latest = at == len(seen.looks) - 1
+    proven = state.condition in CHANGED and here.low * here.high > 0.0
+    marks = marks_of(history, here) if latest or proven else None
+    if marks is None or not proven:
+        return [], marks
+    preload = float(surface.header.get('service', {}).get('preload', math.nan))
+    groups = changes_of(history, here)
+    return causes_of(groups, marks, math.log1p(here.change), preload), marks
 
 
-def recent_of(points: Sequence[ComparablePoint], today: int) -> list[ComparablePoint]:
-    """Return the points of the last week, or of the last four where that has too few."""
+def recent_of(points: Sequence[Cell], today: int) -> list[Cell]:
+    """Return the cells of the last week, or of the last four where that has too few."""
     week = [one for one in points if one.first_day + one.days > today - SHORT]
-    if sum(one.stretches for one in week) >= FEWEST_STRETCHES:
+    if len(week) >= FEWEST_CELLS:
         return week
     return [one for one in points if one.first_day + one.days > today - RECENT]
 
 
-def _reason(
-    baseline: Baseline | str,
-    points: Sequence[ComparablePoint],
-    recent: Sequence[ComparablePoint],
-    change: Change | None,
-) -> str:
-    """Return why the change of the drag is not known, empty where it is."""
-    if change is not None:
-        return ''
-    if not points:
-        return 'not known: no steady motion with a measured torque and an independent load yet'
-    if isinstance(baseline, str):
-        return f'not known yet: {baseline}'
-    if not recent:
-        return f'not known: no steady motion with a measured torque in the last {RECENT} days'
-    if not _since(baseline, points):
-        return (
-            'not known yet: no steady motion after the baseline, add later days or name a shorter '
-            'baseline'
-        )
-    return (
-        f'not known yet: fewer than {FEWEST_STRETCHES} stretches at speeds, loads and directions '
-        'that the baseline has, too'
-    )
-
-
-def _drag(change: Change | None, reason: str) -> Quantity:
-    if change is None:
-        return unknown(DRAG, '-', reason)
-    return _interval(DRAG, '-', change.common, change.deviation, change)
-
-
-def _interval(name: str, unit: str, value: float, deviation: float, change: Change) -> Quantity:
-    reach = student(change.freedom) * deviation
-    return Quantity(
-        name=name,
-        unit=unit,
-        value=value,
-        low=value - reach,
-        high=value + reach,
-        evidence=f'{change.stretches} stretches at {len(change.groups)} places of the baseline',
-    )
-
-
-def _condition(
-    days: Days | None, change: Change | None, month: Change | None, model: Model
-) -> Condition:
-    """Return the condition by the interval of the drag, or the pattern of a cause."""
-    if days is None or change is None or month is None:
-        return Condition.UNKNOWN
-    reach = student(change.freedom) * change.deviation
-    certain = is_certain(days, month, model, TOLERANCE)
-    if certain or abs(change.common) - SURE * reach > TOLERANCE:
-        return Condition.WORSE
-    return Condition.NORMAL if abs(change.common) <= reach <= NARROW else Condition.UNKNOWN
-
-
-def _drags(change: Change | None, drag: Quantity, reason: str) -> list[Quantity]:
-    """Return the change of the drag, by direction, and its constant and proportional parts."""
-    parts = None if change is None else parts_of(change)
-    if change is None or parts is None:
-        why = reason or 'not known: all places have one speed'
-        rest = [unknown('constant drag', 'N m', why), unknown('drag per speed', 'N m s/rad', why)]
-    else:
-        (constant, rate), (apart, rate_apart) = parts
-        rest = [
-            _interval('constant drag', 'N m', constant, apart, change),
-            _interval('drag per speed', 'N m s/rad', rate, rate_apart, change),
-        ]
-    ways = [] if change is None else list(_ways(change))
-    return [drag, *ways, *rest]
-
-
-def _ways(change: Change) -> Iterator[Quantity]:
-    """Yield the change in each direction that both have."""
-    for name, sign in (('forward', 1), ('backward', -1)):
-        value, deviation = select(change, [one.direction == sign for one in change.groups])
-        if math.isfinite(value):
-            yield _interval(f'{DRAG} {name}', '-', value, deviation, change)
-
-
-def _others(
-    points: Sequence[ComparablePoint],
-    spectrum: Sequence[SpectrumBin],
-    surface: Surface,
-    baseline: Baseline | None,
-    today: int,
-    settings: HealthSettings,
-) -> list[Quantity]:
-    """Return life, lubrication and energy."""
-    rated = rated_of(surface.header)
-    return [
-        *life_quantities(spectrum, rated, today),
-        lubrication_rate(points, surface, rated, today),
-        *severity_quantities(spectrum, baseline, today),
-        *energy_quantities(spectrum, baseline, today),
-    ]
-
-
-def _notes(
-    surface: Surface,
-    baseline: Baseline | None,
-    recent: Sequence[ComparablePoint],
-    change: Change | None,
-) -> list[str]:
+def _notes(surface: Surface, seen: Course, here: Look | None, marks: Marks | None) -> list[str]:
+    if here is None or seen.history is None:
+        return []
     notes = []
-    if baseline is not None:
-        changes = [] if change is None else change.relative.tolist()
-        notes.append(input_fault(baseline.points, surface))
-        notes.append(changed_screw(baseline, surface.screw_name, changes))
-    if change is not None and len(change.groups) < FEWEST_GROUPS:
+    if not seen.history.load_known:
         notes.append(
-            f'the cause is not known: at fewer than {FEWEST_GROUPS} places every cause fits'
+            'no load is measured and the axis is not declared free: a change of the process force '
+            'counts as one of the friction'
         )
+    if not seen.history.warm:
+        notes.append(
+            'no temperature is measured: the interval is wider by what a season may change'
+        )
+    if marks is None:
+        return notes
+    notes += input_notes(marks)
+    if marks.new_share > NEW_PROGRAMME:
+        notes.append(
+            f'the programme has changed: {100 * marks.new_share:.0f} % of the motion has speeds '
+            'or loads that the baseline lacks'
+        )
+    changes = np.expm1(changes_of(seen.history, here).change).tolist()
+    return [*notes, changed_screw(seen.baseline, surface.screw_name, changes)]
+
+
+def _shaft(surface: Surface, recent: Sequence[Cell]) -> list[str]:
     speed = max((abs(one.speed) for one in recent), default=0.0)
     load = max((abs(opposed(one)) for one in recent), default=0.0)
-    return [*notes, *shaft_notes(surface.header, speed, load)]
+    return shaft_notes(surface.header, speed, load)

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Bands of speed, load, temperature and severity, and periods of days.
+Bands of speed, load and severity, and periods of days.
 
 What lies on a limit belongs to the band above it, by amount; a load of just 50 N is zero. The
 functions of a load and of a severity keep to the subset that compiles.
@@ -10,20 +10,16 @@ functions of a load and of a severity keep to the subset that compiles.
 
 import math
 
-from ballscrew_monitor.health.records import Place, Stretch
 from ballscrew_monitor.health.rows import DAY
-from surrogate.units import ZERO_CELSIUS
 
-SPEED_RATIO = 1.25
-"""Width of a speed band: its upper limit over its lower one [-]; one band begins at 1 rad/s."""
+SPEED_RATIO = 1.2
+"""Width of a speed band: its upper limit over its lower one [-]; 1 rad/s is the middle of one."""
 NO_LOAD, LOAD_RATIO = 50.0, 1.5
 """Load up to which the band is zero [N], and the width of a band beyond [-]."""
 LAST_LOAD = 24
 """Number of the last load band; it has no upper limit."""
 UNKNOWN_LOAD = 99
 """Band of motion under a load that is not known."""
-TEMPERATURE_WIDTH = 5.0
-"""Width of a temperature band [K]; one band begins at 0 degC."""
 SEVERITIES = (1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9)
 """Limits between classes of severity, [W/m2] or [Pa], see `spectrum`."""
 WEEK, MONTH = 7, 28
@@ -35,14 +31,9 @@ FIRST_DAY = 10957
 _SPEED_STEP, _LOAD_STEP = math.log(SPEED_RATIO), math.log(LOAD_RATIO)
 
 
-def place_of(stretch: Stretch) -> Place:
-    """Return the bands of a stretch."""
-    return Place(
-        speed=math.floor(math.log(abs(stretch.speed)) / _SPEED_STEP),
-        load=load_band(stretch.axial_load),
-        temperature=math.floor((stretch.temperature - ZERO_CELSIUS) / TEMPERATURE_WIDTH),
-        direction=1 if stretch.speed > 0.0 else -1,
-    )
+def speed_band(speed: float) -> int:
+    """Return the band of an amount of speed [rad/s] above zero."""
+    return round(math.log(speed) / _SPEED_STEP)
 
 
 def load_band(load: float) -> int:

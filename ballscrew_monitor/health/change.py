@@ -1,264 +1,151 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Change of the friction since the baseline, at equal speed, load and direction.
+Change of the friction by groups of places, and of what the inputs have beside it.
 
-The surface in use adjusts what differs in speed, load and temperature within a group of places. A
-day is the unit of the scatter: all of its stretches share the warmth of the machine.
+A torque constant, a zero or a gain that drifts leaves its mark on the ratio of the directions and
+on the torque over the load, which no friction of a screw does.
 
 """
 
-from collections.abc import Iterator, Sequence
-import dataclasses
-import functools
-import itertools
 import math
+from typing import NamedTuple
 
-from ballscrew_monitor.health.bands import WEEK
-from ballscrew_monitor.health.calibration import EXPECTED
-from ballscrew_monitor.health.model import Model
-from ballscrew_monitor.health.records import ComparablePoint, LoadSource
-from ballscrew_monitor.health.scatter import (
-    Group,
-    group_of,
-    Information,
-    information_of,
-    scatter_of,
-    Seen,
-    seen_of,
-    WORTH,
-)
+from ballscrew_monitor.health.detection import Look
+from ballscrew_monitor.health.history import effects_of, History
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-SLOPE_DOUBT = 0.03
-"""
-What the fitted surface may be wrong by between two temperatures, over the difference [-].
-
-Once for all groups alike, and once for each of them.
-
-"""
-WARMTH, UNMEASURED = 0.25, 10.0
-"""
-Standard deviation of the temperature of the contacts over the measured one, or without [K].
-
-That of the days comes beside it.
-
-"""
-WIPER_DRIFT, SEAL_DRIFT = 0.07, 0.2
-"""
-Standard deviation of the drag of a wiper over months, over that drag [-].
-
-The constant drag, and what it has more near standstill.
-
-"""
-SCATTER_DAYS = 14
-"""Days before today of which the scatter counts, beside those of the baseline."""
-MOST_DOUBLINGS = 12
-"""Times that a week is doubled for another look at all of the days: 80 years."""
+OWN_SCATTER = 0.006
+"""Least scatter of a group of a log beside that of the log [-]."""
+SIGMAS = 4.5
+"""Standard deviations from which a mark of an input counts."""
+LEAST_OFFSET, LEAST_GAIN = 0.03, 0.04
+"""Least offset over the friction, and least change of a gain, that counts [-]."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Change:
+class GroupChange(NamedTuple):
     """
-    Changes of groups that both the baseline and a later time have.
+    Change of ln(friction) of each group that ran before and now [-], with its standard deviation.
 
-    `groups`, the points of their baselines and `change` [N m], positive for more drag, belong
-    together; so do `friction` [N m], what was measured in the baseline, and `covariance` [N2 m2].
-    `common` [-] is the change of all of them with its standard deviation, with `freedom` degrees.
+    The deviation is beside that which all groups share. `friction` [N m], `speed` [rad/s] and
+    `load` [N] are those of the baseline; `time` weighs the groups [-].
 
     """
 
-    groups: tuple[Group, ...]
-    points: tuple[ComparablePoint, ...]
     change: Array
+    deviation: Array
     friction: Array
-    covariance: Array
-    common: float
-    deviation: float
-    freedom: int
-    stretches: int
-
-    @property
-    def relative(self) -> Array:
-        """Return the change of each group over its friction [-]."""
-        return self.change / self.friction
+    speed: Array
+    load: Array
+    time: Array
 
 
-class Days:
-    """What a baseline and the days after it tell of the friction of its groups."""
+class Shift(NamedTuple):
+    """A change of a number of the inputs with its standard deviation; NaN where not known."""
 
-    def __init__(
-        self, before: Sequence[ComparablePoint], later: Sequence[ComparablePoint], model: Model
-    ) -> None:
-        """Take the points of both times; groups without friction in the baseline tell nothing."""
-        self._model = model
-        means = mean_points(telling(before, model))
-        kept = {g: one for g, one in means.items() if model.measured(one) > 0.0}
-        self.groups, self.points = tuple(kept), tuple(kept.values())
-        friction = np.array([model.measured(one) for one in self.points])
-        self._before, self._later = (
-            seen_of(points, self.groups, friction, model) for points in (before, later)
-        )
-        self._measured = all(one.temperature_measured for one in (*before, *later))
+    value: float = math.nan
+    deviation: float = math.nan
 
-    @functools.cached_property
-    def _information(self) -> tuple[dict[int, Information], dict[int, Information]]:
-        """Return what each day tells, of the baseline and later."""
-        late = self._later.where(self._later.day > self._later.day.max() - SCATTER_DAYS)
-        scatter = scatter_of((self._before, late))
-        first, last = (
-            {int(day.day[0]): information_of(day, scatter) for day in seen.days()}
-            for seen in (self._before, self._later)
-        )
-        return first, last
-
-    def splits(self) -> Iterator[Change]:
-        """Yield the changes of the last week, two, four and so on since all days before."""
-        day = self._later.day
-        lengths = [WEEK * 2**power for power in range(MOST_DOUBLINGS)] if day.size else []
-        for length in lengths:
-            since = int(day.max()) - length + 1
-            change = self.change(since, joined=True)
-            if change is not None:
-                yield change
-            if not (day < since).any():
-                return
-
-    def change(self, since: int, *, joined: bool = False) -> Change | None:
-        """
-        Return the change of the days from `since` on, None where they have no group in common.
-
-        Before are the days of the baseline, or, if `joined`, all days before `since`.
-
-        """
-        is_now = self._later.day >= since
-        now = self._later.where(is_now)
-        earlier = self._later.where(~is_now & joined)
-        common = np.unique(now.group)
-        common = common[np.isin(common, self._before.group)]
-        if not common.size:
-            return None
-        first, last = self._information
-        days = [last[day] for day in np.unique(now.day).tolist()]
-        past = [last[day] for day in np.unique(earlier.day).tolist()]
-        old, old_covariance = _means([*first.values(), *past], common)
-        new, new_covariance = _means(days, common)
-        friction = self._before.friction[common]
-        change = new - old
-        covariance = old_covariance + new_covariance + self._doubt(earlier, now, common)
-        weights = friction / friction.sum()
-        relative = covariance / np.outer(friction, friction)
-        return Change(
-            groups=tuple(self.groups[at] for at in common),
-            points=tuple(self.points[at] for at in common),
-            change=change,
-            friction=friction,
-            covariance=covariance,
-            common=float(weights @ (change / friction)),
-            deviation=math.sqrt(float(weights @ relative @ weights)),
-            freedom=len(np.unique(self._before.day)) - 1 + WORTH,
-            stretches=int(now.stretches.sum()),
-        )
-
-    def _doubt(self, earlier: Seen, now: Seen, common: NDArray[np.int64]) -> Array:
-        """
-        Return the covariance of what groups share beside the days [N2 m2].
-
-        What the fit leaves open between both conditions, and what may come and go: warmth of the
-        contacts by another programme, drag of the wiper.
-
-        """
-        calibration = self._model.calibration
-        slopes, before = (
-            np.stack([one.mean(slope)[common] for slope in one.slopes.T], axis=1)
-            for one in (now, self._before)
-        )
-        apart = slopes - before
-        drag = math.hypot(calibration.values[1], EXPECTED[1])
-        warmth = WARMTH if self._measured else UNMEASURED
-        drifting = slopes * [0.0, WIPER_DRIFT * drag, SEAL_DRIFT * drag, warmth]
-        adjusted = SLOPE_DOUBT * (
-            now.mean(now.modelled) - self._before.mean(self._before.modelled)
-        )
-        adjusted = adjusted[common]
-        fitted = apart @ np.array(calibration.covariance) @ apart.T
-        alike = np.outer(adjusted, adjusted) + np.diag(adjusted**2)
-        return np.asarray(fitted + drifting @ drifting.T + alike)
+    def is_proven(self, least: float) -> bool:
+        """Return True if the shift is at least as large, and far beyond its scatter."""
+        size = abs(self.value)
+        return math.isfinite(size) and size > max(least, SIGMAS * self.deviation)
 
 
-def change_between(
-    before: Sequence[ComparablePoint], now: Sequence[ComparablePoint], model: Model
-) -> Change | None:
-    """Return the change from `before` to `now`, None where no group has points of both."""
-    return Days(before, now, model).change(0)
-
-
-def parts_of(change: Change) -> tuple[Array, Array] | None:
+class Marks(NamedTuple):
     """
-    Return constant [N m] and rate [N m s] of the change over the speed, and their deviations.
+    What else has changed since the baseline.
 
-    Weighted least squares; None where all groups have one speed.
+    `offset` is the half sum of the torques of both directions over the friction [-], `gain` the
+    logarithm of the torque over the measured load [-], `standstill` the torque at rest over the
+    friction [-]; `new_share` [-] is that of places that the baseline lacks.
 
     """
-    speeds = np.array([abs(one.speed) for one in change.points])
-    if np.ptp(speeds) < 0.25 * speeds.max():
-        return None
-    design = np.stack([np.ones_like(speeds), speeds], axis=1)
-    inverse = np.linalg.inv(change.covariance)
-    normal = np.linalg.inv(design.T @ inverse @ design)
-    found = normal @ design.T @ inverse @ change.change
-    return found, np.sqrt(np.diag(normal))
+
+    offset: Shift
+    gain: Shift
+    standstill: Shift
+    new_share: float
 
 
-def select(change: Change, chosen: Sequence[bool]) -> tuple[float, float]:
-    """Return the mean relative change of some groups with its deviation [-], NaN for none."""
-    mask = np.array(chosen)
-    if not mask.any():
-        return math.nan, math.nan
-    friction = change.friction[mask]
-    weights = friction / friction.sum()
-    relative = change.covariance[np.ix_(mask, mask)] / np.outer(friction, friction)
-    value = float(weights @ change.relative[mask])
-    return value, math.sqrt(float(weights @ relative @ weights))
-
-
-def _means(days: Sequence[Information], common: NDArray[np.int64]) -> tuple[Array, Array]:
-    """Return the mean residual of groups [N m] with their covariance [N2 m2]."""
-    matrix, pull = (sum(parts) for parts in zip(*days))
-    known = np.flatnonzero(np.diag(matrix) > 0.0)
-    inverse = np.linalg.inv(matrix[np.ix_(known, known)])
-    chosen = np.searchsorted(known, common)
-    return (inverse @ pull[known])[chosen], inverse[np.ix_(chosen, chosen)]
-
-
-def telling(points: Sequence[ComparablePoint], model: Model) -> list[ComparablePoint]:
-    """Return the points that tell of friction: an independent load, within the surface."""
-    free = [one for one in points if one.load_source is not LoadSource.DERIVED]
-    return list(itertools.compress(free, np.isfinite(model.friction(free))))
-
-
-def mean_points(points: Sequence[ComparablePoint]) -> dict[Group, ComparablePoint]:
-    """Return the mean point of each group, in order."""
-    found: dict[Group, list[ComparablePoint]] = {}
-    for one in points:
-        found.setdefault(group_of(one), []).append(one)
-    return {group: _mean_point(found[group]) for group in sorted(found)}
-
-
-def _mean_point(points: Sequence[ComparablePoint]) -> ComparablePoint:
-    counts = [one.stretches for one in points]
-
-    def mean(name: str) -> float:
-        return float(np.average([getattr(one, name) for one in points], weights=counts))
-
-    return dataclasses.replace(
-        points[0],
-        speed=mean('speed'),
-        axial_load=mean('axial_load'),
-        temperature=mean('temperature'),
-        motor_torque=mean('motor_torque'),
-        residual=math.nan,
-        temperature_measured=all(one.temperature_measured for one in points),
+def changes_of(history: History, look: Look) -> GroupChange:
+    """Return the change of each group of a history, by the logs of baseline and now of a look."""
+    effects = effects_of(history)
+    before, now = parts_of(history, look)
+    values = np.log(np.where(history.weight > 0.0, history.friction, np.nan))
+    slope = look.slope if history.warm else 0.0
+    values = values - slope * (history.temperature - np.nanmean(history.temperature))
+    seen = np.isfinite(values)
+    both = seen[before].any(axis=0) & seen[now].any(axis=0)
+    rest = effects.rest[:, both]
+    free = max(int(np.isfinite(rest).sum() - both.sum() - len(history.start)), 1)
+    own = max(math.sqrt(float(np.nansum(rest**2)) / free), OWN_SCATTER)
+    counts = [1.0 / seen[part][:, both].sum(axis=0) for part in (before, now)]
+    return GroupChange(
+        change=_mean(values[now][:, both]) - _mean(values[before][:, both]),
+        deviation=own * np.sqrt(counts[0] + counts[1]),
+        friction=np.exp(_mean(values[before][:, both])),
+        speed=_mean(history.speed[before][:, both]),
+        load=_mean(history.load[before][:, both]),
+        time=history.weight[now][:, both].sum(axis=0),
     )
+
+
+def _mean(values: Array) -> Array:
+    return np.asarray(np.nanmean(values, axis=0))
+
+
+def parts_of(history: History, look: Look) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return which logs are those of the baseline and of now of a look."""
+    time = history.time
+    before, now = time <= look.baseline_end, time >= look.now_begin
+    return before, now & (time <= look.time)
+
+
+def marks_of(history: History, look: Look) -> Marks:
+    """Return what else has changed by a look."""
+    before, now = parts_of(history, look)
+    friction = float(np.nanmedian(history.friction[before]))
+    free = np.array([group.load == 0 for group in history.groups])
+    weight = history.weight * free * np.isfinite(history.offset)
+    with np.errstate(invalid='ignore', divide='ignore'):
+        offset = (weight * np.nan_to_num(history.offset)).sum(axis=1) / weight.sum(axis=1)
+    seen = history.weight > 0.0
+    known = seen[before].any(axis=0)
+    total = float(history.weight[now].sum())
+    return Marks(
+        offset=shift(offset / friction, before, now),
+        gain=shift(np.log(np.maximum(gains_of(history), 1e-3)), before, now),
+        standstill=shift(history.standstill / friction, before, now),
+        new_share=float(history.weight[now][:, ~known].sum()) / total if total else 0.0,
+    )
+
+
+def gains_of(history: History) -> Array:
+    """Return the torque over the load of each log, over that of an ideal screw [-]."""
+    place = {group: at for at, group in enumerate(history.groups)}
+    columns = []
+    for group, at in place.items():
+        free = group._replace(load=0, opposes=False)
+        if group.load and group.opposes and free in place:
+            torque = history.friction[:, at] - history.friction[:, place[free]]
+            columns.append(1.0 + torque / history.ideal[:, at])
+    if not columns:
+        return np.full(len(history.start), np.nan)
+    table = np.array(columns)
+    seen = np.isfinite(table)
+    count = seen.sum(axis=0)
+    mean = np.nansum(table, axis=0) / np.maximum(count, 1)
+    return np.asarray(np.where(count > 0, mean, np.nan))
+
+
+def shift(values: Array, before: NDArray[np.bool_], now: NDArray[np.bool_]) -> Shift:
+    """Return the change of the mean of logs now against those before, by their scatter."""
+    first, last = (part[np.isfinite(part)] for part in (values[before], values[now]))
+    if len(first) < 3 or len(last) < 2:
+        return Shift()
+    spread = math.sqrt(float(np.var(first, ddof=1) + np.var(last, ddof=1)) / 2.0 + 0.005**2)
+    deviation = spread * math.sqrt(1.0 / len(first) + 1.0 / len(last))
+    return Shift(float(last.mean() - first.mean()), deviation)

@@ -6,7 +6,14 @@ import functools
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.health.fingerprint import Recogniser
-from ballscrew_monitor.health.gather import finish, GatherMemory, GatherSettings, step, step_many
+from ballscrew_monitor.health.gather import (
+    finish,
+    finish_rest,
+    GatherMemory,
+    GatherSettings,
+    step,
+    step_many,
+)
 from ballscrew_monitor.health.records import SpectrumBin, Stretch
 from ballscrew_monitor.health.spectrum import (
     count,
@@ -106,6 +113,7 @@ class Collector:
         if rows_end:
             ended = finish(self._settings, self._memory, self._stretch)
             found = self._run.take(self._taken(ended)) + self._run.finish()
+            found += self._taken(finish_rest(self._memory, self._stretch))
         return Collected(found, take_bins(self._sums))
 
 

@@ -13,7 +13,7 @@ import dataclasses
 import math
 from typing import Any, TypeVar
 
-from ballscrew_monitor.health.records import ComparablePoint, SpectrumBin
+from ballscrew_monitor.health.records import Cell, SpectrumBin
 from surrogate.files import InputError
 from surrogate.formulas.life import (
     combined_damage,
@@ -24,7 +24,7 @@ from surrogate.formulas.life import (
 from surrogate.units import TURN
 
 NAN = math.nan
-Item = TypeVar('Item', SpectrumBin, ComparablePoint)
+Item = TypeVar('Item', SpectrumBin, Cell)
 WITHIN_BAND = 1.13
 """Largest mean cube of loads in a band, whose ends differ by 1.5, over the cube of their mean."""
 SHARED_LEAST = 2.0 ** (1 / SLOPE - 1)

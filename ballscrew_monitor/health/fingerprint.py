@@ -52,6 +52,8 @@ class Recogniser:
         return [self._freed(one) for one in held] if known else held
 
     def _next(self, stretch: Stretch) -> list[Stretch]:
+        if stretch.speed == 0.0:
+            return [stretch]
         if self._held and self._goes_on(stretch):
             self._held.append(stretch)
             return []

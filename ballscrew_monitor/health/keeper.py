@@ -5,21 +5,13 @@
 import dataclasses
 from typing import Any
 
-from ballscrew_monitor.health.assess import assess, HealthSettings
-from ballscrew_monitor.health.bands import day_of
-from ballscrew_monitor.health.baseline import HOUR, in_force, motion_by_day, named
+from ballscrew_monitor.health.assess import assess, HealthSettings, Kept
+from ballscrew_monitor.health.baseline import HOUR, named
 from ballscrew_monitor.health.collect import Collected
-from ballscrew_monitor.health.companions import Companions
-from ballscrew_monitor.health.points import add, clock_objection
-from ballscrew_monitor.health.records import (
-    Baseline,
-    ComparablePoint,
-    Health,
-    KeptHealth,
-    SpectrumBin,
-)
+from ballscrew_monitor.health.records import Baseline, Cell, Health, KeptHealth, SpectrumBin
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.store import HealthStore
+from ballscrew_monitor.health.summary import add, array_of, clock_objection
 from surrogate.files import InputError
 from surrogate.surface import Surface
 
@@ -39,15 +31,15 @@ class HealthKeeper:
     def __init__(self, axis: str, store: HealthStore) -> None:
         """Use a `store` that others open."""
         self._axis, self._store = axis, store
-        self._points: dict[Any, ComparablePoint] = {}
+        self._cells: dict[Any, Cell] = {}
         self._bins: list[SpectrumBin] = []
         self._notes: dict[str, None] = {}
         self._aged: int | None = None
 
-    def gather(self, found: Collected, surface: Surface, today: int) -> None:
-        """Take what has ended; what is not of `today`, in days since 1970, does not count."""
+    def gather(self, found: Collected, today: int) -> None:
+        """Take what has ended; motion of another day than `today`, since 1970, does not count."""
         for stretch in found.stretches:
-            self._note(add(self._points, stretch, surface, today))
+            self._note(add(self._cells, stretch, today=today))
         for one in found.bins:
             why = clock_objection(one.first_day, today)
             self._note(why)
@@ -57,37 +49,21 @@ class HealthKeeper:
     def keep(self, today: int) -> None:
         """Write what waits; raises InputError and sqlite3.Error, and it goes on waiting."""
         with self._store.lock:
-            if self._points or self._bins:
-                self._store.add(self._axis, self._points.values(), self._bins)
-                self._points, self._bins = {}, []
+            if self._cells or self._bins:
+                self._store.add(self._axis, self._cells.values(), self._bins)
+                self._cells, self._bins = {}, []
             if self._aged != today:
                 for said in self._store.age(self._axis, today):
                     self._note(said)
                 self._aged = today
 
-    def assess(
-        self,
-        now: int,
-        surface: Surface,
-        companions: Companions | str,
-        settings: HealthSettings,
-        *,
-        over: float,
-    ) -> Health:
-        """
-        Return the health at `now` [ns] by all that is kept.
-
-        A baseline that is still to be learned, over a motion of `over` [s], is kept once it is.
-
-        """
+    def assess(self, now: int, surface: Surface, settings: HealthSettings) -> Health:
+        """Return the health at `now` [ns] by all that is kept."""
         with self._store.lock:
             kept = self._store.read(self._axis)
-            baseline = in_force(kept, over=over, today=day_of(now), screw=surface.screw_name)
-            if isinstance(baseline, Baseline) and baseline is not kept.baseline:
-                self._store.keep_baseline(self._axis, baseline)
         notes = (*kept.notes, *self._notes)
         self._notes.clear()
-        health = assess_kept(self._axis, now, kept, baseline, surface, companions, settings)
+        health = assess(self._axis, kept_of(kept), surface, settings, now=now)
         return dataclasses.replace(health, notes=(*health.notes, *notes))
 
     def name_baseline(
@@ -96,7 +72,7 @@ class HealthKeeper:
         """
         Name a baseline at `now` [ns]; return what was done. Raises InputError.
 
-        It is that of the days from `begin` to `end` [ns]; without both it is learned from now on,
+        It is that of the logs from `begin` to `end` [ns]; without both it is learned from now on,
         after a motion of `running_in` [s].
 
         """
@@ -110,8 +86,7 @@ class HealthKeeper:
         with self._store.lock:
             if begin or end:
                 kept = self._store.read(self._axis)
-                motion = motion_by_day(kept.spectrum)
-                baseline = named(kept.points, begin, end, motion=motion, **made)
+                baseline = named(array_of(kept.cells), begin, end, **made)
             else:
                 baseline = Baseline(begin=now, end=0, left_out=running_in, **made)
             self._store.keep_baseline(self._axis, baseline)
@@ -125,17 +100,6 @@ class HealthKeeper:
                 del self._notes[next(iter(self._notes))]
 
 
-def assess_kept(
-    axis: str,
-    now: int,
-    kept: KeptHealth,
-    baseline: Baseline | str,
-    surface: Surface,
-    companions: Companions | str,
-    settings: HealthSettings,
-) -> Health:
-    """Return the health of an axis at `now` [ns] by what is kept of it until then."""
-    today = day_of(now)
-    points = [one for one in kept.points if one.first_day <= today]
-    spectrum = [one for one in kept.spectrum if one.first_day <= today]
-    return assess(axis, now, baseline, points, spectrum, surface, companions, settings)
+def kept_of(kept: KeptHealth) -> Kept:
+    """Return all that is kept of an axis as arrays."""
+    return Kept(array_of(kept.cells), kept.spectrum, kept.baselines)

@@ -17,7 +17,7 @@ from ballscrew_monitor.core.conversions import Direction, opposing_load
 from ballscrew_monitor.health.damage import Rated, recent
 from ballscrew_monitor.health.energy import FEWEST_DAYS, student, within
 from ballscrew_monitor.health.life import HOUR, KNOWN_SHARE, NO_RATING, RECENT, unknown
-from ballscrew_monitor.health.records import Baseline, ComparablePoint, Quantity, SpectrumBin
+from ballscrew_monitor.health.records import Baseline, Cell, Quantity, SpectrumBin
 from surrogate.formulas.life import (
     fatigue_limit_iso_281_2007,
     life_factor_iso_281_2007,
@@ -40,7 +40,7 @@ NORMAL_BOUNDARY, BOUNDARY_SLACK = 0.2, 0.1
 
 
 def lubrication_rate(
-    points: Sequence[ComparablePoint], surface: Surface, rated: Rated | None, today: int
+    points: Sequence[Cell], surface: Surface, rated: Rated | None, today: int
 ) -> Quantity:
     """
     Return how much faster the film lets life pass now than on all days [-].
@@ -73,7 +73,7 @@ def lubrication_rate(
     )
 
 
-def _film_reason(points: Iterable[ComparablePoint], films: Mapping[int, float], when: str) -> str:
+def _film_reason(points: Iterable[Cell], films: Mapping[int, float], when: str) -> str:
     points = list(points)
     time = sum(one.duration for one in points)
     known = sum(one.duration for one in points if math.isfinite(films[id(one)]))
@@ -88,7 +88,7 @@ def _film_reason(points: Iterable[ComparablePoint], films: Mapping[int, float], 
 
 
 def _mean_slowness(
-    points: Iterable[ComparablePoint],
+    points: Iterable[Cell],
     films: Mapping[int, float],
     rated: Rated,
     limit_share: float,
@@ -118,13 +118,13 @@ def _cases() -> Iterator[tuple[float, float]]:
             yield share, slack
 
 
-def _film_ratio(surface: Surface, point: ComparablePoint) -> float:
+def _film_ratio(surface: Surface, point: Cell) -> float:
     return surface.lookup(abs(point.speed), opposed(point), point.temperature).film_ratio
 
 
-def opposed(point: ComparablePoint) -> float:
+def opposed(point: Cell) -> float:
     """Return the load of a point that opposes its motion [N]."""
-    positive = point.place.direction > 0
+    positive = point.direction > 0
     return opposing_load(point.axial_load, Direction.POSITIVE if positive else Direction.NEGATIVE)
 
 
@@ -166,7 +166,7 @@ class BoundaryShares(NamedTuple):
 
 
 def usual_boundary(
-    points: Sequence[ComparablePoint], baseline: Baseline | None, surface: Surface, today: int
+    points: Sequence[Cell], baseline: Baseline | None, surface: Surface, today: int
 ) -> BoundaryShares | None:
     """
     Return the boundary running of an axis for which it is normal, None where it is not.
@@ -175,9 +175,12 @@ def usual_boundary(
 
     """
     latest = recent(points, today, RECENT)
-    if baseline is None or not latest or not baseline.points:
+    if baseline is None:
         return None
-    before, now = (_boundary_share(some, surface) for some in (baseline.points, latest))
+    first = [one for one in points if baseline.begin <= one.start < baseline.end]
+    if not latest or not first:
+        return None
+    before, now = (_boundary_share(some, surface) for some in (first, latest))
     if not before >= NORMAL_BOUNDARY or not now <= before + BOUNDARY_SLACK:
         return None
     return BoundaryShares(before, now)
@@ -239,7 +242,7 @@ def _times(bins: Iterable[SpectrumBin]) -> list[float]:
     return [sum(column) for column in columns]
 
 
-def _boundary_share(points: Iterable[ComparablePoint], surface: Surface) -> float:
+def _boundary_share(points: Iterable[Cell], surface: Surface) -> float:
     """Return the share of the time of points with a known film that is in the boundary regime."""
     boundary = known = 0.0
     for one in points:

@@ -8,26 +8,27 @@ against itself. Beside its peers it does not.
 
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 import dataclasses
-from itertools import permutations
+import math
 import statistics
+from typing import Any
 
-from ballscrew_monitor.health.assess import TOLERANCE
-from ballscrew_monitor.health.change import Change, change_between
-from ballscrew_monitor.health.energy import student
-from ballscrew_monitor.health.model import Model
-from ballscrew_monitor.health.records import ComparablePoint, Quantity
+from ballscrew_monitor.health.history import effects_of, history_of
+from ballscrew_monitor.health.records import Quantity, TOLERANCE
 from ballscrew_monitor.health.words import percent
-from surrogate.surface import Surface
+import numpy as np
+from numpy.typing import NDArray
 
 FEWEST_PEERS = 2
 """Other axes with which one axis is compared: with a single one, either may have changed."""
+LATEST = 4
+"""Logs of an axis that count as now."""
 LEAST_COMMON = 0.5
-"""Share of the stretches of an axis at places that a peer has, too, from which on they compare."""
+"""Share of the groups of an axis that a peer has, too, from which on they compare."""
+OWN_DOUBT = 0.02
+"""Standard deviation of the friction of an axis from log to log, at least [-]."""
 NAME = 'friction beside peers'
-
-Pairs = Mapping[tuple[str, str], Change]
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -57,52 +58,61 @@ class Peer:
         )
 
 
-def ranked(points: Mapping[str, Sequence[ComparablePoint]], surface: Surface) -> list[Peer]:
+def ranked(cells: Mapping[str, NDArray[Any]], lead: float) -> list[Peer]:
     """
     Return axes with at least two peers, the one that differs most first.
 
-    `points` of equal days by axis, all of the screw of `surface`.
+    `cells` are those of the logs by axis, arrays of CELL, all of one screw with a `lead` [m].
 
     """
-    pairs = {
-        (peer, axis): change
-        for peer, axis in permutations(points, 2)
-        if (change := _compared(points[peer], points[axis], surface)) is not None
-    }
-    peers = (_peer(axis, pairs) for axis in points)
+    levels = {axis: level for axis, own in cells.items() if (level := _level(own, lead))}
+    peers = [_peer(axis, levels) for axis in levels]
     known = [one for one in peers if one is not None]
     return sorted(known, key=lambda one: (not one.is_apart, -abs(one.difference.value)))
 
 
-def _compared(
-    peer: Sequence[ComparablePoint], axis: Sequence[ComparablePoint], surface: Surface
-) -> Change | None:
-    """Return how an axis differs from a peer, None where programmes have little in common."""
-    change = change_between(peer, axis, Model(surface))
-    total = sum(one.stretches for one in axis)
-    return None if change is None or change.stretches < LEAST_COMMON * total else change
+def _level(cells: NDArray[Any], lead: float) -> dict[Any, float]:
+    """Return ln(friction) of the latest logs by group, at one temperature for all axes."""
+    history = history_of(cells, lead)
+    if history is None:
+        return {}
+    effects = effects_of(history)
+    now = float(np.mean(effects.logs.effect[-LATEST:]))
+    seen = (history.weight[-LATEST:].sum(axis=0) > 0.0).tolist()
+    pairs = zip(history.groups, effects.groups, seen, strict=True)
+    return {group: float(level) + now for group, level, known in pairs if known}
 
 
-def _peer(axis: str, pairs: Pairs) -> Peer | None:
-    own = {peer: change for (peer, other), change in pairs.items() if other == axis}
-    if len(own) < FEWEST_PEERS:
+def _difference(own: Mapping[Any, float], other: Mapping[Any, float]) -> float:
+    """Return the mean difference of ln(friction) in common groups [-], NaN for too few."""
+    common = [group for group in own if group in other]
+    if len(common) < LEAST_COMMON * len(own):
+        return math.nan
+    return statistics.mean(own[group] - other[group] for group in common)
+
+
+def _peer(axis: str, levels: Mapping[str, Mapping[Any, float]]) -> Peer | None:
+    others = {
+        peer: difference
+        for peer in levels
+        if peer != axis and math.isfinite(difference := _difference(levels[axis], levels[peer]))
+    }
+    if len(others) < FEWEST_PEERS:
         return None
-    among = [
-        abs(change.common) for (one, other), change in pairs.items() if {one, other} <= own.keys()
-    ]
-    value = statistics.median(change.common for change in own.values())
-    reach = max(student(change.freedom) * change.deviation for change in own.values())
-    spread = max(among, default=0.0)
+    apart = (abs(value - other) for value in others.values() for other in others.values())
+    spread = max(apart)
+    value = statistics.median(others.values())
+    reach = 1.96 * OWN_DOUBT * math.sqrt(1.0 + 1.0 / len(others))
     return Peer(
         axis=axis,
         difference=Quantity(
             name=NAME,
-            value=value,
-            low=value - reach,
-            high=value + reach,
-            evidence=f'{sum(one.stretches for one in own.values())} stretches at common places',
+            value=math.expm1(value),
+            low=math.expm1(value - reach),
+            high=math.expm1(value + reach),
+            evidence=f'{len(levels[axis])} places, the last {LATEST} logs',
         ),
-        peers=len(own),
-        range_of_peers=spread,
+        peers=len(others),
+        range_of_peers=math.expm1(spread),
         is_apart=abs(value) - reach > max(TOLERANCE, spread),
     )

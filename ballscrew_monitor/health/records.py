@@ -1,11 +1,11 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Records of health: stretches of motion, comparable points, baselines, and what is said of them.
+Records of health: stretches of motion, summaries of logs, baselines, and what is said of them.
 
-Rows of the judgement become stretches of steady motion, stretches of one day and one place become
-a comparable point, points before and after become a change with an interval. Torques and loads are
-in the machine frame, as measured at the screw.
+Rows of the judgement become stretches of steady motion, and stretches of one log and one place
+become a cell. The cells of a log are its summary, a few kB, which is all that is assessed. Torques
+and loads are in the machine frame, as measured at the screw.
 
 """
 
@@ -13,9 +13,11 @@ from collections.abc import Sequence
 import dataclasses
 import enum
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from numpy.typing import NDArray
 from surrogate.store import MAY_BE_NAN
+from surrogate.surface.records import dtype_of
 
 NAN = math.nan
 TOLERANCE = 0.03
@@ -30,22 +32,14 @@ class LoadSource(enum.IntEnum):
     FREE = 2  # recognised or declared free of process force
 
 
-class Place(NamedTuple):
-    """Bands of speed |w|, axial load and temperature, and the direction of motion, 1 or -1."""
-
-    speed: int
-    load: int
-    temperature: int
-    direction: int
-
-
 @dataclasses.dataclass(kw_only=True, slots=True)
 class Stretch:
     """
-    A stretch of steady motion: means over its samples, a record of numbers.
+    A stretch of steady motion or of rest: means over its samples, a record of numbers.
 
-    start [ns], duration [s]; speed [rad/s], signed; axial_load [N]; temperature [K], measured or
-    assumed; motor_torque [N m]; `load_source` is the number of a LoadSource.
+    start [ns], duration [s]; speed [rad/s], signed, 0 at rest, and its `ripple` from sample to
+    sample [-]; axial_load [N]; temperature [K], measured or assumed; motor_torque [N m];
+    `load_source` is the number of a LoadSource.
 
     """
 
@@ -53,51 +47,97 @@ class Stretch:
     duration: float = 0.0
     samples: int = 0
     speed: float = NAN
+    ripple: float = NAN
     axial_load: float = NAN
     temperature: float = NAN
     motor_torque: float = NAN
-    load_source: int = LoadSource.MEASURED
+    load_source: int = int(LoadSource.MEASURED)
     temperature_measured: bool = True
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class ComparablePoint:
+class CellKind(enum.IntEnum):
+    """What a cell of a summary holds; the values never change."""
+
+    MOTION = 0  # steady motion in one band of speed and load, in one direction
+    STANDSTILL = 1  # torque and load at rest
+    STROKE = 2  # free motion in one tenth of the stroke, numbered by `speed_band`
+    REVERSAL = 3  # lost motion at reversals, `backlash`
+    NOTHING = 4  # no motion that counts, for the reason `missing`
+
+
+class Missing(enum.IntEnum):
+    """Why a log has no steady motion that tells of friction; the values never change."""
+
+    NONE = 0
+    TORQUE = 1  # no torque was measured while the axis moved
+    STEADY = 2  # motion with a measured torque, none of it steady
+    MOTION = 3  # the axis did not move
+    CLOCK = 4  # the clock was not set, or leapt
+
+
+@dataclasses.dataclass(kw_only=True, slots=True)
+class Cell:
     """
-    The stretches of one place and one period of days under one surface.
+    A cell of the summary of a log: its stretches in one place, numbers alone.
 
-    Means over `stretches`, each counted once: speed [rad/s], signed; axial_load [N];
-    temperature [K]; motor_torque [N m], and `residual` [N m], what it exceeds the torque of that
-    surface by. `torque_squares` [N2 m2] is the sum of the squared deviations of the residual from
-    its mean. `first_day` counts days since 1970 (UTC); a period has 1, 7 or 28 `days`. `duration`
-    [s] is the sum; `surface` begins the hash of the surface.
+    `start` [ns] is that of the log and tells logs apart; a node has one log a day. `first_day`
+    counts days since 1970 (UTC); older logs are merged to periods of 7 or 28 `days`. The place is
+    the bands of speed |w| and of load and the direction of motion, 1 or -1. `load_source` is the
+    number of a LoadSource. Means over the `duration` [s]: speed [rad/s], signed; its `ripple`
+    about the mean of its stretch [-]; axial_load [N]; temperature [K], assumed where it was not
+    `temperature_measured`; motor_torque [N m]. `torque_squares` [N2 m2] is the sum over stretches
+    of the squared deviation of their torque. `backlash` [m].
 
     """
 
-    first_day: int
+    start: int = 0
+    first_day: int = 0
     days: int = 1
-    place: Place
-    surface: str
-    stretches: int
-    duration: float
-    speed: float
-    axial_load: float
-    temperature: float
-    motor_torque: float
-    residual: float = NAN
-    torque_squares: float = 0.0
-    load_source: LoadSource = LoadSource.MEASURED
+    kind: int = int(CellKind.MOTION)
+    speed_band: int = 0
+    load_band: int = 0
+    direction: int = 0
+    load_source: int = int(LoadSource.MEASURED)
     temperature_measured: bool = True
+    missing: int = int(Missing.NONE)
+    stretches: int = 0
+    duration: float = 0.0
+    speed: float = NAN
+    ripple: float = NAN
+    axial_load: float = NAN
+    temperature: float = NAN
+    motor_torque: float = NAN
+    torque_squares: float = 0.0
+    backlash: float = NAN
+
+
+CELL = dtype_of(Cell)
+"""Type of an array of cells: each column of a file of summaries is one of its fields."""
+
+
+class LogSummary(NamedTuple):
+    """
+    The summary of one log of one axis: `cells` is an array of CELL.
+
+    `machine` and `axis` are the key of a history; `start` and `end` [ns] are those of the log.
+
+    """
+
+    machine: str
+    axis: str
+    start: int
+    end: int
+    cells: NDArray[Any]
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Baseline:
     """
-    What normal is: the stretches from `begin` to `end` [ns], and why they were chosen.
+    The motion that counts as normal, from `begin` to `end` [ns], and the reason it was chosen.
 
-    `named_at` [ns] is when it was named, 0 for one that was learned over the first hours in
-    motion. `points` are kept with it, so that merging of older days leaves it as it is. `screw`
-    is the datasheet of the surface in use. With an `end` of 0 it is still to be learned from
-    `begin` on, after a motion of `left_out` [s].
+    `named_at` [ns] is when it was named, 0 for one that was learned over the first logs. With an
+    `end` of 0 it is learned from `begin` on, after a motion of `left_out` [s]: a service event.
+    `screw` is the datasheet of the surface then in use.
 
     """
 
@@ -107,15 +147,15 @@ class Baseline:
     named_at: int = 0
     screw: str = ''
     left_out: float = 0.0
-    points: tuple[ComparablePoint, ...] = ()
 
 
 class Condition(enum.IntEnum):
-    """Normal or worse, against the baseline."""
+    """Condition of an axis against its baseline; the values never change."""
 
     UNKNOWN = 0
-    NORMAL = 1
-    WORSE = 2
+    NORMAL = 1  # the interval of the drag holds zero, and is narrow
+    WORSE = 2  # it excludes the tolerance
+    SLIGHTLY_CHANGED = 3  # it excludes zero, but not the tolerance
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -139,12 +179,12 @@ class Quantity:
 
     @property
     def is_known(self) -> bool:
-        """Tell whether there is an interval."""
+        """Return True if there is an interval."""
         return math.isfinite(self.low) and math.isfinite(self.high)
 
 
 class CauseCode(enum.IntEnum):
-    """What may have changed; the values never change."""
+    """Cause of a change; the values never change."""
 
     PRELOAD_LOST = 1
     OIL_THINNER = 2
@@ -208,7 +248,7 @@ class KeptHealth(NamedTuple):
 
     """
 
-    points: tuple[ComparablePoint, ...] = ()
+    cells: tuple[Cell, ...] = ()
     spectrum: tuple[SpectrumBin, ...] = ()
     baselines: tuple[Baseline, ...] = ()
     notes: tuple[str, ...] = ()
@@ -224,8 +264,9 @@ class Health:
     """
     What is said of an axis at the time `stamp` [ns].
 
-    `quantities` by name; causes in the order of their weight, the excluded ones last; `verdict`
-    is one sentence, `advice` what to do, empty for nothing; `notes` tell what is not known, why.
+    `since` [ns] is the date of the change that is latched, 0 for none. `quantities` by name;
+    causes in the order of their weight, the excluded ones last; `verdict` is one sentence,
+    `advice` what to do, empty for nothing; `notes` tell what is not known, and why.
 
     """
 
@@ -233,6 +274,7 @@ class Health:
     stamp: int
     condition: Condition
     verdict: str
+    since: int = 0
     advice: str = ''
     quantities: Sequence[Quantity] = ()
     causes: Sequence[Cause] = ()

@@ -18,7 +18,7 @@ from ballscrew_monitor.core.advice import Advisor
 from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.lubrication import opposed
-from ballscrew_monitor.health.records import ComparablePoint
+from ballscrew_monitor.health.records import Cell
 from surrogate.formulas.grades import equivalent_temperature, ISO_VG
 from surrogate.surface import Surface, Validity
 from surrogate.units import MICRO, MINUTE, TURN, ZERO_CELSIUS
@@ -79,11 +79,7 @@ _WORDS = {
 
 
 def remedies_of(
-    points: Sequence[ComparablePoint],
-    surface: Surface,
-    limits: Limits,
-    *,
-    speed_allowed: bool = False,
+    points: Sequence[Cell], surface: Surface, limits: Limits, *, speed_allowed: bool = False
 ) -> Remedies:
     """
     Return what would bring the points of a programme into the zone.
@@ -109,7 +105,7 @@ class Programme:
 
     surface: Surface
     limits: Limits
-    points: Sequence[ComparablePoint]
+    points: Sequence[Cell]
 
     @property
     def temperature(self) -> float:
@@ -154,7 +150,7 @@ class Programme:
         return found.rcs < self.limits.rcs and fit
 
 
-def place_of(point: ComparablePoint) -> Place:
+def place_of(point: Cell) -> Place:
     """Return where a point lies on a surface."""
     return abs(point.speed), opposed(point), point.temperature
 
@@ -205,7 +201,7 @@ def _feed(programme: Programme) -> Remedy:
             speed=one.speed,
             axial_load=one.axial_load,
             temperature=one.temperature,
-            direction=Direction.POSITIVE if one.place.direction > 0 else Direction.NEGATIVE,
+            direction=Direction.POSITIVE if one.direction > 0 else Direction.NEGATIVE,
             surface=programme.surface,
             limits=programme.limits,
             speed_allowed=True,

@@ -3,21 +3,21 @@
 """
 Store of health: `health.sqlite3` in the directory of a node.
 
-Points, spectrum and baselines of every axis, so that a node that is killed loses at most what it
-had not written. The directory belongs to the node by the lock of its state.
+Cells of days, spectrum and baselines of every axis, so that a node that is killed loses at most
+what it had not written. The directory belongs to the node by the lock of its state.
 
 """
 
 from collections.abc import Iterable
-import dataclasses
+import math
 from pathlib import Path
 import threading
 from typing import Any
 
 from ballscrew_monitor.health.bands import period_of
-from ballscrew_monitor.health.points import aged, by_place
-from ballscrew_monitor.health.records import Baseline, ComparablePoint, KeptHealth, SpectrumBin
+from ballscrew_monitor.health.records import Baseline, Cell, KeptHealth, SpectrumBin
 from ballscrew_monitor.health.spectrum import merged_bins
+from ballscrew_monitor.health.summary import aged, by_place
 from surrogate.files import InputError
 from surrogate.store import opened_to_read, readable, SHARE, Store, Table
 
@@ -27,13 +27,12 @@ LIMIT = 20_000_000
 """Size [B] that the history of one axis may have."""
 MOST_BASELINES = 20
 """Baselines of an axis that are kept, the newest ones."""
-HISTORY = 0
-"""Number that points of no baseline have in place of one."""
 
 
-def _check_point(point: ComparablePoint) -> None:
-    if min(point.stretches, point.days) < 1 or abs(point.place.direction) != 1:
-        raise ValueError(f'a point of {point.stretches} stretches')
+def _check_cell(cell: Cell) -> None:
+    numbers = cell.speed, cell.axial_load, cell.temperature, cell.motor_torque
+    if cell.days < 1 or cell.stretches < 0 or abs(cell.direction) > 1 or math.inf in numbers:
+        raise ValueError(f'a cell of {cell.stretches} stretches')
 
 
 def _check_bin(one: SpectrumBin) -> None:
@@ -41,12 +40,8 @@ def _check_bin(one: SpectrumBin) -> None:
         raise ValueError(f'a bin of {one.time} s')
 
 
-POINTS = Table(
-    name='points',
-    kind=ComparablePoint,
-    beside={'axis': str, 'baseline': int},
-    index='axis, baseline, first_day',
-    check=_check_point,
+CELLS = Table(
+    name='cells', kind=Cell, beside={'axis': str}, index='axis, first_day', check=_check_cell
 )
 SPECTRUM = Table(
     name='spectrum',
@@ -56,20 +51,14 @@ SPECTRUM = Table(
     check=_check_bin,
 )
 BASELINES = Table(
-    name='baselines',
-    kind=Baseline,
-    beside={'number': int, 'axis': str},
-    key='number',
-    without=('points',),
+    name='baselines', kind=Baseline, beside={'number': int, 'axis': str}, key='number'
 )
-TABLES = (POINTS, SPECTRUM, BASELINES)
-OF_HISTORY = {'points': f'baseline = {HISTORY} AND', 'spectrum': ''}
-"""What tells the rows of the history from those of baselines."""
+TABLES = (CELLS, SPECTRUM, BASELINES)
 OLDEST = """
-SELECT axis, min(first_day), max(first_day), count(*) AS places FROM points
-    WHERE baseline = 0 GROUP BY axis ORDER BY places DESC LIMIT 1
+SELECT axis, min(first_day), max(first_day), count(*) AS places FROM cells
+    GROUP BY axis ORDER BY places DESC LIMIT 1
 """
-"""The axis with the most points, and its days."""
+"""The axis with the most cells, and its days."""
 OLD_BASELINES = """
 SELECT number FROM baselines WHERE axis = ? ORDER BY number DESC LIMIT -1 OFFSET ?
 """
@@ -98,13 +87,10 @@ class HealthStore(Store):
         return _read(self, axis)
 
     def add(
-        self,
-        axis: str,
-        points: Iterable[ComparablePoint] = (),
-        spectrum: Iterable[SpectrumBin] = (),
+        self, axis: str, cells: Iterable[Cell] = (), spectrum: Iterable[SpectrumBin] = ()
     ) -> None:
         """
-        Add points and bins to those of their periods, all or nothing.
+        Add cells and bins to those of their periods, all or nothing.
 
         Raises InputError while somebody who reads keeps the journal from being cleared, and
         sqlite3.Error.
@@ -112,39 +98,36 @@ class HealthStore(Store):
         """
         if not self.has_room:
             raise InputError(f'{self.file} takes no more: somebody has been reading it for long')
-        points, spectrum = list(points), list(spectrum)
+        cells, spectrum = list(cells), list(spectrum)
         with self.transaction():
             held, bins = (
                 self._take_periods(table, axis, [(one.first_day, one.days) for one in records])
-                for table, records in ((POINTS, points), (SPECTRUM, spectrum))
+                for table, records in ((CELLS, cells), (SPECTRUM, spectrum))
             )
-            pooled = by_place([*held, *points]).values()
-            self.put(POINTS, pooled, axis=axis, baseline=HISTORY)
+            self.put(CELLS, by_place([*held, *cells]).values(), axis=axis)
             self.put(SPECTRUM, merged_bins([*bins, *spectrum]), axis=axis)
             self._make_room()
 
     def keep_baseline(self, axis: str, baseline: Baseline) -> None:
         """Add a baseline, which is the one in force from now on."""
         with self.transaction() as database:
-            number = self.put(BASELINES, [baseline], axis=axis)
-            self.put(POINTS, baseline.points, axis=axis, baseline=number)
+            self.put(BASELINES, [baseline], axis=axis)
             for (gone,) in database.execute(OLD_BASELINES, (axis, MOST_BASELINES)).fetchall():
                 database.execute('DELETE FROM baselines WHERE number = ?', (gone,))
-                database.execute('DELETE FROM points WHERE baseline = ?', (gone,))
 
     def age(self, axis: str, today: int) -> tuple[str, ...]:
         """Merge older days of an axis, `today` in days since 1970; return what is to be said."""
         with self.transaction():
-            found = aged(self._take_ageing(POINTS, axis, today), today)
+            found = aged(self._take_ageing(CELLS, axis, today), today)
             bins = merged_bins(self._take_ageing(SPECTRUM, axis, today), today)
-            self.put(POINTS, found.points + found.future, axis=axis, baseline=HISTORY)
+            self.put(CELLS, found.cells + found.future, axis=axis)
             self.put(SPECTRUM, bins, axis=axis)
         return found.notes
 
     def _take_ageing(self, table: Table, axis: str, today: int) -> list[Any]:
         """Take the records of the periods that age changes out of a table, and those to come."""
         days = f'SELECT DISTINCT first_day, days FROM {table.name} WHERE'
-        rows = self.database.execute(f'{days} {OF_HISTORY[table.name]} axis = ?', (axis,))
+        rows = self.database.execute(f'{days} axis = ?', (axis,))
         periods = {(first, days) for first, days in rows}
         aim = {period: period_of(*period, today) for period in periods}
         changed = {period for period in periods if aim[period] != period}
@@ -156,7 +139,7 @@ class HealthStore(Store):
         self, table: Table, axis: str, periods: Iterable[tuple[int, int]]
     ) -> list[Any]:
         """Take the records of periods, first days and lengths, out of a table."""
-        which = f'WHERE {OF_HISTORY[table.name]} axis = ? AND first_day = ? AND days = ?'
+        which = 'WHERE axis = ? AND first_day = ? AND days = ?'
         rows: list[Any] = []
         for period in sorted(set(periods)):
             rows += self.rows(table, which, (axis, *period))
@@ -164,16 +147,16 @@ class HealthStore(Store):
         return [record for _, record in readable(table, rows)]
 
     def _make_room(self) -> None:
-        """Remove the oldest points until the database is within the limit of its axes."""
-        axes = self.database.execute('SELECT count(DISTINCT axis) FROM points').fetchone()[0]
+        """Remove the oldest cells until the database is within the limit of its axes."""
+        axes = self.database.execute('SELECT count(DISTINCT axis) FROM cells').fetchone()[0]
         while self.used > SHARE * self.limit * max(axes, 1):
             oldest = self.database.execute(OLDEST).fetchone()
             if oldest is None:
                 return
             axis, first, last, _ = oldest
             until = first + (last - first) // 16
-            for table, which in OF_HISTORY.items():
-                statement = f'DELETE FROM {table} WHERE {which} axis = ? AND first_day <= ?'
+            for table in (CELLS, SPECTRUM):
+                statement = f'DELETE FROM {table.name} WHERE axis = ? AND first_day <= ?'
                 self.database.execute(statement, (axis, until))
 
 
@@ -186,7 +169,7 @@ def read_health(folder: Path) -> dict[str, KeptHealth]:
     """
     with opened_to_read(folder, FILE, TABLES, VERSION) as store:
         axes = store.database.execute(
-            'SELECT axis FROM points UNION SELECT axis FROM spectrum ORDER BY axis'
+            'SELECT axis FROM cells UNION SELECT axis FROM spectrum ORDER BY axis'
         ).fetchall()
         return {axis: _read(store, axis) for (axis,) in axes}
 
@@ -196,23 +179,17 @@ def _read(store: Store, axis: str) -> KeptHealth:
     rows = {
         table.name: store.rows(table, f'WHERE axis = ? ORDER BY {order}', (axis,))
         for table, order in (
-            (POINTS, 'first_day, rowid'),
+            (CELLS, 'first_day, rowid'),
             (SPECTRUM, 'first_day, rowid'),
             (BASELINES, 'number'),
         )
     }
     read = {table.name: readable(table, rows[table.name]) for table in TABLES}
-    points: dict[int, list[ComparablePoint]] = {}
-    for row, point in read['points']:
-        points.setdefault(row['baseline'], []).append(point)
     bad = sum(len(rows[name]) - len(read[name]) for name in rows)
     note = f'{store.file}: {bad} rows of axis {axis} cannot be read, they do not count'
     return KeptHealth(
-        points=tuple(points.get(HISTORY, ())),
+        cells=tuple(cell for _, cell in read['cells']),
         spectrum=tuple(one for _, one in read['spectrum']),
-        baselines=tuple(
-            dataclasses.replace(one, points=tuple(points.get(row['number'], ())))
-            for row, one in read['baselines']
-        ),
+        baselines=tuple(one for _, one in read['baselines']),
         notes=(note,) if bad else (),
     )

@@ -4,18 +4,32 @@
 
 from collections.abc import Sequence
 import dataclasses
+import datetime
 import enum
 import math
 from typing import Any
 
+from ballscrew_monitor.health.change import LEAST_GAIN, LEAST_OFFSET, Marks
 from ballscrew_monitor.health.records import (
     Cause,
     CauseCode,
+    CellKind,
     Condition,
     Health,
+    Missing,
     Quantity,
-    TOLERANCE,
 )
+from ballscrew_monitor.health.rows import DAY
+from numpy.typing import NDArray
+
+MOST_TOLD = 3
+"""Causes that are told together."""
+MISSING = {
+    Missing.CLOCK: 'the clock was not set, or leapt',
+    Missing.TORQUE: 'no torque was measured while the axis moved',
+    Missing.STEADY: 'no motion was steady for a quarter of a second',
+    Missing.MOTION: 'the axis did not move',
+}
 
 ADVICE = {
     CauseCode.PRELOAD_LOST: 'measure the backlash, and have the preload set or the nut replaced',
@@ -25,7 +39,7 @@ ADVICE = {
     'intended change of oil',
     CauseCode.WARMER_THAN_MEASURED: 'check the temperature sensor, and cooling',
     CauseCode.FILM_STARVED: 'lubricate now, and check the lubricator',
-    CauseCode.WIPER: 'look at wipers, covers and bearings',
+    CauseCode.WIPER: 'look at wipers, covers, guideway and bearings',
     CauseCode.CHURNING: 'look for too much grease or oil in the nut',
     CauseCode.LOAD_SIGN_OR_UNIT: 'check sign, unit and zero of the axial load; scale -1 turns it',
     CauseCode.TORQUE_CONSTANT: 'check torque constant and gear ratio',
@@ -34,67 +48,110 @@ ADVICE = {
 
 
 def verdict_of(
-    axis: str, condition: Condition, drag: Quantity, preload: Quantity, causes: Sequence[Cause]
+    axis: str, condition: Condition, drag: Quantity, causes: Sequence[Cause], since: int
 ) -> str:
-    """Return the condition of an axis, the size of its change and its cause in one sentence."""
+    """
+    Return the condition of an axis, the size of its change, its date and cause in one sentence.
+
+    `since` [ns] is the date of the change, 0 for none.
+
+    """
     if not drag.is_known:
         return f'Axis {axis}: whether it is normal or worse is {drag.reason}.'
     change = percent(drag)
     if condition is Condition.NORMAL:
-        return f'Axis {axis} is normal: its drag has changed by {change}.'
+        return f'Axis {axis} is normal: its friction has changed by {change}.'
     if condition is Condition.UNKNOWN:
-        return f'Axis {axis}: its drag has changed by {change}, which does not tell yet.'
-    why = _why(drag, preload, causes)
-    return f'Axis {axis} is worse: its drag has changed by {change}; {why}.'
+        return f'Axis {axis}: its friction has changed by {change}, which does not tell yet.'
+    state = 'is worse' if condition is Condition.WORSE else 'has slightly changed'
+    date = f'since about {date_words(since)} ' if since else ''
+    if drag.low * drag.high <= 0.0:
+        return f'Axis {axis} {state}: {date}it changed, and is now back at {change}.'
+    return f'Axis {axis} {state}: {date}its friction is {lower_or_higher(drag)}; {_why(causes)}.'
+
+
+def lower_or_higher(drag: Quantity) -> str:
+    """Return a change as people say it, `11 % lower (9 to 13 %)`."""
+    ends = sorted(abs(100.0 * end) for end in (drag.low, drag.high))
+    word = 'lower' if drag.value < 0.0 else 'higher'
+    return f'{abs(100.0 * drag.value):.0f} % {word} ({ends[0]:.0f} to {ends[1]:.0f} %)'
+
+
+def date_words(stamp: int) -> str:
+    """Return the day of a stamp [ns] for people, UTC."""
+    day = datetime.date(1970, 1, 1) + datetime.timedelta(days=stamp // DAY)
+    return f'{day.day} {day:%B %Y}'
 
 
 def percent(quantity: Quantity) -> str:
     """Return a relative change as people read it, with its interval."""
-    value, low, high = (100.0 * part for part in (quantity.value, quantity.low, quantity.high))
-    return f'{value:+.0f} % ({low:+.0f} to {high:+.0f} %)'
+    ends = (quantity.value, quantity.low, quantity.high)
+    value, low, high = (round(100.0 * part) for part in ends)
+    return f'{value:+d} % ({low:+d} to {high:+d} %)'
 
 
 class Certainty(enum.Enum):
     """How sure the cause of a change is, in words around it."""
 
-    NONE = 'the cause is not known'
-    PERHAPS = 'perhaps {}, or the preload is lost, which could not be tried'
+    NONE = 'the cause is not told'
     LIKELY = 'most likely {}'
     SURE = 'the cause is that {}'
 
 
-def explained(change: float, causes: Sequence[Any]) -> tuple[Certainty, Sequence[Any]]:
+def explained(causes: Sequence[Any]) -> tuple[Certainty, Sequence[Any]]:
     """
-    Return how sure the cause of a change of the drag [-] is, and the likely ones, the best first.
+    Return how sure the cause of a change is, and the likely ones, the best first.
 
-    `causes` are those of health or of its message. Likely is one that fits, and about as well as
-    any, be it excluded or not.
+    `causes` are those of health or of its message. Causes that cannot be told apart are likely
+    together; more than three are not told.
 
     """
-    most = max((one.weight for one in causes), default=0.0)
-    likely = [one for one in causes if not one.excluded and one.weight > 0.25 * most]
-    if not likely:
-        return Certainty.NONE, likely
-    if change < -TOLERANCE and all(one.code != CauseCode.PRELOAD_LOST for one in causes):
-        return Certainty.PERHAPS, likely
-    return Certainty.LIKELY if len(likely) > 1 else Certainty.SURE, likely
+    told = [one for one in causes if not one.excluded]
+    if not 1 <= len(told) <= MOST_TOLD:
+        return Certainty.NONE, []
+    return Certainty.LIKELY if len(told) > 1 else Certainty.SURE, told
 
 
-def _why(drag: Quantity, preload: Quantity, causes: Sequence[Cause]) -> str:
-    certainty, likely = explained(drag.value, causes)
-    said = likely[0].text if likely else ''
-    if likely and likely[0].code is CauseCode.PRELOAD_LOST and preload.is_known:
-        value, low, high = (100 * part for part in (preload.value, preload.low, preload.high))
-        said = f'the preload is {value:.0f} % of what it was ({low:.0f} to {high:.0f} %)'
-    return certainty.value.format(said)
+def _why(causes: Sequence[Cause]) -> str:
+    certainty, told = explained(causes)
+    return certainty.value.format(', or '.join(one.text for one in told))
 
 
 def advice_of(condition: Condition, causes: Sequence[Cause]) -> str:
     """Return what to do about the likely causes, empty for nothing."""
-    if condition is not Condition.WORSE:
+    if condition not in (Condition.WORSE, Condition.SLIGHTLY_CHANGED):
         return ''
-    _, likely = explained(math.nan, causes)
-    return '; or '.join(dict.fromkeys(ADVICE[one.code] for one in likely))
+    _, told = explained(causes)
+    return '; or '.join(dict.fromkeys(ADVICE[one.code] for one in told))
+
+
+def input_notes(marks: Marks) -> list[str]:
+    """Return sentences on inputs that have drifted."""
+    notes = []
+    if marks.offset.is_proven(LEAST_OFFSET):
+        rest = marks.standstill
+        seen = ', and the torque at rest has moved' if rest.is_proven(LEAST_OFFSET) else ''
+        notes.append(
+            f'the torques of both directions have moved by {100 * marks.offset.value:+.0f} % of '
+            f'the friction against each other{seen}: check the zero of the torque, and weight '
+            'or counterbalance'
+        )
+    if marks.gain.is_proven(LEAST_GAIN):
+        change = 100.0 * math.expm1(marks.gain.value)
+        notes.append(
+            f'the torque over the measured load has changed by {change:+.0f} %: '
+            'check the gain of the load, and the torque constant'
+        )
+    return notes
+
+
+def missing_reason(cells: NDArray[Any]) -> str:
+    """Return why the friction of an axis is not known."""
+    reasons = set(cells['missing'][cells['kind'] == CellKind.NOTHING].tolist())
+    for code, text in MISSING.items():
+        if int(code) in reasons:
+            return f'not known: {text}'
+    return 'not known: no steady motion with a measured torque yet'
 
 
 def health_record(health: Health) -> dict[str, Any]:
@@ -103,6 +160,7 @@ def health_record(health: Health) -> dict[str, Any]:
         'axis': health.axis,
         'stamp_ns': health.stamp,
         'condition': health.condition.name.lower(),
+        'since_ns': health.since or None,
         'verdict': health.verdict,
         'advice': health.advice,
         'quantities': {one.name: _quantity(one) for one in health.quantities},

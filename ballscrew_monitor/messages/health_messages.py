@@ -22,11 +22,12 @@ _CODES = {
     Condition.UNKNOWN: Fault.NOT_KNOWN,
     Condition.NORMAL: Fault.NONE,
     Condition.WORSE: Fault.WORSE,
+    Condition.SLIGHTLY_CHANGED: Fault.NONE,
 }
 
 
 def warns(health: Health, policy: WarningPolicy) -> bool:
-    """Tell whether a change of an axis is to be warned of."""
+    """Return True if a change of an axis is to be warned of."""
     return health.condition is Condition.WORSE and policy.of_change
 
 

@@ -9,7 +9,6 @@ from typing import Any
 
 from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.health.assess import HealthSettings
-from ballscrew_monitor.health.baseline import HOUR
 from ballscrew_monitor.health.keeper import HealthKeeper
 from ballscrew_monitor.health.records import Health
 from ballscrew_monitor.health.store import HealthStore
@@ -19,7 +18,7 @@ from ballscrew_monitor.node.axis_publisher import AxisPublisher
 from ballscrew_monitor.node.health_worker import Gatherer, HealthWorker, Job
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import Kind
-from ballscrew_monitor.settings.axis import gathering_of, surface_file
+from ballscrew_monitor.settings.axis import gathering_of
 from ballscrew_msgs.srv import SetBaseline
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.clock import Clock
@@ -137,14 +136,12 @@ class AxisHealths:
             now=self._now,
             found=gatherer.hand_over(publisher.surface, rows_end=rows_end),
             surface=publisher.surface,
-            file=functools.partial(surface_file, name, values),
             settings=HealthSettings(
                 limits=publisher.settings.limits,
                 speed_allowed=values[f'{name}.advice.speed'],
-                always_free=values[f'{name}.health.always_free'],
+                baseline_days=values[f'{name}.health.baseline_days'],
             ),
             policy=self._policy(name),
-            over=values[f'{name}.health.baseline_hours'] * HOUR,
             assesses=assesses,
         )
         taken = self._worker.put(job)

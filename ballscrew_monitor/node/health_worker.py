@@ -12,7 +12,6 @@ from collections import deque
 from collections.abc import Callable
 import contextlib
 import dataclasses
-from pathlib import Path
 import queue
 import sqlite3
 import threading
@@ -22,13 +21,12 @@ from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.health.assess import HealthSettings
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.collect import Collected, Collector
-from ballscrew_monitor.health.companions import Companions, companions_beside
 from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.health.keeper import HealthKeeper
-from ballscrew_monitor.health.points import surface_id
 from ballscrew_monitor.health.records import Health, SpectrumBin, Stretch
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.store import HealthStore
+from ballscrew_monitor.health.summary import surface_id
 from ballscrew_monitor.messages.health_messages import health_message
 from ballscrew_msgs.msg import AxisHealth
 from surrogate.files import InputError
@@ -87,22 +85,15 @@ class Gatherer:
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Job:
-    """
-    What was gathered of one axis until `now` [ns], to be kept and, if asked for, assessed.
-
-    `file` finds that of the surface; `over` [s] is the motion over which a baseline is learned.
-
-    """
+    """Rows gathered of one axis until `now` [ns], to be kept and, if asked for, assessed."""
 
     keeper: HealthKeeper
     axis: str
     now: int
     found: Collected
     surface: Surface
-    file: Callable[[], Path]
     settings: HealthSettings
     policy: WarningPolicy
-    over: float
     assesses: bool
 
 
@@ -117,7 +108,6 @@ class HealthWorker:
         self.done: deque[tuple[Health, AxisHealth]] = deque(maxlen=MOST_JOBS)  # and its message
         self._is_held = is_held
         self._jobs: queue.Queue[Job | None] = queue.Queue(MOST_JOBS)
-        self._companions: dict[str, Companions | str] = {}
         self._ending = False
         self._thread = threading.Thread(target=self._run, name='health', daemon=True)
         self._thread.start()
@@ -164,14 +154,10 @@ class HealthWorker:
 
     def _do(self, job: Job) -> None:
         today = day_of(job.now)
-        job.keeper.gather(job.found, job.surface, today)
+        job.keeper.gather(job.found, today)
         self.take_store()
         job.keeper.keep(today)
         if job.assesses and not self._ending:
-            known = job.surface.base_sha256
-            if known not in self._companions:  # the surfaces at other preloads
-                self._companions[known] = companions_beside(job.file(), job.surface)
-            companions = self._companions[known]
-            made = job.keeper.assess(job.now, job.surface, companions, job.settings, over=job.over)
-            said = health_message(made, surface_id=surface_id(job.surface), policy=job.policy)
-            self.done.append((made, said))
+            health = job.keeper.assess(job.now, job.surface, job.settings)
+            said = health_message(health, surface_id=surface_id(job.surface), policy=job.policy)
+            self.done.append((health, said))

@@ -6,7 +6,7 @@ import functools
 import math
 from typing import Any
 
-from ballscrew_monitor.health.records import CauseCode
+from ballscrew_monitor.health.records import CauseCode, Condition
 from ballscrew_monitor.health.words import ADVICE, explained
 from ballscrew_monitor.page.phrases import free, Phrase, phrase, Said
 from ballscrew_msgs.msg import AxisHealth, HealthQuantity
@@ -16,7 +16,9 @@ VERDICTS = {
     AxisHealth.CONDITION_UNKNOWN: 'verdict_unsure',
     AxisHealth.CONDITION_NORMAL: 'verdict_normal',
     AxisHealth.CONDITION_WORSE: 'verdict_worse',
+    int(Condition.SLIGHTLY_CHANGED): 'verdict_slight',
 }
+CHANGED = (int(Condition.WORSE), int(Condition.SLIGHTLY_CHANGED))
 CAUSES = {int(code): code for code in CauseCode}
 Known = dict[str, HealthQuantity]
 """Quantities with an interval, by their names."""
@@ -35,16 +37,16 @@ def verdict_phrase(health: AxisHealth) -> Said:
     if DRAG not in known:
         return phrase('verdict_unknown', axis=health.axis, why=free(named[DRAG].reason))
     values = {'axis': health.axis, **_interval(known[DRAG])}
-    if health.condition == AxisHealth.CONDITION_WORSE:
+    if health.condition in CHANGED:
         values['why'] = _why(health, known)
     return phrase(VERDICTS[health.condition], **values)
 
 
 def advice_phrase(health: AxisHealth) -> Said:
     """Return what to do about the likely causes; an advice on oil or feed is free."""
-    _, likely = explained(math.nan, health.causes)
+    _, likely = explained(health.causes)
     codes = [CAUSES.get(cause.code) for cause in likely]
-    if health.condition != AxisHealth.CONDITION_WORSE or not codes or None in codes:
+    if health.condition not in CHANGED or not codes or None in codes:
         return free(health.advice) if health.advice else ''
     # Two causes may have one remedy, which is said once.
     remedies = {ADVICE[code]: phrase(f'remedy_{code.name.lower()}') for code in codes if code}
@@ -54,7 +56,7 @@ def advice_phrase(health: AxisHealth) -> Said:
 
 
 def _why(health: AxisHealth, known: Known) -> Phrase:
-    certainty, likely = explained(known[DRAG].value, health.causes)
+    certainty, likely = explained(health.causes)
     why = f'why_{certainty.name.lower()}'
     if not likely:
         return phrase(why)

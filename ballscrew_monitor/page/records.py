@@ -9,6 +9,7 @@ from ballscrew_monitor.core.advice import CARRY
 from ballscrew_monitor.core.conversions import Direction, opposing_load, seconds, signed
 from ballscrew_monitor.core.inputs import InputState
 from ballscrew_monitor.core.judgement import Level, PointSource, PointValidity, Reason, Zone
+from ballscrew_monitor.health.records import Condition
 from ballscrew_monitor.judge.zone import BY_VALIDITY
 from ballscrew_monitor.messages.health_messages import stamp_of
 from ballscrew_monitor.page.health_phrases import advice_phrase, verdict_phrase
@@ -30,7 +31,11 @@ from surrogate.units import RPM
 LEVELS: dict[int, str] = {Level.OK: 'ok', Level.WARN: 'warn'}
 ZONES: dict[int, str] = {Zone.OPTIMAL: 'optimal', Zone.OUTSIDE: 'outside'}
 STATES_OF_INPUT = {int(state): state.name.lower() for state in InputState}
-CONDITIONS = {msg.AxisHealth.CONDITION_NORMAL: 'normal', msg.AxisHealth.CONDITION_WORSE: 'worse'}
+CONDITIONS = {
+    int(Condition.NORMAL): 'normal',
+    int(Condition.WORSE): 'worse',
+    int(Condition.SLIGHTLY_CHANGED): 'slightly_changed',
+}
 UNKNOWN = 'unknown'
 QUANTITIES = {msg.Finding.CODE_RCS_HIGH: 'rcs', msg.Finding.CODE_EFFICIENCY_LOW: 'efficiency'}
 OF_UNJUDGED = msg.Finding.CODE_OUT_OF_RANGE, msg.Finding.CODE_INPUT_LOST

@@ -3,42 +3,37 @@
 """`ballscrew health`: normal or worse, by recordings over months or what a node gathered."""
 
 import argparse
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 import contextlib
 import datetime
-import functools
 from pathlib import Path
 import re
 import sys
 from typing import Any
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED
-from ballscrew_monitor.health.baseline import HOUR
 from ballscrew_monitor.health.records import Health, Quantity
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import FILE, read_health
 from ballscrew_monitor.health.words import health_record
-from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.words import say
-from ballscrew_monitor.report.health_history import (
-    AxisHistory,
-    by_axis,
-    healths,
-    HistoryMaker,
-    peers_among,
+from ballscrew_monitor.report.health_axes import (
+    assess_axes,
+    collected_axes,
+    joined_axes,
+    logged_axes,
 )
+from ballscrew_monitor.report.health_collect import collect, Collected, Given, map_logs, Workers
+from ballscrew_monitor.report.health_folder import is_health_folder
+from ballscrew_monitor.report.health_history import AxisHistory, peers_among
 from ballscrew_monitor.report.health_kept import kept_healths, stored_axis
-from ballscrew_monitor.report.inputs_seen import hints_on
-from ballscrew_monitor.report.judging import judge_log
-from ballscrew_monitor.report.logs import find_logs, map_for
+from ballscrew_monitor.report.logs import find_logs
 from ballscrew_monitor.report.machines import axis_titles, folders_note, machine_names, MachineAxis
-from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.settings.parameters import read_file
 from surrogate.files import InputError, json_text, printable, replace_file
-from surrogate.progress import Progress
-from surrogate.surface import SurfaceError
 
+COLLECT = 'collect'
 RECORD, PICTURE = 'health.json', 'health.png'
 _OURS = re.compile(
     rb'\{(\}|\s*"([^"\\]|\\.)*": \{\s*"axis": )'
@@ -48,20 +43,25 @@ MOST_BEGIN = 1000  # [bytes] of that
 
 def health_command(args: argparse.Namespace, nominal: Path) -> int:
     """Do what the command line asks for; return the exit code."""
-    if args.out is not None:
-        check_output(args.out)
     if args.map is not None:
         read_map(args.map)
-    folders = [path for path in args.logs if (path / FILE).is_file()]
-    named = [path for path in args.logs if path not in folders]
+    given, workers = Given(args.params, args.map, nominal), Workers(args.workers, args.dask)
+    if str(args.logs[0]) == COLLECT:
+        return _collect(args, given, workers)
+    if args.out is not None:
+        check_output(args.out)
+    stores = {path: read_health(path) for path in args.logs if (path / FILE).is_file()}
+    collected = [path for path in args.logs if is_health_folder(path)]
+    named = [path for path in args.logs if path not in stores and path not in collected]
     logs = find_logs(named, tables=args.map is not None, out=args.out)
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
-        histories = list(_histories(logs, args, nominal)) if logs else []
-        stores = {folder: read_health(folder) for folder in folders}
-        of_logs = list(by_axis(histories))
+        histories = _histories(logs, given, workers)
+        axes = logged_axes(histories)
+        for folder in collected:
+            axes = joined_axes(axes, collected_axes(folder), folder)
         of_nodes = [stored_axis(folder, axis) for folder in stores for axis in stores[folder]]
-        titles = axis_titles([*of_logs, *of_nodes])
-        found = _healths(histories, titles, args)
+        titles = axis_titles([*axes, *of_nodes])
+        found = assess_axes(axes, titles, _options(args), workers)
         for folder, stored in stores.items():
             values = read_file(args.params or nominal)
             found |= kept_healths(folder, stored, titles, values, _options(args))
@@ -69,13 +69,45 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
             print(printable('\n'.join(lines_of(last))))
         for peer in peers_among(histories, titles):
             print(printable(peer.text))
-        say(*filter(None, [folders_note(of_logs)]))
+        say(*filter(None, [folders_note(axes)]))
         records = _records(found, titles)
         if args.out is not None and found:
             _write(args.out, records, {titles[axis]: one for axis, one in found.items()})
     if args.json:
         print(json_text(records))
     return DONE if found else FAILED
+
+
+def _collect(args: argparse.Namespace, given: Given, workers: Workers) -> int:
+    """Keep what each log holds in a folder; return the exit code."""
+    if args.out is None or not args.logs[1:]:
+        raise InputError(
+            'health collect needs logs, and --out FOLDER in which it keeps what they hold'
+        )
+    if args.out.exists() and not args.out.is_dir():
+        raise InputError(f'output {args.out} is a file, it must be a directory')
+    logs = find_logs(args.logs[1:], tables=args.map is not None, out=args.out)
+    return FAILED if collect(logs, args.out, given, workers) else DONE
+
+
+def _histories(logs: Sequence[Path], given: Given, workers: Workers) -> list[AxisHistory]:
+    """
+    Return what each recording holds of each axis; one that cannot be read stops no other.
+
+    Raises InputError when the only one cannot be read.
+
+    """
+    histories: list[AxisHistory] = []
+
+    def take(log: Path, collected: Collected) -> None:
+        if collected.failure and len(logs) == 1:
+            raise InputError(collected.failure)
+        say(*(f'{log}: {note}' for note in collected.notes))
+        say(*([f'{log}: {collected.failure}'] if collected.failure else []))
+        histories.extend(collected.histories)
+
+    map_logs(logs, given, workers, take, alone=len(logs) == 1)
+    return histories
 
 
 def check_output(out: Path) -> None:
@@ -93,59 +125,9 @@ def check_output(out: Path) -> None:
     )
 
 
-def _histories(
-    logs: Sequence[Path], args: argparse.Namespace, nominal: Path
-) -> Iterator[AxisHistory]:
-    """
-    Yield what each recording holds of each axis; one that cannot be read stops no other.
-
-    Raises InputError when the only one cannot be read.
-
-    """
-    bar = Progress(len(logs), 'recordings')
-    try:
-        for number, log in enumerate(logs):
-            bar.show(number, len(logs))
-            try:
-                mapping = map_for(log, args.map, alone=len(logs) == 1)
-                bag = opened_log(log, mapping=mapping)
-                case = judge_log(
-                    bag,
-                    parameters_for(bag, args.params, nominal),
-                    on_share=functools.partial(_show, bar, number, len(logs)),
-                    health=HistoryMaker,
-                )
-                say(*(f'{log}: {note}' for note in case.notes))
-                say(*(f'{log}: check {hint}' for hint in hints_on(case.axes)))
-                yield from (axis.history for axis in case.axes if axis.history is not None)
-            except (InputError, SurfaceError) as error:
-                if len(logs) == 1:
-                    raise
-                say(f'{log}: {error}')
-        bar.show(len(logs), len(logs))
-    finally:
-        bar.close()
-
-
-def _show(bar: Progress, number: int, count: int, share: float) -> None:
-    """Show the share [-] of one recording of several that is judged."""
-    bar.show(number, count, share=(number + share) / count)
-
-
-def _healths(
-    histories: Sequence[AxisHistory], titles: Mapping[MachineAxis, str], args: argparse.Namespace
-) -> dict[MachineAxis, list[Health]]:
-    """Return the course of each axis."""
-    options = _options(args)
-    return {
-        axis: list(healths(own, title=titles[axis], **options))
-        for axis, own in by_axis(histories).items()
-    }
-
-
 def _options(args: argparse.Namespace) -> dict[str, Any]:
     return {
-        'over': args.baseline_hours * HOUR,
+        'baseline_days': args.baseline_days,
         'days': None if args.baseline is None else days_of(*args.baseline),
         'speed_allowed': args.speed_advice,
     }

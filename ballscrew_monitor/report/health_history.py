@@ -1,74 +1,97 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The part of recordings that the health of an axis rests on, and its health after each."""
+"""The summaries of recordings, and the health of an axis by those of its history."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 import dataclasses
-import math
 from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import MonitorSettings
-from ballscrew_monitor.health.assess import assess, HealthSettings, recent_of
-from ballscrew_monitor.health.bands import day_of
-from ballscrew_monitor.health.baseline import learned, LEAST_MOTION, named_or_why
+from ballscrew_monitor.health.assess import course, HealthSettings, Kept, without_order
+from ballscrew_monitor.health.baseline import named
 from ballscrew_monitor.health.collect import Collected, Collector
-from ballscrew_monitor.health.companions import companions_beside
+from ballscrew_monitor.health.detection import BASELINE_DAYS
 from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.health.peers import FEWEST_PEERS, Peer, ranked
-from ballscrew_monitor.health.points import add, by_place, merged
-from ballscrew_monitor.health.records import (
-    ComparablePoint,
-    Health,
-    LoadSource,
-    Place,
-    SpectrumBin,
-)
-from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.health.records import Cell, Health, LogSummary, Missing, SpectrumBin
+from ballscrew_monitor.health.rows import has_torque_many, moves_many
 from ballscrew_monitor.health.spectrum import merged_bins
+from ballscrew_monitor.health.stroke import motion_of, Positions, ReversalSums, StrokeSums
+from ballscrew_monitor.health.summary import add, array_of, nothing
 from ballscrew_monitor.report.machines import MachineAxis
+import numpy as np
 from numpy.typing import NDArray
 from surrogate.surface import Surface
-
-NAN = math.nan
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class AxisHistory:
     """
-    What one recording holds of one axis: comparable points and the spectrum of its loads.
+    What one recording holds of one axis: the cells of its summary and the spectrum of its loads.
 
-    `surface` is the file it was judged with; `last` [ns] is the stamp of its last row; `machine`
-    is the one that the axis is of. Advice may name another speed if `speed_allowed`.
+    `surface` is the file it was judged with; `first` and `last` [ns] are the stamps of its rows;
+    `machine` is the one that the axis is of, `log` names the recording. Advice may name another
+    speed if `speed_allowed`.
 
     """
 
     axis: str
     surface: str
     limits: Limits
+    first: int
     last: int
-    points: Sequence[ComparablePoint]
+    cells: Sequence[Cell]
     bins: Sequence[SpectrumBin]
-    always_free: bool = False
     speed_allowed: bool = False
     machine: str = ''
+    log: str = ''
+
+    @property
+    def key(self) -> MachineAxis:
+        """Return the key of the history that it belongs to."""
+        return MachineAxis(self.machine, self.axis)
+
+    @property
+    def summary(self) -> LogSummary:
+        """Return the summary of the log."""
+        cells = array_of(self.cells)
+        return LogSummary(self.machine, self.axis, self.first, self.last, cells)
 
 
 class HistoryMaker:
     """Gathers the rows of one axis in order."""
 
-    def __init__(self, surface: Surface, settings: GatherSettings | None = None) -> None:
-        """Begin with nothing; `surface` is that of the judgement."""
-        self._surface, self._collector = surface, Collector(surface, settings)
-        self._always_free = settings is not None and settings.always_free
-        self._points: dict[Any, ComparablePoint] = {}
+    def __init__(
+        self,
+        surface: Surface,
+        settings: GatherSettings | None = None,
+        *,
+        log: str = '',
+        positions: Positions | None = None,
+    ) -> None:
+        """Begin with nothing of a `log`; `surface` is that of the judgement."""
+        self._collector, self._lead = Collector(surface, settings), surface.lead
+        self._log, self._positions = log, positions
+        self._stroke, self._reversals = StrokeSums(), ReversalSums()
+        self._cells: dict[Any, Cell] = {}
         self._bins: list[SpectrumBin] = []
-        self._last = 0
+        self._first = self._last = 0
+        self._moved = self._measured = False
 
     def add(self, rows: NDArray[Any]) -> None:
         """Take the next rows, an array of ROW."""
+        self._first = self._first or int(rows['stamp'][0])
         self._last = int(rows['stamp'][-1])
+        moving = moves_many(rows)
+        self._moved |= bool(moving.any())
+        self._measured |= bool((moving & has_torque_many(rows)).any())
+        if self._positions is not None:
+            motion = motion_of(rows, self._lead)
+            motor, table = self._positions.at(motion.stamps)
+            self._stroke.add(motion.stamps, motor, motion.torque)
+            self._reversals.add(motion.stamps, motion.speed, motor, table)
         self._take(self._collector.take_many(rows))
 
     def history(
@@ -76,40 +99,48 @@ class HistoryMaker:
     ) -> AxisHistory:
         """Return what came of all rows."""
         self._take(self._collector.finish())
+        cells = list(self._cells.values())
+        if all(cell.direction == 0 for cell in cells):
+            cells.append(nothing(self._first, self._missing()))
+        cells += self._stroke.cells(self._first) + self._reversals.cells(self._first)
         return AxisHistory(
             axis=axis,
             surface=str(surface),
             limits=settings.limits,
+            first=self._first,
             last=self._last,
-            points=tuple(self._points.values()),
+            cells=tuple(cells),
             bins=tuple(merged_bins(self._bins)),
-            always_free=self._always_free,
             speed_allowed=settings.speed_allowed,
             machine=machine,
+            log=self._log,
         )
+
+    def _missing(self) -> Missing:
+        if not self._moved:
+            return Missing.MOTION
+        return Missing.STEADY if self._measured else Missing.TORQUE
 
     def _take(self, found: Collected) -> None:
         for stretch in found.stretches:
-            add(self._points, stretch, self._surface)
+            add(self._cells, stretch, self._first)
+        self._stroke.take(found.stretches)
         self._bins += found.bins
 
 
 def read_history(record: Mapping[str, Any]) -> AxisHistory:
     """Return a history of plain data, as `dataclasses.asdict` and JSON leave it."""
     kept = dict(record)
-    points = [
-        ComparablePoint(
-            place=Place(*one.pop('place')), load_source=LoadSource(one.pop('load_source')), **one
-        )
-        for one in map(_known, kept.pop('points'))
-    ]
+    cells = [Cell(**one) for one in map(_known, kept.pop('cells'))]
     bins = [
         SpectrumBin(
-            wear_time=tuple(one.pop('wear_time')), axial_load=one.pop('axial_load', NAN), **one
+            wear_time=tuple(one.pop('wear_time')),
+            axial_load=one.pop('axial_load', float('nan')),
+            **one,
         )
         for one in map(_known, kept.pop('bins'))
     ]
-    return AxisHistory(points=points, bins=bins, limits=Limits(**kept.pop('limits')), **kept)
+    return AxisHistory(cells=cells, bins=bins, limits=Limits(**kept.pop('limits')), **kept)
 
 
 def _known(record: Mapping[str, Any]) -> dict[str, Any]:
@@ -120,70 +151,73 @@ def _known(record: Mapping[str, Any]) -> dict[str, Any]:
 def healths(
     histories: Sequence[AxisHistory],
     *,
-    over: float = LEAST_MOTION,
+    baseline_days: float = BASELINE_DAYS,
     days: tuple[int, int] | None = None,
     speed_allowed: bool = False,
     title: str = '',
-) -> Iterator[Health]:
+) -> list[Health]:
     """
-    Yield the health of one axis after each of its recordings, in the order of their stamps.
+    Return the health of one axis after each of its recordings, in the order of their stamps.
 
     `title` names the axis in sentences if its own name does not tell it apart from others.
-    The baseline is that of `days`, begin and end [ns], or learned over the first `over` [s] in
-    motion. All are held against the surface of the last recording. Its parameters let the advice
-    name another speed, or `speed_allowed` does.
+    The baseline is that of `days`, begin and end [ns], or of the first `baseline_days`. Life and
+    causes are those of the surface of the last recording. Its parameters let the advice name
+    another speed, or `speed_allowed` does. Recordings that begin at one instant have no order and
+    are no history.
 
     """
-    ordered = sorted(histories, key=lambda one: one.last)
-    file = Path(ordered[-1].surface)
-    surface = Surface.load(file)
-    companions = companions_beside(file, surface)
+    ordered = sorted(histories, key=lambda one: one.first)
+    last = ordered[-1]
+    if same := _same_start(ordered):
+        return [without_order(title or last.axis, same)]
+    surface = Surface.load(Path(last.surface))
     settings = HealthSettings(
-        limits=ordered[-1].limits,
-        speed_allowed=speed_allowed or ordered[-1].speed_allowed,
-        always_free=ordered[-1].always_free,
+        limits=last.limits,
+        speed_allowed=speed_allowed or last.speed_allowed,
+        baseline_days=baseline_days,
     )
-    points: dict[Any, ComparablePoint] = {}
-    bins: list[SpectrumBin] = []
-    for one in ordered:
-        for key, point in by_place(one.points).items():
-            points[key] = merged(points[key], point) if key in points else point
-        bins = merged_bins([*bins, *one.bins])
-        kept = list(points.values())
-        screw, today = surface.screw_name, day_of(one.last) + 1
-        baseline = (
-            learned(kept, over=over, screw=screw, today=today)
-            if days is None
-            else named_or_why(kept, days, screw=screw)
+    kept = Kept(
+        np.concatenate([one.summary.cells for one in ordered]),
+        merged_bins([each for one in ordered for each in one.bins]),
+    )
+    if days is not None:
+        screw = surface.screw_name
+        chosen = named(
+            kept.cells, *days, reason='named by its days', named_at=days[1], screw=screw
         )
-        now = (day_of(one.last) + 1) * DAY - 1
-        name = title or one.axis
-        yield assess(name, now, baseline, kept, bins, surface, companions, settings)
+        kept = kept._replace(baselines=(chosen,))
+    return course(title or last.axis, kept, surface, settings)
+
+
+def _same_start(ordered: Sequence[AxisHistory]) -> int:
+    """Return the first instant [ns] at which two recordings begin, 0 for none."""
+    pairs = zip(ordered[:-1], ordered[1:], strict=True)
+    return next((log.first for log, other in pairs if log.first == other.first), 0)
 
 
 def health_after(history: AxisHistory) -> Health:
     """Return the health of an axis by one recording alone."""
-    return next(healths([history]))
+    return healths([history])[-1]
 
 
 def by_axis(histories: Sequence[AxisHistory]) -> dict[MachineAxis, list[AxisHistory]]:
     """Return histories by machine and axis."""
-    found: dict[MachineAxis, list[AxisHistory]] = {}
-    for one in histories:
-        found.setdefault(MachineAxis(one.machine, one.axis), []).append(one)
-    return found
+    axes: dict[MachineAxis, list[AxisHistory]] = {}
+    for one in sorted(histories, key=lambda each: each.first):
+        axes.setdefault(one.key, []).append(one)
+    return axes
 
 
 def peers_among(histories: Sequence[AxisHistory], titles: Mapping[MachineAxis, str]) -> list[Peer]:
-    """Return how axes with one surface rank over the latest weeks of all of them."""
-    found: list[Peer] = []
+    """Return how axes with one surface rank over their latest logs."""
+    peers: list[Peer] = []
     for file in dict.fromkeys(one.surface for one in histories):
-        own = [one for one in histories if one.surface == file]
-        if len(axes := by_axis(own)) > FEWEST_PEERS:
-            today = day_of(max(one.last for one in own)) + 1
-            points = {
-                titles[axis]: recent_of([point for one in kept for point in one.points], today)
+        axes = by_axis([one for one in histories if one.surface == file])
+        if len(axes) > FEWEST_PEERS:
+            lead = Surface.load(Path(file)).lead
+            cells = {
+                titles[axis]: np.concatenate([one.summary.cells for one in kept])
                 for axis, kept in axes.items()
             }
-            found += ranked(points, Surface.load(Path(file)))
-    return found
+            peers += ranked(cells, lead)
+    return peers

@@ -5,21 +5,24 @@
 from collections.abc import Iterable, Sequence
 
 from ballscrew_monitor.core.conversions import clock_text, seconds
-from ballscrew_monitor.health.assess import DRAG, TOLERANCE
-from ballscrew_monitor.health.onset import NAME as ONSET
+from ballscrew_monitor.health.assess import DRAG
 from ballscrew_monitor.health.peers import Peer
-from ballscrew_monitor.health.preload import NAME as PRELOAD
-from ballscrew_monitor.health.records import Condition, Health, Quantity
+from ballscrew_monitor.health.records import Condition, Health, Quantity, TOLERANCE
 from ballscrew_monitor.recordings.words import number
 from ballscrew_monitor.report.page import element, joined, Markup, table, TableCell, TableRow
 from ballscrew_monitor.report.trend import Mark, trend
 
-CONDITIONS = {Condition.NORMAL: 'good', Condition.WORSE: 'bad', Condition.UNKNOWN: 'unknown'}
-MARKS = {Condition.NORMAL: 'optimal', Condition.WORSE: 'outside', Condition.UNKNOWN: 'unjudged'}
-TRENDS = {
-    DRAG: ('change of the drag', 0.0, TOLERANCE),
-    PRELOAD: ('preload over that of the baseline', 1.0, TOLERANCE),
-    ONSET: ('speed of the onset of contact over that of the baseline', 1.0, TOLERANCE),
+CONDITIONS = {
+    Condition.NORMAL: 'good',
+    Condition.SLIGHTLY_CHANGED: 'unknown',
+    Condition.WORSE: 'bad',
+    Condition.UNKNOWN: 'unknown',
+}
+MARKS = {
+    Condition.NORMAL: 'optimal',
+    Condition.SLIGHTLY_CHANGED: 'unjudged',
+    Condition.WORSE: 'outside',
+    Condition.UNKNOWN: 'unjudged',
 }
 
 
@@ -96,13 +99,13 @@ def _peer_row(one: Peer) -> TableRow:
 
 
 def health_trends(courses: Sequence[Health]) -> Iterable[Markup]:
-    """Yield each quantity that is known at two dates or more, with its intervals over dates."""
-    for name, (title, normal, tolerance) in TRENDS.items():
-        marks = [_mark(one, one.quantity(name)) for one in courses if one.quantity(name).is_known]
-        drawn = trend(marks, normal=normal, tolerance=tolerance)
-        if drawn:
-            yield element('h3', f'Axis {courses[-1].axis}: {title}, with 95 % intervals')
-            yield drawn
+    """Yield the change of the friction with its intervals, if it is known at two dates or more."""
+    marks = [_mark(one, one.quantity(DRAG)) for one in courses if one.quantity(DRAG).is_known]
+    drawn = trend(marks, normal=0.0, tolerance=TOLERANCE)
+    if drawn:
+        title = 'change of the friction, with 95 % intervals'
+        yield element('h3', f'Axis {courses[-1].axis}: {title}')
+        yield drawn
 
 
 def _mark(health: Health, quantity: Quantity) -> Mark:

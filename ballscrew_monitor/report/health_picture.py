@@ -1,25 +1,21 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Drag and preload of each axis over dates, with their intervals."""
+"""Friction of each axis over dates, with its interval."""
 
 from collections.abc import Mapping, Sequence
 import datetime
 from pathlib import Path
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.health.assess import DRAG, TOLERANCE
-from ballscrew_monitor.health.preload import NAME as PRELOAD
-from ballscrew_monitor.health.records import Condition, Health
+from ballscrew_monitor.health.assess import DRAG
+from ballscrew_monitor.health.records import Condition, Health, TOLERANCE
 from matplotlib.axes import Axes
 from matplotlib.dates import AutoDateLocator, ConciseDateFormatter, date2num
 from matplotlib.figure import Figure
 import numpy as np
 from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, VERMILION
 
-SHOWN = {
-    DRAG: ('change of the drag [%]', 0.0, 'drag at equal speed, load and direction'),
-    PRELOAD: ('preload over that of the baseline [%]', 100.0, 'preload left'),
-}
+SHOWN = {DRAG: ('change of the friction [%]', 0.0, 'friction at equal speed and load')}
 WIDTH, HEIGHT = 8.0, 3.0  # [inch] of one quantity of one axis
 MOST_DRAWN = 40
 """Axes in one picture, which may be 65536 pixels high."""

@@ -9,6 +9,7 @@ Printing asks for no more than the node: nothing here loads what pages and table
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 import dataclasses
+import functools
 import math
 from typing import Any, Protocol, TYPE_CHECKING
 
@@ -18,6 +19,7 @@ from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.recordings.axis_run import AxisRows, TimedState
 from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.positions import positions_of
 from ballscrew_monitor.recordings.recorded_events import judged_by_events
 from ballscrew_monitor.recordings.replay import ignore, replay_parts
 from ballscrew_monitor.recordings.summary import AxisOutcome, EventRecord
@@ -235,7 +237,7 @@ class CaseMaker:
         self,
         axis: str,
         values: Mapping[str, Any],
-        make: 'type[HistoryMaker] | None' = None,
+        make: 'Callable[..., HistoryMaker] | None' = None,
         machine: str = '',
     ) -> None:
         """
@@ -331,12 +333,14 @@ def judge_log(
     rows: RowKeeper | None = None,
     on_state: OnState | None = None,
     health: 'type[HistoryMaker] | None' = None,
+    along_stroke: bool = False,
 ) -> LogCase:
     """
     Judge a recording and return what is said of it; its rows are kept in `rows`, if anywhere.
 
-    `on_state` is handed each state that would be published; `health` gathers that of each axis.
-    Raises InputError when it cannot be read with the parameters.
+    `on_state` is handed each state that would be published; `health` gathers that of each axis,
+    and `along_stroke` by its positions, too. Raises InputError when it cannot be read with the
+    parameters.
 
     """
     machine = parameters.machine or str(folder_of(bag.path))
@@ -347,7 +351,11 @@ def judge_log(
             outcomes.append(part)
         else:
             if part.axis not in makers:
-                makers[part.axis] = CaseMaker(part.axis, parameters.values, health, machine)
+                make: Callable[..., HistoryMaker] | None = health
+                if health is not None and along_stroke:
+                    positions = positions_of(bag, part.axis, parameters.values)
+                    make = functools.partial(health, log=str(bag.path), positions=positions)
+                makers[part.axis] = CaseMaker(part.axis, parameters.values, make, machine)
             makers[part.axis].add(part.rows)
             if rows is not None:
                 rows.add(part.axis, part.rows)

@@ -100,9 +100,7 @@ def _health(entries: Sequence[LogEntry], titles: Titles) -> tuple[list[Markup], 
         read_history(one) for entry in entries if entry.result for one in entry.result.histories
     ]
     courses = [
-        list(healths(own, title=titles[axis]))
-        for axis, own in by_axis(found).items()
-        if len(own) > 1
+        healths(own, title=titles[axis]) for axis, own in by_axis(found).items() if len(own) > 1
     ]
     peers = peers_among(found, titles)
     first = [verdict_box(course[-1]) for course in courses]

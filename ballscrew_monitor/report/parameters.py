@@ -79,7 +79,7 @@ class LogParameters:
     `notes` are about the log, `sentences` all that is to be said of it in a terminal; `axes` is
     what is known of each axis but for a recording. `nominal`: nobody said with what to judge.
     `metadata` are those of a bag that is to be judged alike. `machine` is the one that the map of
-    the log states, or ''.
+    the log or the parameters state, or ''.
 
     """
 
@@ -124,8 +124,13 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
         },
         nominal=chosen.is_nominal,
         metadata=_metadata(bag, facts, chosen),
-        machine='' if facts is None else str(facts.mapping.get('machine', '')).strip(),
+        machine=_machine(facts, chosen),
     )
+
+
+def _machine(facts: LogFacts | None, chosen: ChosenValues) -> str:
+    mapped = '' if facts is None else str(facts.mapping.get('machine', '')).strip()
+    return mapped or chosen.values['machine'].strip()
 
 
 def _still_assumed(facts: LogFacts, chosen: ChosenValues) -> Iterator[log_facts.Assumption]:

@@ -24,6 +24,10 @@ NODE_ROWS = (
     ParameterRow('autostart', True, change=NEVER).says(
         'Configure and activate at start; false under a lifecycle manager.'
     ),
+    ParameterRow('machine', '', change=NEVER).says(
+        'Name of the machine: axes have one history for each machine; empty: the folder of a log, '
+        'or state_dir.'
+    ),
     ParameterRow('localhost', False, change=NEVER).says(
         'Bind every port of the node to 127.0.0.1: no other machine reaches it.'
     ),
@@ -256,8 +260,8 @@ AXIS_ROWS = (
     ParameterRow('health.period', 3600.0, 's', 1.0, 1e6, LIVE).says(
         'Time between two assessments of health.'
     ),
-    ParameterRow('health.baseline_hours', 8.0, 'h', 0.1, 1e4, LIVE).says(
-        'Motion over which a baseline is learned, on complete days.'
+    ParameterRow('health.baseline_days', 91.0, 'd', 1.0, 1e4, LIVE).says(
+        'Days whose logs are the baseline, from the first one on; three logs at least.'
     ),
     ParameterRow('plain_topics', False).says(
         'Publish efficiency, RCS, film ratio, regime and warning as topics of std_msgs too.'

@@ -1,161 +1,195 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""
-Score of the assessment of a year: when it found the change, and its words for it.
+"""What the product says of axis-years against their truth: alarms, delays, coverage, causes."""
 
-The axis is assessed every four weeks. Where that says worse for the first time, the days since the
-time before are gone through by halves for the first of them.
-
-"""
-
-from collections.abc import Callable, Sequence
-import dataclasses
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 import math
+from typing import Any, NamedTuple
 
-from ballscrew_monitor.health.assess import Compared
-from ballscrew_monitor.health.baseline import learned
-from ballscrew_monitor.health.records import (
-    Baseline,
-    CauseCode,
-    ComparablePoint,
-    Condition,
-    Quantity,
-)
-from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.health.causes import causes_of, likely
+from ballscrew_monitor.health.change import changes_of, marks_of
+from ballscrew_monitor.health.detection import Look, looks
+from ballscrew_monitor.health.history import History, history_of
+from ballscrew_monitor.health.records import CauseCode
 from ballscrew_monitor.health.words import explained
-from health_parts.programmes import DAYS
-from health_parts.years import FIRST_DAY, Truth, Year
+from health_parts.axis_year import AxisYear
+from health_parts.summaries import cells_of_year
 import numpy as np
 
-NAN = math.nan
-WEEK, PERIOD = 7, 28
-"""Days that count as now, and days between two assessments."""
+EIGHT_WEEKS = 56.0  # [d]
+QUARTER = 91.0  # [d]
+CAUSES = {
+    'preload': {CauseCode.PRELOAD_LOST},
+    'viscosity': {CauseCode.OIL_THINNER, CauseCode.OIL_THICKER},
+    'film': {CauseCode.FILM_STARVED},
+    'wiper': {CauseCode.WIPER},
+    'guideway': {CauseCode.WIPER},
+    'bearing': {CauseCode.WIPER},
+    'torque_constant': {CauseCode.TORQUE_CONSTANT},
+}
+"""Causes that are right by the part that has changed."""
 
 
-Compare = Callable[[int, Baseline, Sequence[ComparablePoint]], Compared]
-"""The product with its surfaces: takes the last day, since 1970, a baseline and points."""
+class Kind(NamedTuple):
+    """A way to log, a fault by its name, and the options of the year."""
+
+    way: str
+    fault: str
+    options: Mapping[str, Any]
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Score:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Course:
     """
-    What came of one year.
+    A year as it was judged.
 
-    `size` of the change and that of the drag at the first alarm [-], NaN if there was none;
-    alarms before the change with the days that had none of it; whether each interval that was
-    given holds the truth; the causes that are named at the end, the likeliest first.
+    `found` is the day of the alarm after the fault, NaN for none; `early` counts alarms before it;
+    `held` and `known` count looks; half widths [-] after a quarter and at the end. `told` and
+    `right` are those of the cause at the alarm.
 
     """
 
-    truth: Truth
-    size: float = NAN
-    drag: float = NAN
-    early_alarms: int = 0
-    clean_days: int = 0
-    held: dict[str, bool] = dataclasses.field(default_factory=dict)
-    causes: tuple[CauseCode, ...] = ()
-    condition: Condition = Condition.UNKNOWN
-    problem: str = ''
-
-    @property
-    def is_right(self) -> bool:
-        """Tell whether the likeliest cause is the true one."""
-        return bool(self.causes) and self.causes[0] in self.truth.value
-
-    @property
-    def is_named(self) -> bool:
-        """Tell whether the true cause is among those named."""
-        return any(one in self.truth.value for one in self.causes)
+    lost: float  # change of the friction in the end [-]
+    found: float
+    early: int
+    held: int
+    known: int
+    looks: int
+    quarter: float
+    half: float
+    told: bool
+    right: bool
 
 
-def score(year: Year, compare: Compare) -> Score:
-    """Return what the assessments of a year are worth."""
-    truth = year.kind.truth
-    baseline = learned(year.points)
-    if isinstance(baseline, str):
-        return Score(truth=truth, problem=baseline)
-    begin = baseline.end // DAY - FIRST_DAY
-    changed = _first_change(year)
-
-    def asked(day: int) -> tuple[int, Baseline, list[ComparablePoint]]:
-        last = FIRST_DAY + day
-        return last, baseline, [one for one in year.points if one.first_day <= last]
-
-    def is_worse(day: int) -> bool:
-        return compare(*asked(day)).condition is Condition.WORSE
-
-    early, before, found = 0, False, None
-    for day in range(begin + PERIOD, DAYS, PERIOD):
-        alarmed = is_worse(day)
-        early += alarmed and not before and day < changed
-        before = alarmed
-        if alarmed and day >= changed:
-            found = day
-            break
-    if found is not None:
-        found = _first_alarm(is_worse, max(found - PERIOD, changed), found)
-    final = compare(*asked(DAYS - 1))
-    return Score(
-        truth=truth,
-        size=NAN if found is None else abs(float(year.size[found])),
-        drag=NAN if found is None else abs(true_drag(year, begin, found)),
-        early_alarms=early,
-        clean_days=max(min(changed, DAYS) - begin, 0),
-        held=held_by(year, begin, final, DAYS - 1),
-        causes=named_causes(final),
-        condition=final.condition,
+def score_of(year: AxisYear, *, always_free: bool = False) -> Course:
+    """Return how a year was judged."""
+    cells = cells_of_year(year, always_free=always_free)
+    history = history_of(cells, year.machine.size.lead)
+    if history is None:
+        return Course(
+            lost=0.0,
+            found=math.nan,
+            early=0,
+            held=0,
+            known=0,
+            looks=len(year.day),
+            quarter=math.nan,
+            half=math.nan,
+            told=False,
+            right=False,
+        )
+    seen = list(looks(history))
+    day = year.day[np.searchsorted([log.start for log in year.logs], history.start)]
+    first = day - day[0] <= QUARTER
+    indicated = (1.0 + year.truth.change(first)) / constant_of(year)
+    truth = indicated[np.searchsorted(year.day, day)] - 1.0
+    pairs = [(one, _now(truth, one)) for one in seen if one.is_known]
+    raised = [one for one in seen if one.raised]
+    start = year.fault.start if year.fault.part else math.inf
+    after = [one for one in raised if day[one.log] >= start]
+    told, right = _cause(history, after[-1], year) if after else (False, False)
+    quarter = [one for one in seen if one.is_known and day[one.log] - day[0] >= QUARTER - 3.0]
+    return Course(
+        lost=float(np.mean(truth[-4:])),
+        found=float(day[after[0].log] - start) if after else math.nan,
+        early=any(day[one.log] < start for one in raised),
+        held=sum(one.low <= value <= one.high for one, value in pairs),
+        known=len(pairs),
+        looks=len(seen),
+        quarter=_half(quarter[0]) if quarter else math.nan,
+        half=_half(seen[-1]),
+        told=told,
+        right=right,
     )
 
 
-def _first_change(year: Year) -> int:
-    """Return the first day with a change, that after the last without one."""
-    changed = np.flatnonzero(year.size)
-    return int(changed[0]) if changed.size else DAYS
+def constant_of(year: AxisYear) -> np.ndarray:
+    """Return the torque constant of each log of a year over that of its first one [-]."""
+    constant = year.fault.condition(year.day[:, None]).torque_constant
+    return np.broadcast_to(constant, (len(year.day), 1))[:, 0]
 
 
-def _first_alarm(is_worse: Callable[[int], bool], low: int, high: int) -> int:
-    """Return the first day after `low` that says worse, `high` at the latest."""
-    while high - low > 1:
-        middle = (low + high) // 2
-        if is_worse(middle):
-            high = middle
-        else:
-            low = middle
-    return high
+def _now(truth: np.ndarray, look: Look) -> float:
+    first = max(look.log - look.now + 1, 0)
+    return float(np.mean(truth[slice(first, look.log + 1)]))
 
 
-def named_causes(found: Compared) -> tuple[CauseCode, ...]:
-    """Return the causes that the verdict names, as `words` does, the likeliest first."""
-    _, likely = explained(NAN, found.causes)
-    return tuple(one.code for one in likely)
+def _half(look: Look) -> float:
+    return 0.5 * (look.high - look.low)
 
 
-def held_by(year: Year, begin: int, found: Compared, day: int) -> dict[str, bool]:
-    """Return by quantity whether its interval holds the truth on a day, where it is given."""
-    truths = {'drag change': true_drag(year, begin, day), 'preload': true_preload(year, day)}
-    given = {one.name: one for one in (found.drag, found.preload)}
-    return {
-        name: holds(given[name], value)
-        for name, value in truths.items()
-        if name in given and given[name].is_known and math.isfinite(value)
-    }
+def _cause(history: History, look: Look, year: AxisYear) -> tuple[bool, bool]:
+    """Return whether a cause is told of a look, and whether it holds the truth."""
+    until = history.until(look.log + 1)
+    change, marks = math.log1p(look.change), marks_of(until, look)
+    causes = causes_of(changes_of(until, look), marks, change, year.machine.preload)
+    _, told = explained(likely(causes))
+    codes = {one.code for one in told}
+    return bool(codes), bool(codes & CAUSES.get(year.fault.part, set()))
 
 
-def holds(quantity: Quantity, value: float) -> bool:
-    """Tell whether an interval holds a value [-]; percent are of hundred."""
-    scale = 100.0 if quantity.unit == '%' else 1.0
-    return quantity.low <= scale * value <= quantity.high
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Score:
+    """A line of the table."""
+
+    kind: Kind
+    years: int
+    lost: float
+    found: float
+    soon: float
+    delay: float
+    early: float
+    coverage: float
+    quarter: float
+    half: float
+    unknown: float
+    told: float
+    right: float
+
+    @classmethod
+    def of(cls, kind: Kind, courses: Sequence[Course]) -> 'Score':
+        """Return the score of the years of a kind."""
+        delays = [one.found for one in courses if math.isfinite(one.found)]
+        known = sum(one.known for one in courses)
+        found = [one for one in courses if math.isfinite(one.found)]
+        told = [one for one in found if one.told]
+        return cls(
+            kind=kind,
+            years=len(courses),
+            lost=float(np.mean([one.lost for one in courses])),
+            found=len(delays) / len(courses),
+            soon=sum(one <= EIGHT_WEEKS for one in delays) / len(courses),
+            delay=float(np.median(delays)) if delays else math.nan,
+            early=100.0 * sum(one.early for one in courses) / len(courses),
+            coverage=sum(one.held for one in courses) / max(known, 1),
+            quarter=float(np.nanmedian([one.quarter for one in courses])),
+            half=float(np.nanmedian([one.half for one in courses])),
+            unknown=1.0 - known / max(sum(one.looks for one in courses), 1),
+            told=len(told) / len(found) if found else math.nan,
+            right=sum(one.right for one in told) / len(told) if told else math.nan,
+        )
 
 
-def true_drag(year: Year, begin: int, day: int) -> float:
-    """Return the change of friction in the last week [-]; NaN where the torque is wrong."""
-    if year.kind.truth is Truth.TORQUE_GAIN:
-        return NAN
-    return year.drag_change(day - WEEK + 1, day, year.groups_until(begin))
+def print_table(table: Sequence[Score]) -> None:
+    """Print the lines as a table of Markdown."""
+    print(
+        '| logs | change | years | friction in the end | found | delay | false alarms, 100 years '
+        '| interval holds | half width, a quarter, end | cause told, right |'
+    )
+    print('|---|---|---|---|---|---|---|---|---|---|')
+    for one in table:
+        print(
+            f'| {one.kind.way} | {one.kind.fault} | {one.years} | {100 * one.lost:+.0f} % '
+            f'| {_share(one.found)} | {_number(one.delay)} d | {one.early:.1f} '
+            f'| {_share(one.coverage)} | {_share(one.quarter)}, {_share(one.half)} '
+            f'| {_share(one.told)}, {_share(one.right)} |'
+        )
 
 
-def true_preload(year: Year, day: int) -> float:
-    """Return the preload over that of the baseline [-]; NaN where something else changes."""
-    if not year.kind.truth.name.startswith(('PRELOAD', 'NOTHING')):
-        return NAN
-    return 1.0 - float(year.size[day])
+def _share(value: float) -> str:
+    return '' if math.isnan(value) else f'{100 * value:.0f} %'
+
+
+def _number(value: float) -> str:
+    return '' if math.isnan(value) else f'{value:.0f}'

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import CancelledError, Future
 import contextlib
 import functools
+import logging
 from multiprocessing import resource_tracker
 import os
 import queue
@@ -93,6 +94,8 @@ class DaskPool:
         """Connect to a scheduler, or start `workers` processes of this machine."""
         import distributed
 
+        # A scheduler that is lost is told in a sentence, not in tracebacks of its client.
+        logging.getLogger('distributed.client').setLevel(logging.CRITICAL)
         self._on_share = on_share
         self._heard: queue.SimpleQueue[tuple[str, Frame | Future[Frame]]] = queue.SimpleQueue()
         with _deaf_to_ctrl_c():

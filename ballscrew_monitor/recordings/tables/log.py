@@ -8,7 +8,7 @@ Topics are `joint_states` with speed, position and torque of each screw, `<axis>
 
 """
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 import dataclasses
 import math
 from pathlib import Path
@@ -16,6 +16,7 @@ from typing import Any
 
 from ballscrew_monitor.core.fields import type_name_of
 from ballscrew_monitor.core.inputs import Input, Why
+from ballscrew_monitor.health.stroke import Positions
 from ballscrew_monitor.messages.reasons import enough_timeout
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk.batches import Batch, batches, END
@@ -32,6 +33,7 @@ from ballscrew_monitor.recordings.bulk.events import (
 )
 from ballscrew_monitor.recordings.bulk.order import EventOrder, OnDone, ordered_events
 from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
+from ballscrew_monitor.recordings.positions import positions_of
 from ballscrew_monitor.recordings.storages import Message, TopicInfo
 from ballscrew_monitor.recordings.tables import times
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
@@ -52,7 +54,7 @@ from ballscrew_monitor.settings.parameters import absolute, MOTOR_TORQUE
 import numpy as np
 from sensor_msgs.msg import JointState
 from surrogate.files import InputError
-from surrogate.units import MILLI
+from surrogate.units import MILLI, TURN
 
 SLOW = 0.5  # of the timeout: rows that far apart leave no room for a late one
 SAME = 1e-6  # part by which two leads may differ
@@ -169,6 +171,17 @@ class TableLog(Bag):
     def _pattern(self, one: Input) -> Pattern:
         return self._patterns[absolute(one.topic)]
 
+    def positions(self, axis: str) -> Positions | None:
+        """Return the positions of an axis, None where the map names no column of them."""
+        lead = next(each.lead for each in self._series.mapping.axes if each.name == axis)
+        group = self._series.places.get(f'{axis}.position', 0)
+        parts = [groups[group] for groups in self._series.blocks()]
+        rows = times.joined([part for part in parts if len(part.stamps)])
+        if f'{axis}.position' not in rows.columns:
+            return None
+        motor = rows.columns[f'{axis}.position'] * lead / TURN
+        return Positions(rows.stamps, motor, rows.columns.get(f'{axis}.table_position'))
+
     def _event(self, one: Input, notes: Notes, *, axis: int) -> Events:
         """Return what an input of an axis reads of any row, but for its time and number."""
         read = one.read(self._pattern(one).message, now=STAMP, max_future=0)
@@ -220,6 +233,11 @@ class _Part:
 @batches.register
 def _(bag: TableLog, topics: Collection[str], *, as_written: bool = False) -> Iterator[Batch]:
     return bag.batches(topics)
+
+
+@positions_of.register
+def _(bag: TableLog, axis: str, values: Mapping[str, Any]) -> Positions | None:
+    return bag.positions(axis)
 
 
 @ordered_events.register

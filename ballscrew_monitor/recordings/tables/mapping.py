@@ -53,6 +53,8 @@ NUMBERS = {
 LINES = {'skip': (0, 1000), 'header_rows': (0, 2)}
 """Numbers of lines, with the least and the most allowed."""
 TEXTS = ('screw', 'oil', 'surface')
+TOP_TEXTS = ('machine', 'date_from', 'decimal')
+DATES = ('name', 'header', 'modified')
 PLACES = {
     'decimal': "`'.'` or `','`: decimal sign of columns in which no cell shows it, as 5.400 may "
     'be 5400; the other sign parts thousands',
@@ -61,6 +63,9 @@ PLACES = {
     'without names, whose columns are `column 1`, `column 2` and so on',
     'machine': 'name of the machine, a text: its axes have one history, whatever folder holds a '
     'log',
+    'date_from': 'instead of `time.epoch`: the date of the first row is that in the `name` of the '
+    'file or else of its folder (2025-07-14, 20250714_115950, 14.07.2025), in its `header`, or '
+    'that at which the file was `modified`; UTC',
     'time.column': 'column of the time, unit after `scale` and `offset`; dates and times of day '
     'are read as s, without a zone as UTC; a time of day goes on through midnight',
     'time.rate_Hz': 'instead of a column: rows at equal distances',
@@ -74,6 +79,8 @@ PLACES = {
     'AXIS.speed': 'column of the speed, of the nut in a linear unit or of the screw; this or '
     '`position`',
     'AXIS.position': 'column of the position; without a speed its slope replaces it',
+    'AXIS.table_position': 'column of the position of the table by its own scale: beside '
+    '`position`, that of the motor, it gives the lost motion at reversals',
     'AXIS.load': 'column of the force on the nut, positive along the axis; or `{from: current}`, '
     '`{from: torque}`, `{from: motor_torque}`, `{unknown: reason}`',
     'AXIS.torque': 'column of the torque at the screw, in N m or % of the rated one',
@@ -166,9 +173,9 @@ class TableMap:
 
     Column of the time, or the rate [Hz] of a log without one; `date` names the column of the days
     whose times the other says, if there is one; epoch [ns] of the first row, None when the log
-    tells it; `decimal` sign of numbers that may be read with either one, and `order` of day and
-    month, empty where not said;
-    `content` is the map as it was written.
+    tells it; `date_from` says where the date of the first row stands, if anywhere; `decimal` sign
+    of numbers that may be read with either one, and `order` of day and month, empty where not
+    said; `content` is the map as it was written.
 
     """
 
@@ -179,6 +186,7 @@ class TableMap:
     date: str
     rate: float
     epoch: int | None
+    date_from: str
     axes: tuple[AxisMap, ...]
     assumptions: tuple[Assumption, ...]
     parameters: Mapping[str, Any]
@@ -224,7 +232,7 @@ def _read(path: Path) -> TableMap:
 
 def make_map(content: Any) -> TableMap:
     """Return a map made of its content; raises InputError when that is not right."""
-    known = ('log', 'time', 'axes', 'assumed', 'parameters', 'machine', *LINES, 'decimal')
+    known = ('log', 'time', 'axes', 'assumed', 'parameters', *TOP_TEXTS, *LINES)
     _check_keys('the map', content, known)
     if 'machine' in content:
         _check_machine(content['machine'])
@@ -237,7 +245,9 @@ def make_map(content: Any) -> TableMap:
     assumptions = _assumptions(content.get('assumed') or {})
     stated = _flatten(content.get('time') or {}, 'time') | _flatten(axes, '')
     values = _joined(stated, assumptions)
-    epoch = values.pop('time.epoch', None)
+    epoch, date_from = values.pop('time.epoch', None), _date_from(content, stated)
+    if date_from:  # an assumed epoch gives way
+        epoch, assumptions = None, tuple(one for one in assumptions if one.key != 'time.epoch')
     time = _Part('time', values)
     made = TableMap(
         layout=_layout(content),
@@ -247,6 +257,7 @@ def make_map(content: Any) -> TableMap:
         date=column_name(time.text('date')),
         rate=time.number('rate_Hz'),
         epoch=None if epoch is None else _epoch(epoch),
+        date_from=date_from,
         axes=tuple(_axis(str(name), values) for name in axes),
         assumptions=assumptions,
         parameters=_flatten(content.get('parameters') or {}, ''),
@@ -264,6 +275,16 @@ def make_map(content: Any) -> TableMap:
 def _check_machine(name: Any) -> None:
     if not isinstance(name, str) or not name.strip():
         raise InputError(f'machine is {name!r}, it must be a text, the name of the machine')
+
+
+def _date_from(content: Mapping[str, Any], stated: Mapping[str, Any]) -> str:
+    """Return where a map says that the date of a log stands, empty where it does not."""
+    place = content.get('date_from', '')
+    if 'date_from' in content and place not in DATES:
+        raise InputError(f'date_from is {_said(place)}, allowed are {", ".join(DATES)}')
+    if place and 'time.epoch' in stated:
+        raise InputError('date_from and time.epoch both date the first row, one must go')
+    return str(place)
 
 
 def _layout(content: Mapping[str, Any]) -> Layout | None:

@@ -29,6 +29,7 @@ RATED = '%'  # of the rated torque, or of the current at which the motor gives i
 UNITS: dict[str, Mapping[str, float]] = {
     'speed': conversions.LINEAR_SPEED_UNITS | conversions.ROTARY_SPEED_UNITS,
     'position': conversions.LINEAR_POSITION_UNITS | conversions.ROTARY_POSITION_UNITS,
+    'table_position': conversions.LINEAR_POSITION_UNITS,
     'load': conversions.LOAD_UNITS,
     'torque': {'N m': 1.0, RATED: 0.01},
     'current': conversions.CURRENT_UNITS | {RATED: 0.01},
@@ -36,6 +37,8 @@ UNITS: dict[str, Mapping[str, float]] = {
     'time': {unit: factor for unit, (factor, _) in SCALES.items()},
 }
 """Units of each kind of column; some need what a map states, as the lead or the rated torque."""
+NAMED_BY_MAPS = ('table_position',)
+"""Kinds that no name of a column tells, so that maps alone name them."""
 MOTION = ('speed', 'position')
 OTHER_SIGN = {'.': ',', ',': '.'}
 """Decimal signs, each with the one that then parts thousands."""

@@ -16,6 +16,7 @@ from pathlib import Path
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables.cells import Array
+from ballscrew_monitor.recordings.tables.dates import dated
 from ballscrew_monitor.recordings.tables.estimates import FACTOR, NEAR
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
 from ballscrew_monitor.recordings.tables.quantities import MOTION
@@ -66,8 +67,9 @@ class Series:
         """
         Yield the rows in blocks, a list of those of each group, the columns such as `x.load`.
 
-        Speed [rad/s], position [rad] and torque [N m] of the screw, load on the nut [N] and oil
-        temperature [degC], machine frame, NaN where not known: those of `quantities_of`.
+        Speed [rad/s], position [rad] and torque [N m] of the screw, position of the table [m],
+        load on the nut [N] and oil temperature [degC], machine frame, NaN where not known: those
+        of `quantities_of`.
 
         """
         streams = [self._group(number, times) for number, times in enumerate(self._times)]
@@ -111,7 +113,7 @@ def source_of(axis: AxisMap, kind: str) -> str:
 
 def quantities_of(axis: AxisMap) -> set[str]:
     """Return what is known of an axis by rows: its speed, and what the log holds otherwise."""
-    held = {'speed', *({'position', 'temperature'} & set(axis.columns))}
+    held = {'speed', *({'position', 'table_position', 'temperature'} & set(axis.columns))}
     motor = {kind for kind in ('torque', 'current') if kind in axis.columns}
     if 'torque' in motor or (motor and math.isfinite(axis.motor_torque('current'))):
         held.add('torque')
@@ -125,6 +127,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     Raises InputError when it cannot be read by the map.
 
     """
+    mapping = dated(path, mapping)
     columns = mapping.columns
     table = open_table(
         path,
@@ -270,6 +273,8 @@ def _axis(
     found: dict[str, Array] = {}
     if 'position' in known:
         found['position'] = column('position', turned)
+    if 'table_position' in known:
+        found['table_position'] = column('table_position', linear[unit('table_position')])
     if 'speed' in known and 'speed' in held:
         found['speed'] = column('speed', speed_factor(unit('speed'), axis.lead))
     elif 'speed' in known:

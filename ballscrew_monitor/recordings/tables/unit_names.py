@@ -5,7 +5,7 @@
 from collections.abc import Iterator, Mapping
 import re
 
-from ballscrew_monitor.recordings.tables.quantities import UNITS
+from ballscrew_monitor.recordings.tables.quantities import NAMED_BY_MAPS, UNITS
 
 WORD = re.compile(r'[A-ZÄÖÜ]+(?![a-zäöüßµμ°])|[A-ZÄÖÜ]?[a-zäöüßµμ°]+|\d+')
 """A word of a name: of one case, or of small letters after a capital; or a number."""
@@ -132,4 +132,6 @@ def _spellings(units: Mapping[str, float]) -> dict[str, str]:
     return spelt | {_plain(alias): unit for unit in units for alias in _ALIASES.get(unit, ())}
 
 
-_SPELLINGS = {kind: _spellings(units) for kind, units in UNITS.items()}
+_SPELLINGS = {
+    kind: _spellings(units) for kind, units in UNITS.items() if kind not in NAMED_BY_MAPS
+}

@@ -1,12 +1,9 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Rows of a known motion, and points of a known torque."""
-
-import dataclasses
+"""Rows of a known motion, and cells of a known torque."""
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.health.bands import place_of
-from ballscrew_monitor.health.records import ComparablePoint, Stretch
+from ballscrew_monitor.health.records import Cell, Stretch
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.judge.many import ROW
 from ballscrew_monitor.judge.records import Row
@@ -67,15 +64,23 @@ class Motion:
         }
         return Stretch(**values | changes)
 
-    def point(self, **changes):
-        """Return a comparable point of today, of several stretches."""
-        one = self.stretch()
-        known = {field.name for field in dataclasses.fields(ComparablePoint)}
-        shared = {
-            name: getattr(one, name) for name in Stretch.__dataclass_fields__ if name in known
+    def cell(self, **changes):
+        """Return a cell of today, of several stretches."""
+        values = {
+            'first_day': TODAY,
+            'speed_band': 21,
+            'load_band': 6,
+            'direction': 1,
+            'stretches': 4,
+            'duration': 20.0,
+            'speed': 50.0,
+            'ripple': 0.003,
+            'axial_load': 500.0,
+            'temperature': 313.0,
+            'motor_torque': 0.5,
         }
-        made = {'first_day': TODAY, 'place': place_of(one), 'surface': 'ab', 'stretches': 4}
-        return ComparablePoint(**shared | made | {'residual': 0.02} | changes)
+        values |= changes
+        return Cell(**{'start': values['first_day'] * DAY} | values)
 
 
 @pytest.fixture(scope='session')
@@ -86,13 +91,3 @@ def motion():
 @pytest.fixture(scope='session')
 def surface():
     return Surface.load(shipped_surface())
-
-
-@pytest.fixture
-def identified():
-    """Return a surface whose screw has a parasitic torque."""
-    found = Surface.load(shipped_surface())
-    inputs = found.header['inputs']
-    screw = {**inputs['screw'], 'parasitic_torque': 0.05}
-    found.header = {**found.header, 'inputs': {**inputs, 'screw': screw}}
-    return found

@@ -2,15 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bands without holes, each limit on one side, and periods that lie within longer ones."""
 
-from ballscrew_monitor.core.conversions import kelvin
 from ballscrew_monitor.health.bands import (
     day_of,
     LAST_LOAD,
     load_band,
     period_of,
-    place_of,
     SEVERITIES,
     severity_class,
+    speed_band,
 )
 from ballscrew_monitor.health.rows import DAY
 from hypothesis import given
@@ -32,13 +31,11 @@ def test_loads_that_differ_by_less_than_the_ratio_are_at_most_one_band_apart(loa
     assert load_band(load * 1.51) > load_band(load)
 
 
-def test_a_place_has_the_bands_of_the_means(motion):
-    """Speed 1 to 1.25 rad/s is band 0, and 0 to 5 degC is."""
-    here = place_of(motion.stretch(speed=-1.0, temperature=kelvin(0.0), axial_load=-60.0))
-    assert here == (0, -1, 0, -1)
-    assert place_of(motion.stretch(speed=1.2499, temperature=kelvin(4.999)))[::2] == (0, 0)
-    assert place_of(motion.stretch(speed=1.2501, temperature=kelvin(5.001)))[::2] == (1, 1)
-    assert place_of(motion.stretch(speed=0.99, temperature=kelvin(-0.1)))[::2] == (-1, -1)
+@pytest.mark.parametrize(
+    ('speed', 'band'), [(1.0, 0), (1.09, 0), (1.1, 1), (1.2, 1), (1.44, 2), (0.84, -1), (0.92, 0)]
+)
+def test_speed_bands_have_steps_of_one_fifth_about_one_radian_a_second(speed, band):
+    assert speed_band(speed) == band
 
 
 def test_classes_of_severity_are_decades_with_the_limit_above():

@@ -12,7 +12,7 @@ from ballscrew_monitor.health.lubrication import (
     severity_quantities,
     usual_boundary,
 )
-from ballscrew_monitor.health.records import Baseline, ComparablePoint, Place, SpectrumBin
+from ballscrew_monitor.health.records import Baseline, Cell, SpectrumBin
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
@@ -25,11 +25,11 @@ RATED = Rated(dynamic_rating=25e3, static_rating=55e3, preload=990.0, pitch_diam
 
 
 def point(speed=100.0, *, day=TODAY, load=0.0, temperature=313.15, hours=2.0):
-    """Return a comparable point."""
-    return ComparablePoint(
+    """Return a cell."""
+    return Cell(
+        start=day * DAY,
         first_day=day,
-        place=Place(speed=1, load=0, temperature=1, direction=1 if speed > 0 else -1),
-        surface=SURFACE.sha256[:12],
+        direction=1 if speed > 0 else -1,
         stretches=9,
         duration=hours * 3600.0,
         speed=speed,
@@ -53,9 +53,9 @@ def worn(day, *times, hours=2.0):
     )
 
 
-def baseline(*points, first=TODAY - 100):
+def baseline(first=TODAY - 100):
     """Return a baseline of ten days."""
-    return Baseline(begin=first * DAY, end=(first + 9) * DAY, reason='learned', points=points)
+    return Baseline(begin=first * DAY, end=(first + 9) * DAY, reason='learned')
 
 
 def test_an_opposing_load():
@@ -137,14 +137,15 @@ def test_a_shift_that_is_not_known(bins, known, key, says):
 
 def test_boundary_running_that_is_normal(says):
     """It is where the baseline has it already, and not where it grows."""
+    first = TODAY - 100
     slow, fast = point(0.2, hours=6.0), point(200.0, hours=4.0)
-    normal = baseline(slow, fast)
-    usual = usual_boundary([slow, fast], normal, SURFACE, TODAY)
+    before = point(0.2, day=first, hours=6.0), point(200.0, day=first, hours=4.0)
+    usual = usual_boundary([*before, slow, fast], baseline(), SURFACE, TODAY)
     assert usual == pytest.approx((0.6, 0.6))
     assert boundary_note(usual) == says('normal')
-    assert usual_boundary([slow], normal, SURFACE, TODAY) is None
-    assert usual_boundary([slow], baseline(fast), SURFACE, TODAY) is None
-    assert usual_boundary([slow], None, SURFACE, TODAY) is None
-    assert usual_boundary([], normal, SURFACE, TODAY) is None
-    unknown = baseline(point(1e6))
-    assert usual_boundary([slow], unknown, SURFACE, TODAY) is None
+    assert usual_boundary([*before, slow], baseline(), SURFACE, TODAY) is None
+    assert usual_boundary([before[1], slow], baseline(), SURFACE, TODAY) is None
+    assert usual_boundary([*before, slow], None, SURFACE, TODAY) is None
+    assert usual_boundary(before, baseline(), SURFACE, TODAY) is None
+    unknown = point(1e6, day=first)
+    assert usual_boundary([unknown, slow], baseline(), SURFACE, TODAY) is None

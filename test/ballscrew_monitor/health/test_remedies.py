@@ -7,7 +7,7 @@ import dataclasses
 import math
 
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.health.records import ComparablePoint, Place
+from ballscrew_monitor.health.records import Cell
 from ballscrew_monitor.health.remedies import AIMED, Programme, remedies_of
 from hypothesis import given
 from hypothesis import strategies as st
@@ -28,11 +28,10 @@ LIMITS = Limits(
 
 
 def point(speed, *, load=0.0, temperature=333.15, hours=1.0):
-    """Return a comparable point."""
-    return ComparablePoint(
+    """Return a cell."""
+    return Cell(
         first_day=20_000,
-        place=Place(speed=1, load=0, temperature=1, direction=1 if speed > 0 else -1),
-        surface='ab',
+        direction=1 if speed > 0 else -1,
         stretches=9,
         duration=hours * 3600.0,
         speed=speed,

@@ -12,10 +12,10 @@ import sys
 
 from ballscrew_monitor.health import store as stores
 from ballscrew_monitor.health.bands import period_of
-from ballscrew_monitor.health.points import aged, by_place
-from ballscrew_monitor.health.records import Baseline, LoadSource, Place, SpectrumBin
+from ballscrew_monitor.health.records import Baseline, LoadSource, SpectrumBin
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.store import FILE, HealthStore, LIMIT, read_health
+from ballscrew_monitor.health.summary import aged, by_place
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
@@ -29,14 +29,13 @@ import dataclasses, pathlib, sys
 from ballscrew_monitor.health.store import HealthStore, read_health
 store = HealthStore(pathlib.Path(sys.argv[1]))
 store.load()
-point = store.read('x').points[0]
+cell = store.read('x').cells[0]
 for number in range(10**6):
-    places = [point.place._replace(load=load) for load in range(50, 90)]
-    points = [dataclasses.replace(point, place=one, stretches=1) for one in places]
-    store.add('x', points)
+    cells = [dataclasses.replace(cell, load_band=load, stretches=1) for load in range(50, 90)]
+    store.add('x', cells)
     print(number, flush=True)
 """
-"""A process that adds a stretch to forty points at a time."""
+"""A process that adds a stretch to forty cells at a time."""
 
 
 @pytest.fixture(name='make')
@@ -54,7 +53,7 @@ def make_store(tmp_path):
 
 @pytest.fixture(name='baseline')
 def made_baseline(motion):
-    return Baseline(begin=1, end=2, reason='oil', named_at=3, screw='s', points=(motion.point(),))
+    return Baseline(begin=1, end=2, reason='oil', named_at=3, screw='s')
 
 
 def a_bin(day, **changes):
@@ -70,23 +69,24 @@ def spoil(folder, *statements):
 
 def test_what_is_written_is_found_again(make, motion, baseline, tmp_path):
     points = [
-        motion.point(temperature_measured=False, first_day=motion.today - 3, days=7),
-        motion.point(),
-        motion.point(load_source=LoadSource.FREE, residual=math.nan, torque_squares=0.1 + 0.2),
+        motion.cell(temperature_measured=False, first_day=motion.today - 3, days=7),
+        motion.cell(),
+        motion.cell(load_source=int(LoadSource.FREE), torque_squares=0.1 + 0.2),
     ]
     bins = [a_bin(3, load_band=99, axial_load=math.nan), a_bin(motion.today, energy_measured=7.0)]
     store = make()
     assert store.said == []
     store.add('x', points, bins)
     store.keep_baseline('x', baseline)
+    store.add('y', points)
     store.keep_baseline('y', dataclasses.replace(baseline, reason='screw'))
-    store.keep_baseline('x', dataclasses.replace(baseline, reason='grease', points=()))
+    store.keep_baseline('x', dataclasses.replace(baseline, reason='grease'))
     found = read_health(tmp_path)  # while it is open
     assert list(found) == ['x', 'y']
     store.close()
     assert {path.name for path in tmp_path.iterdir()} == {FILE}
     for kept in (found['x'], make().read('x')):
-        assert repr(kept.points) == repr(tuple(points))
+        assert repr(kept.cells) == repr(tuple(points))
         assert repr(kept.spectrum) == repr(tuple(bins))
         assert [one.reason for one in kept.baselines] == ['oil', 'grease']
         assert kept.baselines[0] == baseline
@@ -104,20 +104,16 @@ def test_every_record_of_health_comes_back_from_its_row(data):
         bool: st.booleans(),
         float: st.floats(min_value=1e-300, allow_infinity=False, allow_nan=False),
         str: st.text(max_size=5),
-        LoadSource: st.sampled_from(LoadSource),
         tuple[float, ...]: st.lists(st.floats(0.0, 1e9), max_size=9).map(tuple),
-        Place: st.builds(Place, numbers, numbers, numbers, st.sampled_from([-1, 1])),
     }
     unknown = values[float] | st.just(math.nan)
-    named = dict.fromkeys(
-        ('residual', 'axial_load', 'energy_measured', 'energy_expected'), unknown
-    )
+    named = dict.fromkeys(('axial_load', 'energy_measured', 'energy_expected'), unknown)
     for table in stores.TABLES:
         parts = {name: values[kind] for name, kind in table.fields.items()}
         if table is not stores.BASELINES:
             parts |= {name: one for name, one in named.items() if name in parts}
-        if table is stores.POINTS:
-            parts['axial_load'] = values[float]
+        if table is stores.CELLS:
+            parts['direction'] = st.sampled_from([-1, 0, 1])
         record = data.draw(st.builds(table.kind, **parts))
         with contextlib.closing(sqlite3.connect(':memory:')) as database:
             store = Store(Path('none'), [table], version=1, limit=0)
@@ -131,30 +127,30 @@ def test_every_record_of_health_comes_back_from_its_row(data):
 
 def test_what_is_added_is_pooled_with_its_period_and_others_stand(make, motion):
     store, today = make(), motion.today
-    before = [motion.point(first_day=today - 1), motion.point(surface='old'), motion.point()]
+    before = [motion.cell(first_day=today - 1), motion.cell(load_band=3), motion.cell()]
     store.add('x', before, [a_bin(today), a_bin(today - 1)])
-    store.add('x', [motion.point(stretches=9)], [a_bin(today, angle=5.0)])
+    store.add('x', [motion.cell(stretches=9)], [a_bin(today, angle=5.0)])
     kept = store.read('x')
-    assert by_place(kept.points) == by_place([*before, motion.point(stretches=9)])
-    assert sum(one.stretches for one in kept.points) == 4 + 4 + 4 + 9
+    assert by_place(kept.cells) == by_place([*before, motion.cell(stretches=9)])
+    assert sum(one.stretches for one in kept.cells) == 4 + 4 + 4 + 9
     assert {one.angle for one in kept.spectrum} == {3.0, 3.0 + 5.0}
 
 
 def test_ageing_is_that_of_the_records_and_leaves_the_baselines(make, motion, baseline):
     store, today = make(), motion.today
-    points = [motion.point(first_day=today - age) for age in range(0, 1000, 3)]
+    points = [motion.cell(first_day=today - age) for age in range(0, 1000, 3)]
     bins = [a_bin(today - age) for age in range(0, 1000, 3)]
-    ahead = motion.point(first_day=today + 400)
+    ahead = motion.cell(first_day=today + 400)
     store.add('x', [*points, ahead], bins)
     store.keep_baseline('x', baseline)
     (note,) = store.age('x', today)
-    assert note.startswith('1 points from ')
+    assert note.startswith('1 cells from ')
     kept = store.read('x')
-    expected = (*aged(points, today).points, ahead)
-    assert sorted(kept.points, key=repr) == sorted(expected, key=repr)
+    expected = (*aged(points, today).cells, ahead)
+    assert sorted(kept.cells, key=repr) == sorted(expected, key=repr)
     assert sorted(kept.spectrum, key=repr) == sorted(merged_bins(bins, today), key=repr)
     assert kept.baseline == baseline
-    assert sum(one.stretches for one in kept.points) == 4 * (len(points) + 1)
+    assert sum(one.stretches for one in kept.cells) == 4 * (len(points) + 1)
     assert store.age('x', today) == (note,)
 
 
@@ -165,21 +161,19 @@ def test_the_newest_baselines_are_kept(make, baseline, monkeypatch):
         store.keep_baseline('x', dataclasses.replace(baseline, named_at=number))
     kept = store.read('x')
     assert [one.named_at for one in kept.baselines] == [2, 3, 4]
-    assert [len(one.points) for one in kept.baselines] == [1, 1, 1]
-    assert kept.points == ()
+    assert kept.cells == ()
 
 
 def test_ten_years_of_a_busy_axis_are_below_the_limit(make, motion, tmp_path):
     """Sixty places a day, more in a week and a month, and fourteen bins of load in each."""
-    store, end, place = make(), motion.today, motion.point().place
+    store, end = make(), motion.today
     periods = {period_of(day, 1, end) for day in range(end - 365 * YEARS, end)}
     points = [
-        motion.point(
+        motion.cell(
             first_day=first,
             days=days,
-            place=place._replace(load=number),
-            surface=f'{first // 365:016x}',
-            residual=0.1 / (1 + number),
+            load_band=number,
+            motor_torque=0.1 / (1 + number),
             torque_squares=0.3 / (1 + number),
         )
         for first, days in periods
@@ -192,7 +186,7 @@ def test_ten_years_of_a_busy_axis_are_below_the_limit(make, motion, tmp_path):
     ]
     store.add('x', points, bins)
     store.age('x', end)
-    assert len(store.read('x').points) == len(points) > 40_000
+    assert len(store.read('x').cells) == len(points) > 40_000
     store.close()
     assert (tmp_path / FILE).stat().st_size < LIMIT / 2
 
@@ -201,15 +195,15 @@ def test_the_oldest_go_where_the_limit_is_reached_and_the_baseline_stays(
     make, motion, baseline, tmp_path
 ):
     limit = 400_000
-    store, place = make(limit=limit), motion.point().place
+    store = make(limit=limit)
     store.keep_baseline('x', baseline)
     for day in range(motion.today - 100, motion.today):
-        made = [motion.point(first_day=day, place=place._replace(load=one)) for one in range(60)]
+        made = [motion.cell(first_day=day, load_band=one) for one in range(60)]
         store.add('x', made, [a_bin(day)])
     store.close()
     assert (tmp_path / FILE).stat().st_size <= limit
     kept = read_health(tmp_path)['x']
-    days = sorted({one.first_day for one in kept.points})
+    days = sorted({one.first_day for one in kept.cells})
     assert days == list(range(days[0], motion.today))
     assert motion.today - 100 < days[0] < motion.today - 20
     assert min(one.first_day for one in kept.spectrum) == days[0]
@@ -219,7 +213,7 @@ def test_the_oldest_go_where_the_limit_is_reached_and_the_baseline_stays(
 def test_a_killed_process_leaves_a_commit_and_the_baseline(make, motion, baseline, tmp_path):
     """After any number of writes, and within the one that comes next."""
     store = make()
-    store.add('x', [motion.point()])
+    store.add('x', [motion.cell()])
     store.keep_baseline('x', baseline)
     store.close()
     for writes in (1, 2, 5, 9):
@@ -235,8 +229,8 @@ def test_a_killed_process_leaves_a_commit_and_the_baseline(make, motion, baselin
         store.close()
         assert store.said == []
         assert kept.baseline == baseline
-        (stretches,) = {one.stretches for one in kept.points if one.place.load >= 50}
-        assert (len(kept.points), stretches > last) == (41, True)
+        (stretches,) = {one.stretches for one in kept.cells if one.load_band >= 50}
+        assert (len(kept.cells), stretches > last) == (41, True)
 
 
 @pytest.mark.parametrize(
@@ -244,26 +238,26 @@ def test_a_killed_process_leaves_a_commit_and_the_baseline(make, motion, baselin
     [
         ('PRAGMA user_version = 7', 'is of another version (7, known is 1)'),
         ('DROP TABLE spectrum', 'is damaged (no such table: spectrum)'),
-        ('ALTER TABLE points DROP COLUMN days', 'is damaged (table points has other columns)'),
+        ('ALTER TABLE cells DROP COLUMN days', 'is damaged (table cells has other columns)'),
     ],
 )
 def test_what_no_node_has_left_is_kept_aside(make, motion, tmp_path, statement, why):
     store = make()
-    store.add('x', [motion.point()])
+    store.add('x', [motion.cell()])
     store.close()
     spoil(tmp_path, statement)
     again = make()
     assert again.said == [f'{tmp_path / FILE} {why}, moved to {FILE}.aside']
-    assert again.read('x').points == ()
-    again.add('x', [motion.point()])
+    assert again.read('x').cells == ()
+    again.add('x', [motion.cell()])
     with contextlib.closing(sqlite3.connect(tmp_path / f'{FILE}.aside')) as aside:
-        assert aside.execute('SELECT count(*) FROM points').fetchone() == (1,)
+        assert aside.execute('SELECT count(*) FROM cells').fetchone() == (1,)
 
 
 def test_a_damaged_file_is_kept_aside_and_who_reads_is_told(make, motion, tmp_path, refused):
     refused('no_store', read_health, tmp_path)
     store = make()
-    store.add('x', [motion.point()] * 1)
+    store.add('x', [motion.cell()] * 1)
     store.close()
     spoil(tmp_path, 'PRAGMA user_version = 7')
     refused('another_version', read_health, tmp_path)
@@ -279,18 +273,18 @@ def test_rows_that_cannot_be_read_are_counted_and_the_others_stand(
     make, motion, baseline, tmp_path, says
 ):
     store = make()
-    points = [motion.point(first_day=motion.today - age) for age in range(5)]
+    points = [motion.cell(first_day=motion.today - age) for age in range(5)]
     store.add('x', points, [a_bin(1), a_bin(2)])
     store.keep_baseline('x', baseline)
     store.close()
     spoil(
         tmp_path,
-        f'UPDATE points SET stretches = 0 WHERE baseline = 0 AND first_day = {motion.today}',
-        f"UPDATE points SET speed = 'fast' WHERE first_day = {motion.today - 1}",
+        f'UPDATE cells SET stretches = -1 WHERE first_day = {motion.today}',
+        f"UPDATE cells SET speed = 'fast' WHERE first_day = {motion.today - 1}",
         "UPDATE spectrum SET wear_time = x'00' WHERE first_day = 2",
     )
     kept = make().read('x')
-    assert set(kept.points) == set(points[2:])
+    assert by_place(kept.cells) == by_place(points[2:])
     assert kept.spectrum == (a_bin(1),)
     assert kept.baseline == baseline
     assert kept.notes == (says('bad_rows', place=tmp_path / FILE),)
@@ -298,19 +292,19 @@ def test_rows_that_cannot_be_read_are_counted_and_the_others_stand(
 
 def test_a_damaged_text_hides_no_other_row(make, motion, baseline, tmp_path):
     store = make()
-    points = [motion.point(first_day=motion.today - age) for age in range(3)]
+    points = [motion.cell(first_day=motion.today - age) for age in range(3)]
     store.add('x', points, [a_bin(1)])
     store.keep_baseline('x', baseline)
     store.close()
     spoil(
         tmp_path,
-        f"UPDATE points SET surface = CAST(x'61e5' AS TEXT) WHERE first_day = {motion.today - 1}",
+        f"UPDATE cells SET speed = CAST(x'61e5' AS TEXT) WHERE first_day = {motion.today - 1}",
         "UPDATE baselines SET screw = CAST(x'61e5' AS TEXT)",
     )
     store = make()
     assert store.said == []
     for kept in (store.read('x'), read_health(tmp_path)['x']):
-        assert set(kept.points) == {points[0], points[2]}
+        assert by_place(kept.cells) == by_place([points[0], points[2]])
         assert (kept.baselines, len(kept.spectrum)) == ((), 1)
         assert '2 rows of axis x cannot be read' in kept.notes[0]
 
@@ -319,44 +313,42 @@ def test_a_damaged_text_hides_no_other_row(make, motion, baseline, tmp_path):
     ('column', 'value'),
     [
         ('torque_squares', 'NULL'),
-        ('axial_load', 'NULL'),
         ('motor_torque', '9e999'),
-        ('load_source', '7'),
-        ('place_direction', '0'),
+        ('direction', '2'),
         ('temperature_measured', '2'),
         ('days', '0'),
-        ('surface', 'NULL'),
+        ('start', 'NULL'),
     ],
 )
 def test_a_column_with_what_nobody_writes_spoils_its_row(make, motion, tmp_path, column, value):
     store = make()
-    store.add('x', [motion.point()])
+    store.add('x', [motion.cell()])
     store.close()
-    spoil(tmp_path, f'UPDATE points SET {column} = {value}')
-    assert make().read('x').points == ()
+    spoil(tmp_path, f'UPDATE cells SET {column} = {value}')
+    assert make().read('x').cells == ()
 
 
 def test_a_passing_failure_sets_nothing_aside(make, motion, tmp_path):
     store = make()
-    store.add('x', [motion.point()])
+    store.add('x', [motion.cell()])
     store.close()
     with contextlib.closing(sqlite3.connect(tmp_path / FILE, isolation_level=None)) as holder:
         holder.execute('BEGIN EXCLUSIVE')
         with pytest.raises(sqlite3.OperationalError, match='locked'):
             make()
-    assert by_place(make().read('x').points) == by_place([motion.point()])
+    assert by_place(make().read('x').cells) == by_place([motion.cell()])
 
 
 def test_somebody_who_reads_without_an_end_does_not_let_the_journal_grow(
     make, motion, tmp_path, refused
 ):
     limit = 400_000
-    store, place = make(limit=limit), motion.point().place
-    many = [motion.point(place=place._replace(load=one)) for one in range(60)]
+    store = make(limit=limit)
+    many = [motion.cell(load_band=one) for one in range(60)]
     store.add('x', many)
     with contextlib.closing(sqlite3.connect(tmp_path / FILE, isolation_level=None)) as reader:
         reader.execute('BEGIN')
-        reader.execute('SELECT count(*) FROM points').fetchall()
+        reader.execute('SELECT count(*) FROM cells').fetchall()
         with contextlib.suppress(InputError):
             for _ in range(1000):
                 store.add('x', many)

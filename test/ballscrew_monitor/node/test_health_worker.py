@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The worker beside the judgement: rows become points on the disk, failures become sentences."""
+"""The worker beside the judgement: rows become cells on the disk, failures become sentences."""
 
 import contextlib
 import dataclasses
@@ -84,10 +84,8 @@ def job(usual_limits):
             'now': NOON,
             'found': found,
             'surface': surface,
-            'file': shipped_surface,
             'settings': HealthSettings(limits=usual_limits),
             'policy': WarningPolicy.BOTH,
-            'over': 3600.0,
             'assesses': False,
         }
         return Job(**values | changes)
@@ -95,14 +93,14 @@ def job(usual_limits):
     return make_job
 
 
-def test_rows_end_as_points_and_motion_on_the_disk(job, make, surface, tmp_path):
+def test_rows_end_as_cells_and_motion_on_the_disk(job, make, surface, tmp_path):
     worker = make()
     found = gathered(surface, [None, *rows(3.0)], rows_end=True)
     assert worker.put(job(worker, surface, found))
     worker.close()
     kept = read_health(tmp_path)['x']
-    (point,) = kept.points
-    assert (point.stretches, point.motor_torque) == (1, pytest.approx(0.5))
+    (cell,) = kept.cells
+    assert (cell.stretches, cell.motor_torque) == (1, pytest.approx(0.5))
     (one,) = kept.spectrum
     assert one.time == pytest.approx(2.99)
     assert worker.problem == ''
@@ -167,7 +165,7 @@ def test_a_folder_of_another_node_is_left_alone_until_it_is_ours(
     worker.put(ask())
     worker.close()
     assert worker.problem == ''
-    assert [one.stretches for one in read_health(tmp_path)['x'].points] == [1]
+    assert [one.stretches for one in read_health(tmp_path)['x'].cells] == [1]
 
 
 @pytest.mark.parametrize('content', [b'no database' * 1000, None], ids=['damaged', 'version'])

@@ -26,7 +26,7 @@ def cause(code, excluded, weight=0.5):
 
 def message_of(condition, causes, drag, preload):
     """Return the message of a health, and its sentences."""
-    said = verdict_of('x', condition, drag, preload, causes), advice_of(condition, causes)
+    said = verdict_of('x', condition, drag, causes, 0), advice_of(condition, causes)
     health = Health(
         axis='x',
         stamp=1,
@@ -53,14 +53,19 @@ def test_phrases_say_what_the_sentences_say(condition, codes, unfit, change, kno
     message = message_of(condition, causes, quantity('drag change', change), preload)
     advice, verdict = advice_phrase(message), verdict_phrase(message)
     assert english(advice) == message.advice
-    kind = {Condition.UNKNOWN: 'unsure', Condition.NORMAL: 'normal', Condition.WORSE: 'worse'}
+    kind = {
+        Condition.UNKNOWN: 'unsure',
+        Condition.NORMAL: 'normal',
+        Condition.SLIGHTLY_CHANGED: 'slight',
+        Condition.WORSE: 'worse',
+    }
     assert verdict['key'] == f'verdict_{kind[condition]}'
     assert verdict['values']['value'] == {'value': change, 'unit': '-'}
-    if condition is Condition.WORSE:
+    if condition in (Condition.WORSE, Condition.SLIGHTLY_CHANGED):
         why = verdict['values']['why']
         begin = Certainty[why['key'].removeprefix('why_').upper()].value.partition('{}')[0]
         assert f'; {begin}' in message.verdict
-        _, likely = explained(change, causes)
+        _, likely = explained(causes)
         assert ('cause' in why['values']) is bool(likely)
         if likely:
             code, told = likely[0].code, why['values']['cause']

@@ -9,12 +9,10 @@ from ballscrew_monitor.core.advice import CARRY
 from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.inputs import InputState, Source
 from ballscrew_monitor.core.judgement import Level, Reason, Zone
-from ballscrew_monitor.health.assess import DRAG
+from ballscrew_monitor.health.assess import DRAG, SMALLEST
 from ballscrew_monitor.health.energy import NAMES as ENERGIES
 from ballscrew_monitor.health.life import NAMES as LIVES
-from ballscrew_monitor.health.onset import NAME as ONSET
 from ballscrew_monitor.health.peers import NAME as PEERS
-from ballscrew_monitor.health.preload import NAME as PRELOAD
 from ballscrew_monitor.health.records import CauseCode, Condition
 from ballscrew_monitor.health.spectrum import CLASSES
 from ballscrew_monitor.health.words import Certainty
@@ -39,14 +37,12 @@ ENUMERATED = {
     'why': Certainty,
     'zone': Zone,
 }
-WAYS = (f'{DRAG} forward', f'{DRAG} backward', 'constant drag', 'drag per speed')
 LUBRICATION = ('lubrication part of the burn rate', 'severity shift')
 SEVERITIES = (f'severity class {place}' for place in range(CLASSES))
 QUANTITIES_OF_HEALTH = (
     DRAG,
-    *WAYS,
-    PRELOAD,
-    ONSET,
+    SMALLEST,
+    'preload',
     *LUBRICATION,
     *SEVERITIES,
     *ENERGIES,

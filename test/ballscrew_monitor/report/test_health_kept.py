@@ -4,17 +4,17 @@
 
 import contextlib
 import json
+import math
 import shutil
 
 from ballscrew_monitor.cli import main
-from ballscrew_monitor.health.points import add, model_torque
 from ballscrew_monitor.health.records import Baseline, SpectrumBin, Stretch
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import HealthStore, read_health
+from ballscrew_monitor.health.summary import add
 from ballscrew_monitor.report import health_kept
 from ballscrew_monitor.settings.parameters import defaults
 import pytest
-from surrogate.surface import shipped_surface, Surface
 
 FIRST, MONTHS = 20_000, 3
 SPEEDS = 3.0, 12.0, 40.0, 100.0
@@ -22,14 +22,13 @@ SPEEDS = 3.0, 12.0, 40.0, 100.0
 
 @pytest.fixture(name='folder')
 def kept_folder(tmp_path):
-    """Return the folder of a node whose friction is 40 % higher after the first month."""
-    surface = Surface.load(shipped_surface())
-    points = {}
-    for day in range(FIRST, FIRST + 28 * MONTHS):
-        factor = 1.0 if day < FIRST + 28 else 1.4
+    """Return the folder of a node whose friction is 40 % higher after the second month."""
+    cells = {}
+    for day in range(FIRST, FIRST + 28 * MONTHS, 4):
+        factor = 1.0 if day < FIRST + 56 else 1.4
         for speed in (*SPEEDS, *(-one for one in SPEEDS)):
             for second in range(6):
-                torque = factor * model_torque(surface, speed, 0.0, 313.0)
+                torque = math.copysign(0.4 * factor, speed)
                 stretch = Stretch(
                     start=day * DAY + second,
                     duration=60.0,
@@ -39,17 +38,16 @@ def kept_folder(tmp_path):
                     temperature=313.0,
                     motor_torque=torque * (1.0 + 0.002 * (second % 3 - 1)),
                 )
-                add(points, stretch, surface)
-    early = tuple(one for one in points.values() if one.first_day < FIRST + 5)
+                add(cells, stretch)
     one = SpectrumBin(
         first_day=FIRST, load_band=0, axial_load=0.0, angle=9.0, speed=9.0, time=9000.0
     )
     folder = tmp_path / 'state'
     with contextlib.closing(HealthStore(folder)) as store:
         store.load()
-        store.add('x', points.values(), [one])
-        begin, end = FIRST * DAY, (FIRST + 5) * DAY
-        store.keep_baseline('x', Baseline(begin=begin, end=end, reason='oil', points=early))
+        store.add('x', cells.values(), [one])
+        begin, end = FIRST * DAY, (FIRST + 33) * DAY
+        store.keep_baseline('x', Baseline(begin=begin, end=end, reason='oil'))
     return folder
 
 
@@ -59,9 +57,12 @@ def test_the_command_follows_what_a_node_gathered(folder, capsys, tmp_path):
     record = json.loads(capsys.readouterr().out)['x']
     assert record['condition'] == 'worse'
     assert record['baseline']['reason'] == 'oil'
-    assert [one['condition'] for one in record['course']] == ['normal', 'worse', 'worse']
+    conditions = [one['condition'] for one in record['course']]
+    assert len(conditions) == 21
+    assert set(conditions[6:14]) == {'normal'}
+    assert set(conditions[16:]) == {'worse'}
     days = [one['stamp_ns'] // DAY - FIRST for one in record['course']]
-    assert days == [27, 55, 83]
+    assert days == list(range(0, 84, 4))
     assert (out / 'health.png').stat().st_size > 0
 
 
@@ -70,9 +71,9 @@ def test_another_speed_is_advised_where_the_parameters_or_the_command_let_it(
     folder, monkeypatch, parameter, option
 ):
     asked = []
-    monkeypatch.setattr(health_kept, 'assess_kept', lambda *parts: asked.append(parts[-1]))
+    monkeypatch.setattr(health_kept, 'course', lambda *parts: asked.append(parts[-1]))
     values = defaults(['x']) | {'x.advice.speed': parameter}
-    options = {'over': 600.0, 'days': None, 'speed_allowed': option}
+    options = {'baseline_days': 91.0, 'days': None, 'speed_allowed': option}
     stored = read_health(folder)
     titles = {health_kept.stored_axis(folder, 'x'): 'x'}
     health_kept.kept_healths(folder, stored, titles, values, options)
@@ -109,6 +110,6 @@ def test_files_of_somebody_else_are_not_replaced(folder, name, capsys, says, tmp
 def test_an_axis_without_parameters_is_refused(folder, capsys, says):
     with contextlib.closing(HealthStore(folder)) as store:
         store.load()
-        store.add('z', store.read('x').points)
+        store.add('z', store.read('x').cells)
     assert main(['health', str(folder)]) == 2
     assert says('no_parameters', folder=folder) in capsys.readouterr().err

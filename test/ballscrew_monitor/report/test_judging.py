@@ -47,6 +47,7 @@ def test_a_log_of_an_axis_without_process_force_tells_of_its_friction(judged):
     derived = judged.rows(count=300, motor_torque_source=1, axial_load_source=PointSource.DERIVED)
     block = judged.changed(derived, speed=100.0, motor_torque=derived.rows['machine_torque'])
     values = judged.values(**{'x.health.free_load': -200.0, 'x.health.always_free': True})
-    (point,) = judged.case([block], values=values, health=HistoryMaker).history.points
-    assert (point.load_source, point.axial_load) == (LoadSource.FREE, -200.0)
-    assert judged.case([block], health=HistoryMaker).history.points == ()
+    (cell,) = judged.case([block], values=values, health=HistoryMaker).history.cells
+    assert (cell.load_source, cell.axial_load) == (LoadSource.FREE, -200.0)
+    (cell,) = judged.case([block], health=HistoryMaker).history.cells
+    assert cell.load_source == LoadSource.DERIVED

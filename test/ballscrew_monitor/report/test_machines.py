@@ -15,23 +15,27 @@ from ballscrew_monitor.report.machines import (
 import pytest
 
 MAP = """
-time: {column: t, unit: s, epoch: '2026-01-01T00:00:00Z'}
+time: {column: t, unit: s}
 axes:
   x:
     speed: {column: v, unit: rad/s}
     load: {column: f, unit: N}
     lead_mm: 10.0
 """
+NEW_YEAR = 1_767_225_600  # [s]
 
 
 @pytest.fixture
 def logs(tmp_path, monkeypatch):
     """Return what writes short logs by their paths, and their map; the folder is the present."""
     monkeypatch.chdir(tmp_path)
-    rows = ''.join(f'{0.01 * row:.2f},{10.0 + row % 7},-500\n' for row in range(100))
 
     def write(*names, machine=''):
-        for name in names:
+        for day, name in enumerate(names):
+            begin = NEW_YEAR + 86_400 * day
+            rows = ''.join(
+                f'{begin + 0.01 * row:.2f},{10.0 + row % 7},-500\n' for row in range(100)
+            )
             (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / name).write_text('t,v,f\n' + rows)
         (tmp_path / 'map.yaml').write_text(MAP + (f'machine: {machine}\n' if machine else ''))

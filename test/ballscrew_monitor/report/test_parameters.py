@@ -131,3 +131,17 @@ def test_parameters_that_are_given_state_what_they_name_and_no_more(table, tmp_p
     assert 'lead_mm' in found.axes['x'].assumed
     (tmp_path / 'params.yaml').write_text(text + '      temperature: {default: 40.0}\n')
     assert is_stated(found_with(table, tmp_path / 'params.yaml'))
+
+
+def test_a_machine_is_that_of_the_map_or_else_of_the_parameters(table, tmp_path):
+    stated = tmp_path / 'params.yaml'
+    stated.write_text('/**:\n  ros__parameters:\n    axes: [x]\n    machine: mill 4\n')
+    from ballscrew_monitor.recordings.opener import opened_log
+
+    bag = opened_log(table / 'log.csv', mapping=table / 'map.yaml')
+    assert parameters_for(bag, None, stated).machine == ''
+    assert parameters_for(bag, stated, stated).machine == 'mill 4'
+    with (table / 'map.yaml').open('a') as stream:
+        stream.write('machine: mill 3\n')
+    bag = opened_log(table / 'log.csv', mapping=table / 'map.yaml')
+    assert parameters_for(bag, stated, stated).machine == 'mill 3'

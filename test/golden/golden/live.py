@@ -54,7 +54,7 @@ def parameters(folder, *, simulated):
             'torque': {'topic': 'x/torque'},
             'plain_topics': True,
             'solve_on_dwell': True,
-            'health': {'period': 15.0, 'baseline_hours': 0.1},
+            'health': {'period': 15.0, 'baseline_days': 2.0},
         },
         'p': {
             'surface': str(FEED),

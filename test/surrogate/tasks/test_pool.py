@@ -4,6 +4,7 @@
 
 import contextlib
 import importlib
+import logging
 import os
 from pathlib import Path
 import select
@@ -14,6 +15,7 @@ import threading
 
 import pytest
 from surrogate import child
+from surrogate.surface import SurfaceError
 from surrogate.tasks import workers as task_workers
 from surrogate.tasks.pool import MOST_TRIES, run_tasks
 from surrogate.tasks.store import TaskStore
@@ -216,6 +218,43 @@ def test_users_of_one_cluster_do_not_hear_of_each_others_tasks(tasks, dask_addre
         assert run_tasks(one, tasks.tell, {'own': {}})['own'].result == {}
         assert one.wait(0.0) == []
     assert 'of another' not in told
+
+
+CLUSTER = """
+import distributed, sys
+if __name__ == '__main__':
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=1,
+                                  dashboard_address='127.0.0.1:0') as cluster:
+        print(cluster.scheduler_address, flush=True)
+        sys.stdin.read()
+"""
+
+
+def test_a_scheduler_that_is_killed_ends_in_a_sentence_alone(tasks, tmp_path, monkeypatch):
+    """No traceback of its client stands beside it."""
+    pytest.importorskip('distributed')
+    records: list[logging.LogRecord] = []
+    monkeypatch.setattr(logging.getLogger('distributed.client'), 'handle', records.append)
+    script = tmp_path / 'cluster.py'
+    script.write_text(CLUSTER)
+    paths = os.pathsep.join([str(Path(tasks.__file__).parent), *sys.path])
+    with subprocess.Popen(
+        [sys.executable, script],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        env={**os.environ, 'PYTHONPATH': paths},
+        text=True,
+    ) as cluster:
+        try:
+            with open_pool(dask=cluster.stdout.readline().strip()) as pool:
+                with pytest.raises(SurfaceError, match='the scheduler was lost; run the command'):
+                    run_tasks(
+                        pool, tasks.root, numbers(300), report=lambda outcome: cluster.kill()
+                    )
+        finally:
+            cluster.kill()
+    assert records == []
 
 
 def test_what_an_earlier_run_tells_late_is_not_heard(tasks, monkeypatch):

@@ -1,0 +1,229 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Summaries of logs: stretches of one log and one place as a cell, and older logs merged.
+
+Means are weighted by time and pooled exactly, so that the order of merging changes nothing but
+roundings, and no stretch is lost or counted twice.
+
+"""
+
+from collections import Counter
+from collections.abc import Iterable, MutableMapping, Sequence
+import dataclasses
+import datetime
+import math
+from typing import Any, NamedTuple
+
+from ballscrew_monitor.health.bands import day_of, FIRST_DAY, load_band, period_of, speed_band
+from ballscrew_monitor.health.records import CELL, Cell, CellKind, LoadSource, Missing, Stretch
+from ballscrew_monitor.health.rows import DAY
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.surface import Surface
+from surrogate.surface.records import from_array
+
+SURFACE_DIGITS = 16
+"""Digits of the hash of a surface without its corrections."""
+MOST_PLACES = 400
+"""Cells of one period; those with the fewest stretches go first."""
+MEANS = ('speed', 'ripple', 'axial_load', 'temperature', 'motor_torque', 'backlash')
+NAMES = tuple(one.name for one in dataclasses.fields(Cell))
+
+
+class Key(NamedTuple):
+    """All that tells cells apart: log, period [days], kind, place and sources."""
+
+    start: int
+    days: int
+    kind: int
+    speed_band: int
+    load_band: int
+    direction: int
+    load_source: int
+    temperature_measured: bool
+
+
+Cells = MutableMapping[Key, Cell]
+"""Cells by their keys."""
+
+
+class Aged(NamedTuple):
+    """
+    Cells with older days merged.
+
+    `future` are those of days to come, which do not count; `dropped` counts cells of too many
+    places; `notes` say both.
+
+    """
+
+    cells: tuple[Cell, ...]
+    future: tuple[Cell, ...]
+    dropped: int
+    notes: tuple[str, ...]
+
+
+def key_of(cell: Cell) -> Key:
+    """Return the key of a cell."""
+    return Key(*(getattr(cell, name) for name in Key._fields))
+
+
+def by_place(cells: Iterable[Cell]) -> dict[Key, Cell]:
+    """Return cells by their keys; those of one key are merged."""
+    kept: dict[Key, Cell] = {}
+    for cell in cells:
+        _put(kept, cell)
+    return kept
+
+
+def array_of(cells: Iterable[Cell]) -> NDArray[Any]:
+    """Return cells as an array of CELL, ordered by their logs."""
+    rows = [tuple(getattr(cell, name) for name in NAMES) for cell in cells]
+    array = np.array(rows, dtype=CELL)
+    return array[np.argsort(array['start'], kind='stable')]
+
+
+def cells_of(array: NDArray[Any]) -> list[Cell]:
+    """Return the cells that an array of CELL holds."""
+    return [from_array(Cell, element) for element in array]
+
+
+def add(cells: Cells, stretch: Stretch, start: int | None = None, today: int | None = None) -> str:
+    """
+    Add a stretch to the cells of its log; return in a sentence why it does not count, or ''.
+
+    `start` [ns] is that of the log, None for a log of each day. `today` is the day of the clock
+    since 1970, by which stamps are checked where it is known.
+
+    """
+    day = day_of(stretch.start)
+    objection = clock_objection(day, today)
+    if objection:
+        return objection
+    cell = cell_of(stretch, day * DAY if start is None else start)
+    is_new = key_of(cell) not in cells
+    _put(cells, cell)
+    if is_new and _drop_rare(cells, (cell.start, 1)):
+        return f'a stretch does not count: its log has {MOST_PLACES} places already'
+    return ''
+
+
+def cell_of(stretch: Stretch, start: int) -> Cell:
+    """Return the cell of one stretch of the log that begins at `start` [ns]."""
+    derived = stretch.load_source == LoadSource.DERIVED
+    moves = stretch.speed != 0.0
+    return Cell(
+        start=start,
+        first_day=day_of(start),
+        kind=int(CellKind.MOTION if moves else CellKind.STANDSTILL),
+        speed_band=speed_band(abs(stretch.speed)) if moves else 0,
+        load_band=0 if derived or not moves else load_band(stretch.axial_load),
+        direction=(stretch.speed > 0.0) - (stretch.speed < 0.0),
+        load_source=int(stretch.load_source),
+        temperature_measured=stretch.temperature_measured,
+        stretches=1,
+        duration=stretch.duration,
+        speed=stretch.speed,
+        ripple=stretch.ripple,
+        axial_load=stretch.axial_load,
+        temperature=stretch.temperature,
+        motor_torque=stretch.motor_torque,
+    )
+
+
+def nothing(start: int, why: Missing) -> Cell:
+    """Return the cell of a log from `start` [ns] on without motion that counts."""
+    return Cell(start=start, first_day=day_of(start), kind=int(CellKind.NOTHING), missing=int(why))
+
+
+def clock_objection(day: int, today: int | None) -> str:
+    """Return in a sentence why motion of a `day` cannot be of `today`, both since 1970, or ''."""
+    if day < FIRST_DAY:
+        return f'motion of {date_text(day)} does not count: the clock was not set'
+    if today is not None and abs(day - today) > 1:
+        return (
+            f'motion of {date_text(day)} does not count: the clock says {date_text(today)}, '
+            'one day off is allowed'
+        )
+    return ''
+
+
+def date_text(day: int) -> str:
+    """Return a day since 1970 for people, UTC."""
+    try:
+        return f'{datetime.date(1970, 1, 1) + datetime.timedelta(days=day)}'
+    except OverflowError:
+        return f'day {day}'
+
+
+def merged(cell: Cell, other: Cell) -> Cell:
+    """Return two cells of one key as one: means by time, and squares about the common mean."""
+    duration = cell.duration + other.duration
+    share = other.duration / duration if duration > 0.0 else 0.0
+    stretches = cell.stretches + other.stretches
+    between = other.motor_torque - cell.motor_torque
+    squares = cell.torque_squares + other.torque_squares
+    if math.isfinite(between):
+        squares += cell.stretches * other.stretches / max(stretches, 1) * between * between
+    means: dict[str, Any] = {
+        name: _mean(getattr(cell, name), getattr(other, name), share) for name in MEANS
+    }
+    return dataclasses.replace(
+        cell, stretches=stretches, duration=duration, torque_squares=squares, **means
+    )
+
+
+def _mean(value: float, other: float, share: float) -> float:
+    if math.isnan(value) or math.isnan(other):
+        return other if math.isnan(value) else value
+    return value + share * (other - value)
+
+
+def aged(cells: Iterable[Cell], today: int) -> Aged:
+    """
+    Return cells with days merged into weeks and weeks into periods of 28 days by their age.
+
+    `today` in days since 1970. Cells of days to come are left out, and as they are.
+
+    """
+    kept: dict[Key, Cell] = {}
+    future = []
+    for cell in cells:
+        if cell.first_day > today + 1:
+            future.append(cell)
+            continue
+        first_day, days = period_of(cell.first_day, cell.days, today)
+        start = cell.start if days == 1 else first_day * DAY
+        _put(kept, dataclasses.replace(cell, start=start, first_day=first_day, days=days))
+    periods = Counter((key.start, key.days) for key in kept)
+    dropped = sum(
+        _drop_rare(kept, period) for period, places in periods.items() if places > MOST_PLACES
+    )
+    notes = []
+    if future:
+        first = date_text(min(cell.first_day for cell in future))
+        notes.append(
+            f'{len(future)} cells from {first} on do not count: the clock says {date_text(today)}'
+        )
+    if dropped:
+        notes.append(f'{dropped} rare places left out, a period holds {MOST_PLACES}')
+    return Aged(tuple(kept[key] for key in sorted(kept)), tuple(future), dropped, tuple(notes))
+
+
+def _put(cells: Cells, cell: Cell) -> None:
+    key = key_of(cell)
+    cells[key] = merged(cells[key], cell) if key in cells else cell
+
+
+def _drop_rare(cells: Cells, period: tuple[int, int]) -> int:
+    """Drop the places with the fewest stretches above the limit of a period; return how many."""
+    keys: Sequence[Key] = [key for key in cells if key[:2] == period]
+    rare = sorted(keys, key=lambda key: -cells[key].stretches)[MOST_PLACES:]
+    for key in rare:
+        del cells[key]
+    return len(rare)
+
+
+def surface_id(surface: Surface) -> str:
+    """Return the name of a surface by its hash: full solves that correct it make no other one."""
+    return surface.base_sha256[:SURFACE_DIGITS]

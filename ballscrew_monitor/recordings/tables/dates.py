@@ -1,0 +1,113 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Date of a log whose times count from its begin: by its name, its head or the date of its file.
+
+A date without a time of day is that of midnight, and all are of the universal clock, as no log
+states its zone there.
+
+"""
+
+import dataclasses
+import datetime
+from pathlib import Path
+import re
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.tables.mapping import DATES, TableMap
+from surrogate.files import InputError
+
+NAME, HEADER, MODIFIED = DATES
+HEAD = 1 << 16
+"""Bytes of a text in which its date is looked for."""
+AFTER = 200
+"""Letters after a date within which the time of day stands."""
+_DAY = (
+    r'(?<!\d)(?:(?P<year>(?:19|20)\d\d)(?P<sign>[-_./]{optional})(?P<month>\d\d)(?P=sign)'
+    r'(?P<day>\d\d)|(?P<day_first>\d\d)(?P<dot>[-_.])(?P<month_second>\d\d)(?P=dot)'
+    r'(?P<year_last>(?:19|20)\d\d))'
+)
+_TIME = r'(?P<hour>\d\d)(?P<colon>[-:._h]?)(?P<minute>\d\d)(?:[-:._m]?(?P<second>\d\d))?(?!\d)'
+IN_NAME = re.compile(_DAY.replace('{optional}', '?') + rf'(?:[T _-]*{_TIME}|(?!\d))')
+IN_HEAD = re.compile(_DAY.replace('{optional}', '') + r'(?!\d)')
+TIME_OF_DAY = re.compile(r'(?<![\d:])(?P<hour>\d{1,2}):(?P<minute>\d\d)(?::(?P<second>\d\d))?')
+TEXTS = ('.csv', '.txt', '.tsv', '.log', '.dat')
+
+
+def dated(path: Path, mapping: TableMap) -> TableMap:
+    """
+    Return a map whose epoch is the date of the log at `path`, if that is where the map says so.
+
+    Raises InputError where no date stands there.
+
+    """
+    if not mapping.date_from:
+        return mapping
+    if mapping.date_from == MODIFIED:
+        moment = datetime.datetime.fromtimestamp(int(path.stat().st_mtime), datetime.UTC)
+    elif mapping.date_from == HEADER:
+        moment = _known(date_in_head(_head(path)), path, 'the lines above its table state none')
+    else:
+        name = date_in_name(path.stem) or date_in_name(path.absolute().parent.name)
+        moment = _known(name, path, 'neither its name nor that of its folder holds one')
+    if moment.year < 1971:
+        raise InputError(
+            f'log {path}: date_from {mapping.date_from} says {moment:%Y}, allowed is 1971 or later'
+        )
+    return dataclasses.replace(mapping, epoch=int(moment.timestamp()) * SECOND)
+
+
+def _known(moment: datetime.datetime | None, path: Path, reason: str) -> datetime.datetime:
+    if moment is None:
+        raise InputError(
+            f'log {path}: date_from asks for a date and {reason}, such as 2025-07-14, '
+            '20250714_115950 or 14.07.2025: state another date_from, or time.epoch'
+        )
+    return moment
+
+
+def date_in_name(name: str) -> datetime.datetime | None:
+    """Return the first date in a name, with the time of day if it follows, None for none."""
+    for match in IN_NAME.finditer(name):
+        moment = _moment(match, match)
+        if moment is not None:
+            return moment
+    return None
+
+
+def date_in_head(text: str) -> datetime.datetime | None:
+    """Return the first date in the head of a text, with the time of day that stands after it."""
+    for match in IN_HEAD.finditer(text):
+        end = match.end() + AFTER
+        time = TIME_OF_DAY.search(text, match.end(), end)
+        moment = _moment(match, time)
+        if moment is not None:
+            return moment
+    return None
+
+
+def _moment(date: re.Match[str], time: re.Match[str] | None) -> datetime.datetime | None:
+    """Return date and time of day that texts hold, None for such as no calendar has."""
+    year, month, day = (
+        int(date[name] or date[other])
+        for name, other in (('year', 'year_last'), ('month', 'month_second'), ('day', 'day_first'))
+    )
+    parts = ('hour', 'minute', 'second')
+    hour, minute, second = (0 if time is None else int(time[name] or 0) for name in parts)
+    try:
+        return datetime.datetime(year, month, day, hour, minute, second, tzinfo=datetime.UTC)
+    except ValueError:
+        return None
+
+
+def _head(path: Path) -> str:
+    if path.suffix.lower() not in TEXTS:
+        raise InputError(
+            f'log {path}: date_from header is for texts such as CSV, allowed here are name and '
+            'modified'
+        )
+    with path.open('rb') as stream:
+        content = stream.read(HEAD)
+    if content[:2] in (b'\xff\xfe', b'\xfe\xff'):
+        return content.decode('utf-16', 'replace')
+    return content.decode('latin-1')

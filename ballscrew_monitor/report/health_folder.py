@@ -1,0 +1,208 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+A folder of collected logs: for each log and axis one Parquet file of a few kB.
+
+Files lie in machine=M/axis=A/day=YYYY-MM-DD. Their columns are the fields of `CELL` with machine,
+axis and log beside them; `facts` holds all else as JSON in the first row. The name of a file says
+which log it is of, in which version, and how many further axes of that log follow: they are
+written down to 0, so a log is complete once that one is there.
+
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+import dataclasses
+import hashlib
+import json
+import os
+from pathlib import Path
+import re
+from typing import Any, NamedTuple
+from urllib.parse import quote, unquote
+
+from ballscrew_monitor.health.bands import day_of
+from ballscrew_monitor.health.records import CELL
+from ballscrew_monitor.health.summary import date_text
+from ballscrew_monitor.report.health_history import AxisHistory, read_history
+import polars as pl
+from surrogate.files import InputError, new_file, to_json
+from surrogate.limits import MEGA
+
+VERSION = 1
+"""Version of what is collected; logs of another one are collected again."""
+MACHINE, AXIS, DAY = 'machine=', 'axis=', 'day='
+NAME = re.compile(r'(?P<log>[0-9a-f]{16})-(?P<version>[0-9a-f]{16})-(?P<left>\d+)\.parquet')
+LONGEST_NAME = 200
+"""Bytes of the name of a folder, of which file systems allow 255."""
+LARGEST = 8 * MEGA
+"""Largest file of one log [byte]."""
+MOST_CELLS = 100_000
+COLUMNS = ('machine', 'axis', 'log', 'cells')  # fields with columns of their own
+
+
+class LogIdentity(NamedTuple):
+    """A log by its place, and the version of it and of all that it is judged with."""
+
+    log: str
+    version: str
+
+
+class Entry(NamedTuple):
+    """A file of the folder, and what its name says."""
+
+    path: Path
+    log: LogIdentity
+    left: int
+
+
+def identity_of(log: Path, given: Sequence[Path | None]) -> LogIdentity:
+    """
+    Return the identity of a log that is judged with files such as a map, None for none.
+
+    Size and time of modification tell a version, the contents of what is `given`.
+
+    """
+    files = sorted(path for path in log.rglob('*') if path.is_file()) if log.is_dir() else [log]
+    parts: list[Any] = [VERSION]
+    for file in files:
+        status = file.stat()
+        parts.append((file.name, status.st_size, status.st_mtime_ns))
+    parts += [None if path is None else _digest(path.read_bytes()) for path in given]
+    return LogIdentity(_digest(os.fsencode(os.path.abspath(log))), _digest(repr(parts).encode()))
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:16]
+
+
+def is_health_folder(path: Path) -> bool:
+    """Return True if a folder holds collected logs."""
+    return path.is_dir() and any(path.glob(f'{MACHINE}*/{AXIS}*'))
+
+
+def held_logs(folder: Path) -> dict[str, list[Entry]]:
+    """Return the files of each log of a folder, by the identity of its place."""
+    held: dict[str, list[Entry]] = {}
+    for key in axis_folders(folder).values():
+        for entry in _entries(key):
+            held.setdefault(entry.log.log, []).append(entry)
+    return held
+
+
+def is_complete(entries: Sequence[Entry], log: LogIdentity) -> bool:
+    """Return True if the files of a log hold all of its axes in a version."""
+    return any(entry.log == log and entry.left == 0 for entry in entries)
+
+
+def keep(
+    folder: Path, log: LogIdentity, histories: Sequence[AxisHistory], former: Sequence[Entry]
+) -> None:
+    """Keep what a log holds of each of its axes, in place of the `former` files of that log."""
+    kept = set()
+    for left, history in zip(range(len(histories))[::-1], histories, strict=True):
+        path = _place(folder, history) / f'{log.log}-{log.version}-{left}.parquet'
+        with new_file(path) as temporary:
+            frame_of(history).write_parquet(temporary, compression='zstd', statistics=False)
+        kept.add(path)
+    for entry in former:
+        if entry.path not in kept:
+            entry.path.unlink(missing_ok=True)
+
+
+def frame_of(history: AxisHistory) -> pl.DataFrame:
+    """Return the columns of a history."""
+    plain, cells = dataclasses.asdict(history), history.summary.cells
+    facts = json.dumps(to_json({k: v for k, v in plain.items() if k not in COLUMNS}))
+    count, names = len(cells), {name: plain[name] for name in ('machine', 'axis', 'log')}
+    return pl.DataFrame(
+        {name: cells[name] for name in CELL.names or ()}
+        | {name: [text] * count for name, text in names.items()}
+        | {'facts': [facts, *[None] * (count - 1)]}
+    )
+
+
+def _place(folder: Path, history: AxisHistory) -> Path:
+    day = date_text(day_of(history.first))
+    machine, axis = (_name(text) for text in history.key)
+    return folder / f'{MACHINE}{machine}' / f'{AXIS}{axis}' / f'{DAY}{day}'
+
+
+def _name(text: str) -> str:
+    """Return a name of a machine as the name of a folder."""
+    name = quote(text, safe=' ')
+    if len(name) <= LONGEST_NAME:
+        return name
+    return f'{quote(text[-LONGEST_NAME // 12 :], safe=" ")} {_digest(text.encode())}'
+
+
+def axis_folders(folder: Path) -> dict[tuple[str, str], Path]:
+    """Return the folder of each machine and axis, by the names that the folders bear."""
+    return {
+        (
+            unquote(path.parent.name.removeprefix(MACHINE)),
+            unquote(path.name.removeprefix(AXIS)),
+        ): path
+        for path in sorted(folder.glob(f'{MACHINE}*/{AXIS}*'))
+        if path.is_dir()
+    }
+
+
+def _entries(axis_folder: Path) -> Iterator[Entry]:
+    for path in sorted(axis_folder.glob(f'{DAY}*/*.parquet')):
+        match = NAME.fullmatch(path.name)
+        if match is not None:
+            yield Entry(path, LogIdentity(match['log'], match['version']), int(match['left']))
+
+
+def read_axis(axis_folder: Path) -> tuple[list[AxisHistory], list[str]]:
+    """
+    Return the logs of one axis, and a sentence about each file that cannot be read.
+
+    Of a log of which several versions are there, as when a run was killed, the newest counts.
+
+    """
+    newest: dict[str, Entry] = {}
+    for entry in _entries(axis_folder):
+        other = newest.get(entry.log.log)
+        if other is None or _written(other) < _written(entry):
+            newest[entry.log.log] = entry
+    histories, notes = [], []
+    for entry in newest.values():
+        try:
+            histories.append(read_entry(entry.path))
+        except InputError as error:
+            notes.append(str(error))
+    return histories, notes
+
+
+def _written(entry: Entry) -> int:
+    return entry.path.stat().st_mtime_ns
+
+
+def read_entry(path: Path) -> AxisHistory:
+    """Return what a file of the folder holds; raises InputError for one that is damaged."""
+    try:
+        return _read(path)
+    except InputError:
+        raise
+    except (OSError, ValueError, TypeError, KeyError, pl.exceptions.PolarsError) as error:
+        raise _damaged(path, ' '.join(str(error).split())[:100]) from None
+
+
+def _read(path: Path) -> AxisHistory:
+    size = path.stat().st_size
+    if size > LARGEST:
+        raise _damaged(path, f'it has {size / MEGA:.0f} MB, allowed are {LARGEST / MEGA:.0f} MB')
+    frame = pl.read_parquet(path, n_rows=MOST_CELLS + 1, use_statistics=False, glob=False)
+    if not 0 < len(frame) <= MOST_CELLS:
+        raise _damaged(path, f'it has {len(frame)} rows, allowed are 1 to {MOST_CELLS}')
+    facts: Mapping[str, Any] = json.loads(frame['facts'][0])
+    names = {name: frame[name][0] for name in ('machine', 'axis', 'log')}
+    cells = frame.select(CELL.names or ()).to_dicts()
+    return read_history({**facts, **names, 'cells': [to_json(cell) for cell in cells]})
+
+
+def _damaged(path: Path, why: str) -> InputError:
+    return InputError(
+        f'{path} is damaged and left out ({why}): delete it, and collect its log again'
+    )

@@ -1,0 +1,46 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Logs of an axis-year as rows of the judgement, and their summaries as the product makes them."""
+
+from ballscrew_monitor.health.collect import Collector
+from ballscrew_monitor.health.gather import GatherSettings
+from ballscrew_monitor.health.summary import add, array_of
+from ballscrew_monitor.judge.inputs import DEFAULT, DERIVED, MEASURED
+from ballscrew_monitor.judge.many import ROW
+from health_parts.axis_year import AxisYear, Log
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.surface import shipped_surface, Surface
+
+SECOND = 1_000_000_000  # [ns]
+STANDSTILL = 0.05  # [rad/s]
+ASSUMED = 313.15  # [K]
+
+
+def rows_of(log: Log) -> NDArray[np.void]:
+    """Return a log as rows, an array of ROW: as judged, but without a point of a surface."""
+    rows = np.zeros(len(log.time), ROW)
+    rows['stamp'] = log.start + np.round(log.time * SECOND).astype(np.int64)
+    rows['speed'], rows['motor_torque'] = log.speed, log.torque
+    rows['axial_load'] = np.nan if log.load is None else log.load
+    rows['temperature'] = ASSUMED if log.temperature is None else log.temperature
+    rows['speed_source'] = rows['motor_torque_source'] = MEASURED
+    rows['axial_load_source'] = DERIVED if log.load is None else MEASURED
+    rows['temperature_source'] = DEFAULT if log.temperature is None else MEASURED
+    rows['direction'] = np.where(log.speed > 0.0, 1, 2)
+    rows['gates'] = (np.abs(log.speed) < STANDSTILL).astype(int)
+    return rows
+
+
+def cells_of_year(year: AxisYear, *, always_free: bool = False) -> NDArray[np.void]:
+    """Return the summaries of all logs of a year, an array of CELL."""
+    surface = Surface.load(shipped_surface())
+    parts = []
+    for log in year.logs:
+        collector = Collector(surface, GatherSettings(always_free=always_free))
+        stretches = collector.take_many(rows_of(log)).stretches + collector.finish().stretches
+        cells: dict = {}
+        for stretch in stretches:
+            add(cells, stretch, log.start)
+        parts.append(array_of(cells.values()))
+    return np.concatenate(parts)

@@ -1,0 +1,131 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Logs with a relative time, dated by their names, their heads or their files."""
+
+import datetime
+import os
+
+from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.tables.dates import date_in_head, date_in_name
+from ballscrew_monitor.recordings.tables.log import TableLog
+from ballscrew_monitor.recordings.tables.mapping import make_map
+from hypothesis import given
+from hypothesis import strategies as st
+import pytest
+from surrogate.files import InputError
+
+MOMENT = datetime.datetime(2025, 7, 14, 11, 59, 50, tzinfo=datetime.UTC)
+MIDNIGHT = MOMENT.replace(hour=0, minute=0, second=0)
+DAYS = '%Y-%m-%d', '%Y%m%d', '%Y_%m_%d', '%d.%m.%Y', '%d-%m-%Y'
+TIMES = 'T%H%M%S', '_%H%M%S', '_%H-%M-%S', ' %H.%M.%S', '_%H%M'
+
+
+def content(**changes):
+    return {
+        'time': {'column': 't', 'unit': 's'},
+        'axes': {'x': {'speed': {'column': 'v', 'unit': 'rad/s'}, 'lead_mm': 10.0}},
+        **changes,
+    }
+
+
+def write(path, head=''):
+    path.write_text(head + 't,v\n' + ''.join(f'{0.1 * n:.1f},{5 + n % 2}\n' for n in range(100)))
+    return path
+
+
+@pytest.mark.parametrize('day', DAYS)
+@pytest.mark.parametrize('around', ['{}', 'x_{}', 'axis1-{}_log', '3 {} b'])
+def test_a_name_dates_a_log(day, around):
+    assert date_in_name(around.format(MOMENT.strftime(day))) == MIDNIGHT
+    for time in TIMES:
+        found = date_in_name(around.format(MOMENT.strftime(day + time)))
+        assert found == MOMENT.replace(second=50 if '%S' in time else 0)
+
+
+@given(
+    st.datetimes(datetime.datetime(1971, 1, 1), datetime.datetime(2099, 12, 31)),
+    st.sampled_from(DAYS),
+    st.sampled_from(TIMES),
+)
+def test_any_moment_is_read_as_it_was_written(moment, day, time):
+    moment = moment.replace(microsecond=0, tzinfo=datetime.UTC)
+    name = f'log_{moment.strftime(day + time)}'
+    assert date_in_name(name) == datetime.datetime.strptime(name, f'log_{day}{time}').replace(
+        tzinfo=datetime.UTC
+    )
+
+
+@pytest.mark.parametrize(
+    'name',
+    ['log', 'log_0001', '12345678', '2025-13-14', '202507141', 'v2.0.25', '2025-07', '30.02.2025'],
+)
+def test_a_name_without_a_date_has_none(name):
+    assert date_in_name(name) is None
+
+
+def test_two_logs_of_a_day_with_a_number_have_one_date():
+    assert date_in_name('2025-07-14_1') == date_in_name('2025-07-14_2') == MIDNIGHT
+
+
+@pytest.mark.parametrize(
+    'head',
+    [
+        'Start;14.07.2025 11:59:50\n',
+        'Date;2025-07-14\nTime;11:59:50.250\n',
+        '# created 2025/07/14, 11:59:50\n',
+        'File version 20250713\nDatum: 14.07.2025\nUhrzeit: 11:59:50\n',
+    ],
+)
+def test_a_head_dates_a_log(head):
+    assert date_in_head(head) == MOMENT
+
+
+def test_a_log_begins_at_its_date(tmp_path):
+    folder = tmp_path / '2025-07-13'
+    folder.mkdir()
+    named = write(tmp_path / '20250714_115950.csv')
+    headed = write(tmp_path / 'headed.csv', '# 14.07.2025 11:59:50\n')
+    modified = write(tmp_path / 'modified.csv')
+    os.utime(modified, (0, MOMENT.timestamp()))
+    for log, place in ((named, 'name'), (headed, 'header'), (modified, 'modified')):
+        assert begin_of(log, content(date_from=place)) == MOMENT
+    in_folder = begin_of(write(folder / 'a.csv'), content(date_from='name'))
+    assert in_folder == MIDNIGHT - datetime.timedelta(days=1)
+
+
+def begin_of(log, mapping):
+    table = TableLog(log, make_map(mapping))
+    assert table.end_time - table.start_time == pytest.approx(9.9 * SECOND)
+    return datetime.datetime.fromtimestamp(table.start_time / SECOND, datetime.UTC)
+
+
+def test_an_assumed_epoch_gives_way_and_is_not_told(tmp_path):
+    guessed = {'time.epoch': {'value': '2000-01-01T00:00:00Z', 'reason': 'it counts from 0'}}
+    mapping = content(date_from='name', assumed=guessed)
+    assert begin_of(write(tmp_path / '2025-07-14.csv'), mapping) == MIDNIGHT
+    assert make_map(mapping).assumptions == ()
+
+
+@pytest.mark.parametrize(
+    ('key', 'changes'),
+    [
+        ('not_known', {'date_from': 'folder'}),
+        ('blank', {'date_from': None}),
+        ('both', {'date_from': 'name', 'time': {'rate_Hz': 10.0, 'epoch': '2000-01-01'}}),
+    ],
+)
+def test_a_map_that_dates_wrongly_is_refused(key, changes, refused):
+    refused(key, make_map, content(**changes))
+
+
+def test_a_log_without_a_date_is_refused(tmp_path, refused):
+    log = write(tmp_path / 'log_0001.csv')
+    os.utime(log, (0, 1000))
+    for place, key in (('name', 'no_name'), ('header', 'no_header'), ('modified', 'no_modified')):
+        with refused(key, log=log):
+            TableLog(log, make_map(content(date_from=place)))
+
+
+def test_the_head_of_a_binary_table_has_no_date(tmp_path):
+    with pytest.raises(InputError, match='date_from header is for texts such as CSV'):
+        TableLog(tmp_path / 'a.parquet', make_map(content(date_from='header')))
