@@ -176,7 +176,7 @@ def fit(logs: Logs, blocks: NDArray[np.int64], *, warm: bool = True, step: int =
     white = np.linalg.inv(random)
     left = design.T @ white  # (pairs, columns, logs)
     normal = left @ design + np.diag(deviations**-2.0)
-    posterior = np.linalg.inv(normal)
+    posterior: Array = np.linalg.inv(normal).astype(float)
     pull = left @ effect
     mean = np.einsum('gij,gj->gi', posterior, pull)
     chi = np.einsum('i,gij,j->g', effect, white, effect) - np.einsum('gi,gi->g', pull, mean)

@@ -120,7 +120,7 @@ def _half(look: Look) -> float:
 
 
 def _cause(history: History, look: Look, year: AxisYear) -> tuple[bool, bool]:
-    """Return True for a cause that is told at a look, and True if the truth is among those told."""
+    """Return whether a cause is told at a look, and whether the truth is among those told."""
     until = history.until(look.log + 1)
     change, marks = math.log1p(look.change), marks_of(until, look)
     causes = causes_of(changes_of(until, look), marks, change, year.machine.preload)
