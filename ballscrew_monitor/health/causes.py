@@ -11,7 +11,7 @@ the axis itself had in its baseline. What the data do not tell apart is an answe
 from collections.abc import Callable, Sequence
 import dataclasses
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ballscrew_monitor.health.change import GroupChange, LEAST_GAIN, Marks
 from ballscrew_monitor.health.records import Cause, CauseCode, Quantity
@@ -21,8 +21,10 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 SHARED = 0.02
 """Standard deviation of a change that all groups have in common, beside their cause [-]."""
-PATTERN_DOUBT = 0.25
+PATTERN_DOUBT = 0.4
 """Doubt of a pattern at each group over the size of the change [-]."""
+PRELOAD_TILT = 0.3
+"""Doubt of the loss by less preload: its change with ln(speed), over the loss [-]."""
 EXCLUDED = 7.0
 """Chi squared above that of the best cause from which one is excluded."""
 TOO_FAR = 9.0
@@ -151,8 +153,12 @@ def causes_of(groups: GroupChange, marks: Marks, reported: float, preload: float
     covariance = SHARED**2 + np.diag(
         groups.deviation**2 + (PATTERN_DOUBT * np.abs(groups.change)) ** 2
     )
-    inverse: Array = np.linalg.inv(covariance).astype(float)
-    fits = [_fit(one, groups, inverse, preload) for one in CANDIDATES]
+    tilt = PRELOAD_TILT * reported * np.log(groups.speed / np.exp(np.log(groups.speed).mean()))
+    doubts = {CauseCode.PRELOAD_LOST: covariance + np.outer(tilt, tilt)}
+    fits = [
+        _fit(one, groups, np.asarray(np.linalg.inv(doubts.get(one.code, covariance))), preload)
+        for one in CANDIDATES
+    ]
     allowed = [_objection(fit, marks, reported, size) for fit in fits]
     least = min(
         (fit.chi for fit, why in zip(fits, allowed, strict=True) if not why), default=math.inf
@@ -166,7 +172,7 @@ def causes_of(groups: GroupChange, marks: Marks, reported: float, preload: float
     return sorted(causes, key=lambda cause: (cause.excluded, -cause.weight))
 
 
-def _fit(candidate: Candidate, groups: GroupChange, inverse: Array, preload: float) -> Fit:
+def _fit(candidate: Candidate, groups: GroupChange, inverse: NDArray[Any], preload: float) -> Fit:
     pattern = candidate.pattern(groups, preload)
     normal = float(pattern @ inverse @ pattern)
     if normal <= 0.0:

@@ -107,11 +107,20 @@ def look(history: History, *, baseline_days: float = BASELINE_DAYS) -> Look:
         known = len(logs.time)
         reason = f'{known} logs so far, a baseline needs {FEWEST_LOGS} and then two more'
         return Look(index, time, reason=reason)
-    before, blocks = _before(logs.time, parts, baseline_days), cut_at_step(parts, logs)
+    step = step_of(logs.effect - SLOPE * logs.warmth, int((parts == 0).sum()))
+    before, blocks = _before(logs.time, parts, baseline_days), cut_at_step(parts, step)
     weight = weights_of(logs.until(len(before)), before, warm=history.warm)
-    found = estimate(logs, blocks, weight, warm=history.warm)
+    found = estimate(logs, blocks, weight, warm=history.warm, step=step)
     provisional = time - logs.time[0] <= baseline_days
-    return _look(index, logs.time, found, blocks, RUNNING_IN if provisional else TOLERANCE)
+    seen = _look(index, logs.time, found, blocks, RUNNING_IN if provisional else TOLERANCE)
+    return seen if seen.now > 2 or _both_beyond(logs, blocks, seen) else seen._replace(raised=0)
+
+
+def _both_beyond(logs: Logs, blocks: NDArray[np.int64], seen: Look) -> bool:
+    """Return True if both logs that are now lie beyond the tolerance: one run may be odd."""
+    values = logs.effect - seen.slope * logs.warmth
+    apart = values[-2:] - float(np.mean(values[blocks == 0]))
+    return bool((seen.raised * apart > TOLERANCE).all())
 
 
 def _look(
@@ -201,12 +210,11 @@ def blocks_of(time: Array, baseline_days: float) -> NDArray[np.int64] | None:
     return blocks
 
 
-def cut_at_step(blocks: NDArray[np.int64], logs: Logs) -> NDArray[np.int64]:
-    """Return blocks cut where the effects have their largest step, lest it counts as a slope."""
+def cut_at_step(blocks: NDArray[np.int64], step: int) -> NDArray[np.int64]:
+    """Return blocks cut at the log of the largest step, lest it counts as a slope."""
     middle = (blocks > 0) & (blocks < blocks.max())
     if not middle.any():
         return blocks
-    step = step_of(logs.effect - SLOPE * logs.warmth, int((blocks == 0).sum()))
     later = middle & (np.arange(len(blocks)) >= step)
     cut = 2 * blocks + later
     return np.asarray(np.unique(cut, return_inverse=True)[1], dtype=np.int64)

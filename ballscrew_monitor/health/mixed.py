@@ -128,12 +128,14 @@ class Fit(NamedTuple):
     likelihood: Array
 
 
-def effects(logs: Logs, blocks: NDArray[np.int64], *, warm: bool) -> tuple[Array, Array]:
+def effects(
+    logs: Logs, blocks: NDArray[np.int64], *, warm: bool, step: int = 0
+) -> tuple[Array, Array]:
     """
     Return the columns of all effects with a prior, and their prior standard deviations.
 
-    Level, slope, running-in, two of the season without a temperature, then a change of each block
-    but 0.
+    Level, slope, running-in, two of the season without a temperature, a step within the logs that
+    are now beside their mean, then a change of each block but 0.
 
     """
     phase = 2.0 * math.pi * logs.time / YEAR
@@ -142,15 +144,25 @@ def effects(logs: Logs, blocks: NDArray[np.int64], *, warm: bool) -> tuple[Array
         logs.warmth,
         np.exp((logs.time[0] - logs.time) / RUNNING_IN_TIME),
         *([] if warm else [np.cos(phase), np.sin(phase)]),
+        _step_within(logs, blocks, step),
         *(np.where(blocks == block, 1.0, 0.0) for block in range(1, int(blocks.max()) + 1)),
     ]
-    known = [LEVEL, SLOPE_DOUBT, RUNNING_IN, *([] if warm else [SEASON, SEASON])]
+    season = [] if warm else [SEASON, SEASON]
+    known = [LEVEL, SLOPE_DOUBT, RUNNING_IN, *season, FREE]
     between = [BETWEEN] * (len(columns) - len(known) - 1)
     deviations = [*known, *between, *([FREE] if blocks.max() else [])]
     return np.stack(columns, axis=1), np.array(deviations)
 
 
-def fit(logs: Logs, blocks: NDArray[np.int64], *, warm: bool = True) -> Fit:
+def _step_within(logs: Logs, blocks: NDArray[np.int64], step: int) -> Array:
+    now = (blocks == blocks.max()) & (blocks > 0)
+    later = now & (np.arange(len(blocks)) >= step)
+    share = np.where(now, 1.0 / logs.noise, 0.0)
+    mean = float(share @ later) / max(float(share.sum()), 1e-9)
+    return np.asarray(np.where(now, later - mean, 0.0))
+
+
+def fit(logs: Logs, blocks: NDArray[np.int64], *, warm: bool = True, step: int = 0) -> Fit:
     """
     Return the effects of logs, the slope less its prior mean, by generalised least squares.
 
@@ -158,13 +170,13 @@ def fit(logs: Logs, blocks: NDArray[np.int64], *, warm: bool = True) -> Fit:
 
     """
     pairs = grid()
-    design, deviations = effects(logs, blocks, warm=warm)
+    design, deviations = effects(logs, blocks, warm=warm, step=step)
     effect = logs.effect - SLOPE * logs.warmth
     random = covariance(logs, pairs)
     white = np.linalg.inv(random)
     left = design.T @ white  # (pairs, columns, logs)
     normal = left @ design + np.diag(deviations**-2.0)
-    posterior = np.linalg.inv(normal)
+    posterior: Array = np.linalg.inv(normal).astype(float)
     pull = left @ effect
     mean = np.einsum('gij,gj->gi', posterior, pull)
     chi = np.einsum('i,gij,j->g', effect, white, effect) - np.einsum('gi,gi->g', pull, mean)
@@ -178,22 +190,23 @@ def weights_of(logs: Logs, blocks: NDArray[np.int64], *, warm: bool = True) -> A
 
 
 def estimate(
-    logs: Logs, blocks: NDArray[np.int64], weight: Array, *, warm: bool = True
+    logs: Logs, blocks: NDArray[np.int64], weight: Array, *, warm: bool = True, step: int = 0
 ) -> Estimate:
     """
     Return the change of the last block of logs against the first one.
 
     `blocks` numbers the logs: 0 is the baseline, the last one is now, and each between has a
-    change of its own. `weight` is that of each pair of the grid.
+    change of its own. `weight` is that of each pair of the grid; `step` is the log with which a
+    step may begin, which is no slope.
 
     """
     pairs = grid()
-    mean, posterior, _ = fit(logs, blocks, warm=warm)
+    mean, posterior, _ = fit(logs, blocks, warm=warm, step=step)
     now = blocks == blocks.max()
     share = 1.0 / logs.noise[now]
     share = share / share.sum()
     spread = pairs.scatter**2 * float(share**2 @ logs.noise[now])
-    contrast = share @ effects(logs, blocks, warm=warm)[0][now]
+    contrast = share @ effects(logs, blocks, warm=warm, step=step)[0][now]
     contrast[2], contrast[-1] = 0.0, 0.0
     level = np.einsum('i,gij,j->g', contrast, posterior, contrast)
     effect = float(share @ (logs.effect - SLOPE * logs.warmth)[now])

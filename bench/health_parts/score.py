@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What the product says of axis-years against their truth: alarms, delays, coverage, causes."""
+"""Health of axis-years against their truth: alarms, delays, coverage, causes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -120,7 +120,7 @@ def _half(look: Look) -> float:
 
 
 def _cause(history: History, look: Look, year: AxisYear) -> tuple[bool, bool]:
-    """Return whether a cause is told of a look, and whether it holds the truth."""
+    """Return whether a cause is told at a look, and whether the truth is among those told."""
     until = history.until(look.log + 1)
     change, marks = math.log1p(look.change), marks_of(until, look)
     causes = causes_of(changes_of(until, look), marks, change, year.machine.preload)

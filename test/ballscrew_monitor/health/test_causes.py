@@ -54,7 +54,8 @@ def test_a_constant_drag_is_told_by_its_shape(sign):
     change = np.log1p(sign * 0.15 / friction)
     mean = float(change.mean())
     found = causes_of(groups(change, friction=friction), NO_MARKS, mean, math.nan)
-    assert [one.code for one in likely(found)] == [WIPER]
+    assert found[0].code is WIPER
+    assert {one.code for one in likely(found)} <= {WIPER, PRELOAD}
     assert found[0].size.value == pytest.approx(sign * 0.15, rel=0.25)
 
 
