@@ -151,6 +151,7 @@ def assess(
         causes=causes,
         baseline=known,
         notes=[one for one in notes if one],
+        usual=usual is not None,
     )
 
 

@@ -226,6 +226,7 @@ class Health:
 
     `quantities` by name; causes in the order of their weight, the excluded ones last; `verdict`
     is one sentence, `advice` what to do, empty for nothing; `notes` tell what is not known, why.
+    `usual`: the axis runs as much at the boundary as it did in its baseline, which is its normal.
 
     """
 
@@ -238,6 +239,7 @@ class Health:
     causes: Sequence[Cause] = ()
     baseline: Baseline | None = None
     notes: Sequence[str] = ()
+    usual: bool = False
 
     def quantity(self, name: str) -> Quantity:
         """Return the quantity of a name."""

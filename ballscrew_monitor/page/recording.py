@@ -157,7 +157,7 @@ def _event_record(event: EventRecord, stamp: float) -> dict[str, Any]:
         'limit': event.limit,
         'active': stamp < begin + event.duration,
         'shelved': False,
-        'advice': advised(event.target_speed, event.carry),
+        'advice': advised(event.target_speed),
         'acknowledged': False,
         'acknowledged_by': '',
     }
