@@ -70,6 +70,8 @@ def state_record(state: BallScrewState) -> dict[str, Any]:
     return {
         'level': LEVELS.get(state.level, UNKNOWN),
         'zone': ZONES.get(state.zone, UNKNOWN),
+        'at_rest': BallScrewState.GATE_STANDSTILL in state.active_gates,
+        'temperature_assumed': state.point.temperature_source == PointSource.DEFAULT,
         'headline': headline(state),
         'inputs': [_input(health) for health in state.inputs],
         'shelved': shelving_record(state),
