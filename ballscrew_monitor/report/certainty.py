@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-How long an axis was outside its zone surely: wherever in its bands the limit of RCS may lie.
+Time that an axis was surely outside its zone: wherever in its bands the limit of RCS may lie.
 
 The bands are factors on the speed of the limit. A row in which asperities carry too much is surely
 outside if they also do at its speed over the least factor. Too low an efficiency is surely so. As
