@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The only factors between units: SI inside, others where numbers come in or are shown."""
 
+from decimal import Decimal
 import math
 
 TURN = 2 * math.pi
@@ -18,3 +19,10 @@ GIGA = 1e-9
 """How many of the large unit one SI unit has: a pressure [Pa] times GIGA is in GPa."""
 KILOWATT_HOUR = 3.6e6
 """One kilowatt-hour [J]."""
+
+
+def digits(value: float, count: int = 3) -> str:
+    """Return a number in significant digits as people write it, never by powers of ten."""
+    if not math.isfinite(value):
+        return f'{value:g}'
+    return f'{Decimal(f"{value:.{count}g}"):f}'

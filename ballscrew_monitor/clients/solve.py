@@ -32,7 +32,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSDurabilityPolicy, QoSProfile
 from rclpy.time import Time
 from surrogate.files import InputError, json_text
-from surrogate.units import RPM
+from surrogate.units import digits, RPM
 
 ACTION_TYPE = 'ballscrew_msgs/action/SolveOperatingPoint'
 SOLVED, NOT_SOLVED, INTERRUPTED = 0, 1, SIGNALLED + signal.SIGINT
@@ -198,7 +198,7 @@ def _complain(sentence: str) -> int:
 
 def _in_rpm(rate: re.Match[str]) -> str:
     try:
-        return f'{float(rate[1]) / RPM:.4g} rev/min'
+        return f'{digits(float(rate[1]) / RPM, 4)} rev/min'
     except ValueError:  # a word
         return rate[0]
 

@@ -37,7 +37,8 @@ class Advice:
     """
     Nearest good speed [rad/s], machine frame, NaN if none is advised.
 
-    Whether asperities `carry` surely or perhaps, empty where they do not or that is not known.
+    Whether asperities `carry` surely or perhaps at the point, empty where they do not or that is
+    not known.
 
     """
 
@@ -49,8 +50,7 @@ class Advice:
         """Return the advice as a sentence with the amount of the speed, empty if there is none."""
         if not math.isfinite(self.target_speed):
             return ''
-        doubt = f'; asperities {self.carry} carry here' if self.carry else ''
-        return f'at this load run at {rounded(abs(self.target_speed) / RPM)} rev/min{doubt}'
+        return f'at this load run at {rounded(abs(self.target_speed) / RPM)} rev/min'
 
 
 class Criterion(NamedTuple):

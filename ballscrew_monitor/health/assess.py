@@ -255,6 +255,7 @@ def _latest(
         causes=causes,
         baseline=known,
         notes=[note for note in notes if note],
+        usual=usual is not None,
     )
 
 

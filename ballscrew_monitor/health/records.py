@@ -266,7 +266,8 @@ class Health:
 
     `since` [ns] is the date of the change that is latched, 0 for none. `quantities` by name;
     causes in the order of their weight, the excluded ones last; `verdict` is one sentence,
-    `advice` what to do, empty for nothing; `notes` tell what is not known, and why.
+    `advice` what to do, empty for nothing; `notes` tell what is not known, and why. `usual`: the
+    axis runs as much at the boundary as it did in its baseline, which is its normal.
 
     """
 
@@ -280,6 +281,7 @@ class Health:
     causes: Sequence[Cause] = ()
     baseline: Baseline | None = None
     notes: Sequence[str] = ()
+    usual: bool = False
 
     def quantity(self, name: str) -> Quantity:
         """Return the quantity of a name."""

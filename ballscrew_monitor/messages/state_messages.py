@@ -27,6 +27,7 @@ from ballscrew_monitor.core.judgement import (
     Zone,
 )
 from ballscrew_monitor.core.state import Event, MonitorSettings, TIMES, WINDOW
+from ballscrew_monitor.health.records import Health
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.judge.records import LIGHT_LOAD, Row, STANDSTILL
 from ballscrew_monitor.judge.views import SOURCES
@@ -37,6 +38,7 @@ from surrogate.surface import Regime, Surface
 
 TIERS = {'closed_form': msg.PointResult.TIER_CLOSED_FORM, 'full': msg.PointResult.TIER_FULL}
 NAN = math.nan
+USUAL = 'nothing has to be done: usual for this axis'
 
 
 def _names(message: type[Any], kind: str) -> tuple[str, ...]:
@@ -241,8 +243,30 @@ def plain_values(state: msg.BallScrewState) -> dict[str, float | str | bool]:
     }
 
 
-def out_of_zone_message(axis: str, event: Event, *, shelved: bool) -> msg.OutOfZone:
-    """Return an event as a message; event 0 is inactive and says that there has been none."""
+def advice_text(event: Event, health: Health | None = None) -> str:
+    """
+    Return what to do about an event, empty where nothing is known to help.
+
+    First comes what the workshop can change by itself, as the last `health` tells it, then a speed
+    where the process leaves it free. No load is ever named.
+
+    """
+    workshop = '' if health is None else health.advice
+    ways = [way for way in (workshop, event.advice.text) if way]
+    if not ways and health is not None and health.usual:
+        return USUAL
+    return '; or '.join(ways)
+
+
+def out_of_zone_message(
+    axis: str, event: Event, *, shelved: bool, health: Health | None = None
+) -> msg.OutOfZone:
+    """
+    Return an event as a message; event 0 is inactive and says that there has been none.
+
+    `health` is the last assessment of the axis, if there is one.
+
+    """
     message = msg.OutOfZone(
         axis=axis,
         event_id=event.number,
@@ -250,7 +274,7 @@ def out_of_zone_message(axis: str, event: Event, *, shelved: bool) -> msg.OutOfZ
         duration=seconds(event.stamp - event.start),
         worst_value=float(event.worst_value),
         cause=violation(event.code, event.worst_value, event.limit, derived=event.derived),
-        advice=event.ending.text or event.advice.text,
+        advice=event.ending.text or advice_text(event, health),
         shelved=shelved,
         ending=int(event.ending.kind),
         carry=CARRY.index(event.advice.carry),

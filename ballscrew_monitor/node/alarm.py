@@ -9,8 +9,9 @@ from typing import Any
 from ballscrew_monitor.core.conversions import clock_text, seconds
 from ballscrew_monitor.core.judgement import EventEnd, Level
 from ballscrew_monitor.core.state import Ending, NAMELESS, NOT_SHELVED, Shelving
+from ballscrew_monitor.health.records import Health
 from ballscrew_monitor.judge.records import Row
-from ballscrew_monitor.messages.state_messages import out_of_zone_message, violation
+from ballscrew_monitor.messages.state_messages import advice_text, out_of_zone_message, violation
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts, totals_facts
 from ballscrew_monitor.settings.axis import Axis
@@ -59,6 +60,7 @@ class Alarm:
         """Speak through a `publisher` of the node; `record` is given each message and topic."""
         self._node, self._axis, self._publisher = node, axis, publisher
         self._kept, self._record = kept, record
+        self.health: Health | None = None  # as it was assessed last
 
     def publish(self) -> None:
         """Publish the event that is active, or the last one."""
@@ -67,7 +69,9 @@ class Alarm:
     def _speak(self, publish: Callable[[OutOfZone], None]) -> None:
         monitor = self._axis.monitor
         shelved = bool(monitor.shelving.at(self._now).until)
-        message = out_of_zone_message(self._axis.name, monitor.event, shelved=shelved)
+        message = out_of_zone_message(
+            self._axis.name, monitor.event, shelved=shelved, health=self.health
+        )
         publish(message)
         self._record(f'~/{self._axis.name}/out_of_zone', message)
 
@@ -80,9 +84,9 @@ class Alarm:
         self._note_event(kind, point=point_facts(row), **before)
         self.publish()
         if event.active:
-            advice = f'; {event.advice.text}' if event.advice.text else ''
             cause = violation(event.code, event.worst_value, event.limit, derived=event.derived)
-            self._warn(f'event {event.number}: {cause.text}{advice}')
+            said = [cause.text, *filter(None, [advice_text(event, self.health)])]
+            self._warn(f'event {event.number}: {"; ".join(said)}')
         elif monitor.level is Level.OK:
             self._say(f'event {event.number} is over')
 
@@ -150,7 +154,7 @@ class Alarm:
 
     def _note_event(self, kind: Kind, **facts: Any) -> None:
         monitor = self._axis.monitor
-        said = event_facts(monitor.kept, monitor.event.advice.text)
+        said = event_facts(monitor.kept, advice_text(monitor.event, self.health))
         self._note(kind, stamp=monitor.event.stamp, **said, **facts)
 
     def _note(self, kind: Kind, **facts: Any) -> None:

@@ -100,8 +100,11 @@ class AxisPublisher:
         return self._leaps[1] <= MOST_LEAPS
 
     def adapt(self) -> None:
-        """Take over the parameters as they are now."""
+        """Take over the parameters as they are now; advice by others is said no longer."""
+        allowed = self.settings.speed_allowed
         self.axis.adapt(self._values)
+        if self.settings.speed_allowed is not allowed:
+            self.alarm.health = None
         self.publish_info()
 
     def close(self) -> None:

@@ -7,12 +7,13 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.fault_codes import Fault
+from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.page import maps
 from ballscrew_monitor.page.frames import frame
 from ballscrew_monitor.page.history import columns_of, History
 from ballscrew_monitor.page.phrases import phrase, Said
-from ballscrew_monitor.page.records import UNKNOWN
+from ballscrew_monitor.page.records import UNKNOWN, ZONES
 from surrogate.files import to_json
 from surrogate.surface import Surface
 from surrogate.units import MILLI
@@ -20,6 +21,7 @@ from surrogate.units import MILLI
 MOST_EVENTS = 100  # the newest are kept
 NOTHING = {'level': UNKNOWN, 'zone': UNKNOWN, 'headline': phrase('nothing_heard')}
 NO_LIMITS = dict.fromkeys(('efficiency_limit', 'rcs_limit', 'light_load_N', 'standstill_rpm'))
+OUTSIDE = ZONES[Zone.OUTSIDE]
 INACTIVE, GONE, ACTIVE = 'inactive', 'gone', 'active'
 """States of a node."""
 LUBRICATION = diagnostics.PARTS[0]
@@ -164,6 +166,15 @@ class AxisView:
             self._state_frame(now, self.history.count, health=True),
         ]
 
+    def _advice(self, event: Mapping[str, Any] | None) -> Said:
+        """Return what helps at this moment: nothing while it is not outside the zone."""
+        if event is None or not event['active'] or self.state['zone'] != OUTSIDE:
+            return ''
+        workshop: Said = self.health['advice'] if self.health else ''
+        if workshop and 'key' in event['advice']:
+            return phrase('either_or', first=workshop, second=event['advice'])
+        return workshop or event['advice']
+
     def events_frame(self) -> bytes:
         """Return the events, the newest first."""
         events = [self.events[number] for number in sorted(self.events, reverse=True)]
@@ -175,7 +186,7 @@ class AxisView:
             'axis': self.name,
             **self.state,
             'age_s': self.age(now),
-            'advice': event['advice'] if event is not None and event['active'] else '',
+            'advice': self._advice(event),
             'event': event,
             'limit': self.limit,
             'standing': self.standing,

@@ -78,9 +78,8 @@ def detailed(what: Phrase, why: str) -> Phrase:
     return phrase('with_detail', what=what, why=free(why)) if why else what
 
 
-def advised(target_speed: float, carry: str) -> Said:
-    """Return an advice by its speed [rad/s], NaN for none, and how sure asperities `carry`."""
+def advised(target_speed: float) -> Said:
+    """Return an advice by its speed [rad/s], NaN for none."""
     if not math.isfinite(target_speed):
         return ''
-    advice = phrase('advice_speed', speed={'speed': abs(target_speed) / RPM})
-    return phrase(f'advice_{carry}', advice=advice) if carry else advice
+    return phrase('advice_speed', speed={'speed': abs(target_speed) / RPM})

@@ -15,7 +15,8 @@ from ballscrew_monitor.core.conversions import (
     SECOND,
     seconds,
 )
-from ballscrew_monitor.core.judgement import PointSource, Zone
+from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.core.judgement import PointSource, Reason, Zone
 from ballscrew_monitor.judge.records import LIGHT_LOAD, STANDSTILL
 from ballscrew_monitor.messages.state_messages import fill_totals
 from ballscrew_monitor.page import maps
@@ -97,6 +98,7 @@ class RecordedAxis:
         totals = msg.Totals()
         fill_totals(totals, case.outcome.totals)
         self._totals = totals_record(totals)
+        self._assumes = PointSource.DEFAULT in case.survey.sources[Source.TEMPERATURE]
         self._limits = {
             'efficiency_limit': limits.efficiency,
             'rcs_limit': limits.rcs,
@@ -138,6 +140,8 @@ class RecordedAxis:
         return {
             'level': LEVELS.get(int(level), UNKNOWN),
             'zone': ZONES.get(zone, UNKNOWN),
+            'at_rest': reason == Reason.STANDSTILL,
+            'temperature_assumed': self._assumes,
             'headline': headline,
             'inputs': [],
             'shelved': None,
@@ -157,7 +161,7 @@ def _event_record(event: EventRecord, stamp: float) -> dict[str, Any]:
         'limit': event.limit,
         'active': stamp < begin + event.duration,
         'shelved': False,
-        'advice': advised(event.target_speed, event.carry),
+        'advice': advised(event.target_speed),
         'acknowledged': False,
         'acknowledged_by': '',
     }

@@ -5,7 +5,6 @@
 import math
 from typing import Any
 
-from ballscrew_monitor.core.advice import CARRY
 from ballscrew_monitor.core.conversions import Direction, opposing_load, seconds, signed
 from ballscrew_monitor.core.inputs import InputState
 from ballscrew_monitor.core.judgement import Level, PointSource, PointValidity, Reason, Zone
@@ -76,6 +75,8 @@ def state_record(state: BallScrewState) -> dict[str, Any]:
     return {
         'level': LEVELS.get(state.level, UNKNOWN),
         'zone': ZONES.get(state.zone, UNKNOWN),
+        'at_rest': BallScrewState.GATE_STANDSTILL in state.active_gates,
+        'temperature_assumed': state.point.temperature_source == PointSource.DEFAULT,
         'headline': headline(state),
         'inputs': [_input(health) for health in state.inputs],
         'shelved': shelving_record(state),
@@ -197,9 +198,15 @@ def health_record(health: msg.AxisHealth) -> dict[str, Any]:
 
 
 def event_record(event: msg.OutOfZone) -> dict[str, Any]:
-    """Return an event."""
-    carry = CARRY[event.carry] if event.carry < len(CARRY) else ''
+    """
+    Return an event.
+
+    Why the node ended it, and an advice without a speed, are sentences of the node.
+
+    """
     by_node = event.ending in (msg.OutOfZone.ENDING_STOPPED, msg.OutOfZone.ENDING_RESTARTED)
+    seen = event.ending == msg.OutOfZone.ENDING_ACKNOWLEDGED
+    words = free(event.advice) if event.advice and not seen else ''
     by = filter(None, (event.acknowledged_by, event.acknowledge_reason))
     return {
         'id': event.event_id,
@@ -210,8 +217,8 @@ def event_record(event: msg.OutOfZone) -> dict[str, Any]:
         'limit': event.cause.limit,
         'active': event.active,
         'shelved': event.shelved,
-        'advice': free(event.advice) if by_node else advised(event.cause.target_speed, carry),
-        'acknowledged': event.ending == msg.OutOfZone.ENDING_ACKNOWLEDGED,
+        'advice': words if by_node else advised(event.cause.target_speed) or words,
+        'acknowledged': seen,
         'acknowledged_by': ': '.join(by),
     }
 

@@ -12,7 +12,7 @@ from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import Event, TIMES, Totals
-from ballscrew_monitor.recordings.declared import plain, unwritten, written
+from ballscrew_monitor.recordings.declared import plain, written
 from ballscrew_monitor.recordings.words import number, share
 from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
 from surrogate.surface import REGIMES
@@ -48,7 +48,6 @@ class EventRecord:
     axial_load: float = written('N', default=math.nan, compare=False)
     target_speed: float = written('rad_s', default=math.nan, compare=False)
     advice: str
-    carry: str = unwritten(default='', compare=False)
 
     @property
     def place(self) -> str:
@@ -249,7 +248,6 @@ def event_record(event: Event, *, until: int) -> EventRecord:
         advice=event.advice.text,
         speed=math.nan if point is None else point.speed,
         axial_load=math.nan if point is None else point.axial_load,
-        carry=event.advice.carry,
         **_said(event, event, event.advice),
     )
 

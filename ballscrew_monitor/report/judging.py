@@ -25,6 +25,7 @@ from ballscrew_monitor.recordings.replay import ignore, replay_parts
 from ballscrew_monitor.recordings.summary import AxisOutcome, EventRecord
 from ballscrew_monitor.recordings.words import feed_first
 from ballscrew_monitor.report.balance import Balance, Balancer
+from ballscrew_monitor.report.certainty import SureTime
 from ballscrew_monitor.report.machines import folder_of
 from ballscrew_monitor.report.parameters import Assumed, AxisFacts, LogParameters
 from ballscrew_monitor.report.survey import Survey, Surveyor
@@ -94,7 +95,7 @@ class AxisCase:
 
     `nominal`: the parameters are those taken where nobody gave any; `numbered`: the recording
     tells how many messages were lost on their way to it; `onset`: where contact begins with the
-    oil as warm as it was in motion on average.
+    oil as warm as it was in motion on average; `surely_outside` [s], NaN where nothing tells.
 
     """
 
@@ -111,6 +112,7 @@ class AxisCase:
     history: 'AxisHistory | None' = None
     onset: ContactOnset | None = None
     balance: Balance = Balance()
+    surely_outside: float = math.nan
 
     @property
     def row_table(self) -> 'RowTable':
@@ -257,12 +259,16 @@ class CaseMaker:
         self._balancer = Balancer(
             lead=self._surface.lead, standstill=self._settings.limits.standstill_speed
         )
+        self._sure = SureTime(
+            self._surface, self._settings.limits, max_gap=self._settings.timeouts[Source.SPEED]
+        )
         self._history = None if make is None else make(self._surface, gathering_of(axis, values))
 
     def add(self, rows: NDArray[Any]) -> None:
         """Take the next rows, an array of ROW."""
         self._surveyor.add(rows)
         self._balancer.add(rows)
+        self._sure.add(rows)
         if self._history is not None:
             self._history.add(rows)
 
@@ -295,6 +301,7 @@ class CaseMaker:
             ),
             onset=self._onset(survey.oil.mean),
             balance=self._balancer.result(),
+            surely_outside=self._sure.seconds,
             **known,
         )
 

@@ -25,6 +25,7 @@ BEYOND = (
     Reason.TEMPERATURE_OUT_OF_RANGE,
 )
 """Reasons outside of the surface."""
+ROUNDING = 0.01  # of the time outside, less of which is no part of it
 REMEDIES = {
     Reason.NO_DIRECTION: 'record a motion of the axis',
     Reason.SPEED_BELOW_RANGE: 'build a surface that begins at a slower speed, '
@@ -200,27 +201,43 @@ def _mostly_outside(summary: Summary) -> bool:
 
 
 def _outside(case: AxisCase, summary: Summary, more: str) -> AxisVerdict:
-    part = share(summary.outside_time, summary.running_time)
-    time = f'{duration(summary.outside_time)} ({part} of its motion)'
+    time = _time_outside(case, summary)
     if not summary.events and _mostly_outside(summary):
         return AxisVerdict(
             standing=VerdictKind.BAD,
-            sentence=f'axis {case.axis} was outside its optimal zone for {time}, each time too '
+            sentence=f'axis {case.axis} was outside its optimal zone {time}, each time too '
             f'briefly for a warning{more}.',
         )
     if not summary.events:
         return AxisVerdict(
             standing=VerdictKind.GOOD,
-            sentence=f'axis {case.axis} left its optimal zone for {time}, each time too briefly '
+            sentence=f'axis {case.axis} left its optimal zone {time}, each time too briefly '
             f'for a warning{more}.',
         )
     return AxisVerdict(
         standing=VerdictKind.BAD,
-        sentence=f'axis {case.axis} ran outside its optimal zone for {time}, '
+        sentence=f'axis {case.axis} ran outside its optimal zone {time}, '
         f'with {counted(len(summary.events), "warning")}{more}.',
         why=_why(summary.events),
         remedy=_advice(case),
     )
+
+
+def _time_outside(case: AxisCase, summary: Summary) -> str:
+    """Return how long surely and how long perhaps, by the bands of the limit, if it has them."""
+    outside, running = summary.outside_time, summary.running_time
+    sure = min(case.surely_outside, outside)
+    if math.isnan(sure):
+        return f'for {duration(outside)} ({share(outside, running)} of its motion)'
+    # A row lasts a little longer or shorter than the judgement has it: less than that is nothing.
+    perhaps = outside - sure if outside - sure > ROUNDING * outside else 0.0
+    times = {'surely': sure if sure > ROUNDING * outside else 0.0, 'perhaps': perhaps}
+    parts = [
+        f'{word} for {duration(time)} ({share(time, running)} of its motion)'
+        for word, time in times.items()
+        if time > 0.0
+    ]
+    return ' and '.join(parts)
 
 
 def _why(events: tuple[EventRecord, ...]) -> str:

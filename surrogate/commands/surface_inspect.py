@@ -19,7 +19,7 @@ from surrogate.progress import Progress
 from surrogate.surface import find_surface, Surface
 from surrogate.surface.aims import EFFICIENCY_TOLERANCE, RCS_TOLERANCE
 from surrogate.surface.file import read
-from surrogate.units import RPM, ZERO_CELSIUS
+from surrogate.units import digits, RPM, ZERO_CELSIUS
 
 
 def add_inspect_commands(actions: Any) -> None:
@@ -137,7 +137,7 @@ def _check(args: argparse.Namespace) -> int:
     ):
         off = f'is off by {100 * error:+.2g} % of the speed'
         print(
-            f'RCS is 0.01 at {speed / RPM:.3g} rev/min, {load:.0f} N, '
+            f'RCS is 0.01 at {digits(speed / RPM)} rev/min, {load:.0f} N, '
             f'{temperature - ZERO_CELSIUS:.0f} degC; that '
             + (off if math.isfinite(error) else 'has no solution')
         )

@@ -13,7 +13,7 @@ import math
 from typing import Any
 
 from surrogate.parameters import Screw
-from surrogate.units import MILLI, RPM
+from surrogate.units import digits, MILLI, RPM
 
 SUPPORT_FACTORS = {
     'fixed_fixed': (4.730, 4.0),
@@ -89,8 +89,9 @@ def shaft_doubts(screw: Screw, speed: float, load: float, whose: str = '') -> It
     shaft = f'free_length_mm {MILLI * (screw.free_length or 0.0):g} mm, {screw.support}'
     if speed > most:
         yield (
-            f'the speed is {speed / RPM:.4g} rev/min{whose}, allowed is up to {most / RPM:.4g} '
-            f'rev/min, {100 * SPEED_SHARE:g} % of the critical speed with {shaft}'
+            f'the speed is {digits(speed / RPM, 4)} rev/min{whose}, allowed is up to '
+            f'{digits(most / RPM, 4)} rev/min, {100 * SPEED_SHARE:g} % of the critical speed '
+            f'with {shaft}'
         )
     if load > thrust:
         yield (

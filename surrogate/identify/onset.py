@@ -23,7 +23,7 @@ from surrogate.identify.model import ContactModel, ONSET_BOUNDS
 from surrogate.identify.problem import DragProblem
 from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point, with_raceway
-from surrogate.units import RPM
+from surrogate.units import digits, RPM
 
 FITTED = ('asperity_friction', 'onset_factor', 'seal_torque')
 """What is fitted beside the parasitic torque where the onset is."""
@@ -125,8 +125,8 @@ def refusal_of(problem: DragProblem, scan: OnsetScan, values: Array) -> str:
         causes.append(f'asperity_friction is {bounds["asperity_friction"]}')
     if not slowest <= onset <= fastest:
         causes.append(
-            f'contact would begin at {float(f"{onset:.3g}"):g} rev/min, measured are '
-            f'{slowest:.4g} to {fastest:.4g} rev/min'
+            f'contact would begin at {digits(onset)} rev/min, measured are '
+            f'{digits(slowest, 4)} to {digits(fastest, 4)} rev/min'
         )
     odd = 'asperities alone do not turn the torque up like this'
     return f'not told: {" and ".join(causes)}: {odd}' if causes else ''

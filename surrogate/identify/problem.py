@@ -23,7 +23,7 @@ from surrogate.identify.model import (
     VISCOSITY_BOUNDS,
 )
 from surrogate.parameters import Screw
-from surrogate.units import RPM
+from surrogate.units import digits, RPM
 
 SPARE_POINTS, SPEED_SPAN = 2, 2.0
 """Points beyond the number of parameters, largest speed over smallest [-]: the least accepted."""
@@ -198,8 +198,8 @@ def _check(problem: DragProblem) -> None:
         )
     if speed.max() < SPEED_SPAN * speed.min():
         raise InputError(
-            f'{run.source}: the speeds reach from {speed.min():.4g} to {speed.max():.4g} rev/min, '
-            f'allowed is a span of {SPEED_SPAN:g} to 1 or more'
+            f'{run.source}: the speeds reach from {digits(speed.min(), 4)} to '
+            f'{digits(speed.max(), 4)} rev/min, allowed is a span of {SPEED_SPAN:g} to 1 or more'
         )
     if 'onset_factor' in problem.names:
         ordered = np.sort(speed)

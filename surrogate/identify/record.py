@@ -17,7 +17,7 @@ from surrogate.identify.model import ContactModel, thickened
 from surrogate.identify.onset import calibrated_band, onset_speeds
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw import closed_form
-from surrogate.units import RPM, ZERO_CELSIUS
+from surrogate.units import digits, RPM, ZERO_CELSIUS
 
 UNITS = {
     'parasitic_torque': 'N m',
@@ -209,8 +209,9 @@ def identified_oil(
 def _provenance(run: NoLoadRun, contacts: ContactModel, found: Identification) -> str:
     speed = np.abs(run.speed) / RPM
     return (
-        f'{PROVENANCE} {run.source}: {len(speed)} points from {speed.min():.4g} to '
-        f'{speed.max():.4g} rev/min, tier {contacts.tier}, oil {contacts.lubricant.name} at '
+        f'{PROVENANCE} {run.source}: {len(speed)} points from '
+        f'{digits(speed.min(), 4)} to {digits(speed.max(), 4)} rev/min, tier {contacts.tier}, '
+        f'oil {contacts.lubricant.name} at '
         f'{run.mean_temperature - ZERO_CELSIUS:.4g} degC, residual {found.rms:.3g} N m rms. '
         + '; '.join(_sentence(one) for one in found.estimates)
         + '.'
@@ -232,7 +233,8 @@ def page(record: Mapping[str, Any]) -> str:
     return '\n'.join(
         [
             f'{record["screw"]}, {record["oil"]}, tier {record["tier"]}: '
-            f'{record["points"]} points of {record["data"]}, {low:.4g} to {high:.4g} rev/min, '
+            f'{record["points"]} points of {record["data"]}, {digits(low, 4)} to '
+            f'{digits(high, 4)} rev/min, '
             f'{record["temperature_K"] - ZERO_CELSIUS:.4g} degC',
             *(f'  {_row(one)}' for one in record['parameters']),
             *_onset_rows(record['onset']),
@@ -258,10 +260,10 @@ def _onset_rows(onset: Mapping[str, Any] | None) -> list[str]:
     if onset['refused']:
         return [f'  {"contact begins":22} {onset["reason"]}']
     if onset['reason']:
-        return [f'  {"contact begins":22} {speed:.3g} rev/min are taken: {onset["reason"]}']
+        return [f'  {"contact begins":22} {digits(speed)} rev/min are taken: {onset["reason"]}']
     return [
-        f'  {"contact begins":22} {speed:.3g} rev/min ({low:.3g} to {high:.3g}), extrapolated '
-        f'from the torque that turns up below {turn:.3g} rev/min:',
+        f'  {"contact begins":22} {digits(speed)} rev/min ({digits(low)} to {digits(high)}), '
+        f'extrapolated from the torque that turns up below {digits(turn)} rev/min:',
         f'  {"":22} RCS 0.01 itself does not show in a torque; within {onset["band"]:.3g} in nine '
         'of ten',
     ]

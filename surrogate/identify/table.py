@@ -37,7 +37,7 @@ from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.opened import Contacts
 from surrogate.screw.point import ScrewPoint
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw, TIER
-from surrogate.units import RPM
+from surrogate.units import digits, RPM
 
 NODES_PER_DECADE, FEWEST_NODES, MOST_SPEEDS = 10, 5, 10
 """Nodes of viscosity times speed; up to so many measured speeds are solved as they are."""
@@ -284,7 +284,7 @@ def _point(oil: Lubricant, speed: float, load: float) -> OperatingPoint:
 def _converged(found: ScrewSolution, speed: float) -> ScrewSolution:
     if not found.converged:
         raise InputError(
-            f'the screw at {speed / RPM:.4g} rev/min was not solved: {found.status} '
+            f'the screw at {digits(speed / RPM, 4)} rev/min was not solved: {found.status} '
             'Leave such speeds out or use --tier closed_form'
         )
     return found

@@ -25,7 +25,7 @@ from surrogate.results import declared
 from surrogate.screw.opened import Contacts
 from surrogate.screw.point import PointContact, ScrewPoint
 from surrogate.surface import regime_of
-from surrogate.units import RPM, ZERO_CELSIUS
+from surrogate.units import digits, RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
 CONSTANT_FRICTION = 0.005
@@ -216,7 +216,7 @@ def rating_warnings(screw: Screw, lubricant: Lubricant, point: OperatingPoint) -
     product = abs(point.speed) * 2 * screw.pitch_radius
     if product > screw.speed_limit:
         warnings.append(
-            f'speed: D n is {product / RPM:.3g} m rev/min, the screw allows '
+            f'speed: D n is {digits(product / RPM)} m rev/min, the screw allows '
             f'{screw.speed_limit / RPM:.3g}'
         )
     if abs(point.load) > screw.static_rating:

@@ -19,7 +19,7 @@ from surrogate.raceway.ball import roughness_sentence
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.opened import Contacts
 from surrogate.surface.contact_onset import law_doubt
-from surrogate.units import GIGA, MICRO, RPM, ZERO_CELSIUS
+from surrogate.units import digits, GIGA, MICRO, RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
 MARCHED_WAVES = 1.25e-6, 10e-6
@@ -192,8 +192,8 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
     low, high = next(iter(record['states'].values()))['band']
     if fastest:
         yield (
-            f'  Contact is likely below {low * slowest / RPM:.3g} rev/min and possible below '
-            f'{high * fastest / RPM:.3g} rev/min.'
+            f'  Contact is likely below {digits(low * slowest / RPM)} rev/min and possible below '
+            f'{digits(high * fastest / RPM)} rev/min.'
         )
     assumed = '' if record['working_load_stated'] else ', assumed: it unloads the relieved nut'
     yield (
@@ -214,12 +214,13 @@ def _told(found: Mapping[str, Any]) -> str:
     cut = found['cutting_pressure_Pa']
     low, high = (share * found['speed_rad_s'] / RPM for share in found['band'])
     text = (
-        f'contact begins at {found["speed_rad_s"] / RPM:.3g} rev/min ({low:.3g} to {high:.3g}), '
-        f'film {1e9 * found["central_film_m"]:.3g} nm, cut at {GIGA * cut:g} GPa'
+        f'contact begins at {digits(found["speed_rad_s"] / RPM)} rev/min '
+        f'({digits(low)} to {digits(high)}), film {1e9 * found["central_film_m"]:.3g} nm, '
+        f'cut at {GIGA * cut:g} GPa'
     )
     if 'speed_range_rad_s' in found:
         low, high = (speed / RPM for speed in found['speed_range_rad_s'])
-        text += f'; {low:.3g} to {high:.3g} rev/min over the range of that pressure'
+        text += f'; {digits(low)} to {digits(high)} rev/min over the range of that pressure'
     return text
 
 
@@ -227,7 +228,7 @@ def _over_load(record: Mapping[str, Any]) -> str:
     """Say where contact begins in the last state if other loads had cut its summits."""
     loads, speeds = record['other_working_loads_N'], record['other_working_load_speeds_rad_s']
     low, high = (
-        f'at {speed / RPM:.3g} rev/min if it was {_newtons(load)}'
+        f'at {digits(speed / RPM)} rev/min if it was {_newtons(load)}'
         if math.isfinite(speed)
         else f'at an unknown speed if it was {_newtons(load)}, more than the summits bear'
         for load, speed in zip(loads, speeds, strict=True)
@@ -236,7 +237,7 @@ def _over_load(record: Mapping[str, Any]) -> str:
 
 
 def _newtons(load: float) -> str:
-    return f'{float(f"{load:.4g}"):g} N'
+    return f'{digits(load, 4)} N'
 
 
 def onset_over_working_load(

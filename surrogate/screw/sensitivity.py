@@ -24,7 +24,7 @@ from surrogate.screw.opened import Contacts
 from surrogate.screw.uncertain_inputs import INPUTS, LEFT_OUT, ScrewCase, Varied
 from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT, RCS_RELATIVE_TOLERANCE
 from surrogate.surface.contact_onset import law_doubt
-from surrogate.units import RPM, ZERO_CELSIUS
+from surrogate.units import digits, RPM, ZERO_CELSIUS
 
 Array = NDArray[np.float64]
 ONSET, TORQUE = 'onset_speed_rad_s', 'friction_torque_Nm'
@@ -255,7 +255,7 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
         low, high = record[name]
         yield (
             f'  {words:10} contact begins at {low:.2g} to {high:.2g} times the stated speed: '
-            f'{low * onset / RPM:.3g} to {high * onset / RPM:.3g} rev/min'
+            f'{digits(low * onset / RPM)} to {digits(high * onset / RPM)} rev/min'
         )
     if record['law_doubt']:
         yield f'  {"law":10} {record["law_doubt"]}'
@@ -266,17 +266,17 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
 
 def shown(value: float) -> str:
     """Return a value of an input with four digits, as a whole number rather than by powers."""
-    return f'{float(f"{value:.4g}"):g}'
+    return digits(value, 4)
 
 
 def _line(key: str, values: Sequence[str], found: Sequence[str]) -> str:
-    columns = [f'{value:>8}' for value in values] + [f'{text:>16}' for text in found]
-    return f'  {key:22}' + ''.join(columns)
+    columns = [f'{value:>7}' for value in values] + [f'{text:>15}' for text in found]
+    return ' '.join([f'  {key:21}', *columns])
 
 
 def _cells(*ends: Mapping[str, float]) -> list[str]:
     """Return the numbers of one or two ends per column."""
     return [
-        ' to '.join(f'{float(f"{end[name] / unit:.3g}"):g}' for end in ends).replace('nan', '-')
+        ' to '.join(digits(end[name] / unit) for end in ends).replace('nan', '-')
         for name, unit in ((ONSET, RPM), (TORQUE, 1.0), (RCS_SPEED, RPM), (EFFICIENCY_SPEED, RPM))
     ]

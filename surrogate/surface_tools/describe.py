@@ -14,7 +14,7 @@ from surrogate.raceway.ball import roughness_sentence
 from surrogate.surface import onset_of_surface, Surface
 from surrogate.surface.file import SurfaceData
 from surrogate.surface_tools.fields import FIELD_TEXTS
-from surrogate.units import RPM, ZERO_CELSIUS
+from surrogate.units import digits, RPM, ZERO_CELSIUS
 
 
 def info_record(path: Path, data: SurfaceData) -> dict[str, Any]:
@@ -122,7 +122,7 @@ def _head(record: Mapping[str, Any]) -> Iterator[str]:
     yield f'  roughness    {record["roughness"]}'
     yield f'  sha256       {record["sha256"]}'
     yield f'  size         {record["bytes"]} bytes'
-    yield f'  speed        {low / RPM:.3g} to {high / RPM:.4g} rev/min'
+    yield f'  speed        {digits(low / RPM)} to {digits(high / RPM, 4)} rev/min'
     yield '  load         {:g} to {:g} N, positive opposes the motion'.format(
         *record['load_range_N']
     )

@@ -12,7 +12,7 @@ from surrogate.files import InputError
 from surrogate.parameters import OperatingPoint
 from surrogate.surface import regime_of, Surface, Validity
 from surrogate.surface_tools.fields import derived_key, FIELD_TEXTS, WORST_CONTACTS
-from surrogate.units import RPM, ZERO_CELSIUS
+from surrogate.units import digits, RPM, ZERO_CELSIUS
 
 COLUMNS = ('speed_rpm', 'load_N', 'temperature_degC')
 """Columns of a table of points; the last may be missing."""
@@ -55,8 +55,8 @@ def _reason(surface: Surface, validity: Validity) -> str:
     cold, warm = (kelvin - ZERO_CELSIUS for kelvin in surface.temperature_range)
     return {
         Validity.VALID: '',
-        Validity.SPEED_BELOW_RANGE: f'the surface begins at {slow:.3g} rev/min',
-        Validity.SPEED_ABOVE_RANGE: f'the surface ends at {fast:.4g} rev/min',
+        Validity.SPEED_BELOW_RANGE: f'the surface begins at {digits(slow)} rev/min',
+        Validity.SPEED_ABOVE_RANGE: f'the surface ends at {digits(fast, 4)} rev/min',
         Validity.LOAD_OUT_OF_RANGE: f'the surface covers {low:g} to {high:g} N against the motion',
         Validity.TEMPERATURE_OUT_OF_RANGE: f'the surface covers {cold:g} to {warm:g} degC',
         Validity.MASKED: 'a node beside this point did not converge',

@@ -26,7 +26,7 @@ from surrogate.units import RPM
 ROOT = Path(__file__).resolve().parents[2]
 TINY = 1e-9
 NOMINAL = 'nominal_cycle'
-ADVICE = r'at this load run at [\d.]+ rev/min(; asperities (surely|perhaps) carry here)?'
+ADVICE = r'at this load run at [\d.]+ rev/min'
 
 
 @cache

@@ -180,9 +180,12 @@ class Axis {
     return !this.gone && (this.age < STALE || Boolean(this.state && this.recorded));
   }
 
-  /** Return the level that may be shown: of old data none. */
+  /** Return the level that may be shown: of old data none, and no good one at standstill. */
   get level() {
-    return this.fresh ? this.state.level : 'unknown';
+    if (!this.fresh) {
+      return 'unknown';
+    }
+    return this.state.at_rest && this.state.level !== 'warn' ? 'rest' : this.state.level;
   }
 }
 

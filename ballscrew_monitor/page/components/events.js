@@ -5,6 +5,7 @@
 'use strict';
 
 const SHOWN = 50; // warnings that are listed
+const HEADS = ['begin', 'duration', 'worst', 'advice', 'who']; // columns of the table
 const SHELF = [15, 60, 480]; // times [min] for which a warning can be shelved
 
 class Events {
@@ -92,7 +93,7 @@ class Events {
   table(events) {
     const table = Format.element('table');
     const head = table.createTHead().insertRow();
-    for (const key of ['begin', 'duration', 'worst', 'advice', 'who']) {
+    for (const key of HEADS) {
       const cell = Words.element('th', '', `event_${key}`);
       cell.scope = 'col';
       head.append(cell);
@@ -116,6 +117,7 @@ class Events {
     Words.tell(advice, event.advice, this.axis.facts);
     const texts = [length, this.worst(event), who].map((text) => Format.element('td', '', text));
     row.append(first, ...texts.slice(0, 2), advice, texts[2]);
+    HEADS.forEach((key, i) => { row.cells[i].dataset.head = Words.say(`event_${key}`); });
     return row;
   }
 

@@ -4,7 +4,7 @@
 
 'use strict';
 
-const SIGNS = { ok: '✓', warn: '▲', unknown: '?', normal: '✓', worse: '▲' };
+const SIGNS = { ok: '✓', warn: '▲', rest: '–', unknown: '?', normal: '✓', worse: '▲' };
 
 class FirstScreen {
   /** Build the screen of an axis. */
@@ -43,7 +43,7 @@ class FirstScreen {
   }
 
   numbers() {
-    const list = Format.element('dl', 'numbers');
+    const list = this.part('numbers', 'dl');
     for (const name of FirstScreen.NUMBERS) {
       const pair = Format.element('div');
       const more = this.part(`${name}_more`, 'dd', 'more');
@@ -116,6 +116,7 @@ class FirstScreen {
 
   drawNumbers() {
     const { axis: { rows, facts, state } } = this;
+    this.parts.numbers.hidden = !rows.count; // the reason says what is missing
     for (const name of FirstScreen.NUMBERS.filter((one) => one !== 'limit')) {
       this.write(name, Quantities.text(name, rows.last(name), facts));
     }
@@ -124,6 +125,7 @@ class FirstScreen {
     this.write('efficiency_more', Words.say('limit_at', {
       limit: Quantities.text('efficiency', facts.efficiency_limit, facts),
     }));
+    this.write('temperature_degC_more', state?.temperature_assumed ? Words.say('temperature_assumed') : '');
     const limit = state?.limit?.speed_rpm ?? NaN;
     const speed = Math.abs(rows.last('speed_rpm'));
     this.write('limit', FirstScreen.distance(speed >= facts.standstill_rpm ? speed / limit - 1 : NaN));

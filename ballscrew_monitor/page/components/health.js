@@ -31,7 +31,8 @@ class Health {
     const notes = health.notes.map((note) => Words.line('muted', note, this.axis.facts));
     verdict.append(sentence, Words.line('', health.advice, this.axis.facts), ...notes);
     this.sentence.replaceChildren(verdict);
-    this.table.replaceChildren(Health.rows(health.quantities));
+    const [known, missing] = [true, false].map((is) => health.quantities.filter((one) => one.known === is));
+    this.table.replaceChildren(...(known.length ? [Health.rows(known)] : []), ...Health.unknown(missing));
   }
 
   static rows(quantities) {
@@ -44,6 +45,17 @@ class Health {
     }
     table.createTBody().append(...quantities.map(Health.row));
     return table;
+  }
+
+  /** Say in one line that some quantities are not known; opened, it tells why of each. */
+  static unknown(quantities) {
+    if (!quantities.length) {
+      return [];
+    }
+    const more = Format.element('details');
+    const line = Words.element('summary', 'muted', 'health_unknown', { count: quantities.length });
+    more.append(line, Health.rows(quantities));
+    return [more];
   }
 
   static row(one) {

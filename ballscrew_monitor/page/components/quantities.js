@@ -7,7 +7,7 @@
 const Quantities = (() => {
   const TABLE = {
     speed_rpm: { unit: (axis) => axis.unit, factor: feed, digits: 3 },
-    turns_rpm: { unit: () => Words.say('unit_turns'), digits: 4 },
+    turns_rpm: { unit: () => Words.say('unit_turns'), digits: 3 },
     load_N: { unit: 'N', digits: 3 },
     temperature_degC: { unit: '°C', digits: 3 },
     efficiency: { unit: '%', factor: 100, digits: 3 },

@@ -24,7 +24,7 @@ from surrogate.surface import SolvedPoint
 from surrogate.surface.file import SurfaceData
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.tasks.store import TaskStore
-from surrogate.units import RPM, ZERO_CELSIUS
+from surrogate.units import digits, RPM, ZERO_CELSIUS
 
 
 @dataclass(slots=True)
@@ -128,7 +128,7 @@ def _missing(data: SurfaceData) -> Iterator[str]:
         heat = data.temperature[place[2]] - ZERO_CELSIUS
         yield (
             f'{rpm.size} of {data.mask.size} nodes are missing, points beside them were not '
-            f'solved: {rpm.min():.3g} to {rpm.max():.3g} rev/min, {load.min():g} to '
+            f'solved: {digits(rpm.min())} to {digits(rpm.max())} rev/min, {load.min():g} to '
             f'{load.max():g} N, {heat.min():.3g} to {heat.max():.3g} degC; lookups there are NaN'
         )
 

@@ -5,13 +5,13 @@
 import json
 import math
 
-from ballscrew_monitor.core.advice import Advice, CARRY
+from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.judgement import PointSource, PointValidity
 from ballscrew_monitor.messages.diagnostics import code_of
 from ballscrew_monitor.page import records
 from ballscrew_monitor.page.history import COLUMNS
-from ballscrew_monitor.page.phrases import advised
+from ballscrew_monitor.page.phrases import advised, phrase
 from ballscrew_msgs import msg
 from ballscrew_msgs.msg import BallScrewState
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
@@ -22,12 +22,11 @@ from surrogate.files import to_json
 from surrogate.units import RPM
 
 TARGET = Advice(target_speed=-600.0 * RPM)
-ADVICE = Advice(target_speed=-600.0 * RPM, carry='surely')
 
 
 def event_of(target, **more):
     """Return the last word on an event, with the codes and numbers of an advice."""
-    event = msg.OutOfZone(event_id=3, carry=CARRY.index(target.carry), **more)
+    event = msg.OutOfZone(event_id=3, **more)
     event.cause.target_speed, event.cause.target_load = target.target_speed, math.nan
     return event
 
@@ -149,11 +148,11 @@ def test_inputs_without_a_sample_are_named(derived, held, names):
 
 
 @pytest.mark.parametrize(
-    ('ending', 'key'), [('CLEARED', 'advice_surely'), ('STOPPED', None), ('RESTARTED', None)]
+    ('ending', 'key'), [('CLEARED', 'advice_speed'), ('STOPPED', None), ('RESTARTED', None)]
 )
 def test_advice_is_said_by_its_numbers_and_why_an_event_ended_in_words(page_parts, ending, key):
     view, code = page_parts.axis(), getattr(msg.OutOfZone, f'ENDING_{ending}')
-    view.hear_event(records.event_record(event_of(ADVICE, advice='the end', ending=code)))
+    view.hear_event(records.event_record(event_of(TARGET, advice='the end', ending=code)))
     (told,) = page_parts.read(view.events_frame())[0]['events']
     assert told['advice'].get('key') == key
     assert key or told['advice'] == {'free': 'the end'}
@@ -183,7 +182,7 @@ def test_an_event_says_by_whom_it_was_acknowledged_and_keeps_its_advice(name, re
     record = records.event_record(event)
     assert record['acknowledged']
     assert record['acknowledged_by'] == (f'{name}: {reason}' if reason else name)
-    assert record['advice'] == advised(advice.target_speed, advice.carry)
+    assert record['advice'] == advised(advice.target_speed)
     event.acknowledged_by = event.acknowledge_reason = ''
     record = records.event_record(event)
     assert (record['acknowledged'], record['acknowledged_by']) == (True, '')
@@ -195,10 +194,38 @@ def test_an_event_says_by_whom_it_was_acknowledged_and_keeps_its_advice(name, re
 )
 def test_how_an_event_ended_is_read_from_its_code_alone(text, ending):
     """Whatever its sentence says, also by a code of another version."""
-    record = records.event_record(event_of(ADVICE, advice=text, ending=ending))
+    record = records.event_record(event_of(TARGET, advice=text, ending=ending))
     assert record['acknowledged'] == (ending == msg.OutOfZone.ENDING_ACKNOWLEDGED)
     by_node = ending in (msg.OutOfZone.ENDING_STOPPED, msg.OutOfZone.ENDING_RESTARTED)
     assert (record['advice'] == {'free': text}) == by_node
+
+
+SPEED = advised(TARGET.target_speed)
+OIL = records.health_record(msg.AxisHealth(advice='Fill in ISO VG 220.'))
+
+
+@pytest.mark.parametrize(
+    ('zone', 'health', 'speed', 'advice'),
+    [
+        ('outside', None, True, SPEED),
+        ('outside', OIL, True, phrase('either_or', first=OIL['advice'], second=SPEED)),
+        ('outside', OIL, False, OIL['advice']),
+        ('outside', None, False, {'free': 'usual'}),
+        ('optimal', OIL, True, ''),
+        ('unknown', OIL, True, ''),
+    ],
+)
+def test_advice_is_that_of_the_moment_and_begins_with_the_workshop(
+    page_parts, zone, health, speed, advice
+):
+    """A warning that is only held has none: its speed was for another load."""
+    view = page_parts.axis()
+    view.hear([0.0] * 10, {'level': 'warn', 'zone': zone}, {'rcs_limit': None}, 0.0)
+    if health:
+        view.hear_health(health)
+    event = event_of(TARGET if speed else Advice(), advice='usual', active=True)
+    view.hear_event(records.event_record(event))
+    assert page_parts.read(view.news(0.0, 0.0)[-1])[0]['advice'] == advice
 
 
 def test_diagnostics_of_axes_are_told_from_others():

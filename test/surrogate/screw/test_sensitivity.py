@@ -310,7 +310,7 @@ low stated high onset torque RCS 0.01 eta 0.85
 rev/min N m rev/min rev/min
 as stated 60 0.5 90 -
 a_unit 0.5 - 10710 30 to 120 0.4 to - 45 to 180 - to 300 because
-b 1 1.5 1e+06 30 to 120 0.4 to - 45 to 180 - to 300 not so
+b 1 1.5 1000000 30 to 120 0.4 to - 45 to 180 - to 300 not so
 not known contact begins at 0.5 to 2 times the stated speed: 30 to 120 rev/min
 numerics contact begins at 0.8 to 1.2 times the stated speed: 48 to 75 rev/min
 law here it is off
@@ -376,3 +376,14 @@ def test_the_picture_has_a_bar_per_end_and_the_bands(record, tmp_path):
     assert words[:2] == ['numerics', 'not known']
     assert words[-1] == 'film_floor_nm  1 to 5'
     assert draw_sensitivity(tmp_path, record).name == 'sensitivity_nominal_iso_vg_68.png'
+
+
+def test_columns_stay_apart_whatever_their_numbers_are(record):
+    """Also where a number is longer than its column is wide."""
+    row = record['inputs'][0]
+    small = {end: dict.fromkeys(row[end], 1.23e-09) for end in ('at_low', 'at_high')}
+    long = {**record, 'inputs': [{**row, **small, 'low': 1.234e-9, 'high': 5.678e-9}]}
+    (line,) = [one for one in sensitivity_page(long).splitlines() if f'  {row["key"]} ' in one]
+    fields = line.split()
+    assert (fields[1], fields[3]) == ('0.000000001234', '0.000000005678')
+    assert fields[4:13:3] == fields[6:13:3] != fields[5:13:3] == ['to'] * 3

@@ -89,3 +89,17 @@ def test_sums_of_a_recording_are_those_of_its_end(acting, greeted, frames):
     greeted.send(record | {'totals': record['totals'] | {'running_time': 312.0}})
     acting.reads('.events .tile dd', '5:12')
     acting.reads('.events div h2', 'Totals at the end of the recording')
+
+
+def test_on_a_phone_no_word_of_a_warning_is_broken_and_no_column_cut(tab, greeted, frames):
+    advice = {'free': 'at least 90 % would with an oil temperature of 55 degC or with ISO VG 220'}
+    greeted.greeting[-2] = frames.events('x', {'advice': advice, 'acknowledged_by': 'Ada: seen'})
+    tab.visit(greeted.url, width=360)
+    tab.until("document.querySelector('.events td')")
+    assert tab.ask("""[...document.querySelectorAll('.events td, .events table')]
+        .every((one) => one.getBoundingClientRect().right <= innerWidth
+          && one.scrollWidth <= one.clientWidth + 1)""")
+    heads = tab.ask("""[...document.querySelectorAll('.events td')]
+        .map((one) => getComputedStyle(one, '::before').content)""")
+    assert heads[0] == '"Begin: "'
+    assert tab.ask("getComputedStyle(document.querySelector('.events td')).display") == 'block'

@@ -57,7 +57,7 @@ def test_values_on_screen_are_those_of_the_states(shown, greeted, frames):
             "[...document.querySelectorAll('.numbers .big')].map((one) => one.textContent)"
         )
         assert found[:4] == expected
-        assert shown.text('.numbers .more') == f'{rounded(speed, 4)} rev/min'
+        assert shown.text('.numbers .more') == f'{rounded(speed, 3)} rev/min'
 
     holds()
 
@@ -83,6 +83,43 @@ def test_at_standstill_no_distance_is_told(shown, greeted, frames):
     shown.reads('.numbers > div:last-child .big', '–')
     greeted.send(*frames.state(rows=frames.rows(1, 1.0, speed_rpm=-885.0)))
     shown.reads('.numbers > div:last-child .big', '50 % above')
+
+
+def test_at_standstill_nothing_is_green(shown, greeted, frames):
+    """Whatever level is held, but for a warning, which stays."""
+    for level in ('ok', 'unknown'):
+        greeted.send(*frames.state(level=level, zone='unknown', at_rest=True))
+        shown.reads('.sign.level .word', 'At rest')
+        assert shown.ask("document.querySelector('.sign.level').dataset.state") == 'rest'
+        greeted.send(*frames.state(level='warn', zone='outside', at_rest=False))
+        shown.reads('.sign.level .word', 'Outside the optimal zone')
+    greeted.send(*frames.state(level='warn', zone='unknown', at_rest=True, headline='still'))
+    shown.reads('.reason', 'The warning is held; at this moment: still')
+    assert shown.text('.sign.level .word') == 'Outside the optimal zone'
+
+
+@pytest.mark.parametrize('assumed', [False, True])
+def test_a_temperature_that_is_assumed_is_marked_on_its_tile(shown, greeted, frames, assumed):
+    greeted.send(*frames.state(temperature_assumed=assumed, headline='now'))
+    shown.reads('.reason', 'now')
+    text = 'assumed, not measured' if assumed else ''
+    shown.reads('.numbers > div:nth-child(3) .more', text)
+
+
+def test_without_data_one_line_says_what_is_missing(tab, greeted, frames):
+    quantity = {'value': None, 'low': None, 'high': None, 'unit': '-', 'known': False}
+    unknown = [quantity | {'name': f'q{i}', 'words': {'free': 'No torque.'}} for i in range(15)]
+    health = frames.health('unknown', quantities=unknown)
+    state = {'level': 'unknown', 'zone': 'unknown', 'headline': 'no valid sample: Speed'}
+    greeted.greeting = [
+        frames.hello(frames.axis()),
+        frames.state(rows={}, health=health, limit=None, **state),
+    ]
+    tab.visit(greeted.url)
+    tab.reads('.reason', 'no valid sample: Speed')
+    tab.reads('.health summary', 'Not known yet: 15 quantities. Open this line to read why.')
+    assert tab.ask("getComputedStyle(document.querySelector('.numbers')).display") == 'none'
+    assert tab.ask("document.querySelector('.health').innerText.match(/not known/gi).length") <= 2
 
 
 def test_a_warning_that_is_only_held_says_so(shown, greeted, frames):

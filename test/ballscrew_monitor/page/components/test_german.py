@@ -7,7 +7,6 @@ import re
 import subprocess
 import sys
 
-from ballscrew_monitor.core.advice import CARRY
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.health.records import CauseCode
@@ -100,8 +99,7 @@ def phrases_of_a_node():
         yield phrases.violated('efficiency', 0.7, 0.85, derived=derived)
     for reason in Reason:
         yield phrases.unjudged(reason, 640.0, -900.0, 41.5)
-    for carry in CARRY:
-        yield phrases.advised(-67.0, carry)
+    yield phrases.advised(-67.0)
     for health in healths():
         record = records.health_record(health)
         yield from filter(None, (record['verdict'], record['advice']))

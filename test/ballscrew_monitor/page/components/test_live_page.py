@@ -180,10 +180,10 @@ def as_shown(state):
     still = BallScrewState.GATE_STANDSTILL in state.active_gates
     turns = state.point.speed / RPM
     return [
-        LEVELS[state.level],
+        'At rest' if still and state.level != BallScrewState.LEVEL_WARN else LEVELS[state.level],
         reason_of(state),
         in_digits(turns * 0.01, 3, 'm/min'),
-        in_digits(turns, 4, 'rev/min'),
+        in_digits(turns, 3, 'rev/min'),
         in_digits(state.point.axial_load, 3, 'N'),
         in_digits(math.nan if still else 100.0 * state.result.efficiency, 3, '%'),
     ]
