@@ -42,7 +42,7 @@ TEMPERATURE = 40.0  # [degC]
 NUMBERS = 4_000_000  # of the first rows that are in memory
 EPOCH = '2000-01-01T00:00:00Z'
 LATE = 2_147_483_648.0  # [s] since 1970: no stamp is later
-SMALL = 20.0  # amount of a force that no axis is driven with in N
+HARDEST = 1000.0  # amount of a force that no axis is driven with in kN
 TURNS = 6.3  # range of a joint from which its unit is no metre
 SEPARATED_BY = {';': 'semicolons', ',': 'commas', '\t': 'tabs', '|': 'bars', ' ': 'blanks'}
 ORDER_OR_SIGN = ('.', ',', 'order')
@@ -439,7 +439,8 @@ class _Guesser:
             for kind, place in kinds.items():
                 if column := place.get('column', ''):
                     key = (self.groups.get(column, main), self.table.readings[column].holes)
-                    told = f'{name} {kind} {self._unit(name, kind)} ({column})'
+                    unit = self._unit(name, kind) or 'in an unknown unit'
+                    told = f'{name} {kind} {unit} ({column})'
                     groups.setdefault(key, []).append(told)
                     self.members.setdefault(key, column)
         for number, (key, members) in enumerate(groups.items()):
@@ -511,7 +512,7 @@ class _Guesser:
     def _unit(self, name: str, kind: str) -> str:
         """Return the unit of an input as the map says or assumes it."""
         assumed = self.assumed.get(f'{name}.{kind}.unit', {}).get('value', '')
-        return str(self.used[name][kind].get('unit', assumed))
+        return str(self.used[name][kind].get('unit', assumed) or '')
 
     def _fill(self, name: str, time: str) -> None:
         """Let the map say of an axis what its columns and their numbers tell."""
@@ -567,14 +568,34 @@ class _Guesser:
             metres, speed = self._metres(name), self.data[place['column']]
             motion = None if metres is None else (metres, speed)
             unit, why = estimates.speed_unit(values, motion, self.step)
-        elif kind == 'load' and self._largest_load() <= SMALL:
-            unit, why = 'kN', f'no force of the log is above {self._largest_load():.3g}'
+        elif kind == 'load' and (largest := self._largest_load()) <= HARDEST:
+            self._leave_open(name, largest)
+            return
+        elif kind == 'load':
+            unit, why = 'N', f'a force of {largest:.3g} is more than axes are driven with in kN'
         elif kind == 'temperature' and np.nanmin(values) > TEMPERATURE * 5:
             unit, why = 'K', f'its least is {np.nanmin(values):.3g}'
         else:
             unit, why = next(iter(UNITS[kind])), 'the usual one'
         self._assume(
             f'{name}.{kind}.unit', unit, f'{place["column"]} states none that is known; {why}'
+        )
+
+    def _leave_open(self, name: str, largest: float) -> None:
+        """Let the map ask for the unit of a force, and offer what the load may be of instead."""
+        place, chosen = self.used[name]['load'], self.axes[name]
+        place['unit'] = None
+        kind = next((one for one in ('torque', 'current') if one in self.used[name]), '')
+        instead = (
+            f'; or write `load: {{from: {kind}}}` there, so that {chosen[kind].column} tells the '
+            'load'
+            if kind
+            else ''
+        )
+        self.unstated.append(
+            f'state axes.{name}.load.unit in the map, {" or ".join(UNITS["load"])}: '
+            f'{place["column"]} states none that is known, and forces of up to {largest:.3g} may '
+            f'be in any{instead}'
         )
 
     def _largest_load(self) -> float:
