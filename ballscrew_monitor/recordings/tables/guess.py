@@ -36,7 +36,6 @@ import yaml
 
 SCREW, OIL = 'nominal', 'iso_vg_68'
 TORQUE_CONSTANT = 0.1  # [N m/A]
-RATED_TORQUE = 5.0  # [N m]
 EFFICIENCY = 0.9
 TEMPERATURE = 40.0  # [degC]
 NUMBERS = 4_000_000  # of the first rows that are in memory
@@ -122,7 +121,7 @@ class _Guesser:
         self.named = [read_name(name, texts.get(name, '')) for name in source.names()]
         self.assumed: dict[str, dict[str, Any]] = {}
         self.notes: list[str] = []
-        self.used: dict[str, dict[str, dict[str, Any]]] = {}
+        self.used: dict[str, dict[str, Any]] = {}
         self.step, self.epoch = math.nan, ''
         self.groups: dict[str, str] = {}
         self.members: dict[tuple[str, tuple[int, int]], str] = {}
@@ -436,8 +435,8 @@ class _Guesser:
         main = time.get('column', '')
         groups: dict[tuple[str, tuple[int, int]], list[str]] = {}
         for name, kinds in self.used.items():
-            for kind, place in kinds.items():
-                if column := place.get('column', ''):
+            for kind in filter(kinds.__contains__, INPUTS):
+                if column := kinds[kind].get('column', ''):
                     key = (self.groups.get(column, main), self.table.readings[column].holes)
                     unit = self._unit(name, kind) or 'in an unknown unit'
                     told = f'{name} {kind} {unit} ({column})'
@@ -533,7 +532,7 @@ class _Guesser:
         self._assume(f'{name}.lead_mm', float(f'{lead:.6g}'), why)
         self._set_load(name)
         if 'torque' in used and self._unit(name, 'torque') == RATED:
-            self._assume_motor(name, 'torque')
+            self._state_motor(name, 'torque')
         if 'temperature' in used:
             self._set_oil(name, used['temperature'])
         else:
@@ -637,7 +636,7 @@ class _Guesser:
             self._assume(f'{name}.load.from', source, f'no force is in the log; {FORCE}')
             self._assume(f'{name}.efficiency', EFFICIENCY, 'usual for a ball screw')
             if source == 'current':
-                self._assume_motor(name, source)
+                self._state_motor(name, source)
             return
         silent = [chosen[kind].column for kind in ('load', 'torque', 'current') if kind in chosen]
         lost = [f'{", ".join(self.lost[name])} holds no number'] if self.lost[name] else []
@@ -646,17 +645,25 @@ class _Guesser:
         used['load'] = {'unknown': why}
         self.notes.append(f'axis {name}: the load is not known ({why}), nothing will be judged')
 
-    def _assume_motor(self, name: str, kind: str) -> None:
-        """Assume what makes a torque of a current, or of either in % of the rated one."""
-        rated = self._unit(name, kind) == RATED
-        key = 'torque_rated_Nm' if rated else 'torque_constant_Nm_per_A'
-        value = RATED_TORQUE if rated else TORQUE_CONSTANT
-        self._assume(
-            f'{name}.{key}', value, 'the log does not say it; it is on the plate of the motor'
+    def _state_motor(self, name: str, kind: str) -> None:
+        """Assume what makes a torque of a current; ask for the rated torque of one in %."""
+        if self._unit(name, kind) != RATED:
+            why = 'the log does not say it; it is on the plate of the motor'
+            self._assume(f'{name}.torque_constant_Nm_per_A', TORQUE_CONSTANT, why)
+            return
+        self.used[name]['torque_rated_Nm'] = None
+        self.unstated.append(
+            f'state axes.{name}.torque_rated_Nm in the map, the torque at the screw of 100 %: '
+            f'{self.axes[name][kind].column} is in % of it, and it is on the plate of the motor'
         )
 
     def _say_what_is_left_out(self, time: Mapping[str, Any]) -> None:
-        used = {part.get('column') for axis in self.used.values() for part in axis.values()}
+        used = {
+            axis[kind].get('column')
+            for axis in self.used.values()
+            for kind in INPUTS
+            if kind in axis
+        }
         used |= {entry['value'] for entry in self.assumed.values()} | set(time.values())
         self.notes += names.left_out([one for one in self.named if one.column not in used])
 

@@ -74,17 +74,20 @@ def test_units_in_names_are_not_assumed(guessed):
     assert not [key for key in made.content['assumed'] if key.endswith('.unit')]
 
 
-@pytest.mark.parametrize('name', ['Drehmoment [%]', 'Motorstrom [%]'])
-def test_a_part_of_the_rated_torque_needs_that(name, guessed):
+@pytest.mark.parametrize(
+    ('name', 'kind'),
+    [('Drehmoment [%]', 'torque'), ('Motorstrom [%]', 'current'), ('load [%]', 'torque')],
+)
+def test_a_part_of_the_rated_torque_needs_that(name, kind, guessed, refused, says):
     made = guessed({'t_s': TIME, 'Vorschub [mm/min]': SPEED, name: SPEED})
-    assert made.content['assumed']['x.torque_rated_Nm']['value'] > 0
+    axis = made.content['axes']['x']
+    assert axis[kind] == {'column': name, 'unit': '%'}
+    assert axis['torque_rated_Nm'] is None
+    assert made.unstated == (says('state_rated', column=name),)
     assert 'x.torque_constant_Nm_per_A' not in made.content['assumed']
-    assert (
-        make_map(made.content)
-        .axes[0]
-        .motor_torque(made.content['assumed']['x.load.from']['value'])
-        > 0
-    )
+    refused('blank_rated', make_map, made.content)
+    axis['torque_rated_Nm'] = 8.0
+    assert make_map(made.content).axes[0].motor_torque(kind) == pytest.approx(0.08)
 
 
 @pytest.mark.parametrize(('amount', 'unit'), [(0.9, None), (25.0, None), (2500.0, 'N')])
@@ -162,7 +165,7 @@ def test_what_another_unit_or_place_is_of_is_left_out(guessed, says):
         {
             't [s]': TIME,
             'x speed [mm/s]': SPEED,
-            'x load [%]': SPEED,
+            'x load limit [%]': SPEED,
             'x motor temperature [C]': TIME + 60,
             'x temperature [C]': TIME + 30,
         }
