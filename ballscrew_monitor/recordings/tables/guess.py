@@ -22,9 +22,11 @@ from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
 from ballscrew_monitor.recordings.tables.clocks import moments_of
+from ballscrew_monitor.recordings.tables.mapping import MOTOR
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
+from ballscrew_monitor.recordings.tables.series import of_amounts, unclear_sign
 from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.time_gate import RATE, TimeGate
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
@@ -523,6 +525,7 @@ class _Guesser:
         }
         for kind in used:
             self._set_unit(name, kind)
+            self._set_magnitude(name, kind)
             group = self.groups.get(used[kind]['column'], time)
             used[kind] |= {'time': group} if group != time else {}
         lead = Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead * MILLI
@@ -579,6 +582,22 @@ class _Guesser:
         self._assume(
             f'{name}.{kind}.unit', unit, f'{place["column"]} states none that is known; {why}'
         )
+
+    def _set_magnitude(self, name: str, kind: str) -> None:
+        """Say of a torque or current of one sign whether it holds amounts."""
+        chosen, place = self.axes[name], self.used[name][kind]
+        if kind not in MOTOR or not estimates.is_one_sided(self.extremes[place['column']]):
+            return
+        motion = chosen.get('speed') or chosen['position']
+        speed = self.data[motion.column]
+        speed = speed if 'speed' in chosen or len(speed) < 2 else np.gradient(speed)
+        magnitude = estimates.is_magnitude(self.data[place['column']], speed)
+        if magnitude is None:
+            place['magnitude'] = None
+            self.unstated.append(unclear_sign(name, kind, place['column']))
+        elif magnitude:
+            place['magnitude'] = True
+            self.notes.append(of_amounts(name, kind, place['column']))
 
     def _leave_open(self, name: str, largest: float) -> None:
         """Let the map ask for the unit of a force, and offer what the load may be of instead."""

@@ -87,6 +87,9 @@ def test_signals_of_a_control_are_those_of_its_axis(name, tmp_path):
     if name == 'trace.xml':  # which states no unit of its time
         assert content['time'] == {'column': 'time', 'unit': None}
         content['time']['unit'] = 's'
+    # A steady current may be one without a sign.
+    assert content['axes']['x']['current'].pop('magnitude') is None
+    content['axes']['x']['current']['magnitude'] = False
     series = read_series(path, make_map(content))
     (block,) = [rows for (rows,) in series.blocks()]
     np.testing.assert_allclose(np.diff(block.stamps), STEP * 1e9, atol=1e3)

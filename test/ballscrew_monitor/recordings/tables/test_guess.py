@@ -90,6 +90,15 @@ def test_a_part_of_the_rated_torque_needs_that(name, kind, guessed, refused, say
     assert make_map(made.content).axes[0].motor_torque(kind) == pytest.approx(0.08)
 
 
+@pytest.mark.parametrize(('weight', 'magnitude'), [(0.0, True), (6.0, None)])
+def test_amounts_of_a_torque_are_said(weight, magnitude, guessed, says):
+    torque = np.abs(weight + 2.0 * np.sign(SPEED) + 0.4 * np.cos(TIME))
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, 'x_torque_Nm': torque})
+    assert made.content['axes']['x']['torque'].get('magnitude') is magnitude
+    assert (says('amounts') in made.notes) is bool(magnitude)
+    assert not made.unstated
+
+
 @pytest.mark.parametrize(('amount', 'unit'), [(0.9, None), (25.0, None), (2500.0, 'N')])
 def test_a_force_is_in_newtons_if_no_axis_holds_as_many_kilonewtons(
     amount, unit, guessed, refused, says
