@@ -151,7 +151,7 @@ def is_magnitude(torque: Array, speed: Array) -> bool | None:
 
     Friction, viscous or not, turns with the motion, a weight does not, and what accelerates does
     so with neither: amounts have an even part of the speed [-], torques with a sign an odd one.
-    An axis that does not reverse shows no amounts.
+    An axis that does not reverse shows no amounts; torques at other times show nothing.
 
     """
     if len(speed) < MANY:
@@ -159,6 +159,8 @@ def is_magnitude(torque: Array, speed: Array) -> bool | None:
     push = np.gradient(speed)
     good = np.isfinite(torque) & np.isfinite(speed) & np.isfinite(push) & (speed != 0.0)
     torque, speed, push = torque[good], speed[good], push[good]
+    if len(speed) < MANY:
+        return None
     if not (speed > 0.0).any() or not (speed < 0.0).any():
         return False
     ways, once = np.sign(speed), np.ones(len(speed))
