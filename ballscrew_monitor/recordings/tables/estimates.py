@@ -21,6 +21,8 @@ SLOWEST = 0.5  # [Hz] of a plausible log
 RARE, SHORTEST = 0.01, 0.95e-5  # [Hz] of the slowest, and [s] between rows of the fastest
 ALIKE = 0.8  # squared correlation of a motion and its speed
 LONGEST_AXIS = 20.0  # [m]
+MANY = 8  # rows that tell whether torques are amounts
+CLEARLY = 2.0  # times the sum of squares of the better of two readings
 FACTOR = 1.5  # by which a place and its speed may disagree
 
 
@@ -136,6 +138,41 @@ def unit_by_motion(
         < NEAR
     }
     return fits.pop() if len(fits) == 1 else ''
+
+
+def is_one_sided(extremes: Array) -> bool:
+    """Return True if no value between the least and the most has the sign of another."""
+    return bool(extremes.any() and (extremes >= 0.0).all() | (extremes <= 0.0).all())
+
+
+def is_magnitude(torque: Array, speed: Array) -> bool | None:
+    """
+    Return whether torques of one sign are amounts [-] in rows at equal distances, None if unclear.
+
+    Friction, viscous or not, turns with the motion, a weight does not, and what accelerates does
+    so with neither: amounts have an even part of the speed [-], torques with a sign an odd one.
+    An axis that does not reverse shows no amounts; torques at other times show nothing.
+
+    """
+    if len(speed) < MANY:
+        return False
+    push = np.gradient(speed)
+    good = np.isfinite(torque) & np.isfinite(speed) & np.isfinite(push) & (speed != 0.0)
+    torque, speed, push = torque[good], speed[good], push[good]
+    if len(speed) < MANY:
+        return None
+    if not (speed > 0.0).any() or not (speed < 0.0).any():
+        return False
+    ways, once = np.sign(speed), np.ones(len(speed))
+    misses = []
+    for parts in ([once, np.abs(speed), ways * push], [once, ways, speed, push]):
+        terms = np.column_stack(parts)
+        fit = np.linalg.lstsq(terms, torque, rcond=None)[0]
+        misses.append(float(np.sum((torque - terms @ fit) ** 2)))
+    amounts, signed = (miss + 1e-9 * float(torque @ torque) for miss in misses)
+    if max(amounts, signed) < CLEARLY * min(amounts, signed):
+        return None
+    return amounts < signed
 
 
 def is_of_days(extremes: Array) -> bool:

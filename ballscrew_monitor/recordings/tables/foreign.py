@@ -21,6 +21,7 @@ from xml.etree import ElementTree
 from ballscrew_monitor.recordings.tables.cells import readable
 from ballscrew_monitor.recordings.tables.heads import Head, Property, unlike
 from ballscrew_monitor.recordings.tables.names import read_name
+from ballscrew_monitor.recordings.tables.quantities import RATED
 import numpy as np
 import polars as pl
 from surrogate import limits
@@ -107,6 +108,7 @@ def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
     for signal in header['SignalListHFData']:
         name, axis = str(signal['Name']), str(signal.get('Axis', ''))
         plain, letter = name.split('|')[0], axis if re.fullmatch(r'[A-Za-z]\d?', axis) else ''
+        plain = f'{plain} [{RATED}]' if plain == 'LOAD' else plain
         names.append(f'{letter} {plain}' if letter else plain)
     rows = [row for part in content['Payload'] for row in part.get('HFData', ())]
     columns = list(zip(*rows, strict=True))

@@ -22,9 +22,11 @@ from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
 from ballscrew_monitor.recordings.tables.clocks import moments_of
+from ballscrew_monitor.recordings.tables.mapping import MOTOR
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
+from ballscrew_monitor.recordings.tables.series import of_amounts, unclear_sign
 from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.time_gate import RATE, TimeGate
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
@@ -36,13 +38,12 @@ import yaml
 
 SCREW, OIL = 'nominal', 'iso_vg_68'
 TORQUE_CONSTANT = 0.1  # [N m/A]
-RATED_TORQUE = 5.0  # [N m]
 EFFICIENCY = 0.9
 TEMPERATURE = 40.0  # [degC]
 NUMBERS = 4_000_000  # of the first rows that are in memory
 EPOCH = '2000-01-01T00:00:00Z'
 LATE = 2_147_483_648.0  # [s] since 1970: no stamp is later
-SMALL = 20.0  # amount of a force that no axis is driven with in N
+HARDEST = 1000.0  # amount of a force that no axis is driven with in kN
 TURNS = 6.3  # range of a joint from which its unit is no metre
 SEPARATED_BY = {';': 'semicolons', ',': 'commas', '\t': 'tabs', '|': 'bars', ' ': 'blanks'}
 ORDER_OR_SIGN = ('.', ',', 'order')
@@ -122,7 +123,7 @@ class _Guesser:
         self.named = [read_name(name, texts.get(name, '')) for name in source.names()]
         self.assumed: dict[str, dict[str, Any]] = {}
         self.notes: list[str] = []
-        self.used: dict[str, dict[str, dict[str, Any]]] = {}
+        self.used: dict[str, dict[str, Any]] = {}
         self.step, self.epoch = math.nan, ''
         self.groups: dict[str, str] = {}
         self.members: dict[tuple[str, tuple[int, int]], str] = {}
@@ -436,10 +437,11 @@ class _Guesser:
         main = time.get('column', '')
         groups: dict[tuple[str, tuple[int, int]], list[str]] = {}
         for name, kinds in self.used.items():
-            for kind, place in kinds.items():
-                if column := place.get('column', ''):
+            for kind in filter(kinds.__contains__, INPUTS):
+                if column := kinds[kind].get('column', ''):
                     key = (self.groups.get(column, main), self.table.readings[column].holes)
-                    told = f'{name} {kind} {self._unit(name, kind)} ({column})'
+                    unit = self._unit(name, kind) or 'in an unknown unit'
+                    told = f'{name} {kind} {unit} ({column})'
                     groups.setdefault(key, []).append(told)
                     self.members.setdefault(key, column)
         for number, (key, members) in enumerate(groups.items()):
@@ -511,7 +513,7 @@ class _Guesser:
     def _unit(self, name: str, kind: str) -> str:
         """Return the unit of an input as the map says or assumes it."""
         assumed = self.assumed.get(f'{name}.{kind}.unit', {}).get('value', '')
-        return str(self.used[name][kind].get('unit', assumed))
+        return str(self.used[name][kind].get('unit', assumed) or '')
 
     def _fill(self, name: str, time: str) -> None:
         """Let the map say of an axis what its columns and their numbers tell."""
@@ -523,6 +525,7 @@ class _Guesser:
         }
         for kind in used:
             self._set_unit(name, kind)
+            self._set_magnitude(name, kind)
             group = self.groups.get(used[kind]['column'], time)
             used[kind] |= {'time': group} if group != time else {}
         lead = Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead * MILLI
@@ -532,7 +535,7 @@ class _Guesser:
         self._assume(f'{name}.lead_mm', float(f'{lead:.6g}'), why)
         self._set_load(name)
         if 'torque' in used and self._unit(name, 'torque') == RATED:
-            self._assume_motor(name, 'torque')
+            self._state_motor(name, 'torque')
         if 'temperature' in used:
             self._set_oil(name, used['temperature'])
         else:
@@ -567,14 +570,50 @@ class _Guesser:
             metres, speed = self._metres(name), self.data[place['column']]
             motion = None if metres is None else (metres, speed)
             unit, why = estimates.speed_unit(values, motion, self.step)
-        elif kind == 'load' and self._largest_load() <= SMALL:
-            unit, why = 'kN', f'no force of the log is above {self._largest_load():.3g}'
+        elif kind == 'load' and (largest := self._largest_load()) <= HARDEST:
+            self._leave_open(name, largest)
+            return
+        elif kind == 'load':
+            unit, why = 'N', f'a force of {largest:.3g} is more than axes are driven with in kN'
         elif kind == 'temperature' and np.nanmin(values) > TEMPERATURE * 5:
             unit, why = 'K', f'its least is {np.nanmin(values):.3g}'
         else:
             unit, why = next(iter(UNITS[kind])), 'the usual one'
         self._assume(
             f'{name}.{kind}.unit', unit, f'{place["column"]} states none that is known; {why}'
+        )
+
+    def _set_magnitude(self, name: str, kind: str) -> None:
+        """Say of a torque or current of one sign whether it holds amounts."""
+        chosen, place = self.axes[name], self.used[name][kind]
+        if kind not in MOTOR or not estimates.is_one_sided(self.extremes[place['column']]):
+            return
+        motion = chosen.get('speed') or chosen['position']
+        speed = self.data[motion.column]
+        speed = speed if 'speed' in chosen or len(speed) < 2 else np.gradient(speed)
+        magnitude = estimates.is_magnitude(self.data[place['column']], speed)
+        if magnitude is None:
+            place['magnitude'] = None
+            self.unstated.append(unclear_sign(name, kind, place['column']))
+        elif magnitude:
+            place['magnitude'] = True
+            self.notes.append(of_amounts(name, kind, place['column']))
+
+    def _leave_open(self, name: str, largest: float) -> None:
+        """Let the map ask for the unit of a force, and offer what the load may be of instead."""
+        place, chosen = self.used[name]['load'], self.axes[name]
+        place['unit'] = None
+        kind = next((one for one in ('torque', 'current') if one in self.used[name]), '')
+        instead = (
+            f'; or write `load: {{from: {kind}}}` there, so that {chosen[kind].column} tells the '
+            'load'
+            if kind
+            else ''
+        )
+        self.unstated.append(
+            f'state axes.{name}.load.unit in the map, {" or ".join(UNITS["load"])}: '
+            f'{place["column"]} states none that is known, and forces of up to {largest:.3g} may '
+            f'be in any{instead}'
         )
 
     def _largest_load(self) -> float:
@@ -616,7 +655,7 @@ class _Guesser:
             self._assume(f'{name}.load.from', source, f'no force is in the log; {FORCE}')
             self._assume(f'{name}.efficiency', EFFICIENCY, 'usual for a ball screw')
             if source == 'current':
-                self._assume_motor(name, source)
+                self._state_motor(name, source)
             return
         silent = [chosen[kind].column for kind in ('load', 'torque', 'current') if kind in chosen]
         lost = [f'{", ".join(self.lost[name])} holds no number'] if self.lost[name] else []
@@ -625,17 +664,25 @@ class _Guesser:
         used['load'] = {'unknown': why}
         self.notes.append(f'axis {name}: the load is not known ({why}), nothing will be judged')
 
-    def _assume_motor(self, name: str, kind: str) -> None:
-        """Assume what makes a torque of a current, or of either in % of the rated one."""
-        rated = self._unit(name, kind) == RATED
-        key = 'torque_rated_Nm' if rated else 'torque_constant_Nm_per_A'
-        value = RATED_TORQUE if rated else TORQUE_CONSTANT
-        self._assume(
-            f'{name}.{key}', value, 'the log does not say it; it is on the plate of the motor'
+    def _state_motor(self, name: str, kind: str) -> None:
+        """Assume what makes a torque of a current; ask for the rated torque of one in %."""
+        if self._unit(name, kind) != RATED:
+            why = 'the log does not say it; it is on the plate of the motor'
+            self._assume(f'{name}.torque_constant_Nm_per_A', TORQUE_CONSTANT, why)
+            return
+        self.used[name]['torque_rated_Nm'] = None
+        self.unstated.append(
+            f'state axes.{name}.torque_rated_Nm in the map, the torque at the screw of 100 %: '
+            f'{self.axes[name][kind].column} is in % of it, and it is on the plate of the motor'
         )
 
     def _say_what_is_left_out(self, time: Mapping[str, Any]) -> None:
-        used = {part.get('column') for axis in self.used.values() for part in axis.values()}
+        used = {
+            axis[kind].get('column')
+            for axis in self.used.values()
+            for kind in INPUTS
+            if kind in axis
+        }
         used |= {entry['value'] for entry in self.assumed.values()} | set(time.values())
         self.notes += names.left_out([one for one in self.named if one.column not in used])
 

@@ -38,6 +38,7 @@ from surrogate.units import MICRO, MILLI
 
 DERIVED = ('current', 'torque', 'motor_torque')
 """A load may be worked out from a current or torque, or by the node from the motor torque."""
+MOTOR = ('torque', 'current')
 NUMBERS = {
     'lead_mm': (0.1, 1000.0),
     'torque_constant_Nm_per_A': (1e-6, 1e3),
@@ -85,6 +86,8 @@ PLACES = {
     '`{from: torque}`, `{from: motor_torque}`, `{unknown: reason}`',
     'AXIS.torque': 'column of the torque at the screw, in N m or % of the rated one',
     'AXIS.current': 'column of the motor current, or % of the rated one',
+    'AXIS.torque.magnitude': '`true` for amounts without a sign, which get that of the motion; '
+    'also for `current`; needed only if the log does not show it',
     'AXIS.temperature': 'column of the oil temperature',
     'AXIS.lead_mm': 'lead of the screw; needed',
     'AXIS.torque_constant_Nm_per_A': 'for a load from the current',
@@ -111,13 +114,19 @@ PLACES = {
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Column:
-    """A column: its name, its unit after factor and offset, and that of its time, if its own."""
+    """
+    A column: its name, its unit after factor and offset, and that of its time, if its own.
+
+    `magnitude` says whether it holds amounts without a sign, None where that is not said.
+
+    """
 
     name: str
     unit: str
     scale: float = 1.0
     offset: float = 0.0
     time: str = ''
+    magnitude: bool | None = None
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -338,10 +347,12 @@ class _Part:
             )
         return str(order)
 
-    def flag(self, name: str) -> bool:
-        value = self.take(name, False)
+    def flag(self, name: str, default: bool | None = False) -> bool | None:
+        if f'{self._prefix}.{name}' not in self._values:
+            return default
+        value = self.take(name)
         if not isinstance(value, bool):
-            raise InputError(f'{self._prefix}.{name} is {value!r}, it must be true or false')
+            raise InputError(f'{self._prefix}.{name} is {_said(value)}, it must be true or false')
         return value
 
     def column(self, kind: str, *, at: str = '') -> Column | None:
@@ -349,6 +360,7 @@ class _Part:
         part = self if at else _Part(f'{self._prefix}.{kind}', self._values)
         name, units, time = part.text('column'), UNITS[kind], '' if at else part.text('time')
         unit = part.take('unit')
+        magnitude = part.flag('magnitude', None) if kind in MOTOR else None
         numbers = [part.take(key, default) for key, default in (('scale', 1.0), ('offset', 0.0))]
         if name and not (isinstance(unit, str) and unit in units):
             found = 'missing' if unit is None else repr(unit)
@@ -362,7 +374,12 @@ class _Part:
             return None
         scale, offset = map(float, numbers)
         return Column(
-            name=column_name(name), unit=unit, scale=scale, offset=offset, time=column_name(time)
+            name=column_name(name),
+            unit=unit,
+            scale=scale,
+            offset=offset,
+            time=column_name(time),
+            magnitude=magnitude,
         )
 
 
@@ -380,7 +397,7 @@ def _axis(name: str, values: dict[str, Any]) -> AxisMap:
         inertia=part.number('inertia_kg_m2', 0.0),
         temperature=part.number('temperature_degC'),
         free_load=part.number('free_load_N', 0.0),
-        always_free=part.flag('always_free'),
+        always_free=bool(part.flag('always_free')),
         load_from=part.text('load.from'),
         unknown={kind: text for kind in INPUTS if (text := part.text(f'{kind}.unknown'))},
         texts={key: text for key in TEXTS if (text := part.text(key))},

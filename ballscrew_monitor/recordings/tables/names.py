@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import dataclasses
 import re
 
-from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION
+from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED
 from ballscrew_monitor.recordings.tables.unit_names import (
     BRACKETS,
     kind_by_unit,
@@ -76,8 +76,9 @@ JOINED_WORDS = {
     'abs': 'position',
     'com': 'command position',
     'frt': 'feed',
-    'load': 'percent',
+    'load': 'load percent',
 }
+PERCENT = frozenset({'percent', 'pct'})
 TELLS_NOTHING = (
     MEASURED
     | WANTED
@@ -118,6 +119,10 @@ def read_name(column: str, text: str = '') -> Named:
     words = words_of(told)
     place, axis = _place(words)
     kind, rank = _kind(words), _rank(words)
+    if _is_part_of_the_rated_torque(column, words):
+        return Named(
+            column=column, place=place, axis=axis, kind='torque', unit=RATED, rank=rank - 1
+        )
     if place == 'axis' and not kind and not OTHERS & set(words):
         left = set(words_without_unit(told, '')) - {axis, axis[:1], axis[1:]} - MEASURED - WANTED
         kind = SHORT.get(min(left), '') if len(left - AXIS) == 1 else ''
@@ -127,10 +132,17 @@ def read_name(column: str, text: str = '') -> Named:
     unit = unit_of(column, kind) or unit_of(told, kind)
     if kind == 'time' and not unit and words[:1] == ['seconds']:  # such as seconds_elapsed
         unit = 's'
-    # In another unit than those of the quantity it is another quantity, such as a load in percent.
+    # In another unit than those of the quantity it is another quantity.
     if BRACKETS.search(column) and not unit:
         kind = ''
     return Named(column=column, place=place, axis=axis, kind=kind, unit=unit, rank=rank)
+
+
+def _is_part_of_the_rated_torque(column: str, words: Sequence[str]) -> bool:
+    """Return True if a name is that of a load in per cent: controls mean the torque by it."""
+    of_unit = any(text.strip() == RATED for text in BRACKETS.findall(column))
+    others = OTHERS & set(words)
+    return 'load' in words and others <= PERCENT and (of_unit or bool(others))
 
 
 def _parted(match: re.Match[str]) -> str:

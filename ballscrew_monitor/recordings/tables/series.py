@@ -17,8 +17,8 @@ from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.dates import dated
-from ballscrew_monitor.recordings.tables.estimates import FACTOR, NEAR
-from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
+from ballscrew_monitor.recordings.tables.estimates import FACTOR, is_magnitude, is_one_sided, NEAR
+from ballscrew_monitor.recordings.tables.mapping import AxisMap, MOTOR, TableMap
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import open_table, Table
 from ballscrew_monitor.recordings.tables.time_gate import INSTEAD
@@ -32,6 +32,7 @@ from surrogate.units import TURN
 BETWEEN = 2.0  # [s] between runs, at least: longer than a sample is fresh
 LONG_GAP = 20.0  # times the usual time between rows, the same
 LONG = 3.0  # times the usual time between rows: across more the speed is not known
+SHOWING = 100_000  # of the first rows, which show whether torques are amounts
 FARTHEST = 1e100  # position in whatever unit, so that squares of what is moved have a sum
 ALIKE = 0.9  # squared correlation from which a speed and its position are of one motion
 
@@ -144,8 +145,10 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     _check_positions(path, mapping, table)
     axes = [_readable(axis, table.left_out) for axis in mapping.axes]
     still = [_moving(axis, table) for axis in axes]
-    held = dataclasses.replace(mapping, axes=tuple(axis for axis, _ in still))
+    signed = [_with_sign(path, axis, table) for axis, _ in still]
+    held = dataclasses.replace(mapping, axes=tuple(axis for axis, _ in signed))
     times = [Times(table, held, group, shown) for group in groups_of(table, held)]
+    _check_magnitudes(path, held, [one.group.columns for one in times])
     _place(path, times)
     notes = [note for one in times for note in one.notes()]
     return Series(
@@ -156,7 +159,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
         end=max(one.end for one in times),
         notes=(
             *_losses(mapping, table.left_out),
-            *filter(None, (note for _, note in still)),
+            *filter(None, (note for _, note in [*still, *signed])),
             *table.notes,
             *dict.fromkeys(notes),
         ),
@@ -179,6 +182,60 @@ def _moving(axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
         'moves: the speed is the slope of the position'
     )
     return dataclasses.replace(axis, columns=columns), note
+
+
+def _with_sign(path: Path, axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
+    """Return an axis whose torque or current says whether it holds amounts; a note if it does."""
+    kind = next((kind for kind in MOTOR if kind in axis.columns), '')
+    if not kind:
+        return axis, ''
+    column = axis.columns[kind]
+    if column.magnitude is None:
+        if not is_one_sided(line(table.readings[column.name].extremes, column, 1.0)):
+            return axis, ''
+        motion = axis.columns.get('speed') or axis.columns['position']
+        data = table.head(SHOWING)
+        speed = line(data[motion.name], motion, 1.0)
+        speed = speed if 'speed' in axis.columns else np.gradient(speed)
+        magnitude = is_magnitude(line(data[column.name], column, 1.0), speed)
+        if magnitude is None:
+            raise InputError(f'log {path}: {unclear_sign(axis.name, kind, column.name)}')
+        column = dataclasses.replace(column, magnitude=magnitude)
+        axis = dataclasses.replace(axis, columns={**axis.columns, kind: column})
+    return axis, of_amounts(axis.name, kind, column.name) if column.magnitude else ''
+
+
+def unclear_sign(axis: str, kind: str, column: str) -> str:
+    """Return what decides whether a column of one sign holds amounts."""
+    return (
+        f'state axes.{axis}.{kind}.magnitude in the map, true or false: {short(column)} never '
+        'changes its sign while the axis reverses, as amounts do, and a torque that holds a weight'
+    )
+
+
+def of_amounts(axis: str, kind: str, column: str) -> str:
+    """Return what is wrong with a torque or current that has the sign of the motion."""
+    return (
+        f'axis {axis}: {short(column)} never changes its sign while the axis reverses: its '
+        f'{kind} is taken with the sign of the motion, which is wrong where the axis brakes or '
+        'the load drives it'
+    )
+
+
+def _check_magnitudes(path: Path, mapping: TableMap, groups: Sequence[Collection[str]]) -> None:
+    """Raise InputError for amounts at other times than those of the motion."""
+    for axis in mapping.axes:
+        motion = axis.columns.get('speed') or axis.columns['position']
+        for kind in MOTOR:
+            column = axis.columns.get(kind)
+            if column is None or not column.magnitude:
+                continue
+            if not any({motion.name, column.name} <= set(names) for names in groups):
+                raise InputError(
+                    f'log {path}: {short(column.name)} holds amounts without a sign at other '
+                    f'times than {short(motion.name)}: name another column for '
+                    f'axes.{axis.name}.{kind} in the map, or none'
+                )
 
 
 def _place(path: Path, times: Sequence[Times]) -> None:
@@ -267,6 +324,12 @@ def _axis(
     def unit(kind: str) -> str:
         return axis.columns[kind].unit if kind in axis.columns else ''
 
+    def motor(kind: str) -> Array:
+        torque = column(kind, axis.motor_torque(kind))
+        if not axis.columns[kind].magnitude:
+            return torque
+        return np.copysign(np.abs(torque), found['speed'] + 0.0)
+
     held = axis.columns.keys()
     linear, rotary = conversions.LINEAR_POSITION_UNITS, conversions.ROTARY_POSITION_UNITS
     turned = _turned(unit('position'), linear, rotary, TURN / axis.lead)
@@ -282,11 +345,11 @@ def _axis(
         found['speed'] = _slope(position, (rows.stamps - begin) / SECOND)[part]
     kind = 'torque' if 'torque' in held else 'current'
     if 'torque' in known:
-        found['torque'] = column(kind, axis.motor_torque(kind))
+        found['torque'] = motor(kind)
     if 'load' in known and 'load' in held:
         found['load'] = column('load', conversions.LOAD_UNITS[unit('load')])
     elif 'load' in known and axis.load_from in ('torque', 'current'):
-        torque = column(kind, axis.motor_torque(kind))
+        torque = motor(kind)
         found['load'] = force_of(torque, lead=axis.lead, efficiency=axis.efficiency)
     elif 'load' in known:
         found['load'] = np.full(len(rows.stamps[part]), math.nan)

@@ -158,7 +158,7 @@ def test_other_programs_read_it(mill_bag):
 def test_a_log_slower_than_the_timeouts_lengthens_them(tmp_path, write_csv, says):
     speed = [100.0] * 20
     log = write_csv(
-        tmp_path / 'log.csv', {'t_s': np.arange(20.0) * 2, 'x_vel': speed, 'x_force': speed}
+        tmp_path / 'log.csv', {'t_s': np.arange(20.0) * 2, 'x_vel': speed, 'x_force_N': speed}
     )
     bag = converted(log, tmp_path / 'bag')
     facts = facts_of(bag)

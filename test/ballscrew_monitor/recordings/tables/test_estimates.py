@@ -4,6 +4,7 @@
 
 from ballscrew_monitor.recordings.tables.estimates import (
     DAY,
+    is_magnitude,
     is_rising,
     Midnights,
     period,
@@ -66,3 +67,12 @@ def test_what_is_no_time_of_a_day_stays_so_and_passes_no_midnight():
     found = Midnights().passed(np.array([np.nan, DAY - 1.0, np.nan, 1.0, np.nan]))
     np.testing.assert_array_equal(found, [np.nan, DAY - 1.0, np.nan, DAY + 1.0, np.nan])
     assert Midnights().passed(np.zeros(0)).size == 0
+
+
+def test_torques_at_other_times_do_not_show_whether_they_are_amounts():
+    speed = np.sin(np.arange(200) / 20.0)
+    torque, odd = np.abs(np.sign(speed) + 0.3 * np.cos(np.arange(200) / 20.0)), np.arange(200) % 2
+    assert is_magnitude(torque, speed)
+    assert not is_magnitude(torque, np.abs(speed))
+    apart = np.where(odd, torque, np.nan), np.where(odd, np.nan, speed)
+    assert is_magnitude(*apart) is None

@@ -30,6 +30,20 @@ def sinumerik_json(path):
     path.write_text(json.dumps({'Header': header, 'Payload': parts}))
 
 
+def test_a_load_of_a_data_recorder_is_a_torque_in_per_cent(tmp_path):
+    signals = [{'Name': f'{name}|1', 'Axis': 'X'} for name in ('ENC_POS', 'LOAD')]
+    rows = [[PLACE[row], 20.0 * math.cos(row / 50)] for row in range(COUNT)]
+    content = {
+        'Header': {'CycleTimeMs': 2, 'SignalListHFData': signals},
+        'Payload': [{'HFData': rows}],
+    }
+    path = tmp_path / 'log.json'
+    path.write_text(json.dumps(content))
+    axis = guess(path).content['axes']['x']
+    assert axis['torque'] == {'column': 'X LOAD [%]', 'unit': '%'}
+    assert axis['torque_rated_Nm'] is None
+
+
 def sinumerik_xml(path):
     records = ''.join(
         f'<rec time="{time:.4f}" f1="{place:.6f}" f2="1.5"/>' for time, place in zip(TIME, PLACE)
@@ -73,6 +87,9 @@ def test_signals_of_a_control_are_those_of_its_axis(name, tmp_path):
     if name == 'trace.xml':  # which states no unit of its time
         assert content['time'] == {'column': 'time', 'unit': None}
         content['time']['unit'] = 's'
+    # A steady current may be one without a sign.
+    assert content['axes']['x']['current'].pop('magnitude') is None
+    content['axes']['x']['current']['magnitude'] = False
     series = read_series(path, make_map(content))
     (block,) = [rows for (rows,) in series.blocks()]
     np.testing.assert_allclose(np.diff(block.stamps), STEP * 1e9, atol=1e3)

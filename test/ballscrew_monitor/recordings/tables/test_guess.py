@@ -74,17 +74,50 @@ def test_units_in_names_are_not_assumed(guessed):
     assert not [key for key in made.content['assumed'] if key.endswith('.unit')]
 
 
-@pytest.mark.parametrize('name', ['Drehmoment [%]', 'Motorstrom [%]'])
-def test_a_part_of_the_rated_torque_needs_that(name, guessed):
+@pytest.mark.parametrize(
+    ('name', 'kind'),
+    [('Drehmoment [%]', 'torque'), ('Motorstrom [%]', 'current'), ('load [%]', 'torque')],
+)
+def test_a_part_of_the_rated_torque_needs_that(name, kind, guessed, refused, says):
     made = guessed({'t_s': TIME, 'Vorschub [mm/min]': SPEED, name: SPEED})
-    assert made.content['assumed']['x.torque_rated_Nm']['value'] > 0
+    axis = made.content['axes']['x']
+    assert axis[kind] == {'column': name, 'unit': '%'}
+    assert axis['torque_rated_Nm'] is None
+    assert made.unstated == (says('state_rated', column=name),)
     assert 'x.torque_constant_Nm_per_A' not in made.content['assumed']
-    assert (
-        make_map(made.content)
-        .axes[0]
-        .motor_torque(made.content['assumed']['x.load.from']['value'])
-        > 0
-    )
+    refused('blank_rated', make_map, made.content)
+    axis['torque_rated_Nm'] = 8.0
+    assert make_map(made.content).axes[0].motor_torque(kind) == pytest.approx(0.08)
+
+
+@pytest.mark.parametrize(('weight', 'magnitude'), [(0.0, True), (6.0, None)])
+def test_amounts_of_a_torque_are_said(weight, magnitude, guessed, says):
+    torque = np.abs(weight + 2.0 * np.sign(SPEED) + 0.4 * np.cos(TIME))
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, 'x_torque_Nm': torque})
+    assert made.content['axes']['x']['torque'].get('magnitude') is magnitude
+    assert (says('amounts') in made.notes) is bool(magnitude)
+    assert not made.unstated
+
+
+@pytest.mark.parametrize(('amount', 'unit'), [(0.9, None), (25.0, None), (2500.0, 'N')])
+def test_a_force_is_in_newtons_if_no_axis_holds_as_many_kilonewtons(
+    amount, unit, guessed, refused, says
+):
+    force = amount * np.cos(TIME)
+    made = guessed({'t_s': TIME, 'v_x': SPEED, 'f_x': force, 'curr_x': SPEED / 50})
+    if unit:
+        assert made.content['assumed']['x.load.unit']['value'] == unit
+        assert not made.unstated
+        return
+    assert made.content['axes']['x']['load'] == {'column': 'f_x', 'unit': None}
+    assert 'x.load.unit' not in made.content['assumed']
+    assert made.content['axes']['x']['current'] == {'column': 'curr_x'}
+    refused('force_unit_missing', make_map, made.content)
+    if amount == 0.9:
+        assert made.unstated == (says('force_of_any_unit'),)
+        assert f'#   {made.unstated[0]}\n' in made.text
+    made.content['axes']['x']['load'] = {'from': 'current'}
+    refused('constant_missing', make_map, made.content)
 
 
 def test_logs_of_one_axis_need_no_letter(guessed):
@@ -106,11 +139,11 @@ def test_position_and_time_tell_the_unit_of_the_speed(factor, unit, guessed):
 
 
 def test_what_cannot_be_told_is_said_or_refused(guessed, refused, says):
-    made = guessed({'x_vel': SPEED, 'x_force': SPEED})
+    made = guessed({'x_vel': SPEED, 'x_force_N': SPEED})
     assert made.content['time'] == {'rate_Hz': None}
     assert made.unstated == (says('no_time'),)
     refused('column_looks_like', guessed, {'a': TIME, 'b': TIME})
-    made = guessed({'t': TIME, 'x_speed_furlong': SPEED, 'x_force': SPEED})
+    made = guessed({'t': TIME, 'x_speed_furlong': SPEED, 'x_force_N': SPEED})
     reason = made.content['assumed']['x.speed.unit']['reason']
     assert reason.startswith('x_speed_furlong states none that is known')
 
@@ -118,8 +151,8 @@ def test_what_cannot_be_told_is_said_or_refused(guessed, refused, says):
 def test_of_a_long_log_the_first_rows_tell_the_rate_and_all_the_ranges(guessed, monkeypatch, says):
     monkeypatch.setattr(guess_module, 'NUMBERS', 300)
     late = np.where(np.arange(200) < 150, 0.0, 1.0)
-    made = guessed({'t': TIME, 'x_vel': late * SPEED, 'x_force': late})
-    assert made.content['axes']['x']['load'] == {'column': 'x_force'}
+    made = guessed({'t': TIME, 'x_vel': late * SPEED, 'x_force_N': late})
+    assert made.content['axes']['x']['load'] == {'column': 'x_force_N', 'unit': 'N'}
     assert made.content['assumed']['x.speed.unit']['value'] == 'mm/s'
     assert says('rate_units_those') in made.notes
     assert not any('never moves' in note for note in made.notes)
@@ -141,7 +174,7 @@ def test_what_another_unit_or_place_is_of_is_left_out(guessed, says):
         {
             't [s]': TIME,
             'x speed [mm/s]': SPEED,
-            'x load [%]': SPEED,
+            'x load limit [%]': SPEED,
             'x motor temperature [C]': TIME + 60,
             'x temperature [C]': TIME + 30,
         }
@@ -182,11 +215,11 @@ def test_axes_are_told_by_the_words_in_which_names_differ(guessed, says):
 
 
 def test_a_time_by_name_comes_before_one_by_unit_and_one_that_does_not_rise_is_said(guessed, says):
-    columns = {'served_ms': TIME * 1e3, 'time_s': TIME, 'x_vel': SPEED, 'x_force': SPEED}
+    columns = {'served_ms': TIME * 1e3, 'time_s': TIME, 'x_vel': SPEED, 'x_force_N': SPEED}
     assert guessed(columns).content['time']['column'] == 'time_s'
     del columns['time_s']
     assert guessed(columns).content['time'] == {'column': 'served_ms', 'unit': 'ms'}
-    made = guessed({'Zeit_ms': -TIME, 'x_vel': SPEED, 'x_force': SPEED})
+    made = guessed({'Zeit_ms': -TIME, 'x_vel': SPEED, 'x_force_N': SPEED})
     assert made.content['time'] == {'rate_Hz': None}
     assert made.unstated == (says('still_time'),)
 
@@ -203,7 +236,7 @@ def test_ticks_are_a_time_by_their_amount_and_small_whole_numbers_of_any_unit(gu
 
 
 def test_a_column_of_another_time_is_left_out_where_one_is_read(guessed):
-    columns = {'Time': ['some time'] * 200, 'time_s': TIME, 'x_vel': SPEED, 'x_force': SPEED}
+    columns = {'Time': ['some time'] * 200, 'time_s': TIME, 'x_vel': SPEED, 'x_force_N': SPEED}
     made = guessed(columns)
     assert made.content['time'] == {'column': 'time_s', 'unit': 's'}
     assert not made.unstated
@@ -211,7 +244,7 @@ def test_a_column_of_another_time_is_left_out_where_one_is_read(guessed):
 
 
 def test_what_a_map_says_first_stays_in_comments(guessed):
-    columns = {'Time': ['1\n: 2'] * 200, 'x_vel': SPEED, 'x_force': SPEED}
+    columns = {'Time': ['1\n: 2'] * 200, 'x_vel': SPEED, 'x_force_N': SPEED}
     columns = {name: [f'"{one}"' for one in column] for name, column in columns.items()}
     made = guessed(columns)
     assert len(made.unstated) == 1

@@ -53,6 +53,41 @@ def small_reads(monkeypatch):
     monkeypatch.setattr(sources, 'BLOCK', 100)
 
 
+FRICTION = 2.0 * np.sign(SPEED) + 0.005 * SPEED + 0.004 * 100.0 * np.cos(TIME)  # [N m]
+OF_TORQUE = AXIS | {'torque': {'column': 'm', 'unit': 'N m'}, 'load': {'from': 'torque'}}
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+@pytest.mark.parametrize(
+    'motion', [{}, {'speed': {}, 'position': {'column': 'p', 'unit': 'mm'}}], ids=['v', 'p']
+)
+def test_amounts_of_a_torque_get_the_sign_of_the_motion(read, says, motion, sign):
+    columns, axis = {'t': TIME, 'v': SPEED, 'p': POSITION}, OF_TORQUE | motion
+    signed = read(columns | {'m': FRICTION}, axis)
+    amounts = read(columns | {'m': sign * np.abs(FRICTION)}, axis)
+    moves = np.abs(SPEED) > 3.0
+    np.testing.assert_allclose(amounts.load[moves], signed.load[moves])
+    np.testing.assert_allclose(amounts.torque[moves], FRICTION[moves])
+    assert says('amounts') in amounts.notes
+    assert says('amounts') not in signed.notes
+
+
+def test_a_torque_that_holds_a_weight_keeps_its_sign(read, says):
+    torque = 6.0 + FRICTION
+    found = read({'t': TIME, 'v': SPEED, 'm': torque}, OF_TORQUE)
+    np.testing.assert_allclose(found.torque, torque)
+    assert says('amounts') not in found.notes
+
+
+def test_a_steady_torque_of_one_sign_is_refused_until_the_map_says_what_it_is(read, refused):
+    columns = {'t': TIME, 'v': SPEED, 'm': np.full(400, 2.0)}
+    refused('unclear_amounts', read, columns, OF_TORQUE)
+    for magnitude, signs in ((True, np.sign(SPEED)), (False, 1.0)):
+        torque = OF_TORQUE['torque'] | {'magnitude': magnitude}
+        found = read(columns, OF_TORQUE | {'torque': torque})
+        np.testing.assert_allclose(found.torque[1:], (2.0 * signs * np.ones(400))[1:])
+
+
 def test_quantities_are_those_of_the_screw(read):
     axis = AXIS | {
         'position': {'column': 'p', 'unit': 'mm'},
