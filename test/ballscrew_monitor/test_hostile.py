@@ -349,8 +349,11 @@ def test_a_chunk_that_cannot_be_read_ends_the_replay_with_a_sentence(name, resul
     assert says(name) in said.splitlines()[-1]
 
 
+MOSTLY_UNJUDGED = 'text_data', 'text_time', 'no_topic'
+
+
 @pytest.mark.parametrize('name', NOTED)
 def test_what_is_judged_in_part_says_what_is_left_out(name, results, says):
     code, said, _ = results[name]
-    assert code == 0
+    assert code == int(name in MOSTLY_UNJUDGED)
     assert says(name) in said

@@ -159,9 +159,7 @@ def is_magnitude(torque: Array, speed: Array) -> bool | None:
     push = np.gradient(speed)
     good = np.isfinite(torque) & np.isfinite(speed) & np.isfinite(push) & (speed != 0.0)
     torque, speed, push = torque[good], speed[good], push[good]
-    if len(speed) < MANY:
-        return None
-    if not (speed > 0.0).any() or not (speed < 0.0).any():
+    if len(speed) < MANY or not (speed > 0.0).any() or not (speed < 0.0).any():
         return False
     ways, once = np.sign(speed), np.ones(len(speed))
     misses = []

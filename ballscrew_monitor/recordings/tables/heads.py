@@ -172,7 +172,8 @@ class _Block:
         self.data = [at for at, row in enumerate(kinds) if _is_data(row)]
         self.width = max((len(self.rows[at]) for at in self.data), default=0)
         counts: list[Counter[str]] = [Counter() for _ in range(self.width)]
-        for at in self.data[len(self.data) // 3 :]:
+        settled = len(self.data) // 3
+        for at in self.data[settled:]:
             for count, kind in zip(counts, kinds[at], strict=False):
                 count[kind] += 1
         self.numeric = [count['n'] >= MOSTLY * (count['n'] + count['x']) > 0 for count in counts]
@@ -193,7 +194,8 @@ class _Block:
         filled = sorted(kinds[at].count('n') for at in fits)
         usual = filled[len(filled) // 2] if filled else 0
         for place, at in enumerate(self.data):
-            following = self.data[place : place + FOLLOWING]
+            end = place + FOLLOWING
+            following = self.data[place:end]
             whole = at in fits and kinds[at].count('n') >= FULL * usual
             if whole and sum(one in fits for one in following) >= MOSTLY * len(following):
                 return at
@@ -377,7 +379,8 @@ class _Above:
     def _below_each_other(self) -> list[str]:
         """Return the names of a column each in as many lines as there are columns."""
         lines = [line.text.strip() for line, _ in self.lines if line.text.strip()]
-        last = lines[-self.width :]
+        begin = max(len(lines) - self.width, 0)
+        last = lines[begin:]
         if self.width < 2 or len(last) < self.width:
             return []
         return last if sum(bool(read_name(one).kind) for one in last) >= FULL * self.width else []

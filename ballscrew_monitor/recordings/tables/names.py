@@ -64,8 +64,8 @@ SHORT = {
 }  # fmt: skip
 """Letters of quantities that stand alone beside the letter of an axis."""
 JOINED = re.compile(
-    r'^(?:(?P<axis>[xyzXYZ]\d?)(?P<word>act[mw]?|com|abs|load|frt|[vfips])|(?P<letter>[vfipmVFIPM])'
-    r'(?P<of>[xyz]))(?![a-z])'
+    r'^(?:(?P<axis>[xyzXYZ]\d?)(?P<word>act[mw]?|com|abs|load|frt|[vfips])|'
+    r'(?P<letter>[vfipmVFIPM])(?P<of>[xyz]))(?![a-z])'
 )
 """Axis and quantity in one word, as of MTConnect: Xact, X1actm, Zfrt; or Fx, vz."""
 LETTERED = re.compile(r'[\[(]([XYZxyz]\d?)[\])]')

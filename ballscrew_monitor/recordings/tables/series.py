@@ -40,8 +40,10 @@ ALIKE = 0.9  # squared correlation from which a speed and its position are of on
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Series:
     """
-    A log by rows: the number of those with a time, and of the `rows` of each group in the file;
-    the usual time between them [s], and what was wrong with it.
+    A log by rows, and what was wrong with it.
+
+    `count` is the number of those with a time, `rows` that of each group in the file,
+    `usual_period` the time between them [s].
 
     `mapping` is that by which it is read, without the columns that hold nothing; `begin` and `end`
     are the first and the last stamp [ns]. Columns of one time are a group, of which `places` names

@@ -187,7 +187,8 @@ def _sheet(path: Path, layout: Layout | None) -> Source:
     ]
     with _findable(path):
         head = heads.find_head(lines, layout)
-    frame = cells[head.first - 1 :].select(cells.columns[: len(head.names)])
+    before = head.first - 1
+    frame = cells[before:].select(cells.columns[: len(head.names)])
     return of_frame(path, frame.lazy(), head, frame.height, math.inf)
 
 

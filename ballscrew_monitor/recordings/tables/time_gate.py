@@ -182,7 +182,7 @@ class TimeGate:
                 self._settle()
 
     @property
-    def range(self) -> tuple[float, float]:
+    def limits(self) -> tuple[float, float]:
         """Return the least and the most time [s]."""
         return self._least[0], self._most[0]
 

@@ -254,7 +254,7 @@ class Times:
                 f'log {table.path} holds {self.count} rows with a time, at least two are needed'
             )
         if self.count:
-            self._check(*self.gate.range)
+            self._check(*self.gate.limits)
         if mapping.time:
             self._check_gate()
         self._shifts = dict[int, float]()

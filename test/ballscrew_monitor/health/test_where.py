@@ -29,7 +29,7 @@ import numpy as np
 import pytest
 
 sys.path.append(str(Path(__file__).resolve().parents[3] / 'bench'))
-from health_parts.along import WORN_AT  # noqa: E402
+from health_parts.along import WORN_AT  # noqa: E402, I100
 from health_parts.axis_year import axis_year  # noqa: E402
 from health_parts.faults import CLEAN, FAULTS  # noqa: E402
 
@@ -60,7 +60,7 @@ def cells_of_log(log, lead):
             speed=part.speed,
             axial_load=0.0,
             temperature=float(np.mean(log.temperature)),
-            motor_torque=float(np.mean(log.torque[part.begin : part.end])),
+            motor_torque=float(np.mean(log.torque[slice(part.begin, part.end)])),
         )
         for part in steady_parts(log)
     )

@@ -10,9 +10,8 @@ from ballscrew_monitor import cli
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.recordings.no_load import (
-    _keeps,
+    _is_steady,
     read_no_load,
-    Series,
     speed_channel,
     temperature_channel,
     torque_channel,
@@ -120,8 +119,8 @@ def test_a_drift_of_just_1_percent_is_steady(drift, keeps):
     """The speeds are exact in binary; 1 % of 100 rad/s is rounded to just 1."""
     time = np.array([0.0, 0.25, 0.5])
     value = 100.0 + drift * np.array([-0.5, 0.0, 0.5])
-    assert _keeps(Series(time=time, value=value)) is keeps
-    assert _keeps(Series(time=time, value=-value)) is keeps
+    assert _is_steady(time, value) is keeps
+    assert _is_steady(time, -value) is keeps
 
 
 def test_units_scale_and_temperature(tmp_path):

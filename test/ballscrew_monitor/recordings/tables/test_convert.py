@@ -383,7 +383,7 @@ def test_a_guess_is_a_map_that_works_once_the_rate_is_stated(mill_log, tmp_path,
     mapping.write_text(captured.out.replace('rate_Hz: null', 'rate_Hz: 10'))
     assert cli.main(['import', str(mill_log), '--config', str(mapping), '--out', str(bag)]) == 0
     assert '  assumed x.lead_mm = 10.0: ' in capsys.readouterr().out
-    assert cli.main(['replay', str(bag), '--json']) == 0
+    assert cli.main(['replay', str(bag), '--json']) == 1, 'axis z has no load'
     captured = capsys.readouterr()
     by_bag = json.loads(captured.out, parse_float=to_12_digits)
     assert set(by_bag) == {'x', 'y', 'z'}
