@@ -195,8 +195,8 @@ class ReversalSums:
         for begin, turn, end in zip(bounds, turns, bounds[2:], strict=False):
             keep = begin
             if end == len(stamps) and stamps[-1] - stamps[turn] < WINDOW:
-                before = turn - 1
-                oldest = stamps[before:turn]  # this reversal waits for its end
+                earlier = turn - 1
+                oldest = stamps[earlier:turn]  # this reversal waits for its end
                 break
             self._take(stamps, rows, begin, turn, end)
             keep = turn

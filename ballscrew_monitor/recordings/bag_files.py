@@ -136,7 +136,7 @@ def _check_stated(bag: Path, kind: str, packing: str) -> None:
 
 
 def _place(bag: Path, name: str) -> Path:
-    """Return where a file is: old metadata name the folder of the bag, those of Windows otherwise."""
+    """Return where a file is: old metadata name the folder of the bag, of Windows another."""
     windows = PureWindowsPath(name)
     places = (bag / name, bag / windows.as_posix())
     return next((place for place in places if place.is_file()), bag / windows.name)
