@@ -158,6 +158,8 @@ def is_magnitude(torque: Array, speed: Array) -> bool | None:
         return False
     push = np.gradient(speed)
     good = np.isfinite(torque) & np.isfinite(speed) & np.isfinite(push) & (speed != 0.0)
+    if not good.any() and min(np.isfinite(each).sum() for each in (torque, speed)) >= MANY:
+        return None
     torque, speed, push = torque[good], speed[good], push[good]
     if len(speed) < MANY or not (speed > 0.0).any() or not (speed < 0.0).any():
         return False

@@ -10,8 +10,9 @@ from ballscrew_monitor.core.advice import Advice, Advisor
 from ballscrew_monitor.core.conversions import Direction, opposing_load
 from ballscrew_monitor.core.judgement import efficiency_to_clear, rcs_to_clear
 from ballscrew_monitor.core.state import Event
-from ballscrew_monitor.health.records import ComparablePoint, Condition, Health, Place
+from ballscrew_monitor.health.records import Cell, Condition, Health
 from ballscrew_monitor.health.remedies import remedies_of
+from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.messages.state_messages import out_of_zone_message, USUAL
 from hypothesis import given
 from hypothesis import strategies as st
@@ -98,10 +99,11 @@ def test_no_speed_is_advised_unless_the_process_leaves_it_free(core):
 
 def health_of(point, surface, limits, *, free, usual):
     """Return the health of an axis that runs at a point alone."""
-    programme = ComparablePoint(
+    programme = Cell(
+        start=20_000 * DAY,
         first_day=20_000,
-        place=Place(speed=1, load=0, temperature=1, direction=1 if point.speed > 0 else -1),
-        surface='',
+        speed_band=1,
+        direction=1 if point.speed > 0 else -1,
         stretches=9,
         duration=3600.0,
         speed=point.speed,

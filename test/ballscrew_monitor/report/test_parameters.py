@@ -56,7 +56,8 @@ def test_the_unit_of_the_motion_is_that_of_the_position_where_no_speed_is_named(
         'speed: {column: speed, unit: rev/min}',
         'position: {column: speed, unit: mm}',
     )
-    found = found_with(table, column=(speed, position))
+    signed = ('column: current, unit: A', 'column: current, unit: A, magnitude: false')
+    found = found_with(table, column=(speed, position), signed=signed)
     assert found.axes['x'].motion_unit == 'mm'
 
 

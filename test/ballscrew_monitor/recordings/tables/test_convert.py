@@ -390,7 +390,7 @@ def test_a_guess_is_a_map_that_works_once_the_rate_is_stated(mill_log, tmp_path,
     assert f'parameters: those of {bag}' in captured.err
     assert 'assumed of mill.csv, axis z: load = unknown' in captured.err
     assert says('nothing_was_judged') in captured.err
-    assert cli.main(['replay', str(mill_log), '--map', str(mapping), '--json']) == 0
+    assert cli.main(['replay', str(mill_log), '--map', str(mapping), '--json']) == 1
     captured = capsys.readouterr()
     assert json.loads(captured.out, parse_float=to_12_digits) == by_bag
     assert f'parameters: those of {mill_log}' in captured.err
