@@ -271,6 +271,16 @@ class _Above:
             ):
                 held = self.rows.get(kind, [])
                 self.rows[kind] = row if sum(map(bool, row)) > sum(map(bool, held)) else held
+        if 'name' in self.rows and self._is_remark(self.rows['name']):
+            del self.rows['name']
+
+    def _is_remark(self, names: list[str]) -> bool:
+        """Return True if a longer row calls more columns by a known name: this is a remark."""
+        return any(
+            sum(map(bool, row)) > sum(map(bool, names)) and _known(row) > _known(names)
+            for _, row in self.wide
+            if not _is_of_numbers(row)
+        )
 
     def head(self, first: int) -> Head:
         names, named = self._names()

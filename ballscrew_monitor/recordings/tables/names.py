@@ -32,7 +32,7 @@ KINDS = {
     'current': frozenset('current curr cur amps amp iq strom'.split()),
     'temperature': frozenset('temperature temp temperatur'.split()),
     'time': frozenset(
-        'time timestamp stamp t datetime date seconds elapsed clock ticks '
+        'time timestamp stamp t datetime date seconds elapsed clock ticks epoch '
         'zeit zeitstempel messzeit laufzeit uhrzeit datum'.split()
     ),
 }

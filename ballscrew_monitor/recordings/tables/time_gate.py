@@ -223,7 +223,7 @@ class TimeGate:
             shown = listed if len(listed) <= AGAIN else [*listed[:AGAIN], '...']
             found.append(
                 f'time begins again {len(self.runs) - 1} times: {len(self.runs)} runs are judged '
-                f'apart, {", ".join(shown)}'
+                f'one after the other, and a warning may go on into the next, {", ".join(shown)}'
             )
         return found
 

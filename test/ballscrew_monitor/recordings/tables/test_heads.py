@@ -81,3 +81,8 @@ def test_a_period_is_found_wherever_it_stands(line, period):
     assert (
         head.period == pytest.approx(period, nan_ok=True) if period else head.period != head.period
     )
+
+
+def test_a_remark_about_a_name_does_not_name_the_columns():
+    head = head_of('Name;x\nTimestamp;ActVelo [mm/s];Force [N]\n1;2;3\n2;3;4\n3;4;5')
+    assert head.names == ('Timestamp', 'ActVelo [mm/s]', 'Force [N]')

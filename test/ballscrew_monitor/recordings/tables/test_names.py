@@ -57,6 +57,7 @@ import pytest
         ('Motortemperatur [°C]', 'machine', '', '', ''),
         ('Lageistwert Z [mm]', 'axis', 'z', 'position', 'mm'),
         ('Zeit [s]', 'machine', '', 'time', 's'),
+        ('epoch', 'machine', '', 'time', ''),
         ('Spindeldrehzahl [1/min]', 'machine', '', '', ''),
         ('Beschleunigung [m/s]', 'machine', '', '', ''),
     ],
