@@ -8,6 +8,7 @@ states its zone there.
 
 """
 
+from collections.abc import Iterator
 import dataclasses
 import datetime
 from pathlib import Path
@@ -18,6 +19,7 @@ from ballscrew_monitor.recordings.tables.mapping import DATES, TableMap
 from surrogate.files import InputError
 
 NAME, HEADER, MODIFIED = DATES
+FIRST_YEAR = 1971
 HEAD = 1 << 16
 """Bytes of a text in which its date is looked for."""
 AFTER = 200
@@ -48,11 +50,12 @@ def dated(path: Path, mapping: TableMap) -> TableMap:
     elif mapping.date_from == HEADER:
         moment = _known(date_in_head(_head(path)), path, 'the lines above its table state none')
     else:
-        name = date_in_name(path.stem) or date_in_name(path.absolute().parent.name)
+        name = next((moment for moment, _ in dates_by_name(path) if moment is not None), None)
         moment = _known(name, path, 'neither its name nor that of its folder holds one')
-    if moment.year < 1971:
+    if moment.year < FIRST_YEAR:
         raise InputError(
-            f'log {path}: date_from {mapping.date_from} says {moment:%Y}, allowed is 1971 or later'
+            f'log {path}: date_from {mapping.date_from} says {moment:%Y}, allowed is {FIRST_YEAR} '
+            'or later'
         )
     return dataclasses.replace(mapping, epoch=int(moment.timestamp()) * SECOND)
 
@@ -64,6 +67,12 @@ def _known(moment: datetime.datetime | None, path: Path, reason: str) -> datetim
             '20250714_115950 or 14.07.2025: state another date_from, or time.epoch'
         )
     return moment
+
+
+def dates_by_name(path: Path) -> Iterator[tuple[datetime.datetime | None, str]]:
+    """Yield the dates in the names of the file and of its folder, and of which each is."""
+    yield date_in_name(path.stem), 'file'
+    yield date_in_name(path.absolute().parent.name), 'folder'
 
 
 def date_in_name(name: str) -> datetime.datetime | None:

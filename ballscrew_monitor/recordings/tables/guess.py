@@ -22,6 +22,7 @@ from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
 from ballscrew_monitor.recordings.tables.clocks import moments_of
+from ballscrew_monitor.recordings.tables.dates import dates_by_name, FIRST_YEAR, NAME
 from ballscrew_monitor.recordings.tables.mapping import MOTOR
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, RATED, SCALES, UNITS
@@ -51,11 +52,6 @@ JOINT = re.compile(
     r'(?P<before>.*?)(?P<field>name|position|velocity|effort)(?P<number>\[?_?\d+\]?)$'
 )
 """A column of the arrays of joint states."""
-FILE_DATE = re.compile(
-    r'(?<!\d)(?P<year>20\d\d)[-_.]?(?P<month>[01]\d)[-_.]?(?P<day>[0-3]\d)'
-    r'(?:[-_T. ](?P<hour>[0-2]\d)[-_.h:]?(?P<minute>[0-5]\d)(?:[-_.m:]?(?P<second>[0-5]\d))?)?'
-    r'(?!\d)'
-)
 FORCE = (
     '2 pi efficiency torque / lead against the torque: friction of guides and seals, and what '
     'accelerates the axis, count as load'
@@ -124,7 +120,7 @@ class _Guesser:
         self.assumed: dict[str, dict[str, Any]] = {}
         self.notes: list[str] = []
         self.used: dict[str, dict[str, Any]] = {}
-        self.step, self.epoch = math.nan, ''
+        self.step, self.epoch, self.date_from = math.nan, '', ''
         self.groups: dict[str, str] = {}
         self.members: dict[tuple[str, tuple[int, int]], str] = {}
         self.times = [one for one in self.named if self._may_be_time(one)]
@@ -233,6 +229,7 @@ class _Guesser:
             time = self._time_without_column()
         self._say_what_is_left_out(time)
         content: dict[str, Any] = {'log': self.path.name}
+        content |= {'date_from': self.date_from} if self.date_from else {}
         content |= {'decimal': None} if '.' in self.doubts or ',' in self.doubts else {}
         time |= {'order': None} if 'order' in self.doubts else {}
         content |= {'time': time, 'axes': self.used, 'assumed': self.assumed}
@@ -386,7 +383,10 @@ class _Guesser:
 
     def _set_epoch(self, why: str, *, since: float | None = None) -> None:
         """State the time of the first row by the head or the name of the file, or assume one."""
-        begin, where = self._start()
+        begin, where = self._start_in_head()
+        by_name = begin is None
+        if by_name:
+            begin, where = self._start_in_name()
         if since is not None and begin is not None:
             begin = begin - begin % estimates.DAY + since
         if begin is None:
@@ -395,10 +395,13 @@ class _Guesser:
         moment = dt.datetime.fromtimestamp(begin, dt.UTC)
         text = moment.isoformat(timespec='microseconds' if begin % 1 else 'seconds')
         self.epoch = f'start {moment:%Y-%m-%d %H:%M:%S} {where}'
+        if since is None and by_name:
+            self.date_from = NAME
+            return
         self._assume('time.epoch', text.replace('+00:00', 'Z'), f'{where}, taken as UTC')
 
-    def _start(self) -> tuple[float | None, str]:
-        """Return when the log begins [s] by its head or name, and where that stands."""
+    def _start_in_head(self) -> tuple[float | None, str]:
+        """Return when the log begins [s] by its head, and where that stands."""
         properties = self.head.properties
         if 'start' in properties:
             text, row = properties['start'].text, properties['start'].row
@@ -414,14 +417,13 @@ class _Guesser:
                     ], f'from line {row}'
                 if len(found) == 1:
                     return next(iter(found)), f'from line {row}'
-        for match in FILE_DATE.finditer(self.path.stem):
-            found = {
-                seconds: form
-                for seconds, form in moments_of(_date_in(match))
-                if form.kind != 'hours'
-            }
-            if len(found) == 1:
-                return next(iter(found)), 'from the name of the file'
+        return None, ''
+
+    def _start_in_name(self) -> tuple[float | None, str]:
+        """Return when the log begins [s] by its name or that of its folder, and which it is."""
+        for moment, of in dates_by_name(self.path):
+            if moment is not None and moment.year >= FIRST_YEAR:
+                return moment.timestamp(), f'from the name of the {of}'
         return None, ''
 
     def _period_of(self, time: str, column: str, stated: Mapping[str, Any]) -> float:
@@ -694,13 +696,6 @@ def _period(times: Array) -> float:
     changes = np.diff(np.flatnonzero(steps > 0.0))
     share = float(np.median(changes)) if len(changes) else 1.0
     return float(np.median(rising)) / share if len(rising) else math.nan
-
-
-def _date_in(match: re.Match[str]) -> str:
-    """Return a date in the name of a file with the signs that dates have."""
-    date = '-'.join(match.group('year', 'month', 'day'))
-    hours = match.group('hour', 'minute', 'second')
-    return f'{date} {hours[0]}:{hours[1]}:{hours[2] or "00"}' if hours[0] else date
 
 
 def _rates(step: float) -> str:

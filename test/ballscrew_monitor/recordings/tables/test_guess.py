@@ -320,3 +320,28 @@ def test_a_time_with_decimals_is_of_no_unit_until_one_is_stated(scale, guessed, 
 def test_a_name_states_the_unit_of_its_time(name, unit, guessed):
     made = guessed({name: TIME, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED})
     assert made.content['time'] == {'column': name, 'unit': unit}
+
+
+@pytest.mark.parametrize(
+    ('name', 'moment'),
+    [
+        ('Scope_20250714_115950.csv', dt.datetime(2025, 7, 14, 11, 59, 50)),
+        ('x 14.07.2025.csv', dt.datetime(2025, 7, 14)),
+        ('2025-07-14/log.csv', dt.datetime(2025, 7, 14)),
+    ],
+)
+def test_a_relative_time_is_dated_by_the_name(name, moment, tmp_path, write_csv):
+    path = tmp_path / name
+    path.parent.mkdir(exist_ok=True)
+    made = guess(write_csv(path, {'t_s': TIME, 'x_vel': SPEED}))
+    assert made.content['date_from'] == 'name'
+    assert 'time.epoch' not in made.content['assumed']
+    assert make_map(made.content).date_from == 'name'
+    assert f'start {moment} from the name of the' in made.text
+
+
+def test_a_name_dates_no_time_that_has_a_date(tmp_path, write_csv):
+    columns = {'Timestamp': 1.7e9 + TIME, 'x_vel': SPEED}
+    made = guess(write_csv(tmp_path / '2025-07-14.csv', columns, form='{:.12g}'))
+    assert 'date_from' not in made.content
+    assert 'date_from' not in guess(write_csv(tmp_path / 'a.csv', columns)).content
