@@ -58,8 +58,6 @@ SAID = set('advice message msg reason refusal sentence text verdict'.split())
 WORDS = re.compile(r'[a-z]+[ :,]+[a-z]+[ :,]+[a-z]+|[a-z]: $')
 # Sentences that are shortened where they are shown, and those of rcl, which has no codes.
 SHOWN = (
-    'ballscrew_monitor/recordings/tables/heads.py',
-    'ballscrew_monitor/recordings/tables/sources.py',
     'ballscrew_monitor/report/overview.py',
     'ballscrew_monitor/settings/parameters.py',
     'surrogate/datasheet.py',

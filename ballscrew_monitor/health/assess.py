@@ -65,7 +65,7 @@ DRAG, SMALLEST = 'drag change', 'smallest loss shown'
 CHANGED = (Condition.WORSE, Condition.SLIGHTLY_CHANGED)
 NEW_PROGRAMME = 0.5
 """Share of the motion at places that the baseline lacks, from which the programme changed [-]."""
-ALARM_RATE = 'about three clean years of a hundred end in a false alarm'
+ALARM_RATE = 'about two clean years of a hundred end in a false alarm'
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -24,6 +24,8 @@ from numpy.typing import NDArray
 
 MOST_TOLD = 3
 """Causes that are told together."""
+LEAST_WEIGHT = 0.05
+"""Weight of a cause that is told [-]: the others carry 95 %."""
 MISSING = {
     Missing.CLOCK: 'the clock was not set, or leapt',
     Missing.TORQUE: 'no torque was measured while the axis moved',
@@ -103,10 +105,10 @@ def explained(causes: Sequence[Any]) -> tuple[Certainty, Sequence[Any]]:
     Return how sure the cause of a change is, and the likely ones, the best first.
 
     `causes` are those of health or of its message. Causes that cannot be told apart are likely
-    together; more than three are not told.
+    together; more than three are not told. One of less than `LEAST_WEIGHT` is not likely.
 
     """
-    told = [one for one in causes if not one.excluded]
+    told = [one for one in causes if not one.excluded and one.weight >= LEAST_WEIGHT]
     if not 1 <= len(told) <= MOST_TOLD:
         return Certainty.NONE, []
     return Certainty.LIKELY if len(told) > 1 else Certainty.SURE, told

@@ -96,7 +96,7 @@ class _Count:
         if not self.bad:
             self._miss(cells, ~empties(cells), row)
         else:
-            self.bad += len(cells) - cells.null_count()
+            self.bad += int((~empties(cells)).sum())
 
     def _good(self, numbers: Array) -> None:
         self.good += len(numbers)
@@ -260,7 +260,7 @@ class Cells:
                 return commas.take(numbers, cells, self._row)
             if not self.signs.shows('.'):
                 self._look(cells, pointed)
-            if self.signs.shows('.'):
+            if self.signs.shows('.') and not self.signs.shows(','):
                 commas.pass_over(cells, self._row)
             else:
                 commas.add(cells, self._row)

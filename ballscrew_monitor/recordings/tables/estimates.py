@@ -158,10 +158,11 @@ def is_magnitude(torque: Array, speed: Array) -> bool | None:
         return False
     push = np.gradient(speed)
     good = np.isfinite(torque) & np.isfinite(speed) & np.isfinite(push) & (speed != 0.0)
-    if not good.any() and min(np.isfinite(each).sum() for each in (torque, speed)) >= MANY:
-        return None
+    known = np.isfinite(torque).sum(), (np.isfinite(speed) & (speed != 0.0)).sum()
+    if good.sum() < MANY:
+        return None if min(known) >= MANY else False
     torque, speed, push = torque[good], speed[good], push[good]
-    if len(speed) < MANY or not (speed > 0.0).any() or not (speed < 0.0).any():
+    if not (speed > 0.0).any() or not (speed < 0.0).any():
         return False
     ways, once = np.sign(speed), np.ones(len(speed))
     misses = []

@@ -58,7 +58,7 @@ UNNAMED = 'column {}'
 class Line:
     """A row of a file as a text or as cells, and its number in the file."""
 
-    text: str
+    raw: str
     row: int
     cells: tuple[str, ...] = ()
 
@@ -126,7 +126,7 @@ def unlike(names: Iterable[str]) -> tuple[str, ...]:
 def _separators(lines: Sequence[Line]) -> tuple[str, ...]:
     if lines and lines[0].cells:
         return ('',)
-    match = SEPARATED.match(lines[0].text) if lines else None
+    match = SEPARATED.match(lines[0].raw) if lines else None
     return (match['sign'],) if match and match['sign'] in SEPARATORS else SEPARATORS
 
 
@@ -134,7 +134,7 @@ def _cells(line: Line, separator: str) -> list[str]:
     """Return the cells of a line without blanks around them."""
     if line.cells:
         return [cell.strip() for cell in line.cells]
-    text = line.text.strip('\r\n')
+    text = line.raw.strip('\r\n')
     if separator == BLANKS:
         return [cell.strip('"') for cell in re.findall(r'"[^"]*"|\S+', text)]
     if '"' not in text:
@@ -166,7 +166,7 @@ class _Block:
     def __init__(self, lines: Sequence[Line], separator: str) -> None:
         self.separator = separator
         self.rows = [
-            [] if line.text.startswith(COMMENT) else _cells(line, separator) for line in lines
+            [] if line.raw.startswith(COMMENT) else _cells(line, separator) for line in lines
         ]
         kinds = [[_kind(cell) for cell in row] for row in self.rows]
         self.data = [at for at, row in enumerate(kinds) if _is_data(row)]
@@ -221,7 +221,7 @@ def _stated_head(lines: Sequence[Line], layout: Layout, blocks: Mapping[str, _Bl
             at
             for at, line in enumerate(lines)
             if line.row > layout.skip
-            and (any(line.cells) or (line.text.strip() and not line.text.startswith(COMMENT)))
+            and (any(line.cells) or (line.raw.strip() and not line.raw.startswith(COMMENT)))
         ),
         None,
     )
@@ -231,7 +231,7 @@ def _stated_head(lines: Sequence[Line], layout: Layout, blocks: Mapping[str, _Bl
     block = max(blocks.values(), key=lambda one: one.score)
     separator = block.separator
     if not block.score and not line.cells:
-        plain = re.sub('"[^"]*"', '', line.text)
+        plain = re.sub('"[^"]*"', '', line.raw)
         separator = max((',', '|', '\t', ';'), key=plain.count)
     rows = [_cells(line, separator) for line in lines[begin:end]]
     if len(rows) < layout.header_rows:
@@ -256,7 +256,7 @@ class _Above:
     def __init__(self, lines: Sequence[Line], block: _Block) -> None:
         self.block, self.separator, self.width = block, block.separator, block.width
         self.lines = list(zip(lines, block.rows, strict=False))
-        self.text = '\n'.join(line.text or '\t'.join(line.cells) for line in lines)
+        self.text = '\n'.join(line.raw or '\t'.join(line.cells) for line in lines)
         self.program = format_of(self.text)
         self.wide = [
             (line, row)
@@ -360,10 +360,10 @@ class _Above:
     def _comment(self) -> list[str]:
         """Return the names in the last remark that has as many as there are columns."""
         for line, _ in reversed(self.lines):
-            text = line.text.strip()
+            text = line.raw.strip()
             mark = next((mark for mark in COMMENTS if text.startswith(mark)), '')
             if mark:
-                row = _cells(Line(text=text.removeprefix(mark).strip(), row=0), self.separator)
+                row = _cells(Line(raw=text.removeprefix(mark).strip(), row=0), self.separator)
                 if len(row) == self.width > 1 and not _is_of_numbers(row):
                     return row
         return []
@@ -388,7 +388,7 @@ class _Above:
 
     def _below_each_other(self) -> list[str]:
         """Return the names of a column each in as many lines as there are columns."""
-        lines = [line.text.strip() for line, _ in self.lines if line.text.strip()]
+        lines = [line.raw.strip() for line, _ in self.lines if line.raw.strip()]
         begin = max(len(lines) - self.width, 0)
         last = lines[begin:]
         if self.width < 2 or len(last) < self.width:
@@ -433,14 +433,14 @@ class _Above:
             stated = properties['rate']
             return period_of(stated.text, 'Hz'), stated.row
         for line, _ in self.lines:
-            if match := REMARK.search(line.text):
+            if match := REMARK.search(line.raw):
                 return period_of(match['number'], match['unit']), line.row
         return math.nan, 0
 
 
 def _key_and_value(line: Line, separator: str) -> tuple[str, str]:
     """Return key and value of a line such as `key: value`, empty for any other."""
-    text = line.text.strip().lstrip('#%/*; \t').strip() or ' '
+    text = line.raw.strip().lstrip('#%/*; \t').strip() or ' '
     cells = [cell for cell in line.cells if cell]
     if line.cells:
         return (cells[0].rstrip(':='), cells[1]) if len(cells) > 1 else ('', '')

@@ -182,7 +182,7 @@ def _sheet(path: Path, layout: Layout | None) -> Source:
     _check_columns(path, cells.width)
     rows = cells.head(LINES).iter_rows()
     lines = [
-        Line(text='', row=number + 1, cells=tuple(cell or '' for cell in row))
+        Line(raw='', row=number + 1, cells=tuple(cell or '' for cell in row))
         for number, row in enumerate(rows)
     ]
     with _findable(path):
@@ -262,7 +262,7 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     with text.stream() as stream:
         plain, comments = _look_at_lines(path, stream, text.line_end.encode())
     lines, begins = _first_lines(text)
-    widest = max((line.text.count(sign) for line in lines for sign in ';\t|,'), default=0)
+    widest = max((line.raw.count(sign) for line in lines for sign in ';\t|,'), default=0)
     _check_columns(path, widest + 1)
     with _findable(path):
         head = heads.find_head(lines, layout)
@@ -305,7 +305,7 @@ def _first_lines(text: _Text) -> tuple[list[Line], list[int]]:
             number += 1
             while line.count('"') % 2 and at <= limits.MEGA and (more := next(stream, '')):
                 line, at, number = line + more, at + len(more), number + 1
-            lines.append(Line(text=_decoded(line), row=row))
+            lines.append(Line(raw=_decoded(line), row=row))
             begins.append(begin)
             if len(lines) >= LINES or at > limits.MEGA:
                 break

@@ -46,13 +46,25 @@ def plain(texts):
     return made[max(good, key=good.__getitem__)]
 
 
-@given(
-    strategies.lists(strategies.sampled_from(list(READ)), min_size=1, max_size=12),
-    strategies.integers(1, 12),
-)
+NUMBERS = [text for text, read in READ.items() if not read.keys() - {'point', 'comma'}]
+BOTH = strategies.sampled_from(NUMBERS), strategies.sampled_from(list(READ))
+LISTS = [strategies.lists(cells, min_size=1, max_size=12) for cells in BOTH]
+
+
+@given(LISTS[0], strategies.integers(1, 12))
 @example(['1.5', '2,5', '2,5'], 1)
-def test_cells_are_read_in_the_form_of_most(texts, block):
-    cells, block = Cells(Path('log'), 'a'), max(block, 9)
+@example(['1.5', '2,5', '2,5', '2,5', ' 12 '], 1)
+def test_numbers_are_read_with_the_sign_of_most_part_by_part(texts, block):
+    check_column(texts, block)
+
+
+@given(LISTS[1])
+def test_cells_are_read_in_the_form_of_most(texts):
+    check_column(texts, len(texts))
+
+
+def check_column(texts, block):
+    cells = Cells(Path('log'), 'a')
     column = pl.Series(texts, dtype=pl.String)
     for begin in range(0, len(texts), block):
         cells.add(column.slice(begin, block))
@@ -66,4 +78,4 @@ def test_cells_are_read_in_the_form_of_most(texts, block):
     np.testing.assert_allclose(reading.numbers(column), wanted, rtol=0, atol=1e-6)
     np.testing.assert_allclose(reading.extremes, [np.nanmin(wanted), np.nanmax(wanted)], atol=1e-6)
     missing = int(np.isnan(wanted).sum()) - texts.count(None)
-    assert bool(reading.note) == bool(missing)
+    assert (f'holds {missing} cells without a number' in reading.note) == bool(missing)

@@ -31,7 +31,7 @@ from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import gathering_of
 from ballscrew_msgs.msg import InputHealth
 from geometry_msgs.msg import WrenchStamped
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mcap.reader import make_reader, NonSeekingReader, SeekingReader
 from mcap_ros2.decoder import DecoderFactory
@@ -344,6 +344,41 @@ def test_a_bag_holds_each_row_to_the_last_bit_for_every_reader(first, others):
     for (schema, *_), (_, content) in zip(found, expected):
         message = deserialize_message(content, message_class(schema.name))
         assert serialized(message) == content
+
+
+@given(rows=st.lists(st.tuples(*[st.none() | FINITE] * 3), min_size=3, max_size=20))
+@settings(max_examples=25)
+def test_an_empty_cell_is_no_sample(rows):
+    """A bag holds the cells that are filled, at their times and in their order, and no others."""
+    filled = {'v': [float(at) for at in range(len(rows))], **dict(zip('FTM', zip(*rows)))}
+    assume(all(any(one is not None for one in filled[name]) for name in 'FTM'))
+    table = {'t': list(range(len(rows))), **{name: list(each) for name, each in filled.items()}}
+    axis = {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'rad/s'}}
+    for kind, unit, name in (('load', 'N', 'F'), ('temperature', 'degC', 'T')):
+        axis[kind] = {'column': name, 'unit': unit}
+    axis['torque'] = {'column': 'M', 'unit': 'N m', 'magnitude': False}
+    time = {'column': 't', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'}
+    with tempfile.TemporaryDirectory() as folder:
+        log = Path(folder) / 'log.csv'
+        pl.DataFrame(table, schema=dict.fromkeys(table, pl.Float64)).write_csv(log)
+        convert(log, make_map({'time': time, 'axes': {'x': axis}}), log.parent)
+        (file,) = Bag(log.parent).files
+        data = file.read_bytes()
+    found = {name: [] for name in 'vFTM'}
+    for schema, _, record in NonSeekingReader(io.BytesIO(data)).iter_messages():
+        message = deserialize_message(record.data, message_class(schema.name))
+        second = (record.log_time - BEGIN) // SECOND
+        if schema.name.endswith('WrenchStamped'):
+            found['F'].append((second, message.wrench.force.x))
+        elif schema.name.endswith('Temperature'):
+            found['T'].append((second, message.temperature))
+        else:
+            for name, values in (('v', message.velocity), ('M', message.effort)):
+                found[name] += [(second, one) for one in values if math.isfinite(one)]
+    for name, each in filled.items():
+        wanted = [(at, one) for at, one in enumerate(each) if one is not None]
+        assert [at for at, _ in found[name]] == [at for at, _ in wanted], name
+        assert [one for _, one in found[name]] == pytest.approx([one for _, one in wanted])
 
 
 def messages_of(stamp, speed, force, warmth, torque):

@@ -9,7 +9,7 @@ import pytest
 
 
 def head_of(text, layout=None):
-    lines = [Line(text=line, row=number + 1) for number, line in enumerate(text.split('\n'))]
+    lines = [Line(raw=line, row=number + 1) for number, line in enumerate(text.split('\n'))]
     return find_head(lines, layout)
 
 

@@ -28,7 +28,7 @@ from surrogate.surface import Found
 TIME = {'column': 't', 'unit': 'ms', 'epoch': '2000-01-01T00:00:00Z'}
 BEGIN = 946_684_800 * SECOND  # [ns]
 LOAD = {'column': 'F', 'unit': 'N'}
-TORQUE = {'column': 'M', 'unit': 'N m'}
+TORQUE = {'column': 'M', 'unit': 'N m', 'magnitude': False}
 WARM = {'column': 'T', 'unit': 'degC'}
 SPEED = {'column': 'v', 'unit': 'mm/s'}
 CURRENT = {'torque_constant_Nm_per_A': 0.2, 'efficiency': 0.9, 'load': {'from': 'current'}}
@@ -37,7 +37,11 @@ MAPS = [
     {'x': {'speed': SPEED, 'position': {'column': 'p', 'unit': 'mm'}, 'torque': TORQUE}},
     {
         'x': {'position': {'column': 'p', 'unit': 'mm'}, 'load': LOAD, 'temperature': WARM},
-        'y': {'speed': SPEED, 'current': {'column': 'M', 'unit': 'A'}, **CURRENT},
+        'y': {
+            'speed': SPEED,
+            'current': {'column': 'M', 'unit': 'A', 'magnitude': False},
+            **CURRENT,
+        },
     },
     {
         'x': {
