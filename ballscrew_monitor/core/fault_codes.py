@@ -298,6 +298,12 @@ class Fault(Worded):
         'the node uses up one processor',
         'lower the rate of the inputs, raise publish_period, or give some axes a second node',
     )
+    CLOCK_SET = (
+        702,
+        'the clock of the node was set, forward or back',
+        'nothing if somebody meant it: no duration holds the step; otherwise let NTP or PTP hold '
+        'the clock',
+    )
 
 
 _CAUSES = {Code.RCS_HIGH: Fault.RCS_HIGH, Code.EFFICIENCY_LOW: Fault.EFFICIENCY_LOW}

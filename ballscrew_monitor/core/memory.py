@@ -18,7 +18,7 @@ class AxisRecord:
     What outlives the monitor of an axis, a row of the database.
 
     The suffixes are the units; times in [ns] so that none is rounded. An active event carries the
-    last stamp seen of it; NaN is not known.
+    last stamp seen of it; NaN is not known. `left_ns` of a shelving is left.
 
     """
 
@@ -44,7 +44,7 @@ class AxisRecord:
     ending: str = EventEnd.UNKNOWN.name
     ended_by: str = ''
     end_reason: str = ''
-    until_ns: int = 0
+    left_ns: int = 0
     reason: str = ''
 
 

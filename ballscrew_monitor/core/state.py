@@ -187,7 +187,12 @@ TIMES = tuple(name for name in Totals.__dataclass_fields__ if name.endswith('_ti
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Shelving:
-    """Until when [ns] a warning is shelved, and why; `until` 0: it is not."""
+    """
+    Until when [ns] a warning is shelved, and why; `until` 0: it is not.
+
+    Below 0 it is the time that is left, with its sign changed, while the clock stands at zero.
+
+    """
 
     until: int = 0
     reason: str = ''
@@ -195,6 +200,14 @@ class Shelving:
     def at(self, now: int) -> 'Shelving':
         """Return what of it holds at `now` [ns]: nothing if it is over or ends too far ahead."""
         return self if 0 < self.until - now <= LONGEST_SHELVING else NOT_SHELVED
+
+    def left(self, now: int) -> int:
+        """Return for how long [ns] it still holds at `now` [ns]."""
+        return max(self.until - now, 0) if self.until > 0 else -self.until
+
+    def started(self, now: int) -> 'Shelving':
+        """Return it with its end on a clock that shows `now` [ns], if that has not begun yet."""
+        return dataclasses.replace(self, until=now - self.until) if self.until < 0 < now else self
 
     def is_over(self, now: int) -> bool:
         """Tell whether it has ended at `now` [ns]; not by a clock that is behind or at zero."""

@@ -13,7 +13,7 @@ from typing import Any
 
 from ballscrew_monitor.core.advice import interpreted, Nearest
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source, StampSource
+from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source
 from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.core.memory import AxisRecord
 from ballscrew_monitor.core.state import (
@@ -27,12 +27,20 @@ from ballscrew_monitor.core.state import (
     Totals,
 )
 from ballscrew_monitor.judge import views
-from ballscrew_monitor.judge.inputs import least_lag, SPEED
 from ballscrew_monitor.judge.point import set_answer, set_point
 from ballscrew_monitor.judge.records import Event as EventRecord
-from ballscrew_monitor.judge.records import Memory, NOT_KNOWN, REFUSAL, Row, SAMPLE, Settings, TICK
+from ballscrew_monitor.judge.records import (
+    Memory,
+    NOT_KNOWN,
+    REFUSAL,
+    Row,
+    SAMPLE,
+    Settings,
+    STEP,
+    TICK,
+)
 from ballscrew_monitor.judge.slopes import SlopeRing
-from ballscrew_monitor.judge.step import leave_out, NOTHING, STATE, step
+from ballscrew_monitor.judge.step import NOTHING, STATE, step
 from ballscrew_monitor.judge.zone import ACTIVE, end_excursion
 from surrogate.surface import Surface
 
@@ -124,7 +132,7 @@ class Monitor:
         self._row = Row()
         self.row: Row | None = None  # of the last event, until the next; None if it gave none
         self._told = Event()
-        self.moved = 0  # by how much the last step has moved the begin of an excursion [ns]
+        self.moved = 0  # by how much the last sample has moved the begin of an excursion [ns]
 
     @property
     def settings(self) -> MonitorSettings:
@@ -153,34 +161,26 @@ class Monitor:
         self._event.kind, self._event.stamp = TICK, within(now)
         return self._step()
 
+    def set_clock(self, due: int, now: int) -> None:
+        """Take that the clock of the node was set: it shows `now` and was to show `due` [ns]."""
+        self._event.kind, self._event.stamp, self._event.arrival = STEP, within(due), within(now)
+        self._step()
+
     def _step(self) -> Row | None:
         number, start = self.memory.event_number, self.memory.event_start[ACTIVE]
-        active = self.memory.event_active
+        # Of a step of the node's clock its own event tells.
+        leaps = self.memory.event_active and self._event.kind != STEP
+        leaps = leaps and not self.memory.clock_step
         slopes = self.speeds, self.positions
         found = step(self._tables, self.numbers, self.memory, *slopes, self._event, self._row)
         if self.memory.event_number != number:
             self.ending = NOT_ENDED
-        self.moved = self.memory.event_start[ACTIVE] - start if active else 0
+        self.moved = self.memory.event_start[ACTIVE] - start if leaps else 0
         self.row = None if found == NOTHING else self._row
         if found != STATE:
             return None
         row, self._row = self._row, Row()
         return row
-
-    def leave_out(self, step: int, sample: InputSample) -> bool:
-        """
-        Leave a step [ns] of the node's clock forward out of an excursion; return True if it was.
-
-        It is if the stamps follow that clock, as the first `sample` of the speed after it shows.
-
-        """
-        memory = self.memory
-        if sample.stamp_source is StampSource.HEADER and memory.lags_taken[SPEED]:
-            lag = within(sample.arrival) - within(sample.stamp)
-            if 2 * (lag - least_lag(memory, SPEED)) > step:
-                return False
-        leave_out(memory, step)
-        return True
 
     @property
     def level(self) -> Level:
@@ -211,13 +211,19 @@ class Monitor:
         self.memory.shelved_until = shelving.until
         self.shelve_reason = shelving.reason
 
-    @property
-    def kept(self) -> AxisRecord:
-        """Return what is to be kept over a restart."""
-        return views.kept_of(self.memory, self.event, self._settings.axis, self.shelve_reason)
+    def kept(self, now: int) -> AxisRecord:
+        """Return what is to be kept over a restart at `now` [ns] of the clock of the node."""
+        axis = self._settings.axis
+        return views.kept_of(self.memory, self.event, axis, self.shelving, within(now))
 
-    def take_up(self, kept: AxisRecord) -> None:
-        """Go on with what was kept; what has been added up meanwhile counts too."""
+    def take_up(self, kept: AxisRecord, now: int) -> None:
+        """
+        Go on with what was kept, at `now` [ns] of the clock of the node.
+
+        What has been added up meanwhile counts too. A shelving goes on with the time that was
+        left of it, and waits for a clock that stands at zero.
+
+        """
         memory = self.memory
         views.add_totals(memory, kept)
         if memory.event_number:
@@ -225,7 +231,8 @@ class Monitor:
         else:
             self.ending = views.take_up_event(memory, kept)
         if not memory.shelved_until:
-            self.shelving = Shelving(until=kept.until_ns, reason=kept.reason)
+            left = Shelving(until=-kept.left_ns, reason=kept.reason)
+            self.shelving = left.started(within(now))
 
     def acknowledge(self, now: int, ending: Ending = NAMELESS) -> Event | None:
         """

@@ -6,8 +6,9 @@ The judgement of one axis, event by event: the only place that judges.
 A speed sample is judged when it arrives, with the last sample of every other input: no delay is
 added. Ticks lie on a fixed grid of stamps and give a row only while the speed is missing or
 stale. There is no clock in here, so the same list of events gives the same list of rows, bit for
-bit, interpreted as well as compiled. The arguments are as in `point`; `positions` is the slope of
-the positions.
+bit, interpreted as well as compiled. A step of the clock of the node is an event: it moves all
+times that have begun, so it is no part of any duration. The arguments are as in `point`;
+`positions` is the slope of the positions.
 
 """
 
@@ -31,9 +32,10 @@ from ballscrew_monitor.judge.inputs import (
     take_refusal,
 )
 from ballscrew_monitor.judge.point import NO_DIRECTION, opposing_load, set_answer, set_point
-from ballscrew_monitor.judge.records import INPUTS, REFUSAL, TICK
+from ballscrew_monitor.judge.records import INPUTS, RATE_SAMPLES, REFUSAL, STEP, TICK, WHYS
 from ballscrew_monitor.judge.slopes import (
     slope_last,
+    slope_move,
     slope_of,
     slope_restart,
     slope_shift,
@@ -47,6 +49,7 @@ from ballscrew_monitor.judge.zone import (
     follow_excursion,
     hold_level,
     is_judged,
+    PENDING,
     set_reason,
     set_zone,
     shut_gates,
@@ -67,6 +70,9 @@ def step(
     tables: Any, settings: Any, memory: Any, speeds: Any, positions: Any, event: Any, row: Any
 ) -> int:
     """Take one event; return NOTHING, or that `row` is a ROW or the row of a STATE."""
+    if event.kind == STEP:
+        _set_clock(memory, speeds, positions, event.arrival - event.stamp)
+        return NOTHING
     if event.kind == TICK:
         if not _is_tick_due(settings, memory, event.stamp):
             return NOTHING
@@ -76,7 +82,7 @@ def step(
             # The time line of the stamps, which a tick must not leave.
             row.stamp -= least_lag(memory, SPEED)
     else:
-        if not _take(settings, memory, positions, event):
+        if not _take(settings, memory, speeds, positions, event):
             return NOTHING
         if settings.derives and settings.inertia != 0.0:
             window, gap = settings.acceleration_window, settings.timeout[SPEED]
@@ -122,7 +128,7 @@ def step_many(
     return len(events), made, told
 
 
-def _take(settings: Any, memory: Any, positions: Any, event: Any) -> bool:
+def _take(settings: Any, memory: Any, speeds: Any, positions: Any, event: Any) -> bool:
     """Take a sample or a refusal; tell whether it is a speed to judge."""
     source = event.source
     lose(memory, source, event.lost, event.arrival)
@@ -131,6 +137,8 @@ def _take(settings: Any, memory: Any, positions: Any, event: Any) -> bool:
         return False
     if not _is_usable(settings, memory, event):
         return False
+    if source == SPEED:
+        _follow_clock(memory, speeds, positions, event)
     if memory.known[source] != 0 and event.stamp < memory.sample_stamp[source]:
         if memory.sample_stamp[source] - event.stamp <= BACKWARD_JUMP:
             drop(memory, source)
@@ -145,6 +153,67 @@ def _take(settings: Any, memory: Any, positions: Any, event: Any) -> bool:
         return _take_position(settings, memory, positions, event)
     _accept_speed(settings, memory, event, event.value)
     return True
+
+
+def _set_clock(memory: Any, speeds: Any, positions: Any, step: int) -> None:
+    """
+    Take a step [ns] of the clock of the node: all is as old as before.
+
+    Arrivals are times of that clock. Whether the stamps follow it, the next speed sample shows.
+
+    """
+    memory.clock_step += step
+    memory.last_tick += step
+    for source in range(INPUTS):
+        memory.arrival[source] += step
+        memory.lost_last[source] += step
+        memory.span_begin[source] += step
+        if source != SPEED:
+            _move_stamps(memory, source, step)
+    for place in range(INPUTS * WHYS):
+        memory.refused_last[place] += step
+    if memory.shelved_until > 0:
+        memory.shelved_until = max(1, memory.shelved_until + step)
+    _move(memory, speeds, positions, step)
+
+
+def _follow_clock(memory: Any, speeds: Any, positions: Any, event: Any) -> None:
+    """
+    Undo a step of the node's clock that the stamps of the speed, as a sample shows, do not follow.
+
+    They lag by that step more then.
+
+    """
+    step, memory.clock_step = memory.clock_step, 0
+    if step == 0 or event.stamp_source != HEADER or memory.lags_taken[SPEED] == 0:
+        return
+    change = event.arrival - event.stamp - least_lag(memory, SPEED)
+    if abs(change - step) < abs(change):
+        _move(memory, speeds, positions, -step)
+        for place in range(SPEED * RATE_SAMPLES, (SPEED + 1) * RATE_SAMPLES):
+            memory.lags[place] += step
+
+
+def _move(memory: Any, speeds: Any, positions: Any, step: int) -> None:
+    """Move the times that have begun by a `step` [ns], so that they have lasted as long."""
+    _move_times(memory, step)
+    memory.raising_start += step
+    memory.raising_last += step
+    memory.clearing_start += step
+    memory.clearing_last += step
+    memory.event_start[PENDING] += step
+    memory.stamp += step
+    memory.last_published += step
+    memory.moment_stamp += step
+    _move_stamps(memory, SPEED, step)
+    slope_move(speeds, step)
+    slope_move(positions, step)
+
+
+def _move_stamps(memory: Any, source: int, step: int) -> None:
+    memory.sample_stamp[source] += step
+    for place in range(source * RATE_SAMPLES, (source + 1) * RATE_SAMPLES):
+        memory.stamps[place] += step
 
 
 def _leap(memory: Any, event: Any) -> int:
@@ -167,15 +236,15 @@ def _accept_speed(settings: Any, memory: Any, event: Any, speed: float) -> None:
     """Take a good speed [rad/s]; a leap of its stamp is no time that has passed."""
     leap = _leap(memory, event)
     if leap > 0:
-        leave_out(memory, leap)
+        _leave_out(memory, leap)
     accept(memory, settings, event, speed)
 
 
-def leave_out(memory: Any, step: int) -> None:
-    """Leave a `step` [ns] of the clock forward out of what has begun and still goes on."""
+def _leave_out(memory: Any, leap: int) -> None:
+    """Leave a leap forward of the stamps [ns] out of what has begun and still goes on."""
     if memory.event_active:
-        memory.event_start[ACTIVE] += step
-        memory.event_stamp += step
+        memory.event_start[ACTIVE] += leap
+        memory.event_stamp += leap
     memory.raising = memory.clearing = memory.moment = False
 
 
@@ -319,6 +388,7 @@ def _jump_back(memory: Any, stamp: int) -> None:
     """
     if memory.known[SPEED] != 0:
         _move_times(memory, stamp - memory.sample_stamp[SPEED])
+        memory.raising = memory.clearing = False
     memory.stamp = stamp
     memory.moment = memory.pending = memory.published = False
     memory.direction, memory.light = NO_DIRECTION, False
@@ -330,7 +400,6 @@ def _jump_back(memory: Any, stamp: int) -> None:
 def _move_times(memory: Any, shift: int) -> None:
     """Move the times that have begun by `shift` [ns] with the clock."""
     memory.level_since = max(0, memory.level_since + shift)
-    memory.raising = memory.clearing = False
     if memory.event_active:
         memory.event_start[ACTIVE] = max(0, memory.event_start[ACTIVE] + shift)
         memory.event_stamp = max(0, memory.event_stamp + shift)

@@ -17,6 +17,7 @@ from ballscrew_monitor.core.state import (
     Event,
     MonitorSettings,
     NOT_ENDED,
+    Shelving,
     TIMES,
     Totals,
 )
@@ -77,8 +78,13 @@ def event_of(
     )
 
 
-def kept_of(memory: Any, event: Event, axis: str, shelve_reason: str) -> AxisRecord:
-    """Return what is to be kept of an axis over a restart; its `event` is that of the memory."""
+def kept_of(memory: Any, event: Event, axis: str, shelving: Shelving, now: int) -> AxisRecord:
+    """
+    Return what is to be kept of an axis over a restart at `now` [ns] of the clock of the node.
+
+    `event` and `shelving` are those of the memory.
+
+    """
     totals = totals_of(memory)
     return AxisRecord(
         axis=axis,
@@ -96,8 +102,8 @@ def kept_of(memory: Any, event: Event, axis: str, shelve_reason: str) -> AxisRec
         ending=event.ending.kind.name,
         ended_by=event.ending.name,
         end_reason=event.ending.reason,
-        until_ns=int(memory.shelved_until),
-        reason=shelve_reason if memory.shelved_until else '',
+        left_ns=shelving.left(now),
+        reason=shelving.reason,
     )
 
 

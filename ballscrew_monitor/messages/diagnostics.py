@@ -12,7 +12,7 @@ publishing; numbers are values, with the unit in brackets.
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from ballscrew_monitor.core.conversions import celsius, clock_text, SECOND
+from ballscrew_monitor.core.conversions import celsius, clock_text, SECOND, seconds
 from ballscrew_monitor.core.fault_codes import cause_code, Fault
 from ballscrew_monitor.core.inputs import InputSample, InputState, InputStatus, Refusal, Source
 from ballscrew_monitor.core.judgement import (
@@ -46,6 +46,7 @@ BUSY = (
     'the node uses up one processor, messages may be lost: lower their rate, raise '
     'publish_period, or give some axes a node of their own'
 )
+CLOCK_SET = 'the clock of the node was set {}; no duration holds the step'
 PARTS = ('Lubrication', 'Inputs', 'Surface')
 LONGEST_CODE = 10  # characters of a code; more are none
 Inputs = tuple[InputStatus, ...]
@@ -122,14 +123,24 @@ def recording(node: str, problem: str) -> DiagnosticStatus:
     return _of_node(node, 'Recording', problem, RECORDED, Fault.NOT_RECORDED)
 
 
-def of_node(node: str, signs: VitalSigns) -> DiagnosticStatus:
-    """Return the status of the `node` itself, by full name."""
-    status = _of_node(node, 'Node', BUSY if signs.is_busy else '', IN_TIME, Fault.BUSY)
+def of_node(node: str, signs: VitalSigns, step: int = 0) -> DiagnosticStatus:
+    """
+    Return the status of the `node` itself, by full name.
+
+    `step` [ns] is by how much its clock was set not long ago, 0: it was not.
+
+    """
+    problem, code = BUSY if signs.is_busy else '', Fault.BUSY
+    if step:
+        text = CLOCK_SET.format('forward' if step > 0 else 'back')
+        problem, code = f'{text}; {problem}' if problem else text, Fault.CLOCK_SET
+    status = _of_node(node, 'Node', problem, IN_TIME, code)
     status.values += key_values(
         [
             ('Loop time [s]', signs.loop_time),
             ('Queue depth [-]', signs.queue_depth),
             ('Processor share [-]', signs.processor_share),
+            *([('Clock step [s]', seconds(step))] if step else []),
         ]
     )
     return status

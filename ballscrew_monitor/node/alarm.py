@@ -138,15 +138,20 @@ class Alarm:
         self.remember()
 
     def end_shelving(self) -> bool:
-        """End the shelving if its time is over; tell whether it was."""
-        over = self._axis.monitor.shelving.is_over(self._now)
+        """End the shelving if its time is over, or begin it; return True if it has changed."""
+        monitor, now = self._axis.monitor, self._now
+        begun = monitor.shelving.started(now)
+        if begun != monitor.shelving:
+            monitor.shelving = begun
+            return True
+        over = begun.is_over(now)
         if over:
             self.shelve(NOT_SHELVED)
         return over
 
     def remember(self) -> None:
         """Keep the sums, the event and the shelving."""
-        self._kept.remember(self._axis.monitor.kept)
+        self._kept.remember(self._axis.monitor.kept(self._now))
 
     @property
     def _now(self) -> int:
@@ -154,11 +159,12 @@ class Alarm:
 
     def _note_event(self, kind: Kind, **facts: Any) -> None:
         monitor = self._axis.monitor
-        said = event_facts(monitor.kept, advice_text(monitor.event, self.health))
+        record = monitor.kept(self._now)
+        said = event_facts(record, advice_text(monitor.event, self.health))
         self._note(kind, stamp=monitor.event.stamp, **said, **facts)
 
     def _note(self, kind: Kind, **facts: Any) -> None:
-        self._kept.note(kind, self._axis.name, record=self._axis.monitor.kept, **facts)
+        self._kept.note(kind, self._axis.name, record=self._axis.monitor.kept(self._now), **facts)
 
     # Two functions: rclpy ties one severity to one place in the code.
     def _say(self, text: str) -> None:

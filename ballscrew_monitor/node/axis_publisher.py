@@ -132,11 +132,11 @@ class AxisPublisher:
         self._show_shelving()
 
     def end_shelving(self) -> bool:
-        """End a shelving that is over; tell whether one was."""
-        over = self.alarm.end_shelving()
-        if over:
+        """End a shelving that is over, or begin one; return True if one has changed."""
+        changed = self.alarm.end_shelving()
+        if changed:
             self._show_shelving()
-        return over
+        return changed
 
     def _show_shelving(self) -> None:
         if self._last is not None:

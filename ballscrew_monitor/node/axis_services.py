@@ -38,6 +38,7 @@ class AxisServices:
         failed: Mapping[str, str],
         why_unknown: Callable[[str], str],
         changed: Callable[[Publishers, str], str],
+        catch_up: Callable[[], None],
     ) -> None:
         """
         Make the services.
@@ -45,12 +46,12 @@ class AxisServices:
         `publishers` are those of now, none while the node is unconfigured; `failed` says why other
         axes have none, `why_unknown` why there is none of a name. `changed` takes the publishers
         that a service has changed, and its name; it keeps them and returns why that failed, or
-        nothing.
+        nothing. `catch_up` takes what waits before each of them, a step of the clock among it.
 
         """
         self._node, self._values = node, values
         self._publishers, self._failed = publishers, failed
-        self._why_unknown, self._changed = why_unknown, changed
+        self._why_unknown, self._changed, self._catch_up = why_unknown, changed, catch_up
         acts: dict[str, Act] = {
             'reload_surface': self._reload,
             'reset_totals': self._reset,
@@ -69,6 +70,7 @@ class AxisServices:
         self._node.create_service(Trigger, name, functools.partial(self._serve, act, axes))
 
     def _serve(self, act: Act, axes: list[str], request: Any, response: Any) -> Any:
+        self._catch_up()
         publishers = {name: one for name, one in self._publishers.items() if name in axes}
         failed = [not_built(name, why) for name, why in self._failed.items() if name in axes]
         if not publishers:
@@ -122,6 +124,7 @@ class AxisServices:
         self, act: Callable[[Publishers, Any, Any], None], request: Any, response: Any
     ) -> Any:
         """Act on the axis that a request names, or on all; answer an InputError by its text."""
+        self._catch_up()
         publishers = self._publishers
         axes = [request.axis] if request.axis else list(publishers)
         unknown = [axis for axis in axes if axis not in publishers]

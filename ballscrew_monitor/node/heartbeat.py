@@ -8,6 +8,7 @@ of the node hangs. Deadline and lease are longer than a service waits for the di
 
 """
 
+import math
 import time
 
 from ballscrew_monitor.core.vitals import Vitals
@@ -21,6 +22,7 @@ from rclpy.qos import QoSLivelinessPolicy, QoSProfile
 from std_msgs.msg import UInt64
 
 BEAT = 1.0  # [s]
+STEP_SHOWN = 10.0  # [s]
 PROMISE = Duration(seconds=5.0)  # within which a beat comes
 BEAT_QOS = QoSProfile(
     depth=1,
@@ -38,6 +40,7 @@ class Heartbeat:
         self.vitals = Vitals()
         self._node = node
         self._beat = UInt64()
+        self._step, self._step_at = 0, -math.inf  # of the clock [ns], and when [s]
         quiet = PublisherEventCallbacks(use_default_callbacks=False)
         self._publisher = node.create_publisher(
             UInt64, '~/heartbeat', BEAT_QOS, event_callbacks=quiet
@@ -46,8 +49,14 @@ class Heartbeat:
 
     def statuses(self) -> list[DiagnosticStatus]:
         """Return the diagnostics of the node itself."""
-        signs = self.vitals.look(time.monotonic(), time.process_time())
-        return [diagnostics.of_node(self._node.get_fully_qualified_name(), signs)]
+        now = time.monotonic()
+        signs = self.vitals.look(now, time.process_time())
+        step = self._step if now - self._step_at < STEP_SHOWN else 0
+        return [diagnostics.of_node(self._node.get_fully_qualified_name(), signs, step)]
+
+    def set_clock(self, step: int) -> None:
+        """Let the diagnostics say for a while that the clock was set by a `step` [ns]."""
+        self._step, self._step_at = step, time.monotonic()
 
     def _publish(self) -> None:
         self._beat.data += 1

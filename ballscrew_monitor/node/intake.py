@@ -75,22 +75,21 @@ class Intake(Waitable):
         guard: Callable[..., Any] = _call,
         worked: Callable[[float, int], None] = _forget,
         stepped: Callable[[int, int], None] = _forget,
-        left_out: Callable[[Axis, int], None] = _forget,
+        steps: ClockSteps | None = None,
     ) -> None:
         """
         Subscribe once to each topic, however many inputs read it; `recorder` gets all.
 
         `guard` calls what reads for an axis, and returns None if the program fails in it; `worked`
         takes for how long [s] messages were at work, and how many. `stepped` takes by how much
-        [ns] the clock was set, and the time of that; `left_out` of which axis it was left out.
+        [ns] the clock was set, and the time of that; `steps` know the clock of the system from
+        before.
 
         """
         super().__init__(node.default_callback_group)
         self._node, self._take, self._recorder, self._guard = node, take, recorder, guard
         self._worked, self._apart = worked, Apart()
-        self._stepped, self._left_out = stepped, left_out
-        self._system_steps = ClockSteps()
-        self._clock_steps: dict[str, int] = {}  # [ns] by axis, since its last speed sample
+        self._stepped, self._system_steps = stepped, steps or ClockSteps()
         self._simulated = 0  # the last `/clock` [ns]
         self._steps: deque[int] = deque(maxlen=STEPS)  # of `/clock` [ns]
         self._reading = READING
@@ -290,19 +289,13 @@ class Intake(Waitable):
 
     def _hand_over(self, heard: list[Heard], step: int) -> None:
         """
-        Hand over what was heard as one turn, and begin the next one; note a step after it.
+        Hand over what was heard as one turn, and after it a step of the clock.
 
-        Steps of the clock are left out of what has begun, where the speed has come again.
+        The next turn begins then.
 
         """
         if heard:
             turn = ordered([event for one in heard for event in self._judged(one)])
-            for axis, event in turn if self._clock_steps else ():
-                if isinstance(event, InputSample) and event.source is Source.SPEED:
-                    leap = self._clock_steps.pop(axis.name, 0)
-                    # Back: the stamps alone tell the judgement.
-                    if leap > 0 and axis.monitor.leave_out(leap, event):
-                        self._left_out(axis, leap)
             self._recorder.hear(heard)
             self._recorder.take(turn, heard[-1][1], time.monotonic_ns())
             self._recorder.flush()  # whatever becomes of the node with these events
@@ -311,9 +304,11 @@ class Intake(Waitable):
             self._recorder.flush()
             heard.clear()
         if step:
+            now = self.now
+            self._recorder.set_clock(now - step, now, time.monotonic_ns())
             for axis in self._axes:
-                self._clock_steps[axis.name] = self._clock_steps.get(axis.name, 0) + step
-            self._stepped(step, self.now)
+                self._guard(axis, 'a step of the clock', axis.monitor.set_clock, now - step, now)
+            self._stepped(step, now)
 
     def _show(self, shown: Any) -> int:
         """Take a time of `/clock`; return by how much it leaps [ns], 0 if it goes on as before."""

@@ -30,7 +30,7 @@ class KeptAxis(Protocol):
         """Take up corrections of before; return what became of them, if there are any."""
 
     def end_shelving(self) -> bool:
-        """End a shelving that is over; return True if one was."""
+        """End a shelving that is over, or begin one; return True if one has changed."""
 
 
 class KeptAxes:
@@ -44,11 +44,17 @@ class KeptAxes:
         say: Callable[[list[str]], None],
         *,
         clock: Clock,
+        catch_up: Callable[[], None],
     ) -> None:
-        """Keep it in a `state`, with a look now and then on a steady `clock`."""
+        """
+        Keep it in a `state`, with a look now and then on a steady `clock`.
+
+        `catch_up` takes what waits before that, lest a step of the clock end a shelving.
+
+        """
         self.state = state
         self._node, self._publishers, self._say = node, publishers, say
-        self._looks, self._said = 0, ''
+        self._catch_up, self._looks, self._said = catch_up, 0, ''
         node.create_timer(LOOK, self._look, clock=clock)
         self.note(Kind.NODE_START)
         state.start()
@@ -72,7 +78,7 @@ class KeptAxes:
         if self.state.folder is None:
             return
         if stamp is None:
-            stamp = self._node.get_clock().now().nanoseconds
+            stamp = self._now
         self.state.keep(record, entry_of(kind, axis, stamp, facts))
 
     def remember(self, record: AxisRecord) -> None:
@@ -103,12 +109,12 @@ class KeptAxes:
         if record is not before:
             facts = event_facts(record)
             self.note(Kind.EVENT_END, axis.name, stamp=record.stamp_ns, record=record, **facts)
-        axis.monitor.take_up(record)
+        axis.monitor.take_up(record, self._now)
         self._remember(axis)
         return publisher.restore(late=late)
 
     def _remember(self, axis: Axis) -> None:
-        self.remember(axis.monitor.kept)
+        self.remember(axis.monitor.kept(self._now))
 
     def remember_all(self) -> None:
         """Keep the sums, events and shelvings of all axes."""
@@ -120,7 +126,12 @@ class KeptAxes:
         self.note(Kind.NODE_STOP)
         self.state.close()
 
+    @property
+    def _now(self) -> int:
+        return self._node.get_clock().now().nanoseconds
+
     def _look(self) -> None:
+        self._catch_up()
         publishers = self._publishers
         late = [name for name in publishers if self.state.is_late(name)]
         self.restore(late)

@@ -25,6 +25,7 @@ from ballscrew_monitor.judge.records import (
     NOT_KNOWN,
     REFUSAL,
     SAMPLE,
+    STEP,
     TICK,
 )
 from ballscrew_monitor.recordings.bulk.events import blank, Events, Notes, TICK_SOURCE
@@ -48,7 +49,7 @@ ARRAYS: dict[str, np.dtype[Any]] = {
 """The arrays of the message in their order."""
 EMPTY = {kind: np.empty(0, kind) for kind in ARRAYS.values()}
 ALLOWED = {
-    'kind': (SAMPLE, TICK),
+    'kind': (SAMPLE, STEP),
     'source': (0, TICK_SOURCE),
     'stamp_source': (0, max(StampSource)),
     'why': (0, max(Why)),
@@ -202,10 +203,10 @@ def _check(column: Mapping[str, NDArray[Any]]) -> None:
         values = column[name]
         if values.size and not low <= int(values.min()) <= int(values.max()) <= high:
             raise ValueError(f'{name} is from {values.min()} to {values.max()}')
-    is_tick = column['kind'] == TICK
-    if ((column['source'] > max(Source)) != is_tick).any():
+    has_input = (column['kind'] == SAMPLE) | (column['kind'] == REFUSAL)
+    if ((column['source'] > max(Source)) == has_input).any():
         raise ValueError('an event that is no tick has the source of one')
-    if ((column['axis'] == ALL_AXES) & ~is_tick).any():
+    if ((column['axis'] == ALL_AXES) & has_input).any():
         raise ValueError('a sample is of all axes')
 
 

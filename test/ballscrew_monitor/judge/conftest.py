@@ -59,7 +59,8 @@ class Golden:
     def monitor(self, run):
         settings = settings_of(self.arrays['run_settings'][run])
         made = Monitor(self.surface, settings)
-        made.take_up(kept_of(self.arrays['run_memory'][run]))
+        # The end of a shelving, not what is left of it, is on file: on a clock of 1 ns.
+        made.take_up(kept_of(self.arrays['run_memory'][run]), 1)
         return made
 
     def event(self, stored):
@@ -117,6 +118,6 @@ def kept_of(text):
         active=event.pop('active', False),
         **{f'{name}_ns': stamp for name, stamp in event.items()},
         **totals,
-        until_ns=known['shelved_until'],
+        left_ns=max(known['shelved_until'] - 1, 0),
         reason='kept',
     )

@@ -11,10 +11,11 @@ from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
 from ballscrew_monitor.core.judgement import Code, EventEnd, Level, Zone
 from ballscrew_monitor.core.memory import AxisRecord
-from ballscrew_monitor.core.state import Ending, Event, NAMELESS, NOT_ENDED, Shelving
+from ballscrew_monitor.core.state import Ending, Event, NAMELESS, NOT_ENDED, shelve, Shelving
 from ballscrew_monitor.judge import records
 from ballscrew_monitor.judge.monitor import EARLIEST, fill, LATEST, MOST_OTHERS, within
 from ballscrew_monitor.judge.views import SOURCES
+from ballscrew_monitor.judge.zone import ACTIVE
 from ballscrew_monitor.messages.unjudged import point_or_reason
 from hypothesis import given
 from hypothesis import strategies as st
@@ -38,10 +39,10 @@ KEPT = AxisRecord(
     ending=EventEnd.ACKNOWLEDGED.name,
     ended_by='Ada',
     end_reason='why',
-    until_ns=START + 10 * SECOND,
+    left_ns=10 * SECOND,
     reason='nut is ordered',
 )
-SHELVED = Shelving(until=KEPT.until_ns, reason=KEPT.reason)
+SHELVED = Shelving(until=START + KEPT.left_ns, reason=KEPT.reason)
 
 
 def slow_is_bad(core, memory=None, **limits):
@@ -49,7 +50,7 @@ def slow_is_bad(core, memory=None, **limits):
     surface = core.surface(rcs=lambda speed, load: 1.0 if speed < 30.0 else 0.0)
     made = core.monitor(surface, core.limits(**limits), speed_allowed=True)
     if memory is not None:
-        made.take_up(memory)
+        made.take_up(memory, START)
     return made
 
 
@@ -168,33 +169,97 @@ def stamped(event, lag=0, header=True):
     )
 
 
-@pytest.mark.parametrize(
-    ('header', 'before', 'after', 'follows'),
-    [
-        (True, 0, 0, True),
-        (True, 50 * SECOND, 50 * SECOND, True),
-        (True, 0, 3600 * SECOND, False),
-        (False, 0, 0, True),
-    ],
-    ids=['same machine', 'lags as before', 'another machine', 'no header'],
-)
-def test_a_step_of_the_nodes_clock_is_left_out_if_the_stamps_follow_it(
-    core, header, before, after, follows
-):
-    monitor, step = slow_is_bad(core, clear_delay=SECOND), 3600 * SECOND
-    core.feed(monitor, [stamped(one, before, header) for one in core.motion(10.0, count=100)])
-    begin, length = monitor.event.start, monitor.event.stamp - monitor.event.start
-    next_ones = core.motion(10.0, start=START + SECOND + step, count=50)
-    first = stamped(next_ones[1], after, header)
-    assert monitor.leave_out(step, first) is follows
-    assert monitor.event.start == begin + follows * step
-    assert monitor.event.stamp - monitor.event.start == length
-    for one in next_ones:
-        assert monitor.update(stamped(one, after, header)) is None or not monitor.moved
-    good = core.motion(40.0, start=START + 3 * SECOND // 2 + step, count=101)
-    core.feed(monitor, [stamped(one, after, header) for one in good])
-    assert not monitor.event.active
-    assert monitor.event.stamp - monitor.event.start == 5 * SECOND // 2
+HOUR, YEAR = 3600 * SECOND, 365 * 86_400 * SECOND
+
+
+def course_of(core, *, step=0, at=70, lag=0, header=True, follows=True):
+    """Return how a course ends that is slow, fast and slow again; the clock is set before `at`."""
+    monitor = slow_is_bad(core, raise_delay=SECOND // 2, clear_delay=SECOND)
+    speeds = [10.0] * 100 + [40.0] * 150 + [10.0] * 80
+    found = []
+    for number, one in enumerate(core.motion(10.0, start=10 * YEAR, count=len(speeds))):
+        if number == at and step:
+            now = one.stamp + step
+            monitor.set_clock(one.stamp, now)
+        arrival = one.stamp + (step if number >= at else 0)
+        stamp = (arrival if follows else one.stamp) - lag
+        kind = StampSource.HEADER if header else StampSource.RECEIVE
+        sample = {'stamp': stamp, 'arrival': arrival, 'stamp_source': kind}
+        monitor.update(dataclasses.replace(one, value=speeds[number // 2], **sample))
+        memory = monitor.memory
+        lasted = memory.event_stamp - memory.event_start[ACTIVE] if memory.event_number else 0
+        found.append((monitor.level, memory.event_number, memory.event_active, lasted))
+        assert not monitor.moved
+    return found, dataclasses.replace(monitor.totals, since=0)
+
+
+@pytest.mark.parametrize('step', [YEAR, HOUR, -HOUR, -YEAR // 400])
+@pytest.mark.parametrize('at', [1, 30, 99, 120, 301, 420])
+def test_a_step_of_the_nodes_clock_changes_no_duration(core, step, at):
+    """It comes while a warning is raised, stands, is cleared and is over."""
+    for stamps in ({}, {'header': False}, {'lag': 50 * SECOND}, {'lag': -SECOND // 20}):
+        assert course_of(core, step=step, at=at, **stamps) == course_of(core, **stamps)
+
+
+@pytest.mark.parametrize('step', [YEAR, HOUR])
+def test_a_step_that_the_stamps_do_not_follow_changes_no_duration(core, step):
+    for at in (1, 30, 120, 301, 420):
+        assert course_of(core, step=step, at=at, follows=False) == course_of(core)
+
+
+@pytest.mark.parametrize('after', [0, HOUR])
+def test_what_ends_before_the_next_sample_lasts_as_long_as_without_a_step(core, after):
+    monitor = slow_is_bad(core)
+    core.feed(monitor, core.motion(10.0, count=100))
+    end = START + 100 * STEP
+    monitor.set_clock(end, end + HOUR)
+    for number in range(3):
+        monitor.tick(end + HOUR + number * SECOND)
+    event = monitor.acknowledge(end + HOUR + 2 * SECOND)
+    assert event.stamp - event.start == 3 * SECOND
+
+
+def test_inputs_are_as_old_after_a_step_as_before(core):
+    monitor = slow_is_bad(core)
+    core.feed(monitor, core.motion(10.0, count=30))
+    now = START + 30 * STEP
+    before = monitor.input_status(now)
+    for step in (YEAR, -HOUR, HOUR):
+        monitor.set_clock(now, now + step)
+        now += step
+        monitor.tick(now)
+        assert monitor.input_status(now) == before
+    core.feed(monitor, core.motion(10.0, start=now, count=1))
+    for one, other in zip(monitor.input_status(now), before, strict=True):
+        assert (one.state, one.slow) == (other.state, False)
+        assert one.rate == pytest.approx(other.rate, nan_ok=True)
+
+
+@pytest.mark.parametrize('step', [YEAR, HOUR, -HOUR])
+def test_a_shelving_lasts_as_long_however_the_clock_is_set(core, step):
+    monitor, begin = slow_is_bad(core), 10 * YEAR
+    monitor.shelving = shelve(begin, 60.0, 'nut is ordered')
+    monitor.set_clock(begin + 20 * SECOND, begin + 20 * SECOND + step)
+    now = begin + step
+    assert monitor.shelving.at(now + 59 * SECOND).until == now + 60 * SECOND
+    assert monitor.shelving.is_over(now + 60 * SECOND)
+    assert monitor.kept(now + 25 * SECOND).left_ns == 35 * SECOND
+
+
+def test_a_shelving_goes_on_with_what_is_left_whatever_the_clock_says_then(core):
+    kept = dataclasses.replace(KEPT, left_ns=35 * SECOND)
+    for now in (START, START + YEAR, 5):
+        monitor = slow_is_bad(core)
+        monitor.take_up(kept, now)
+        assert monitor.shelving.until == now + 35 * SECOND
+    monitor = slow_is_bad(core)
+    monitor.take_up(kept, 0)  # /clock has not begun
+    assert monitor.kept(0).left_ns == 35 * SECOND
+    assert not monitor.shelving.at(0).until
+    assert not monitor.shelving.is_over(START)
+    assert monitor.shelving.started(START) == Shelving(
+        until=START + 35 * SECOND, reason=KEPT.reason
+    )
 
 
 @pytest.mark.parametrize('step', [-600 * SECOND, -20 * SECOND])
@@ -300,14 +365,14 @@ def test_the_point_of_now_is_known_or_said_to_be_missing(core, events, now, answ
 
 def test_a_monitor_goes_on_where_another_one_ended(core):
     monitor = slow_is_bad(core, KEPT, raise_delay=0)
-    assert monitor.kept == KEPT
+    assert monitor.kept(START) == KEPT
     states = core.feed(monitor, core.motion(10.0, count=2))
     assert states[0].event.number == 8
     assert states[-1].totals.running_time == 5 * SECOND + STEP
     assert states[-1].totals.since == SECOND
     assert monitor.shelving == SHELVED
     assert states[-1].level == Level.WARN
-    kept = monitor.kept
+    kept = monitor.kept(START)
     assert (kept.event, kept.active, kept.stamp_ns) == (8, True, START + STEP)
     assert (kept.ending, kept.ended_by) == (EventEnd.UNKNOWN.name, '')
 
@@ -315,9 +380,9 @@ def test_a_monitor_goes_on_where_another_one_ended(core):
 def test_what_was_added_up_before_a_late_memory_counts_too(core):
     monitor = slow_is_bad(core, raise_delay=0)
     core.feed(monitor, core.motion(10.0, count=3))
-    monitor.take_up(KEPT)
+    monitor.take_up(KEPT, START)
     assert (monitor.event.number, monitor.event.active) == (8, True)
-    assert monitor.kept.running_time_ns == 5 * SECOND + 2 * STEP
+    assert monitor.kept(START).running_time_ns == 5 * SECOND + 2 * STEP
     assert monitor.shelving == SHELVED
 
 

@@ -6,7 +6,7 @@ import math
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
-from ballscrew_monitor.core.state import Event, Totals
+from ballscrew_monitor.core.state import Event, NOT_SHELVED, Totals
 from ballscrew_monitor.judge import records
 from ballscrew_monitor.judge.records import LIGHT_LOAD, Memory, Row, STANDSTILL
 from ballscrew_monitor.judge.views import add_totals, clear_totals, event_of, kept_of, totals_of
@@ -373,7 +373,7 @@ def test_parts_add_up_exactly_and_are_kept_bit_for_bit(stream, data):
         for one in (memory, other):
             add_to_totals(one, row(stamp, **changes), GAP)
         if number == cut:
-            before, kept = totals_of(other), kept_of(other, Event(), 'x', '')
+            before, kept = totals_of(other), kept_of(other, Event(), 'x', NOT_SHELVED, 0)
             other = Memory()
             add_totals(other, kept)
             assert totals_of(other) == before

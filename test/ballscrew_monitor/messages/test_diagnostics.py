@@ -392,6 +392,17 @@ def test_the_node_itself(share, code, says):
     assert (values_of(status)['Queue depth [-]'], status.values[0].key) == ('3', 'Code')
 
 
+@pytest.mark.parametrize('share', [0.1, 0.9])
+@pytest.mark.parametrize(('step', 'word'), [(3600 * SECOND, 'forward'), (-SECOND, 'back')])
+def test_the_node_says_that_its_clock_was_set(share, step, word, says):
+    signs = VitalSigns(loop_time=0.25, queue_depth=3, processor_share=share)
+    status = diagnostics.of_node('node', signs, step)
+    busy = f'; {says("busy")}' if share > 0.5 else ''
+    assert said(status) == (WARN, says('clock_was_set', way=word) + busy)
+    assert codes_of([status]) == [Fault.CLOCK_SET]
+    assert values_of(status)['Clock step [s]'] == f'{step / SECOND:.6g}'
+
+
 def test_messages_hold_no_measured_numbers(core):
     for events in ([LOAD, SPEED], [SPEED], [LOAD, sample(Source.SPEED, 1e3)]):
         for status in after(core, *events).values():

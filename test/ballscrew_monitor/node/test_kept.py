@@ -253,7 +253,8 @@ def test_a_shelved_warning_calls_nobody_and_outlives_the_node(axis, says):
     axis.kill()
     axis.start()
     state = axis.move(SLOW, lambda state: state.event_id == 2, 'the next event')
-    assert (state.shelved_until, state.shelve_reason) == (answer.until, 'nut is ordered')
+    assert state.shelve_reason == 'nut is ordered'
+    assert state.shelved_until.sec >= answer.until.sec  # what was left goes on after the restart
     assert not node.call(ShelveAlarm, 'shelve', axis='q').success  # the new node knows us now
     assert node.call(ShelveAlarm, 'shelve', duration=0.0).message == 'no longer shelved: x'
     axis.move(SLOW, lambda state: state.event_id == 2 and not state.shelved, 'the warning')

@@ -67,7 +67,7 @@ class Machine:
         self.state = RestartState(self.folder, limit=200_000)
         self.state.start = nothing
         self.retention = KeptAxes(
-            self.node, self.state, self.stations, self.said.append, clock=None
+            self.node, self.state, self.stations, self.said.append, clock=None, catch_up=nothing
         )
         surface = self.core.surface(rcs=lambda speed, load: 0.5 if speed < 20.0 else 0.0)
         limits = self.core.limits(raise_delay=0, clear_delay=0)
@@ -99,7 +99,7 @@ class Machine:
 
     @property
     def running_time(self):
-        return self.monitor.kept.running_time_ns
+        return self.monitor.kept(self.stamp).running_time_ns
 
 
 def live(machine, pipe):

@@ -219,7 +219,7 @@ def test_states_and_outcome_are_those_of_a_monitor_alone(happened, cut):
         states += [(one.state, one.inputs) for one in found]
         events += [one.event for one in found if one.event is not None]
         assert repr(axis.monitor.input_status(now)) == repr(other.input_status(now))
-        assert axis.monitor.kept == other.kept
+        assert axis.monitor.kept(1) == other.kept(1)
         changed = alone()
         changed.monitor = restored(snapshot(axis.monitor), AXIS.surface, AXIS.monitor.settings)
         ended = [one.acknowledge(now) for one in (changed.monitor, other)]
