@@ -22,6 +22,8 @@ REFERENCE = sorted((DOCS / 'reference').glob('*.md'))
 PAGES = [
     ROOT / 'README.md',
     ROOT / 'CONTRIBUTING.md',
+    ROOT / 'QUALITY_DECLARATION.md',
+    ROOT / 'SECURITY.md',
     *sorted(DOCS.rglob('*.md')),
     ROOT / 'bags' / 'README.md',
     ROOT / 'studies' / 'README.md',
