@@ -35,7 +35,7 @@ def recording(
     `state` is where the node keeps what outlives it. Raises InputError when there is no place.
 
     """
-    if values['record'] == 'off':
+    if values['record'] == 'never':
         return None
     if values['record_total'] < 2.0 * values['record_largest']:
         raise InputError(

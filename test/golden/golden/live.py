@@ -46,7 +46,7 @@ def parameters(folder, *, simulated):
         'axes': ['x', 'p', 's'],
         'use_sim_time': simulated,
         'state_dir': str(folder / 'state'),
-        'record': 'always' if simulated else 'off',
+        'record': 'always' if simulated else 'never',
         'x': {
             'surface': str(folder / SURFACE),
             'limits': {'raise_delay': 0.3, 'clear_delay': 0.5},
