@@ -58,6 +58,10 @@ levels do no harm.
 """
 SURFACE = 256 * 2**20
 """Largest surface file, and the most that it may come to when unpacked [byte]."""
+SPEED, LOAD = 1e5, 1e7
+"""Largest speed [rev/min] and load [N] of an operating point."""
+COLDEST, HOTTEST = -60.0, 250.0
+"""Range of the oil temperature of an operating point [degC]."""
 
 
 def most_unpacked(size: int) -> int:

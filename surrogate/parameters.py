@@ -24,6 +24,7 @@ from surrogate.datasheet import (
     text,
 )
 from surrogate.files import InputError
+from surrogate.limits import COLDEST, HOTTEST, LOAD, SPEED
 from surrogate.raceway.standards import long_cutoff_iso_21920, RA_OVER_RQ
 from surrogate.raceway.stated import BallRoughness, Roughness
 from surrogate.units import RPM, ZERO_CELSIUS
@@ -395,9 +396,9 @@ class OperatingPoint(Checked):
 
     """
 
-    speed: float = quantity('rpm', RPM, -1e5, 1e5)
-    load: float = quantity('N', 1.0, -1e7, 1e7)
-    temperature: float = quantity('degC', 1.0, -60.0, 250.0, shift=ZERO_CELSIUS)
+    speed: float = quantity('rpm', RPM, -SPEED, SPEED)
+    load: float = quantity('N', 1.0, -LOAD, LOAD)
+    temperature: float = quantity('degC', 1.0, COLDEST, HOTTEST, shift=ZERO_CELSIUS)
 
     @property
     def opposing_load(self) -> float:
