@@ -169,7 +169,6 @@ def counted(draws: int) -> str:
 
 
 def _contact_ends(screw: Screw, law: AsperityLaw, rows: list[StudyRow]) -> Trend:
-    """Return the speeds at which contact ends, and the film ratios there."""
     film = screw_speeds(rows, 'central_film')
 
     def end(rcs: Curve, note: str) -> Reading | None:

@@ -87,8 +87,9 @@ def speed_axis(axes: Axes, *, label: bool = True, top: bool = True) -> None:
         axes.set_xlabel('entrainment speed $\\omega r_m/2$ [mm/s]')
     if top:
         unit = _speed_of_one_rpm()
-        functions = lambda u: np.divide(u, unit), lambda rpm: np.multiply(rpm, unit)
-        upper = axes.secondary_xaxis('top', functions=functions)
+        upper = axes.secondary_xaxis(
+            'top', functions=(lambda u: np.divide(u, unit), lambda rpm: np.multiply(rpm, unit))
+        )
         upper.set_xlabel('screw speed [rev/min]', fontsize=8)
         upper.tick_params(labelsize=8)
 
@@ -378,7 +379,6 @@ def _map_axes(axes: Axes, rows: Rows) -> None:
 
 
 def _draw_efficiency(axes: Axes, screw: Screw, rows: Rows) -> None:
-    """Draw efficiency over load at some speeds, and that of constant friction."""
     speeds, loads, torque = curves.grid(rows, 'friction_torque')
     eta = _efficiency(screw, loads, torque)
     shown = [i for i, rpm in enumerate(speeds) if rpm in SHOWN]
