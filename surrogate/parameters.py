@@ -185,7 +185,6 @@ class Screw(Checked):
     )
 
     def __post_init__(self) -> None:
-        """Check every range and that the balls fit on the pitch circle."""
         # slots=True makes a new class, so the zero-argument super() is not available here.
         Checked.__post_init__(self)
         if self.ball_diameter >= self.pitch_radius:
@@ -337,7 +336,6 @@ class Lubricant(Checked):
     )
 
     def __post_init__(self) -> None:
-        """Check every range, that oil thins when warm, and that the range holds the reference."""
         Checked.__post_init__(self)
         if self.kinematic_viscosity_100 >= self.kinematic_viscosity_40:
             raise InputError(

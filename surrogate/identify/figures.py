@@ -25,32 +25,32 @@ HEADROOM = 1.35
 def draw_identification(
     folder: Path,
     run: NoLoadRun,
-    found: Identification,
+    fit: Identification,
     title: str,
     onset: Mapping[str, Any] | None = None,
 ) -> Path:
     """Write `identify.png` to a folder and return its path."""
     return draw_picture(
-        folder / 'identify.png', lambda: figure_identification(run, found, title, onset)
+        folder / 'identify.png', lambda: figure_identification(run, fit, title, onset)
     )
 
 
 def figure_identification(
-    run: NoLoadRun, found: Identification, title: str, onset: Mapping[str, Any] | None = None
+    run: NoLoadRun, fit: Identification, title: str, onset: Mapping[str, Any] | None = None
 ) -> Figure:
     """Return torque over speed above with the onset of the record, the residual below."""
     figure = new_figure(7.0, 6.2)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[1.6, 1.0])
     if onset is not None:
         _draw_onset(upper, onset)
-    _draw_torque(upper, run, found)
+    _draw_torque(upper, run, fit)
     order = np.argsort(np.abs(run.speed))
-    rpm, band = np.abs(run.speed)[order] / RPM, MILLI * found.band[order]
+    rpm, band = np.abs(run.speed)[order] / RPM, MILLI * fit.band[order]
     lower.fill_between(
         rpm, -band, band, color=BLUE, alpha=0.15, linewidth=0, label='95 % of the points'
     )
     lower.axhline(0, color=BLUE, linewidth=1.0)
-    _draw_points(lower, run, run.torque - found.after, '')
+    _draw_points(lower, run, run.torque - fit.after, '')
     lower.set_ylim(top=HEADROOM * lower.get_ylim()[1])
     lower.set_ylabel('measured - model [mN m]')
     lower.set_xlabel('screw speed [rev/min]')
@@ -67,18 +67,18 @@ def figure_identification(
     return figure
 
 
-def _draw_torque(axes: Axes, run: NoLoadRun, found: Identification) -> None:
+def _draw_torque(axes: Axes, run: NoLoadRun, fit: Identification) -> None:
     """Draw torques in the direction of the motion, so that both directions share an axis."""
     order = np.argsort(np.abs(run.speed))
     rpm = np.abs(run.speed)[order] / RPM
     axes.fill_between(
-        rpm, MILLI * found.contacts[order], color=VERMILION, alpha=0.2, lw=0, label='contacts'
+        rpm, MILLI * fit.contacts[order], color=VERMILION, alpha=0.2, lw=0, label='contacts'
     )
     for sign, _, name in _directions(run):
         chosen = order[run.direction[order] == sign]
         axes.plot(
             np.abs(run.speed[chosen]) / RPM,
-            MILLI * sign * found.before[chosen],
+            MILLI * sign * fit.before[chosen],
             color=GREY,
             linewidth=1.2,
             linestyle='-.' if sign > 0 else ':',
@@ -86,7 +86,7 @@ def _draw_torque(axes: Axes, run: NoLoadRun, found: Identification) -> None:
         )
         axes.plot(
             np.abs(run.speed[chosen]) / RPM,
-            MILLI * sign * found.after[chosen],
+            MILLI * sign * fit.after[chosen],
             color=BLUE,
             linewidth=1.3,
             linestyle='-' if sign > 0 else (0, (5, 1.5)),

@@ -70,8 +70,8 @@ def march_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     columns = good_length(math.ceil(ACROSS * tile.width / shortest))
     strip = strip_at(contact, load, 0.0, tile.width, columns)
     acting = acting_roughness([tile], 0.5 * contact.reduced_modulus, shortest)
-    told = TopographyOnset(acting=acting, factor=screw.roughness.onset_factor / BIASED)
-    onset = float(told.speeds(strip.line, oil, lubricant.film_floor))
+    topography = TopographyOnset(acting=acting, factor=screw.roughness.onset_factor / BIASED)
+    onset = float(topography.speeds(strip.line, oil, lubricant.film_floor))
     ramp = ramp_strip(
         strip,
         oil,
