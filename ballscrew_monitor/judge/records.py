@@ -33,7 +33,7 @@ MEMORY_VERSION = 3
 MEMORY_LAYOUT = 'df634f0de83e3629'
 """SHA-256 of names and types of their fields; another one is another version."""
 
-SAMPLE, REFUSAL, TICK = 0, 1, 2
+SAMPLE, REFUSAL, TICK, RUN = 0, 1, 2, 3
 """Kinds of an event."""
 NOT_KNOWN = -1
 """
@@ -86,12 +86,13 @@ class Settings:
 @dataclasses.dataclass(slots=True)
 class Event:
     """
-    A sample, a refused message, or a tick.
+    A sample, a refused message, a tick, or the begin of another run of a log.
 
     `value` [SI, machine frame]; stamp and arrival [ns], of a tick its grid stamp, of a refusal its
-    arrival; `steady` [ns] is when the node took it, 0 where no node did; `stamp_source` is a
-    StampSource; `lost` messages were sent just before and never arrived. A refusal has a `why` and
-    up to two numbers for its sentence. In a recording, `axis` is the number of the axis,
+    arrival, of a run a stamp in the pause before it; `steady` [ns] is when the node took it, 0
+    where no node did; `stamp_source` is a StampSource; `lost` messages were sent just before and
+    never arrived. A refusal has a `why` and up to two numbers for its sentence. In a recording,
+    `axis` is the number of the axis,
     `log_time` [ns] and `place` tell where the message lies, and `note` is the number of the joints
     that the message names.
 
