@@ -89,6 +89,7 @@ class EventEnd(enum.IntEnum):
     ACKNOWLEDGED = 2
     STOPPED = 3
     RESTARTED = 4
+    RUN_ENDED = 5
 
 
 class WarningPolicy(enum.StrEnum):

@@ -97,7 +97,7 @@ class Ending:
 
     @property
     def text(self) -> str:
-        """Return why the node ended the event, empty if the axis came back."""
+        """Return why the event ended, empty if the axis came back."""
         match self.kind:
             case EventEnd.ACKNOWLEDGED:
                 by = f' by {self.name}' if self.name else ''
@@ -109,11 +109,13 @@ class Ending:
                 )
             case EventEnd.RESTARTED:
                 return 'ended by a restart of the node'
+            case EventEnd.RUN_ENDED:
+                return 'the run ended'
         return ''
 
 
 NOT_ENDED, CLEARED = Ending(), Ending(kind=EventEnd.CLEARED)
-NAMELESS = Ending(kind=EventEnd.ACKNOWLEDGED)
+NAMELESS, RUN_ENDED = Ending(kind=EventEnd.ACKNOWLEDGED), Ending(kind=EventEnd.RUN_ENDED)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -17,6 +17,7 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import StampSource, Why
+from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.judge.inputs import (
     accept,
     drop,
@@ -32,7 +33,7 @@ from ballscrew_monitor.judge.inputs import (
     take_refusal,
 )
 from ballscrew_monitor.judge.point import NO_DIRECTION, opposing_load, set_answer, set_point
-from ballscrew_monitor.judge.records import INPUTS, RATE_SAMPLES, REFUSAL, STEP, TICK, WHYS
+from ballscrew_monitor.judge.records import INPUTS, RATE_SAMPLES, REFUSAL, RUN, STEP, TICK, WHYS
 from ballscrew_monitor.judge.slopes import (
     slope_last,
     slope_move,
@@ -46,6 +47,7 @@ from ballscrew_monitor.judge.zone import (
     add_to_totals,
     add_to_window,
     clear_window,
+    end_excursion,
     follow_excursion,
     hold_level,
     is_judged,
@@ -64,6 +66,7 @@ MOST_TURNS = 1e9
 """Jump of a position over the position at which it begins again that is no such turn [-]."""
 NOT_A_NUMBER, IMPLAUSIBLE, HOLE = int(Why.NOT_A_NUMBER), int(Why.IMPLAUSIBLE), int(Why.HOLE)
 HEADER = int(StampSource.HEADER)
+NO_LEVEL = int(Level.UNKNOWN)
 
 
 def step(
@@ -72,6 +75,9 @@ def step(
     """Take one event; return NOTHING, or that `row` is a ROW or the row of a STATE."""
     if event.kind == STEP:
         _set_clock(memory, speeds, positions, event.arrival - event.stamp)
+        return NOTHING
+    if event.kind == RUN:
+        begin_run(memory, speeds, positions, event.stamp)
         return NOTHING
     if event.kind == TICK:
         if not _is_tick_due(settings, memory, event.stamp):
@@ -126,6 +132,26 @@ def step_many(
         places[made] = at
         made += 1
     return len(events), made, told
+
+
+def begin_run(memory: Any, speeds: Any, positions: Any, stamp: int) -> None:
+    """
+    Begin another run of a log at `stamp` [ns], which is judged apart from the one before.
+
+    An excursion ends with the last row; no sample, level, delay or window goes on. Counts and
+    totals do.
+
+    """
+    end_excursion(memory, memory.stamp)
+    memory.level, memory.level_since = NO_LEVEL, stamp
+    memory.raising = memory.clearing = memory.pending = False
+    memory.moment = memory.published = memory.light = False
+    memory.direction, memory.held_load = NO_DIRECTION, math.nan
+    memory.window_told = True
+    clear_window(memory)
+    for source in range(INPUTS):
+        forget(memory, source)
+    speeds.count = positions.count = 0
 
 
 def _take(settings: Any, memory: Any, speeds: Any, positions: Any, event: Any) -> bool:

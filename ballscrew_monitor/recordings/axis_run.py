@@ -3,11 +3,13 @@
 """One axis through a recording: rows, states and what they come to."""
 
 from collections.abc import Iterator, Mapping, Sequence
+import dataclasses
+import itertools
 import operator
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why
-from ballscrew_monitor.core.state import Event, NOT_ENDED
+from ballscrew_monitor.core.state import Event, NOT_ENDED, RUN_ENDED
 from ballscrew_monitor.judge import records, views
 from ballscrew_monitor.judge.many import Judged, ManyJudge
 from ballscrew_monitor.judge.monitor import MOST_OTHERS
@@ -20,7 +22,13 @@ from ballscrew_monitor.recordings.bulk.events import (
     some,
     TICK_SOURCE,
 )
-from ballscrew_monitor.recordings.summary import AxisOutcome, event_record, MessageCounts
+from ballscrew_monitor.recordings.summary import (
+    AxisOutcome,
+    event_record,
+    MessageCounts,
+    run_record,
+    RunRecord,
+)
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
 import numpy as np
@@ -48,12 +56,13 @@ class AxisRows(NamedTuple):
     The next rows of an axis, an array of ROW, at least one; those after them overwrite them.
 
     A row is a speed sample that was judged, or a tick that found no fresh speed; states are
-    published of some rows only.
+    published of some rows only. They are of the run of this number, of a log with several.
 
     """
 
     axis: str
     rows: NDArray[Any]
+    run: int = 0
 
 
 Part = AxisRows | TimedState | AxisOutcome
@@ -75,10 +84,37 @@ class AxisRun:
         self._heard = np.zeros(TICK_SOURCE + 1, np.int64)  # messages by source
         self._others = np.zeros(TICK_SOURCE + 1, np.int64)
         self._before = _counts(axis)  # of a node that had judged before
+        self._runs: list[RunRecord] = []  # those that have ended
+        self._begun = axis.monitor.memory  # as the run began
+        self._span = [0, 0]  # stamps of its first and last row [ns], 0 without one
         self._ended: Event | None = None  # by something else than a sample, and not told yet
 
     def take(self, events: Events, *, states: bool = True) -> Iterator[AxisRows | Due]:
         """Judge events; yield their rows, and the states that are due."""
+        begins = {*np.flatnonzero(events['kind'] == records.RUN).tolist()}
+        for begin, end in itertools.pairwise([*sorted({0} | begins), len(events)]):
+            some_events = events[begin:end]
+            if begin in begins:
+                self._begin_run(some_events[:1])
+            for part in self._take(some_events, states=states):
+                yield part if isinstance(part, AxisRows) else (begin + part[0], part[1])
+
+    def _begin_run(self, events: Events) -> None:
+        """Let the run end, and with it what is outside; `events` hold the begin of the next."""
+        monitor = self.axis.monitor
+        self._runs.append(self._run())
+        active = monitor.event.active
+        for _ in self._judge.judge(events):  # which gives no row
+            pass
+        self._judge.give_back()
+        self._begun, self._span = monitor.memory, [0, 0]
+        if active:
+            monitor.ending = RUN_ENDED
+            self._ended = monitor.event
+            self._note(self._ended)
+
+    def _take(self, events: Events, *, states: bool) -> Iterator[AxisRows | Due]:
+        """Judge events of one run as `take` does."""
         about = (events['kind'] == records.REFUSAL) & (events['why'] == Why.OTHER_JOINTS)
         places = np.flatnonzero(about)
         self._heard += _by_source(events)
@@ -95,7 +131,7 @@ class AxisRun:
                 yield from ((place, one) for one in self._state(log_time, row, states=states))
             if len(judged.rows):
                 self._count(judged.rows)
-                yield AxisRows(self.axis.name, judged.rows)
+                yield AxisRows(self.axis.name, judged.rows, len(self._runs))
         self._judge.give_back()
         self._hear_others(notes, len(events))
 
@@ -122,6 +158,16 @@ class AxisRun:
         if before.active and not event.active:
             self._ended = event
 
+    def _run(self) -> RunRecord:
+        """Return what the run comes to so far."""
+        begun, memory = self._begun, self.axis.monitor.memory
+        totals = views.totals_of(begun), views.totals_of(memory)
+        return dataclasses.replace(
+            run_record(len(self._runs) + 1, self._span, *totals),
+            judged=int(memory.judged - begun.judged),
+            warnings=int(memory.event_number - begun.event_number),
+        )
+
     def outcome(self) -> AxisOutcome:
         """Return what the axis comes to so far."""
         monitor, row = self.axis.monitor, self._last_row
@@ -145,6 +191,7 @@ class AxisRun:
             limits=monitor.settings.limits,
             reason=reason,
             messages={source: self._messages(source) for source in Source},
+            runs=(*self._runs, self._run()) if self._runs else (),
         )
 
     def _messages(self, source: Source) -> MessageCounts:
@@ -177,6 +224,7 @@ class AxisRun:
         """Count rows, at least one."""
         published = rows['stamp'][rows['published']]
         self._rows += len(rows)
+        self._span = [self._span[0] or int(rows['stamp'][0]), int(rows['stamp'][-1])]
         if len(published):
             self._first = self._first if self._states else int(published[0])
             self._last = int(published[-1])

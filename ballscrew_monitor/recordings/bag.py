@@ -42,6 +42,10 @@ WRITTEN_AGAIN = (
 )
 
 
+RUN_BORDERS = 'ballscrew_monitor.run_borders'
+"""Key of the metadata with the stamps [ns] in the pauses between runs of a log."""
+
+
 class Bag:
     """
     An opened bag: its topics and its time span; the messages are read on demand.
@@ -100,6 +104,11 @@ class Bag:
     def types(self) -> dict[str, str]:
         """Return the message type of each topic."""
         return {name: info.type_name for name, info in self.topics.items()}
+
+    @property
+    def run_borders(self) -> list[int]:
+        """Return stamps [ns] in the pauses between runs of the log, each judged apart."""
+        return [int(border) for border in self.metadata.get(RUN_BORDERS, '').split()]
 
     @property
     def notes(self) -> list[str]:

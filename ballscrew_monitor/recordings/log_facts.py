@@ -8,8 +8,8 @@ from pathlib import Path
 import re
 from typing import Any
 
-from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.declared import plain
+from ballscrew_monitor.recordings.bag import Bag, RUN_BORDERS
+from ballscrew_monitor.recordings.declared import plain, unwritten
 from ballscrew_monitor.recordings.recorded_events import events_topic, recorded_values
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.parameter_row import BARE_LETTERS
@@ -46,6 +46,7 @@ class LogFacts:
     What is known of a log: its name, how it is judged and read, what was assumed and amiss.
 
     `parameters` are those of the node that differ from their defaults, by full name.
+    `run_borders` are stamps [ns] in the pauses between its runs, each of which is judged apart.
 
     """
 
@@ -54,11 +55,14 @@ class LogFacts:
     mapping: Mapping[str, Any]
     assumptions: tuple[Assumption, ...]
     notes: tuple[str, ...]
+    run_borders: tuple[int, ...] = unwritten(default=())
 
     def texts(self) -> dict[str, str]:
         """Return the facts as the metadata of a bag holds them."""
         content = plain(self) | {'parameters': _parameters_text(self.parameters)}
-        return {f'{PREFIX}{key}': _text(value) for key, value in content.items()}
+        texts = {f'{PREFIX}{key}': _text(value) for key, value in content.items()}
+        borders = {RUN_BORDERS: ' '.join(map(str, self.run_borders))}
+        return texts | (borders if self.run_borders else {})
 
     def sentences(self) -> list[str]:
         """Return what is to be said wherever the log is judged."""
@@ -127,6 +131,7 @@ def facts_of(bag: Bag) -> LogFacts | None:
             mapping=content['mapping'],
             assumptions=tuple(Assumption(**one) for one in content['assumptions']),
             notes=tuple(content['notes']),
+            run_borders=tuple(bag.run_borders),
         )
     except (InputError, KeyError, TypeError, AttributeError) as error:
         reason = ' '.join(str(error).split())

@@ -189,7 +189,7 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
 def _rate(case: AxisCase, source: Source) -> float:
     """Return how many messages came in a second [Hz] outside of gaps, NaN where none can tell."""
     received = {one.source: one.received for one in case.outcome.inputs}
-    steps, span = received[source] - 1, case.survey.span
+    steps, span = received[source] - case.survey.runs, case.survey.span
     if steps < 1 or not span:
         return math.nan
     # What came as often as the speed came with it; a long timeout does not see all gaps.

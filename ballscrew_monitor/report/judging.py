@@ -264,9 +264,9 @@ class CaseMaker:
         )
         self._history = None if make is None else make(self._surface, gathering_of(axis, values))
 
-    def add(self, rows: NDArray[Any]) -> None:
-        """Take the next rows, an array of ROW."""
-        self._surveyor.add(rows)
+    def add(self, rows: NDArray[Any], run: int = 0) -> None:
+        """Take the next rows, an array of ROW, of the run of a number."""
+        self._surveyor.add(rows, run)
         self._balancer.add(rows)
         self._sure.add(rows)
         if self._history is not None:
@@ -363,7 +363,7 @@ def judge_log(
                     positions = positions_of(bag, part.axis, parameters.values)
                     make = functools.partial(health, log=str(bag.path), positions=positions)
                 makers[part.axis] = CaseMaker(part.axis, parameters.values, make, machine)
-            makers[part.axis].add(part.rows)
+            makers[part.axis].add(part.rows, part.run)
             if rows is not None:
                 rows.add(part.axis, part.rows)
     numbered = judged_by_events(bag, parameters.values)

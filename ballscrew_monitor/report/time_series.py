@@ -71,7 +71,7 @@ def series_record(
     if bucket:  # the times follow from it
         record.pop('time')
     return record | {
-        'span': case.survey.span,
+        'span': case.survey.length,
         'bucket': bucket,
         'shown': shown,
         'worst': min(buckets.WORST, len(case.outcome.events)),
@@ -131,7 +131,7 @@ def _columns(
         rows = table.collect(lambda part: part.select(*columns))
         rows = rows.sort('time', maintain_order=True)
         return buckets.with_breaks(rows, _longest_step(case)), None, 0.0
-    coarse, width = buckets.bucketed(table, columns, case.survey.span, count)
+    coarse, width = buckets.bucketed(table, columns, case.survey.length, count)
     _, stretches = _worst_stretches(case, fine_bytes / _bytes_per_second(case))
     if not stretches:
         return coarse, coarse.clear(), width

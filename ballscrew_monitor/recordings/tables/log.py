@@ -153,7 +153,7 @@ class TableLog(Bag):
             for group in range(len(self._series.counts))
             for held in [[each for each in inputs if self._pattern(each[1]).group == group]]
         ]
-        order, done = EventOrder(period), 0
+        order, done = EventOrder(period, self.run_borders), 0
         most = max(AT_ONCE // max(len(inputs), 1), 1)
         for groups in _together(self._blocks(), most=most):
             every = [self._events(rows, part) for rows, part in zip(groups, parts, strict=True)]
@@ -278,6 +278,7 @@ def _facts_of(path: Path, stated: TableMap, series: Series) -> LogFacts:
         mapping=mapping.content,
         assumptions=(*mapping.assumptions, *_derived(mapping)),
         notes=tuple(notes),
+        run_borders=series.run_borders,
     )
 
 

@@ -260,17 +260,20 @@ class Times:
         self._shifts = dict[int, float]()
         self._steps, self._begin, self._end = Steps(), math.inf, -math.inf
 
-    def place(self, gap: float, ends: Sequence[float] | None = None) -> None:
+    def place(self, offsets: Sequence[float], rows: Sequence[int]) -> None:
         """
-        Place the runs `gap` [s] behind each other, after `ends` [s] where these are later.
+        Place the runs by their offsets [s]; those of the motion begin in some rows of the file.
 
-        Without as many ends as there are runs, the times stay as they are.
+        Few slow samples do not show where runs begin: these follow the motion. Slow samples with
+        more runs than a motion that has one stay as they are.
 
         Then the steps between rows are known, and how late the latest row comes.
 
         """
-        if ends is None or len(ends) == len(self.gate.runs):
-            self._shifts = self.gate.shifts(gap, ends)
+        if len(offsets) == len(self.gate.runs):
+            self._shifts = self.gate.shifts(offsets)
+        elif len(self.gate.runs) < len(offsets):
+            self._shifts, self.gate.late = dict(zip(rows[1:], offsets[1:], strict=True)), 0
         else:
             self.gate.runs = self.gate.runs[:1]
         self._late, self._steps = 0.0, Steps()
@@ -296,12 +299,16 @@ class Times:
     @property
     def begin(self) -> int:
         """Return the stamp of the first row of the log [ns]."""
-        return int(self._stamps(np.array([self._begin]))[0])
+        return self.stamps([self._begin])[0]
 
     @property
     def end(self) -> int:
         """Return the stamp of the last row [ns]."""
-        return int(self._stamps(np.array([self.last]))[0])
+        return self.stamps([self.last])[0]
+
+    def stamps(self, times: Sequence[float]) -> list[int]:
+        """Return times [s] as stamps [ns]."""
+        return [int(stamp) for stamp in self._stamps(np.array(times))]
 
     @property
     def usual_period(self) -> float:
