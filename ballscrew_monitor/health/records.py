@@ -73,6 +73,7 @@ class Missing(enum.IntEnum):
     STEADY = 2  # motion with a measured torque, none of it steady
     MOTION = 3  # the axis did not move
     CLOCK = 4  # the clock was not set, or leapt
+    LOAD = 5  # the torque was measured, but it was taken for the load
 
 
 @dataclasses.dataclass(kw_only=True, slots=True)
@@ -282,6 +283,15 @@ class Health:
     baseline: Baseline | None = None
     notes: Sequence[str] = ()
     usual: bool = False
+
+    @property
+    def unknown(self) -> dict[str, list[str]]:
+        """Return the names of what is not known, by the reason."""
+        names: dict[str, list[str]] = {}
+        for quantity in self.quantities:
+            if not quantity.is_known:
+                names.setdefault(quantity.reason, []).append(quantity.name)
+        return names
 
     def quantity(self, name: str) -> Quantity:
         """Return the quantity of a name."""

@@ -95,13 +95,19 @@ class HistoryMaker:
         self._take(self._collector.take_many(rows))
 
     def history(
-        self, axis: str, surface: Path, settings: MonitorSettings, *, machine: str = ''
+        self,
+        axis: str,
+        surface: Path,
+        settings: MonitorSettings,
+        *,
+        machine: str = '',
+        torque_is_load: bool = False,
     ) -> AxisHistory:
-        """Return what came of all rows."""
+        """Return what came of all rows; `torque_is_load`: the map takes the torque for a load."""
         self._take(self._collector.finish())
         cells = list(self._cells.values())
         if all(cell.direction == 0 for cell in cells):
-            cells.append(nothing(self._first, self._missing()))
+            cells.append(nothing(self._first, self._missing(torque_is_load=torque_is_load)))
         cells += self._stroke.cells(self._first) + self._reversals.cells(self._first)
         return AxisHistory(
             axis=axis,
@@ -116,10 +122,12 @@ class HistoryMaker:
             log=self._log,
         )
 
-    def _missing(self) -> Missing:
+    def _missing(self, *, torque_is_load: bool) -> Missing:
         if not self._moved:
             return Missing.MOTION
-        return Missing.STEADY if self._measured else Missing.TORQUE
+        if self._measured:
+            return Missing.STEADY
+        return Missing.LOAD if torque_is_load else Missing.TORQUE
 
     def _take(self, found: Collected) -> None:
         for stretch in found.stretches:
