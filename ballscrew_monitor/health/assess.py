@@ -195,6 +195,7 @@ def _earlier(axis: str, seen: Course, at: int, surface: Surface) -> Health:
         quantities=[drag],
         causes=causes,
         baseline=seen.baseline,
+        chance=here.chance,
     )
 
 
@@ -256,6 +257,7 @@ def _latest(
         baseline=known,
         notes=[note for note in notes if note],
         usual=usual is not None,
+        chance=here.chance if here is not None else 1.0,
     )
 
 

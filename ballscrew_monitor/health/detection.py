@@ -60,7 +60,8 @@ class Look(NamedTuple):
     Comparison of the last logs until `log` with the baseline.
 
     `change` with its 95 % interval `low` to `high` is relative [-]; `raised` is the sign of a
-    change that is worse, 0 for none; `shifted` that of one that is proven at all. `smallest` is
+    change that is worse, 0 for none; `shifted` that of one that is proven at all. `chance` is the
+    p-value of no change [-], 1 in the days of the baseline. `smallest` is
     the loss that nine of ten times shows within eight weeks [-]. `baseline` and `now` count logs,
     the first up to `baseline_end`, the last from `now_begin` on [days].
     NaN where nothing is compared, for the `reason`.
@@ -74,6 +75,7 @@ class Look(NamedTuple):
     high: float = math.nan
     raised: int = 0
     shifted: int = 0
+    chance: float = 1.0
     smallest: float = math.nan
     slope: float = math.nan
     baseline: int = 0
@@ -142,6 +144,7 @@ def _look(
         high=math.expm1(found.value + reach),
         raised=sign if raised else 0,
         shifted=sign if shifted else 0,
+        chance=1.0 if usual_loss > TOLERANCE else min(2.0 * none, 1.0),
         smallest=smallest_loss(found),
         slope=found.slope,
         baseline=int((blocks == 0).sum()),
