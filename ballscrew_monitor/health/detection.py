@@ -13,7 +13,7 @@ import math
 from typing import NamedTuple
 
 from ballscrew_monitor.health.history import calmed, Effects, effects_of, History
-from ballscrew_monitor.health.mixed import Estimate, estimate, Logs, SLOPE, weights_of
+from ballscrew_monitor.health.mixed import Estimate, estimate, Logs, Prior, USUAL, weights_of
 from ballscrew_monitor.health.records import Condition, TOLERANCE
 import numpy as np
 from numpy.typing import NDArray
@@ -90,13 +90,15 @@ class Look(NamedTuple):
         return math.isfinite(self.change)
 
 
-def looks(history: History, *, baseline_days: float = BASELINE_DAYS) -> Iterator[Look]:
+def looks(
+    history: History, *, baseline_days: float = BASELINE_DAYS, prior: Prior = USUAL
+) -> Iterator[Look]:
     """Yield a look after each log of a history."""
     for count in range(1, len(history.start) + 1):
-        yield look(history.until(count), baseline_days=baseline_days)
+        yield look(history.until(count), baseline_days=baseline_days, prior=prior)
 
 
-def look(history: History, *, baseline_days: float = BASELINE_DAYS) -> Look:
+def look(history: History, *, baseline_days: float = BASELINE_DAYS, prior: Prior = USUAL) -> Look:
     """Return the comparison of the last logs of a history with its first ones."""
     effects = effects_of(history)
     index, time = len(history.start) - 1, float(history.time[-1])
@@ -109,10 +111,10 @@ def look(history: History, *, baseline_days: float = BASELINE_DAYS) -> Look:
         known = len(logs.time)
         reason = f'{known} logs so far, a baseline needs {FEWEST_LOGS} and then two more'
         return Look(index, time, reason=reason)
-    step = step_of(logs.effect - SLOPE * logs.warmth, int((parts == 0).sum()))
+    step = step_of(logs.effect - prior.slope * logs.warmth, int((parts == 0).sum()))
     before, blocks = _before(logs.time, parts, baseline_days), cut_at_step(parts, step)
-    weight = weights_of(logs.until(len(before)), before, warm=history.warm)
-    found = estimate(logs, blocks, weight, warm=history.warm, step=step)
+    weight = weights_of(logs.until(len(before)), before, warm=history.warm, prior=prior)
+    found = estimate(logs, blocks, weight, warm=history.warm, step=step, prior=prior)
     provisional = time - logs.time[0] <= baseline_days
     seen = _look(index, logs.time, found, blocks, RUNNING_IN if provisional else TOLERANCE)
     return seen if seen.now > 2 or _both_beyond(logs, blocks, seen) else seen._replace(raised=0)
