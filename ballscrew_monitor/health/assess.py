@@ -38,6 +38,7 @@ from ballscrew_monitor.health.lubrication import (
     severity_quantities,
     usual_boundary,
 )
+from ballscrew_monitor.health.mixed import Prior, USUAL
 from ballscrew_monitor.health.records import (
     Baseline,
     Cause,
@@ -74,13 +75,14 @@ class HealthSettings:
     Settings of an assessment: limits of the zone, and what the machine allows.
 
     `speed_allowed`: advice may name another speed, which a process may not allow. The baseline has
-    the logs of the first `baseline_days`.
+    the logs of the first `baseline_days`. The `prior` is that of its peers, where it has any.
 
     """
 
     limits: Limits
     speed_allowed: bool = False
     baseline_days: float = BASELINE_DAYS
+    prior: Prior = USUAL
 
 
 class Kept(NamedTuple):
@@ -169,7 +171,10 @@ def course_of(kept: Kept, lead: float, settings: HealthSettings) -> Course:
     days = settings.baseline_days if learned else (baseline.end - int(history.start[0])) / DAY
     end = begin + round(days * DAY) if learned else baseline.end
     count = len(history.start)
-    looks = [look(history.until(at), baseline_days=days) for at in range(1, count + 1)]
+    looks = [
+        look(history.until(at), baseline_days=days, prior=settings.prior)
+        for at in range(1, count + 1)
+    ]
     onsets = [_onset(history, one) if one.raised or one.shifted else -1 for one in looks]
     baseline = dataclasses.replace(baseline, begin=begin, end=end)
     return Course(history, looks, latched(looks, onsets), baseline)
@@ -195,6 +200,7 @@ def _earlier(axis: str, seen: Course, at: int, surface: Surface) -> Health:
         quantities=[drag],
         causes=causes,
         baseline=seen.baseline,
+        chance=here.chance,
     )
 
 
@@ -256,6 +262,7 @@ def _latest(
         baseline=known,
         notes=[note for note in notes if note],
         usual=usual is not None,
+        chance=here.chance if here is not None else 1.0,
     )
 
 

@@ -13,7 +13,7 @@ import math
 from typing import NamedTuple
 
 from ballscrew_monitor.health.history import calmed, Effects, effects_of, History
-from ballscrew_monitor.health.mixed import Estimate, estimate, Logs, SLOPE, weights_of
+from ballscrew_monitor.health.mixed import Estimate, estimate, Logs, Prior, USUAL, weights_of
 from ballscrew_monitor.health.records import Condition, TOLERANCE
 import numpy as np
 from numpy.typing import NDArray
@@ -60,7 +60,8 @@ class Look(NamedTuple):
     Comparison of the last logs until `log` with the baseline.
 
     `change` with its 95 % interval `low` to `high` is relative [-]; `raised` is the sign of a
-    change that is worse, 0 for none; `shifted` that of one that is proven at all. `smallest` is
+    change that is worse, 0 for none; `shifted` that of one that is proven at all. `chance` is the
+    p-value of no change [-], 1 in the days of the baseline. `smallest` is
     the loss that nine of ten times shows within eight weeks [-]. `baseline` and `now` count logs,
     the first up to `baseline_end`, the last from `now_begin` on [days].
     NaN where nothing is compared, for the `reason`.
@@ -74,6 +75,7 @@ class Look(NamedTuple):
     high: float = math.nan
     raised: int = 0
     shifted: int = 0
+    chance: float = 1.0
     smallest: float = math.nan
     slope: float = math.nan
     baseline: int = 0
@@ -88,13 +90,15 @@ class Look(NamedTuple):
         return math.isfinite(self.change)
 
 
-def looks(history: History, *, baseline_days: float = BASELINE_DAYS) -> Iterator[Look]:
+def looks(
+    history: History, *, baseline_days: float = BASELINE_DAYS, prior: Prior = USUAL
+) -> Iterator[Look]:
     """Yield a look after each log of a history."""
     for count in range(1, len(history.start) + 1):
-        yield look(history.until(count), baseline_days=baseline_days)
+        yield look(history.until(count), baseline_days=baseline_days, prior=prior)
 
 
-def look(history: History, *, baseline_days: float = BASELINE_DAYS) -> Look:
+def look(history: History, *, baseline_days: float = BASELINE_DAYS, prior: Prior = USUAL) -> Look:
     """Return the comparison of the last logs of a history with its first ones."""
     effects = effects_of(history)
     index, time = len(history.start) - 1, float(history.time[-1])
@@ -107,10 +111,10 @@ def look(history: History, *, baseline_days: float = BASELINE_DAYS) -> Look:
         known = len(logs.time)
         reason = f'{known} logs so far, a baseline needs {FEWEST_LOGS} and then two more'
         return Look(index, time, reason=reason)
-    step = step_of(logs.effect - SLOPE * logs.warmth, int((parts == 0).sum()))
+    step = step_of(logs.effect - prior.slope * logs.warmth, int((parts == 0).sum()))
     before, blocks = _before(logs.time, parts, baseline_days), cut_at_step(parts, step)
-    weight = weights_of(logs.until(len(before)), before, warm=history.warm)
-    found = estimate(logs, blocks, weight, warm=history.warm, step=step)
+    weight = weights_of(logs.until(len(before)), before, warm=history.warm, prior=prior)
+    found = estimate(logs, blocks, weight, warm=history.warm, step=step, prior=prior)
     provisional = time - logs.time[0] <= baseline_days
     seen = _look(index, logs.time, found, blocks, RUNNING_IN if provisional else TOLERANCE)
     return seen if seen.now > 2 or _both_beyond(logs, blocks, seen) else seen._replace(raised=0)
@@ -142,6 +146,7 @@ def _look(
         high=math.expm1(found.value + reach),
         raised=sign if raised else 0,
         shifted=sign if shifted else 0,
+        chance=1.0 if usual_loss > TOLERANCE else min(2.0 * none, 1.0),
         smallest=smallest_loss(found),
         slope=found.slope,
         baseline=int((blocks == 0).sum()),

@@ -59,6 +59,28 @@ class Logs(NamedTuple):
         return Logs(*(part[:count] for part in self))
 
 
+class Prior(NamedTuple):
+    """
+    What is known of an axis before its own logs.
+
+    Mean and standard deviation of its temperature slope [1/K], and the weights of the pairs of the
+    grid, none for the usual ones.
+
+    """
+
+    slope: float = SLOPE
+    doubt: float = SLOPE_DOUBT
+    pairs: tuple[float, ...] = ()
+
+    @property
+    def logarithms(self) -> Array:
+        """Return the logarithms of the weights of the pairs."""
+        return np.log(np.array(self.pairs)) if self.pairs else grid().prior
+
+
+USUAL = Prior()
+
+
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Estimate:
     """
@@ -129,7 +151,7 @@ class Fit(NamedTuple):
 
 
 def effects(
-    logs: Logs, blocks: NDArray[np.int64], *, warm: bool, step: int = 0
+    logs: Logs, blocks: NDArray[np.int64], *, warm: bool, step: int = 0, doubt: float = SLOPE_DOUBT
 ) -> tuple[Array, Array]:
     """
     Return the columns of all effects with a prior, and their prior standard deviations.
@@ -148,7 +170,7 @@ def effects(
         *(np.where(blocks == block, 1.0, 0.0) for block in range(1, int(blocks.max()) + 1)),
     ]
     season = [] if warm else [SEASON, SEASON]
-    known = [LEVEL, SLOPE_DOUBT, RUNNING_IN, *season, FREE]
+    known = [LEVEL, doubt, RUNNING_IN, *season, FREE]
     between = [BETWEEN] * (len(columns) - len(known) - 1)
     deviations = [*known, *between, *([FREE] if blocks.max() else [])]
     return np.stack(columns, axis=1), np.array(deviations)
@@ -162,7 +184,14 @@ def _step_within(logs: Logs, blocks: NDArray[np.int64], step: int) -> Array:
     return np.asarray(np.where(now, later - mean, 0.0))
 
 
-def fit(logs: Logs, blocks: NDArray[np.int64], *, warm: bool = True, step: int = 0) -> Fit:
+def fit(
+    logs: Logs,
+    blocks: NDArray[np.int64],
+    *,
+    warm: bool = True,
+    step: int = 0,
+    prior: Prior = USUAL,
+) -> Fit:
     """
     Return the effects of logs, the slope less its prior mean, by generalised least squares.
 
@@ -170,8 +199,8 @@ def fit(logs: Logs, blocks: NDArray[np.int64], *, warm: bool = True, step: int =
 
     """
     pairs = grid()
-    design, deviations = effects(logs, blocks, warm=warm, step=step)
-    effect = logs.effect - SLOPE * logs.warmth
+    design, deviations = effects(logs, blocks, warm=warm, step=step, doubt=prior.doubt)
+    effect = logs.effect - prior.slope * logs.warmth
     random = covariance(logs, pairs)
     white = np.linalg.inv(random)
     left = design.T @ white  # (pairs, columns, logs)
@@ -184,13 +213,21 @@ def fit(logs: Logs, blocks: NDArray[np.int64], *, warm: bool = True, step: int =
     return Fit(mean, posterior, np.asarray(-0.5 * (determinants + chi)))
 
 
-def weights_of(logs: Logs, blocks: NDArray[np.int64], *, warm: bool = True) -> Array:
+def weights_of(
+    logs: Logs, blocks: NDArray[np.int64], *, warm: bool = True, prior: Prior = USUAL
+) -> Array:
     """Return the weight of each pair of the grid by logs before a change."""
-    return _weights(fit(logs, blocks, warm=warm).likelihood + grid().prior)
+    return _weights(fit(logs, blocks, warm=warm, prior=prior).likelihood + prior.logarithms)
 
 
 def estimate(
-    logs: Logs, blocks: NDArray[np.int64], weight: Array, *, warm: bool = True, step: int = 0
+    logs: Logs,
+    blocks: NDArray[np.int64],
+    weight: Array,
+    *,
+    warm: bool = True,
+    step: int = 0,
+    prior: Prior = USUAL,
 ) -> Estimate:
     """
     Return the change of the last block of logs against the first one.
@@ -201,7 +238,7 @@ def estimate(
 
     """
     pairs = grid()
-    mean, posterior, _ = fit(logs, blocks, warm=warm, step=step)
+    mean, posterior, _ = fit(logs, blocks, warm=warm, step=step, prior=prior)
     now = blocks == blocks.max()
     share = 1.0 / logs.noise[now]
     share = share / share.sum()
@@ -209,13 +246,13 @@ def estimate(
     contrast = share @ effects(logs, blocks, warm=warm, step=step)[0][now]
     contrast[2], contrast[-1] = 0.0, 0.0
     level = np.einsum('i,gij,j->g', contrast, posterior, contrast)
-    effect = float(share @ (logs.effect - SLOPE * logs.warmth)[now])
+    effect = float(share @ (logs.effect - prior.slope * logs.warmth)[now])
     return Estimate(
         weight=weight,
         mean=effect - mean @ contrast,
         known=np.sqrt(level + spread),
         lasting=np.sqrt(posterior[:, -1, -1]),
-        slope=SLOPE + float(weight @ mean[:, 1]),
+        slope=prior.slope + float(weight @ mean[:, 1]),
     )
 
 

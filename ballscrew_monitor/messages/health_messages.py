@@ -51,6 +51,7 @@ def health_message(health: Health, *, surface_id: str, policy: WarningPolicy) ->
     )
     message.header.frame_id = health.axis
     fill_time(message.header.stamp, health.stamp)
+    fill_time(message.since, health.since)
     if health.baseline is not None:
         fill_time(message.baseline_begin, health.baseline.begin)
         fill_time(message.baseline_end, health.baseline.end)

@@ -272,9 +272,11 @@ class CaseMaker:
         if self._history is not None:
             self._history.add(rows)
 
-    def case(self, outcome: AxisOutcome, bag: Bag | None = None, **known: Any) -> AxisCase:
+    def case(
+        self, outcome: AxisOutcome, bag: Bag | None = None, *, facts: AxisFacts, **known: Any
+    ) -> AxisCase:
         """
-        Return the axis as it is after at least one row; `known` are more of its fields.
+        Return the axis as it is after at least one row; `facts` and `known` are more of it.
 
         `bag` holds the messages of its inputs, None if they were recorded as events.
 
@@ -298,10 +300,12 @@ class CaseMaker:
                 surface_file(self._axis, self._values),
                 self._settings,
                 machine=self._machine,
+                torque_is_load=facts.torque_is_load,
             ),
             onset=self._onset(survey.oil.mean),
             balance=self._balancer.result(),
             surely_outside=self._sure.seconds,
+            facts=facts,
             **known,
         )
 

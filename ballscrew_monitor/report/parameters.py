@@ -52,6 +52,11 @@ class AxisFacts:
         return 'lead_mm' in self.stated or 'lead_mm' in self.assumed  # no map is without it
 
     @property
+    def torque_is_load(self) -> bool:
+        """Return True if the map takes the motor torque, or its current, for the load."""
+        return self.load_from in ('torque', 'current')
+
+    @property
     def torque_from_current(self) -> bool:
         """Return True if its motor torque is a current times the torque constant of the map."""
         named = self.stated | set(self.assumed)

@@ -21,8 +21,13 @@ from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
-from ballscrew_monitor.recordings.tables.clocks import moments_of
-from ballscrew_monitor.recordings.tables.dates import dates_by_name, FIRST_YEAR, NAME
+from ballscrew_monitor.recordings.tables.dates import (
+    dates_by_name,
+    FIRST_YEAR,
+    HEADER,
+    NAME,
+    start_in_head,
+)
 from ballscrew_monitor.recordings.tables.mapping import MOTOR
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, RATED, SCALES, UNITS
@@ -121,6 +126,7 @@ class _Guesser:
         self.notes: list[str] = []
         self.used: dict[str, dict[str, Any]] = {}
         self.step, self.epoch, self.date_from = math.nan, '', ''
+        self.order = ''  # of day and month in the head
         self.groups: dict[str, str] = {}
         self.members: dict[tuple[str, tuple[int, int]], str] = {}
         self.times = [one for one in self.named if self._may_be_time(one)]
@@ -231,6 +237,7 @@ class _Guesser:
         content: dict[str, Any] = {'log': self.path.name}
         content |= {'date_from': self.date_from} if self.date_from else {}
         content |= {'decimal': None} if '.' in self.doubts or ',' in self.doubts else {}
+        time |= {'order': self.order} if self.order else {}
         time |= {'order': None} if 'order' in self.doubts else {}
         content |= {'time': time, 'axes': self.used, 'assumed': self.assumed}
         return Guess(
@@ -383,10 +390,16 @@ class _Guesser:
 
     def _set_epoch(self, why: str, *, since: float | None = None) -> None:
         """State the time of the first row by the head or the name of the file, or assume one."""
-        begin, where = self._start_in_head()
-        by_name = begin is None
-        if by_name:
+        start = start_in_head(self.head)
+        begin, where, place = start.known, f'from line {start.row}', HEADER
+        if begin is None:
             begin, where = self._start_in_name()
+            place = NAME
+        if begin is None and start.moments:
+            why = (
+                f'{why}, and its start {start.text} in line {start.row} may be of either order of '
+                'day and month: date_from: header with time: {order: dmy} or mdy dates it'
+            )
         if since is not None and begin is not None:
             begin = begin - begin % estimates.DAY + since
         if begin is None:
@@ -395,29 +408,12 @@ class _Guesser:
         moment = dt.datetime.fromtimestamp(begin, dt.UTC)
         text = moment.isoformat(timespec='microseconds' if begin % 1 else 'seconds')
         self.epoch = f'start {moment:%Y-%m-%d %H:%M:%S} {where}'
-        if since is None and by_name:
-            self.date_from = NAME
+        if since is None:
+            self.date_from = place
+            if place == HEADER and len(start.moments) == 1:
+                self.order = next(iter(start.moments))
             return
         self._assume('time.epoch', text.replace('+00:00', 'Z'), f'{where}, taken as UTC')
-
-    def _start_in_head(self) -> tuple[float | None, str]:
-        """Return when the log begins [s] by its head, and where that stands."""
-        properties = self.head.properties
-        if 'start' in properties:
-            text, row = properties['start'].text, properties['start'].row
-            if 'clock' in properties:
-                text = f'{text} {properties["clock"].text}'
-            for each in (text, properties['start'].text):
-                found = {
-                    seconds: form for seconds, form in moments_of(each) if form.kind != 'hours'
-                }
-                if each.isdigit() and estimates.is_universal(np.array([float(each)]), 'filetime'):
-                    return float(each) * SCALES['filetime'][0] + SCALES['filetime'][
-                        1
-                    ], f'from line {row}'
-                if len(found) == 1:
-                    return next(iter(found)), f'from line {row}'
-        return None, ''
 
     def _start_in_name(self) -> tuple[float | None, str]:
         """Return when the log begins [s] by its name or that of its folder, and which it is."""

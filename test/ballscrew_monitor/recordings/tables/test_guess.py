@@ -340,6 +340,27 @@ def test_a_relative_time_is_dated_by_the_name(name, moment, tmp_path, write_csv)
     assert f'start {moment} from the name of the' in made.text
 
 
+@pytest.mark.parametrize(('start', 'order'), [('22-7-2026', 'dmy'), ('7-22-2026', 'mdy')])
+def test_a_relative_time_is_dated_by_the_head_in_the_order_that_it_shows(start, order, tmp_path):
+    log = tmp_path / '2025-01-01.csv'
+    rows = ''.join(f'{0.1 * at:.1f},{at % 7}\n' for at in range(100))
+    log.write_text(f'Scope Export\nStartTime,{start} 09:14:03\n\nt_s,x_vel\n{rows}')
+    made = guess(log)
+    assert made.content['date_from'] == 'header'
+    assert made.content['time']['order'] == order
+    assert 'time.epoch' not in made.content['assumed']
+    assert 'start 2026-07-22 09:14:03 from line 2' in made.text
+
+
+def test_a_head_of_either_order_dates_nothing_and_says_how(tmp_path):
+    log = tmp_path / 'a.csv'
+    rows = ''.join(f'{0.1 * at:.1f},{at % 7}\n' for at in range(100))
+    log.write_text(f'Scope Export\nStartTime,5-2-2025 09:14:03\n\nt_s,x_vel\n{rows}')
+    made = guess(log)
+    assert 'date_from' not in made.content
+    assert 'time: {order: dmy} or mdy' in made.content['assumed']['time.epoch']['reason']
+
+
 def test_a_name_dates_no_time_that_has_a_date(tmp_path, write_csv):
     columns = {'Timestamp': 1.7e9 + TIME, 'x_vel': SPEED}
     made = guess(write_csv(tmp_path / '2025-07-14.csv', columns, form='{:.12g}'))
