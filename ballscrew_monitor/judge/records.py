@@ -89,12 +89,13 @@ class Event:
     A sample, a refused message, a tick, a step of the clock of the node, or another run of a log.
 
     `value` [SI, machine frame]; stamp and arrival [ns], of a tick its grid stamp, of a refusal its
-    arrival; `steady` [ns] is when the node took it, 0 where no node did. Of a step, `stamp` is the
-    time that the clock would show if it had run on as steadily as before, and `arrival` the one
-    that it shows. A run has a stamp in the pause before it. `stamp_source` is a StampSource; `lost` messages were sent just before and never
-    arrived. A refusal has a `why` and up to two numbers for its sentence. In a recording, `axis`
-    is the number of the axis, `log_time` [ns] and `place` tell where the message lies, and `note`
-    is the number of the joints that the message names.
+    arrival, of a run a stamp in the pause before it; `steady` [ns] is when the node took it, 0
+    where no node did. Of a step, `stamp` is the time that the clock would show if it had run on as
+    steadily as before, and `arrival` the one that it shows. `stamp_source` is a StampSource;
+    `lost` messages were sent just before and never arrived. A refusal has a `why` and up to two
+    numbers for its sentence. In a recording, `axis` is the number of the axis, `log_time` [ns] and
+    `place` tell where the message lies, and `note` is the number of the joints that the message
+    names.
 
     """
 
