@@ -14,11 +14,12 @@ import types
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, ordered, Source
-from ballscrew_monitor.core.judgement import Level
-from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.core.judgement import EventEnd, Level
+from ballscrew_monitor.core.state import Ending
 from ballscrew_monitor.judge.full_point import SolvedAt
-from ballscrew_monitor.judge.records import EVENT, EVENTS_VERSION, MEMORY_VERSION
-from ballscrew_monitor.messages.state_messages import empty_state, fill_state
+from ballscrew_monitor.judge.kept import AxisRecord
+from ballscrew_monitor.judge.records import EVENT, EVENTS_VERSION, Memory, MEMORY_VERSION
+from ballscrew_monitor.messages.state_messages import empty_state, fill_state, fill_totals
 from ballscrew_monitor.node.event_recorder import axis_snapshot, EventRecorder
 from ballscrew_monitor.node.intake import _events
 from ballscrew_monitor.node.sources import Reading
@@ -46,6 +47,7 @@ from ballscrew_monitor.report.log_report import report_log
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axis
+from ballscrew_msgs.msg import Totals
 from geometry_msgs.msg import WrenchStamped
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
@@ -214,15 +216,16 @@ def test_a_step_of_the_clock_comes_again(tmp_path):
     for number in range(100):
         node.now = BEGIN + 12 * SECOND + number * SECOND // 50
         node.hear(force(node.now, 900), joints(node.now, 3.0, 3.0))
-    events = {name: axis.monitor.event for name, axis in node.axes.items()}
-    assert all(event.active for event in events.values())
+    memories = {name: axis.monitor.memory for name, axis in node.axes.items()}
+    assert all(memory.event_active for memory in memories.values())
+    events = {name: memory.event_number for name, memory in memories.items()}
     for name, axis in node.axes.items():
         first = InputSample(source=Source.SPEED, value=0.0, stamp=node.now + step)
         assert axis.monitor.leave_out(step, first)
         node.snapshot('clock', [name])
     live(node, seconds=12, seed=4, begin=node.now + step + SECOND // 50)
     for name, axis in node.axes.items():
-        assert axis.monitor.event.number >= events[name].number
+        assert axis.monitor.memory.event_number >= events[name]
     assert_given_again(node, tmp_path)
 
 
@@ -340,21 +343,10 @@ def test_recordings_of_limited_length_follow_each_other_without_a_gap(tmp_path):
 def test_what_is_kept_late_is_followed(tmp_path):
     node = SmallNode(tmp_path)
     live(node, seconds=3)
-    node.axes['z'].monitor.take_up(
-        AxisRecord(
-            axis='z',
-            running_time_ns=7 * SECOND,
-            angle_rad=3.0,
-            since_ns=5,
-            event=41,
-            stamp_ns=3,
-            start_ns=2,
-            ending='STOPPED',
-            end_reason='long ago',
-            until_ns=BEGIN + 600 * SECOND,
-            reason='known',
-        )
-    )
+    memory = Memory(running_time=7 * SECOND, angle=3.0, since=5, event_number=41, event_stamp=3)
+    memory.event_start[0], memory.shelved_until = 2, BEGIN + 600 * SECOND
+    stopped = Ending(EventEnd.STOPPED, reason='long ago')
+    node.axes['z'].monitor.take_up(AxisRecord.of('z', memory, stopped, 'known'))
     node.snapshot('kept', ['z'])
     live(node, seconds=12, begin=BEGIN + 3 * SECOND, seed=2)
     assert_given_again(node, tmp_path)
@@ -441,8 +433,10 @@ def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path)
     for name, outcome in (('x', x), ('z', z)):
         monitor = node.axes[name].monitor
         assert (outcome.axis, outcome.judged) == (name, monitor.memory.judged)
-        assert outcome.totals == monitor.totals
-        assert len(outcome.events) == monitor.event.number
+        said = Totals()
+        fill_totals(said, monitor.memory)
+        assert outcome.totals == said
+        assert len(outcome.events) == monitor.memory.event_number
         assert sum(len(one.rows) for one in blocks if one.axis == name) == outcome.rows
     assert not any(one.active for one in x.events[:-1])
     assert bag.notes == []
