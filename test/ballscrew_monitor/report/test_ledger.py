@@ -7,12 +7,12 @@ import math
 
 from ballscrew_monitor import cli
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.core.inputs import Source, Why
+from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Reason, Zone
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
 from ballscrew_monitor.report.judging import judge_log
-from ballscrew_monitor.report.ledger import ledger_of, REFUSALS, unjudged_share
+from ballscrew_monitor.report.ledger import ledger_of, unjudged_share
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.verdict import verdict_of, VerdictKind
 from ballscrew_monitor.settings import parameters
@@ -118,14 +118,14 @@ def test_each_difference_of_a_bag_has_its_number_and_reason(tmp_path):
     assert speeds.judged == 170
     assert speeds.losses == {
         Bag.absent: 10,
-        REFUSALS[Why.OTHER_JOINTS]: 40,
-        REFUSALS[Why.NOT_A_NUMBER]: 3,
+        'of other joints': 40,
+        'not a number': 3,
         'out of order': 5,
         Reason.NO_LOAD.text: 30,
     }
     assert speeds.promised - sum(speeds.losses.values()) == speeds.judged
     assert (loads.promised, loads.present, loads.read, loads.judged) == (210, 200, 200, 170)
-    assert loads.losses == {Bag.absent: 10, REFUSALS[Why.NOT_A_NUMBER]: 30}
+    assert loads.losses == {Bag.absent: 10, 'not a number': 30}
     # Those of another joint were never to be judged.
     assert unjudged_share(log) == pytest.approx(48 / 218)
     assert log.unread == {'/note': 7}
