@@ -306,7 +306,7 @@ def law():
         (folders_without_a_row, '', [1] * len(FOLDERS)),
         (
             folders_without_a_row,
-            text_of(DOCS / 'architecture.md').replace(': Event`', ': X`'),
+            text_of(DOCS / 'architecture.md').replace(': MonitorSettings`', ': X`'),
             [1],
         ),
     ],

@@ -20,7 +20,7 @@ UNIT = re.compile(r'\[[^\]]+\]|`unit`')
 # Kinds of things, told apart by a number; the first word names the kind.
 ENUMERATIONS = {
     *'CODE CONTACT DIRECTION GATE LEVEL NUT REGIME SEVERITY SIDE SOURCE STAMP STATE'.split(),
-    *'TIER VALIDITY ZONE CAUSE CONDITION ENDING CARRY'.split(),
+    *'TIER VALIDITY ZONE CAUSE CONDITION ENDING'.split(),
 }
 
 

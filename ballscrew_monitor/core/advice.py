@@ -28,22 +28,13 @@ SCAN_POINTS = 64
 HALVINGS = 20
 NAN = math.nan
 VALID = int(Validity.VALID)
-CARRY = '', 'perhaps', 'surely'
-"""How sure it is that asperities carry, by the numbers of OutOfZone.CARRY_."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Advice:
-    """
-    Nearest good speed [rad/s], machine frame, NaN if none is advised.
-
-    Whether asperities `carry` surely or perhaps at the point, empty where they do not or that is
-    not known.
-
-    """
+    """Nearest good speed [rad/s], machine frame, NaN if none is advised."""
 
     target_speed: float = NAN
-    carry: str = ''
 
     @property
     def text(self) -> str:
@@ -102,22 +93,12 @@ class Advisor:
         """Return the nearest speed that clears at the point, its direction kept."""
         if not self.speed_allowed:
             return Advice()
-        return Advice(target_speed=self._speed(), carry=self._carry())
+        return Advice(target_speed=self._speed())
 
     @property
     def _load(self) -> float:
         """Load [N] that opposes the motion."""
         return opposing_load(self.axial_load, self.direction)
-
-    def _carry(self) -> str:
-        """Say whether RCS passes its limit wherever in both bands of the surface that may lie."""
-        surface, place = self.surface, (self._load, self.temperature)
-        least = min(*surface.limit_band, *surface.numerical_band)
-        here = surface.lookup(abs(self.speed), *place).rcs
-        if math.isnan(least) or not here >= self.limits.rcs:
-            return ''
-        sure = surface.lookup(abs(self.speed) / least, *place).rcs >= self.limits.rcs
-        return CARRY[2 if sure else 1]
 
     def _speed(self) -> float:
         """Return the nearest screw speed [rad/s] that clears at this load; NaN for none."""

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Data into and out of a monitor: settings, events and sums over time.
+Data into and out of a monitor: settings, the ending of an event, shelving.
 
 A warning that is known can be shelved for a time, so that nobody is called for it again and again.
 Shelving changes what is said of a warning, never the judgement. Time is an argument [ns], the
@@ -13,12 +13,10 @@ from collections.abc import Mapping
 import dataclasses
 import math
 
-from ballscrew_monitor.core.advice import Advice, Advisor
 from ballscrew_monitor.core.conversions import nanoseconds, SECOND, seconds
 from ballscrew_monitor.core.inputs import Source, YEAR
-from ballscrew_monitor.core.judgement import Code, EventEnd, Limits
+from ballscrew_monitor.core.judgement import EventEnd, Limits
 from surrogate.files import InputError
-from surrogate.units import TURN
 
 NAN = math.nan
 LONGEST_SHELVING = 86400 * SECOND
@@ -87,7 +85,7 @@ class MonitorSettings:
     positions: PositionSettings | None = None
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+@dataclasses.dataclass(frozen=True, slots=True)
 class Ending:
     """How an event ended; the `name` of who acknowledged it, and the `reason`, where stated."""
 
@@ -114,35 +112,9 @@ class Ending:
         return ''
 
 
-NOT_ENDED, CLEARED = Ending(), Ending(kind=EventEnd.CLEARED)
-NAMELESS, RUN_ENDED = Ending(kind=EventEnd.ACKNOWLEDGED), Ending(kind=EventEnd.RUN_ENDED)
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Event:
-    """
-    One stay outside the optimal zone; stamps [ns], event 0: there was no event yet.
-
-    `worst_value` and the `limit` that it breaks [-], by the criterion of the `code`; the
-    efficiency may rest on a `derived` load. The first reading of `advice` takes milliseconds.
-
-    """
-
-    number: int = 0
-    active: bool = False
-    stamp: int = 0
-    start: int = 0
-    code: Code = Code.UNKNOWN
-    worst_value: float = NAN
-    limit: float = NAN
-    derived: bool = False
-    advisor: Advisor | None = None
-    ending: Ending = NOT_ENDED
-
-    @property
-    def advice(self) -> Advice:
-        """Return where the warning would clear."""
-        return Advice() if self.advisor is None else self.advisor.advice
+NOT_ENDED, CLEARED = Ending(), Ending(EventEnd.CLEARED)
+RESTARTED, NAMELESS = Ending(EventEnd.RESTARTED), Ending(EventEnd.ACKNOWLEDGED)
+RUN_ENDED = Ending(EventEnd.RUN_ENDED)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -155,36 +127,6 @@ class Extremes:
 
 
 WINDOW = ('speed', 'axial_load', 'efficiency', 'rcs', 'film_ratio')
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Totals:
-    """
-    Sums since they were reset.
-
-    Times [ns] so that they add up exactly, angle [rad] of both directions counted up, energy_lost
-    [J]; `since` is the stamp [ns] of their first sample, 0 before it.
-
-    """
-
-    running_time: int = 0
-    unjudged_time: int = 0
-    boundary_time: int = 0
-    mixed_time: int = 0
-    hydrodynamic_time: int = 0
-    optimal_time: int = 0
-    outside_time: int = 0
-    angle: float = 0.0
-    energy_lost: float = 0.0
-    since: int = 0
-
-    @property
-    def revolutions(self) -> float:
-        """Return the revolutions of the screw [-]."""
-        return self.angle / TURN
-
-
-TIMES = tuple(name for name in Totals.__dataclass_fields__ if name.endswith('_time'))
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

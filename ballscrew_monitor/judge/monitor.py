@@ -9,27 +9,29 @@ step; they are kept here.
 """
 
 import dataclasses
+import math
+import operator
 from typing import Any
 
-from ballscrew_monitor.core.advice import interpreted, Nearest
+from ballscrew_monitor.core.advice import Advice, Advisor, interpreted, Nearest
+from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source
-from ballscrew_monitor.core.judgement import Level
-from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.core.judgement import Code, Level
 from ballscrew_monitor.core.state import (
+    CLEARED,
     Ending,
-    Event,
     MonitorSettings,
     NAMELESS,
     NOT_ENDED,
     NOT_SHELVED,
     Shelving,
-    Totals,
 )
 from ballscrew_monitor.judge import views
+from ballscrew_monitor.judge.kept import AxisRecord, EXCURSION, SUMS
 from ballscrew_monitor.judge.point import set_answer, set_point
-from ballscrew_monitor.judge.records import Event as EventRecord
 from ballscrew_monitor.judge.records import (
+    Event,
     Memory,
     NOT_KNOWN,
     REFUSAL,
@@ -78,7 +80,7 @@ def within(stamp: int) -> int:
     return min(max(stamp, EARLIEST), LATEST)
 
 
-def fill(record: EventRecord, event: InputSample | Refusal) -> None:
+def fill(record: Event, event: InputSample | Refusal) -> None:
     """Fill a record with a sample or a refusal."""
     record.source, record.arrival = int(event.source), within(event.arrival)
     record.lost = NOT_KNOWN if event.lost is None else event.lost
@@ -125,14 +127,14 @@ class Monitor:
         self.memory = Memory()
         self.speeds, self.positions = SlopeRing(), SlopeRing()
         self.shelve_reason = ''
-        self.ending = NOT_ENDED
+        self._ending = NOT_ENDED
         self.joints = JointNames()
         self.nearest: Nearest = interpreted
-        self._event = EventRecord()
+        self._event = Event()
         self._row = Row()
         self.row: Row | None = None  # of the last event, until the next; None if it gave none
-        self._told = Event()
-        self.moved = 0  # by how much the last sample has moved the begin of an excursion [ns]
+        self._advisor: Advisor | None = None
+        self.moved = 0  # by how much the last step has moved the begin of an excursion [ns]
 
     @property
     def settings(self) -> MonitorSettings:
@@ -188,17 +190,42 @@ class Monitor:
         return Level(int(self.memory.level))
 
     @property
-    def event(self) -> Event:
-        """Return the event that is active, or the last one."""
-        made = views.event_of(self.memory, self.surface, self._settings, self.ending, self.nearest)
-        if made != self._told:  # the advice of one event is worked out once
-            self._told = made
-        return self._told
+    def event_code(self) -> Code:
+        """Return the criterion by which the last event was raised."""
+        return Code(int(self.memory.event_code[ACTIVE]))
 
     @property
-    def totals(self) -> Totals:
-        """Return the sums."""
-        return views.totals_of(self.memory)
+    def ending(self) -> Ending:
+        """Return how the last event ended; by the axis unless the node has ended it."""
+        memory = self.memory
+        over = memory.event_number and not memory.event_active
+        return CLEARED if over and not self._ending.kind else self._ending
+
+    @ending.setter
+    def ending(self, ending: Ending) -> None:
+        self._ending = ending
+
+    @property
+    def advice(self) -> Advice:
+        """Return where the warning of the last event would clear; the first time takes long."""
+        memory = self.memory
+        speed, load = float(memory.event_speed[ACTIVE]), float(memory.event_load[ACTIVE])
+        temperature = float(memory.event_temperature[ACTIVE])
+        if not math.isfinite(speed + load + temperature):
+            return Advice()
+        advisor = Advisor(
+            speed=speed,
+            axial_load=load,
+            temperature=temperature,
+            direction=Direction(int(memory.event_direction[ACTIVE])),
+            surface=self.surface,
+            limits=self._settings.limits,
+            speed_allowed=self._settings.speed_allowed,
+            nearest=self.nearest,
+        )
+        if advisor != self._advisor:
+            self._advisor = advisor
+        return self._advisor.advice
 
     @property
     def shelving(self) -> Shelving:
@@ -214,7 +241,7 @@ class Monitor:
     def kept(self, now: int) -> AxisRecord:
         """Return what is to be kept over a restart at `now` [ns] of the clock of the node."""
         axis = self._settings.axis
-        return views.kept_of(self.memory, self.event, axis, self.shelving, within(now))
+        return AxisRecord.of(axis, self.memory, self.ending, self.shelving, within(now))
 
     def take_up(self, kept: AxisRecord, now: int) -> None:
         """
@@ -224,19 +251,25 @@ class Monitor:
         left of it, and waits for a clock that stands at zero.
 
         """
-        memory = self.memory
-        views.add_totals(memory, kept)
-        if memory.event_number:
-            memory.event_number += kept.event
-        else:
-            self.ending = views.take_up_event(memory, kept)
+        memory, before = self.memory, kept.read_memory()
+        for name in SUMS:
+            since, past = getattr(memory, name), getattr(before, name)
+            total = [*map(operator.add, since, past)] if isinstance(past, list) else since + past
+            setattr(memory, name, total)
+        memory.since = before.since or memory.since
+        if not memory.event_number:
+            memory.event_active, memory.event_stamp = before.event_active, before.event_stamp
+            for name in EXCURSION:
+                getattr(memory, name)[ACTIVE] = getattr(before, name)[ACTIVE]
+            self.ending = kept.read_ending()
+        memory.event_number += before.event_number
         if not memory.shelved_until:
             left = Shelving(until=-kept.left_ns, reason=kept.reason)
             self.shelving = left.started(within(now))
 
-    def acknowledge(self, now: int, ending: Ending = NAMELESS) -> Event | None:
+    def acknowledge(self, now: int, ending: Ending = NAMELESS) -> bool:
         """
-        Set the level back to UNKNOWN; return the event that this ends, if any.
+        Set the level back to UNKNOWN; return True if this ends an event.
 
         Stamps may run ahead of the clock, and events follow the stamps: it ends with the last one
         at the earliest. What is still outside is raised again as a new event.
@@ -248,10 +281,10 @@ class Monitor:
             stamp = max(stamp, memory.sample_stamp[Source.SPEED])
         memory.level, memory.level_since = int(Level.UNKNOWN), stamp
         memory.raising = memory.clearing = memory.pending = False
-        if not end_excursion(memory, max(stamp, self.event.start)):
-            return None
-        self.ending = ending
-        return self.event
+        over = end_excursion(memory, max(stamp, memory.event_start[ACTIVE]))
+        if over:
+            self.ending = ending
+        return over
 
     def row_at(self, now: int) -> Row:
         """Return the operating point at `now` [ns] and what the surface says of it."""

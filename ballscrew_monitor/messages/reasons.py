@@ -37,7 +37,7 @@ def _refused(status: InputStatus, link: Link | None, parameter: str) -> str:
 def _refusal_reason(why: Why, link: Link | None, parameter: str) -> str:
     if why is Why.SEVERAL and link is not None:
         return several_reason(link, parameter)
-    code = Fault[f'INPUT_{why.name}']
+    code = why.fault
     return f'{code.said}, {code.cure}'
 
 
@@ -148,7 +148,7 @@ def fault(status: InputStatus, link: Link | None, parameter: str) -> str:
 def fault_code(status: InputStatus) -> Fault:
     """Return the code of what is wrong with an input that is not well."""
     if status.state is InputState.BAD:
-        return Fault[f'INPUT_{status.why.name}'] if status.why else Fault.INPUT_UNUSABLE
+        return status.why.fault if status.why else Fault.INPUT_UNUSABLE
     if status.joints is not None:
         return Fault.INPUT_OTHER_JOINTS
     return Fault[f'INPUT_{status.state.name}']

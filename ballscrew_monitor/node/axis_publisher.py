@@ -360,7 +360,7 @@ class AxisPublisher:
             self.axis.name,
             self._last,
             self._inputs,
-            self.axis.monitor.event.code,
+            self.axis.monitor.event_code,
             self.axis.surface,
             links=links,
             clock_stands=stood > self.settings.timeouts[Source.SPEED],
@@ -370,7 +370,7 @@ class AxisPublisher:
         )
 
     def _summaries(self) -> tuple[diagnostics.StatusSummary, ...]:
-        cause = self.axis.monitor.event.code
+        cause = self.axis.monitor.event_code
         return diagnostics.summaries(self._message, self._inputs, cause, self._links, self._policy)
 
     @property

@@ -5,7 +5,7 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Protocol
 
-from ballscrew_monitor.core.memory import after_restart, AxisRecord
+from ballscrew_monitor.judge.kept import after_restart, AxisRecord
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_records import entry_of, event_facts, Kind
@@ -107,8 +107,9 @@ class KeptAxes:
         before = self.state.recall(AxisRecord(axis=axis.name), late=late)
         record = after_restart(before)
         if record is not before:
-            facts = event_facts(record)
-            self.note(Kind.EVENT_END, axis.name, stamp=record.stamp_ns, record=record, **facts)
+            memory = record.read_memory()
+            facts = event_facts(memory, record.read_ending())
+            self.note(Kind.EVENT_END, axis.name, stamp=memory.event_stamp, record=record, **facts)
         axis.monitor.take_up(record, self._now)
         self._remember(axis)
         return publisher.restore(late=late)

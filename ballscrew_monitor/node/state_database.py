@@ -17,7 +17,7 @@ from pathlib import Path
 import sqlite3
 from typing import Any
 
-from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.judge.kept import AxisRecord
 from ballscrew_monitor.node.state_records import (
     AXES,
     by_key,

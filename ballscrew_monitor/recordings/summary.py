@@ -11,10 +11,12 @@ from ballscrew_monitor.core.conversions import rounded, SECOND, seconds
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why
 from ballscrew_monitor.core.judgement import EventEnd, Limits
-from ballscrew_monitor.core.state import Event, TIMES, Totals
+from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.judge.views import TIMES
+from ballscrew_monitor.judge.zone import ACTIVE
 from ballscrew_monitor.recordings.declared import plain, unwritten, written
 from ballscrew_monitor.recordings.words import counted, number, share
-from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
+from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone, Totals
 from surrogate.surface import REGIMES
 from surrogate.units import RPM
 
@@ -22,8 +24,10 @@ RELATIONS = {
     Finding.CODE_RCS_HIGH: ('RCS', '>='),
     Finding.CODE_EFFICIENCY_LOW: ('efficiency', '<'),
 }
+OTHER = 'other', 'beyond'
 SHOWN = 'event_id start_s duration_s active cause worst_value limit advice'.split()
 """What the totals say of an event, by its keys."""
+SUMS = *TIMES, 'revolutions', 'energy_lost'
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -281,9 +285,7 @@ class AxisOutcome:
             judged=self.judged,
             events=self.events,
             runs=self.runs,
-            revolutions=self.totals.revolutions,
-            energy_lost=self.totals.energy_lost,
-            **{name: seconds(getattr(self.totals, name)) for name in TIMES},
+            **{name: getattr(self.totals, name) for name in SUMS},
         )
 
 
@@ -305,52 +307,57 @@ def summary_of(said: Iterable[BallScrewState | OutOfZone]) -> Summary | None:
         states=states,
         judged=last.judged,
         events=tuple(events[key] for key in sorted(events)),
-        **{name: getattr(last.totals, name) for name in (*TIMES, 'revolutions', 'energy_lost')},
+        **{name: getattr(last.totals, name) for name in SUMS},
     )
 
 
 def run_record(number: int, span: Sequence[int], before: Totals, after: Totals) -> RunRecord:
-    """Return a run with its first and last stamp [ns], and the totals before and after it."""
+    """Return a run by its first and last stamp [ns] and the totals before and after it."""
     return RunRecord(
         number=number,
         first=span[0],
         last=span[1],
-        running_time=seconds(after.running_time - before.running_time),
-        unjudged_time=seconds(after.unjudged_time - before.unjudged_time),
-        optimal_time=seconds(after.optimal_time - before.optimal_time),
-        outside_time=seconds(after.outside_time - before.outside_time),
+        running_time=after.running_time - before.running_time,
+        unjudged_time=after.unjudged_time - before.unjudged_time,
+        optimal_time=after.optimal_time - before.optimal_time,
+        outside_time=after.outside_time - before.outside_time,
         revolutions=after.revolutions - before.revolutions,
     )
 
 
-def event_record(event: Event, *, until: int) -> EventRecord:
-    """Return an event as it stands at the stamp `until` [ns]."""
-    point = event.advisor
+def event_record(monitor: Monitor, *, until: int) -> EventRecord:
+    """Return the last event of a monitor as it stands at the stamp `until` [ns]."""
+    memory, advice = monitor.memory, monitor.advice
+    quantity, relation = RELATIONS.get(monitor.event_code, OTHER)
+    start = int(memory.event_start[ACTIVE])
     return EventRecord(
-        event_id=event.number,
-        start=event.start,
-        duration=seconds(until - event.start),
-        advice=event.advice.text,
-        speed=math.nan if point is None else point.speed,
-        axial_load=math.nan if point is None else point.axial_load,
-        run_ended=event.ending.kind is EventEnd.RUN_ENDED,
-        **_said(event, event, event.advice),
+        event_id=int(memory.event_number),
+        start=start,
+        duration=seconds(until - start),
+        active=bool(memory.event_active),
+        quantity=quantity,
+        relation=relation,
+        limit=float(memory.event_limit[ACTIVE]),
+        worst_value=float(memory.event_worst[ACTIVE]),
+        speed=float(memory.event_speed[ACTIVE]),
+        axial_load=float(memory.event_load[ACTIVE]),
+        target_speed=advice.target_speed,
+        advice=advice.text,
+        run_ended=monitor.ending.kind is EventEnd.RUN_ENDED,
     )
 
 
 def _event_record(message: OutOfZone) -> EventRecord:
+    quantity, relation = RELATIONS.get(message.cause.code, OTHER)
     return EventRecord(
         event_id=message.event_id,
         start=message.start.sec * SECOND + message.start.nanosec,
         duration=message.duration,
+        active=message.active,
+        quantity=quantity,
+        relation=relation,
+        limit=message.cause.limit,
+        worst_value=message.worst_value,
+        target_speed=message.cause.target_speed,
         advice=message.advice,
-        **_said(message, message.cause, message.cause),
     )
-
-
-def _said(event: Any, cause: Any, advice: Any) -> dict[str, Any]:
-    """Return what an event and the message of one name alike."""
-    quantity, relation = RELATIONS.get(cause.code, ('other', 'beyond'))
-    said = {'quantity': quantity, 'relation': relation, 'limit': cause.limit}
-    said['target_speed'] = advice.target_speed
-    return said | {'active': event.active, 'worst_value': event.worst_value}

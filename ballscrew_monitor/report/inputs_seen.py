@@ -22,7 +22,7 @@ from ballscrew_monitor.messages.reasons import slow_reason
 from ballscrew_monitor.recordings.declared import unwritten, written
 from ballscrew_monitor.recordings.words import duration, number
 from ballscrew_monitor.report.judging import AxisCase, InputSetting
-from ballscrew_monitor.report.ledger import Ledger, ledger_of, REFUSALS
+from ballscrew_monitor.report.ledger import Ledger, ledger_of
 from ballscrew_monitor.report.survey import Gaps
 from surrogate.units import MILLI, RPM, TURN
 
@@ -245,7 +245,7 @@ def _heard(setting: InputSetting, span: Extremes, status: InputStatus) -> Heard:
 
 def _refused(case: AxisCase, source: Source) -> str:
     refused = case.outcome.refused.get(source, {})
-    return ', '.join(f'{count} {REFUSALS[why]}' for why, count in refused.items() if count)
+    return ', '.join(f'{count} {why.fault.counted}' for why, count in refused.items() if count)
 
 
 def _hints(case: AxisCase, source: Source, setting: InputSetting, heard: Heard) -> Sequence[str]:

@@ -9,7 +9,6 @@ import re
 from ballscrew_monitor.core.advice import Advice, Advisor
 from ballscrew_monitor.core.conversions import Direction, opposing_load
 from ballscrew_monitor.core.judgement import efficiency_to_clear, rcs_to_clear
-from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.health.records import Cell, Condition, Health
 from ballscrew_monitor.health.remedies import remedies_of
 from ballscrew_monitor.health.rows import DAY
@@ -133,16 +132,18 @@ def test_no_advice_names_a_load_or_a_sign(
     """Neither in words nor in the message, anywhere on each surface and beyond it."""
     point = core.point(speed=speed, axial_load=load, temperature=temperature)
     limits = core.limits(rcs=rcs, efficiency=efficiency)
-    event = Event(
-        number=1, active=True, advisor=advisor_of(point, surface, limits, speed_allowed=free)
-    )
+    monitor = core.monitor(surface, limits, speed_allowed=free)
+    memory = monitor.memory
+    memory.event_number, memory.event_active, memory.event_direction[0] = 1, True, point.direction
+    memory.event_speed[0], memory.event_load[0] = speed, load
+    memory.event_temperature[0] = temperature
     health = usual is not None and health_of(point, surface, limits, free=free, usual=usual)
-    message = out_of_zone_message('x', event, shelved=False, health=health or None)
+    message = out_of_zone_message(monitor, shelved=False, health=health or None)
     assert math.isnan(message.cause.target_load)
     assert not LOAD_OR_SIGN.search(message.advice)
     named = math.isfinite(message.cause.target_speed)
     assert free or not SPEED.search(message.advice) and not named
-    workshop, run_at = health.advice if health else '', event.advice.text
+    workshop, run_at = health.advice if health else '', monitor.advice.text
     assert bool(run_at) is named
     assert not run_at or re.fullmatch(r'at this load run at [\d.]+ rev/min', run_at)
     helpful = '; or '.join(filter(None, [workshop, run_at]))
@@ -153,26 +154,6 @@ def test_a_sign_a_load_and_a_speed_are_found_by_the_property():
     for words in ('run at -1.48 m/min', 'at this speed load with 5850 N', 'a load of 3 kN'):
         assert LOAD_OR_SIGN.search(words)
     assert SPEED.search('feeds of 1.5 m/min and more')
-
-
-@pytest.mark.parametrize(
-    ('speed', 'limits', 'numerics', 'carry'),
-    [
-        (20.0, (0.6, 1.5), (0.8, 1.25), 'perhaps'),  # 20 is between 0.6 and 0.8 of 30
-        (20.0, (0.8, 1.5), (0.6, 1.25), 'perhaps'),
-        (17.9, (0.8, 1.5), (0.6, 1.25), 'surely'),
-        (29.0, (0.99, 1.5), (0.99, 1.25), 'surely'),
-        (20.0, (0.6, 1.5), (math.nan, math.nan), 'perhaps'),
-        (20.0, (math.nan, math.nan), (math.nan, math.nan), ''),
-        (30.0, (0.6, 1.5), (0.8, 1.25), ''),  # too little efficiency is another warning
-    ],
-)
-def test_contact_is_sure_slower_than_both_bands(core, speed, limits, numerics, carry):
-    """And perhaps between them; not said of a surface that does not know."""
-    surface = core.surface(rcs=faster_is_better)
-    surface.limit_band, surface.numerical_band = limits, numerics
-    advice = advise(core.point(speed=speed), surface, core.limits())
-    assert advice.carry == carry
 
 
 def test_an_optimal_point_is_its_own_advice(core):

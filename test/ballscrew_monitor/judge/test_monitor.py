@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A monitor's words on an excursion, and what it is told beside samples."""
 
+import copy
 import dataclasses
 import math
 
@@ -10,9 +11,9 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
 from ballscrew_monitor.core.judgement import Code, EventEnd, Level, Zone
-from ballscrew_monitor.core.memory import AxisRecord
-from ballscrew_monitor.core.state import Ending, Event, NAMELESS, NOT_ENDED, shelve, Shelving
+from ballscrew_monitor.core.state import Ending, NAMELESS, NOT_ENDED, shelve, Shelving
 from ballscrew_monitor.judge import records
+from ballscrew_monitor.judge.kept import AxisRecord, SUMS
 from ballscrew_monitor.judge.monitor import EARLIEST, fill, LATEST, MOST_OTHERS, within
 from ballscrew_monitor.judge.views import SOURCES
 from ballscrew_monitor.judge.zone import ACTIVE
@@ -23,26 +24,21 @@ import pytest
 
 STEP = SECOND // 100
 START = 1000 * SECOND
-KEPT = AxisRecord(
-    axis='x',
-    running_time_ns=5 * SECOND,
-    optimal_time_ns=5 * SECOND,
-    angle_rad=7.5,
-    since_ns=SECOND,
-    event=7,
-    stamp_ns=20,
-    start_ns=10,
-    cause=Code.EFFICIENCY_LOW.name,
-    worst_value=0.5,
-    limit=0.75,
-    derived=True,
-    ending=EventEnd.ACKNOWLEDGED.name,
-    ended_by='Ada',
-    end_reason='why',
-    left_ns=10 * SECOND,
-    reason='nut is ordered',
+REMEMBERED = records.Memory(
+    running_time=5 * SECOND,
+    zone_time=[0, 5 * SECOND, 0],
+    angle=7.5,
+    since=SECOND,
+    event_number=7,
+    event_stamp=20,
+    event_start=[10, 0],
+    event_code=[Code.EFFICIENCY_LOW, 0],
+    event_worst=[0.5, math.nan],
+    event_limit=[0.75, math.nan],
+    event_derived=[1, 0],
 )
-SHELVED = Shelving(until=START + KEPT.left_ns, reason=KEPT.reason)
+SHELVED = Shelving(until=START + 10 * SECOND, reason='nut is ordered')
+KEPT = AxisRecord.of('x', REMEMBERED, Ending(EventEnd.ACKNOWLEDGED, 'Ada', 'why'), SHELVED, START)
 
 
 def slow_is_bad(core, memory=None, **limits):
@@ -79,16 +75,17 @@ def test_an_event_begins_and_ends_with_its_facts(core):
     states = core.feed(monitor, core.motion(10.0, start=begin, count=80))
     (edge,) = [state for state in states if state.event is not None]
     event = edge.event
-    assert (event.number, event.active, event.start) == (1, True, begin)
-    assert event.stamp == edge.stamp == begin + SECOND // 2
-    assert (event.code, event.worst_value) == (Code.RCS_HIGH, 1.0)
-    assert event.advice.target_speed == pytest.approx(30.0, rel=1e-5)
-    assert event.advice.text.startswith('at this load run at 286 rev/min')
+    assert (event.event_number, event.event_active, event.event_start[0]) == (1, True, begin)
+    assert event.event_stamp == edge.stamp == begin + SECOND // 2
+    assert (monitor.event_code, event.event_worst[0]) == (Code.RCS_HIGH, 1.0)
+    assert monitor.advice.target_speed == pytest.approx(30.0, rel=1e-5)
+    assert monitor.advice.text.startswith('at this load run at 286 rev/min')
+    assert monitor.ending.kind == EventEnd.UNKNOWN
     states = core.feed(monitor, core.motion(40.0, start=begin + SECOND, count=120))
     (over,) = [state.event for state in states if state.event is not None]
-    assert (over.number, over.active, over.start) == (1, False, begin)
-    assert (event.ending.kind, over.ending.kind) == (EventEnd.UNKNOWN, EventEnd.CLEARED)
-    assert over.stamp == begin + 2 * SECOND
+    assert (over.event_number, over.event_active, over.event_start[0]) == (1, False, begin)
+    assert monitor.ending.kind == EventEnd.CLEARED
+    assert over.event_stamp == begin + 2 * SECOND
     assert {state.event_id for state in states} == {1}
 
 
@@ -97,12 +94,13 @@ def test_the_state_that_raises_does_not_wait_for_the_advice(core):
     surface, limits = core.surface(rcs=1.0), core.limits(raise_delay=0)
     monitor = core.monitor(surface, limits, speed_allowed=True)
     (state,) = core.feed(monitor, core.motion(10.0))
-    assert state.event.active
+    assert state.event.event_active
     assert len(monitor.surface.asked) == 1
-    assert math.isnan(state.event.advice.target_speed)  # bad everywhere
+    advice = monitor.advice
+    assert math.isnan(advice.target_speed)  # bad everywhere
     asked = len(monitor.surface.asked)
     assert asked > SCAN_POINTS
-    assert monitor.event.advice is state.event.advice
+    assert monitor.advice is advice
     assert len(monitor.surface.asked) == asked
 
 
@@ -110,14 +108,14 @@ def test_advice_comes_and_goes_with_the_parameter(core):
     """On the event that stands, too: its place and cause stay."""
     monitor = slow_is_bad(core, raise_delay=0)
     core.feed(monitor, core.motion(10.0))
-    before = monitor.event
-    assert before.advice.target_speed == pytest.approx(30.0, rel=1e-5)
+    before = copy.deepcopy(monitor.memory)
+    assert monitor.advice.target_speed == pytest.approx(30.0, rel=1e-5)
     monitor.settings = dataclasses.replace(monitor.settings, speed_allowed=False)
-    assert monitor.event.advice.text == ''
-    assert math.isnan(monitor.event.advice.target_speed)
-    assert (monitor.event.code, monitor.event.start) == (before.code, before.start)
+    assert monitor.advice.text == ''
+    assert math.isnan(monitor.advice.target_speed)
     monitor.settings = dataclasses.replace(monitor.settings, speed_allowed=True)
-    assert monitor.event == before
+    assert monitor.advice.target_speed == pytest.approx(30.0, rel=1e-5)
+    assert repr(monitor.memory) == repr(before)
 
 
 @pytest.mark.parametrize(
@@ -140,12 +138,13 @@ def test_worst_value_limit_and_place_are_of_one_sample(core, course, raise_delay
     monitor = core.monitor(surface, core.limits(raise_delay=raise_delay * STEP, hysteresis=0.0))
     for i, (speed, force, _, _) in enumerate(course):
         core.feed(monitor, core.motion(speed, start=START + i * STEP, force=-force))
-    event, (speed, force, rcs, efficiency) = monitor.event, course[worst]
+    event, (speed, force, rcs, efficiency) = monitor.memory, course[worst]
     value, limit = (rcs, 0.25) if code == Code.RCS_HIGH else (efficiency, 0.75)
-    assert (event.active, event.start) == (True, START)
-    assert (event.code, event.worst_value, event.limit) == (code, value, limit)
-    point = event.advisor
-    assert (point.speed, point.axial_load, point.temperature) == (speed, -force, 313.15)
+    assert (event.event_active, event.event_start[ACTIVE]) == (True, START)
+    assert (event.event_code[ACTIVE], event.event_limit[ACTIVE]) == (code, limit)
+    assert event.event_worst[ACTIVE] == value
+    assert (event.event_speed[ACTIVE], event.event_load[ACTIVE]) == (speed, -force)
+    assert event.event_temperature[ACTIVE] == 313.15
 
 
 def test_the_limit_of_the_worst_sample_stays_with_it(core):
@@ -154,11 +153,19 @@ def test_the_limit_of_the_worst_sample_stays_with_it(core):
     limits = core.limits(rcs=0.375, raise_delay=0)
     monitor.settings = dataclasses.replace(monitor.settings, limits=limits)
     core.feed(monitor, core.motion(11.0, start=START + STEP))
-    assert (monitor.event.worst_value, monitor.event.limit) == (0.5, 0.25)
+    memory = monitor.memory
+    assert (memory.event_worst[ACTIVE], memory.event_limit[ACTIVE]) == (0.5, 0.25)
     monitor.surface.numbers = {'rcs': 0.75}
     core.feed(monitor, core.motion(12.0, start=START + 2 * STEP))
-    assert (monitor.event.worst_value, monitor.event.limit) == (0.75, 0.375)
-    assert monitor.event.advisor.speed == 12.0
+    assert (monitor.memory.event_worst[ACTIVE], monitor.memory.event_limit[ACTIVE]) == (
+        0.75,
+        0.375,
+    )
+    assert monitor.memory.event_speed[ACTIVE] == 12.0
+
+
+def length_of_event(monitor):
+    return monitor.memory.event_stamp - monitor.memory.event_start[ACTIVE]
 
 
 def stamped(event, lag=0, header=True):
@@ -190,7 +197,8 @@ def course_of(core, *, step=0, at=70, lag=0, header=True, follows=True):
         lasted = memory.event_stamp - memory.event_start[ACTIVE] if memory.event_number else 0
         found.append((monitor.level, memory.event_number, memory.event_active, lasted))
         assert not monitor.moved
-    return found, dataclasses.replace(monitor.totals, since=0)
+    sums = {name: getattr(monitor.memory, name) for name in SUMS}
+    return found, sums
 
 
 @pytest.mark.parametrize('step', [YEAR, HOUR, -HOUR, -YEAR // 400])
@@ -215,8 +223,8 @@ def test_what_ends_before_the_next_sample_lasts_as_long_as_without_a_step(core, 
     monitor.set_clock(end, end + HOUR)
     for number in range(3):
         monitor.tick(end + HOUR + number * SECOND)
-    event = monitor.acknowledge(end + HOUR + 2 * SECOND)
-    assert event.stamp - event.start == 3 * SECOND
+    assert monitor.acknowledge(end + HOUR + 2 * SECOND)
+    assert length_of_event(monitor) == 3 * SECOND
 
 
 def test_inputs_are_as_old_after_a_step_as_before(core):
@@ -266,10 +274,10 @@ def test_a_shelving_goes_on_with_what_is_left_whatever_the_clock_says_then(core)
 def test_a_clock_that_is_set_back_changes_no_length_of_an_excursion(core, step):
     monitor = slow_is_bad(core)
     core.feed(monitor, core.motion(10.0, count=100))
-    length = monitor.event.stamp - monitor.event.start
+    length = length_of_event(monitor)
     core.feed(monitor, core.motion(10.0, start=START + SECOND + step, count=3))
-    assert monitor.event.active
-    assert monitor.event.stamp - monitor.event.start == length
+    assert monitor.memory.event_active
+    assert length_of_event(monitor) == length
 
 
 def test_what_moves_the_begin_of_an_excursion_is_told_with_the_sample(core):
@@ -293,27 +301,31 @@ def test_a_stay_too_short_is_no_event(core):
     core.feed(monitor, core.motion(10.0, count=50))
     core.feed(monitor, core.motion(40.0, start=START + SECOND // 2, count=3))
     core.feed(monitor, core.motion(10.0, start=START + SECOND, count=50))
-    assert monitor.event == Event()
+    assert (monitor.memory.event_number, monitor.memory.event_active) == (0, False)
+    assert monitor.ending == NOT_ENDED
     core.feed(monitor, core.motion(10.0, start=START + SECOND + SECOND // 2))
-    assert (monitor.event.number, monitor.event.start) == (1, START + SECOND)
+    assert (monitor.memory.event_number, monitor.memory.event_start[ACTIVE]) == (1, START + SECOND)
 
 
 def test_an_acknowledged_warning_comes_back_as_a_new_event(core):
     monitor = slow_is_bad(core)
     core.feed(monitor, core.motion(10.0, count=51))
     seen = Ending(kind=EventEnd.ACKNOWLEDGED, name='Ada')
-    ended = monitor.acknowledge(START + SECOND, seen)
-    assert (ended.number, ended.active, ended.stamp) == (1, False, START + SECOND)
-    assert (ended.ending, monitor.level) == (seen, Level.UNKNOWN)
-    assert monitor.acknowledge(START + SECOND) is None
+    assert monitor.acknowledge(START + SECOND, seen)
+    memory = monitor.memory
+    assert (memory.event_number, memory.event_active) == (1, False)
+    assert memory.event_stamp == START + SECOND
+    assert (monitor.ending, monitor.level) == (seen, Level.UNKNOWN)
+    assert not monitor.acknowledge(START + SECOND)
     core.feed(monitor, core.motion(10.0, start=START + SECOND, count=51))
-    event = monitor.event
-    assert (event.number, event.active, event.ending) == (2, True, NOT_ENDED)
+    assert (memory.event_number, memory.event_active) == (2, True)
+    assert monitor.ending == NOT_ENDED
     monitor, samples = slow_is_bad(core), core.motion(10.0, count=51)
     core.feed(monitor, samples)
-    ended = monitor.acknowledge(START - 10 * SECOND)
-    assert ended.ending == NAMELESS
-    assert (ended.start, ended.stamp) == (START, samples[-1].stamp)
+    assert monitor.acknowledge(START - 10 * SECOND)
+    assert monitor.ending == NAMELESS
+    assert monitor.memory.event_start[ACTIVE] == START
+    assert monitor.memory.event_stamp == samples[-1].stamp
     (state,) = core.feed(monitor, core.motion(40.0, start=samples[-1].stamp + STEP))
     assert state.level_since <= state.stamp
 
@@ -367,22 +379,23 @@ def test_a_monitor_goes_on_where_another_one_ended(core):
     monitor = slow_is_bad(core, KEPT, raise_delay=0)
     assert monitor.kept(START) == KEPT
     states = core.feed(monitor, core.motion(10.0, count=2))
-    assert states[0].event.number == 8
+    assert states[0].event.event_number == 8
     assert states[-1].totals.running_time == 5 * SECOND + STEP
     assert states[-1].totals.since == SECOND
     assert monitor.shelving == SHELVED
     assert states[-1].level == Level.WARN
-    kept = monitor.kept(START)
-    assert (kept.event, kept.active, kept.stamp_ns) == (8, True, START + STEP)
-    assert (kept.ending, kept.ended_by) == (EventEnd.UNKNOWN.name, '')
+    kept = monitor.kept(START).read_memory()
+    assert (kept.event_number, kept.event_active) == (8, True)
+    assert kept.event_stamp == START + STEP
+    assert monitor.kept(START).read_ending() == NOT_ENDED
 
 
 def test_what_was_added_up_before_a_late_memory_counts_too(core):
     monitor = slow_is_bad(core, raise_delay=0)
     core.feed(monitor, core.motion(10.0, count=3))
     monitor.take_up(KEPT, START)
-    assert (monitor.event.number, monitor.event.active) == (8, True)
-    assert monitor.kept(START).running_time_ns == 5 * SECOND + 2 * STEP
+    assert (monitor.memory.event_number, monitor.memory.event_active) == (8, True)
+    assert monitor.memory.running_time == 5 * SECOND + 2 * STEP
     assert monitor.shelving == SHELVED
 
 

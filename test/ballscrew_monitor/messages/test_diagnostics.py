@@ -49,7 +49,7 @@ def after(
         'x',
         last.message,
         last.inputs,
-        monitor.event.code,
+        monitor.event_code,
         monitor.surface,
         links=links or LINKS,
         clock_stands=clock_stands,
@@ -292,7 +292,7 @@ def test_a_shelved_warning_is_no_warning_and_hides_no_other(core, events, shown)
     monitor.shelving = shelve(START, 60.0, 'nut is ordered')
     last = core.feed(monitor, events)[-1]
     assert last.level == Level.WARN
-    cause = monitor.event.code
+    cause = monitor.event_code
     assert diagnostics.summaries(last.message, last.inputs, cause, LINKS)[0][:2] == shown
     assert not plain_values(last.message)['out_of_zone']
 
@@ -320,7 +320,7 @@ def test_a_defect_says_where_it_came_up_and_what_to_do(core, event, place, says)
     sentence = diagnostics.defect_text(ZeroDivisionError('by 0'), event)
     assert sentence == says('program_failed', place=place)
     made = diagnostics.statuses(
-        'node', 'x', None, (), monitor.event.code, monitor.surface, links=LINKS, defect=sentence
+        'node', 'x', None, (), monitor.event_code, monitor.surface, links=LINKS, defect=sentence
     )
     assert said(made[0]) == (ERROR, sentence)
     assert all(status.message != sentence for status in made[1:])

@@ -12,7 +12,9 @@ import sqlite3
 from ballscrew_monitor import cli
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fault_codes import Fault
-from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.core.state import NOT_ENDED
+from ballscrew_monitor.judge.kept import AxisRecord
+from ballscrew_monitor.judge.records import Memory
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_database import FILE, read_entries
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
@@ -82,7 +84,8 @@ class Axis:
 
         def active():
             kept = self.kept()
-            return kept and (kept['event'], kept['active']) == (number, True)
+            active = kept and json.loads(kept['memory'])['event_active']
+            return active and kept['event'] == number
 
         self.node.until(active, 'the event on the disk')
         # Nothing that the node has said before it is killed is heard after that.
@@ -102,7 +105,7 @@ def test_a_node_that_is_killed_in_an_event_goes_on(axis, says):
         first = axis.move(SLOW, lambda state: state.judged, 'a state')
         assert first.totals.running_time >= known
         axis.begin(number)
-        known = axis.kept()['running_time_ns'] / SECOND
+        known = json.loads(axis.kept()['memory'])['running_time'] / SECOND
         axis.kill()
     lines = [(line['kind'], line.get('event'), line.get('ending')) for line in axis.log()]
     expected = [('event_begin', number, '') for number in range(1, KILLS + 1)]
@@ -167,7 +170,8 @@ def test_a_directory_that_is_mounted_later_is_taken_up(axis, tmp_path):
     axis.node.until(
         lambda: axis.node.levels('State directory')[-1:] == [(DiagnosticStatus.WARN, bad)]
     )
-    before = AxisRecord(axis='x', running_time_ns=7 * SECOND, since_ns=1, event=41)
+    memory = Memory(running_time=7 * SECOND, since=1, event_number=41)
+    before = AxisRecord.of('x', memory, NOT_ENDED, '')
     mounted = RestartState(tmp_path / 'mounted' / 'state')
     mounted.keep(before)
     mounted.close()

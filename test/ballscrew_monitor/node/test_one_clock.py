@@ -123,10 +123,10 @@ def test_on_a_slow_clock_again_a_lead_is_refused_again(bench):
 def test_a_leap_of_the_clock_in_a_warning_is_logged_and_left_out_of_it(bench, tmp_path, leap):
     """Slow motion is outside, for 1 s before the leap and for 1 s after it."""
     now = play(bench, 1.0, BEGIN, 1.0, speed=0.8)
-    assert bench.monitor.event.active
+    assert bench.monitor.memory.event_active
     now = play(bench, 1.0, now + round(leap * SECOND), 1.0, speed=0.8)
     play(bench, 1.0, now, 1.0)
-    assert not bench.monitor.event.active
+    assert not bench.monitor.memory.event_active
     assert not bench.node._kept.state.flush()
     entries = [entry.record() for entry in read_entries(tmp_path)]
     (end,) = [one for one in entries if one['kind'] == 'event_end']

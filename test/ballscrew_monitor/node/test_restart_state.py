@@ -5,7 +5,7 @@
 from pathlib import Path
 import threading
 
-from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.judge.kept import AxisRecord
 from ballscrew_monitor.node import restart_state
 from ballscrew_monitor.node.restart_state import PAUSE, RestartState, RETRY, state_directory
 from ballscrew_monitor.node.state_database import FILE, read_entries, StateDatabase

@@ -14,11 +14,12 @@ import types
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import ordered, Source
-from ballscrew_monitor.core.judgement import Level
-from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.core.judgement import EventEnd, Level
+from ballscrew_monitor.core.state import Ending, Shelving
 from ballscrew_monitor.judge.full_point import SolvedAt
-from ballscrew_monitor.judge.records import EVENT, EVENTS_VERSION, MEMORY_VERSION
-from ballscrew_monitor.messages.state_messages import empty_state, fill_state
+from ballscrew_monitor.judge.kept import AxisRecord
+from ballscrew_monitor.judge.records import EVENT, EVENTS_VERSION, Memory, MEMORY_VERSION
+from ballscrew_monitor.messages.state_messages import empty_state, fill_state, fill_totals
 from ballscrew_monitor.node.event_recorder import axis_snapshot, EventRecorder
 from ballscrew_monitor.node.intake import _events
 from ballscrew_monitor.node.sources import Reading
@@ -46,6 +47,7 @@ from ballscrew_monitor.report.log_report import report_log
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axis
+from ballscrew_msgs.msg import Totals
 from geometry_msgs.msg import WrenchStamped
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
@@ -232,10 +234,10 @@ def test_a_step_of_the_clock_comes_again(tmp_path, hours):
     node = SmallNode(tmp_path)
     live(node, seconds=2, seed=3)
     run_at(node, 3.0, seconds=2, begin=BEGIN + 2 * SECOND)
-    assert all(axis.monitor.event.active for axis in node.axes.values())
+    assert all(axis.monitor.memory.event_active for axis in node.axes.values())
     node.set_clock(hours * 3600 * SECOND)
     run_at(node, 3.0, seconds=2, begin=node.now + SECOND // 50)
-    assert all(axis.monitor.event.active for axis in node.axes.values())
+    assert all(axis.monitor.memory.event_active for axis in node.axes.values())
     run_at(node, 90.0, seconds=4, begin=node.now + SECOND // 50)
     assert node.edges == 4
     assert len(node.snapshots) == 1
@@ -361,22 +363,12 @@ def test_recordings_of_limited_length_follow_each_other_without_a_gap(tmp_path):
 def test_what_is_kept_late_is_followed(tmp_path):
     node = SmallNode(tmp_path)
     live(node, seconds=3)
-    node.axes['z'].monitor.take_up(
-        AxisRecord(
-            axis='z',
-            running_time_ns=7 * SECOND,
-            angle_rad=3.0,
-            since_ns=5,
-            event=41,
-            stamp_ns=3,
-            start_ns=2,
-            ending='STOPPED',
-            end_reason='long ago',
-            left_ns=600 * SECOND,
-            reason='known',
-        ),
-        node.now,
-    )
+    memory = Memory(running_time=7 * SECOND, angle=3.0, since=5, event_number=41, event_stamp=3)
+    memory.event_start[0] = 2
+    known = Shelving(until=BEGIN + 600 * SECOND, reason='known')
+    stopped = Ending(EventEnd.STOPPED, reason='long ago')
+    record = AxisRecord.of('z', memory, stopped, known, BEGIN)
+    node.axes['z'].monitor.take_up(record, node.now)
     node.snapshot('kept', ['z'])
     live(node, seconds=12, begin=BEGIN + 3 * SECOND, seed=2)
     assert_given_again(node, tmp_path)
@@ -463,8 +455,10 @@ def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path)
     for name, outcome in (('x', x), ('z', z)):
         monitor = node.axes[name].monitor
         assert (outcome.axis, outcome.judged) == (name, monitor.memory.judged)
-        assert outcome.totals == monitor.totals
-        assert len(outcome.events) == monitor.event.number
+        said = Totals()
+        fill_totals(said, monitor.memory)
+        assert outcome.totals == said
+        assert len(outcome.events) == monitor.memory.event_number
         assert sum(len(one.rows) for one in blocks if one.axis == name) == outcome.rows
     assert not any(one.active for one in x.events[:-1])
     assert bag.notes == []
