@@ -146,7 +146,7 @@ def _text(own: Mapping[Key, Sequence[Health]], fleet: Mapping[Key, Sequence[Heal
         for courses in (own, fleet)
     )
     return (
-        f'{len(own)} axes: {worse} worse, of which in the mean at most {100 * LEVEL:.0f} % are so '
-        f'by chance; {alone - worse} more by their own logs alone, of which '
-        f'{ALARM * len(own):.2g} false alarms a year are expected'
+        f'{len(own)} axes, {worse} of them worse: in the mean at most {100 * LEVEL:.0f} % of such '
+        f'are so by chance; by its own logs alone each, {alone} would be worse, with '
+        f'{ALARM * len(own):.2g} false alarms a year'
     )

@@ -33,6 +33,8 @@ OWN_DOUBT = 0.02
 NAME = 'friction beside peers'
 OWN_SHARES = (0.1, 0.3, 0.5, 0.7, 0.9)
 """Shares of the variance of a slope that axes of one kind do not have in common, all alike [-]."""
+ROUNDS = 20
+"""Steps of expectation and maximisation, after which the weights of pairs stay."""
 USUAL_PEERS = 2.0
 """Peers for which the usual weights of scatter and wander count."""
 
@@ -129,7 +131,7 @@ class Spread(NamedTuple):
     What the logs of an axis say of its temperature slope and of its scatter and wander.
 
     The slope [1/K] with its standard deviation by the logs alone, infinite where they say nothing,
-    and the weights of the pairs of the grid; `groups` are the places where the axis runs.
+    and the likelihood of the pairs of the grid; `groups` are the places where the axis runs.
 
     """
 
@@ -156,18 +158,19 @@ def _spread(
     logs: Logs, blocks: NDArray[np.int64], groups: frozenset[Any], *, warm: bool
 ) -> Spread:
     mean, covariance, likelihood = fit(logs, blocks, warm=warm)
-    weight = likelihood + grid().prior
-    weight = np.exp(weight - weight.max())
+    alone = np.exp(likelihood - likelihood.max())
+    weight = alone * np.exp(grid().prior)
     weight = weight / weight.sum()
+    pairs = tuple((alone / alone.sum()).tolist())
     slope = float(weight @ mean[:, 1])
     variance = float(weight @ (covariance[:, 1, 1] + (mean[:, 1] - slope) ** 2))
     information = 1.0 / variance - SLOPE_DOUBT**-2.0
     if information <= 0.0 or not warm:
-        return Spread(SLOPE, math.inf, tuple(weight.tolist()), groups)
+        return Spread(SLOPE, math.inf, pairs, groups)
     return Spread(
         slope=SLOPE + slope / variance / information,
         deviation=information**-0.5,
-        pairs=tuple(weight.tolist()),
+        pairs=pairs,
         groups=groups,
     )
 
@@ -198,8 +201,13 @@ def prior_of(peers: Sequence[Spread]) -> Prior:
         return USUAL
     slope, doubt = _slope_of([peer for peer in peers if math.isfinite(peer.deviation)])
     usual = np.exp(grid().prior)
-    total = USUAL_PEERS * usual / usual.sum() + sum(np.array(peer.pairs) for peer in peers)
-    return Prior(slope, doubt, tuple((total / total.sum()).tolist()))
+    usual = weight = usual / usual.sum()
+    likelihood = np.array([peer.pairs for peer in peers])
+    for _ in range(ROUNDS):
+        own = likelihood * weight
+        total = USUAL_PEERS * usual + (own / own.sum(axis=1, keepdims=True)).sum(axis=0)
+        weight = total / total.sum()
+    return Prior(slope, doubt, tuple(weight.tolist()))
 
 
 def _slope_of(peers: Sequence[Spread]) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from ballscrew_monitor.health.detection import (
     blocks_of,
     latched,
     Look,
+    look,
     looks,
     RECOVERY,
     smallest_loss,
@@ -152,3 +153,15 @@ def test_a_loss_of_a_tenth_is_found_within_eight_weeks_with_its_size_and_date():
         found += bool(raised) and 26 <= raised[0] < 34
         assert course[33].low < -0.1 < course[33].high
     assert found >= 7
+
+
+def test_the_p_value_is_small_as_rarely_as_it_says_and_at_once_after_a_loss():
+    chances = []
+    for seed in range(30):
+        clean = year(np.random.default_rng(200 + seed))
+        assert look(clean.until(10)).chance == 1.0
+        chances += [look(clean.until(count)).chance for count in (24, 50)]
+    assert np.mean(np.array(chances) < 0.05) <= 0.05
+    assert np.mean(np.array(chances) < 0.5) <= 0.6
+    lost = year(np.random.default_rng(300), loss=0.15)
+    assert look(lost.until(31)).chance < 1e-4
