@@ -173,11 +173,12 @@ class Store:
         self.file, self.limit = file, limit
         self._tables, self._version, self._alone = tuple(tables), version, alone
         self._database: Any = None
+        self._identity: tuple[int, int] | None = None
 
     @property
     def is_open(self) -> bool:
-        """Return True if the file is open, and still there."""
-        return self._database is not None and self.file.exists()
+        """Return True if the file is open, and still there: not gone, and no other one."""
+        return self._database is not None and identity(self.file) == self._identity
 
     @property
     def database(self) -> sqlite3.Connection:
@@ -197,6 +198,7 @@ class Store:
         self.file.parent.mkdir(parents=True, exist_ok=True)
         database = connected(self.file, self.limit, alone=self._alone)
         self.use(database)
+        self._identity = identity(self.file)
         if is_empty(database, self._version):
             statements = [line for table in self._tables for line in table.schema]
             with database:
@@ -289,6 +291,15 @@ class Store:
             with contextlib.suppress(sqlite3.Error):
                 self._database.execute('PRAGMA journal_mode = DELETE')
         self.let_go()
+
+
+def identity(file: Path | int) -> tuple[int, int] | None:
+    """Return what tells a file, by path or descriptor, from every other; None: there is none."""
+    try:
+        found = os.stat(file)
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino
 
 
 def connected(file: Path, limit: int, *, alone: bool = False) -> sqlite3.Connection:

@@ -133,6 +133,7 @@ class KeptAxes:
 
     def _look(self) -> None:
         self._catch_up()
+        self.state.look()
         publishers = self._publishers
         late = [name for name in publishers if self.state.is_late(name)]
         self.restore(late)

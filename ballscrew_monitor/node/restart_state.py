@@ -32,6 +32,7 @@ AUTO = 'auto'
 PAUSE = 0.05  # [s] shortest time between two commits
 RETRY = 1.0  # [s] after a failure
 SILENT = 'does not answer'
+GONE = 'was removed or replaced'
 PATIENCE = 2.0  # [s] that a service, a correction or a transition waits for the disk
 MOST_ENTRIES = 10_000  # waiting while nothing can be written; the oldest are dropped
 SHARE = 4  # corrections have this part of the limit
@@ -90,6 +91,12 @@ class RestartState:
     def is_held(self) -> bool:
         """Tell whether the folder is that of this node alone."""
         return self._database is not None and self._database.is_open
+
+    def look(self) -> None:
+        """Have all written again soon, if the folder or what is in it is no longer there."""
+        if self._database is not None and self._database.is_lost:
+            self._problem = f'{self.folder} {GONE}'
+            self._wake.set()
 
     def forget_problems(self) -> None:
         """Say no more of what was set aside, nor of corrections that are gone."""
