@@ -42,7 +42,11 @@ def figure_identification(
     figure = new_figure(7.0, 6.2)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[1.6, 1.0])
     if onset is not None:
-        _draw_onset(upper, onset)
+        speed, low, high = (onset[f'speed{end}_rad_s'] / RPM for end in ('', '_low', '_high'))
+        label = 'onset taken, not fitted' if onset['reason'] else 'onset, extrapolated'
+        if not onset['reason']:
+            upper.axvspan(low, high, color=ORANGE, alpha=0.2, linewidth=0)
+        upper.axvline(speed, color=ORANGE, linestyle='--', label=label)
     _draw_torque(upper, run, fit)
     order = np.argsort(np.abs(run.speed))
     rpm, band = np.abs(run.speed)[order] / RPM, MILLI * fit.band[order]
@@ -56,8 +60,7 @@ def figure_identification(
     lower.set_xlabel('screw speed [rev/min]')
     lower.legend(frameon=False, loc='upper right')
     upper.set_title(title)
-    speed = np.abs(run.speed)
-    if speed.max() > LOG_SPAN * speed.min():
+    if rpm[-1] > LOG_SPAN * rpm[0]:
         lower.set_xscale('log')
         lower.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         lower.xaxis.set_major_formatter('{x:g}')
@@ -96,18 +99,6 @@ def _draw_torque(axes: Axes, run: NoLoadRun, fit: Identification) -> None:
     axes.set_ylim(0 if (run.direction * run.torque > 0).all() else None)
     axes.set_ylabel('torque along the motion [mN m]')
     axes.legend(frameon=False)
-
-
-def _draw_onset(axes: Axes, onset: Mapping[str, Any]) -> None:
-    """Mark the onset with its interval, or with its bound alone."""
-    names = ('speed_rad_s', 'speed_low_rad_s', 'speed_high_rad_s')
-    speed, low, high = (onset[name] / RPM for name in names)
-    if onset['reason']:
-        label = 'onset taken, not fitted'
-    else:
-        axes.axvspan(low, high, color=ORANGE, alpha=0.2, linewidth=0)
-        label = 'onset, extrapolated'
-    axes.axvline(speed, color=ORANGE, linestyle='--', label=label)
 
 
 def _draw_points(axes: Axes, run: NoLoadRun, torque: Array, label: str) -> None:

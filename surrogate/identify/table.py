@@ -170,10 +170,23 @@ def _axes(
         _load(screw, run),
         screw.roughness,
     )
-    factors = _factors(_thickness(oil, run), 'viscosity_factor' in fitted)
+    thick, speeds = _thickness(oil, run), np.unique(np.abs(run.speed))
+    low, high = float(thick.min()), float(thick.max())
+    varies = 'viscosity_factor' in fitted
+    if varies:
+        low, high = VISCOSITY_BOUNDS[0] * low, VISCOSITY_BOUNDS[1] * high
+    factors = np.ones(1)
+    if high / low - 1 >= SAME_VISCOSITY:
+        factors = np.geomspace(low, high, FACTORS if varies else FEW_FACTORS)
+    apart = bool((speeds[1:] / speeds[:-1] >= APART).all())
+    if len(factors) > 1 or len(speeds) > MOST_SPEEDS or not apart:
+        # The products of speed and viscosity span those of the run.
+        slow, fast = speeds[0] * factors[0], speeds[-1] * factors[-1]
+        number = math.ceil(NODES_PER_DECADE * math.log10(fast / slow)) + 1
+        speeds = np.geomspace(slow, fast, max(number, FEWEST_NODES))
     stated = np.array([sheet.asperity_friction])
     return _Axes(
-        nodes=_nodes(np.abs(run.speed), factors),
+        nodes=speeds,
         factors=factors,
         frictions=np.unique((*frictions, *stated)) if 'asperity_friction' in fitted else stated,
         onsets=ONSETS if 'onset_factor' in fitted else np.array([sheet.onset_factor]),
@@ -222,27 +235,6 @@ def _thickness(oil: Lubricant, run: NoLoadRun) -> Array:
             f'{TEMPERATURE_SPREAD:g} K in the full tier; split the data or use --tier closed_form'
         )
     return lubricant_state(oil, run.temperature).viscosity / oil.viscosity
-
-
-def _factors(thick: Array, fitted: bool) -> Array:
-    """Return the viscosities of the table over that at the mean temperature [-]."""
-    low, high = float(thick.min()), float(thick.max())
-    if fitted:
-        low, high = VISCOSITY_BOUNDS[0] * low, VISCOSITY_BOUNDS[1] * high
-    if high / low - 1 < SAME_VISCOSITY:
-        return np.ones(1)
-    return np.geomspace(low, high, FACTORS if fitted else FEW_FACTORS)
-
-
-def _nodes(speed: Array, factors: Array) -> Array:
-    """Return speeds [rad/s] at the mean viscosity whose products span those of the run."""
-    distinct = np.unique(speed)
-    apart = bool((distinct[1:] / distinct[:-1] >= APART).all())
-    if len(factors) == 1 and len(distinct) <= MOST_SPEEDS and apart:
-        return distinct
-    low, high = distinct[0] * factors[0], distinct[-1] * factors[-1]
-    number = math.ceil(NODES_PER_DECADE * math.log10(high / low)) + 1
-    return np.geomspace(low, high, max(number, FEWEST_NODES))
 
 
 def _rebalanced(
