@@ -176,6 +176,15 @@ def is_magnitude(torque: Array, speed: Array) -> bool | None:
     return amounts < signed
 
 
+def slopes(positions: Array) -> Array:
+    """Return the changes of positions from row to row [-], of those that hold one."""
+    known = np.flatnonzero(np.isfinite(positions))
+    found = np.full(len(positions), math.nan)
+    if len(known) > 1:
+        found[known] = np.gradient(positions[known])
+    return found
+
+
 def is_of_days(extremes: Array) -> bool:
     """Tell whether the least and the most of times [s] are begins of days by the calendar."""
     return bool((extremes > UNIVERSAL[0]).all() and not (extremes % DAY).any())

@@ -27,7 +27,7 @@ from ballscrew_monitor.recordings.tables.mapping import MOTOR
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
-from ballscrew_monitor.recordings.tables.series import of_amounts, unclear_sign
+from ballscrew_monitor.recordings.tables.series import are_apart, of_amounts, unclear_sign
 from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.time_gate import RATE, TimeGate
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
@@ -168,13 +168,17 @@ class _Guesser:
     def _unnamed(self) -> str:
         """Return in a sentence how a map names the columns of a table without names."""
         head = self.head
+        count = len(head.names)
         between = SEPARATED_BY.get(head.separator, repr(head.separator))
+        held = f'{count}, separated by {between}' if count > 1 else 'one'
         period = head.period if math.isfinite(head.period) else 0.001
+        epoch = f"epoch: '{EPOCH}'"
+        by_column = f' or `time: {{column: column 1, unit: s, {epoch}}}`' if count > 1 else ''
         return (
-            f'log {self.path}: no line names its columns, of which it has {len(head.names)}, '
-            f'separated by {between}: a map calls them by their numbers, such as '
-            '`axes: {x: {position: {column: column 2, unit: mm}, lead_mm: 10.0}}`, with '
-            f'`time: {{rate_Hz: {1.0 / period:g}}}` or `time: {{column: column 1, unit: s}}`'
+            f'log {self.path}: no line names its columns, of which it has {held}: a map calls '
+            f'them by their numbers, such as `axes: {{x: {{position: {{column: column '
+            f'{min(count, 2)}, unit: mm}}, lead_mm: 10.0}}}}`, with `time: {{rate_Hz: '
+            f'{1.0 / period:g}, {epoch}}}`{by_column}'
         )
 
     def _texts(self) -> dict[str, str]:
@@ -256,7 +260,7 @@ class _Guesser:
             if not {'speed', 'position'} & set(left):
                 self.axes.pop(name)
         if not self.axes:
-            raise InputError(f'log {self.path}: {"; ".join(self.notes)}')
+            raise InputError('; '.join(self.notes))
 
     def _time_column(self) -> dict[str, Any]:
         """Return what the map says of the time; take the step between rows if it is known."""
@@ -592,11 +596,15 @@ class _Guesser:
             return
         motion = chosen.get('speed') or chosen['position']
         speed = self.data[motion.column]
-        speed = speed if 'speed' in chosen or len(speed) < 2 else np.gradient(speed)
-        magnitude = estimates.is_magnitude(self.data[place['column']], speed)
+        speed = speed if 'speed' in chosen else estimates.slopes(speed)
+        torque = self.data[place['column']]
+        magnitude = estimates.is_magnitude(torque, speed)
+        if magnitude is None and self.head.program and self.head.program.are_amounts:
+            magnitude = True
         if magnitude is None:
             place['magnitude'] = None
-            self.unstated.append(unclear_sign(name, kind, place['column']))
+            apart = are_apart(self.table, place['column'], motion.column)
+            self.unstated.append(unclear_sign(name, kind, place['column'], apart=apart))
         elif magnitude:
             place['magnitude'] = True
             self.notes.append(of_amounts(name, kind, place['column']))
