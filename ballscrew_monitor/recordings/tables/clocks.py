@@ -123,9 +123,9 @@ def time_forms(texts: pl.Series) -> Iterator[tuple[TimeForm, ...]]:
     months = not english.equals(sample)
     by_hours: dict[str, list[TimeForm]] = {}
     signs = {letter for letter in ''.join(sample) if not letter.isalnum()}
-    texts = english.to_list()
+    written = english.to_list()
     for form, (needed, shape) in _all_forms().items():
-        if not needed <= signs or not any(map(shape.fullmatch, texts)):
+        if not needed <= signs or not any(map(shape.fullmatch, written)):
             continue
         made = dataclasses.replace(form, steps=(*steps, *([_GERMAN] if months else [])))
         if made._seconds(english).null_count() < len(sample):

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 import contextlib
 import dataclasses
 import datetime as dt
+import functools
 import math
 from pathlib import Path
 import re
@@ -534,11 +535,10 @@ class _Guesser:
             self._set_magnitude(name, kind)
             group = self.groups.get(used[kind]['column'], time)
             used[kind] |= {'time': group} if group != time else {}
-        lead = Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead * MILLI
         for key, value in (('screw', SCREW), ('oil', OIL)):
             self._assume(f'{name}.{key}', value, 'the log does not say it; the shipped one')
         why = f'the log does not say it; that of {SCREW}'
-        self._assume(f'{name}.lead_mm', float(f'{lead:.6g}'), why)
+        self._assume(f'{name}.lead_mm', float(f'{_usual_lead() * MILLI:.6g}'), why)
         self._set_load(name)
         if 'torque' in used and self._unit(name, 'torque') == RATED:
             self._state_motor(name, 'torque')
@@ -695,6 +695,12 @@ class _Guesser:
         }
         used |= {entry['value'] for entry in self.assumed.values()} | set(time.values())
         self.notes += names.left_out([one for one in self.named if one.column not in used])
+
+
+@functools.cache
+def _usual_lead() -> float:
+    """Return the lead [m] of the screw that is assumed."""
+    return Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead
 
 
 def _period(times: Array) -> float:

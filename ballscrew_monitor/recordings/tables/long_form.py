@@ -27,6 +27,7 @@ COMMENT = '#'
 SEPARATORS = (';', '\t', '|', ',')
 CODINGS = ('utf-8-sig', 'cp1252', 'latin-1')
 WIDEST = 12  # columns of a table with a value a line
+LOOKED_AT = 200  # of the first lines
 FEWEST = 4  # lines that show what a text is
 MOSTLY = 0.9  # of the lines
 MOST_PARTS = 64  # that one word tells apart, such as axes
@@ -119,9 +120,10 @@ def read_long(path: Path) -> tuple[pl.DataFrame, str]:
 
 def long_form(lines: Sequence[str]) -> LongForm | None:
     """Return how the lines of a text hold a value each, None where they do not."""
-    if sum(map(bool, map(str.strip, lines))) < FEWEST:
+    first = lines[:LOOKED_AT]
+    if sum(map(bool, map(str.strip, first))) < FEWEST:
         return None
-    forms = (_form(lines, separator) for separator in SEPARATORS)
+    forms = (_form(first, separator) for separator in SEPARATORS)
     return next((form for form in forms if form is not None), None)
 
 
