@@ -28,6 +28,8 @@ import polars as pl
 from surrogate import limits
 from surrogate.files import InputError
 
+OF_RECORDER = {'LOAD': RATED, 'TORQUE': 'N m', 'CURRENT': 'A'}
+"""Units of signals of a data recorder, which its file does not state."""
 DOCUMENT = re.compile('<!(?:DOCTYPE|ENTITY)', re.I)
 SIGNATURES = ((b'TDSm', 'tdms'), (b'MDF     ', 'mdf'), (b'MATLAB 5.0', 'mat'), (b'\x89HDF', 'hdf'))
 
@@ -73,12 +75,13 @@ def kind_of(head: bytes) -> str:
         return 'json'
     if text.startswith((b'<?xml', b'<')):
         return 'xml'
-    if line_messages.is_shdr(text):
-        return 'shdr'
     lines = long_form.first_lines(head)
+    form = long_form.long_form(lines)
+    if line_messages.is_shdr(text) and not (form and form.has_names):
+        return 'shdr'
     if line_messages.is_echo(lines):
         return 'echo'
-    return 'long' if long_form.long_form(lines) else ''
+    return 'long' if form else ''
 
 
 def read_signals(path: Path, kind: str) -> Signals:
@@ -117,7 +120,7 @@ def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
     for signal in header['SignalListHFData']:
         name, axis = str(signal['Name']), str(signal.get('Axis', ''))
         plain, letter = name.split('|')[0], axis if re.fullmatch(r'[A-Za-z]\d?', axis) else ''
-        plain = f'{plain} [{RATED}]' if plain == 'LOAD' else plain
+        plain = f'{plain} [{OF_RECORDER[plain]}]' if plain in OF_RECORDER else plain
         names.append(f'{letter} {plain}' if letter else plain)
     rows = [row for part in content['Payload'] for row in part.get('HFData', ())]
     columns = list(zip(*rows, strict=True))

@@ -13,6 +13,7 @@ import contextlib
 import dataclasses
 import datetime as dt
 import functools
+import itertools
 import math
 from pathlib import Path
 import re
@@ -46,6 +47,8 @@ NUMBERS = 4_000_000  # of the first rows that are in memory
 EPOCH = '2000-01-01T00:00:00Z'
 LATE = 2_147_483_648.0  # [s] since 1970: no stamp is later
 HARDEST = 1000.0  # amount of a force that no axis is driven with in kN
+APART = 0.05  # of the rows that hold neither of two signals of joined tables
+MANY = 10  # rows of which one is not known, of a signal in the rows of another
 TURNS = 6.3  # range of a joint from which its unit is no metre
 SEPARATED_BY = {';': 'semicolons', ',': 'commas', '\t': 'tabs', '|': 'bars', ' ': 'blanks'}
 ORDER_OR_SIGN = ('.', ',', 'order')
@@ -232,6 +235,7 @@ class _Guesser:
             self._fill(name, str(time.get('column', '')))
         if not time:
             time = self._time_without_column()
+        self._say_what_is_joined()
         self._say_what_is_left_out(time)
         content: dict[str, Any] = {'log': self.path.name}
         content |= {'date_from': self.date_from} if self.date_from else {}
@@ -318,7 +322,8 @@ class _Guesser:
         first, rising = values[:1], np.diff(np.unique(values[:NUMBERS]))
         step = float(np.median(rising)) if len(rising) else math.nan
         epochs = estimates.epoch_units(values) if len(values) > 1 else []
-        if stated and not (stated == 's' and epochs == ['labview_s'] and first > LATE):
+        of_days = stated == 'd' and bool(epochs)
+        if stated and not (stated == 's' and epochs == ['labview_s'] and first > LATE or of_days):
             return stated, ''
         if len(epochs) == 1:
             return epochs[0], ''
@@ -530,6 +535,7 @@ class _Guesser:
             for kind in INPUTS
             if kind in chosen and self._is_used(chosen[kind])
         }
+        self._forget_unitless(name)
         for kind in used:
             self._set_unit(name, kind)
             self._set_magnitude(name, kind)
@@ -560,6 +566,23 @@ class _Guesser:
         silent = estimates.is_silent(self.extremes[one.column])
         return one.kind in ('speed', 'position') or not silent
 
+    def _forget_unitless(self, name: str) -> None:
+        """Leave out torques and currents of an unknown unit but for that which tells the load."""
+        used, chosen = self.used[name], self.axes[name]
+        source = next((kind for kind in ('load', *MOTOR) if kind in used), '')
+        for kind in MOTOR:
+            if kind not in used or kind == source or chosen[kind].unit:
+                continue
+            column, values = chosen[kind].column, self.extremes[chosen[kind].column]
+            if column in self.joints and self._unit_of_joint(name, kind, values):
+                continue
+            used.pop(kind)
+            self.notes.append(
+                f'axis {name}: {column} states no unit that is known, and {chosen[source].column} '
+                f'tells the load: it is left out; state `{kind}: {{column: {column}, unit: '
+                f'{next(iter(UNITS[kind]))}}}` in the map to read it'
+            )
+
     def _set_unit(self, name: str, kind: str) -> None:
         place, stated = self.used[name][kind], self.axes[name][kind].unit
         if stated:
@@ -581,6 +604,13 @@ class _Guesser:
             return
         elif kind == 'load':
             unit, why = 'N', f'a force of {largest:.3g} is more than axes are driven with in kN'
+        elif kind in MOTOR:
+            place['unit'] = None
+            self.unstated.append(
+                f'state axes.{name}.{kind}.unit in the map, {" or ".join(UNITS[kind])}: '
+                f'{place["column"]} states none that is known, and the load is worked out from it'
+            )
+            return
         elif kind == 'temperature' and np.nanmin(values) > TEMPERATURE * 5:
             unit, why = 'K', f'its least is {np.nanmin(values):.3g}'
         else:
@@ -613,13 +643,13 @@ class _Guesser:
         """Let the map ask for the unit of a force, and offer what the load may be of instead."""
         place, chosen = self.used[name]['load'], self.axes[name]
         place['unit'] = None
-        kind = next((one for one in ('torque', 'current') if one in self.used[name]), '')
-        instead = (
-            f'; or write `load: {{from: {kind}}}` there, so that {chosen[kind].column} tells the '
-            'load'
-            if kind
-            else ''
-        )
+        instead = ''
+        for kind in [one for one in MOTOR if one in chosen and self._is_used(chosen[one])][:1]:
+            column, unit = chosen[kind].column, chosen[kind].unit or next(iter(UNITS[kind]))
+            instead = (
+                f'; or write `load: {{from: {kind}}}` and `{kind}: {{column: {column}, unit: '
+                f'{unit}}}` there, so that {column} tells the load'
+            )
         self.unstated.append(
             f'state axes.{name}.load.unit in the map, {" or ".join(UNITS["load"])}: '
             f'{place["column"]} states none that is known, and forces of up to {largest:.3g} may '
@@ -685,6 +715,23 @@ class _Guesser:
             f'state axes.{name}.torque_rated_Nm in the map, the torque at the screw of 100 %: '
             f'{self.axes[name][kind].column} is in % of it, and it is on the plate of the motor'
         )
+
+    def _say_what_is_joined(self) -> None:
+        """Say of signals that hold words such as NaN in the rows of each other what to write."""
+        unknown = {
+            one.column: np.isnan(self.data[one.column])
+            for chosen in self.axes.values()
+            for one in chosen.values()
+            if self.table.readings[one.column].note
+        }
+        for (name, rows), (other, others) in itertools.combinations(unknown.items(), 2):
+            if min(rows.mean(), others.mean()) > 1.0 / MANY and (rows & others).mean() < APART:
+                self.notes.append(
+                    f'{short(name)} and {short(other)} hold no number in the rows of each other, '
+                    'as joined tables do: leave those cells empty, for a word there is a number '
+                    'that is not known'
+                )
+                return
 
     def _say_what_is_left_out(self, time: Mapping[str, Any]) -> None:
         used = {

@@ -42,6 +42,7 @@ def is_shdr(text: bytes) -> bool:
 def read_shdr(path: Path) -> pl.DataFrame:
     """Return the signals of lines of an adapter; a value that stays is repeated."""
     found: dict[str, tuple[list[str], list[float]]] = {}
+    odd: set[str] = set()  # signals some of whose numbers are written in another way
     with path.open(encoding='utf-8', errors='replace') as stream:
         for line in stream:
             stamp, *rest = line.rstrip('\r\n').split('|')
@@ -51,11 +52,13 @@ def read_shdr(path: Path) -> pl.DataFrame:
                     stamps, values = found.setdefault(name, ([], []))
                     stamps.append(stamp.rstrip('Z'))
                     values.append(_number(value))
+                    if math.isnan(values[-1]) and value[-1:].isdigit():
+                        odd.add(name)
     frames = {}
     for name, (stamps, values) in found.items():
         times = pl.Series(stamps).str.to_datetime(STAMP, time_unit='ns', strict=False)
         frame = pl.DataFrame({'time': times, name: values}).drop_nulls('time').sort('time')
-        if frame[name].is_finite().sum() > 1:
+        if name not in odd and frame[name].is_finite().sum() > 1:
             frames[name] = frame.unique('time', keep='last', maintain_order=True)
     rows = list(_by_axis(frames))
     return pl.concat(rows, how='diagonal').sort('time') if rows else pl.DataFrame()

@@ -70,6 +70,11 @@ class LongForm:
     unit: int = -1
     quality: int = -1
 
+    @property
+    def has_names(self) -> bool:
+        """Return True if a line names its columns."""
+        return any(self.names)
+
 
 def first_lines(head: bytes) -> list[str]:
     """Return the whole lines of a text that begins so."""

@@ -7,6 +7,7 @@ import math
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
+from ballscrew_monitor.recordings.tables.sources import source_of
 import numpy as np
 import pytest
 
@@ -97,3 +98,10 @@ def test_a_load_on_change_holds_until_the_next_and_is_an_amount(tmp_path):
     wanted = 0.1 * (40.0 + 20.0 * np.abs(np.cos(seconds[known] / 8.0)))
     np.testing.assert_allclose(np.abs(torque), wanted, atol=0.4)
     np.testing.assert_array_equal(np.sign(torque), np.sign(np.cos(seconds[known] / 8.0)))
+
+
+def test_a_signal_with_numbers_of_another_form_is_left_out(tmp_path):
+    path = tmp_path / 'mill.shdr'
+    adapter(path)
+    path.write_text(path.read_text().replace('X1load|60', "X1load|1'060"))
+    assert source_of(path).names() == ['time', 'X1actm']
