@@ -474,9 +474,8 @@ class _Guesser:
         if math.isfinite(self.head.period) and not self.not_times:
             self.step = self.head.period
             self._set_epoch('the log has no time that is read')
-            self.notes.append(
-                f'the head states a period of {self.step:g} s in line {self.head.period_row}'
-            )
+            row = f' in line {self.head.period_row}' if self.head.period_row else ''
+            self.notes.append(f'the head states a period of {self.step:g} s{row}')
             return {'rate_Hz': float(f'{1.0 / self.step:.9g}')}
         motions = {
             name: self._motion(name)

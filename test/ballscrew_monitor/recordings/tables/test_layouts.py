@@ -235,5 +235,11 @@ def test_a_drawn_layout_is_read_right_or_refused(part, seed, tmp_path_factory):
     drawn(f'{part} {seed}', tmp_path_factory.getbasetemp())
 
 
+def test_a_value_a_line_between_bars_is_not_taken_for_lines_of_an_adapter(tmp_path):
+    made = layout(random.Random(0)) | {'separator': '|', 'time': 'iso T', 'sign': '.', 'part': "'"}
+    text, true = written(made | {'grouping': 'a value a line', 'quoted': False})
+    assert check(text, true, tmp_path / 'log.csv')
+
+
 def test_most_of_drawn_layouts_are_read(tmp_path):
     assert sum(drawn(seed, tmp_path) for seed in range(DRAWN)) >= 0.7 * DRAWN
