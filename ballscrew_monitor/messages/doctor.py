@@ -31,7 +31,7 @@ class Heard:
     What came of an input while it was listened to.
 
     Lowest and highest number as the messages hold them, NaN without any, and the longest time
-    [s] without a message.
+    [s] without a message. `moved` says whether the position beside a velocity did.
 
     """
 
@@ -39,6 +39,7 @@ class Heard:
     low: float = math.nan
     high: float = math.nan
     longest_gap: float = math.nan
+    moved: bool = False
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -48,7 +49,7 @@ class InputFacts:
 
     `scalings` hold the lines to SI units by unit, and `known` is the range of the surface [SI];
     both are empty where the surface is not known. `problem` is why the field cannot be read, and
-    `numbers` are the fields that could.
+    `numbers` are the fields that could. `beside` are field and unit of the position beside it.
 
     """
 
@@ -62,6 +63,7 @@ class InputFacts:
     heard: Heard | None = None
     problem: str = ''
     numbers: tuple[str, ...] = ()
+    beside: tuple[str, str] = ('', '')
 
     @property
     def parameter(self) -> str:
@@ -142,9 +144,21 @@ def _of_input(facts: InputFacts, around: Surroundings, seconds: float) -> list[s
         found.append(f'{facts.parameter}: {reason}{instead}')
     if facts.problem and not (reason and facts.link.publishers):
         found.append(f'{facts.parameter}: {facts.problem}: {_readable(facts)}')
+    if facts.heard is not None and facts.heard.moved and not any(_ends(facts.heard)):
+        field, unit = facts.beside
+        return [
+            *found,
+            f'{facts.parameter}: it is 0 or missing while {field} moves: set '
+            f"{facts.parameter}.field to '{field}' and {facts.parameter}.unit to '{unit}'",
+        ]
     if facts.heard is not None:
         found += [*_of_health(facts, facts.heard, seconds), *unit_doubts(facts, facts.heard)]
     return found
+
+
+def _ends(heard: Heard) -> tuple[float, float]:
+    """Return the lowest and the highest number, 0 without any."""
+    return (0.0, 0.0) if math.isnan(heard.low) else (heard.low, heard.high)
 
 
 def _readable(facts: InputFacts) -> str:

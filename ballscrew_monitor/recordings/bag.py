@@ -52,11 +52,13 @@ class Bag:
 
     `metadata` is what it says of itself; `refused` counts by topic the messages that did not
     decode, with a sentence about the first. `promised` counts by topic the messages that its own
-    metadata state, empty without any; those that are `absent` are not in its files.
+    metadata state, empty without any; those that are `absent` are not in its files. Topics that
+    others are `worked_out` of need no reader of their own.
 
     """
 
     absent = 'counted by metadata.yaml and not in the files'
+    worked_out: frozenset[str] = frozenset()
 
     def __init__(self, path: str | Path, *, salvage: bool = False) -> None:
         """

@@ -69,6 +69,11 @@ def _sentence(step: str) -> str:
 def next_steps(entries: Sequence[LogEntry], checked: Checked) -> list[str]:
     """Return what to do and what to record, each once, what hinders a verdict first."""
     steps = [f'{name}: {why}' for name, whys in checked.unstated.items() for why in whys]
+    if steps:
+        steps.append(
+            'Correct the maps of these logs, which the table below names, and lay each beside its '
+            'log: feed.map.yaml for feed.csv'
+        )
     judged = [one for one in entries if one.result and one.folder not in checked.free]
     lines = [line for one in judged if one.result for line in one.result.lines]
     steps += [f'Axis {line.axis}: {line.remedy.rstrip(".")}' for line in lines if line.remedy]

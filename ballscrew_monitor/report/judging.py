@@ -393,7 +393,7 @@ def judge_log(
         unread={
             topic: info.count
             for topic, info in bag.topics.items()
-            if not numbered and topic not in input_topics(parameters.values)
+            if not numbered and topic not in {*input_topics(parameters.values), *bag.worked_out}
         },
     )
 

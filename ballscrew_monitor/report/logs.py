@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings that are meant, bags, files, and folders that hold some; and folders of reports."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 import contextlib
 from pathlib import Path
 import re
@@ -15,24 +15,31 @@ PAGE, STATES, EVENTS, JUDGED = 'report.html', 'states.parquet', 'events.csv', 'j
 SUMMARY, PICTURE = 'summary.json', 'cycle.png'
 PRODUCTS = (JUDGED, STATES, EVENTS)
 """How a folder with a report is known, and what is no recording in it."""
+NO_LOGS = ('.yaml', '.yml', '.md', '.html', '.py', '.pdf', '.png', '.npz', '.toml', '.active')
+"""Endings of what may lie beside recordings."""
 MOST_NAMED = 5  # tables that are left out
 _UNSAFE = re.compile(r'[^\w.-]+')
 
 
 def find_logs(
-    paths: Iterable[Path], *, tables: bool = False, out: Path | None = None
+    paths: Iterable[Path],
+    *,
+    tables: bool = False,
+    out: Path | None = None,
+    is_log: Callable[[Path], bool] | None = None,
 ) -> list[Path]:
     """
     Return the recordings that paths name, those in a folder in the order of their names.
 
     A path that is a bag or a file stands for itself, whatever is in it; `tables` tells whether
-    those in a folder count too. Products of reports do not, nor does the folder `out` of reports
-    to come. Raises InputError for a folder without any recording.
+    those in a folder count too, and `is_log` which files of other endings are among them. Products
+    of reports do not, nor does the folder `out` of reports to come. Raises InputError for a folder
+    without any recording.
 
     """
     found: list[Path] = []
     for path in paths:
-        held = _recordings(path, tables, out)
+        held = _recordings(path, tables, out, is_log)
         if not held:
             endings, there = (*ENDINGS, *TABLES) if tables else ENDINGS, _files(path, TABLES)
             hint = '--guess > map.yaml, then --map map.yaml'
@@ -45,12 +52,27 @@ def find_logs(
     return list(dict.fromkeys(found))
 
 
-def _recordings(path: Path, tables: bool, out: Path | None) -> list[Path]:
+def _recordings(
+    path: Path, tables: bool, out: Path | None, is_log: Callable[[Path], bool] | None
+) -> list[Path]:
     """Return a path that is one recording, else those in a folder and in the ones below it."""
     if not path.is_dir() or is_one_bag(path, tables=tables, out=out):
         return [path]
-    below = [one for child in _folders(path, out) for one in _recordings(child, tables, out)]
-    return _files(path, (*ENDINGS, *TABLES) if tables else ENDINGS) + below
+    below = [
+        one for child in _folders(path, out) for one in _recordings(child, tables, out, is_log)
+    ]
+    held = _files(path, (*ENDINGS, *TABLES) if tables else ENDINGS)
+    if is_log is not None:
+        held += [
+            file
+            for file in _held(path)
+            if file.is_file()
+            and file not in held
+            and not file.name.startswith('.')
+            and file.suffix.lower() not in NO_LOGS
+            and is_log(file)
+        ]
+    return sorted(held) + below
 
 
 def left_out(paths: Sequence[Path], logs: Sequence[Path], out: Path | None = None) -> list[str]:

@@ -12,6 +12,8 @@ from typing import Any
 from ballscrew_monitor.recordings import log_facts
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import ChosenValues, LogFacts, PREFIX
+from ballscrew_monitor.recordings.positions import by_position, still_speed
+from ballscrew_monitor.recordings.recorded_events import judged_by_events
 from ballscrew_monitor.settings.parameters import flatten
 from surrogate.units import MILLI
 
@@ -113,6 +115,7 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
     """
     chosen = log_facts.values_for(bag, given, nominal)
     facts, assumptions = log_facts.facts_of(bag), {}
+    chosen, still = _by_position(bag, chosen) if facts is None else (chosen, ())
     if facts is not None:
         facts = dataclasses.replace(facts, assumptions=tuple(_still_assumed(facts, chosen)))
         assumptions = {
@@ -122,8 +125,8 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
         values=chosen.values,
         origin=chosen.origin,
         assumptions=assumptions,
-        notes=() if facts is None else facts.notes,
-        sentences=() if facts is None else facts.sentences(),
+        notes=still if facts is None else facts.notes,
+        sentences=still if facts is None else facts.sentences(),
         axes={
             axis: _axis_facts(axis, facts, assumptions, chosen) for axis in chosen.values['axes']
         },
@@ -131,6 +134,17 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
         metadata=_metadata(bag, facts, chosen),
         machine=_machine(facts, chosen),
     )
+
+
+def _by_position(bag: Bag, chosen: ChosenValues) -> tuple[ChosenValues, tuple[str, ...]]:
+    """Return values that read no speed which is 0 while the axis moves; a sentence of each."""
+    if judged_by_events(bag, chosen.values):
+        return chosen, ()
+    values, notes = dict(chosen.values), []
+    for axis, (field, unit) in by_position(bag, values).items():
+        notes.append(still_speed(axis, values[f'{axis}.speed.field'], field, unit))
+        values |= {f'{axis}.speed.field': field, f'{axis}.speed.unit': unit}
+    return dataclasses.replace(chosen, values=values), tuple(notes)
 
 
 def _machine(facts: LogFacts | None, chosen: ChosenValues) -> str:

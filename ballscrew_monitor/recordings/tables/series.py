@@ -17,7 +17,13 @@ from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.dates import dated
-from ballscrew_monitor.recordings.tables.estimates import FACTOR, is_magnitude, is_one_sided, NEAR
+from ballscrew_monitor.recordings.tables.estimates import (
+    FACTOR,
+    is_magnitude,
+    is_one_sided,
+    NEAR,
+    slopes,
+)
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, MOTOR, TableMap
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import open_table, Table
@@ -204,21 +210,35 @@ def _with_sign(path: Path, axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
         motion = axis.columns.get('speed') or axis.columns['position']
         data = table.head(SHOWING)
         speed = line(data[motion.name], motion, 1.0)
-        speed = speed if 'speed' in axis.columns else np.gradient(speed)
+        speed = speed if 'speed' in axis.columns else slopes(speed)
         magnitude = is_magnitude(line(data[column.name], column, 1.0), speed)
         if magnitude is None:
-            raise InputError(f'log {path}: {unclear_sign(axis.name, kind, column.name)}')
+            apart = are_apart(table, column.name, motion.name)
+            raise InputError(
+                f'log {path}: {unclear_sign(axis.name, kind, column.name, apart=apart)}'
+            )
         column = dataclasses.replace(column, magnitude=magnitude)
         axis = dataclasses.replace(axis, columns={**axis.columns, kind: column})
     return axis, of_amounts(axis.name, kind, column.name) if column.magnitude else ''
 
 
-def unclear_sign(axis: str, kind: str, column: str) -> str:
-    """Return what decides whether a column of one sign holds amounts."""
-    return (
-        f'state axes.{axis}.{kind}.magnitude in the map, true or false: {short(column)} never '
-        'changes its sign while the axis reverses, as amounts do, and a torque that holds a weight'
+def unclear_sign(axis: str, kind: str, column: str, *, apart: bool) -> str:
+    """Return what decides whether a column of one sign holds amounts, at times of its own."""
+    why = (
+        f'{short(column)} never changes its sign while the axis reverses, as amounts do, and a '
+        'torque that holds a weight'
     )
+    if apart:
+        return (
+            f'state `axes.{axis}.{kind}.magnitude: false` in the map if it has a sign, else take '
+            f'the column out of the map: {why}, and amounts need the times of the motion'
+        )
+    return f'state axes.{axis}.{kind}.magnitude in the map, true or false: {why}'
+
+
+def are_apart(table: Table, one: str, other: str) -> bool:
+    """Return True if two columns of one time have their samples in different rows."""
+    return table.readings[one].holes != table.readings[other].holes
 
 
 def of_amounts(axis: str, kind: str, column: str) -> str:

@@ -33,6 +33,7 @@ from surrogate.files import InputError
 
 HEAD = 65536  # [bytes] of a file that tell what it is
 LINES = 2000  # of a table that tell where its numbers begin
+FEWEST = 20  # rows of numbers of a log whose ending says nothing
 SHORT = 4096  # [bytes] of a block, in which a line usually ends
 BLOCK = 32768  # rows that are read at a time
 PART = 4 * limits.MEGA  # [bytes] of a text that are read at a time
@@ -100,6 +101,18 @@ def source_of(path: Path, layout: Layout | None = None) -> Source:
         frame = signals.frame.lazy()
         return of_frame(path, frame, signals.head(), signals.frame.height, math.inf)
     return _text(path, layout, _Text.of(path, head))
+
+
+def is_log(path: Path) -> bool:
+    """Return True if a file holds rows of numbers or signals, whatever its ending."""
+    with contextlib.suppress(InputError):
+        head = _head_of(path)
+        if head.startswith((PARQUET, ZIP)):
+            return head.startswith(PARQUET)
+        if kind := foreign.kind_of(head):
+            return bool(foreign.read_signals(path, kind).frame.width)
+        return heads.holds_numbers(_first_lines(_Text.of(path, head))[0], FEWEST)
+    return False
 
 
 def of_frame(path: Path, frame: pl.LazyFrame, head: Head, rows: int, most: float) -> Source:

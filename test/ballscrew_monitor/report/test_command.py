@@ -154,7 +154,7 @@ def test_the_real_log_ends_in_a_page_that_says_what_was_assumed(tmp_path, capsys
     log = Path(os.environ['BALLSCREW_RECORDINGS']) / 'cnc_mill' / 'experiment_01.csv'
     assert cli.main(['import', str(log), '--guess']) == 0
     stated = capsys.readouterr().out.replace('rate_Hz: null', 'rate_Hz: 10')
-    (tmp_path / 'map.yaml').write_text(stated)
+    (tmp_path / 'map.yaml').write_text(stated.replace('unit: null', 'unit: A'))
     out = tmp_path / 'out'
     arguments = ['replay', str(log), '--map', str(tmp_path / 'map.yaml'), '--out', str(out)]
     assert cli.main(arguments) == 0

@@ -302,3 +302,13 @@ def test_memory_does_not_grow_with_the_rows(tmp_path, monkeypatch):
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     assert peaks[2] - peaks[1] < 500_000  # 35 000 rows are 840 000 bytes, their events 5 million
+
+
+def test_a_topic_of_which_a_load_was_worked_out_is_not_unread(tmp_path):
+    path = tmp_path / 'log.csv'
+    path.write_text('t,v,M\n' + ''.join(f'{n},5.0,\n{n + 5},,0.4\n' for n in range(0, 900, 10)))
+    axis = {'speed': SPEED, 'torque': TORQUE, 'load': {'from': 'torque'}, 'lead_mm': 10.0}
+    log = TableLog(path, make_map({'time': TIME, 'axes': {'x': axis}}))
+    assert log.worked_out == {'/joint_states_2'} <= set(log.topics)
+    read = axis | {'load': {'unknown': 'no sensor'}}
+    assert not TableLog(path, make_map({'time': TIME, 'axes': {'x': read}})).worked_out
