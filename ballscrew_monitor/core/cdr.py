@@ -51,7 +51,7 @@ def _message_encoder(message_type: Any) -> Encoder:
 
 
 def _is_plain(kind: Any) -> bool:
-    """Tell whether a field is a number as it stands; an octet is a `bytes` of length one."""
+    """Return True if a field is a number as it stands; an octet is a `bytes` of length one."""
     return getattr(kind, 'typename', 'octet') in FORMATS.keys() - {'octet'}
 
 

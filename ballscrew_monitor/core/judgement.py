@@ -100,12 +100,12 @@ class WarningPolicy(enum.StrEnum):
 
     @property
     def of_zone(self) -> bool:
-        """Tell whether they warn of a point outside the optimal zone."""
+        """Return True if they warn of a point outside the optimal zone."""
         return self is not WarningPolicy.CHANGE
 
     @property
     def of_change(self) -> bool:
-        """Tell whether they warn of an axis that is worse than its baseline."""
+        """Return True if they warn of an axis that is worse than its baseline."""
         return self is not WarningPolicy.ZONE
 
 

@@ -138,7 +138,7 @@ class Shelving:
         return self if 0 < self.until - now <= LONGEST_SHELVING else NOT_SHELVED
 
     def is_over(self, now: int) -> bool:
-        """Tell whether it has ended at `now` [ns]; not by a clock that is behind or at zero."""
+        """Return True if it has ended at `now` [ns]; not by a clock that is behind or at zero."""
         return 0 < self.until <= now
 
 

@@ -60,7 +60,6 @@ class ManyJudge:
     """Judges arrays of events in the place of a monitor."""
 
     def __init__(self, monitor: Monitor) -> None:
-        """Begin with what the monitor remembers, its settings and its surface."""
         self._monitor = monitor
         monitor.nearest = compiled_nearest()
         self._rows = np.empty(AT_ONCE, dtype=ROW)

@@ -13,7 +13,7 @@ import math
 import operator
 from typing import Any
 
-from ballscrew_monitor.core.advice import Advice, Advisor, interpreted, Nearest
+from ballscrew_monitor.core.advice import Advisor, interpreted, Nearest
 from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source, StampSource
@@ -121,7 +121,6 @@ class Monitor:
     """Judges one axis; feed it events in order."""
 
     def __init__(self, surface: Surface, settings: MonitorSettings) -> None:
-        """Begin with nothing received, and the level UNKNOWN."""
         self.settings = settings
         self.use_surface(surface)
         self.memory = Memory()
@@ -214,13 +213,18 @@ class Monitor:
         self._ending = ending
 
     @property
-    def advice(self) -> Advice:
-        """Return where the warning of the last event would clear; the first time takes long."""
+    def target_speed(self) -> float:
+        """
+        Return the nearest speed [rad/s] that would clear the last event, NaN if none is advised.
+
+        The first time takes milliseconds.
+
+        """
         memory = self.memory
         speed, load = float(memory.event_speed[ACTIVE]), float(memory.event_load[ACTIVE])
         temperature = float(memory.event_temperature[ACTIVE])
         if not math.isfinite(speed + load + temperature):
-            return Advice()
+            return math.nan
         advisor = Advisor(
             speed=speed,
             axial_load=load,
@@ -233,7 +237,7 @@ class Monitor:
         )
         if advisor != self._advisor:
             self._advisor = advisor
-        return self._advisor.advice
+        return self._advisor.target_speed
 
     @property
     def shelving(self) -> Shelving:

@@ -123,13 +123,18 @@ def step_many(
 
 
 def _take(settings: Any, memory: Any, positions: Any, event: Any) -> bool:
-    """Take a sample or a refusal; tell whether it is a speed to judge."""
+    """Take a sample or a refusal; return True if it is a speed to judge."""
     source = event.source
     lose(memory, source, event.lost, event.arrival)
     if event.kind == REFUSAL:
         take_refusal(memory, event)
         return False
-    if not _is_usable(settings, memory, event):
+    if not math.isfinite(event.value):
+        refuse(memory, source, NOT_A_NUMBER, 0.0, math.nan, event.arrival)
+        return False
+    # Of a position: plausible or not is the speed that follows from it.
+    is_position = source == SPEED and settings.positions
+    if not is_position and not _is_plausible(settings, memory, event, event.value):
         return False
     if memory.known[source] != 0 and event.stamp < memory.sample_stamp[source]:
         if memory.sample_stamp[source] - event.stamp <= BACKWARD_JUMP:
@@ -177,17 +182,6 @@ def leave_out(memory: Any, step: int) -> None:
         memory.event_start[ACTIVE] += step
         memory.event_stamp += step
     memory.raising = memory.clearing = memory.moment = False
-
-
-def _is_usable(settings: Any, memory: Any, event: Any) -> bool:
-    """Tell whether the value of a sample can be used, and refuse it if not."""
-    if not math.isfinite(event.value):
-        refuse(memory, event.source, NOT_A_NUMBER, 0.0, math.nan, event.arrival)
-        return False
-    # Of a position: plausible or not is the speed that follows from it.
-    if event.source == SPEED and settings.positions:
-        return True
-    return _is_plausible(settings, memory, event, event.value)
 
 
 def _is_plausible(settings: Any, memory: Any, event: Any, value: float) -> bool:
@@ -244,7 +238,7 @@ def _odd_position(settings: Any, positions: Any, event: Any) -> tuple[int, float
 
 
 def _is_tick_due(settings: Any, memory: Any, now: int) -> bool:
-    """Take the grid stamp `now` [ns]; tell whether the speed is missing or stale there."""
+    """Take the grid stamp `now` [ns]; return True if the speed is missing or stale there."""
     # Both the clock and the speed: stamps may run ahead of the clock, as far as is allowed.
     if memory.last_tick - now > BACKWARD_JUMP:
         if is_ahead(memory, SPEED, now + BACKWARD_JUMP):
@@ -276,20 +270,15 @@ def _judge(tables: Any, settings: Any, memory: Any, speeds: Any, row: Any) -> in
     follow_excursion(settings, memory, row, before)
     row.level, row.level_since = memory.level, memory.level_since
     row.event_id = memory.event_number
-    row.published = row.edge != 0 or memory.level != before or _is_state_due(settings, memory)
+    period = settings.publish_period  # the first row in each is published
+    due = period == 0 or not memory.published
+    due = due or memory.stamp // period != memory.last_published // period
+    row.published = row.edge != 0 or memory.level != before or due
     if not row.published:
         return ROW
     look_up_rest(tables, opposing_load(row), row)
     memory.published, memory.last_published, memory.window_told = True, row.stamp, True
     return STATE
-
-
-def _is_state_due(settings: Any, memory: Any) -> bool:
-    """Tell whether the row is the first one in its period."""
-    period = settings.publish_period
-    if period == 0 or not memory.published:
-        return True
-    return memory.stamp // period != memory.last_published // period
 
 
 def _forget_the_future(settings: Any, memory: Any, now: int) -> None:
@@ -318,21 +307,17 @@ def _jump_back(memory: Any, stamp: int) -> None:
 
     """
     if memory.known[SPEED] != 0:
-        _move_times(memory, stamp - memory.sample_stamp[SPEED])
+        shift = stamp - memory.sample_stamp[SPEED]
+        memory.level_since = max(0, memory.level_since + shift)
+        memory.raising = memory.clearing = False
+        if memory.event_active:
+            memory.event_start[ACTIVE] = max(0, memory.event_start[ACTIVE] + shift)
+            memory.event_stamp = max(0, memory.event_stamp + shift)
+        if memory.since != 0:
+            memory.since = max(0, memory.since + shift)
     memory.stamp = stamp
     memory.moment = memory.pending = memory.published = False
     memory.direction, memory.light = NO_DIRECTION, False
     for source in range(INPUTS):
         if is_ahead(memory, source, stamp + BACKWARD_JUMP):
             forget(memory, source)
-
-
-def _move_times(memory: Any, shift: int) -> None:
-    """Move the times that have begun by `shift` [ns] with the clock."""
-    memory.level_since = max(0, memory.level_since + shift)
-    memory.raising = memory.clearing = False
-    if memory.event_active:
-        memory.event_start[ACTIVE] = max(0, memory.event_start[ACTIVE] + shift)
-        memory.event_stamp = max(0, memory.event_stamp + shift)
-    if memory.since != 0:
-        memory.since = max(0, memory.since + shift)

@@ -207,7 +207,7 @@ def unit_doubts(facts: InputFacts, heard: Heard) -> list[str]:
 
 
 def _suits(facts: InputFacts, heard: Heard, unit: str) -> bool:
-    """Tell whether what was heard would be near the range of the surface in a unit."""
+    """Return True if what was heard would be near the range of the surface in a unit."""
     assert facts.known is not None
     values = [facts.scalings[unit](number) for number in (heard.low, heard.high)]
     if facts.source is Source.TEMPERATURE:

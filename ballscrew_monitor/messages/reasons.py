@@ -41,15 +41,15 @@ def _refusal_reason(why: Why, link: Link | None, parameter: str) -> str:
     return f'{code.said}, {code.cure}'
 
 
-def _is_refused(status: InputStatus) -> bool:
-    """Tell whether many messages are refused; implausible ones have words of their own."""
-    others = set(status.refusing) - {Why.IMPLAUSIBLE}
-    return bool(others) and status.refused_share >= SHARE
-
-
 Happens = Callable[[InputStatus, Link | None], Any]
 _TROUBLES: dict[Fault, tuple[Happens, Cure | None]] = {
-    Fault.REFUSED: (lambda status, link: _is_refused(status), _refused),
+    # Implausible messages have words of their own.
+    Fault.REFUSED: (
+        lambda status, link: (
+            {*status.refusing} - {Why.IMPLAUSIBLE} and status.refused_share >= SHARE
+        ),
+        _refused,
+    ),
     Fault.GLITCHES: (lambda status, link: status.glitching, None),
     Fault.LOST: (lambda status, link: status.losing, None),
     Fault.SIMULATED_STAMPS: (lambda status, link: status.lag > seconds(YEAR), None),

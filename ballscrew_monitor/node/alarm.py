@@ -84,13 +84,13 @@ class Alarm:
         self._note_event(kind, point=point_facts(row), **before)
         self.publish()
         if active:
-            texts = event_cause(memory).text, advice_text(monitor.advice, self.health)
+            texts = event_cause(memory).text, advice_text(monitor.target_speed, self.health)
             self._warn(f'event {number}: {"; ".join(filter(None, texts))}')
         elif monitor.level is Level.OK:
             self._say(f'event {number} is over')
 
     def end(self, reason: str) -> bool:
-        """End the event that is active, because nothing is judged any more; tell if one was."""
+        """End the active event, as nothing is judged any more; return True if there was one."""
         monitor = self._axis.monitor
         ending = Ending(EventEnd.STOPPED, reason=reason)
         ended = monitor.acknowledge(self._now, ending)
@@ -137,7 +137,7 @@ class Alarm:
         self.remember()
 
     def end_shelving(self) -> bool:
-        """End the shelving if its time is over; tell whether it was."""
+        """End the shelving if its time is over; return True if it was."""
         over = self._axis.monitor.shelving.is_over(self._now)
         if over:
             self.shelve(NOT_SHELVED)
@@ -153,7 +153,7 @@ class Alarm:
 
     def _note_event(self, kind: Kind, **facts: Any) -> None:
         monitor = self._axis.monitor
-        advice = advice_text(monitor.advice, self.health)
+        advice = advice_text(monitor.target_speed, self.health)
         event = event_facts(monitor.memory, monitor.ending, advice)
         self._note(kind, stamp=monitor.memory.event_stamp, **event, **facts)
 

@@ -132,7 +132,7 @@ class AxisPublisher:
         self._show_shelving()
 
     def end_shelving(self) -> bool:
-        """End a shelving that is over; tell whether one was."""
+        """End a shelving that is over; return True if one was."""
         over = self.alarm.end_shelving()
         if over:
             self._show_shelving()
@@ -290,7 +290,7 @@ class AxisPublisher:
         return result
 
     def has_news(self, now: int) -> bool:
-        """Tell whether at `now` [ns] the last state changes what was said, if not just now."""
+        """Return True if at `now` [ns] the last state changes what was said, if not just now."""
         if self._last is None or now - self._said_at < NEWS_INTERVAL:
             return False
         return self._summaries() != self._said

@@ -252,7 +252,6 @@ class NodeRecorder:
     def __init__(
         self, node: Node, values: Mapping[str, Any], publishers: Mapping[str, Any]
     ) -> None:
-        """Record nothing at first; `publishers` have the axes by name."""
         self.events = SILENT
         self._node, self._values, self._publishers = node, values, publishers
         self._start: Callable[[], RecordingProcess] | None = None

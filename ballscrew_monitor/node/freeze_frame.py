@@ -26,7 +26,6 @@ class FreezeFrame:
     """Rows of the last SPAN, one a STEP, and each that begins or ends an event."""
 
     def __init__(self) -> None:
-        """Begin with nothing judged."""
         self._rows: deque[tuple[Any, ...]] = deque(maxlen=SPAN // STEP + 1)
         self._read = operator.attrgetter('stamp', *QUANTITIES.values())
 

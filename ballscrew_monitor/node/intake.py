@@ -187,7 +187,7 @@ class Intake(Waitable):
             handler.add_to_wait_set(wait_set)
 
     def is_ready(self, wait_set: Any) -> bool:
-        """Tell whether anything has come."""
+        """Return True if anything has come."""
         self._changed = [handler for handler in self._matches if handler.is_ready(wait_set)]
         come = any(wait_set.is_ready('subscription', place) for place in self._places)
         return come or bool(self._changed)

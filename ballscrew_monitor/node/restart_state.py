@@ -88,7 +88,7 @@ class RestartState:
 
     @property
     def is_held(self) -> bool:
-        """Tell whether the folder is that of this node alone."""
+        """Return True if the folder is that of this node alone."""
         return self._database is not None and self._database.is_open
 
     def forget_problems(self) -> None:
@@ -134,7 +134,7 @@ class RestartState:
             return found or (blank if late else self._latest.get(key, blank))
 
     def is_late(self, axis: str) -> bool:
-        """Tell whether an earlier node left something of an axis that is not recalled yet."""
+        """Return True if an earlier node left something of an axis that is not recalled yet."""
         return any(axis == one for _, one in self._found or ())
 
     def flush(self) -> str:

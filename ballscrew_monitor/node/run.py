@@ -76,7 +76,7 @@ def _end(node: BallscrewMonitor, executor: SingleThreadedExecutor) -> None:
 
 
 def wants_localhost(arguments: Sequence[str]) -> bool:
-    """Tell whether the arguments of the node set `localhost`; the last one counts."""
+    """Return True if the arguments of the node set `localhost`; the last one counts."""
     given = list(_ros_arguments(arguments))
     node = _full_name(value for kind, value in given if kind == '-r')
     wanted = False
@@ -148,7 +148,7 @@ def _patterns(
 
 
 def _matches(pattern: str, node: str) -> bool:
-    """Tell whether a pattern means the node; `*` stands for one part of a name, `**` for any."""
+    """Return True if a pattern means the node; `*` stands for one part of a name, `**` for any."""
     parts = {'*': '/[^/]+', '**': '(?:/[^/]+)*'}
     form = ''.join(parts.get(part, f'/{re.escape(part)}') for part in pattern[1:].split('/'))
     return re.fullmatch(form, node) is not None

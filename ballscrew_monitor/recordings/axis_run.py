@@ -76,7 +76,6 @@ class AxisRun:
     """Judges the ordered events of one axis and collects what they come to."""
 
     def __init__(self, axis: Axis, notes: Notes) -> None:
-        """Begin with what the monitor of `axis` remembers; events refer to `notes`."""
         self.axis, self._notes = axis, notes
         self._judge = ManyJudge(axis.monitor)
         self._events: dict[int, EventRecord] = {}

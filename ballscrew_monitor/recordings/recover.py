@@ -46,7 +46,11 @@ def recover(path: Path) -> tuple[Path, int, float, str]:
     file = _unfinished(path) if path.is_dir() else path
     if not file.is_file():
         raise InputError(f'{file} does not exist, it must be an MCAP file or the folder of one')
-    _check_kind(file)
+    kind = kind_of(file)
+    if kind == 'rosbag1':
+        raise of_ros1(file)
+    if kind in OTHERS:
+        raise InputError(OTHERS[kind].format(file=file))
     target = _target(file)
     if target.exists():
         raise InputError(f'{target} is there already, it would be written over: move it away')
@@ -61,15 +65,6 @@ def recover(path: Path) -> tuple[Path, int, float, str]:
     with whole_bag(target.parent, target.name.removesuffix(SUFFIX)) as writer:
         _copy(file, topics, writer)
     return target, writer.total, (writer.last - writer.first) * 1e-9, lost
-
-
-def _check_kind(file: Path) -> None:
-    """Raise InputError if a file is of another kind than MCAP by its first bytes."""
-    kind = kind_of(file)
-    if kind == 'rosbag1':
-        raise of_ros1(file)
-    if kind in OTHERS:
-        raise InputError(OTHERS[kind].format(file=file))
 
 
 def _unfinished(folder: Path) -> Path:

@@ -7,6 +7,7 @@ import dataclasses
 import math
 from typing import Any
 
+from ballscrew_monitor.core.advice import speed_advice
 from ballscrew_monitor.core.conversions import rounded, SECOND, seconds
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why
@@ -242,7 +243,7 @@ def summary_of(said: Iterable[BallScrewState | OutOfZone]) -> Summary | None:
 
 def event_record(monitor: Monitor, *, until: int) -> EventRecord:
     """Return the last event of a monitor as it stands at the stamp `until` [ns]."""
-    memory, advice = monitor.memory, monitor.advice
+    memory, target_speed = monitor.memory, monitor.target_speed
     quantity, relation = RELATIONS.get(monitor.event_code, OTHER)
     start = int(memory.event_start[ACTIVE])
     return EventRecord(
@@ -256,8 +257,8 @@ def event_record(monitor: Monitor, *, until: int) -> EventRecord:
         worst_value=float(memory.event_worst[ACTIVE]),
         speed=float(memory.event_speed[ACTIVE]),
         axial_load=float(memory.event_load[ACTIVE]),
-        target_speed=advice.target_speed,
-        advice=advice.text,
+        target_speed=target_speed,
+        advice=speed_advice(target_speed),
     )
 
 

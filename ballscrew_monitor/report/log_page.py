@@ -57,7 +57,11 @@ def verdict_part(verdict: AxisVerdict) -> Markup:
 
 def tiles(case: AxisCase, summary: Summary) -> Markup:
     """Return the numbers that a reader asks for first."""
-    running = summary.running_time
+    running, turns = summary.running_time, number(summary.revolutions, 4)
+    travel = turns, 'revolutions'
+    if case.speaks_feed:
+        way = number(summary.revolutions * case.surface.lead, 4)
+        travel = f'{way} m', f'travelled, {turns} revolutions'
     facts = (
         (duration(case.survey.span), 'recorded'),
         (duration(running), f'in motion ({share(running, case.survey.span)})'),
@@ -67,21 +71,13 @@ def tiles(case: AxisCase, summary: Summary) -> Markup:
         ),
         (str(len(summary.events)), 'warning' if len(summary.events) == 1 else 'warnings'),
         (f'{number(summary.energy_lost, 4)} J', 'lost to friction in the screw'),
-        _travel(case, summary),
+        travel,
     )
     made = (
         element('div', element('b', value), element('span', text), class_='tile')
         for value, text in facts
     )
     return element('div', *made, class_='tiles')
-
-
-def _travel(case: AxisCase, summary: Summary) -> tuple[str, str]:
-    turns = number(summary.revolutions, 4)
-    if not case.speaks_feed:
-        return turns, 'revolutions'
-    way = number(summary.revolutions * case.surface.lead, 4)
-    return f'{way} m', f'travelled, {turns} revolutions'
 
 
 def shares(case: AxisCase, summary: Summary) -> Markup:

@@ -81,7 +81,11 @@ def is_one_bag(folder: Path, *, tables: bool = False, out: Path | None = None) -
     if any(is_one_bag(child, tables=tables, out=out) for child in _folders(folder, out)):
         return False
     files = _files(folder, (*ENDINGS, ACTIVE))
-    return len(files) == 1 or _are_parts(files)
+    parts = [_PART.fullmatch(_stem(file.name)) for file in files]
+    known = [(part[1], int(part[2])) for part in parts if part is not None]
+    numbers = sorted(number for _, number in known)
+    are_parts = len({stem for stem, _ in known}) == 1 and numbers == list(range(len(files)))
+    return len(files) == 1 or are_parts
 
 
 def bears_name_of_bag(folder: Path) -> bool:
@@ -89,13 +93,6 @@ def bears_name_of_bag(folder: Path) -> bool:
     stems = [_stem(file.name) for file in _files(folder, (*ENDINGS, ACTIVE))]
     parts = [part[1] for part in map(_PART.fullmatch, stems) if part is not None]
     return folder.name in (*stems, *parts) and is_one_bag(folder, tables=True)
-
-
-def _are_parts(files: Sequence[Path]) -> bool:
-    parts = [_PART.fullmatch(_stem(file.name)) for file in files]
-    found = [(part[1], int(part[2])) for part in parts if part is not None]
-    numbers = sorted(number for _, number in found)
-    return len({stem for stem, _ in found}) == 1 and numbers == list(range(len(files)))
 
 
 def _stem(name: str) -> str:

@@ -191,8 +191,11 @@ def _dwell(case: AxisCase, speeds: tuple[float, float], loads: tuple[float, floa
     """Return the time spent in each cell [s]; before a gap it is not counted."""
     longest, limits = case.settings.timeouts[Source.SPEED], case.settings.limits
     step, speed = pl.col('stamp').shift(-1) - pl.col('stamp'), pl.col('speed').abs()
+    load, direction = pl.col('axial_load'), pl.col('direction')
+    forward, backward = direction == Direction.POSITIVE, direction == Direction.NEGATIVE
+    opposing = pl.when(forward).then(0.0 - load).when(backward).then(load)  # else null
     cells = (
-        _cell(_opposing(), np.linspace(*loads, ROWS + 1)).alias('row'),
+        _cell(opposing, np.linspace(*loads, ROWS + 1)).alias('row'),
         _cell(speed, np.geomspace(*speeds, COLUMNS + 1)).alias('column'),
     )
 
@@ -207,13 +210,6 @@ def _dwell(case: AxisCase, speeds: tuple[float, float], loads: tuple[float, floa
     dwell = np.zeros((ROWS, COLUMNS), np.int64)
     np.add.at(dwell, (row, column), time)
     return dwell / SECOND
-
-
-def _opposing() -> pl.Expr:
-    """Return the load that opposes the motion [N], null where its direction is not known."""
-    load, direction = pl.col('axial_load'), pl.col('direction')
-    forward, backward = direction == Direction.POSITIVE, direction == Direction.NEGATIVE
-    return pl.when(forward).then(0.0 - load).when(backward).then(load)
 
 
 def _cell(value: pl.Expr, edges: Array) -> pl.Expr:
