@@ -104,18 +104,18 @@ class Advisor:
 
 def nearest(tables: Any, criterion: Criterion, here: float, speeds: Any, room: Any) -> float:
     """Return what `Nearest` does, on `tables`; `room` holds one record of `Found`."""
-    found = room[0]
-    if _is_good(tables, criterion, here, found):
+    answer = room[0]
+    if _is_good(tables, criterion, here, answer):
         return here
-    below = _first(tables, criterion, here, speeds, -1, found)
-    above = _first(tables, criterion, here, speeds, 1, found)
+    below = _first(tables, criterion, here, speeds, -1, answer)
+    above = _first(tables, criterion, here, speeds, 1, answer)
     if math.isnan(below) or abs(above - here) < abs(below - here):
         return above
     return below
 
 
 def _first(
-    tables: Any, criterion: Criterion, here: float, speeds: Any, step: int, found: Any
+    tables: Any, criterion: Criterion, here: float, speeds: Any, step: int, answer: Any
 ) -> float:
     """Return the good end of the first border beyond `here`, which is not good; NaN for none."""
     bad = here
@@ -123,10 +123,10 @@ def _first(
         good = speeds[count] if step > 0 else speeds[len(speeds) - 1 - count]
         if not (good - here) * step > 0.0:
             continue
-        if _is_good(tables, criterion, good, found):
+        if _is_good(tables, criterion, good, answer):
             for _ in range(HALVINGS):
                 middle = 0.5 * (bad + good)
-                if _is_good(tables, criterion, middle, found):
+                if _is_good(tables, criterion, middle, answer):
                     good = middle
                 else:
                     bad = middle
@@ -135,12 +135,12 @@ def _first(
     return NAN
 
 
-def _is_good(tables: Any, criterion: Criterion, speed: float, found: Any) -> bool:
+def _is_good(tables: Any, criterion: Criterion, speed: float, answer: Any) -> bool:
     """Return True if the warning clears at a speed."""
-    if look_up(tables, speed, criterion.load, criterion.temperature, found) != VALID:
+    if look_up(tables, speed, criterion.load, criterion.temperature, answer) != VALID:
         return False
-    if math.isnan(found.rcs + found.efficiency):
+    if math.isnan(answer.rcs + answer.efficiency):
         return False
     light = abs(criterion.load) < criterion.light_load
-    fit = light or found.efficiency >= criterion.efficiency
-    return bool(found.rcs < criterion.rcs and fit)
+    fit = light or answer.efficiency >= criterion.efficiency
+    return bool(answer.rcs < criterion.rcs and fit)

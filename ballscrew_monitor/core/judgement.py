@@ -116,9 +116,9 @@ class Worded(enum.IntEnum):
 
     def __new__(cls, number: int, text: str) -> Self:
         """Return the member of a number and a text."""
-        made = int.__new__(cls, number)
-        made._value_, made.text = number, text
-        return made
+        member = int.__new__(cls, number)
+        member._value_, member.text = number, text
+        return member
 
 
 class Reason(Worded):

@@ -54,25 +54,25 @@ MOST_OTHERS = 16
 
 def settings_record(settings: MonitorSettings) -> Settings:
     """Return settings as numbers."""
-    limits, made = settings.limits, Settings()
+    limits, numbers = settings.limits, Settings()
     for name in ('rcs', 'efficiency', 'light_load', 'standstill_speed', 'hysteresis'):
-        setattr(made, name, float(getattr(limits, name)))
-    made.raise_delay, made.clear_delay = limits.raise_delay, limits.clear_delay
-    made.default_temperature = float(settings.default_temperature)
+        setattr(numbers, name, float(getattr(limits, name)))
+    numbers.raise_delay, numbers.clear_delay = limits.raise_delay, limits.clear_delay
+    numbers.default_temperature = float(settings.default_temperature)
     for name in ('publish_period', 'max_future', 'max_lag', 'tick_period'):
-        setattr(made, name, getattr(settings, name))
+        setattr(numbers, name, getattr(settings, name))
     for source, timeout in settings.timeouts.items():
-        made.configured[source], made.timeout[source] = 1, timeout
+        numbers.configured[source], numbers.timeout[source] = 1, timeout
     for source, most in settings.plausible.items():
-        made.plausible[source] = float(most)
+        numbers.plausible[source] = float(most)
     if settings.derivation is not None:
-        made.derives, made.acceleration_window = True, settings.derivation.window
+        numbers.derives, numbers.acceleration_window = True, settings.derivation.window
         for name in ('inertia', 'torque_uncertainty', 'parts_uncertainty', 'largest_share'):
-            setattr(made, name, float(getattr(settings.derivation, name)))
+            setattr(numbers, name, float(getattr(settings.derivation, name)))
     if settings.positions is not None:
-        made.positions, made.position_window = True, settings.positions.window
-        made.wrap = float(settings.positions.wrap)
-    return made
+        numbers.positions, numbers.position_window = True, settings.positions.window
+        numbers.wrap = float(settings.positions.wrap)
+    return numbers
 
 
 def within(stamp: int) -> int:
@@ -166,12 +166,12 @@ class Monitor:
         number, start = self.memory.event_number, self.memory.event_start[ACTIVE]
         active = self.memory.event_active
         slopes = self.speeds, self.positions
-        found = step(self._tables, self.numbers, self.memory, *slopes, self._event, self._row)
+        outcome = step(self._tables, self.numbers, self.memory, *slopes, self._event, self._row)
         if self.memory.event_number != number:
             self.ending = NOT_ENDED
         self.moved = self.memory.event_start[ACTIVE] - start if active else 0
-        self.row = None if found == NOTHING else self._row
-        if found != STATE:
+        self.row = None if outcome == NOTHING else self._row
+        if outcome != STATE:
             return None
         row, self._row = self._row, Row()
         return row

@@ -105,21 +105,21 @@ def step_many(
     row of a state, or after those alone that begin or end an excursion.
 
     """
-    made = told = 0
+    count = kept = 0
     for at in range(len(events)):
-        if told == len(memories):
-            return at, made, told
-        found = step(
-            tables, settings[0], memory[0], speeds[0], positions[0], events[at], rows[made]
+        if kept == len(memories):
+            return at, count, kept
+        outcome = step(
+            tables, settings[0], memory[0], speeds[0], positions[0], events[at], rows[count]
         )
-        if found == NOTHING:
+        if outcome == NOTHING:
             continue
-        if found == STATE and (every or rows[made].edge != 0):
-            memories[told] = memory[0]
-            told += 1
-        places[made] = at
-        made += 1
-    return len(events), made, told
+        if outcome == STATE and (every or rows[count].edge != 0):
+            memories[kept] = memory[0]
+            kept += 1
+        places[count] = at
+        count += 1
+    return len(events), count, kept
 
 
 def _take(settings: Any, memory: Any, positions: Any, event: Any) -> bool:

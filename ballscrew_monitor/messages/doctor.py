@@ -133,18 +133,18 @@ def _elsewhere(around: Surroundings) -> str:
 
 
 def _of_input(facts: InputFacts, around: Surroundings, seconds: float) -> list[str]:
-    found = []
+    problems = []
     reason = link_reason(facts.link, facts.parameter)
     if reason:
         # A topic that may be meant instead of one that nobody publishes.
         topic = '' if facts.link.publishers else near_topic(facts.link, around.topics)
         instead = f' to {topic} ({" and ".join(around.topics[topic])})' if topic else ''
-        found.append(f'{facts.parameter}: {reason}{instead}')
+        problems.append(f'{facts.parameter}: {reason}{instead}')
     if facts.problem and not (reason and facts.link.publishers):
-        found.append(f'{facts.parameter}: {facts.problem}: {_readable(facts)}')
+        problems.append(f'{facts.parameter}: {facts.problem}: {_readable(facts)}')
     if facts.heard is not None:
-        found += [*_of_health(facts, facts.heard, seconds), *unit_doubts(facts, facts.heard)]
-    return found
+        problems += [*_of_health(facts, facts.heard, seconds), *unit_doubts(facts, facts.heard)]
+    return problems
 
 
 def _readable(facts: InputFacts) -> str:
@@ -179,8 +179,8 @@ def known_range(surface: Surface | None, source: Source, unit: str) -> tuple[flo
     """Return the range of a surface [SI] in what an input measures; a position has none."""
     if surface is None or source is Source.TORQUE or unit in POSITION_UNITS:
         return None
-    found: tuple[float, float] = getattr(surface, f'{source.name.lower()}_range')
-    return found
+    limits: tuple[float, float] = getattr(surface, f'{source.name.lower()}_range')
+    return limits
 
 
 def unit_doubts(facts: InputFacts, heard: Heard) -> list[str]:

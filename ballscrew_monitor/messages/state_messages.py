@@ -322,10 +322,10 @@ def surface_info_message(
     )
     message.limit_factor_low, message.limit_factor_high = surface.limit_band
     message.numerical_factor_low, message.numerical_factor_high = surface.numerical_band
-    for one in surface.corrections:
-        message.corrected_speed.append(float(one.speed))
-        message.corrected_load.append(float(one.opposing_load))
-        message.corrected_temperature.append(celsius(float(one.temperature)))
+    for correction in surface.corrections:
+        message.corrected_speed.append(float(correction.speed))
+        message.corrected_load.append(float(correction.opposing_load))
+        message.corrected_temperature.append(celsius(float(correction.temperature)))
     message.header.frame_id = axis
     fill_time(message.header.stamp, stamp)
     ranges = {

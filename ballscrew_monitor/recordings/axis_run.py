@@ -228,7 +228,7 @@ def _by_source(events: Events) -> NDArray[np.int64]:
 
 def judged_parts(runs: Sequence[AxisRun], events: Events, *, states: bool) -> Iterator[Part]:
     """Judge the events of several axes; yield rows, and the states in the order of events."""
-    found: list[tuple[int, int, TimedState]] = []
+    due: list[tuple[int, int, TimedState]] = []
     for number, run in enumerate(runs):
         places = places_of_axis(events, number)
         mine = events if len(places) == len(events) else some(events, places)
@@ -236,5 +236,5 @@ def judged_parts(runs: Sequence[AxisRun], events: Events, *, states: bool) -> It
             if isinstance(part, AxisRows):
                 yield part
                 continue
-            found.append((int(places[part[0]]), number, part[1]))
-    yield from (state for _, _, state in sorted(found, key=operator.itemgetter(0, 1)))
+            due.append((int(places[part[0]]), number, part[1]))
+    yield from (state for _, _, state in sorted(due, key=operator.itemgetter(0, 1)))

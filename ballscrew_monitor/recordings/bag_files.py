@@ -125,8 +125,8 @@ def _read_metadata(metadata: Path) -> Manifest:
     counts = {}
     with contextlib.suppress(*NO_METADATA):  # those that count well
         counts = {
-            str(one['topic_metadata']['name']): int(one['message_count'])
-            for one in content['topics_with_message_count']
+            str(topic['topic_metadata']['name']): int(topic['message_count'])
+            for topic in content['topics_with_message_count']
         }
     return (files, {str(key): str(value) for key, value in custom.items()}, counts)
 

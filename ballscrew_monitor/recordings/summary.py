@@ -219,15 +219,15 @@ class AxisOutcome:
         )
 
 
-def summary_of(said: Iterable[BallScrewState | OutOfZone]) -> Summary | None:
+def summary_of(messages: Iterable[BallScrewState | OutOfZone]) -> Summary | None:
     """Return what states and events of one axis come to, None without a state."""
     first, states, last = 0, 0, None
     events: dict[int, EventRecord] = {}
-    for one in said:
-        if isinstance(one, BallScrewState):
-            first, states, last = first if states else stamp_of(one), states + 1, one
-        elif one.event_id:
-            events[one.event_id] = _event_record(one)
+    for message in messages:
+        if isinstance(message, BallScrewState):
+            first, states, last = first if states else stamp_of(message), states + 1, message
+        elif message.event_id:
+            events[message.event_id] = _event_record(message)
     if last is None:
         return None
     return Summary(

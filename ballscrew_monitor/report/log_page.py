@@ -73,11 +73,11 @@ def tiles(case: AxisCase, summary: Summary) -> Markup:
         (f'{number(summary.energy_lost, 4)} J', 'lost to friction in the screw'),
         travel,
     )
-    made = (
+    parts = (
         element('div', element('b', value), element('span', text), class_='tile')
         for value, text in facts
     )
-    return element('div', *made, class_='tiles')
+    return element('div', *parts, class_='tiles')
 
 
 def shares(case: AxisCase, summary: Summary) -> Markup:
@@ -214,12 +214,12 @@ def _courses(log: LogCase, budgets: Sequence[AxisBudget], spare: float) -> list[
     shares = buckets.shares_of_worst(
         spare, log.axes, [time_series.event_bytes(*axis) for axis in axes]
     )
-    made: list[dict[str, Any]] = []
+    courses: list[dict[str, Any]] = []
     left = 0.0  # what an axis did not take is for the next one
     for (case, budget), own in zip(axes, shares, strict=True):
-        made.append(time_series.series_record(case, own + left, budget))
-        left += own - len(script_json(made[-1]['fine']))
-    return made
+        courses.append(time_series.series_record(case, own + left, budget))
+        left += own - len(script_json(courses[-1]['fine']))
+    return courses
 
 
 def _body(log: LogCase, maps: Sequence[OperatingMap], budgets: Sequence[AxisBudget]) -> Markup:

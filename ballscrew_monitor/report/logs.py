@@ -30,7 +30,7 @@ def find_logs(
     to come. Raises InputError for a folder without any recording.
 
     """
-    found: list[Path] = []
+    logs: list[Path] = []
     for path in paths:
         held = _recordings(path, tables, out)
         if not held:
@@ -41,15 +41,17 @@ def find_logs(
                 f'{" or ".join(endings)}'
                 + (f'; for its tables: ballscrew import {there[0]} {hint}' if there else '')
             )
-        found += held
-    return list(dict.fromkeys(found))
+        logs += held
+    return list(dict.fromkeys(logs))
 
 
 def _recordings(path: Path, tables: bool, out: Path | None) -> list[Path]:
     """Return a path that is one recording, else those in a folder and in the ones below it."""
     if not path.is_dir() or is_one_bag(path, tables=tables, out=out):
         return [path]
-    below = [one for child in _folders(path, out) for one in _recordings(child, tables, out)]
+    below = [
+        recording for child in _folders(path, out) for recording in _recordings(child, tables, out)
+    ]
     return _files(path, (*ENDINGS, *TABLES) if tables else ENDINGS) + below
 
 

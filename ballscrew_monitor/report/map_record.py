@@ -180,9 +180,9 @@ def map_line(
     factor: float = 1.0,
 ) -> MapLine:
     """Return where values are at a level, as points with breaks; speeds times a factor."""
-    found: Any = contour_generator(factor * field.speed, field.load, values).lines(level)
+    lines: Any = contour_generator(factor * field.speed, field.load, values).lines(level)
     gap = np.full((1, 2), np.nan)
-    parts: list[Array] = [part for line in found for part in (line, gap)]
+    parts: list[Array] = [part for line in lines for part in (line, gap)]
     points = np.concatenate(parts[:-1]) if parts else np.empty((0, 2))
     return MapLine(kind=kind, label=label, height=height, points=points)
 
@@ -205,8 +205,8 @@ def _dwell(case: AxisCase, speeds: tuple[float, float], loads: tuple[float, floa
         lasting = lasting.filter(pl.col('step').is_between(1, longest))
         return lasting.group_by(*cells).agg(pl.sum('step'))
 
-    found = case.row_table.collect(query, ahead=1).drop_nulls()
-    row, column, time = (found[name].to_numpy() for name in ('row', 'column', 'step'))
+    sums = case.row_table.collect(query, ahead=1).drop_nulls()
+    row, column, time = (sums[name].to_numpy() for name in ('row', 'column', 'step'))
     dwell = np.zeros((ROWS, COLUMNS), np.int64)
     np.add.at(dwell, (row, column), time)
     return dwell / SECOND
