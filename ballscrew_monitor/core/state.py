@@ -114,15 +114,6 @@ NOT_ENDED, CLEARED = Ending(), Ending(EventEnd.CLEARED)
 RESTARTED, NAMELESS = Ending(EventEnd.RESTARTED), Ending(EventEnd.ACKNOWLEDGED)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Extremes:
-    """Smallest, mean and largest value, NaN when there was none."""
-
-    low: float = NAN
-    mean: float = NAN
-    high: float = NAN
-
-
 WINDOW = ('speed', 'axial_load', 'efficiency', 'rcs', 'film_ratio')
 
 

@@ -16,14 +16,13 @@ from ballscrew_monitor.core.conversions import celsius, seconds
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why, YEAR
 from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.core.state import Extremes
 from ballscrew_monitor.messages.doctor import Heard, InputFacts, known_range, unit_doubts
 from ballscrew_monitor.messages.reasons import slow_reason
 from ballscrew_monitor.recordings.declared import unwritten, written
 from ballscrew_monitor.recordings.words import duration, number
 from ballscrew_monitor.report.judging import AxisCase, InputSetting
 from ballscrew_monitor.report.ledger import Ledger, ledger_of
-from ballscrew_monitor.report.survey import Gaps
+from ballscrew_monitor.report.survey import Extremes, Gaps
 from surrogate.units import MILLI, RPM, TURN
 
 MEASURED = 'measured'
