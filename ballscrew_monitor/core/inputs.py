@@ -158,7 +158,7 @@ class InputStatus:
 
     @property
     def glitching(self) -> bool:
-        """Tell whether implausible samples were refused not long ago."""
+        """Return True if implausible samples were refused not long ago."""
         return Why.IMPLAUSIBLE in self.refusing
 
 

@@ -117,15 +117,6 @@ RESTARTED, NAMELESS = Ending(EventEnd.RESTARTED), Ending(EventEnd.ACKNOWLEDGED)
 RUN_ENDED = Ending(EventEnd.RUN_ENDED)
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Extremes:
-    """Smallest, mean and largest value, NaN when there was none."""
-
-    low: float = NAN
-    mean: float = NAN
-    high: float = NAN
-
-
 WINDOW = ('speed', 'axial_load', 'efficiency', 'rcs', 'film_ratio')
 
 
@@ -154,7 +145,7 @@ class Shelving:
         return dataclasses.replace(self, until=now - self.until) if self.until < 0 < now else self
 
     def is_over(self, now: int) -> bool:
-        """Tell whether it has ended at `now` [ns]; not by a clock that is behind or at zero."""
+        """Return True if it has ended at `now` [ns]; not by a clock that is behind or at zero."""
         return 0 < self.until <= now
 
 

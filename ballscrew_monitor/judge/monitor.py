@@ -13,7 +13,7 @@ import math
 import operator
 from typing import Any
 
-from ballscrew_monitor.core.advice import Advice, Advisor, interpreted, Nearest
+from ballscrew_monitor.core.advice import Advisor, interpreted, Nearest
 from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source
@@ -54,25 +54,25 @@ MOST_OTHERS = 16
 
 def settings_record(settings: MonitorSettings) -> Settings:
     """Return settings as numbers."""
-    limits, made = settings.limits, Settings()
+    limits, numbers = settings.limits, Settings()
     for name in ('rcs', 'efficiency', 'light_load', 'standstill_speed', 'hysteresis'):
-        setattr(made, name, float(getattr(limits, name)))
-    made.raise_delay, made.clear_delay = limits.raise_delay, limits.clear_delay
-    made.default_temperature = float(settings.default_temperature)
+        setattr(numbers, name, float(getattr(limits, name)))
+    numbers.raise_delay, numbers.clear_delay = limits.raise_delay, limits.clear_delay
+    numbers.default_temperature = float(settings.default_temperature)
     for name in ('publish_period', 'max_future', 'max_lag', 'tick_period'):
-        setattr(made, name, getattr(settings, name))
+        setattr(numbers, name, getattr(settings, name))
     for source, timeout in settings.timeouts.items():
-        made.configured[source], made.timeout[source] = 1, timeout
+        numbers.configured[source], numbers.timeout[source] = 1, timeout
     for source, most in settings.plausible.items():
-        made.plausible[source] = float(most)
+        numbers.plausible[source] = float(most)
     if settings.derivation is not None:
-        made.derives, made.acceleration_window = True, settings.derivation.window
+        numbers.derives, numbers.acceleration_window = True, settings.derivation.window
         for name in ('inertia', 'torque_uncertainty', 'parts_uncertainty', 'largest_share'):
-            setattr(made, name, float(getattr(settings.derivation, name)))
+            setattr(numbers, name, float(getattr(settings.derivation, name)))
     if settings.positions is not None:
-        made.positions, made.position_window = True, settings.positions.window
-        made.wrap = float(settings.positions.wrap)
-    return made
+        numbers.positions, numbers.position_window = True, settings.positions.window
+        numbers.wrap = float(settings.positions.wrap)
+    return numbers
 
 
 def within(stamp: int) -> int:
@@ -121,7 +121,6 @@ class Monitor:
     """Judges one axis; feed it events in order."""
 
     def __init__(self, surface: Surface, settings: MonitorSettings) -> None:
-        """Begin with nothing received, and the level UNKNOWN."""
         self.settings = settings
         self.use_surface(surface)
         self.memory = Memory()
@@ -174,12 +173,12 @@ class Monitor:
         leaps = self.memory.event_active and self._event.kind != STEP
         leaps = leaps and not self.memory.clock_step
         slopes = self.speeds, self.positions
-        found = step(self._tables, self.numbers, self.memory, *slopes, self._event, self._row)
+        outcome = step(self._tables, self.numbers, self.memory, *slopes, self._event, self._row)
         if self.memory.event_number != number:
             self.ending = NOT_ENDED
         self.moved = self.memory.event_start[ACTIVE] - start if leaps else 0
-        self.row = None if found == NOTHING else self._row
-        if found != STATE:
+        self.row = None if outcome == NOTHING else self._row
+        if outcome != STATE:
             return None
         row, self._row = self._row, Row()
         return row
@@ -206,13 +205,18 @@ class Monitor:
         self._ending = ending
 
     @property
-    def advice(self) -> Advice:
-        """Return where the warning of the last event would clear; the first time takes long."""
+    def target_speed(self) -> float:
+        """
+        Return the nearest speed [rad/s] that would clear the last event, NaN if none is advised.
+
+        The first time takes milliseconds.
+
+        """
         memory = self.memory
         speed, load = float(memory.event_speed[ACTIVE]), float(memory.event_load[ACTIVE])
         temperature = float(memory.event_temperature[ACTIVE])
         if not math.isfinite(speed + load + temperature):
-            return Advice()
+            return math.nan
         advisor = Advisor(
             speed=speed,
             axial_load=load,
@@ -225,7 +229,7 @@ class Monitor:
         )
         if advisor != self._advisor:
             self._advisor = advisor
-        return self._advisor.advice
+        return self._advisor.target_speed
 
     @property
     def shelving(self) -> Shelving:

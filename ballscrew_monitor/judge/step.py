@@ -117,21 +117,21 @@ def step_many(
     row of a state, or after those alone that begin or end an excursion.
 
     """
-    made = told = 0
+    count = kept = 0
     for at in range(len(events)):
-        if told == len(memories):
-            return at, made, told
-        found = step(
-            tables, settings[0], memory[0], speeds[0], positions[0], events[at], rows[made]
+        if kept == len(memories):
+            return at, count, kept
+        outcome = step(
+            tables, settings[0], memory[0], speeds[0], positions[0], events[at], rows[count]
         )
-        if found == NOTHING:
+        if outcome == NOTHING:
             continue
-        if found == STATE and (every or rows[made].edge != 0):
-            memories[told] = memory[0]
-            told += 1
-        places[made] = at
-        made += 1
-    return len(events), made, told
+        if outcome == STATE and (every or rows[count].edge != 0):
+            memories[kept] = memory[0]
+            kept += 1
+        places[count] = at
+        count += 1
+    return len(events), count, kept
 
 
 def begin_run(memory: Any, speeds: Any, positions: Any, stamp: int) -> None:
@@ -155,13 +155,18 @@ def begin_run(memory: Any, speeds: Any, positions: Any, stamp: int) -> None:
 
 
 def _take(settings: Any, memory: Any, speeds: Any, positions: Any, event: Any) -> bool:
-    """Take a sample or a refusal; tell whether it is a speed to judge."""
+    """Take a sample or a refusal; return True if it is a speed to judge."""
     source = event.source
     lose(memory, source, event.lost, event.arrival)
     if event.kind == REFUSAL:
         take_refusal(memory, event)
         return False
-    if not _is_usable(settings, memory, event):
+    if not math.isfinite(event.value):
+        refuse(memory, source, NOT_A_NUMBER, 0.0, math.nan, event.arrival)
+        return False
+    # Of a position: plausible or not is the speed that follows from it.
+    is_position = source == SPEED and settings.positions
+    if not is_position and not _is_plausible(settings, memory, event, event.value):
         return False
     if source == SPEED:
         _follow_clock(memory, speeds, positions, event)
@@ -274,17 +279,6 @@ def _leave_out(memory: Any, leap: int) -> None:
     memory.raising = memory.clearing = memory.moment = False
 
 
-def _is_usable(settings: Any, memory: Any, event: Any) -> bool:
-    """Tell whether the value of a sample can be used, and refuse it if not."""
-    if not math.isfinite(event.value):
-        refuse(memory, event.source, NOT_A_NUMBER, 0.0, math.nan, event.arrival)
-        return False
-    # Of a position: plausible or not is the speed that follows from it.
-    if event.source == SPEED and settings.positions:
-        return True
-    return _is_plausible(settings, memory, event, event.value)
-
-
 def _is_plausible(settings: Any, memory: Any, event: Any, value: float) -> bool:
     if abs(value) <= settings.plausible[event.source]:
         return True
@@ -339,7 +333,7 @@ def _odd_position(settings: Any, positions: Any, event: Any) -> tuple[int, float
 
 
 def _is_tick_due(settings: Any, memory: Any, now: int) -> bool:
-    """Take the grid stamp `now` [ns]; tell whether the speed is missing or stale there."""
+    """Take the grid stamp `now` [ns]; return True if the speed is missing or stale there."""
     # Both the clock and the speed: stamps may run ahead of the clock, as far as is allowed.
     if memory.last_tick - now > BACKWARD_JUMP:
         if is_ahead(memory, SPEED, now + BACKWARD_JUMP):
@@ -371,20 +365,15 @@ def _judge(tables: Any, settings: Any, memory: Any, speeds: Any, row: Any) -> in
     follow_excursion(settings, memory, row, before)
     row.level, row.level_since = memory.level, memory.level_since
     row.event_id = memory.event_number
-    row.published = row.edge != 0 or memory.level != before or _is_state_due(settings, memory)
+    period = settings.publish_period  # the first row in each is published
+    due = period == 0 or not memory.published
+    due = due or memory.stamp // period != memory.last_published // period
+    row.published = row.edge != 0 or memory.level != before or due
     if not row.published:
         return ROW
     look_up_rest(tables, opposing_load(row), row)
     memory.published, memory.last_published, memory.window_told = True, row.stamp, True
     return STATE
-
-
-def _is_state_due(settings: Any, memory: Any) -> bool:
-    """Tell whether the row is the first one in its period."""
-    period = settings.publish_period
-    if period == 0 or not memory.published:
-        return True
-    return memory.stamp // period != memory.last_published // period
 
 
 def _forget_the_future(settings: Any, memory: Any, now: int) -> None:

@@ -79,10 +79,10 @@ def failed(
     node: str, axis: str, reason: str, code: Fault = Fault.NOT_CONFIGURED
 ) -> list[DiagnosticStatus]:
     """Return the statuses of an axis that cannot work for a `reason`; `node` is its full name."""
-    made = [DiagnosticStatus(name=f'{node.lstrip("/")}: {axis}: {part}') for part in PARTS]
-    for status in made:
+    parts = [DiagnosticStatus(name=f'{node.lstrip("/")}: {axis}: {part}') for part in PARTS]
+    for status in parts:
         _say(status, StatusSummary(ERROR, reason, code))
-    return made
+    return parts
 
 
 def code_of(status: DiagnosticStatus) -> int:
@@ -182,35 +182,35 @@ def statuses(
     While the clock stands no state tells that an input is dead, so nothing but a warning is held.
 
     """
-    made = failed(node, axis, Fault.NOT_SET.text, Fault.NOT_SET)
-    for status in made:
+    parts = failed(node, axis, Fault.NOT_SET.text, Fault.NOT_SET)
+    for status in parts:
         status.hardware_id = hardware_id(node, axis, surface.screw_name)
     changed = ' and corrected' if surface.corrections else ''
-    _say(made[2], StatusSummary(OK, f'{surface.tier} surface loaded{changed}'))
+    _say(parts[2], StatusSummary(OK, f'{surface.tier} surface loaded{changed}'))
     if refused:
         code = Fault.RELOAD_REFUSED
-        _say(made[2], StatusSummary(WARN, f'{code.text}: {refused}', code))
-    made[2].values += key_values(_surface_values(surface))
+        _say(parts[2], StatusSummary(WARN, f'{code.text}: {refused}', code))
+    parts[2].values += key_values(_surface_values(surface))
     matched = {source.name.capitalize(): link.matched for source, link in (links or {}).items()}
-    made[1].values += key_values(
+    parts[1].values += key_values(
         [(f'{name} publishers [-]', count) for name, count in matched.items()]
     )
     if state is None or links is None:
         why = Fault.CLOCK_STANDS if clock_stands else Fault.NOTHING_YET
-        for status in made[:2]:
+        for status in parts[:2]:
             _say(status, _stale(Fault.INACTIVE if links is None else why))
     else:
-        for status, said in zip(made, summaries(state, inputs, cause, links, policy)):
-            _say(status, said)
+        for status, verdict in zip(parts, summaries(state, inputs, cause, links, policy)):
+            _say(status, verdict)
         if clock_stands:
             warns = state.level == Level.WARN and policy.of_zone
-            for status in made[1:2] if warns else made[:2]:
+            for status in parts[1:2] if warns else parts[:2]:
                 _say(status, _stale(Fault.CLOCK_STANDS))
-        made[0].values += key_values(_lubrication_values(state))
-        made[1].values += key_values(_input_values(inputs))
+        parts[0].values += key_values(_lubrication_values(state))
+        parts[1].values += key_values(_input_values(inputs))
     if defect:
-        _say(made[0], StatusSummary(ERROR, defect, Fault.PROGRAM_FAILED))
-    return made
+        _say(parts[0], StatusSummary(ERROR, defect, Fault.PROGRAM_FAILED))
+    return parts
 
 
 def _stale(code: Fault) -> StatusSummary:

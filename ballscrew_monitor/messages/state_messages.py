@@ -13,7 +13,7 @@ from typing import Any
 
 from ballscrew_monitor.core import conversions, judgement
 from ballscrew_monitor.core import state as states
-from ballscrew_monitor.core.advice import Advice
+from ballscrew_monitor.core.advice import speed_advice
 from ballscrew_monitor.core.conversions import celsius, Direction, SECOND, seconds
 from ballscrew_monitor.core.inputs import InputStatus, Source
 from ballscrew_monitor.core.judgement import (
@@ -245,16 +245,16 @@ def plain_values(state: msg.BallScrewState) -> dict[str, float | str | bool]:
     }
 
 
-def advice_text(advice: Advice, health: Health | None = None) -> str:
+def advice_text(target_speed: float, health: Health | None = None) -> str:
     """
     Return what to do about an event, empty where nothing is known to help.
 
     First comes what the workshop can change by itself, as the last `health` tells it, then a speed
-    where the process leaves it free. No load is ever named.
+    [rad/s] where the process leaves it free. No load is ever named.
 
     """
     workshop = '' if health is None else health.advice
-    ways = [way for way in (workshop, advice.text) if way]
+    ways = [way for way in (workshop, speed_advice(target_speed)) if way]
     if not ways and health is not None and health.usual:
         return USUAL
     return '; or '.join(ways)
@@ -288,11 +288,11 @@ def out_of_zone_message(
         duration=seconds(stamp - start),
         worst_value=float(memory.event_worst[ACTIVE]),
         cause=event_cause(memory),
-        advice=ending.text or advice_text(monitor.advice, health),
+        advice=ending.text or advice_text(monitor.target_speed, health),
         shelved=shelved,
         ending=int(ending.kind),
     )
-    message.cause.target_speed = float(monitor.advice.target_speed)
+    message.cause.target_speed = float(monitor.target_speed)
     if ending.kind is EventEnd.ACKNOWLEDGED:
         message.acknowledged_by = ending.name
         message.acknowledge_reason = ending.reason
@@ -322,10 +322,10 @@ def surface_info_message(
     )
     message.limit_factor_low, message.limit_factor_high = surface.limit_band
     message.numerical_factor_low, message.numerical_factor_high = surface.numerical_band
-    for one in surface.corrections:
-        message.corrected_speed.append(float(one.speed))
-        message.corrected_load.append(float(one.opposing_load))
-        message.corrected_temperature.append(celsius(float(one.temperature)))
+    for correction in surface.corrections:
+        message.corrected_speed.append(float(correction.speed))
+        message.corrected_load.append(float(correction.opposing_load))
+        message.corrected_temperature.append(celsius(float(correction.temperature)))
     message.header.frame_id = axis
     fill_time(message.header.stamp, stamp)
     ranges = {

@@ -84,13 +84,13 @@ class Alarm:
         self._note_event(kind, point=point_facts(row), **before)
         self.publish()
         if active:
-            texts = event_cause(memory).text, advice_text(monitor.advice, self.health)
+            texts = event_cause(memory).text, advice_text(monitor.target_speed, self.health)
             self._warn(f'event {number}: {"; ".join(filter(None, texts))}')
         elif monitor.level is Level.OK:
             self._say(f'event {number} is over')
 
     def end(self, reason: str) -> bool:
-        """End the event that is active, because nothing is judged any more; tell if one was."""
+        """End the active event, as nothing is judged any more; return True if there was one."""
         monitor = self._axis.monitor
         ending = Ending(EventEnd.STOPPED, reason=reason)
         ended = monitor.acknowledge(self._now, ending)
@@ -158,7 +158,7 @@ class Alarm:
 
     def _note_event(self, kind: Kind, **facts: Any) -> None:
         monitor = self._axis.monitor
-        advice = advice_text(monitor.advice, self.health)
+        advice = advice_text(monitor.target_speed, self.health)
         event = event_facts(monitor.memory, monitor.ending, advice)
         self._note(kind, stamp=monitor.memory.event_stamp, **event, **facts)
 

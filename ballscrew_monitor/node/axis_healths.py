@@ -197,7 +197,7 @@ class AxisHealths:
                     f'{axis}.health.enabled true, and state_dir not empty'
                 )
             self._worker.take_store()
-            said = self._keepers[axis].name_baseline(
+            answer = self._keepers[axis].name_baseline(
                 self._now,
                 begin=stamp_of(request.begin),
                 end=stamp_of(request.end),
@@ -206,9 +206,9 @@ class AxisHealths:
                 screw=self._publishers[axis].surface.screw_name,
             )
             self._kept.note(Kind.SET_BASELINE, axis, reason=request.reason)
-            self._node.get_logger().info(f'axis {axis}: {said}: {request.reason}')
+            self._node.get_logger().info(f'axis {axis}: {answer}: {request.reason}')
             self._due[axis] = 0.0
-            response.success, response.message = True, said
+            response.success, response.message = True, answer
         except InputError as error:
             response.message = str(error)
         except Exception as error:  # noqa: BLE001 such as a store that cannot be written

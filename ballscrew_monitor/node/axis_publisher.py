@@ -290,7 +290,7 @@ class AxisPublisher:
         return result
 
     def has_news(self, now: int) -> bool:
-        """Tell whether at `now` [ns] the last state changes what was said, if not just now."""
+        """Return True if at `now` [ns] the last state changes what was said, if not just now."""
         if self._last is None or now - self._said_at < NEWS_INTERVAL:
             return False
         return self._summaries() != self._said

@@ -71,7 +71,9 @@ class AxisServices:
 
     def _serve(self, act: Act, axes: list[str], request: Any, response: Any) -> Any:
         self._catch_up()
-        publishers = {name: one for name, one in self._publishers.items() if name in axes}
+        publishers = {
+            name: publisher for name, publisher in self._publishers.items() if name in axes
+        }
         failed = [not_built(name, why) for name, why in self._failed.items() if name in axes]
         if not publishers:
             response.message = '; '.join(failed) or 'the node is not configured'
@@ -87,7 +89,11 @@ class AxisServices:
         self, response: Any, publishers: Publishers, done: str, name: str, failed: Sequence[str]
     ) -> None:
         """Keep what the service of a name has changed, and say what is done and what is not."""
-        broken = [f'axis {name}: {one.defect}' for name, one in publishers.items() if one.failed]
+        broken = [
+            f'axis {name}: {publisher.defect}'
+            for name, publisher in publishers.items()
+            if publisher.failed
+        ]
         problem = self._changed(publishers, name)
         done += f', not kept: {problem}' if problem else ''
         response.message = '; '.join([done, *failed, *broken])
@@ -96,10 +102,12 @@ class AxisServices:
     def _reload(self, publishers: Publishers) -> str:
         """Swap the surfaces for the files as they are now, if all of them verify."""
         surfaces = {name: self._load(publisher) for name, publisher in publishers.items()}
-        said = [
+        sentences = [
             one.guarded('a reload', one.reload, surfaces[name]) for name, one in publishers.items()
         ]
-        return ', '.join(filter(None, (f'reloaded the surface of {_names(publishers)}', *said)))
+        return ', '.join(
+            filter(None, (f'reloaded the surface of {_names(publishers)}', *sentences))
+        )
 
     def _load(self, publisher: AxisPublisher) -> Surface:
         """Return the surface of the file as it is now; a refusal stays in the diagnostics."""
@@ -161,4 +169,4 @@ def not_built(axis: str, reason: str) -> str:
 
 
 def _names(publishers: Publishers) -> str:
-    return ', '.join(name for name, one in publishers.items() if not one.failed)
+    return ', '.join(name for name, publisher in publishers.items() if not publisher.failed)

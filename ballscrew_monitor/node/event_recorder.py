@@ -259,7 +259,6 @@ class NodeRecorder:
     def __init__(
         self, node: Node, values: Mapping[str, Any], publishers: Mapping[str, Any]
     ) -> None:
-        """Record nothing at first; `publishers` have the axes by name."""
         self.events = SILENT
         self._node, self._values, self._publishers = node, values, publishers
         self._start: Callable[[], RecordingProcess] | None = None
@@ -323,15 +322,15 @@ def axis_snapshot(
     axis: Axis, values: Mapping[str, Any], topics: Mapping[str, str]
 ) -> dict[str, Any]:
     """Return the settings of an axis, of parameters `values` and full names, and its memory."""
-    mine = {name: one for name, one in values.items() if name.startswith(f'{axis.name}.')}
+    mine = {name: value for name, value in values.items() if name.startswith(f'{axis.name}.')}
     return {
         'values': mine | {'axes': [axis.name], 'tick_period': values['tick_period']},
         'topics': dict(topics),
         'surface': {
             'base_sha256': axis.surface.base_sha256,
             'corrections': [
-                {name: getattr(one, name) for name in CORRECTION}
-                for one in axis.surface.corrections
+                {name: getattr(correction, name) for name in CORRECTION}
+                for correction in axis.surface.corrections
             ],
         },
         'memory': snapshot(axis.monitor),

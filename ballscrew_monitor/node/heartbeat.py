@@ -36,7 +36,6 @@ class Heartbeat:
     """Counts the beats of a node on `~/heartbeat`, in every lifecycle state."""
 
     def __init__(self, node: Node, *, clock: Clock) -> None:
-        """Begin to beat on a steady `clock`."""
         self.vitals = Vitals()
         self._node = node
         self._beat = UInt64()

@@ -91,8 +91,10 @@ class KeptAxes:
         late = axes is not None
         for name in self._publishers if axes is None else axes:
             publisher = self._publishers[name]
-            if said := publisher.guarded('what was kept of it', self._restore, publisher, late):
-                self._node.get_logger().info(f'axis {name}: {said}')
+            if sentence := publisher.guarded(
+                'what was kept of it', self._restore, publisher, late
+            ):
+                self._node.get_logger().info(f'axis {name}: {sentence}')
         # What is wrong is logged when that has changed.
         problem, before = self.state.problem, self._said
         self._said = problem

@@ -113,7 +113,7 @@ class BallscrewMonitor(LifecycleNode):
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set parameters; one that keeps its value is no change: a node takes its own dump."""
-        changed = [one for one in parameter_list if not is_kept(self, one)]
+        changed = [parameter for parameter in parameter_list if not is_kept(self, parameter)]
         if not changed:
             return SetParametersResult(successful=True)
         return super().set_parameters_atomically(changed)
@@ -371,16 +371,18 @@ class BallscrewMonitor(LifecycleNode):
         self._recording.record('/diagnostics', message)
 
     def _statuses(self, axes: Sequence[str], stood: int) -> list[DiagnosticStatus]:
-        made, node = [], self.get_fully_qualified_name()
+        statuses, node = [], self.get_fully_qualified_name()
         for name in axes:
             if name in self._axis_publishers:
                 publisher = self._axis_publishers[name]
                 links = self._intake.links(publisher.axis) if self._intake else None
-                made += publisher.statuses(links=links, stood=stood)
+                statuses += publisher.statuses(links=links, stood=stood)
             else:
                 code = Fault.NOT_BUILT if name in self._failed else Fault.NOT_CONFIGURED
-                made += diagnostics.failed(node, name, self._failed.get(name, self._reason), code)
-        return made + self._healths.statuses(axes) + self._recording.statuses()
+                statuses += diagnostics.failed(
+                    node, name, self._failed.get(name, self._reason), code
+                )
+        return statuses + self._healths.statuses(axes) + self._recording.statuses()
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:
         """Answer what the surface says of the points; what arrives meanwhile is judged."""

@@ -72,7 +72,7 @@ class RecordingProcess:
 
     @property
     def lost(self) -> bool:
-        """Tell whether there is no process, or it has ended."""
+        """Return True if there is no process, or it has ended."""
         if self._process is None:
             return True
         return self._sender.broken or self._process.poll() is not None

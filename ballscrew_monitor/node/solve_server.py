@@ -176,8 +176,10 @@ class SolveServer:
         if goal.handle is not None:
             self._answer(goal.handle, result, end)
         else:
-            said = result.correction if result.success else result.status
-            self._node.get_logger().info(f'axis {goal.axis.name}: solved where it dwells: {said}')
+            sentence = result.correction if result.success else result.status
+            self._node.get_logger().info(
+                f'axis {goal.axis.name}: solved where it dwells: {sentence}'
+            )
 
     def _answer(self, handle: ServerGoalHandle, result: Any, end: End) -> None:
         """Hand the answer of a goal to the executor."""

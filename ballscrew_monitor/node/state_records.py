@@ -88,17 +88,17 @@ class Corrections:
     @classmethod
     def of(cls, axis: str, surface: str, solves: Iterable[Solve]) -> 'Corrections':
         """Return the solves that correct the `surface` of a hash, as they are kept."""
-        rows = [{key: getattr(one, name) for name, key in SOLVE.items()} for one in solves]
+        rows = [{key: getattr(solve, name) for name, key in SOLVE.items()} for solve in solves]
         return cls(axis, surface, json.dumps(rows))
 
     def read_solves(self) -> list[KeptSolve]:
         """Return the solves; ValueError, KeyError or TypeError for what no node has written."""
         return [
             KeptSolve(
-                **{name: float(one[key]) for name, key in SOLVE.items() if name != 'solved'},
-                solved={name: float(value) for name, value in one['solved'].items()},
+                **{name: float(solve[key]) for name, key in SOLVE.items() if name != 'solved'},
+                solved={name: float(value) for name, value in solve['solved'].items()},
             )
-            for one in read_json(self.solves)
+            for solve in read_json(self.solves)
         ]
 
 
@@ -121,7 +121,7 @@ def entry_of(kind: Kind, axis: str | None, stamp: int, facts: Mapping[str, Any])
 
 def by_key(records: Iterable[Record]) -> Records:
     """Return records by what they are and their axis."""
-    return {(type(one), one.axis): one for one in records}
+    return {(type(record), record.axis): record for record in records}
 
 
 def event_facts(memory: Any, ending: Ending, advice: str = '') -> dict[str, Any]:

@@ -167,7 +167,6 @@ class Recording:
     """A clock over the axes of a recording; it begins to play at once."""
 
     def __init__(self, hub: Hub, axes: Iterable[RecordedAxis]) -> None:
-        """Show axes, at least one, on a hub."""
         self._hub, self._axes = hub, list(axes)
         stamps = [axis.course.rows[[0, -1], 0] for axis in self._axes]
         firsts, lasts = zip(*stamps, strict=True)

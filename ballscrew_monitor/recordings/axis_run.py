@@ -81,7 +81,6 @@ class AxisRun:
     """Judges the ordered events of one axis and collects what they come to."""
 
     def __init__(self, axis: Axis, notes: Notes) -> None:
-        """Begin with what the monitor of `axis` remembers; events refer to `notes`."""
         self.axis, self._notes = axis, notes
         self._judge = ManyJudge(axis.monitor)
         self._events: dict[int, EventRecord] = {}
@@ -275,7 +274,7 @@ def _by_source(events: Events) -> NDArray[np.int64]:
 
 def judged_parts(runs: Sequence[AxisRun], events: Events, *, states: bool) -> Iterator[Part]:
     """Judge the events of several axes; yield rows, and the states in the order of events."""
-    found: list[tuple[int, int, TimedState]] = []
+    due: list[tuple[int, int, TimedState]] = []
     for number, run in enumerate(runs):
         places = places_of_axis(events, number)
         mine = events if len(places) == len(events) else some(events, places)
@@ -283,5 +282,5 @@ def judged_parts(runs: Sequence[AxisRun], events: Events, *, states: bool) -> It
             if isinstance(part, AxisRows):
                 yield part
                 continue
-            found.append((int(places[part[0]]), number, part[1]))
-    yield from (state for _, _, state in sorted(found, key=operator.itemgetter(0, 1)))
+            due.append((int(places[part[0]]), number, part[1]))
+    yield from (state for _, _, state in sorted(due, key=operator.itemgetter(0, 1)))

@@ -85,8 +85,8 @@ class Bag:
                 count = info.count + (self.topics[name].count if name in self.topics else 0)
                 self.topics[name] = dataclasses.replace(info, count=count)
         if not any(info.count for info in self.topics.values()):
-            what = '; '.join(self._missing) or 'at least one is needed'
-            raise InputError(f'bag {self.path} holds no message, {what}')
+            reason = '; '.join(self._missing) or 'at least one is needed'
+            raise InputError(f'bag {self.path} holds no message, {reason}')
         self._check_encodings()
         self._compare(counts)
         self.metadata = self._own_metadata() | custom
@@ -115,7 +115,7 @@ class Bag:
     @property
     def notes(self) -> list[str]:
         """Return a sentence for each file and topic of which not all could be read so far."""
-        salvaged = [one.note for one in self.storages if one.note]
+        salvaged = [storage.note for storage in self.storages if storage.note]
         refused = [
             sentence + (f'; {count} such messages were refused' if count > 1 else '')
             for count, sentence in self.refused.values()
@@ -153,8 +153,8 @@ class Bag:
     def as_written(self, topics: Collection[str] | None = None) -> Iterator[Message]:
         """Yield messages of `topics` in the order of the files; raises InputError on damage."""
         wanted = set(self.topics if topics is None else topics)
-        for one in self.storages:
-            yield from map(whole, one.messages(wanted, as_written=True))
+        for storage in self.storages:
+            yield from map(whole, storage.messages(wanted, as_written=True))
 
     def messages(self, topics: Collection[str] | None = None) -> Iterator[Message]:
         """Yield messages of `topics` (None: all) by log time; raises InputError on damage."""
@@ -226,16 +226,16 @@ class Bag:
         first = self.storages[0]
         if not isinstance(first, McapStorage) or not first.is_indexed or first.note:
             return {}
-        found: dict[str, str] = {}
+        metadata: dict[str, str] = {}
         try:
             with damage_is_input(first.file), first.file.open('rb') as stream:
                 for record in read_metadata(stream):
-                    found |= record.metadata if record.name == OWN else {}
+                    metadata |= record.metadata if record.name == OWN else {}
         except InputError as error:
             if not self._salvage:
                 raise
             self._missing.append(f'{error}; what it says of itself is left out')
-        return found
+        return metadata
 
 
 def _objection(found: TopicInfo, type_name: str) -> str:

@@ -192,7 +192,7 @@ def _notes(
 
 def _joints(text: str) -> tuple[str, str, tuple[str, ...]]:
     array, joint, *names = read_json(text)
-    if not all(isinstance(one, str) for one in (array, joint, *names)):
+    if not all(isinstance(name, str) for name in (array, joint, *names)):
         raise ValueError('a note names no joints')
     return array, joint, tuple(names)
 
@@ -251,19 +251,19 @@ class _Reader:
 
     def arrays(self, kinds: Mapping[str, np.dtype[Any]]) -> dict[str, NDArray[Any]]:
         """Return the next arrays by their names, each of a kind."""
-        found, data, place, unpack = {}, self._data, self.place, COUNT.unpack_from
+        columns, data, place, unpack = {}, self._data, self.place, COUNT.unpack_from
         for name, kind in kinds.items():
             place += -place % COUNT.size
             (count,) = unpack(data, place)
             place += COUNT.size
             if not count:
-                found[name] = EMPTY[kind]
+                columns[name] = EMPTY[kind]
                 continue
             place += -place % kind.itemsize
-            found[name] = np.frombuffer(data, kind, count, place)
+            columns[name] = np.frombuffer(data, kind, count, place)
             place += count * kind.itemsize
         self.place = place
-        return found
+        return columns
 
     def texts(self) -> list[str]:
         found = []

@@ -69,17 +69,17 @@ class LogFacts:
         axes = self.mapping.get('axes', {}).keys()
         assumed = {  # by axis, what is about none with each of them
             axis: [
-                f'{one.key.removeprefix(f"{axis}.")} = {one.value}'
-                for one in self.assumptions
-                if one.key.partition('.')[0] not in axes - {axis}
+                f'{assumption.key.removeprefix(f"{axis}.")} = {assumption.value}'
+                for assumption in self.assumptions
+                if assumption.key.partition('.')[0] not in axes - {axis}
             ]
             for axis in axes
         }
         return [
             *self.notes,
             *(
-                f'assumed of {self.source}, {whose}: {", ".join(told)}'
-                for whose, told in grouped(assumed)
+                f'assumed of {self.source}, {whose}: {", ".join(texts)}'
+                for whose, texts in grouped(assumed)
             ),
         ]
 
@@ -109,11 +109,13 @@ def grouped(said: Mapping[str, Sequence[str]]) -> list[tuple[str, list[str]]]:
     for axis, own in said.items():
         groups.setdefault(tuple(one for one in own if one not in common), []).append(axis)
     whole = 'all axes' if len(said) > 1 else ''.join(f'axis {axis}' for axis in said)
-    told = [(whole, common)] if common else []
+    groups_of_axes = [(whole, common)] if common else []
     for rest, axes in groups.items():
         if rest:
-            told.append((f'{"axis" if len(axes) == 1 else "axes"} {", ".join(axes)}', list(rest)))
-    return told
+            groups_of_axes.append(
+                (f'{"axis" if len(axes) == 1 else "axes"} {", ".join(axes)}', list(rest))
+            )
+    return groups_of_axes
 
 
 def facts_of(bag: Bag) -> LogFacts | None:
@@ -129,7 +131,7 @@ def facts_of(bag: Bag) -> LogFacts | None:
             source=str(content['source']),
             parameters=parameters_of(bag) or {},
             mapping=content['mapping'],
-            assumptions=tuple(Assumption(**one) for one in content['assumptions']),
+            assumptions=tuple(Assumption(**assumption) for assumption in content['assumptions']),
             notes=tuple(content['notes']),
             run_borders=tuple(bag.run_borders),
         )

@@ -7,6 +7,7 @@ import dataclasses
 import math
 from typing import Any
 
+from ballscrew_monitor.core.advice import speed_advice
 from ballscrew_monitor.core.conversions import rounded, SECOND, seconds
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why
@@ -289,15 +290,15 @@ class AxisOutcome:
         )
 
 
-def summary_of(said: Iterable[BallScrewState | OutOfZone]) -> Summary | None:
+def summary_of(messages: Iterable[BallScrewState | OutOfZone]) -> Summary | None:
     """Return what states and events of one axis come to, None without a state."""
     first, states, last = 0, 0, None
     events: dict[int, EventRecord] = {}
-    for one in said:
-        if isinstance(one, BallScrewState):
-            first, states, last = first if states else stamp_of(one), states + 1, one
-        elif one.event_id:
-            events[one.event_id] = _event_record(one)
+    for message in messages:
+        if isinstance(message, BallScrewState):
+            first, states, last = first if states else stamp_of(message), states + 1, message
+        elif message.event_id:
+            events[message.event_id] = _event_record(message)
     if last is None:
         return None
     return Summary(
@@ -327,7 +328,7 @@ def run_record(number: int, span: Sequence[int], before: Totals, after: Totals) 
 
 def event_record(monitor: Monitor, *, until: int) -> EventRecord:
     """Return the last event of a monitor as it stands at the stamp `until` [ns]."""
-    memory, advice = monitor.memory, monitor.advice
+    memory, target_speed = monitor.memory, monitor.target_speed
     quantity, relation = RELATIONS.get(monitor.event_code, OTHER)
     start = int(memory.event_start[ACTIVE])
     return EventRecord(
@@ -341,8 +342,8 @@ def event_record(monitor: Monitor, *, until: int) -> EventRecord:
         worst_value=float(memory.event_worst[ACTIVE]),
         speed=float(memory.event_speed[ACTIVE]),
         axial_load=float(memory.event_load[ACTIVE]),
-        target_speed=advice.target_speed,
-        advice=advice.text,
+        target_speed=target_speed,
+        advice=speed_advice(target_speed),
         run_ended=monitor.ending.kind is EventEnd.RUN_ENDED,
     )
 

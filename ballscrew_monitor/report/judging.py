@@ -126,8 +126,8 @@ class AxisCase:
         """Return where contact begins, in the unit in which the log speaks."""
         if self.onset is None:
             return ''
-        said = self.onset.sentence(as_feed=self.speaks_feed)
-        return f'{said.replace(" degC", " °C")}.'
+        sentence = self.onset.sentence(as_feed=self.speaks_feed)
+        return f'{sentence.replace(" degC", " °C")}.'
 
     @property
     def speaks_feed(self) -> bool:
@@ -210,7 +210,7 @@ class LogCase:
     @property
     def unjudged(self) -> list[str]:
         """Return the axes on which nothing was judged."""
-        return [*self.empty, *(one.axis for one in self.axes if one.is_silent)]
+        return [*self.empty, *(case.axis for case in self.axes if case.is_silent)]
 
     @property
     def judged(self) -> bool:
@@ -375,18 +375,18 @@ def judge_log(
         name=bag.path.name,
         parameters=parameters.short_origin,
         axes=[
-            makers[one.axis].case(
-                one,
+            makers[outcome.axis].case(
+                outcome,
                 None if numbered else bag,
-                rows=None if rows is None else rows.table(one.axis),
-                facts=parameters.axes.get(one.axis, AxisFacts()),
+                rows=None if rows is None else rows.table(outcome.axis),
+                facts=parameters.axes.get(outcome.axis, AxisFacts()),
                 nominal=parameters.nominal,
                 numbered=numbered,
             )
-            for one in outcomes
-            if one.axis in makers
+            for outcome in outcomes
+            if outcome.axis in makers
         ],
-        empty=[one.axis for one in outcomes if one.axis not in makers],
+        empty=[outcome.axis for outcome in outcomes if outcome.axis not in makers],
         assumptions=parameters.assumptions,
         notes=[*parameters.notes, *bag.notes],
         machine=machine,

@@ -57,7 +57,11 @@ def verdict_part(verdict: AxisVerdict) -> Markup:
 
 def tiles(case: AxisCase, summary: Summary) -> Markup:
     """Return the numbers that a reader asks for first."""
-    running = summary.running_time
+    running, turns = summary.running_time, number(summary.revolutions, 4)
+    travel = turns, 'revolutions'
+    if case.speaks_feed:
+        way = number(summary.revolutions * case.surface.lead, 4)
+        travel = f'{way} m', f'travelled, {turns} revolutions'
     facts = (
         (duration(case.survey.span), 'recorded'),
         (duration(running), f'in motion ({share(running, case.survey.span)})'),
@@ -67,21 +71,13 @@ def tiles(case: AxisCase, summary: Summary) -> Markup:
         ),
         (str(len(summary.events)), 'warning' if len(summary.events) == 1 else 'warnings'),
         (f'{number(summary.energy_lost, 4)} J', 'lost to friction in the screw'),
-        _travel(case, summary),
+        travel,
     )
-    made = (
+    parts = (
         element('div', element('b', value), element('span', text), class_='tile')
         for value, text in facts
     )
-    return element('div', *made, class_='tiles')
-
-
-def _travel(case: AxisCase, summary: Summary) -> tuple[str, str]:
-    turns = number(summary.revolutions, 4)
-    if not case.speaks_feed:
-        return turns, 'revolutions'
-    way = number(summary.revolutions * case.surface.lead, 4)
-    return f'{way} m', f'travelled, {turns} revolutions'
+    return element('div', *parts, class_='tiles')
 
 
 def shares(case: AxisCase, summary: Summary) -> Markup:
@@ -241,12 +237,12 @@ def _courses(log: LogCase, budgets: Sequence[AxisBudget], spare: float) -> list[
     shares = buckets.shares_of_worst(
         spare, log.axes, [time_series.event_bytes(*axis) for axis in axes]
     )
-    made: list[dict[str, Any]] = []
+    courses: list[dict[str, Any]] = []
     left = 0.0  # what an axis did not take is for the next one
     for (case, budget), own in zip(axes, shares, strict=True):
-        made.append(time_series.series_record(case, own + left, budget))
-        left += own - len(script_json(made[-1]['fine']))
-    return made
+        courses.append(time_series.series_record(case, own + left, budget))
+        left += own - len(script_json(courses[-1]['fine']))
+    return courses
 
 
 def _body(log: LogCase, maps: Sequence[OperatingMap], budgets: Sequence[AxisBudget]) -> Markup:

@@ -37,7 +37,7 @@ def find_logs(
     without any recording.
 
     """
-    found: list[Path] = []
+    logs: list[Path] = []
     for path in paths:
         held = _recordings(path, tables, out, is_log)
         if not held:
@@ -48,8 +48,8 @@ def find_logs(
                 f'{" or ".join(endings)}'
                 + (f'; for its tables: ballscrew import {there[0]} {hint}' if there else '')
             )
-        found += held
-    return list(dict.fromkeys(found))
+        logs += held
+    return list(dict.fromkeys(logs))
 
 
 def _recordings(
@@ -59,7 +59,9 @@ def _recordings(
     if not path.is_dir() or is_one_bag(path, tables=tables, out=out):
         return [path]
     below = [
-        one for child in _folders(path, out) for one in _recordings(child, tables, out, is_log)
+        recording
+        for child in _folders(path, out)
+        for recording in _recordings(child, tables, out, is_log)
     ]
     held = _files(path, (*ENDINGS, *TABLES) if tables else ENDINGS)
     if is_log is not None:
@@ -103,7 +105,11 @@ def is_one_bag(folder: Path, *, tables: bool = False, out: Path | None = None) -
     if any(is_one_bag(child, tables=tables, out=out) for child in _folders(folder, out)):
         return False
     files = _files(folder, (*ENDINGS, ACTIVE))
-    return len(files) == 1 or _are_parts(files)
+    parts = [_PART.fullmatch(_stem(file.name)) for file in files]
+    known = [(part[1], int(part[2])) for part in parts if part is not None]
+    numbers = sorted(number for _, number in known)
+    are_parts = len({stem for stem, _ in known}) == 1 and numbers == list(range(len(files)))
+    return len(files) == 1 or are_parts
 
 
 def bears_name_of_bag(folder: Path) -> bool:
@@ -111,13 +117,6 @@ def bears_name_of_bag(folder: Path) -> bool:
     stems = [_stem(file.name) for file in _files(folder, (*ENDINGS, ACTIVE))]
     parts = [part[1] for part in map(_PART.fullmatch, stems) if part is not None]
     return folder.name in (*stems, *parts) and is_one_bag(folder, tables=True)
-
-
-def _are_parts(files: Sequence[Path]) -> bool:
-    parts = [_PART.fullmatch(_stem(file.name)) for file in files]
-    found = [(part[1], int(part[2])) for part in parts if part is not None]
-    numbers = sorted(number for _, number in found)
-    return len({stem for stem, _ in found}) == 1 and numbers == list(range(len(files)))
 
 
 def _stem(name: str) -> str:

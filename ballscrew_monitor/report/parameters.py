@@ -119,7 +119,8 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
     if facts is not None:
         facts = dataclasses.replace(facts, assumptions=tuple(_still_assumed(facts, chosen)))
         assumptions = {
-            one.key: {'value': one.value, 'reason': one.reason} for one in facts.assumptions
+            assumption.key: {'value': assumption.value, 'reason': assumption.reason}
+            for assumption in facts.assumptions
         }
     return LogParameters(
         values=chosen.values,
@@ -154,11 +155,11 @@ def _machine(facts: LogFacts | None, chosen: ChosenValues) -> str:
 
 def _still_assumed(facts: LogFacts, chosen: ChosenValues) -> Iterator[log_facts.Assumption]:
     """Yield the assumptions of a log without those that other parameters take the place of."""
-    said = flatten(facts.mapping.get('parameters') or {})
-    for one in facts.assumptions:
-        axis, _, place = one.key.partition('.')
-        if place not in OF_NODE or not (chosen.is_given or f'{axis}.{OF_NODE[place]}' in said):
-            yield one
+    given = flatten(facts.mapping.get('parameters') or {})
+    for assumption in facts.assumptions:
+        axis, _, place = assumption.key.partition('.')
+        if place not in OF_NODE or not (chosen.is_given or f'{axis}.{OF_NODE[place]}' in given):
+            yield assumption
 
 
 def _axis_facts(
@@ -167,7 +168,7 @@ def _axis_facts(
     """Return what is stated and assumed of an axis; the temperature as judged with."""
     assumed = assumed_of(assumptions, axis, chosen.values['axes'])
     mapped = {} if facts is None else facts.mapping.get('axes', {}).get(axis, {})
-    known = flatten(mapped) | {key: one['value'] for key, one in assumed.items()}
+    known = flatten(mapped) | {key: assumption['value'] for key, assumption in assumed.items()}
     stated = set(known) - {*assumed, TEMPERATURE}
     if f'{axis}.{OF_NODE[TEMPERATURE]}' in chosen.said and TEMPERATURE not in assumed:
         stated.add(TEMPERATURE)
@@ -185,12 +186,12 @@ def _axis_facts(
 def assumed_of(assumptions: Assumed, axis: str, axes: Sequence[str]) -> Assumed:
     """Return the assumptions about an axis, without its name, and those about all axes."""
     own, general = {}, {}
-    for key, one in assumptions.items():
+    for key, assumption in assumptions.items():
         whose, _, place = key.partition('.')
         if whose == axis:
-            own[place] = one
+            own[place] = assumption
         elif whose not in axes:
-            general[key] = one
+            general[key] = assumption
     return own | general
 
 
@@ -198,9 +199,9 @@ def _defaulted(axis: str, facts: LogFacts, chosen: ChosenValues) -> Iterator[str
     """Yield of an axis of a log what is judged with as nobody said it: model, limits, and all."""
     if chosen.is_given:
         return
-    said = chosen.said - {one.key for one in facts.assumptions}
-    model = not {f'{axis}.surface', f'{axis}.screw'} & said
-    limits = not any(name.startswith(f'{axis}.limits.') for name in said)
+    given = chosen.said - {assumption.key for assumption in facts.assumptions}
+    model = not {f'{axis}.surface', f'{axis}.screw'} & given
+    limits = not any(name.startswith(f'{axis}.limits.') for name in given)
     if model:
         yield 'surface'
     if limits:

@@ -19,7 +19,6 @@ from typing import Any
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import PointSource, Reason, Zone
-from ballscrew_monitor.core.state import Extremes
 from ballscrew_monitor.judge.inputs import (
     DERIVED,
     HELD,
@@ -63,6 +62,15 @@ class TorqueFit:
     def silence(self) -> str:
         """Return why a mean is not known."""
         return 'not in one way' if self.count else 'no torque was measured in motion'
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Extremes:
+    """Smallest, mean and largest value, NaN when there was none."""
+
+    low: float = math.nan
+    mean: float = math.nan
+    high: float = math.nan
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

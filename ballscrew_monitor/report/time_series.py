@@ -239,13 +239,13 @@ def _length(stretches: Iterable[tuple[float, float]]) -> float:
 
 def _merged(stretches: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
     """Return stretches in order, those that touch as one."""
-    made: list[tuple[float, float]] = []
+    spans: list[tuple[float, float]] = []
     for begin, end in sorted(stretches):
-        if made and begin <= made[-1][1]:
-            made[-1] = made[-1][0], max(made[-1][1], end)
+        if spans and begin <= spans[-1][1]:
+            spans[-1] = spans[-1][0], max(spans[-1][1], end)
         else:
-            made.append((begin, end))
-    return made
+            spans.append((begin, end))
+    return spans
 
 
 def panels(case: AxisCase) -> list[dict[str, Any]]:

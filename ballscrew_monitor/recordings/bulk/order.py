@@ -57,7 +57,7 @@ def ordered_events(
     decoders = {topic: TopicDecoder(bag, wanted, notes) for topic, wanted in readers.items()}
     order = EventOrder(period, bag.run_borders)
     for batch in batches(bag, decoders.keys()):
-        decoded = [decoders[topic].events(found) for topic, found in batch.topics.items()]
+        decoded = [decoders[topic].events(messages) for topic, messages in batch.topics.items()]
         yield order.push(joined(decoded), batch.until)
         on_done(batch.done)
     yield order.finish()
