@@ -191,6 +191,8 @@ class EventOrder:
             begin, end = int(times[hole]), int(times[hole + 1])
             grids.append(self._grid(begin, min(end, self._ceiling(begin) + LONGEST_HOLE)))
         due = ticks(np.sort(np.concatenate(grids)), place=LAST)
+        if not pauses.any():
+            return due
         borders = ticks(self._borders[runs[0] : runs[-1]], place=LAST, kind=RUN)
         return inserted(due, np.searchsorted(due['stamp'], borders['stamp']), borders)
 

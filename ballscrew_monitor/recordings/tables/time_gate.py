@@ -76,8 +76,9 @@ class TimeGate:
         self._add_steps(times, rows)
         self.count += len(times)
         if not self._unordered and len(self.runs) <= RUNS:
-            for begin in range(0, len(times), WINDOW):
-                end = begin + WINDOW
+            width = len(times) if self._goes_on(times) else WINDOW
+            for begin in range(0, len(times), width):
+                end = begin + width
                 self._follow(times[begin:end], rows[begin:end])
 
     def _add_steps(self, times: Array, rows: RowNumbers) -> None:
@@ -111,6 +112,12 @@ class TimeGate:
         else:
             self._share += len(times)
         self._last = times[-1:]
+
+    def _goes_on(self, times: Array) -> bool:
+        """Return True if all times rise after those before them."""
+        run = self.runs[-1] if self.runs and not self._pending else None
+        rises = bool((times[1:] >= times[:-1]).all())
+        return run is not None and rises and bool(times[0] + run.shift >= run.end)
 
     def _follow(self, times: Array, rows: RowNumbers) -> None:
         """Follow the runs through a few rows."""
