@@ -80,9 +80,13 @@ def test_logs_of_any_ending_are_found_and_other_files_are_not(tmp_path, capsys):
     (folder / 'trace.json').write_text(json.dumps(trace))
     (folder / 'readme').write_text('Logs of a mill.\nOf 2026-07-22 and later.\n' * 30)
     (folder / 'settings.json').write_text('{"rate": 100}')
+    (folder / 'numbers').write_text(''.join(f'{row} {row / 2}\n' for row in range(100)))
     check(folder, tmp_path, *SHEETS, '--json')
     record = json.loads(capsys.readouterr().out)
-    assert set(record['recordings']) == {'cut.rec', 'trace.json', 'cut'}
+    assert set(record['recordings']) == {'cut.rec', 'trace.json', 'cut', 'numbers'}
+    failure = record['recordings']['numbers']['failure']
+    assert 'no line names its columns' in failure
+    assert f'numbers: {failure}' in record['what_to_do']
     assert record['recordings']['cut.rec']['axes']['x']['judged'] == 2000
 
 
