@@ -193,7 +193,8 @@ class EventOrder:
         due = ticks(np.sort(np.concatenate(grids)), place=LAST)
         if not pauses.any():
             return due
-        borders = ticks(self._borders[runs[0] : runs[-1]], place=LAST, kind=RUN)
+        first, last = runs[0], runs[-1]
+        borders = ticks(self._borders[first:last], place=LAST, kind=RUN)
         return inserted(due, np.searchsorted(due['stamp'], borders['stamp']), borders)
 
     def _grid(self, begin: int, end: int) -> Integers:

@@ -106,7 +106,8 @@ def read_long(path: Path) -> tuple[pl.DataFrame, str]:
     form = long_form(lines)
     if form is None:
         raise ValueError('its first lines hold a name and a value each, all of them do not')
-    cells = _columns(lines[form.first :], form)
+    first = form.first
+    cells = _columns(lines[first:], form)
     times = [pl.col(f'{place}').alias(f'time {place}') for place in form.times]
     rows = cells.select(*times, name=_told_apart(cells, form), value=_values(form))
     if form.unit >= 0:
@@ -142,7 +143,10 @@ def _form(lines: Sequence[str], separator: str) -> LongForm | None:
     header = 'name' in roles and 'value' in roles
     if header:
         wide = wide[1:]
-    if len(wide) < FEWEST or len(wide) < MOSTLY * sum(map(bool, rows[wide[0] :])):
+    if not wide:
+        return None
+    first = wide[0]
+    if len(wide) < FEWEST or len(wide) < MOSTLY * sum(map(bool, rows[first:])):
         return None
     columns = list(zip(*(rows[at] for at in wide), strict=True))
     if not header:
