@@ -143,10 +143,8 @@ def _form(lines: Sequence[str], separator: str) -> LongForm | None:
     header = 'name' in roles and 'value' in roles
     if header:
         wide = wide[1:]
-    if not wide:
-        return None
-    first = wide[0]
-    if len(wide) < FEWEST or len(wide) < MOSTLY * sum(map(bool, rows[first:])):
+    begin = wide[0] if wide else len(rows)
+    if len(wide) < FEWEST or len(wide) < MOSTLY * sum(map(bool, rows[begin:])):
         return None
     columns = list(zip(*(rows[at] for at in wide), strict=True))
     if not header:
