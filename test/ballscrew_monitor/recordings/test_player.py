@@ -15,6 +15,7 @@ from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.player import chosen, PAUSE, playable, Player
 from ballscrew_monitor.settings.parameters import input_topics, read_file
+from ballscrew_monitor.settings.qos import started_node
 from mcap.writer import Writer
 import pytest
 import rclpy
@@ -281,6 +282,16 @@ def test_a_bag_of_any_machine_is_played(domain, listener, foreign_bag):
     assert out.startswith('not played: /drive, ')
 
 
+def test_who_does_not_take_the_time_from_it_is_told_so_once(domain, short_bag, says):
+    options = ('--rate', 20, '--wait', 1, '--topics', 'joint_states')
+    with started_node('wall', domain) as node:
+        node.create_subscription(JointState, 'joint_states', print, 10, raw=True)
+        with play(domain, short_bag, *options) as player:
+            out, err = player.communicate(timeout=DEADLINE)
+    assert (player.returncode, err) == (0, '')
+    assert out.count(says('untimed')) == out.count('/clock') == 1
+
+
 @pytest.mark.parametrize(
     'durability', [QoSDurabilityPolicy.VOLATILE, QoSDurabilityPolicy.TRANSIENT_LOCAL]
 )
@@ -331,8 +342,9 @@ def test_a_rate_that_the_node_follows_is_none(node, short_bag, wait_for):
     node.start('--params-file', PARAMS, use_sim_time='true')
     options = ('--rate', 0.5, '--params', PARAMS)
     with play(node.domain, short_bag, *options, command=('-c', GATED)) as player:
-        _, err = player.communicate('play\n', timeout=DEADLINE)
+        out, err = player.communicate('play\n', timeout=DEADLINE)
     assert (player.returncode, err) == (0, '')
+    assert 'use_sim_time' not in out
 
 
 def test_a_loop_goes_on_until_it_is_interrupted(domain, listener, short_bag):
