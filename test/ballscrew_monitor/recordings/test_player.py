@@ -13,9 +13,8 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import message_class, stamp_of
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.player import chosen, PAUSE, playable, Player
+from ballscrew_monitor.recordings.player import _play, chosen, PAUSE, playable, Player
 from ballscrew_monitor.settings.parameters import input_topics, read_file
-from ballscrew_monitor.settings.qos import started_node
 from mcap.writer import Writer
 import pytest
 import rclpy
@@ -282,14 +281,17 @@ def test_a_bag_of_any_machine_is_played(domain, listener, foreign_bag):
     assert out.startswith('not played: /drive, ')
 
 
-def test_who_does_not_take_the_time_from_it_is_told_so_once(domain, short_bag, says):
-    options = ('--rate', 20, '--wait', 1, '--topics', 'joint_states')
-    with started_node('wall', domain) as node:
-        node.create_subscription(JointState, 'joint_states', print, 10, raw=True)
-        with play(domain, short_bag, *options) as player:
-            out, err = player.communicate(timeout=DEADLINE)
-    assert (player.returncode, err) == (0, '')
-    assert out.count(says('untimed')) == out.count('/clock') == 1
+@pytest.mark.parametrize('missing', [['/clock'], ['/axial_load', '/clock'], ['/axial_load'], []])
+def test_who_does_not_take_the_time_from_it_is_told_so_once(
+    short_bag, missing, monkeypatch, capsys, says
+):
+    player = Player(Publishers(), Bag(short_bag), rate=1000.0)
+    monkeypatch.setattr(player, 'unmatched', lambda: missing)
+    code = _play(player, list(Bag(short_bag).topics), 0.0, threading.Event(), False, None)
+    out = capsys.readouterr().out
+    assert code == 0
+    assert out.count(says('untimed')) == out.count('/clock') == missing.count('/clock')
+    assert out.count('nobody listens to /axial_load\n') == missing.count('/axial_load')
 
 
 @pytest.mark.parametrize(
