@@ -324,6 +324,11 @@ class Fault(Worded):
         'nothing if somebody meant it: no duration holds the step; otherwise let NTP or PTP hold '
         'the clock',
     )
+    TWO_NODES = (
+        703,
+        'another node of this name publishes on the same topics',
+        'give one of both another name or namespace, or another ROS_DOMAIN_ID',
+    )
 
 
 _CAUSES = {Code.RCS_HIGH: Fault.RCS_HIGH, Code.EFFICIENCY_LOW: Fault.EFFICIENCY_LOW}

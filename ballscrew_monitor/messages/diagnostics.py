@@ -9,7 +9,7 @@ publishing; numbers are values, with the unit in brackets.
 
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from ballscrew_monitor.core.conversions import celsius, clock_text, SECOND, seconds
@@ -47,6 +47,11 @@ BUSY = (
     'publish_period, or give some axes a node of their own'
 )
 CLOCK_SET = 'the clock of the node was set {}; no duration holds the step'
+TWO_NODES = (
+    'another node of this name runs on {} and publishes on the same topics: give one of both '
+    'another name or namespace'
+)
+HOST, NODE_PART = 'Host', 'Node'
 PARTS = ('Lubrication', 'Inputs', 'Surface')
 LONGEST_CODE = 10  # characters of a code; more are none
 Inputs = tuple[InputStatus, ...]
@@ -123,20 +128,26 @@ def recording(node: str, problem: str) -> DiagnosticStatus:
     return _of_node(node, 'Recording', problem, RECORDED, Fault.NOT_RECORDED)
 
 
-def of_node(node: str, signs: VitalSigns, step: int = 0) -> DiagnosticStatus:
+def of_node(
+    node: str, signs: VitalSigns, step: int = 0, hosts: Sequence[str] = ()
+) -> DiagnosticStatus:
     """
     Return the status of the `node` itself, by full name.
 
-    `step` [ns] is by how much its clock was set not long ago, 0: it was not.
+    `step` [ns] is by how much its clock was set not long ago, 0: it was not; `hosts` are those of
+    the nodes of this name, its own first.
 
     """
     problem, code = BUSY if signs.is_busy else '', Fault.BUSY
     if step:
         text = CLOCK_SET.format('forward' if step > 0 else 'back')
         problem, code = f'{text}; {problem}' if problem else text, Fault.CLOCK_SET
-    status = _of_node(node, 'Node', problem, IN_TIME, code)
+    status = _of_node(node, NODE_PART, problem, IN_TIME, code)
+    if others := ', '.join(hosts[1:]):
+        _say(status, StatusSummary(ERROR, TWO_NODES.format(others), Fault.TWO_NODES))
     status.values += key_values(
         [
+            *((HOST, host) for host in hosts if others),
             ('Loop time [s]', signs.loop_time),
             ('Queue depth [-]', signs.queue_depth),
             ('Processor share [-]', signs.processor_share),

@@ -48,6 +48,10 @@ LAST = 2**31 * SECOND  # [ns] first stamp that a message cannot hold
 CLOCK_PERIOD = 0.01  # [s] of wall time
 MATCH_POLL = 0.02  # [s] between two looks at who has matched
 PAUSE = SECOND // 10  # [ns] of bag time from the last message of a pass to the first of the next
+UNTIMED = (
+    'nobody takes the time from /clock, and for the clock of the wall the stamps of the bag are '
+    'old: start the node with use_sim_time:=true'
+)
 DELIVERY = 5.0  # [s] that the last messages may take
 CLOCK_QOS = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 DATA_QOS = QoSProfile(
@@ -418,8 +422,11 @@ def _play(
     if set(topics) <= set(missing):
         say(f'nobody subscribed to {", ".join(topics)} within {patience:g} s')
         return FAILED
-    if missing:
-        print(f'nobody listens to {", ".join(missing)}', flush=True)
+    unheard = [topic for topic in missing if topic != CLOCK]
+    if unheard:
+        print(f'nobody listens to {", ".join(unheard)}', flush=True)
+    if CLOCK in missing:
+        print(UNTIMED, flush=True)
     if following is not None:
         following.begin()
     ended = player.play(stop, loop=loop)

@@ -403,6 +403,17 @@ def test_the_node_says_that_its_clock_was_set(share, step, word, says):
     assert values_of(status)['Clock step [s]'] == f'{step / SECOND:.6g}'
 
 
+@pytest.mark.parametrize('step', [0, SECOND])
+def test_the_node_says_that_another_one_has_its_name(step, says):
+    status = diagnostics.of_node('node', VitalSigns(), step, ['here', 'there', 'beyond'])
+    assert said(status) == (ERROR, says('two_nodes'))
+    assert codes_of([status]) == [Fault.TWO_NODES]
+    hosts = [one.value for one in status.values if one.key == diagnostics.HOST]
+    assert hosts == ['here', 'there', 'beyond']
+    alone = diagnostics.of_node('node', VitalSigns(), step, ['here'])
+    assert alone == diagnostics.of_node('node', VitalSigns(), step)
+
+
 def test_messages_hold_no_measured_numbers(core):
     for events in ([LOAD, SPEED], [SPEED], [LOAD, sample(Source.SPEED, 1e3)]):
         for status in after(core, *events).values():
