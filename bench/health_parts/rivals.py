@@ -89,7 +89,8 @@ def pelt_look(history: History, first: int) -> Look:
     scatter = 1.4826 * float(np.median(np.abs(np.diff(values)))) / math.sqrt(2.0)
     search = ruptures.Pelt(model='l2', min_size=FEWEST_BETWEEN, jump=1).fit(values[:, None])
     *_, begin, _ = [0, 0, *search.predict(pen=2.0 * scatter**2 * math.log(len(values)))]
-    change = float(values[max(begin, first) :].mean() - values[:first].mean()) if begin else 0.0
+    later = max(begin, first)
+    change = float(values[later:].mean() - values[:first].mean()) if begin else 0.0
     look = _look(history, change, math.nan, first)
     sign = -1 if change < 0.0 else 1
     return look._replace(raised=sign if begin >= first and abs(change) > TOLERANCE else 0)

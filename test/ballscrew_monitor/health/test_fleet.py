@@ -45,7 +45,8 @@ def walks(rng, axes, weeks=WEEKS, shift=0.0, faulty=0):
     z = rng.standard_normal((axes, weeks))
     for week in range(1, weeks):
         z[:, week] = kept * z[:, week - 1] + math.sqrt(1.0 - kept**2) * z[:, week]
-    z[:faulty, weeks // 2 :] += shift
+    half = weeks // 2
+    z[:faulty, half:] += shift
     return 2.0 * norm.sf(np.abs(z))
 
 
