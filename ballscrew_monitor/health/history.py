@@ -25,8 +25,6 @@ USUAL_TIME = 2.0
 """Time in a group and direction at which it weighs half [s]."""
 BOTH, ONE_WAY = 0, 1
 ROUNDS = 25
-PEAK = 3.0
-"""Scatter by which a log lies above its neighbours if the axis was greased [-]."""
 
 
 class Group(NamedTuple):
@@ -255,22 +253,3 @@ def connected(seen: NDArray[np.bool_]) -> NDArray[np.bool_]:
         if (more == rows).all():
             return rows
         rows = more
-
-
-def calmed(logs: Logs) -> Logs:
-    """
-    Return logs with more noise where the friction lies above that of both neighbours.
-
-    A regreasing raises the friction for a log or two. It neither moves the level nor widens the
-    scatter then.
-
-    """
-    effect = logs.effect - np.median(logs.effect)
-    size = len(effect)
-    if size < 5:
-        return logs
-    near = [np.median(effect[slice(max(at - 2, 0), at + 3)]) for at in range(size)]
-    above = effect - np.array(near)
-    scale = 1.4826 * float(np.median(np.abs(above)))
-    peaks = above > PEAK * max(scale, 0.008)
-    return logs._replace(noise=np.where(peaks, 25.0 * logs.noise, logs.noise))

@@ -4,8 +4,7 @@
 
 import math
 
-from ballscrew_monitor.health.history import calmed, connected, effects_of, history_of, two_ways
-from ballscrew_monitor.health.mixed import Logs
+from ballscrew_monitor.health.history import connected, effects_of, history_of, two_ways
 from ballscrew_monitor.health.records import LoadSource
 from ballscrew_monitor.health.summary import array_of
 import numpy as np
@@ -93,14 +92,3 @@ def test_screws_of_every_size_have_the_same_effects(motion):
     assert effects[0].effect == pytest.approx(effects[1].effect)
     wanted = np.log(1.0 + 0.02 * np.arange(6))
     assert effects[0].effect - effects[0].effect[0] == pytest.approx(wanted)
-
-
-def test_a_log_after_regreasing_counts_for_little(motion):
-    effect = np.random.default_rng(2).normal(0.0, 0.01, 20)
-    effect[7] += 0.12
-    effect[13] -= 0.12
-    logs = Logs(7.0 * np.arange(20.0), effect, np.zeros(20), np.ones(20))
-    noise = calmed(logs).noise
-    assert noise[7] > 10.0
-    assert noise[13] == 1.0
-    assert noise.sum() < 20.0 + 3 * 24.0
