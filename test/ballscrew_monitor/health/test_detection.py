@@ -137,6 +137,7 @@ def year(random, *, loss=0.0, at=26, scatter=0.012, wander=0.0, weeks=52, swing=
         temperature=300.0 + warmth[:, None] * full,
         weight=full,
         standstill=np.full(weeks, np.nan),
+        gain=np.full(weeks, np.nan),
         warm=True,
         load_known=True,
     )

@@ -92,3 +92,27 @@ def test_screws_of_every_size_have_the_same_effects(motion):
     assert effects[0].effect == pytest.approx(effects[1].effect)
     wanted = np.log(1.0 + 0.02 * np.arange(6))
     assert effects[0].effect - effects[0].effect[0] == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize('constant', [1.0, 0.9])
+def test_the_gain_is_that_of_the_load_though_only_one_way_is_loaded(motion, constant):
+    """Free both ways at two speeds, and a cut one way between them."""
+    cells = []
+    for speed, friction in ((20.0, 0.6), (60.0, 1.0)):
+        for way in (1, -1):
+            place = {'direction': way, 'speed': way * speed, 'speed_band': round(speed)}
+            torque = (way * friction + 0.05) / constant
+            cells.append(motion.cell(motor_torque=torque, axial_load=0.0, load_band=0, **place))
+    torque = (0.8 + 0.05 + 900.0 * LEAD / (2.0 * math.pi)) / constant
+    cells.append(
+        motion.cell(
+            direction=1,
+            speed=40.0,
+            speed_band=40,
+            axial_load=-900.0,
+            load_band=-8,
+            motor_torque=torque,
+        )
+    )
+    history = history_of(array_of(cells), LEAD)
+    assert history.gain == pytest.approx([1.0 / constant])
