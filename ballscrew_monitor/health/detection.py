@@ -18,6 +18,7 @@ from ballscrew_monitor.health.mixed import (
     CHANGE_RATE,
     Estimate,
     estimate,
+    FIRST_CHANGE,
     Logs,
     Prior,
     USUAL,
@@ -115,6 +116,7 @@ def look(history: History, *, baseline_days: float = BASELINE_DAYS, prior: Prior
     logs = binned(effects.logs, [compared[part] for part in bins])
     now = np.arange(len(bins)) >= len(bins) - now_of(logs.time)
     baseline = baseline_of(logs.time, now, baseline_days)
+    sizes = np.array([len(part) for part in bins])
     if baseline.sum() < FEWEST_LOGS:
         known = len(logs.time)
         reason = f'{known} logs so far, a baseline needs {FEWEST_LOGS} and then two more'
@@ -126,8 +128,8 @@ def look(history: History, *, baseline_days: float = BASELINE_DAYS, prior: Prior
         log=index,
         time=float(time[-1]),
         smallest=smallest_loss(found, logs.time),
-        baseline=sum(map(len, bins[: int(baseline.sum())])),
-        now=sum(map(len, bins[len(bins) - int(now.sum()) :])),
+        baseline=int(sizes[baseline].sum()),
+        now=int(sizes[now].sum()),
         baseline_end=float(time[compared[bins[int(baseline.sum()) - 1][-1]]]),
         now_begin=float(time[first[int(now.argmax())]]),
         onset=first[found.onset] if found.onset >= 0 else first[int(now.argmax())],
@@ -171,7 +173,7 @@ def smallest_loss(found: Estimate, time: Array) -> float:
     """
     if not len(found.recent):
         return math.nan
-    ago = np.abs(time[-1] - time[3 : 3 + len(found.recent)] - EIGHT_WEEKS)
+    ago = np.abs(time[-1] - time[FIRST_CHANGE:][: len(found.recent)] - EIGHT_WEEKS)
     deviation = float(found.recent[int(ago.argmin())])
     odds = math.log((1.0 - DOUBT) / DOUBT / (CHANGE_RATE * EIGHT_WEEKS))
     proven = deviation * math.sqrt(2.0 * odds + 2.0 * math.log(max(CHANGE / deviation, 1.0)))

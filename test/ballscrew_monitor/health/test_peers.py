@@ -72,9 +72,7 @@ def families():
 def test_peers_narrow_the_interval_and_it_still_holds(families):
     change, value, reach, of_peers, reach_of_peers = families.T
     alone, together = np.abs(value - change) <= reach, np.abs(of_peers - change) <= reach_of_peers
-    own, of_kind = (
-        np.sqrt((part / 1.96) ** 2 - MODEL_DOUBT**2) for part in (reach, reach_of_peers)
-    )
+    of_model = [np.sqrt((part / 1.96) ** 2 - MODEL_DOUBT**2) for part in (reach, reach_of_peers)]
     assert np.median(of_model[1] / of_model[0]) < 0.92
     assert together.mean() >= 0.9
     assert alone.mean() >= 0.9
