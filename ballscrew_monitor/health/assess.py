@@ -20,16 +20,9 @@ from ballscrew_monitor.health.baseline import changed_screw, in_force, motion_by
 from ballscrew_monitor.health.causes import causes_of
 from ballscrew_monitor.health.change import changes_of, Marks, marks_of
 from ballscrew_monitor.health.damage import rated_of
-from ballscrew_monitor.health.detection import (
-    BASELINE_DAYS,
-    Latched,
-    latched,
-    Look,
-    look,
-    onset_of,
-)
+from ballscrew_monitor.health.detection import BASELINE_DAYS, Latched, latched, Look, look
 from ballscrew_monitor.health.energy import energy_quantities
-from ballscrew_monitor.health.history import effects_of, History, history_of
+from ballscrew_monitor.health.history import History, history_of
 from ballscrew_monitor.health.life import life_quantities, shaft_notes, unknown
 from ballscrew_monitor.health.lubrication import (
     boundary_note,
@@ -66,7 +59,7 @@ DRAG, SMALLEST = 'drag change', 'smallest loss shown'
 CHANGED = (Condition.WORSE, Condition.SLIGHTLY_CHANGED)
 NEW_PROGRAMME = 0.5
 """Share of the motion at places that the baseline lacks, from which the programme changed [-]."""
-ALARM_RATE = 'about two clean years of a hundred end in a false alarm'
+ALARM_RATE = 'at most one clean year of a hundred ends in a false alarm'
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -175,14 +168,8 @@ def course_of(kept: Kept, lead: float, settings: HealthSettings) -> Course:
         look(history.until(at), baseline_days=days, prior=settings.prior)
         for at in range(1, count + 1)
     ]
-    onsets = [_onset(history, one) if one.raised or one.shifted else -1 for one in looks]
     baseline = dataclasses.replace(baseline, begin=begin, end=end)
-    return Course(history, looks, latched(looks, onsets), baseline)
-
-
-def _onset(history: History, seen: Look) -> int:
-    effects = effects_of(history.until(seen.log + 1))
-    return onset_of(effects, seen.baseline, seen.log, seen.slope if history.warm else 0.0)
+    return Course(history, looks, latched(looks), baseline)
 
 
 def _earlier(axis: str, seen: Course, at: int, surface: Surface) -> Health:
@@ -200,7 +187,6 @@ def _earlier(axis: str, seen: Course, at: int, surface: Surface) -> Health:
         quantities=[drag],
         causes=causes,
         baseline=seen.baseline,
-        chance=here.chance,
     )
 
 
@@ -262,7 +248,6 @@ def _latest(
         baseline=known,
         notes=[note for note in notes if note],
         usual=usual is not None,
-        chance=here.chance if here is not None else 1.0,
     )
 
 

@@ -14,9 +14,9 @@ import math
 import statistics
 from typing import Any, NamedTuple
 
-from ballscrew_monitor.health.detection import BASELINE_DAYS, binned, blocks_of
-from ballscrew_monitor.health.history import calmed, effects_of, history_of
-from ballscrew_monitor.health.mixed import fit, grid, Logs, Prior, SLOPE, SLOPE_DOUBT, USUAL
+from ballscrew_monitor.health.detection import binned, bins_of, FEWEST_LOGS, now_of
+from ballscrew_monitor.health.history import effects_of, history_of
+from ballscrew_monitor.health.mixed import estimate, grid, Logs, Prior, SLOPE, SLOPE_DOUBT, USUAL
 from ballscrew_monitor.health.records import Quantity, TOLERANCE
 from ballscrew_monitor.health.words import percent
 import numpy as np
@@ -147,28 +147,25 @@ def spread_of(cells: NDArray[Any], lead: float) -> Spread | None:
     if history is None:
         return None
     effects = effects_of(history)
-    logs = calmed(binned(Logs(*(part[effects.compared] for part in effects.logs))))
-    blocks = blocks_of(logs.time, BASELINE_DAYS)
-    if blocks is None:
+    compared = np.flatnonzero(effects.compared)
+    bins = bins_of(history.time[compared])
+    logs = binned(effects.logs, [compared[part] for part in bins])
+    if len(logs.time) < FEWEST_LOGS + 2:
         return None
-    return _spread(logs, blocks, frozenset(history.groups), warm=history.warm)
+    return _spread(logs, frozenset(history.groups), warm=history.warm)
 
 
-def _spread(
-    logs: Logs, blocks: NDArray[np.int64], groups: frozenset[Any], *, warm: bool
-) -> Spread:
-    mean, covariance, likelihood = fit(logs, blocks, warm=warm)
-    alone = np.exp(likelihood - likelihood.max())
-    weight = alone * np.exp(grid().prior)
-    weight = weight / weight.sum()
+def _spread(logs: Logs, groups: frozenset[Any], *, warm: bool) -> Spread:
+    now = np.arange(len(logs.time)) >= len(logs.time) - now_of(logs.time)
+    found = estimate(logs, ~now, now, warm=warm)
+    alone = found.pairs / np.exp(grid().prior)
     pairs = tuple((alone / alone.sum()).tolist())
-    slope = float(weight @ mean[:, 1])
-    variance = float(weight @ (covariance[:, 1, 1] + (mean[:, 1] - slope) ** 2))
+    variance = found.slope_deviation**2
     information = 1.0 / variance - SLOPE_DOUBT**-2.0
     if information <= 0.0 or not warm:
         return Spread(SLOPE, math.inf, pairs, groups)
     return Spread(
-        slope=SLOPE + slope / variance / information,
+        slope=SLOPE + (found.slope - SLOPE) / variance / information,
         deviation=information**-0.5,
         pairs=pairs,
         groups=groups,

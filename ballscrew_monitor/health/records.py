@@ -268,8 +268,7 @@ class Health:
     `since` [ns] is the date of the change that is latched, 0 for none. `quantities` by name;
     causes in the order of their weight, the excluded ones last; `verdict` is one sentence,
     `advice` what to do, empty for nothing; `notes` tell what is not known, and why. `usual`: the
-    axis runs as much at the boundary as it did in its baseline, which is its normal. `chance` [-]
-    is the p-value of no change, by this log and those before it.
+    axis runs as much at the boundary as it did in its baseline, which is its normal.
 
     """
 
@@ -284,7 +283,6 @@ class Health:
     baseline: Baseline | None = None
     notes: Sequence[str] = ()
     usual: bool = False
-    chance: float = 1.0
 
     @property
     def unknown(self) -> dict[str, list[str]]:

@@ -146,8 +146,7 @@ def public_lines(folder: Path) -> Iterator[str]:
         seen = ageing_looks(ageing.hours, torque)
         last, alarms = seen[-1], [one.log for one in seen if one.raised]
         first = np.mean(torque[: last.baseline])
-        begin = len(torque) - last.now
-        now = np.mean(torque[begin:]) / first - 1.0
+        now = np.mean(torque[::-1][: last.now]) / first - 1.0
         interval = (
             f'{100 * last.change:+.0f} % ({100 * last.low:+.0f} to {100 * last.high:+.0f} %)'
         )

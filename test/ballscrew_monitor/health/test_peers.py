@@ -4,15 +4,15 @@
 
 import math
 
-from ballscrew_monitor.health.detection import BASELINE_DAYS, blocks_of
+from ballscrew_monitor.health.detection import BASELINE_DAYS, baseline_of, now_of
 from ballscrew_monitor.health.mixed import (
     estimate,
     grid,
     Logs,
+    MODEL_DOUBT,
     SLOPE,
     SLOPE_DOUBT,
     USUAL,
-    weights_of,
 )
 from ballscrew_monitor.health.peers import _spread, prior_of, priors, Spread
 import numpy as np
@@ -42,11 +42,9 @@ def axis_logs(rng, slope, scatter, wander):
 
 
 def interval(logs, prior):
-    blocks = blocks_of(logs.time, BASELINE_DAYS)
-    before = blocks[blocks < blocks.max()]
-    weight = weights_of(logs.until(len(before)), before, prior=prior)
-    found = estimate(logs, blocks, weight, prior=prior)
-    return found.value, 1.96 * found.deviation
+    now = np.arange(WEEKS) >= WEEKS - now_of(logs.time)
+    found = estimate(logs, baseline_of(logs.time, now, BASELINE_DAYS), now, prior=prior)
+    return found.change, 1.96 * found.deviation
 
 
 @pytest.fixture(scope='module')
@@ -65,10 +63,7 @@ def families():
             )
             for _ in range(6)
         ]
-        spreads = {
-            str(at): _spread(logs, blocks_of(logs.time, BASELINE_DAYS), GROUPS, warm=True)
-            for at, (logs, _) in enumerate(drawn)
-        }
+        spreads = {str(at): _spread(logs, GROUPS, warm=True) for at, (logs, _) in enumerate(drawn)}
         for prior, (logs, change) in zip(priors(spreads).values(), drawn, strict=True):
             rows.append((change, *interval(logs, USUAL), *interval(logs, prior)))
     return np.array(rows)
@@ -77,10 +72,11 @@ def families():
 def test_peers_narrow_the_interval_and_it_still_holds(families):
     change, value, reach, of_peers, reach_of_peers = families.T
     alone, together = np.abs(value - change) <= reach, np.abs(of_peers - change) <= reach_of_peers
-    assert np.median(reach_of_peers / reach) < 0.92
+    of_model = [np.sqrt((part / 1.96) ** 2 - MODEL_DOUBT**2) for part in (reach, reach_of_peers)]
+    assert np.median(of_model[1] / of_model[0]) < 0.92
     assert together.mean() >= 0.9
     assert alone.mean() >= 0.9
-    assert np.mean((of_peers - change) ** 2) < np.mean((value - change) ** 2)
+    assert np.mean((of_peers - change) ** 2) < 0.8 * np.mean((value - change) ** 2)
 
 
 def spread(slope=-0.014, deviation=0.001, pairs=None):
