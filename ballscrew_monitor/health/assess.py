@@ -187,6 +187,7 @@ def _earlier(axis: str, seen: Course, at: int, surface: Surface) -> Health:
         quantities=[drag],
         causes=causes,
         baseline=seen.baseline,
+        doubt=here.doubt,
     )
 
 
@@ -248,6 +249,7 @@ def _latest(
         baseline=known,
         notes=[note for note in notes if note],
         usual=usual is not None,
+        doubt=here.doubt if here is not None else 1.0,
     )
 
 

@@ -268,7 +268,8 @@ class Health:
     `since` [ns] is the date of the change that is latched, 0 for none. `quantities` by name;
     causes in the order of their weight, the excluded ones last; `verdict` is one sentence,
     `advice` what to do, empty for nothing; `notes` tell what is not known, and why. `usual`: the
-    axis runs as much at the boundary as it did in its baseline, which is its normal.
+    axis runs as much at the boundary as it did in its baseline, which is its normal. `doubt` [-]
+    is the probability that nothing lasting has come.
 
     """
 
@@ -283,6 +284,7 @@ class Health:
     baseline: Baseline | None = None
     notes: Sequence[str] = ()
     usual: bool = False
+    doubt: float = 1.0
 
     @property
     def unknown(self) -> dict[str, list[str]]:

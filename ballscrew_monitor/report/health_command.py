@@ -12,7 +12,7 @@ import sys
 from typing import Any
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED
-from ballscrew_monitor.health.fleet import fleet_note
+from ballscrew_monitor.health.fleet import controlled
 from ballscrew_monitor.health.records import Health, Quantity
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import FILE, read_health
@@ -73,13 +73,14 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
         for folder, stored in stores.items():
             values = read_file(args.params or nominal)
             found |= kept_healths(folder, stored, titles, values, _options(args))
+        found, fleet = controlled(found)
         for last in (courses[-1] for courses in found.values()):
             print(printable('\n'.join(lines_of(last))))
         for peer in peers_among(histories, titles):
             print(printable(peer.text))
         say(*filter(None, [folders_note(axes)]))
-        if note := fleet_note(found.values()):
-            print(f'{note}.')
+        if fleet:
+            print(f'{fleet}.')
         records = _records(found, titles)
         if args.out is not None and found:
             _write(args.out, records, {titles[axis]: one for axis, one in found.items()})
