@@ -9,6 +9,7 @@ follows the motor by a play operator, with pitch errors, growth, skew and noise.
 """
 
 from collections import namedtuple
+from dataclasses import replace
 import math
 from pathlib import Path
 import sys
@@ -22,6 +23,7 @@ from ballscrew_monitor.health.where import (
     LOST,
     LOST_CHANGE,
     lost_motion,
+    lost_motion_grew,
     LOST_TREND,
     where_on_screw,
 )
@@ -124,6 +126,22 @@ def test_play_that_grows_is_told_with_its_size(seed):
         assert found[name].value == pytest.approx(20.0, abs=2.0)
     assert found[LOST_TREND].low > 0.0
     assert sum('the lost motion at reversals has grown by' in note for note in where.notes) == 1
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_play_that_grows_counts_from_its_date_on(seed):
+    """Begun at a day of the year; of a date long after it, the play was there before."""
+    year = axis_year(seed, replace(FAULTS['play 20 um'], ramp=0.0), scale=True)
+    lead = year.machine.size.lead
+    cells = array_of(cell for log in year.logs for cell in cells_of_log(log, lead))
+    cells = cells[cells['kind'] == CellKind.REVERSAL]
+    first, end = year.logs[0].start, year.logs[-1].start
+    begun = first + round(year.fault.start) * DAY
+    assert lost_motion_grew(cells, begun, end)
+    assert lost_motion_grew(cells, begun - 28 * DAY, end)
+    assert not lost_motion_grew(cells, begun + 56 * DAY, end)
+    assert not lost_motion_grew(cells, begun - 56 * DAY, begun - 7 * DAY)
+    assert not lost_motion_grew(cells, begun, begun + 5 * DAY)  # one log after it
 
 
 def test_an_axis_that_keeps_its_play_has_no_note():
