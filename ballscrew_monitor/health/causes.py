@@ -133,7 +133,7 @@ CANDIDATES = (
         constant,
         'the drag of a wiper, seal, guideway or bearing has changed ({size:+.2g} N m)',
         'a wiper or a guideway has one torque at all speeds',
-        'the support bearing has play ({size:+.2g} N m of its drag)',
+        'the support bearing has play ({size:+.2g} N m of drag)',
     ),
 )
 """All causes of a change of the friction: the one table of them."""
