@@ -46,7 +46,7 @@ from ballscrew_monitor.health.records import (
 from ballscrew_monitor.health.remedies import remedies_of
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.summary import cells_of
-from ballscrew_monitor.health.where import where_on_screw
+from ballscrew_monitor.health.where import lost_motion_grew, where_on_screw
 from ballscrew_monitor.health.words import advice_of, input_notes, missing_reason, verdict_of
 import numpy as np
 from numpy.typing import NDArray
@@ -87,12 +87,18 @@ class Kept(NamedTuple):
 
 
 class Course(NamedTuple):
-    """Looks at a history with the condition that is latched after each."""
+    """
+    Looks at a history with the condition that is latched after each.
+
+    `reversals` are the cells of lost motion since the baseline began, an array of CELL.
+
+    """
 
     history: History | None
     looks: Sequence[Look]
     states: Sequence[Latched]
     baseline: Baseline
+    reversals: NDArray[Any]
 
 
 def course(
@@ -156,9 +162,10 @@ def course_of(kept: Kept, lead: float, settings: HealthSettings) -> Course:
     """Return the looks at all logs since the baseline in force; `lead` [m] of the screw."""
     baseline = in_force(kept.baselines, motion_by_day(kept.spectrum), settings.baseline_days)
     cells = kept.cells[kept.cells['start'] >= baseline.begin]
+    reversals = cells[cells['kind'] == CellKind.REVERSAL]
     history = history_of(cells, lead)
     if history is None:
-        return Course(None, (), (), baseline)
+        return Course(None, (), (), baseline, reversals)
     learned = not kept.baselines or not kept.baselines[-1].end
     begin = int(history.start[0]) if learned else baseline.begin
     days = settings.baseline_days if learned else (baseline.end - int(history.start[0])) / DAY
@@ -169,7 +176,7 @@ def course_of(kept: Kept, lead: float, settings: HealthSettings) -> Course:
         for at in range(1, count + 1)
     ]
     baseline = dataclasses.replace(baseline, begin=begin, end=end)
-    return Course(history, looks, latched(looks), baseline)
+    return Course(history, looks, latched(looks), baseline, reversals)
 
 
 def _earlier(axis: str, seen: Course, at: int, surface: Surface) -> Health:
@@ -312,6 +319,9 @@ def _explained(seen: Course, at: int, surface: Surface) -> tuple[list[Cause], Ma
     marks = marks_of(history, here) if latest or proven else None
     if marks is None or not proven:
         return [], marks
+    until = int(history.start[-1])
+    grew = lost_motion_grew(seen.reversals, _since(seen, at), until)
+    marks = marks._replace(lost_motion=grew)
     preload = float(surface.header.get('service', {}).get('preload', math.nan))
     groups = changes_of(history, here)
     return causes_of(groups, marks, math.log1p(here.change), preload), marks

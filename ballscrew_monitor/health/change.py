@@ -60,7 +60,8 @@ class Marks(NamedTuple):
 
     `offset` is the half sum of the torques of both directions over the friction [-], `gain` the
     logarithm of the torque over the measured load [-], `standstill` the torque at rest over the
-    friction [-]; `new_share` [-] is that of places that the baseline lacks.
+    friction [-]; `new_share` [-] is that of places that the baseline lacks. `lost_motion` at
+    reversals has grown since the change began.
 
     """
 
@@ -68,6 +69,7 @@ class Marks(NamedTuple):
     gain: Shift
     standstill: Shift
     new_share: float
+    lost_motion: bool = False
 
 
 def changes_of(history: History, look: Look) -> GroupChange:
