@@ -71,6 +71,8 @@ STEPS = (
     (r'[,\s_]+', ' '),
 )
 """What is replaced in a text before its form is looked for, each only where it occurs."""
+LONGEST_TIME = 64
+"""Letters of the longest text that is taken for a time."""
 SAMPLE = 60  # cells by which the forms of a column are found
 
 
@@ -123,7 +125,7 @@ def time_forms(texts: pl.Series) -> Iterator[tuple[TimeForm, ...]]:
     months = not english.equals(sample)
     by_hours: dict[str, list[TimeForm]] = {}
     signs = {letter for letter in ''.join(sample) if not letter.isalnum()}
-    written = english.to_list()
+    written = [text for text in english.to_list() if len(text) <= LONGEST_TIME]
     for form, (needed, shape) in _all_forms().items():
         if not needed <= signs or not any(map(shape.fullmatch, written)):
             continue
