@@ -12,7 +12,7 @@ import sqlite3
 from ballscrew_monitor import cli
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fault_codes import Fault
-from ballscrew_monitor.core.state import NOT_ENDED
+from ballscrew_monitor.core.state import NOT_ENDED, NOT_SHELVED
 from ballscrew_monitor.judge.kept import AxisRecord
 from ballscrew_monitor.judge.records import Memory
 from ballscrew_monitor.node.restart_state import RestartState
@@ -171,7 +171,7 @@ def test_a_directory_that_is_mounted_later_is_taken_up(axis, tmp_path):
         lambda: axis.node.levels('State directory')[-1:] == [(DiagnosticStatus.WARN, bad)]
     )
     memory = Memory(running_time=7 * SECOND, since=1, event_number=41)
-    before = AxisRecord.of('x', memory, NOT_ENDED, '')
+    before = AxisRecord.of('x', memory, NOT_ENDED, NOT_SHELVED, 0)
     mounted = RestartState(tmp_path / 'mounted' / 'state')
     mounted.keep(before)
     mounted.close()

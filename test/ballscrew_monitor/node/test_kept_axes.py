@@ -21,7 +21,7 @@ import types
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
-from ballscrew_monitor.core.state import NOT_ENDED, RESTARTED
+from ballscrew_monitor.core.state import NOT_ENDED, NOT_SHELVED, RESTARTED
 from ballscrew_monitor.judge.kept import AxisRecord
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.judge.records import Memory
@@ -235,7 +235,7 @@ def test_an_event_and_its_number_are_one_commit(machine, monkeypatch):
 
 def test_what_an_earlier_node_left_is_taken_up_late(machine):
     memory = Memory(running_time=7 * SECOND, event_number=41, event_active=True)
-    before = AxisRecord.of('x', memory, NOT_ENDED, '')
+    before = AxisRecord.of('x', memory, NOT_ENDED, NOT_SHELVED, 0)
     machine.move(SLOW)
     machine.move(SLOW)
     assert machine.monitor.memory.event_number == 1

@@ -7,7 +7,7 @@ import random
 import shutil
 import sqlite3
 
-from ballscrew_monitor.core.state import NOT_ENDED
+from ballscrew_monitor.core.state import NOT_ENDED, NOT_SHELVED
 from ballscrew_monitor.judge.kept import AxisRecord
 from ballscrew_monitor.judge.records import Memory
 from ballscrew_monitor.node.state_database import FILE, read_entries, StateDatabase
@@ -66,7 +66,7 @@ def stamps(folder):
 
 def test_what_is_written_is_found_again(make, tmp_path):
     memory = Memory(event_number=7, angle=0.1 + 0.2)
-    axis = AxisRecord.of('x', memory, NOT_ENDED, '')
+    axis = AxisRecord.of('x', memory, NOT_ENDED, NOT_SHELVED, 0)
     records = by_key([axis, Corrections('x', 'abc')])
     database = make()
     assert database.found == {}
