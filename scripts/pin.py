@@ -10,13 +10,21 @@ tried by hand, because a version may leave out a newer Python.
 
 import json
 from pathlib import Path
+import re
 import subprocess
 import sys
 
 TREE = Path(__file__).resolve().parent.parent
 HEAD = """\
-# Every package in .venv, exactly. Made by scripts/pin.py; valid on Python 3.11, 3.12 and 3.13.
+# Every package in .venv, exactly. Made by scripts/pin.py; valid on Python 3.11 to 3.14.
 """
+
+
+def pin(package: dict[str, str]) -> str:
+    """Return the line of a package; one that newer Pythons have within is pinned below them."""
+    line = f'{package["name"].lower()}=={package["version"]}'
+    newer = re.search(r'<\s*(3\.\d+)', package.get('requires_python', ''))
+    return f'{line} ; python_version < "{newer[1]}"' if newer else line
 
 
 def main() -> int:
@@ -39,7 +47,7 @@ def main() -> int:
     ).stdout
     chosen = [item['metadata'] for item in json.loads(report)['install']]
     pins = sorted(
-        f'{package["name"].lower()}=={package["version"]}'
+        pin(package)
         for package in chosen
         if package['name'].replace('_', '-') != 'ballscrew-monitor'
     )

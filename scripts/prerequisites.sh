@@ -2,7 +2,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Make sure of git, make, g++ and a Python 3.11 to 3.13 with venv and headers, and print the path
+# Make sure of git, make, g++ and a Python 3.11 to 3.14 with venv and headers, and print the path
 # of that Python. What is missing is installed by apt-get when root; otherwise one line says what
 # to type, and the exit code is 2. PYTHON names the one Python to use.
 set -eu
@@ -11,7 +11,7 @@ set -eu
 # interpreter underneath, so that the choice is the same inside any activated environment.
 probe='
 import os, sys, sysconfig
-assert (3, 11) <= sys.version_info[:2] <= (3, 13)
+assert (3, 11) <= sys.version_info[:2] <= (3, 14)
 assert sys.implementation.name == "cpython" and not sysconfig.get_config_var("Py_GIL_DISABLED")
 import ctypes, ensurepip, ssl, venv
 assert os.path.exists(os.path.join(sysconfig.get_path("include"), "Python.h"))
@@ -29,7 +29,7 @@ find_python() {
         return
     fi
     made_of=$(sed -n 's/^executable = //p' .venv/pyvenv.cfg 2>/dev/null || true)
-    for candidate in "$made_of" python3 python3.12 python3.11 python3.13; do
+    for candidate in "$made_of" python3 python3.12 python3.11 python3.13 python3.14; do
         if [ -n "$candidate" ] && usable "$candidate"; then
             return
         fi
@@ -39,9 +39,9 @@ find_python() {
 
 # Packages of the first Python in range that apt-get knows.
 python_packages() {
-    for name in python3 python3.12 python3.11 python3.13; do
+    for name in python3 python3.12 python3.11 python3.13 python3.14; do
         case $(apt-cache show --no-all-versions "$name" 2>/dev/null | sed -n 's/^Version: //p') in
-        3.11.* | 3.12.* | 3.13.*)
+        3.11.* | 3.12.* | 3.13.* | 3.14.*)
             echo "$name $name-venv $name-dev"
             return
             ;;
@@ -63,7 +63,7 @@ refuse() {
 }
 
 if [ -n "${PYTHON:-}" ] && ! find_python >/dev/null; then
-    refuse "PYTHON=$PYTHON is not a Python 3.11 to 3.13 with venv and headers"
+    refuse "PYTHON=$PYTHON is not a Python 3.11 to 3.14 with venv and headers"
 fi
 missing=$(missing_packages)
 if [ -n "$missing" ]; then
@@ -71,7 +71,7 @@ if [ -n "$missing" ]; then
     # shellcheck disable=SC2086
     set -- $missing
     if ! command -v apt-get >/dev/null; then
-        refuse "install git, make, g++ and Python 3.11 to 3.13 with venv and headers; missing: $*"
+        refuse "install git, make, g++ and Python 3.11 to 3.14 with venv and headers; missing: $*"
     elif [ "$(id -u)" != 0 ]; then
         refuse "type this, then repeat: sudo apt-get update && sudo apt-get install -y $*"
     fi

@@ -23,7 +23,8 @@ NAME = 'ballscrew_monitor'
 def bill() -> dict[str, Any]:
     """Return the bill of the pins and of the version that setup.py names."""
     pins = (TREE / 'constraints.txt').read_text()
-    pairs = [line.split('==') for line in pins.splitlines() if not line.startswith('#')]
+    lines = [line.partition(' ;')[0] for line in pins.splitlines() if not line.startswith('#')]
+    pairs = [line.split('==') for line in lines]
     version = re.findall(r"version='(.*)'", (TREE / 'setup.py').read_text())[0]
     return {
         'bomFormat': 'CycloneDX',
