@@ -81,6 +81,7 @@ THEMES = {
     'ballscrew_monitor/node/test_one_clock.py',
     'ballscrew_monitor/node/test_cures.py',
     'ballscrew_monitor/node/test_deadline.py',
+    'ballscrew_monitor/node/test_executors.py',
     'ballscrew_monitor/node/test_dump.py',
     'ballscrew_monitor/node/test_kept.py',
     'ballscrew_monitor/node/test_faults.py',
@@ -350,11 +351,23 @@ def test_version_is_the_same_everywhere():
     )
 
 
+def pins():
+    """Return the pinned versions by package."""
+    lines = (TREE / 'constraints.txt').read_text().splitlines()
+    found = [line.partition(' ;')[0] for line in lines if not line.startswith('#')]
+    return dict(line.split('==') for line in found)
+
+
+def test_a_package_that_newer_pythons_hold_is_pinned_below_them():
+    pin = runpy.run_path(str(TREE / 'scripts' / 'pin.py'))['pin']
+    package = {'name': 'Backports.x', 'version': '1.0', 'requires_python': '<3.14,>=3.10'}
+    assert pin(package) == 'backports.x==1.0 ; python_version < "3.14"'
+    assert pin(package | {'requires_python': '>=3.9, <4'}) == 'backports.x==1.0'
+
+
 def test_pins_meet_all_requirements():
     """What setup.py asks for, with all extras, is pinned to a version that it allows."""
-    lines = (TREE / 'constraints.txt').read_text().splitlines()
-    pins = dict(line.split('==') for line in lines if not line.startswith('#'))
-    pinned = {canonicalize_name(name): version for name, version in pins.items()}
+    pinned = {canonicalize_name(name): version for name, version in pins().items()}
     for requirement in map(Requirement, requires('ballscrew-monitor') or []):
         version = pinned[canonicalize_name(requirement.name)]
         assert requirement.specifier.contains(version), f'{requirement}: {version} is pinned'
@@ -364,9 +377,7 @@ def test_bill_of_materials_is_that_of_the_pins():
     """After a change of either: `python scripts/sbom.py`."""
     bill = runpy.run_path(str(TREE / 'scripts' / 'sbom.py'))['bill']()
     assert json.loads((TREE / 'sbom.cdx.json').read_text()) == bill
-    lines = (TREE / 'constraints.txt').read_text().splitlines()
-    pins = {line for line in lines if not line.startswith('#')}
-    assert {f'{one["name"]}=={one["version"]}' for one in bill['components']} == pins
+    assert {one['name']: one['version'] for one in bill['components']} == pins()
 
 
 def test_image_installs_what_setup_asks_for():

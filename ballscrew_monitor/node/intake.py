@@ -14,11 +14,12 @@ once for all of them. Simulated time is read in the same order: a message arrive
 from collections import deque
 from collections.abc import Callable, Iterable
 import contextlib
+import math
 import operator
 import time
 from typing import Any
 
-from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.conversions import SECOND, seconds
 from ballscrew_monitor.core.inputs import (
     Input,
     InputSample,
@@ -37,6 +38,7 @@ from ballscrew_monitor.node.topic import Apart, Arrival, link_of, open_topic, To
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import publishers_on
 from rclpy.event_handler import EventHandler
+from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 from rclpy.waitable import NumberOfEntities, Waitable
 from rosgraph_msgs.msg import Clock
@@ -98,6 +100,8 @@ class Intake(Waitable):
         self._problems: dict[tuple[str, Source], str] = {}  # of open inputs
         self._changed: list[EventHandler] = []  # that tell of publishers come or gone
         self._waited_for = contextlib.ExitStack()
+        self._awaited: list[Topic] = []  # whose messages the executor waits for
+        self._handlers: list[EventHandler] = []  # that it waits for
         self._stayed = False  # for all of STAY, the last time
         self.topics: dict[str, Topic] = {}
         self._axes = list(axes)
@@ -155,39 +159,41 @@ class Intake(Waitable):
             self._read(axis, closed)
 
     def __enter__(self) -> None:
-        """Keep what the executor waits for, also when it is closed meanwhile."""
+        """
+        Keep what the executor waits for, also when it is closed meanwhile.
+
+        An executor with several threads may find another topic while it makes ready to wait.
+
+        """
+        self._awaited, self._handlers = [], []
         with contextlib.ExitStack() as stack:
-            for topic in self._all:
-                stack.enter_context(topic.subscription.handle)
-            for handler in self._matches:
-                stack.enter_context(handler)
+            topics = self._all
+            # rclpy annotates the list as one handler.
+            lists: list[Any] = [topic.subscription.event_handlers for topic in topics]
+            handlers = [handler for handlers in lists for handler in handlers]
+            for entity in (*(topic.subscription.handle for topic in topics), *handlers):
+                stack.enter_context(entity)
             self._waited_for = stack.pop_all()
+            self._awaited, self._handlers = topics, handlers
 
     def __exit__(self, *raised: object) -> None:
         """Let go of what the executor has waited for."""
         self._waited_for.close()
 
-    @property
-    def _matches(self) -> list[EventHandler]:
-        # rclpy annotates the list as one handler.
-        made: list[Any] = [topic.subscription.event_handlers for topic in self._all]
-        return [handler for handlers in made for handler in handlers]
-
     def get_num_entities(self) -> NumberOfEntities:
         """Return how much the executor is to wait for."""
-        return NumberOfEntities(num_subs=len(self._all), num_events=len(self._matches))
+        return NumberOfEntities(num_subs=len(self._awaited), num_events=len(self._handlers))
 
     def add_to_wait_set(self, wait_set: Any) -> None:
         """Let the executor wait for messages, and for publishers that come or go."""
         self._places = [
-            wait_set.add_subscription(topic.subscription.handle) for topic in self._all
+            wait_set.add_subscription(topic.subscription.handle) for topic in self._awaited
         ]
-        for handler in self._matches:
-            handler.add_to_wait_set(wait_set)
+        self._handlers = [each for each in self._handlers if _is_added(each, wait_set)]
 
     def is_ready(self, wait_set: Any) -> bool:
         """Return True if anything has come."""
-        self._changed = [handler for handler in self._matches if handler.is_ready(wait_set)]
+        self._changed = [handler for handler in self._handlers if handler.is_ready(wait_set)]
         come = any(wait_set.is_ready('subscription', place) for place in self._places)
         return come or bool(self._changed)
 
@@ -196,14 +202,16 @@ class Intake(Waitable):
         if self._changed:
             self.drain()
         for handler in self._changed:
-            if status := handler.take_data():
-                handler.callback(status)
+            with contextlib.suppress(InvalidHandle):  # another thread has closed the intake
+                if status := handler.take_data():
+                    handler.callback(status)
 
     async def execute(self, taken_data: None) -> None:
         """
         Take what waits, and look again while more comes: cheaper than to be woken for each.
 
-        Not twice in a row for all of STAY: the executor may come back before the others' turn.
+        Not when a timer of the executor is due, nor twice in a row for all of STAY: the executor
+        may come back before the others' turn.
 
         """
         self.drain()
@@ -211,13 +219,30 @@ class Intake(Waitable):
             self._stayed = False
             return
         pause = max(PAUSE, PAUSE_PER_TOPIC * len(self.topics))
+        stay = min(STAY, self._time_to_timer())
         now = begin = came = time.monotonic()
-        while now - came < QUIET and now - begin < STAY:
+        while now - came < QUIET and now - begin < stay:
             time.sleep(pause)
             now = time.monotonic()
             if self.drain():
                 came = now
         self._stayed = now - begin >= STAY
+
+    def _time_to_timer(self) -> float:
+        """
+        Return how long [s] until a timer of any node of the executor is due.
+
+        One that waits for longer than its period loses calls.
+
+        """
+        executor = self._node.executor
+        left = math.inf
+        for node in executor.get_nodes() if executor else ():
+            for timer in node.timers:
+                with contextlib.suppress(InvalidHandle):  # another thread may destroy it
+                    wait = timer.time_until_next_call()
+                    left = left if wait is None else min(left, seconds(wait))
+        return left
 
     def close(self) -> None:
         """Unsubscribe."""
@@ -350,6 +375,15 @@ class Intake(Waitable):
             if isinstance(event, InputSample) or event.why is Why.SEVERAL:
                 arrival.topic.count((axis.name, event.source), arrival.number, now)
         return events
+
+
+def _is_added(handler: EventHandler, wait_set: Any) -> bool:
+    """Let a wait set wait for a handler; return False if another thread has destroyed it."""
+    try:
+        handler.add_to_wait_set(wait_set)
+    except InvalidHandle:
+        return False
+    return True
 
 
 def _events(

@@ -33,6 +33,7 @@ from ballscrew_msgs.srv import EvaluateOperatingPoint
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
+from rclpy.executors import Executor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter
 from surrogate.files import InputError
@@ -110,6 +111,24 @@ class BallscrewMonitor(LifecycleNode):
             self._recording.record,
             clock=self._steady,
         )
+
+    @property
+    def executor(self) -> Executor | None:
+        """Return the executor, None while the node has none."""
+        return super().executor
+
+    @executor.setter
+    def executor(self, executor: Any) -> None:
+        """Take an executor that waits in a wait set; raises InputError for any other one."""
+        if executor is not None and not isinstance(executor, Executor):
+            executor.remove_node(self)
+            raise InputError(
+                f'{type(executor).__name__} cannot spin {parameters.NODE_NAME}, whose inputs it '
+                'would never hear: spin it with a SingleThreadedExecutor or a '
+                'MultiThreadedExecutor'
+            )
+        spun: Any = LifecycleNode.executor
+        spun.fset(self, executor)
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set parameters; one that keeps its value is no change: a node takes its own dump."""

@@ -8,7 +8,7 @@ import threading
 import time
 import types
 
-from ballscrew_monitor.core.conversions import Scaling, SECOND
+from ballscrew_monitor.core.conversions import nanoseconds, Scaling, SECOND
 from ballscrew_monitor.core.inputs import OpenInput, Source
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.node import intake as intake_module
@@ -16,7 +16,9 @@ from ballscrew_monitor.node.intake import Intake, PAUSE, QUIET, STAY
 from ballscrew_monitor.node.topic import Topic
 from ballscrew_monitor.settings.qos import started_node
 import pytest
-from rclpy.clock import Clock, ClockType
+import rclpy
+from rclpy.clock import Clock, ClockType, ROSClock
+from rclpy.time import Time
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 
@@ -45,6 +47,21 @@ class Watch:
         assert time.monotonic() < self.end, 'the clock stands'
         if self.may_go_on():
             self.now += pause
+
+
+class WaitSet:
+    """Counts what it is to wait for."""
+
+    def __init__(self):
+        self.subscriptions = self.events = 0
+
+    def add_subscription(self, handle):
+        self.subscriptions += 1
+        return self.subscriptions - 1
+
+    def add_event(self, handle):
+        self.events += 1
+        return self.events - 1
 
 
 def nothing(*_):
@@ -398,6 +415,54 @@ def test_messages_without_end_leave_the_others_their_turn(bench, monkeypatch):
     bench.node.create_timer(1e-3, lambda: ticks.append(len(taken)), clock=steady)
     bench.until(lambda: len(ticks) == 3)
     assert watch.now < 7 * (STAY + 2 * PAUSE)  # two turns before each tick at most
+
+
+def test_a_timer_of_a_composed_node_keeps_its_calls(bench, monkeypatch):
+    """The clock of its timer goes on by the pauses of turns that messages never end."""
+    period, length = 0.01, 1.0
+    clock, calls, taken = ROSClock(), [], []
+    clock._set_ros_time_is_active(True)
+
+    def take(axis, event):
+        taken.append(event.value)
+        bench.publish('speed', len(taken))
+
+    def shown():
+        watch.now += PAUSE
+        clock.set_ros_time_override(
+            Time(nanoseconds=nanoseconds(watch.now), clock_type=ClockType.ROS_TIME)
+        )
+        return False
+
+    bench.begin_anew(take)
+    watch = Watch(monkeypatch, may_go_on=shown)
+    shown()
+    rest(bench.intake, monkeypatch)
+    composed = rclpy.create_node('composed', context=bench.node.context)
+    composed.create_timer(period, lambda: calls.append(watch.now), clock=clock)
+    bench.executor.add_node(composed)
+    begin = watch.now
+    bench.publish('speed', 0)
+    bench.until(lambda: watch.now - begin >= length)
+    composed.destroy_node()
+    assert len(calls) >= 0.99 * length / period
+    assert len(taken) > len(calls)
+
+
+@pytest.mark.parametrize('comes', ['by a discovered topic', 'by a closed intake'])
+def test_topics_that_change_while_the_executor_makes_ready_to_wait_count_not_yet(bench, comes):
+    """As in an executor with several threads: another one works while this one gets ready."""
+    with bench.intake:
+        before = bench.intake.get_num_entities()
+        if comes == 'by a discovered topic':
+            source = float_input(Source.TORQUE, 'torque')
+            bench.intake._read(bench.axis, source)
+        else:
+            bench.intake.close()
+        wait_set = WaitSet()
+        bench.intake.add_to_wait_set(wait_set)
+        assert wait_set.subscriptions == before.num_subscriptions == 2
+        assert wait_set.events <= before.num_events == 2
 
 
 def open_bench(bench, *fields):

@@ -165,8 +165,10 @@ class World:
             if isinstance(waitable, ActionServer | EventHandler | Matched):
                 continue  # goals come by the middleware, and its events are not those of a world
             wait_set = WaitSet()
-            waitable.add_to_wait_set(wait_set)
-            if waitable.is_ready(wait_set):
+            with waitable:
+                waitable.add_to_wait_set(wait_set)
+                is_ready = waitable.is_ready(wait_set)
+            if is_ready:
                 done = True
                 with contextlib.suppress(StopIteration):
                     waitable.execute(waitable.take_data()).send(None)
