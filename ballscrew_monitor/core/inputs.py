@@ -10,7 +10,6 @@ The status of an input tells what was received, what is wrong with it, and how f
 from collections.abc import Sequence
 import dataclasses
 import enum
-import functools
 import math
 from typing import Any, TypeVar
 
@@ -188,24 +187,31 @@ class Input:
         negative one is refused.
 
         """
-        refused = functools.partial(Refusal, source=self.source, arrival=now, lost=lost)
         if message is None:
-            return refused(why=Why.NOT_DECODED)
+            return self._refused(Why.NOT_DECODED, now, lost)
         value = self.read_field(message)
         if isinstance(value, OtherJoints):
-            return refused(why=Why.OTHER_JOINTS, joints=value)
+            return self._refused(Why.OTHER_JOINTS, now, lost, joints=value)
         if isinstance(value, TooShort):
             place = fields.arrays_of(self.field).index((value.array, value.key))
-            return refused(why=Why.TOO_SHORT, first=float(value.length), second=float(place))
+            length = float(value.length)
+            return self._refused(Why.TOO_SHORT, now, lost, first=length, second=float(place))
         stamp = fields.stamp_of(message) if self.stamped else 0
+        return self.sample(value, stamp, now=now, max_future=max_future, lost=lost)
+
+    def sample(
+        self, value: float, stamp: int, *, now: int, max_future: int, lost: int | None = 0
+    ) -> InputSample | Refusal:
+        """Return the sample of a number in a message of a `stamp` [ns]; see `read`."""
         if stamp < 0:
-            return refused(why=Why.NEGATIVE)
+            return self._refused(Why.NEGATIVE, now, lost)
         if now and stamp - now > max_future:
             why = Why.OTHER_CLOCK if stamp - now > YEAR else Why.FUTURE
-            return refused(why=why, first=seconds(stamp - now), second=seconds(max_future))
+            ahead, allowed = seconds(stamp - now), seconds(max_future)
+            return self._refused(why, now, lost, first=ahead, second=allowed)
         si_value = self.scaling(value)
         if not math.isfinite(si_value):
-            return refused(why=Why.NOT_A_NUMBER, first=value)
+            return self._refused(Why.NOT_A_NUMBER, now, lost, first=value)
         return InputSample(
             source=self.source,
             value=si_value,
@@ -215,6 +221,9 @@ class Input:
             arrival=now or stamp,
             lost=lost,
         )
+
+    def _refused(self, why: Why, now: int, lost: int | None, **rest: Any) -> Refusal:
+        return Refusal(source=self.source, why=why, arrival=now, lost=lost, **rest)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

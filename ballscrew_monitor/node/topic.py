@@ -7,9 +7,11 @@ import dataclasses
 import functools
 from typing import Any
 
-from ballscrew_monitor.core.inputs import Input
+from ballscrew_monitor.core.inputs import Input, InputSample, Refusal
 from ballscrew_monitor.core.links import Link
+from ballscrew_monitor.node.raw_field import RawField
 from ballscrew_monitor.node.sources import InputName, LossCounter, NO_NUMBER, SourceCounter
+from ballscrew_monitor.recordings.bulk.layout import NoLayout
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import DEPTH, input_qos, overriding_options, publishers_on
 from rclpy.callback_groups import CallbackGroup
@@ -24,21 +26,42 @@ MOST = 2 * DEPTH  # messages of one topic that are taken before anything else ha
 Reader = tuple[Axis, Input]
 
 
-@dataclasses.dataclass(frozen=True, slots=True)
+UNREAD = object()
+"""A message that nobody has decoded yet."""
+
+
 class Arrival:
     """
     A message, its arrival on the clock of this machine [ns], and the topic that it is of.
 
-    `data` is the message as it came over the wire, of a topic that is taken so; one that does not
-    decode is None.
+    `data` is the message as it came over the wire, of a topic that is taken so.
 
     """
 
-    received: int
-    message: Any
-    number: int
-    topic: 'Topic'
-    data: bytes = b''
+    __slots__ = ('_message', 'data', 'number', 'received', 'topic')
+
+    def __init__(
+        self, received: int, message: Any, number: int, topic: 'Topic', data: bytes = b''
+    ) -> None:
+        self.received, self.number, self.topic, self.data = received, number, topic, data
+        self._message = message
+
+    @property
+    def message(self) -> Any:
+        """Return the message, None for one that does not decode."""
+        if self._message is UNREAD:
+            self._message = self.topic.decoded(self.data)
+        return self._message
+
+    def read(
+        self, reader: int, *, now: int, max_future: int, lost: int | None
+    ) -> InputSample | Refusal:
+        """Return what the reader of this number in the topic takes; see `Input.read`."""
+        source = self.topic.readers[reader][1]
+        field = self.topic.field(reader) if self._message is UNREAD else None
+        if field is not None and (found := field.find(self.data)):
+            return source.sample(*found, now=now, max_future=max_future, lost=lost)
+        return source.read(self.message, now=now, max_future=max_future, lost=lost)
 
 
 @dataclasses.dataclass(kw_only=True, slots=True)
@@ -50,24 +73,34 @@ class Topic:
     loss: LossCounter
     subscription: Subscription
     sources: dict[InputName, SourceCounter] = dataclasses.field(default_factory=dict)
+    fields: list[RawField | None] = dataclasses.field(default_factory=list)  # of the readers
 
     @property
     def type_name(self) -> str:
         """Return the type of its messages."""
         return self.readers[0][1].type_name
 
-    def count(self, one: InputName, number: int, now: int) -> None:
+    def count(self, source: InputName, number: int, now: int) -> None:
         """Take the publication number of a sample of an input that arrived at `now` [ns]."""
-        self.sources.setdefault(one, SourceCounter()).take(number, self.loss.publishers, now)
+        counter = self.sources.get(source)
+        if counter is None:
+            counter = self.sources[source] = SourceCounter()
+        counter.take(number, self.loss.publishers, now)
+
+    def field(self, reader: int) -> RawField | None:
+        """Return what finds the number of a reader in bytes, None if nothing does."""
+        for _, source in self.readers[len(self.fields) :]:
+            self.fields.append(_raw_field(source))
+        return self.fields[reader]
 
     def arrival(self, taken: Any, info: Mapping[str, Any]) -> Arrival:
         """Return what was taken with what the middleware says of it."""
-        data = taken if self.subscription.raw else b''
-        message = self._decoded(data) if self.subscription.raw else taken
-        number = info['publication_sequence_number'] or NO_NUMBER
-        return Arrival(info['received_timestamp'], message, number, self, data)
+        received, number = info['received_timestamp'], info['publication_sequence_number']
+        if self.subscription.raw:
+            return Arrival(received, UNREAD, number or NO_NUMBER, self, taken)
+        return Arrival(received, taken, number or NO_NUMBER, self)
 
-    def _decoded(self, data: bytes) -> Any:
+    def decoded(self, data: bytes) -> Any:
         """Return the message of some bytes, None if they are of another definition of its type."""
         try:
             return deserialize_message(data, self.subscription.msg_type)
@@ -94,8 +127,16 @@ class Topic:
             count = subscription.get_publisher_count()
             if count != self.loss.publishers:
                 self.loss.match(count)
-                return [dataclasses.replace(arrival, number=NO_NUMBER) for arrival in arrivals]
+                for arrival in arrivals:
+                    arrival.number = NO_NUMBER
         return arrivals
+
+
+def _raw_field(source: Input) -> RawField | None:
+    try:
+        return RawField(source)
+    except NoLayout:
+        return None
 
 
 class Apart(CallbackGroup):
@@ -119,8 +160,8 @@ def open_topic(
     """
     Subscribe to messages of a `kind`; where `overridable`, parameters may change the QoS.
 
-    The QoS is that of an input unless stated. Messages that are taken `raw` keep the bytes that
-    they came as, for a recording.
+    The QoS is that of an input unless stated. Messages that are taken `raw` are bytes until
+    somebody decodes them.
 
     """
     loss = LossCounter()

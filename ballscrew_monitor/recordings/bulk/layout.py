@@ -110,6 +110,11 @@ class Layout:
         raw = np.ascontiguousarray(walked['bits']).astype('<u8').view(np.uint8).reshape(-1, 8)
         return np.ascontiguousarray(raw[:, : kind.itemsize]).view(kind)[:, 0].astype(np.float64)
 
+    @property
+    def format(self) -> str:
+        """Return the format of the number, as `struct` takes it."""
+        return self._kind
+
     def _message(self, kind: MessageClass, path: list[Any], *, is_top: bool = False) -> None:
         """Add the steps through a message, in which the rest of the path may begin."""
         members = kind.get_fields_and_field_types()

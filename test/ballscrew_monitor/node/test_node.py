@@ -463,7 +463,7 @@ REQUESTS = {
 DEFECTS = {
     'a sample': (Monitor, 'update', speeds, f'the speed {FAST} (SI) that arrived at '),
     'a tick': (Monitor, 'tick', BallscrewMonitor._on_tick, 'a tick at '),
-    'a message': (Input, 'read', hears, 'the speed that arrived at '),
+    'a message': (Input, 'sample', hears, 'the speed that arrived at '),
     'its news': (AxisPublisher, '_summaries', speeds, f'the speed {FAST} (SI) that arrived at '),
     'all statuses': (
         AxisPublisher,
