@@ -175,6 +175,16 @@ def test_what_waits_is_taken_without_a_wake_up(bench):
     assert len(bench.taken) == 1
 
 
+def test_a_number_is_read_without_an_object_of_its_message(bench, monkeypatch):
+    decoded, decode = [], Topic.decoded
+    monkeypatch.setattr(Topic, 'decoded', lambda *args: decoded.append(args) or decode(*args))
+    for value in range(5):
+        bench.publish('speed', value)
+    bench.until(lambda: len(bench.taken) == 5, meanwhile=bench.intake.drain)
+    assert [event.value for event in bench.taken] == [0.0, 1.0, 2.0, 3.0, 4.0]
+    assert decoded == []
+
+
 def test_what_a_full_queue_drops_is_counted(bench):
     bench.publish('speed', 0)
     bench.until(lambda: bench.taken)
