@@ -55,7 +55,7 @@ class RawField:
         if any(step[0] not in (NUMBERS, TEXTS) for step in self._steps):
             raise NoLayout  # behind a list of messages
         self._joint = layout.joint.tobytes()
-        self._unpack: Unpack = struct.Struct(layout.format).unpack_from
+        self._unpack: Unpack = struct.Struct(layout.code).unpack_from
         self._forms: list[_Form] = []
 
     def find(self, data: bytes) -> tuple[float, int] | None:
@@ -124,8 +124,9 @@ def _length(data: bytes, at: int, spans: list[slice]) -> tuple[int, int]:
 
 def _text(data: bytes, at: int, length: int) -> bytes:
     """Return a text without its end; raises ValueError unless it is of ASCII letters."""
-    text, end = data[at : at + length][:-1], data[at : at + length][-1:]
-    if length and (end != b'\0' or len(text) != length - 1 or b'\0' in text):
+    end = at + length
+    text, last = data[at:end][:-1], data[at:end][-1:]
+    if length and (last != b'\0' or len(text) != length - 1 or b'\0' in text):
         raise ValueError
     text.decode('ascii')
     return text

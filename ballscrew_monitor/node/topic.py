@@ -89,7 +89,8 @@ class Topic:
 
     def field(self, reader: int) -> RawField | None:
         """Return what finds the number of a reader in bytes, None if nothing does."""
-        for _, source in self.readers[len(self.fields) :]:
+        known = len(self.fields)
+        for _, source in self.readers[known:]:
             self.fields.append(_raw_field(source))
         return self.fields[reader]
 

@@ -111,8 +111,8 @@ class Layout:
         return np.ascontiguousarray(raw[:, : kind.itemsize]).view(kind)[:, 0].astype(np.float64)
 
     @property
-    def format(self) -> str:
-        """Return the format of the number, as `struct` takes it."""
+    def code(self) -> str:
+        """Return the code of the number, as `struct` takes it."""
         return self._kind
 
     def _message(self, kind: MessageClass, path: list[Any], *, is_top: bool = False) -> None:

@@ -79,7 +79,8 @@ def test_a_message_of_which_any_byte_is_another_is_read_as_by_the_decoder_or_lef
     known, found = RawField(source), 0
     for at in range(len(whole)):
         for byte in (0, 1, 2, 0x41, 0x80, 0xFF, whole[at] ^ 1):
-            data = whole[:at] + bytes([byte]) + whole[at + 1 :]
+            after = at + 1
+            data = whole[:at] + bytes([byte]) + whole[after:]
             assert known.find(whole) == decoded(source, whole)
             for reader in (known, RawField(source)):
                 number = reader.find(data)
