@@ -43,7 +43,7 @@ from ballscrew_monitor.health.records import (
     Quantity,
     SpectrumBin,
 )
-from ballscrew_monitor.health.remedies import remedies_of
+from ballscrew_monitor.health.remedies import remedy_text
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.summary import cells_of
 from ballscrew_monitor.health.where import lost_motion_grew, where_on_screw
@@ -221,9 +221,7 @@ def _latest(
     if condition in CHANGED:
         usual = None
     recent = recent_of(points, today)
-    remedy = remedies_of(
-        recent, surface, settings.limits, speed_allowed=settings.speed_allowed
-    ).text
+    remedy = remedy_text(recent, surface, settings.limits, speed_allowed=settings.speed_allowed)
     where = where_on_screw(
         kept.cells[kept.cells['start'] >= seen.baseline.begin],
         None if seen.history is None else seen.baseline,
