@@ -20,7 +20,7 @@ from ballscrew_monitor.health.damage import (
     SHARED_LEAST,
     WITHIN_BAND,
 )
-from ballscrew_monitor.health.records import Quantity, SpectrumBin
+from ballscrew_monitor.health.records import Quantity, SpectrumBin, unknown
 from surrogate.files import InputError
 from surrogate.units import MINUTE, RPM
 
@@ -168,8 +168,3 @@ def _reason(damage: Damage, when: str) -> str:
             f'{when}, needed are {100 * KNOWN_SHARE:g} %'
         )
     return ''
-
-
-def unknown(name: str, unit: str, reason: str) -> Quantity:
-    """Return a quantity that is not known, and why."""
-    return Quantity(name=name, unit=unit, reason=reason)

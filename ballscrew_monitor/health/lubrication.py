@@ -16,8 +16,8 @@ from typing import NamedTuple
 from ballscrew_monitor.core.conversions import Direction, opposing_load
 from ballscrew_monitor.health.damage import Rated, recent
 from ballscrew_monitor.health.energy import FEWEST_DAYS, student, within
-from ballscrew_monitor.health.life import HOUR, KNOWN_SHARE, NO_RATING, RECENT, unknown
-from ballscrew_monitor.health.records import Baseline, Cell, Quantity, SpectrumBin
+from ballscrew_monitor.health.life import HOUR, KNOWN_SHARE, NO_RATING, RECENT
+from ballscrew_monitor.health.records import Baseline, Cell, Quantity, SpectrumBin, unknown
 from surrogate.formulas.life import (
     fatigue_limit_iso_281_2007,
     life_factor_iso_281_2007,

@@ -13,9 +13,8 @@ from collections.abc import Sequence
 import dataclasses
 import enum
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from numpy.typing import NDArray
 from surrogate.store import MAY_BE_NAN
 from surrogate.surface.records import dtype_of
 
@@ -37,9 +36,8 @@ class Stretch:
     """
     A stretch of steady motion or of rest: means over its samples, a record of numbers.
 
-    start [ns], duration [s]; speed [rad/s], signed, 0 at rest, and its `ripple` from sample to
-    sample [-]; axial_load [N]; temperature [K], measured or assumed; motor_torque [N m];
-    `load_source` is the number of a LoadSource.
+    start [ns], duration [s]; speed [rad/s], signed, 0 at rest; axial_load [N]; temperature [K],
+    measured or assumed; motor_torque [N m]; `load_source` is the number of a LoadSource.
 
     """
 
@@ -47,7 +45,6 @@ class Stretch:
     duration: float = 0.0
     samples: int = 0
     speed: float = NAN
-    ripple: float = NAN
     axial_load: float = NAN
     temperature: float = NAN
     motor_torque: float = NAN
@@ -84,10 +81,9 @@ class Cell:
     `start` [ns] is that of the log and tells logs apart; a node has one log a day. `first_day`
     counts days since 1970 (UTC); older logs are merged to periods of 7 or 28 `days`. The place is
     the bands of speed |w| and of load and the direction of motion, 1 or -1. `load_source` is the
-    number of a LoadSource. Means over the `duration` [s]: speed [rad/s], signed; its `ripple`
-    about the mean of its stretch [-]; axial_load [N]; temperature [K], assumed where it was not
-    `temperature_measured`; motor_torque [N m]. `torque_squares` [N2 m2] is the sum over stretches
-    of the squared deviation of their torque. `backlash` [m].
+    number of a LoadSource. Means over the `duration` [s]: speed [rad/s], signed; axial_load [N];
+    temperature [K], assumed where it was not `temperature_measured`; motor_torque [N m].
+    `backlash` [m].
 
     """
 
@@ -104,31 +100,14 @@ class Cell:
     stretches: int = 0
     duration: float = 0.0
     speed: float = NAN
-    ripple: float = NAN
     axial_load: float = NAN
     temperature: float = NAN
     motor_torque: float = NAN
-    torque_squares: float = 0.0
     backlash: float = NAN
 
 
 CELL = dtype_of(Cell)
 """Type of an array of cells: each column of a file of summaries is one of its fields."""
-
-
-class LogSummary(NamedTuple):
-    """
-    The summary of one log of one axis: `cells` is an array of CELL.
-
-    `machine` and `axis` are the key of a history; `start` and `end` [ns] are those of the log.
-
-    """
-
-    machine: str
-    axis: str
-    start: int
-    end: int
-    cells: NDArray[Any]
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -182,6 +161,11 @@ class Quantity:
     def is_known(self) -> bool:
         """Return True if there is an interval."""
         return math.isfinite(self.low) and math.isfinite(self.high)
+
+
+def unknown(name: str, unit: str, reason: str) -> Quantity:
+    """Return a quantity that is not known, and why."""
+    return Quantity(name=name, unit=unit, reason=reason)
 
 
 class CauseCode(enum.IntEnum):
@@ -243,21 +227,16 @@ class SpectrumBin:
 
 class KeptHealth(NamedTuple):
     """
-    What is kept of one axis.
+    All that is kept of one axis: cells of its logs, spectrum, and baselines in order.
 
-    The baseline in force is the last one; `notes` say what could not be read.
+    `notes` say what could not be read.
 
     """
 
-    cells: tuple[Cell, ...] = ()
-    spectrum: tuple[SpectrumBin, ...] = ()
-    baselines: tuple[Baseline, ...] = ()
+    cells: Sequence[Cell] = ()
+    spectrum: Sequence[SpectrumBin] = ()
+    baselines: Sequence[Baseline] = ()
     notes: tuple[str, ...] = ()
-
-    @property
-    def baseline(self) -> Baseline | None:
-        """Return the baseline in force."""
-        return self.baselines[-1] if self.baselines else None
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -11,10 +11,10 @@ steps; that of the lost motion follows from successive logs, which a trend does 
 
 from collections.abc import Sequence
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 from ballscrew_monitor.health.energy import student
-from ballscrew_monitor.health.records import Baseline, CellKind, Quantity, TOLERANCE
+from ballscrew_monitor.health.records import Baseline, CellKind, Quantity, TOLERANCE, unknown
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.stroke import span_of
 import numpy as np
@@ -36,18 +36,18 @@ LOST, LOST_CHANGE, LOST_TREND = 'lost motion', 'lost motion change', 'lost motio
 NO_BASELINE = 'not known yet: it needs two logs in the baseline, and two after it'
 
 
-class Where(NamedTuple):
-    """Quantities along the stroke and at reversals, and notes on those that have changed."""
+def where_on_screw(
+    cells: NDArray[Any], baseline: Baseline | None
+) -> tuple[list[Quantity], list[str]]:
+    """
+    Return quantities along the stroke and at reversals, and notes on those that have changed.
 
-    quantities: tuple[Quantity, ...]
-    notes: tuple[str, ...]
+    `cells` (an array of CELL) of the last logs are held against those of the baseline.
 
-
-def where_on_screw(cells: NDArray[Any], baseline: Baseline | None) -> Where:
-    """Return where on the screw the last logs differ from those of the baseline, by CELL."""
+    """
     stroke, worst = along_stroke(cells[cells['kind'] == CellKind.STROKE], baseline)
     lost, growth = lost_motion(cells[cells['kind'] == CellKind.REVERSAL], baseline)
-    return Where((*stroke, *lost), tuple(filter(None, (worst, growth))))
+    return [*stroke, *lost], list(filter(None, (worst, growth)))
 
 
 def along_stroke(cells: NDArray[Any], baseline: Baseline | None) -> tuple[Sequence[Quantity], str]:
@@ -101,7 +101,7 @@ def lost_motion(cells: NDArray[Any], baseline: Baseline | None) -> tuple[Sequenc
     cells = cells[np.argsort(cells['start'], kind='stable')]
     lost, time = cells['backlash'], cells['start'] / DAY
     if len(lost) < 3:
-        return [_unknown(LOST, 'um', 'not known yet: it needs three logs')], ''
+        return [unknown(LOST, 'um', 'not known yet: it needs three logs')], ''
     spread = _spread(lost)
     now = lost[-NOW:]
     width = math.hypot(spread / math.sqrt(len(now)), ENCODERS)
@@ -117,7 +117,7 @@ def lost_motion(cells: NDArray[Any], baseline: Baseline | None) -> tuple[Sequenc
         (None, None) if baseline is None else _parts(cells['start'].astype(np.int64), baseline)
     )
     if before is None or after is None or before.sum() < 2 or after.sum() < 2:
-        return [*quantities, _unknown(LOST_CHANGE, 'um', NO_BASELINE)], ''
+        return [*quantities, unknown(LOST_CHANGE, 'um', NO_BASELINE)], ''
     change = float(lost[after].mean() - lost[before].mean())
     width = spread * math.sqrt(1.0 / before.sum() + 1.0 / after.sum())
     quantities.insert(1, _micrometres(LOST_CHANGE, 'um', change, width, rests))
@@ -196,7 +196,3 @@ def _span_text(span: tuple[float, float]) -> str:
 def _micrometres(name: str, unit: str, value: float, width: float, rests: str) -> Quantity:
     value, low, high = (MICRO * one for one in (value, value - width, value + width))
     return Quantity(name=name, unit=unit, value=value, low=low, high=high, evidence=rests)
-
-
-def _unknown(name: str, unit: str, reason: str) -> Quantity:
-    return Quantity(name=name, unit=unit, reason=reason)

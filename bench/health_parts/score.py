@@ -12,6 +12,7 @@ from ballscrew_monitor.health.change import changes_of, marks_of
 from ballscrew_monitor.health.detection import Look, looks
 from ballscrew_monitor.health.history import History, history_of
 from ballscrew_monitor.health.records import CauseCode
+from ballscrew_monitor.health.summary import array_of
 from ballscrew_monitor.health.words import explained
 from health_parts.axis_year import AxisYear
 from health_parts.summaries import cells_of_year
@@ -68,7 +69,7 @@ def score_of(
     year: AxisYear, *, always_free: bool = False, judge: Judge = looks, causes: bool = True
 ) -> Course:
     """Return how a year was judged; another `judge` than the product has no `causes`."""
-    cells = cells_of_year(year, always_free=always_free)
+    cells = array_of(cells_of_year(year, always_free=always_free))
     history = history_of(cells, year.machine.size.lead)
     if history is None:
         return Course(

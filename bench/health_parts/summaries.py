@@ -4,7 +4,8 @@
 
 from ballscrew_monitor.health.collect import Collector
 from ballscrew_monitor.health.gather import GatherSettings
-from ballscrew_monitor.health.summary import add, array_of
+from ballscrew_monitor.health.records import Cell
+from ballscrew_monitor.health.summary import add
 from ballscrew_monitor.judge.inputs import DEFAULT, DERIVED, MEASURED
 from ballscrew_monitor.judge.many import ROW
 from health_parts.axis_year import AxisYear, Log
@@ -32,15 +33,15 @@ def rows_of(log: Log) -> NDArray[np.void]:
     return rows
 
 
-def cells_of_year(year: AxisYear, *, always_free: bool = False) -> NDArray[np.void]:
-    """Return the summaries of all logs of a year, an array of CELL."""
+def cells_of_year(year: AxisYear, *, always_free: bool = False) -> list[Cell]:
+    """Return the cells of the summaries of all logs of a year."""
     surface = Surface.load(shipped_surface())
-    parts = []
+    parts: list[Cell] = []
     for log in year.logs:
         collector = Collector(surface, GatherSettings(always_free=always_free))
         stretches = collector.take_many(rows_of(log)).stretches + collector.finish().stretches
         cells: dict = {}
         for stretch in stretches:
             add(cells, stretch, log.start)
-        parts.append(array_of(cells.values()))
-    return np.concatenate(parts)
+        parts += cells.values()
+    return parts
