@@ -16,7 +16,7 @@ from pathlib import Path
 
 from ballscrew_monitor.health.detection import looks
 from health_parts.axis_year import axis_year
-from health_parts.faults import FAULTS
+from health_parts.faults import FAULTS, LOOSENED
 from health_parts.public_data import print_public
 from health_parts.rivals import INSTALL, missing, rivals
 from health_parts.score import Kind, print_table, Score, score_of
@@ -45,6 +45,8 @@ def kinds(years: int, clean: int) -> Iterator[tuple[Kind, int]]:
             few = max(years // 2, 1)
             yield Kind(way, 'clean', options), few
             yield Kind(way, OTHER, options), few
+    for name in LOOSENED:
+        yield Kind('weekly, with a scale', name, {'scale': True}), max(years // 2, 1)
 
 
 def compare(years: int, clean: int, seed: int) -> None:
@@ -87,7 +89,8 @@ def main() -> None:
     for kind, count in wanted:
         courses = []
         for number in range(count):
-            year = axis_year(args.seed + number, FAULTS[kind.fault], **kind.options)
+            fault = (FAULTS | LOOSENED)[kind.fault]
+            year = axis_year(args.seed + number, fault, **kind.options)
             courses.append(score_of(year, always_free='load' in kind.options))
             done += 1
             bar.show(done, len(courses))

@@ -16,7 +16,7 @@ from ballscrew_monitor.core.conversions import clock_text
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import changed_screw, in_force, motion_by_day
-from ballscrew_monitor.health.causes import causes_of
+from ballscrew_monitor.health.causes import causes_of, likely
 from ballscrew_monitor.health.change import changes_of, marks_of
 from ballscrew_monitor.health.damage import rated_of
 from ballscrew_monitor.health.detection import BASELINE_DAYS, latched, Look, looks
@@ -288,7 +288,7 @@ def _drag(look: Look) -> Quantity:
 
 def _preload(health: Health) -> Quantity:
     """Return the share of the preload that is left, where its loss alone explains a change."""
-    told = [cause for cause in health.causes if not cause.excluded]
+    told = likely(health.causes)
     if [cause.size.name for cause in told] == ['preload']:
         return dataclasses.replace(
             told[0].size, evidence='a bound by the loss of drag, which follows the preload'

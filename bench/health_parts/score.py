@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import math
 from typing import Any, NamedTuple
 
-from ballscrew_monitor.health.causes import causes_of, likely
+from ballscrew_monitor.health.causes import causes_of
 from ballscrew_monitor.health.change import changes_of, marks_of
 from ballscrew_monitor.health.detection import Look, looks
 from ballscrew_monitor.health.history import History, history_of
-from ballscrew_monitor.health.records import CauseCode
+from ballscrew_monitor.health.records import CauseCode, CellKind
 from ballscrew_monitor.health.summary import array_of
+from ballscrew_monitor.health.where import lost_motion_grew
 from ballscrew_monitor.health.words import explained
 from health_parts.axis_year import AxisYear
 from health_parts.summaries import cells_of_year
@@ -93,7 +94,10 @@ def score_of(
     raised = [one for one in seen if one.raised]
     start = year.fault.start if year.fault.part else math.inf
     after = [one for one in raised if day[one.log] >= start]
-    told, right = _cause(history, after[-1], year) if after and causes else (False, False)
+    told = right = False
+    if after and causes:
+        reversals = cells[cells['kind'] == CellKind.REVERSAL]
+        told, right = _cause(history, reversals, after[-1], year)
     quarter = [one for one in seen if one.is_known and day[one.log] - day[0] >= QUARTER - 3.0]
     return Course(
         lost=float(np.mean(truth[-4:])),
@@ -124,12 +128,15 @@ def _half(look: Look) -> float:
     return 0.5 * (look.high - look.low)
 
 
-def _cause(history: History, look: Look, year: AxisYear) -> tuple[bool, bool]:
+def _cause(
+    history: History, reversals: np.ndarray, look: Look, year: AxisYear
+) -> tuple[bool, bool]:
     """Return whether a cause is told at a look, and whether the truth is among those told."""
-    until = history.until(look.log + 1)
-    change, marks = math.log1p(look.change), marks_of(until, look)
+    until, starts = history.until(look.log + 1), history.start
+    grew = lost_motion_grew(reversals, int(starts[look.onset]), int(starts[look.log]))
+    change, marks = math.log1p(look.change), marks_of(until, look)._replace(lost_motion=grew)
     causes = causes_of(changes_of(until, look), marks, change, year.machine.preload)
-    _, told = explained(likely(causes))
+    _, told = explained(causes)
     codes = {one.code for one in told}
     return bool(codes), bool(codes & CAUSES.get(year.fault.part, set()))
 

@@ -10,7 +10,6 @@ follows the motor by a play operator, with pitch errors, growth, skew and noise.
 
 from collections import namedtuple
 from dataclasses import replace
-import math
 from pathlib import Path
 import sys
 
@@ -25,7 +24,7 @@ from ballscrew_monitor.health.records import (
     Stretch,
 )
 from ballscrew_monitor.health.rows import DAY
-from ballscrew_monitor.health.stroke import ReversalSums, StrokeSums
+from ballscrew_monitor.health.stroke import StrokeSums
 from ballscrew_monitor.health.summary import array_of
 from ballscrew_monitor.health.where import (
     LOST,
@@ -41,8 +40,8 @@ import pytest
 sys.path.append(str(Path(__file__).resolve().parents[3] / 'bench'))
 from health_parts.along import WORN_AT  # noqa: E402, I100
 from health_parts.axis_year import axis_year  # noqa: E402
-from health_parts.faults import CLEAN, Fault, FAULTS, joined  # noqa: E402
-from health_parts.summaries import cells_of_year  # noqa: E402
+from health_parts.faults import CLEAN, FAULTS, LOOSENED  # noqa: E402
+from health_parts.summaries import cells_of_year, reversals_of  # noqa: E402
 
 Steady = namedtuple('Steady', 'begin end speed')
 
@@ -61,7 +60,7 @@ def steady_parts(log):
 
 def cells_of_log(log, lead):
     stamps = log.start + np.rint(log.time * SECOND).astype(np.int64)
-    stroke, reversals = StrokeSums(), ReversalSums()
+    stroke = StrokeSums()
     stroke.add(stamps, log.position, log.torque)
     stroke.take(
         Stretch(
@@ -75,15 +74,7 @@ def cells_of_log(log, lead):
         )
         for part in steady_parts(log)
     )
-    moves = np.abs(log.speed) > 0.5
-    if log.table is not None:
-        reversals.add(
-            stamps[moves],
-            log.speed[moves] * lead / (2.0 * math.pi),
-            log.position[moves],
-            log.table[moves],
-        )
-    return stroke.cells(log.start) + reversals.cells(log.start)
+    return stroke.cells(log.start) + reversals_of(log, lead)
 
 
 def told(seed, fault, **changes):
@@ -152,26 +143,13 @@ def test_play_that_grows_counts_from_its_date_on(seed):
     assert not lost_motion_grew(cells, begun, begun + 5 * DAY)  # one log after it
 
 
-class Loosened(Fault):
-    """A part that is nearly lost, and has play when three quarters of it are gone."""
-
-    def condition(self, day):
-        late = self.start + 0.75 * self.ramp
-        play = replace(FAULTS['play 20 um'], start=late, ramp=0.0)
-        return joined(Fault.condition(self, day), play.condition(day))
-
-
-NUT = Loosened(name='lost nut', part='preload', size=0.1)
-BEARING = Loosened(name='loose bearing', part='bearing', size=0.1)
+NUT, BEARING = LOOSENED.values()
 
 
 def causes_in(seed, fault, limits, surface, *, with_table=True):
     """Return the likely causes at the end of a year, the best first, and all of them by code."""
     year = axis_year(seed, fault, scale=True)
-    lead, cells = year.machine.size.lead, cells_of_year(year)
-    if with_table:
-        table = [cell for log in year.logs for cell in cells_of_log(log, lead)]
-        cells += [cell for cell in table if cell.kind == CellKind.REVERSAL]
+    cells = [cell for cell in cells_of_year(year) if with_table or cell.kind != CellKind.REVERSAL]
     settings = HealthSettings(limits=limits)
     health = assess('x', KeptHealth(cells), surface, settings, now=year.logs[-1].start + SECOND)
     return [one.code for one in health.causes if not one.excluded], health
