@@ -3,10 +3,11 @@
 """
 Play axis-years of known truth, and print how good the health is that is made of their logs.
 
-Usage: python bench/health.py [--years N] [--clean N] [--seed S] [--rivals] [--public FOLDER]. The
-years come from catalogues and textbooks (`health_parts/axis_year.py`) and share no formula with
-the product. A year is made into logs, these into summaries, and a look is taken after each log.
---rivals puts two libraries beside the product, --public takes public measurements instead.
+Usage: python bench/health.py [--years N] [--clean N] [--seed S] [--figures] [--rivals]
+[--public FOLDER]. The years come from catalogues and textbooks (`health_parts/axis_year.py`) and
+share no formula with the product. A year is made into logs, these into summaries, and a look is
+taken after each log. --figures plays clean years and steps of 10 % alone, --rivals puts two
+libraries beside the product, --public takes public measurements instead.
 
 """
 
@@ -16,10 +17,11 @@ from pathlib import Path
 
 from ballscrew_monitor.health.detection import looks
 from health_parts.axis_year import axis_year
-from health_parts.faults import FAULTS, LOOSENED
+from health_parts.faults import CLEAN, FAULTS, LOOSENED, STEP
 from health_parts.public_data import print_public
 from health_parts.rivals import INSTALL, missing, rivals
 from health_parts.score import Kind, print_table, Score, score_of
+import numpy as np
 from surrogate.progress import Progress
 
 SCHEDULES = {
@@ -49,6 +51,23 @@ def kinds(years: int, clean: int) -> Iterator[tuple[Kind, int]]:
         yield Kind('weekly, with a scale', name, {'scale': True}), max(years // 2, 1)
 
 
+def figures(years: int, clean: int, seed: int) -> None:
+    """Print a line for clean years, and one for steps under a small scatter and wander."""
+    bar, courses = Progress(years + clean, 'years'), {CLEAN: [], STEP: []}
+    for fault, count in ((CLEAN, clean), (STEP, years)):
+        for number in range(seed, seed + count):
+            rng = np.random.default_rng([number, 5])
+            small = {'wander': rng.uniform(0.0, 0.015), 'scatter': rng.uniform(0.01, 0.02)}
+            year = axis_year(number, fault, **small if fault is STEP else {})
+            courses[fault].append(score_of(year, causes=False))
+            bar.step()
+    bar.close()
+    table = [Score.of(Kind('weekly', one.name, {}), seen) for one, seen in courses.items()]
+    print_table(table)
+    print(f'alarms in clean years: {sum(one.early for one in courses[CLEAN])} of {clean}')
+    print(f'steps found within eight weeks: {round(years * table[1].soon)} of {years}')
+
+
 def compare(years: int, clean: int, seed: int) -> None:
     """Print a line for the product and for each rival, on the same years."""
     if lacking := missing():
@@ -74,10 +93,14 @@ def main() -> None:
     parser.add_argument('--clean', type=int, default=4, help='years without a fault')
     parser.add_argument('--seed', type=int, default=1000, help='of the first year')
     parser.add_argument('--rivals', action='store_true', help='beside statsmodels and ruptures')
+    parser.add_argument('--figures', action='store_true', help='clean years and steps of 10 %%')
     parser.add_argument('--public', type=Path, help='folder of the public measurements')
     args = parser.parse_args()
     if args.rivals:
         compare(args.years, args.clean, args.seed)
+        return
+    if args.figures:
+        figures(args.years, args.clean, args.seed)
         return
     if args.public is not None:
         print_public(args.public)

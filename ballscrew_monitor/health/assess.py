@@ -40,6 +40,7 @@ from ballscrew_monitor.health.records import (
     KeptHealth,
     LoadSource,
     Quantity,
+    quantity,
     unknown,
 )
 from ballscrew_monitor.health.remedies import remedy_text
@@ -153,7 +154,7 @@ class Course:
         usual = None if changed else usual_boundary(points, known, surface, today)
         recent = recent_of(points, today)
         where, worn = where_on_screw(self.cells, None if self.history is None else self.baseline)
-        notes = ['' if usual is None else boundary_note(usual), *worn, *self._notes()]
+        notes = ['' if usual is None else boundary_note(*usual), *worn, *self._notes()]
         advice = health.advice
         if not advice and usual is None:
             free = settings.speed_allowed
@@ -207,7 +208,7 @@ class Course:
             return unknown(SMALLEST, '-', 'not known yet: nothing is compared')
         size = self.looks[-1].smallest
         text = f'found within eight weeks in nine of ten cases; {ALARM_RATE}'
-        return Quantity(name=SMALLEST, value=size, low=size, high=size, evidence=text)
+        return quantity(SMALLEST, '-', (size, size, size), text)
 
     def _notes(self) -> list[str]:
         """Return what is to be known of the inputs, the programme and the screw."""
@@ -277,13 +278,8 @@ def _unknown(axis: str, stamp: int, reason: str) -> Health:
 def _drag(look: Look) -> Quantity:
     if not look.is_known:
         return unknown(DRAG, '-', f'not known yet: {look.reason}')
-    return Quantity(
-        name=DRAG,
-        value=look.change,
-        low=look.low,
-        high=look.high,
-        evidence=f'the last {look.now} logs against {look.baseline} of the baseline',
-    )
+    text = f'the last {look.now} logs against {look.baseline} of the baseline'
+    return quantity(DRAG, '-', (look.change, look.low, look.high), text)
 
 
 def _preload(health: Health) -> Quantity:

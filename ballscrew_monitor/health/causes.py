@@ -14,7 +14,7 @@ import math
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.health.change import GroupChange, LEAST_GAIN, Marks
-from ballscrew_monitor.health.records import Cause, CauseCode, Quantity
+from ballscrew_monitor.health.records import Cause, CauseCode, Quantity, quantity
 import numpy as np
 from numpy.typing import NDArray
 
@@ -266,12 +266,11 @@ def _size(fit: Fit, groups: GroupChange) -> Quantity:
         return preload_bound(-math.expm1(fit.size))
     if pattern is constant:
         scale = float(groups.friction.mean())
-        value, low, high = (scale * math.expm1(end) for end in ends)
-        return Quantity(name='constant drag', unit='N m', value=value, low=low, high=high)
-    of_oil = pattern is of_viscosity
-    turn = math.exp if of_oil else math.expm1
-    value, low, high = (turn(min(max(end, -3.0), 3.0)) for end in ends)
-    return Quantity(name='viscosity' if of_oil else 'friction', value=value, low=low, high=high)
+        return quantity('constant drag', 'N m', (scale * math.expm1(end) for end in ends))
+    bounded = (min(max(end, -3.0), 3.0) for end in ends)
+    if pattern is of_viscosity:
+        return quantity('viscosity', '-', map(math.exp, bounded))
+    return quantity('friction', '-', map(math.expm1, bounded))
 
 
 def preload_bound(loss: float) -> Quantity:
@@ -284,7 +283,7 @@ def preload_bound(loss: float) -> Quantity:
     """
     low, high = (1.0 - loss / PRELOAD_EXPONENT / share for share in (NUT_SHARES[0], 1.0))
     middle = 1.0 - loss / PRELOAD_EXPONENT / NUT_SHARES[1]
-    return Quantity(name='preload', value=max(middle, 0.0), low=max(low, 0.0), high=high)
+    return quantity('preload', '-', (max(middle, 0.0), max(low, 0.0), high))
 
 
 def likely(causes: Sequence[Cause]) -> list[Cause]:

@@ -9,7 +9,7 @@ and loads are in the machine frame, as measured at the screw.
 
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 import dataclasses
 import enum
 import math
@@ -163,6 +163,12 @@ class Quantity:
         return math.isfinite(self.low) and math.isfinite(self.high)
 
 
+def quantity(name: str, unit: str, ends: Iterable[float], evidence: str = '') -> Quantity:
+    """Return a quantity by its value and the low and high end of its interval."""
+    value, low, high = ends
+    return Quantity(name=name, unit=unit, value=value, low=low, high=high, evidence=evidence)
+
+
 def unknown(name: str, unit: str, reason: str) -> Quantity:
     """Return a quantity that is not known, and why."""
     return Quantity(name=name, unit=unit, reason=reason)
@@ -174,13 +180,9 @@ class CauseCode(enum.IntEnum):
     PRELOAD_LOST = 1
     OIL_THINNER = 2
     OIL_THICKER = 3
-    WARMER_THAN_MEASURED = 4
     FILM_STARVED = 5
     WIPER = 6
-    CHURNING = 7
-    LOAD_SIGN_OR_UNIT = 8
     TORQUE_CONSTANT = 9
-    SENSOR_OFFSET = 10
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -80,6 +80,8 @@ def joined(first: Condition, second: Condition) -> Condition:
     return Condition(**both | added)
 
 
+STEP = Fault(name='step of 10 %', part='torque_constant', size=1.0 / 0.9, ramp=0.0)
+"""All torques fall by a tenth, at all speeds alike."""
 LOOSENED = {
     fault.name: fault
     for fault in (

@@ -82,7 +82,11 @@ def healths():
     preload = msg.HealthQuantity(name='preload', unit='-', value=0.6, low=0.5, high=0.7)
     for condition in (AxisHealth.CONDITION_UNKNOWN, AxisHealth.CONDITION_NORMAL):
         yield AxisHealth(axis='x', condition=condition, quantities=[drag])
-    for codes in ((), *((code,) for code in CauseCode), (CauseCode.WIPER, CauseCode.CHURNING)):
+    for codes in (
+        (),
+        *((code,) for code in CauseCode),
+        (CauseCode.WIPER, CauseCode.TORQUE_CONSTANT),
+    ):
         causes = [
             msg.HealthCause(code=int(code), weight=0.5, size=msg.HealthQuantity(**size))
             for code in codes
