@@ -52,20 +52,29 @@ def kinds(years: int, clean: int) -> Iterator[tuple[Kind, int]]:
 
 
 def figures(years: int, clean: int, seed: int) -> None:
-    """Print a line for clean years, and one for steps under a small scatter and wander."""
-    bar, courses = Progress(years + clean, 'years'), {CLEAN: [], STEP: []}
-    for fault, count in ((CLEAN, clean), (STEP, years)):
+    """Print lines of clean years by schedule, and of changes; steps come on quiet axes."""
+    wanted = [
+        ('weekly', CLEAN, clean),
+        ('daily', CLEAN, clean // 10),
+        ('monthly runs of 90 s at 10 Hz', CLEAN, clean // 5),
+        ('weekly', FAULTS[OTHER], years // 3),
+        ('weekly', STEP, years),
+    ]
+    bar, table = Progress(sum(count for _, _, count in wanted), 'years'), []
+    for way, fault, count in wanted:
+        courses = []
         for number in range(seed, seed + count):
             rng = np.random.default_rng([number, 5])
-            small = {'wander': rng.uniform(0.0, 0.015), 'scatter': rng.uniform(0.01, 0.02)}
-            year = axis_year(number, fault, **small if fault is STEP else {})
-            courses[fault].append(score_of(year, causes=False))
+            quiet = {'wander': rng.uniform(0.0, 0.015), 'scatter': rng.uniform(0.01, 0.02)}
+            options = SCHEDULES[way] | (quiet if fault is STEP else {})
+            courses.append(score_of(axis_year(number, fault, **options), causes=False))
             bar.step()
+        table.append(Score.of(Kind(way, fault.name, {}), courses))
     bar.close()
-    table = [Score.of(Kind('weekly', one.name, {}), seen) for one, seen in courses.items()]
     print_table(table)
-    print(f'alarms in clean years: {sum(one.early for one in courses[CLEAN])} of {clean}')
-    print(f'steps found within eight weeks: {round(years * table[1].soon)} of {years}')
+    for line in table:
+        alarms, soon = (round(line.years * share) for share in (line.early / 100.0, line.soon))
+        print(f'{line.kind.way}, {line.kind.fault}: {alarms} alarms, {soon} found in 8 weeks')
 
 
 def compare(years: int, clean: int, seed: int) -> None:
@@ -108,15 +117,13 @@ def main() -> None:
     table: list[Score] = []
     wanted = list(kinds(args.years, args.clean))
     bar = Progress(sum(count for _, count in wanted), 'years')
-    done = 0
     for kind, count in wanted:
         courses = []
         for number in range(count):
             fault = (FAULTS | LOOSENED)[kind.fault]
             year = axis_year(args.seed + number, fault, **kind.options)
             courses.append(score_of(year, always_free='load' in kind.options))
-            done += 1
-            bar.show(done, len(courses))
+            bar.step()
         table.append(Score.of(kind, courses))
     bar.close()
     print_table(table)

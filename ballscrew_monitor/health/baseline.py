@@ -11,14 +11,13 @@ from collections.abc import Iterable, Mapping, Sequence
 import dataclasses
 import itertools
 
-from ballscrew_monitor.core.conversions import clock_text, TIME_UNITS
+from ballscrew_monitor.core.conversions import clock_text
 from ballscrew_monitor.health.bands import FIRST_DAY
 from ballscrew_monitor.health.detection import BASELINE_DAYS, FEWEST_LOGS
 from ballscrew_monitor.health.records import Baseline, Cell, CellKind, KeptHealth, SpectrumBin
 from ballscrew_monitor.health.rows import DAY
 from surrogate.files import InputError
 
-HOUR = TIME_UNITS['h']
 LEARNED = 'learned over the first logs'
 LEAP = 0.3
 """Change everywhere [-] from which another screw is suspected."""

@@ -6,8 +6,9 @@ import dataclasses
 from typing import Any
 
 from ballscrew_monitor.health.assess import assess, HealthSettings
-from ballscrew_monitor.health.baseline import HOUR, named
+from ballscrew_monitor.health.baseline import named
 from ballscrew_monitor.health.collect import Collected
+from ballscrew_monitor.health.life import HOUR
 from ballscrew_monitor.health.records import Baseline, Cell, Health, SpectrumBin
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.store import HealthStore

@@ -14,7 +14,7 @@ import math
 import statistics
 from typing import Any, NamedTuple
 
-from ballscrew_monitor.health.detection import binned_logs, FEWEST_LOGS, now_of
+from ballscrew_monitor.health.detection import binned_logs, FEWEST_LOGS, NOW, now_of
 from ballscrew_monitor.health.history import effects_of, history_of
 from ballscrew_monitor.health.mixed import estimate, grid, Logs, Prior, SLOPE, SLOPE_DOUBT, USUAL
 from ballscrew_monitor.health.records import Quantity, quantity, TOLERANCE
@@ -24,8 +24,6 @@ from numpy.typing import NDArray
 
 FEWEST_PEERS = 2
 """Other axes with which one axis is compared: with a single one, either may have changed."""
-LATEST = 4
-"""Logs of an axis that count as now."""
 LEAST_COMMON = 0.5
 """Share of the groups of an axis that a peer has, too, from which on they compare."""
 OWN_DOUBT = 0.02
@@ -85,8 +83,8 @@ def _level(cells: NDArray[Any], lead: float) -> dict[Any, float]:
     if history is None:
         return {}
     effects = effects_of(history)
-    now = float(np.mean(effects.logs.effect[-LATEST:]))
-    seen = (history.weight[-LATEST:].sum(axis=0) > 0.0).tolist()
+    now = float(np.mean(effects.logs.effect[-NOW:]))
+    seen = (history.weight[-NOW:].sum(axis=0) > 0.0).tolist()
     pairs = zip(history.groups, effects.groups, seen, strict=True)
     return {group: float(level) + now for group, level, known in pairs if known}
 
@@ -112,7 +110,7 @@ def _peer(axis: str, levels: Mapping[str, Mapping[Any, float]]) -> Peer | None:
     value = statistics.median(others.values())
     reach = 1.96 * OWN_DOUBT * math.sqrt(1.0 + 1.0 / len(others))
     ends = (value, value - reach, value + reach)
-    text = f'{len(levels[axis])} places, the last {LATEST} logs'
+    text = f'{len(levels[axis])} places, the last {NOW} logs'
     return Peer(
         axis=axis,
         difference=quantity(NAME, '-', map(math.expm1, ends), text),

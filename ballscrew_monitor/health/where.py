@@ -13,7 +13,9 @@ from collections.abc import Sequence
 import math
 from typing import Any
 
+from ballscrew_monitor.health.detection import NOW
 from ballscrew_monitor.health.energy import student
+from ballscrew_monitor.health.mixed import YEAR
 from ballscrew_monitor.health.records import (
     Baseline,
     CellKind,
@@ -29,8 +31,6 @@ from numpy.typing import NDArray
 from surrogate.units import MICRO, MILLI
 
 Array = NDArray[np.float64]
-NOW = 4
-"""Logs that count as now."""
 SURE = 1.9
 """Half width of the 99.9 % interval over that of 95 %."""
 FEWEST_STEPS = 3
@@ -38,7 +38,6 @@ LEAST_LOST = 2e-6
 """Growth of the lost motion that is worth a note [m]."""
 ENCODERS = 0.5e-6
 """Half width of what two encoders and the fit leave of a lost motion of zero [m]."""
-YEAR = 365.25
 LOST, LOST_CHANGE, LOST_TREND = 'lost motion', 'lost motion change', 'lost motion trend'
 NO_BASELINE = 'not known yet: it needs two logs in the baseline, and two after it'
 

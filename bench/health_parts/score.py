@@ -87,7 +87,7 @@ def score_of(
         )
     seen = list(judge(history))
     day = year.day[np.searchsorted([log.start for log in year.logs], history.start)]
-    first = day - day[0] <= QUARTER
+    first = np.isin(year.day, day[day - day[0] <= QUARTER])
     indicated = (1.0 + year.truth.change(first)) / constant_of(year)
     truth = indicated[np.searchsorted(year.day, day)] - 1.0
     pairs = [(one, _now(truth, one)) for one in seen if math.isfinite(one.low)]
