@@ -3,10 +3,11 @@
 """
 Play axis-years of known truth, and print how good the health is that is made of their logs.
 
-Usage: python bench/health.py [--years N] [--clean N] [--seed S] [--rivals] [--public FOLDER]. The
-years come from catalogues and textbooks (`health_parts/axis_year.py`) and share no formula with
-the product. A year is made into logs, these into summaries, and a look is taken after each log.
---rivals puts two libraries beside the product, --public takes public measurements instead.
+Usage: python bench/health.py [--years N] [--clean N] [--seed S] [--figures] [--rivals]
+[--public FOLDER]. The years come from catalogues and textbooks (`health_parts/axis_year.py`) and
+share no formula with the product. A year is made into logs, these into summaries, and a look is
+taken after each log. --figures plays clean years and steps of 10 % alone, --rivals puts two
+libraries beside the product, --public takes public measurements instead.
 
 """
 
@@ -16,10 +17,11 @@ from pathlib import Path
 
 from ballscrew_monitor.health.detection import looks
 from health_parts.axis_year import axis_year
-from health_parts.faults import FAULTS
+from health_parts.faults import CLEAN, FAULTS, LOOSENED, STEP
 from health_parts.public_data import print_public
 from health_parts.rivals import INSTALL, missing, rivals
 from health_parts.score import Kind, print_table, Score, score_of
+import numpy as np
 from surrogate.progress import Progress
 
 SCHEDULES = {
@@ -45,6 +47,34 @@ def kinds(years: int, clean: int) -> Iterator[tuple[Kind, int]]:
             few = max(years // 2, 1)
             yield Kind(way, 'clean', options), few
             yield Kind(way, OTHER, options), few
+    for name in LOOSENED:
+        yield Kind('weekly, with a scale', name, {'scale': True}), max(years // 2, 1)
+
+
+def figures(years: int, clean: int, seed: int) -> None:
+    """Print lines of clean years by schedule, and of changes; steps come on quiet axes."""
+    wanted = [
+        ('weekly', CLEAN, clean),
+        ('daily', CLEAN, clean // 10),
+        ('monthly runs of 90 s at 10 Hz', CLEAN, clean // 5),
+        ('weekly', FAULTS[OTHER], years // 3),
+        ('weekly', STEP, years),
+    ]
+    bar, table = Progress(sum(count for _, _, count in wanted), 'years'), []
+    for way, fault, count in wanted:
+        courses = []
+        for number in range(seed, seed + count):
+            rng = np.random.default_rng([number, 5])
+            quiet = {'wander': rng.uniform(0.0, 0.015), 'scatter': rng.uniform(0.01, 0.02)}
+            options = SCHEDULES[way] | (quiet if fault is STEP else {})
+            courses.append(score_of(axis_year(number, fault, **options), causes=False))
+            bar.step()
+        table.append(Score.of(Kind(way, fault.name, {}), courses))
+    bar.close()
+    print_table(table)
+    for line in table:
+        alarms, soon = (round(line.years * share) for share in (line.early / 100.0, line.soon))
+        print(f'{line.kind.way}, {line.kind.fault}: {alarms} alarms, {soon} found in 8 weeks')
 
 
 def compare(years: int, clean: int, seed: int) -> None:
@@ -72,10 +102,14 @@ def main() -> None:
     parser.add_argument('--clean', type=int, default=4, help='years without a fault')
     parser.add_argument('--seed', type=int, default=1000, help='of the first year')
     parser.add_argument('--rivals', action='store_true', help='beside statsmodels and ruptures')
+    parser.add_argument('--figures', action='store_true', help='clean years and steps of 10 %%')
     parser.add_argument('--public', type=Path, help='folder of the public measurements')
     args = parser.parse_args()
     if args.rivals:
         compare(args.years, args.clean, args.seed)
+        return
+    if args.figures:
+        figures(args.years, args.clean, args.seed)
         return
     if args.public is not None:
         print_public(args.public)
@@ -83,14 +117,13 @@ def main() -> None:
     table: list[Score] = []
     wanted = list(kinds(args.years, args.clean))
     bar = Progress(sum(count for _, count in wanted), 'years')
-    done = 0
     for kind, count in wanted:
         courses = []
         for number in range(count):
-            year = axis_year(args.seed + number, FAULTS[kind.fault], **kind.options)
+            fault = (FAULTS | LOOSENED)[kind.fault]
+            year = axis_year(args.seed + number, fault, **kind.options)
             courses.append(score_of(year, always_free='load' in kind.options))
-            done += 1
-            bar.show(done, len(courses))
+            bar.step()
         table.append(Score.of(kind, courses))
     bar.close()
     print_table(table)

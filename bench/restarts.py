@@ -162,8 +162,8 @@ def report(runs: list[tuple[Any, Any]], entries: list[dict[str, Any]]) -> None:
 
 def report_health(kept: list[KeptHealth]) -> None:
     """Print whether the baseline is the same after each kill, and how often stretches are lost."""
-    counts = [sum(one.stretches for one in each.points) for each in kept]
-    print(f'kills without baseline  {sum(each.baseline is None for each in kept)}')
+    counts = [sum(one.stretches for one in each.cells) for each in kept]
+    print(f'kills without baseline  {sum(not each.baselines for each in kept)}')
     print(f'different baselines     {len({each.baselines for each in kept})}')
     print(f'stretches kept          {counts[0]} to {counts[-1]}')
     print(f'stretches fallen back   {sum(a > b for a, b in zip(counts, counts[1:]))}')

@@ -10,18 +10,14 @@ What is kept are its limits alone. Its logs are picked from the history.
 from collections.abc import Iterable, Mapping, Sequence
 import dataclasses
 import itertools
-from typing import Any
 
-from ballscrew_monitor.core.conversions import clock_text, TIME_UNITS
+from ballscrew_monitor.core.conversions import clock_text
 from ballscrew_monitor.health.bands import FIRST_DAY
 from ballscrew_monitor.health.detection import BASELINE_DAYS, FEWEST_LOGS
-from ballscrew_monitor.health.records import Baseline, CellKind, SpectrumBin
+from ballscrew_monitor.health.records import Baseline, Cell, CellKind, KeptHealth, SpectrumBin
 from ballscrew_monitor.health.rows import DAY
-import numpy as np
-from numpy.typing import NDArray
 from surrogate.files import InputError
 
-HOUR = TIME_UNITS['h']
 LEARNED = 'learned over the first logs'
 LEAP = 0.3
 """Change everywhere [-] from which another screw is suspected."""
@@ -39,7 +35,7 @@ def motion_by_day(bins: Iterable[SpectrumBin]) -> dict[int, float]:
 
 
 def named(
-    cells: NDArray[Any], begin: int, end: int, *, reason: str, named_at: int, screw: str = ''
+    cells: Iterable[Cell], begin: int, end: int, *, reason: str, named_at: int, screw: str = ''
 ) -> Baseline:
     """
     Return the baseline of the logs that begin within `begin` and `end` [ns].
@@ -55,15 +51,23 @@ def named(
             f'the baseline ends at {clock_text(end)}, it must end after it begins at '
             f'{clock_text(begin)}'
         )
-    motion = cells[cells['kind'] == CellKind.MOTION]
-    within = (motion['start'] >= begin) & (motion['start'] < end)
-    count = len(np.unique(motion['start'][within]))
+    motion = {cell.start for cell in cells if cell.kind == CellKind.MOTION}
+    count = sum(begin <= start < end for start in motion)
     if count < FEWEST_LOGS:
         raise InputError(
             f'no baseline: {count} logs with steady motion and torque from {clock_text(begin)} to '
             f'{clock_text(end)}, needed are {FEWEST_LOGS}'
         )
     return Baseline(begin=begin, end=end, reason=reason, named_at=named_at, screw=screw)
+
+
+def since_days(kept: KeptHealth, days: tuple[int, int] | None, screw: str) -> KeptHealth:
+    """Return what is kept of an axis with the baseline of some `days`, begin and end [ns]."""
+    if days is None:
+        return kept
+    reason = 'named by its days'
+    baseline = named(kept.cells, *days, reason=reason, named_at=days[1], screw=screw)
+    return kept._replace(baselines=(baseline,))
 
 
 def in_force(

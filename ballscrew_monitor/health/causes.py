@@ -14,7 +14,7 @@ import math
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.health.change import GroupChange, LEAST_GAIN, Marks
-from ballscrew_monitor.health.records import Cause, CauseCode, Quantity
+from ballscrew_monitor.health.records import Cause, CauseCode, Quantity, quantity
 import numpy as np
 from numpy.typing import NDArray
 
@@ -43,19 +43,18 @@ LOW_SPEED = 0.7
 
 
 class Candidate(NamedTuple):
-    """
-    A cause: the sign of its size, 0 for both, its pattern, and what is said of it.
-
-    `with_play` is said of it where the lost motion has grown as well, '' if it has no part in it.
-
-    """
+    """A cause: the sign of its size, 0 for both, its pattern, and what is said of it."""
 
     code: CauseCode
     sign: int
     pattern: Callable[[GroupChange, float], Array]
     text: str
     otherwise: str
-    with_play: str = ''
+
+    @property
+    def unseen(self) -> str:
+        """Return why the cause does not fit."""
+        return f'{self.otherwise}, and that is not what is seen'
 
 
 def alike(groups: GroupChange, preload: float) -> Array:
@@ -89,15 +88,13 @@ def of_viscosity(groups: GroupChange, preload: float) -> Array:
     return np.asarray(np.polyval(np.polyder(bend), speed))
 
 
-LESS_PRELOAD = 'preload is lost ({least:.0f} % of it or more, if the nut is the cause)'
 CANDIDATES = (
     Candidate(
         CauseCode.PRELOAD_LOST,
         -1,
         of_preload,
-        LESS_PRELOAD,
+        'preload is lost ({least:.0f} % of it or more, if the nut is the cause)',
         'less preload lowers the friction at all speeds alike',
-        LESS_PRELOAD,
     ),
     Candidate(
         CauseCode.TORQUE_CONSTANT,
@@ -133,10 +130,15 @@ CANDIDATES = (
         constant,
         'the drag of a wiper, seal, guideway or bearing has changed ({size:+.2g} N m)',
         'a wiper or a guideway has one torque at all speeds',
-        'the support bearing has play ({size:+.2g} N m of drag)',
     ),
 )
 """All causes of a change of the friction: the one table of them."""
+WITH_PLAY = (CauseCode.PRELOAD_LOST, CauseCode.WIPER)
+"""Causes that stand where the lost motion has grown as well: the nut, or its support bearing."""
+WITHOUT_PLAY = 'the lost motion at reversals has grown as well, as by less preload'
+BEARING_DRAG = 'drag of a bearing with play'
+"""Name of the size of a constant drag where the lost motion has grown as well."""
+BEARING_PLAY = 'the support bearing has play ({size:+.2g} N m of drag)'
 
 
 class Fit(NamedTuple):
@@ -173,17 +175,23 @@ def causes_of(groups: GroupChange, marks: Marks, reported: float, preload: float
         _fit(one, groups, np.asarray(np.linalg.inv(doubts.get(one.code, covariance))), preload)
         for one in CANDIDATES
     ]
-    allowed = [_objection(fit, marks, reported, size) for fit in fits]
+    reasons = [_objection(fit, marks, reported, size) for fit in fits]
     least = min(
-        (fit.chi for fit, why in zip(fits, allowed, strict=True) if not why), default=math.inf
+        (fit.chi for fit, why in zip(fits, reasons, strict=True) if not why), default=math.inf
     )
-    reasons = [why or _too_far(fit, least) for fit, why in zip(fits, allowed, strict=True)]
-    stand = {fit.candidate.code for fit, why in zip(fits, reasons, strict=True) if not why}
-    played = marks.lost_motion and CauseCode.PRELOAD_LOST in stand
+    reasons = [
+        why or (fit.candidate.unseen if fit.chi - least > EXCLUDED else '')
+        for fit, why in zip(fits, reasons, strict=True)
+    ]
+    codes = [fit.candidate.code for fit in fits]
+    played = marks.lost_motion and not reasons[codes.index(CauseCode.PRELOAD_LOST)]
     if played:
-        reasons = [why or _without_play(fit) for fit, why in zip(fits, reasons, strict=True)]
+        reasons = [
+            why or ('' if code in WITH_PLAY else WITHOUT_PLAY)
+            for code, why in zip(codes, reasons, strict=True)
+        ]
     causes = [
-        _cause(fit if why else _carrying(fit, reported), why, groups, least, played=played)
+        _cause(fit, why, groups, reported, least, played=played)
         for fit, why in zip(fits, reasons, strict=True)
     ]
     total = sum(cause.weight for cause in causes) or 1.0
@@ -216,9 +224,9 @@ def _objection(fit: Fit, marks: Marks, reported: float, groups: int) -> str:
     """Return why a cause is excluded whatever the others are, or ''."""
     candidate = fit.candidate
     if fit.size == 0.0 or not LEAST_CARRIED <= fit.size * fit.share / reported <= MOST_CARRIED:
-        return f'{candidate.otherwise}, and that is not what is seen'
+        return candidate.unseen
     if fit.chi > TOO_FAR * groups:
-        return f'{candidate.otherwise}, and that is not what is seen'
+        return candidate.unseen
     gain = marks.gain
     if math.isfinite(gain.value):
         moved = gain.is_proven(LEAST_GAIN)
@@ -231,49 +239,38 @@ def _objection(fit: Fit, marks: Marks, reported: float, groups: int) -> str:
     return ''
 
 
-def _too_far(fit: Fit, least: float) -> str:
-    far = fit.chi - least > EXCLUDED
-    return f'{fit.candidate.otherwise}, and that is not what is seen' if far else ''
-
-
-def _without_play(fit: Fit) -> str:
-    seen = 'the lost motion at reversals has grown as well, as by less preload'
-    return '' if fit.candidate.with_play else seen
-
-
-def _carrying(fit: Fit, reported: float) -> Fit:
-    """Return a fit with the size at which the cause alone makes the reported change."""
-    return fit._replace(size=reported / fit.share)
-
-
-def _cause(fit: Fit, why: str, groups: GroupChange, least: float, *, played: bool) -> Cause:
-    size = _size(fit, groups)
+def _cause(
+    fit: Fit, why: str, groups: GroupChange, reported: float, least: float, *, played: bool
+) -> Cause:
     candidate = fit.candidate
-    text = why or (candidate.with_play if played else candidate.text).format(
-        least=100.0 * (1.0 - size.high), size=size.value, share=100.0 * size.value
-    )
+    # A cause that stands has the size at which it alone makes the reported change.
+    size = _size(fit if why else fit._replace(size=reported / fit.share), groups)
+    text = candidate.text
+    if played and candidate.pattern is constant:
+        text, size = BEARING_PLAY, dataclasses.replace(size, name=BEARING_DRAG)
     return Cause(
-        code=fit.candidate.code,
+        code=candidate.code,
         size=size,
         weight=0.0 if why else math.exp(-0.5 * (fit.chi - least)),
         excluded=bool(why),
-        text=text,
+        text=why
+        or text.format(least=100.0 * (1.0 - size.high), size=size.value, share=100.0 * size.value),
     )
 
 
 def _size(fit: Fit, groups: GroupChange) -> Quantity:
     """Return the size of a cause in its own unit."""
+    pattern = fit.candidate.pattern
     ends = fit.size, fit.size - 2.0 * fit.deviation, fit.size + 2.0 * fit.deviation
-    if fit.candidate.code is CauseCode.PRELOAD_LOST:
+    if pattern is of_preload:
         return preload_bound(-math.expm1(fit.size))
-    if fit.candidate.pattern is constant:
+    if pattern is constant:
         scale = float(groups.friction.mean())
-        value, low, high = (scale * math.expm1(end) for end in ends)
-        return Quantity(name='constant drag', unit='N m', value=value, low=low, high=high)
-    turn = math.exp if fit.candidate.pattern is of_viscosity else math.expm1
-    value, low, high = (turn(min(max(end, -3.0), 3.0)) for end in ends)
-    name = 'viscosity' if fit.candidate.pattern is of_viscosity else 'friction'
-    return Quantity(name=name, value=value, low=low, high=high)
+        return quantity('constant drag', 'N m', (scale * math.expm1(end) for end in ends))
+    bounded = (min(max(end, -3.0), 3.0) for end in ends)
+    if pattern is of_viscosity:
+        return quantity('viscosity', '-', map(math.exp, bounded))
+    return quantity('friction', '-', map(math.expm1, bounded))
 
 
 def preload_bound(loss: float) -> Quantity:
@@ -286,7 +283,7 @@ def preload_bound(loss: float) -> Quantity:
     """
     low, high = (1.0 - loss / PRELOAD_EXPONENT / share for share in (NUT_SHARES[0], 1.0))
     middle = 1.0 - loss / PRELOAD_EXPONENT / NUT_SHARES[1]
-    return Quantity(name='preload', value=max(middle, 0.0), low=max(low, 0.0), high=high)
+    return quantity('preload', '-', (max(middle, 0.0), max(low, 0.0), high))
 
 
 def likely(causes: Sequence[Cause]) -> list[Cause]:

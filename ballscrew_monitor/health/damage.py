@@ -98,7 +98,9 @@ def damage_of(bins: Iterable[SpectrumBin], rated: Rated, load_uncertainty: float
 
     """
     bins = list(bins)
-    loads = [(abs(one.axial_load), one.angle / TURN) for one in bins if _has_load(one)]
+    loads = [
+        (abs(one.axial_load), one.angle / TURN) for one in bins if math.isfinite(one.axial_load)
+    ]
     turns, time = sum(one.angle for one in bins) / TURN, sum(one.time for one in bins)
     seen = sum(count for _, count in loads)
     largest = max((load for load, _ in loads), default=0.0)
@@ -123,7 +125,3 @@ def _both_nuts(loads: Iterable[tuple[float, float]], rated: Rated) -> tuple[floa
 
 def _times(loads: Iterable[tuple[float, float]], factor: float) -> list[tuple[float, float]]:
     return [(load * factor, turns) for load, turns in loads]
-
-
-def _has_load(one: SpectrumBin) -> bool:
-    return math.isfinite(one.axial_load)

@@ -106,14 +106,11 @@ def looks(
 
 def look(history: History, *, baseline_days: float = BASELINE_DAYS, prior: Prior = USUAL) -> Look:
     """Return the comparison of the last logs of a history with its first ones."""
-    effects = effects_of(history)
+    logs, bins = binned_logs(history)
     index, time = len(history.start) - 1, history.time
-    if not effects.compared[-1]:
+    if bins[-1][-1] != index:
         reason = 'the last log shares no speed and load with the logs before'
         return Look(index, float(time[-1]), reason=reason)
-    compared = np.flatnonzero(effects.compared)
-    bins = bins_of(time[compared])
-    logs = binned(effects.logs, [compared[part] for part in bins])
     now = np.arange(len(bins)) >= len(bins) - now_of(logs.time)
     baseline = baseline_of(logs.time, now, baseline_days)
     sizes = np.array([len(part) for part in bins])
@@ -122,45 +119,38 @@ def look(history: History, *, baseline_days: float = BASELINE_DAYS, prior: Prior
         reason = f'{known} logs so far, a baseline needs {FEWEST_LOGS} and then two more'
         return Look(index, float(time[-1]), reason=reason)
     found = estimate(logs, baseline, now, warm=history.warm, prior=prior)
-    first = [int(compared[part[0]]) for part in bins]
-    seen = _look(found, provisional=float(time[-1] - time[compared[0]]) <= baseline_days)
-    seen = seen._replace(
-        log=index,
-        time=float(time[-1]),
-        smallest=smallest_loss(found, logs.time),
-        baseline=int(sizes[baseline].sum()),
-        now=int(sizes[now].sum()),
-        baseline_end=float(time[compared[bins[int(baseline.sum()) - 1][-1]]]),
-        now_begin=float(time[first[int(now.argmax())]]),
-        onset=first[found.onset] if found.onset >= 0 else first[int(now.argmax())],
-    )
-    return seen if now.sum() > 2 or _both_beyond(logs, baseline, seen) else seen._replace(raised=0)
-
-
-def _both_beyond(logs: Logs, baseline: NDArray[np.bool_], seen: Look) -> bool:
-    """Return True if both logs that are now lie beyond the tolerance: one run may be odd."""
-    values = logs.effect - seen.slope * logs.warmth
-    apart = values[-2:] - float(np.mean(values[baseline]))
-    return bool((seen.raised * apart > TOLERANCE).all())
-
-
-def _look(found: Estimate, *, provisional: bool) -> Look:
+    first = [int(part[0]) for part in bins]
     sign = -1 if found.lasts.value < 0.0 else 1
+    provisional = float(time[-1] - time[first[0]]) <= baseline_days
     usual = RUNNING_IN if provisional and sign < 0 else TOLERANCE
     doubt = max(found.lasts.within(usual, sign), found.unproven)
+    is_worse = doubt < DOUBT and (now.sum() > 2 or _both_beyond(logs, baseline, found, sign))
     reach = NORMAL_95 * found.deviation
-    shifted = abs(found.change) > SLIGHT_99 * found.deviation
+    proven = abs(found.change) > SLIGHT_99 * found.deviation
     return Look(
-        log=-1,
-        time=math.nan,
+        log=index,
+        time=float(time[-1]),
         change=math.expm1(found.change),
         low=math.expm1(found.change - reach),
         high=math.expm1(found.change + reach),
-        raised=sign if doubt < DOUBT else 0,
-        shifted=int(math.copysign(shifted, found.change)),
+        raised=sign if is_worse else 0,
+        shifted=int(math.copysign(proven, found.change)),
         doubt=doubt,
+        smallest=smallest_loss(found, logs.time),
         slope=found.slope,
+        baseline=int(sizes[baseline].sum()),
+        now=int(sizes[now].sum()),
+        baseline_end=float(time[bins[int(baseline.sum()) - 1][-1]]),
+        now_begin=float(time[first[int(now.argmax())]]),
+        onset=first[found.onset] if found.onset >= 0 else first[int(now.argmax())],
     )
+
+
+def _both_beyond(logs: Logs, baseline: NDArray[np.bool_], found: Estimate, sign: int) -> bool:
+    """Return True if both logs that are now lie beyond the tolerance: one run may be odd."""
+    values = logs.effect - found.slope * logs.warmth
+    apart = values[-2:] - float(np.mean(values[baseline]))
+    return bool((sign * apart > TOLERANCE).all())
 
 
 def smallest_loss(found: Estimate, time: Array) -> float:
@@ -179,6 +169,14 @@ def smallest_loss(found: Estimate, time: Array) -> float:
     proven = deviation * math.sqrt(2.0 * odds + 2.0 * math.log(max(CHANGE / deviation, 1.0)))
     size = max(proven, TOLERANCE + DOUBT_SIGMAS * deviation) + MISSED_SIGMAS * deviation
     return -math.expm1(-UNFORESEEN * size)
+
+
+def binned_logs(history: History) -> tuple[Logs, list[NDArray[np.int64]]]:
+    """Return the logs that can be compared, those of some days as one, and which ones each has."""
+    effects = effects_of(history)
+    compared = np.flatnonzero(effects.compared)
+    bins = [compared[part] for part in bins_of(history.time[compared])]
+    return binned(effects.logs, bins), bins
 
 
 def bins_of(time: Array) -> list[NDArray[np.int64]]:

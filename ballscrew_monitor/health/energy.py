@@ -12,26 +12,20 @@ from collections.abc import Iterable, Sequence
 import dataclasses
 import math
 
-from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.health.damage import recent
-from ballscrew_monitor.health.records import Baseline, Quantity, SpectrumBin
+from ballscrew_monitor.health.records import Baseline, Quantity, quantity, SpectrumBin, unknown
+from ballscrew_monitor.health.rows import DAY
 from surrogate.units import KILOWATT_HOUR, MINUTE
 
 NAN = math.nan
-DAY = 24 * 60 * 60 * SECOND
-"""One day [ns]."""
 RECENT = 28
 """Days over which energy is told."""
 FEWEST_DAYS = 3
 """Days with a measured torque that a comparison needs on each side."""
 FLOOR = 0.01
 """Least scatter of the ratio between days [-]."""
-NAMES = {
-    'energy lost': 'kWh',
-    'energy against the baseline': '-',
-    'energy beyond the baseline': 'kWh',
-}
-"""Quantities of energy, with their units."""
+LOST, AGAINST = 'energy lost', 'energy against the baseline'
+BEYOND = 'energy beyond the baseline'
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -108,7 +102,6 @@ def _lost(bins: Sequence[SpectrumBin], now: Ratio) -> Quantity:
     """Return the energy lost: by the model, times what was measured over what it expects."""
     modelled = sum(one.energy_lost for one in bins) / KILOWATT_HOUR
     hours = sum(one.time for one in bins) / (60 * MINUTE)
-    name, unit = 'energy lost', 'kWh'
     reason = _few_days(now, f'the last {RECENT} days')
     if not reason and now.value <= 0.0:
         reason = (
@@ -116,40 +109,29 @@ def _lost(bins: Sequence[SpectrumBin], now: Ratio) -> Quantity:
             'another sign or unit'
         )
     if reason:
-        return Quantity(name=name, unit=unit, reason=reason)
-    return Quantity(
-        name=name,
-        unit=unit,
-        value=modelled * now.value,
-        low=modelled * max(now.value - now.half_width, 0.0),
-        high=modelled * (now.value + now.half_width),
-        evidence=f'{hours:.3g} h of motion in {RECENT} days, torque measured on {now.days}',
-    )
+        return unknown(LOST, 'kWh', reason)
+    text = f'{hours:.3g} h of motion in {RECENT} days, torque measured on {now.days}'
+    low, high = max(now.value - now.half_width, 0.0), now.value + now.half_width
+    return quantity(LOST, 'kWh', (modelled * now.value, modelled * low, modelled * high), text)
 
 
 def _against(
     bins: Sequence[SpectrumBin], baseline: Baseline | None, now: Ratio, lost: Quantity
 ) -> tuple[Quantity, Quantity]:
     """Return energy over that of the baseline at equal motion, and the part beyond it."""
-    names = ('energy against the baseline', '-'), ('energy beyond the baseline', 'kWh')
     before = Ratio(NAN, NAN, 0) if baseline is None else ratio_of(within(bins, baseline))
     reason = 'not known yet: there is no baseline' if baseline is None else ''
     reason = reason or lost.reason or _few_days(before, 'the baseline')
     if not reason and min(before.value - before.half_width, now.value - now.half_width) <= 0.0:
         reason = 'not known: the measured loss scatters more than it amounts to'
     if reason:
-        first, second = (Quantity(name=name, unit=unit, reason=reason) for name, unit in names)
-        return first, second
+        return unknown(AGAINST, '-', reason), unknown(BEYOND, 'kWh', reason)
     ratio = now.value / before.value
     half = ratio * math.hypot(now.half_width / now.value, before.half_width / before.value)
     text = f'{before.days} days of the baseline and {now.days} of now, at equal motion'
-    share = Quantity(
-        name=names[0][0], value=ratio, low=ratio - half, high=ratio + half, evidence=text
-    )
-    ends = (lost.value * (1 - 1 / max(one, 1e-9)) for one in (ratio, ratio - half, ratio + half))
-    value, low, high = ends
-    name, unit = names[1]
-    return share, Quantity(name=name, unit=unit, value=value, low=low, high=high, evidence=text)
+    ends = ratio, ratio - half, ratio + half
+    beyond = (lost.value * (1 - 1 / max(end, 1e-9)) for end in ends)
+    return (quantity(AGAINST, '-', ends, text), quantity(BEYOND, 'kWh', beyond, text))
 
 
 def within(bins: Iterable[SpectrumBin], baseline: Baseline) -> list[SpectrumBin]:

@@ -15,6 +15,7 @@ import itertools
 import math
 from typing import TypeVar
 
+from ballscrew_monitor.health.assess import DRAG
 from ballscrew_monitor.health.mixed import CHANGE_RATE
 from ballscrew_monitor.health.records import Condition, Health
 from ballscrew_monitor.health.rows import DAY
@@ -31,7 +32,6 @@ ALARM = 0.02
 YEAR, WEEK = 365 * DAY, 7 * DAY
 SHARES = 2.10974
 """Sum of 1/(n ln(n)^2) over all n from 2 on."""
-DRAG = 'drag change'
 
 
 def bayes_factor(stamps: NDArray[np.int64], doubt: Array) -> Array:

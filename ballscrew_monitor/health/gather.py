@@ -186,7 +186,7 @@ def _rest(settings: Any, memory: Any, row: Any) -> None:
 
 def _end_rest(memory: Any, made: Any) -> bool:
     made.start, made.duration = memory.rest_start, memory.rest_time / SECOND
-    made.samples, made.speed, made.ripple = 1, 0.0, 0.0
+    made.samples, made.speed = 1, 0.0
     made.motor_torque = memory.rest_torque / memory.rest_time
     made.axial_load = made.temperature = math.nan
     made.load_source, made.temperature_measured = DERIVED_LOAD, False
@@ -307,7 +307,6 @@ def _end_stretch(settings: Any, memory: Any, made: Any) -> bool:
         return False
     made.start, made.duration, made.samples = memory.start, span / SECOND, samples
     made.speed = memory.total[SPEED] / samples
-    made.ripple = memory.ripple
     made.axial_load = memory.total[LOAD] / samples
     made.temperature = memory.total[TEMPERATURE] / samples
     made.motor_torque = memory.total[TORQUE] / samples

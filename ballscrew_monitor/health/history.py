@@ -23,7 +23,6 @@ from surrogate.units import TURN
 Array = NDArray[np.float64]
 USUAL_TIME = 2.0
 """Time in a group and direction at which it weighs half [s]."""
-BOTH, ONE_WAY = 0, 1
 ROUNDS = 25
 
 
@@ -47,10 +46,9 @@ class History:
     The friction of an axis, an entry of each array for log and group, NaN where it did not run.
 
     `time` [days since 1970] and `start` [ns] of each log; `friction` and `offset` [N m], speed
-    [rad/s], load [N, against the motion of the first direction], the `ideal` torque of a load that
-    opposes [N m], temperature [K]; `weight` [-]; `standstill` [N m] of each log, and the `gain`
-    of its torque over the load, over that of an ideal screw [-]. `load_known`: the load was
-    measured, or the motion known to be free.
+    [rad/s], load [N, against the motion of the first direction], temperature [K]; `weight` [-];
+    `standstill` [N m] of each log, and the `gain` of its torque over the load, over that of an
+    ideal screw [-]. `load_known`: the load was measured, or the motion known to be free.
 
     """
 
@@ -60,7 +58,6 @@ class History:
     offset: Array
     speed: Array
     load: Array
-    ideal: Array
     temperature: Array
     weight: Array
     standstill: Array
@@ -79,7 +76,7 @@ class History:
         return dataclasses.replace(self, **{name: getattr(self, name)[:count] for name in names})
 
 
-PARTS = ('friction', 'offset', 'speed', 'load', 'ideal', 'temperature', 'weight')
+PARTS = ('friction', 'offset', 'speed', 'load', 'temperature', 'weight')
 
 
 def history_of(cells: NDArray[Any], lead: float) -> History | None:
@@ -109,7 +106,6 @@ class _Entry(NamedTuple):
     offset: float
     speed: float
     load: float
-    ideal: float
     temperature: float
     weight: float
     warm: bool
@@ -166,7 +162,6 @@ def _entry(start: int, group: Group, cells: list[Any], lead: float) -> _Entry:
         offset=sum(torque) / 2.0 if len(cells) == 2 else math.nan,
         speed=sum(abs(float(cell['speed'])) for cell in cells) / len(cells),
         load=-ways[0] * loads[0],
-        ideal=sum(way * part for way, part in zip(ways, ideal, strict=True)) / len(cells),
         temperature=sum(float(cell['temperature']) for cell in cells) / len(cells),
         weight=least * least * time / (time + USUAL_TIME),
         warm=all(bool(cell['temperature_measured']) for cell in cells),

@@ -5,13 +5,14 @@
 import dataclasses
 from typing import Any
 
-from ballscrew_monitor.health.assess import assess, HealthSettings, Kept
-from ballscrew_monitor.health.baseline import HOUR, named
+from ballscrew_monitor.health.assess import assess, HealthSettings
+from ballscrew_monitor.health.baseline import named
 from ballscrew_monitor.health.collect import Collected
-from ballscrew_monitor.health.records import Baseline, Cell, Health, KeptHealth, SpectrumBin
+from ballscrew_monitor.health.life import HOUR
+from ballscrew_monitor.health.records import Baseline, Cell, Health, SpectrumBin
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.store import HealthStore
-from ballscrew_monitor.health.summary import add, array_of, clock_objection
+from ballscrew_monitor.health.summary import add, clock_objection
 from surrogate.files import InputError
 from surrogate.surface import Surface
 
@@ -63,7 +64,7 @@ class HealthKeeper:
             kept = self._store.read(self._axis)
         notes = (*kept.notes, *self._notes)
         self._notes.clear()
-        health = assess(self._axis, kept_of(kept), surface, settings, now=now)
+        health = assess(self._axis, kept, surface, settings, now=now)
         return dataclasses.replace(health, notes=(*health.notes, *notes))
 
     def name_baseline(
@@ -86,7 +87,7 @@ class HealthKeeper:
         with self._store.lock:
             if begin or end:
                 kept = self._store.read(self._axis)
-                baseline = named(array_of(kept.cells), begin, end, **made)
+                baseline = named(kept.cells, begin, end, **made)
             else:
                 baseline = Baseline(begin=now, end=0, left_out=running_in, **made)
             self._store.keep_baseline(self._axis, baseline)
@@ -98,8 +99,3 @@ class HealthKeeper:
             self._notes[said] = None
             if len(self._notes) > MOST_NOTES:
                 del self._notes[next(iter(self._notes))]
-
-
-def kept_of(kept: KeptHealth) -> Kept:
-    """Return all that is kept of an axis as arrays."""
-    return Kept(array_of(kept.cells), kept.spectrum, kept.baselines)

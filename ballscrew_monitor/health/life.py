@@ -8,7 +8,7 @@ poor film is in it.
 
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 import math
 from typing import Any
 
@@ -20,7 +20,7 @@ from ballscrew_monitor.health.damage import (
     SHARED_LEAST,
     WITHIN_BAND,
 )
-from ballscrew_monitor.health.records import Quantity, SpectrumBin
+from ballscrew_monitor.health.records import Quantity, quantity, SpectrumBin, unknown
 from surrogate.files import InputError
 from surrogate.units import MINUTE, RPM
 
@@ -103,28 +103,23 @@ def _quantities(
     life, hours, share, left, rate = NAMES
     lately, whole = reasons
     text = f'ISO 3408-5, {now.turns:.3g} revolutions in {now.time / HOUR:.3g} h of motion'
+    damages = now.value, now.high, now.low
     for name, amount in ((life, now.turns), (hours, now.time / HOUR)):
-        yield _inverse(name, NAMES[name], amount, now, lately, text)
+        ends = (amount / damage if damage else math.inf for damage in damages)
+        yield _told(name, NAMES[name], ends, lately, text)
     before = 0.0 if math.isnan(turns_before) else turns_before
     used = every.scaled(1 + before / every.turns if every.turns else NAN)
     seen = 'since monitoring began; revolutions before it are not known'
     if not math.isnan(turns_before):
         seen = f'with {before:.3g} revolutions before monitoring'
     yield _told(share, '-', used, whole, f'ISO 3408-5 and Palmgren, {seen}')
-    yield _left(left, now, used, lately or whole, text)
-    yield _rate(rate, now, every, lately or whole)
-
-
-def _left(
-    name: str, now: Damage, used: tuple[float, float, float], reason: str, text: str
-) -> Quantity:
-    hours = now.time / HOUR
-    share, least, most = used
+    value, low, high = used
     ends = (
-        (max(1 - part, 0.0) * hours / damage if damage else math.inf)
-        for part, damage in ((share, now.value), (most, now.high), (least, now.low))
+        max(1 - part, 0.0) * (now.time / HOUR) / damage if damage else math.inf
+        for part, damage in zip((value, high, low), damages, strict=True)
     )
-    return _told(name, 'h', tuple(ends), reason, text)  # type: ignore[arg-type]
+    yield _told(left, 'h', ends, lately or whole, text)
+    yield _rate(rate, now, every, lately or whole)
 
 
 def _rate(name: str, now: Damage, every: Damage, reason: str) -> Quantity:
@@ -138,24 +133,13 @@ def _rate(name: str, now: Damage, every: Damage, reason: str) -> Quantity:
     return _told(name, '-', (value, value / slack, value * slack), '', text)
 
 
-def _inverse(
-    name: str, unit: str, amount: float, damage: Damage, reason: str, text: str
-) -> Quantity:
-    ends = (
-        amount / part if part else math.inf for part in (damage.value, damage.high, damage.low)
-    )
-    return _told(name, unit, tuple(ends), reason, text)  # type: ignore[arg-type]
-
-
-def _told(
-    name: str, unit: str, ends: tuple[float, float, float], reason: str, evidence: str
-) -> Quantity:
+def _told(name: str, unit: str, ends: Iterable[float], reason: str, evidence: str) -> Quantity:
     if reason:
         return unknown(name, unit, reason)
-    value, low, high = ends
-    if not math.isfinite(high):
+    told = quantity(name, unit, ends, evidence)
+    if not math.isfinite(told.high):
         return unknown(name, unit, 'without preload and load the screw does not tire')
-    return Quantity(name=name, unit=unit, value=value, low=low, high=high, evidence=evidence)
+    return told
 
 
 def _reason(damage: Damage, when: str) -> str:
@@ -168,8 +152,3 @@ def _reason(damage: Damage, when: str) -> str:
             f'{when}, needed are {100 * KNOWN_SHARE:g} %'
         )
     return ''
-
-
-def unknown(name: str, unit: str, reason: str) -> Quantity:
-    """Return a quantity that is not known, and why."""
-    return Quantity(name=name, unit=unit, reason=reason)

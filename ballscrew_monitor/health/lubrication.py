@@ -11,13 +11,19 @@ ratio of rates and never as hours.
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 import itertools
 import math
-from typing import NamedTuple
 
 from ballscrew_monitor.core.conversions import Direction, opposing_load
 from ballscrew_monitor.health.damage import Rated, recent
 from ballscrew_monitor.health.energy import FEWEST_DAYS, student, within
-from ballscrew_monitor.health.life import HOUR, KNOWN_SHARE, NO_RATING, RECENT, unknown
-from ballscrew_monitor.health.records import Baseline, Cell, Quantity, SpectrumBin
+from ballscrew_monitor.health.life import HOUR, KNOWN_SHARE, NO_RATING, RECENT
+from ballscrew_monitor.health.records import (
+    Baseline,
+    Cell,
+    Quantity,
+    quantity,
+    SpectrumBin,
+    unknown,
+)
 from surrogate.formulas.life import (
     fatigue_limit_iso_281_2007,
     life_factor_iso_281_2007,
@@ -62,15 +68,11 @@ def lubrication_rate(
         _mean_slowness(latest, films, rated, *case) / _mean_slowness(points, films, rated, *case)
         for case in _cases()
     ]
-    return Quantity(
-        name=name,
-        unit=unit,
-        value=found[0],
-        low=min(found),
-        high=max(found),
-        evidence=f'{len(points)} points, the film of the surface in use, fatigue limit C0/22, '
-        'and the factor of ISO 281 by analogy',
+    text = (
+        f'{len(points)} points, the film of the surface in use, fatigue limit C0/22, and the '
+        'factor of ISO 281 by analogy'
     )
+    return quantity(name, unit, (found[0], min(found), max(found)), text)
 
 
 def _film_reason(points: Iterable[Cell], films: Mapping[int, float], when: str) -> str:
@@ -145,31 +147,20 @@ def severity_quantities(
         return [unknown('severity shift', 'classes', reason)]
     text = f'{known / HOUR:.3g} h of motion in {RECENT} days'
     shares = [
-        Quantity(
-            name=f'severity class {place}',
-            value=time / known,
-            low=time / known,
-            high=time / known,
-            evidence=text,
-        )
+        quantity(f'severity class {place}', '-', [time / known] * 3, text)
         for place, time in enumerate(times)
         if time > 0.0
     ]
     return [*shares, _shift(latest, bins, baseline)]
 
 
-class BoundaryShares(NamedTuple):
-    """Shares of the motion in the boundary regime in the baseline and now [-]."""
-
-    before: float
-    now: float
-
-
 def usual_boundary(
     points: Sequence[Cell], baseline: Baseline | None, surface: Surface, today: int
-) -> BoundaryShares | None:
+) -> tuple[float, float] | None:
     """
-    Return the boundary running of an axis for which it is normal, None where it is not.
+    Return the share of the motion in the boundary regime in the baseline and now [-].
+
+    None for an axis for which boundary running is not normal.
 
     `today` counts days since 1970.
 
@@ -183,14 +174,14 @@ def usual_boundary(
     before, now = (_boundary_share(some, surface) for some in (first, latest))
     if not before >= NORMAL_BOUNDARY or not now <= before + BOUNDARY_SLACK:
         return None
-    return BoundaryShares(before, now)
+    return before, now
 
 
-def boundary_note(usual: BoundaryShares) -> str:
+def boundary_note(before: float, now: float) -> str:
     """Return in a sentence that running in the boundary regime is normal for an axis."""
     return (
-        f'boundary running is normal for this axis: {100 * usual.before:.0f} % of its motion in '
-        f'the baseline and {100 * usual.now:.0f} % now'
+        f'boundary running is normal for this axis: {100 * before:.0f} % of its motion in '
+        f'the baseline and {100 * now:.0f} % now'
     )
 
 
@@ -212,9 +203,7 @@ def _shift(
     half = math.hypot(*(_half_width(one) for one in sides))
     value = now - before
     text = f'{len(sides[0])} periods of the baseline, {len(sides[1])} now'
-    return Quantity(
-        name=name, unit=unit, value=value, low=value - half, high=value + half, evidence=text
-    )
+    return quantity(name, unit, (value, value - half, value + half), text)
 
 
 def _daily_means(bins: Iterable[SpectrumBin]) -> list[float]:

@@ -14,18 +14,16 @@ import math
 import statistics
 from typing import Any, NamedTuple
 
-from ballscrew_monitor.health.detection import binned, bins_of, FEWEST_LOGS, now_of
+from ballscrew_monitor.health.detection import binned_logs, FEWEST_LOGS, NOW, now_of
 from ballscrew_monitor.health.history import effects_of, history_of
 from ballscrew_monitor.health.mixed import estimate, grid, Logs, Prior, SLOPE, SLOPE_DOUBT, USUAL
-from ballscrew_monitor.health.records import Quantity, TOLERANCE
+from ballscrew_monitor.health.records import Quantity, quantity, TOLERANCE
 from ballscrew_monitor.health.words import percent
 import numpy as np
 from numpy.typing import NDArray
 
 FEWEST_PEERS = 2
 """Other axes with which one axis is compared: with a single one, either may have changed."""
-LATEST = 4
-"""Logs of an axis that count as now."""
 LEAST_COMMON = 0.5
 """Share of the groups of an axis that a peer has, too, from which on they compare."""
 OWN_DOUBT = 0.02
@@ -85,8 +83,8 @@ def _level(cells: NDArray[Any], lead: float) -> dict[Any, float]:
     if history is None:
         return {}
     effects = effects_of(history)
-    now = float(np.mean(effects.logs.effect[-LATEST:]))
-    seen = (history.weight[-LATEST:].sum(axis=0) > 0.0).tolist()
+    now = float(np.mean(effects.logs.effect[-NOW:]))
+    seen = (history.weight[-NOW:].sum(axis=0) > 0.0).tolist()
     pairs = zip(history.groups, effects.groups, seen, strict=True)
     return {group: float(level) + now for group, level, known in pairs if known}
 
@@ -111,15 +109,11 @@ def _peer(axis: str, levels: Mapping[str, Mapping[Any, float]]) -> Peer | None:
     spread = max(apart)
     value = statistics.median(others.values())
     reach = 1.96 * OWN_DOUBT * math.sqrt(1.0 + 1.0 / len(others))
+    ends = (value, value - reach, value + reach)
+    text = f'{len(levels[axis])} places, the last {NOW} logs'
     return Peer(
         axis=axis,
-        difference=Quantity(
-            name=NAME,
-            value=math.expm1(value),
-            low=math.expm1(value - reach),
-            high=math.expm1(value + reach),
-            evidence=f'{len(levels[axis])} places, the last {LATEST} logs',
-        ),
+        difference=quantity(NAME, '-', map(math.expm1, ends), text),
         peers=len(others),
         range_of_peers=math.expm1(spread),
         is_apart=abs(value) - reach > max(TOLERANCE, spread),
@@ -146,10 +140,7 @@ def spread_of(cells: NDArray[Any], lead: float) -> Spread | None:
     history = history_of(cells, lead)
     if history is None:
         return None
-    effects = effects_of(history)
-    compared = np.flatnonzero(effects.compared)
-    bins = bins_of(history.time[compared])
-    logs = binned(effects.logs, [compared[part] for part in bins])
+    logs, _ = binned_logs(history)
     if len(logs.time) < FEWEST_LOGS + 2:
         return None
     return _spread(logs, frozenset(history.groups), warm=history.warm)
@@ -164,12 +155,8 @@ def _spread(logs: Logs, groups: frozenset[Any], *, warm: bool) -> Spread:
     information = 1.0 / variance - SLOPE_DOUBT**-2.0
     if information <= 0.0 or not warm:
         return Spread(SLOPE, math.inf, pairs, groups)
-    return Spread(
-        slope=SLOPE + (found.slope - SLOPE) / variance / information,
-        deviation=information**-0.5,
-        pairs=pairs,
-        groups=groups,
-    )
+    slope = SLOPE + (found.slope - SLOPE) / variance / information
+    return Spread(slope, information**-0.5, pairs, groups)
 
 
 def priors(spreads: Mapping[str, Spread]) -> dict[str, Prior]:

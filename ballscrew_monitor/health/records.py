@@ -9,13 +9,12 @@ and loads are in the machine frame, as measured at the screw.
 
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 import dataclasses
 import enum
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from numpy.typing import NDArray
 from surrogate.store import MAY_BE_NAN
 from surrogate.surface.records import dtype_of
 
@@ -37,9 +36,8 @@ class Stretch:
     """
     A stretch of steady motion or of rest: means over its samples, a record of numbers.
 
-    start [ns], duration [s]; speed [rad/s], signed, 0 at rest, and its `ripple` from sample to
-    sample [-]; axial_load [N]; temperature [K], measured or assumed; motor_torque [N m];
-    `load_source` is the number of a LoadSource.
+    start [ns], duration [s]; speed [rad/s], signed, 0 at rest; axial_load [N]; temperature [K],
+    measured or assumed; motor_torque [N m]; `load_source` is the number of a LoadSource.
 
     """
 
@@ -47,7 +45,6 @@ class Stretch:
     duration: float = 0.0
     samples: int = 0
     speed: float = NAN
-    ripple: float = NAN
     axial_load: float = NAN
     temperature: float = NAN
     motor_torque: float = NAN
@@ -84,10 +81,9 @@ class Cell:
     `start` [ns] is that of the log and tells logs apart; a node has one log a day. `first_day`
     counts days since 1970 (UTC); older logs are merged to periods of 7 or 28 `days`. The place is
     the bands of speed |w| and of load and the direction of motion, 1 or -1. `load_source` is the
-    number of a LoadSource. Means over the `duration` [s]: speed [rad/s], signed; its `ripple`
-    about the mean of its stretch [-]; axial_load [N]; temperature [K], assumed where it was not
-    `temperature_measured`; motor_torque [N m]. `torque_squares` [N2 m2] is the sum over stretches
-    of the squared deviation of their torque. `backlash` [m].
+    number of a LoadSource. Means over the `duration` [s]: speed [rad/s], signed; axial_load [N];
+    temperature [K], assumed where it was not `temperature_measured`; motor_torque [N m].
+    `backlash` [m].
 
     """
 
@@ -104,31 +100,14 @@ class Cell:
     stretches: int = 0
     duration: float = 0.0
     speed: float = NAN
-    ripple: float = NAN
     axial_load: float = NAN
     temperature: float = NAN
     motor_torque: float = NAN
-    torque_squares: float = 0.0
     backlash: float = NAN
 
 
 CELL = dtype_of(Cell)
 """Type of an array of cells: each column of a file of summaries is one of its fields."""
-
-
-class LogSummary(NamedTuple):
-    """
-    The summary of one log of one axis: `cells` is an array of CELL.
-
-    `machine` and `axis` are the key of a history; `start` and `end` [ns] are those of the log.
-
-    """
-
-    machine: str
-    axis: str
-    start: int
-    end: int
-    cells: NDArray[Any]
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -184,19 +163,26 @@ class Quantity:
         return math.isfinite(self.low) and math.isfinite(self.high)
 
 
+def quantity(name: str, unit: str, ends: Iterable[float], evidence: str = '') -> Quantity:
+    """Return a quantity by its value and the low and high end of its interval."""
+    value, low, high = ends
+    return Quantity(name=name, unit=unit, value=value, low=low, high=high, evidence=evidence)
+
+
+def unknown(name: str, unit: str, reason: str) -> Quantity:
+    """Return a quantity that is not known, and why."""
+    return Quantity(name=name, unit=unit, reason=reason)
+
+
 class CauseCode(enum.IntEnum):
     """Cause of a change; the values never change."""
 
     PRELOAD_LOST = 1
     OIL_THINNER = 2
     OIL_THICKER = 3
-    WARMER_THAN_MEASURED = 4
     FILM_STARVED = 5
     WIPER = 6
-    CHURNING = 7
-    LOAD_SIGN_OR_UNIT = 8
     TORQUE_CONSTANT = 9
-    SENSOR_OFFSET = 10
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -243,21 +229,16 @@ class SpectrumBin:
 
 class KeptHealth(NamedTuple):
     """
-    What is kept of one axis.
+    All that is kept of one axis: cells of its logs, spectrum, and baselines in order.
 
-    The baseline in force is the last one; `notes` say what could not be read.
+    `notes` say what could not be read.
 
     """
 
-    cells: tuple[Cell, ...] = ()
-    spectrum: tuple[SpectrumBin, ...] = ()
-    baselines: tuple[Baseline, ...] = ()
+    cells: Sequence[Cell] = ()
+    spectrum: Sequence[SpectrumBin] = ()
+    baselines: Sequence[Baseline] = ()
     notes: tuple[str, ...] = ()
-
-    @property
-    def baseline(self) -> Baseline | None:
-        """Return the baseline in force."""
-        return self.baselines[-1] if self.baselines else None
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -115,14 +115,14 @@ class HealthStore(Store):
             for (gone,) in database.execute(OLD_BASELINES, (axis, MOST_BASELINES)).fetchall():
                 database.execute('DELETE FROM baselines WHERE number = ?', (gone,))
 
-    def age(self, axis: str, today: int) -> tuple[str, ...]:
+    def age(self, axis: str, today: int) -> list[str]:
         """Merge older days of an axis, `today` in days since 1970; return what is to be said."""
         with self.transaction():
-            found = aged(self._take_ageing(CELLS, axis, today), today)
+            cells, notes = aged(self._take_ageing(CELLS, axis, today), today)
             bins = merged_bins(self._take_ageing(SPECTRUM, axis, today), today)
-            self.put(CELLS, found.cells + found.future, axis=axis)
+            self.put(CELLS, cells, axis=axis)
             self.put(SPECTRUM, bins, axis=axis)
-        return found.notes
+        return notes
 
     def _take_ageing(self, table: Table, axis: str, today: int) -> list[Any]:
         """Take the records of the periods that age changes out of a table, and those to come."""

@@ -20,14 +20,10 @@ from ballscrew_monitor.health.records import CELL, Cell, CellKind, LoadSource, M
 from ballscrew_monitor.health.rows import DAY
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.surface import Surface
-from surrogate.surface.records import from_array
 
-SURFACE_DIGITS = 16
-"""Digits of the hash of a surface without its corrections."""
 MOST_PLACES = 400
 """Cells of one period; those with the fewest stretches go first."""
-MEANS = ('speed', 'ripple', 'axial_load', 'temperature', 'motor_torque', 'backlash')
+MEANS = ('speed', 'axial_load', 'temperature', 'motor_torque', 'backlash')
 NAMES = tuple(one.name for one in dataclasses.fields(Cell))
 
 
@@ -48,21 +44,6 @@ Cells = MutableMapping[Key, Cell]
 """Cells by their keys."""
 
 
-class Aged(NamedTuple):
-    """
-    Cells with older days merged.
-
-    `future` are those of days to come, which do not count; `dropped` counts cells of too many
-    places; `notes` say both.
-
-    """
-
-    cells: tuple[Cell, ...]
-    future: tuple[Cell, ...]
-    dropped: int
-    notes: tuple[str, ...]
-
-
 def key_of(cell: Cell) -> Key:
     """Return the key of a cell."""
     return Key(*(getattr(cell, name) for name in Key._fields))
@@ -81,11 +62,6 @@ def array_of(cells: Iterable[Cell]) -> NDArray[Any]:
     rows = [tuple(getattr(cell, name) for name in NAMES) for cell in cells]
     array = np.array(rows, dtype=CELL)
     return array[np.argsort(array['start'], kind='stable')]
-
-
-def cells_of(array: NDArray[Any]) -> list[Cell]:
-    """Return the cells that an array of CELL holds."""
-    return [from_array(Cell, element) for element in array]
 
 
 def add(cells: Cells, stretch: Stretch, start: int | None = None, today: int | None = None) -> str:
@@ -124,7 +100,6 @@ def cell_of(stretch: Stretch, start: int) -> Cell:
         stretches=1,
         duration=stretch.duration,
         speed=stretch.speed,
-        ripple=stretch.ripple,
         axial_load=stretch.axial_load,
         temperature=stretch.temperature,
         motor_torque=stretch.motor_torque,
@@ -157,19 +132,14 @@ def date_text(day: int) -> str:
 
 
 def merged(cell: Cell, other: Cell) -> Cell:
-    """Return two cells of one key as one: means by time, and squares about the common mean."""
+    """Return two cells of one key as one, with their means by time."""
     duration = cell.duration + other.duration
     share = other.duration / duration if duration > 0.0 else 0.0
-    stretches = cell.stretches + other.stretches
-    between = other.motor_torque - cell.motor_torque
-    squares = cell.torque_squares + other.torque_squares
-    if math.isfinite(between):
-        squares += cell.stretches * other.stretches / max(stretches, 1) * between * between
     means: dict[str, Any] = {
         name: _mean(getattr(cell, name), getattr(other, name), share) for name in MEANS
     }
     return dataclasses.replace(
-        cell, stretches=stretches, duration=duration, torque_squares=squares, **means
+        cell, stretches=cell.stretches + other.stretches, duration=duration, **means
     )
 
 
@@ -179,11 +149,12 @@ def _mean(value: float, other: float, share: float) -> float:
     return value + share * (other - value)
 
 
-def aged(cells: Iterable[Cell], today: int) -> Aged:
+def aged(cells: Iterable[Cell], today: int) -> tuple[list[Cell], list[str]]:
     """
     Return cells with days merged into weeks and weeks into periods of 28 days by their age.
 
-    `today` in days since 1970. Cells of days to come are left out, and as they are.
+    `today` in days since 1970. Cells of days to come do not count and stay as they are, at the
+    end; notes say how many, and how many of too many places were left out.
 
     """
     kept: dict[Key, Cell] = {}
@@ -207,7 +178,7 @@ def aged(cells: Iterable[Cell], today: int) -> Aged:
         )
     if dropped:
         notes.append(f'{dropped} rare places left out, a period holds {MOST_PLACES}')
-    return Aged(tuple(kept[key] for key in sorted(kept)), tuple(future), dropped, tuple(notes))
+    return [*(kept[key] for key in sorted(kept)), *future], notes
 
 
 def _put(cells: Cells, cell: Cell) -> None:
@@ -222,8 +193,3 @@ def _drop_rare(cells: Cells, period: tuple[int, int]) -> int:
     for key in rare:
         del cells[key]
     return len(rare)
-
-
-def surface_id(surface: Surface) -> str:
-    """Return the name of a surface by its hash: full solves that correct it make no other one."""
-    return surface.base_sha256[:SURFACE_DIGITS]

@@ -11,10 +11,19 @@ steps; that of the lost motion follows from successive logs, which a trend does 
 
 from collections.abc import Sequence
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
+from ballscrew_monitor.health.detection import NOW
 from ballscrew_monitor.health.energy import student
-from ballscrew_monitor.health.records import Baseline, CellKind, Quantity, TOLERANCE
+from ballscrew_monitor.health.mixed import YEAR
+from ballscrew_monitor.health.records import (
+    Baseline,
+    CellKind,
+    Quantity,
+    quantity,
+    TOLERANCE,
+    unknown,
+)
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.stroke import span_of
 import numpy as np
@@ -22,8 +31,6 @@ from numpy.typing import NDArray
 from surrogate.units import MICRO, MILLI
 
 Array = NDArray[np.float64]
-NOW = 4
-"""Logs that count as now."""
 SURE = 1.9
 """Half width of the 99.9 % interval over that of 95 %."""
 FEWEST_STEPS = 3
@@ -31,23 +38,22 @@ LEAST_LOST = 2e-6
 """Growth of the lost motion that is worth a note [m]."""
 ENCODERS = 0.5e-6
 """Half width of what two encoders and the fit leave of a lost motion of zero [m]."""
-YEAR = 365.25
 LOST, LOST_CHANGE, LOST_TREND = 'lost motion', 'lost motion change', 'lost motion trend'
 NO_BASELINE = 'not known yet: it needs two logs in the baseline, and two after it'
 
 
-class Where(NamedTuple):
-    """Quantities along the stroke and at reversals, and notes on those that have changed."""
+def where_on_screw(
+    cells: NDArray[Any], baseline: Baseline | None
+) -> tuple[list[Quantity], list[str]]:
+    """
+    Return quantities along the stroke and at reversals, and notes on those that have changed.
 
-    quantities: tuple[Quantity, ...]
-    notes: tuple[str, ...]
+    `cells` (an array of CELL) of the last logs are held against those of the baseline.
 
-
-def where_on_screw(cells: NDArray[Any], baseline: Baseline | None) -> Where:
-    """Return where on the screw the last logs differ from those of the baseline, by CELL."""
+    """
     stroke, worst = along_stroke(cells[cells['kind'] == CellKind.STROKE], baseline)
     lost, growth = lost_motion(cells[cells['kind'] == CellKind.REVERSAL], baseline)
-    return Where((*stroke, *lost), tuple(filter(None, (worst, growth))))
+    return [*stroke, *lost], list(filter(None, (worst, growth)))
 
 
 def along_stroke(cells: NDArray[Any], baseline: Baseline | None) -> tuple[Sequence[Quantity], str]:
@@ -70,26 +76,21 @@ def along_stroke(cells: NDArray[Any], baseline: Baseline | None) -> tuple[Sequen
     reach = student(freedom) * deviation
     spans = [span_of(first + at, level) for at in np.flatnonzero(both).tolist()]
     quantities = [
-        Quantity(
-            name=f'friction at {_span_text(span)}',
-            value=math.exp(value),
-            low=math.exp(value - width),
-            high=math.exp(value + width),
-            evidence=f'over that of the whole stroke, {before.sum()} logs and {now.sum()} now',
+        quantity(
+            f'friction at {_span_text(span)}',
+            '-',
+            map(math.exp, (value, value - width, value + width)),
+            f'over that of the whole stroke, {before.sum()} logs and {now.sum()} now',
         )
         for span, value, width in zip(spans, change.tolist(), reach.tolist(), strict=True)
     ]
     at = int(np.argmax(np.abs(change) - SURE * reach))
     if abs(change[at]) - SURE * reach[at] < TOLERANCE:
         return quantities, ''
-    return quantities, worst_note(spans[at], quantities[at])
-
-
-def worst_note(span: tuple[float, float], ratio: Quantity) -> str:
-    """Return in words where on the stroke [m] the friction has changed, and by what ratio."""
-    value, low, high = (100.0 * (one - 1.0) for one in (ratio.value, ratio.low, ratio.high))
-    return (
-        f'at {_span_text(span)} of the stroke the friction has changed by {value:+.0f} % '
+    worst = quantities[at]
+    value, low, high = (100.0 * (end - 1.0) for end in (worst.value, worst.low, worst.high))
+    return quantities, (
+        f'at {_span_text(spans[at])} of the stroke the friction has changed by {value:+.0f} % '
         f'({low:+.0f} to {high:+.0f} %) against the rest of it: look at screw and guideway there'
     )
 
@@ -101,7 +102,7 @@ def lost_motion(cells: NDArray[Any], baseline: Baseline | None) -> tuple[Sequenc
     cells = cells[np.argsort(cells['start'], kind='stable')]
     lost, time = cells['backlash'], cells['start'] / DAY
     if len(lost) < 3:
-        return [_unknown(LOST, 'um', 'not known yet: it needs three logs')], ''
+        return [unknown(LOST, 'um', 'not known yet: it needs three logs')], ''
     spread = _spread(lost)
     now = lost[-NOW:]
     width = math.hypot(spread / math.sqrt(len(now)), ENCODERS)
@@ -117,12 +118,18 @@ def lost_motion(cells: NDArray[Any], baseline: Baseline | None) -> tuple[Sequenc
         (None, None) if baseline is None else _parts(cells['start'].astype(np.int64), baseline)
     )
     if before is None or after is None or before.sum() < 2 or after.sum() < 2:
-        return [*quantities, _unknown(LOST_CHANGE, 'um', NO_BASELINE)], ''
+        return [*quantities, unknown(LOST_CHANGE, 'um', NO_BASELINE)], ''
     change = float(lost[after].mean() - lost[before].mean())
     width = spread * math.sqrt(1.0 / before.sum() + 1.0 / after.sum())
-    quantities.insert(1, _micrometres(LOST_CHANGE, 'um', change, width, rests))
-    note = lost_note(quantities[0], quantities[1])
-    return quantities, note if change - SURE * width > LEAST_LOST else ''
+    grown = _micrometres(LOST_CHANGE, 'um', change, width, rests)
+    quantities.insert(1, grown)
+    if change - SURE * width <= LEAST_LOST:
+        return quantities, ''
+    return quantities, (
+        f'the lost motion at reversals has grown by {grown.value:.3g} um ({grown.low:.3g} to '
+        f'{grown.high:.3g} um) and is {quantities[0].value:.3g} um now: measure the backlash of '
+        'nut and support bearings'
+    )
 
 
 def lost_motion_grew(cells: NDArray[Any], since: int, until: int) -> bool:
@@ -146,15 +153,6 @@ def _spread(lost: Array) -> float:
     """Return the half width that one log has by its scatter, from successive logs [m]."""
     freedom = len(lost) - 1
     return student(freedom) * math.sqrt(float(np.sum(np.diff(lost) ** 2)) / (2.0 * freedom))
-
-
-def lost_note(lost: Quantity, change: Quantity) -> str:
-    """Return in words by how much the lost motion has grown."""
-    return (
-        f'the lost motion at reversals has grown by {change.value:.3g} um ({change.low:.3g} to '
-        f'{change.high:.3g} um) and is {lost.value:.3g} um now: measure the backlash of nut and '
-        'support bearings'
-    )
 
 
 def _by_log(cells: NDArray[Any], starts: NDArray[Any], steps: NDArray[Any]) -> Array:
@@ -194,9 +192,5 @@ def _span_text(span: tuple[float, float]) -> str:
 
 
 def _micrometres(name: str, unit: str, value: float, width: float, rests: str) -> Quantity:
-    value, low, high = (MICRO * one for one in (value, value - width, value + width))
-    return Quantity(name=name, unit=unit, value=value, low=low, high=high, evidence=rests)
-
-
-def _unknown(name: str, unit: str, reason: str) -> Quantity:
-    return Quantity(name=name, unit=unit, reason=reason)
+    ends = (value, value - width, value + width)
+    return quantity(name, unit, (MICRO * end for end in ends), rests)

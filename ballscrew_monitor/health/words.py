@@ -42,13 +42,9 @@ ADVICE = {
     'intended change of oil',
     CauseCode.OIL_THICKER: 'check grade and temperature of the oil; name a new baseline after an '
     'intended change of oil',
-    CauseCode.WARMER_THAN_MEASURED: 'check the temperature sensor, and cooling',
     CauseCode.FILM_STARVED: 'lubricate now, and check the lubricator',
     CauseCode.WIPER: 'look at wipers, covers, guideway and bearings',
-    CauseCode.CHURNING: 'look for too much grease or oil in the nut',
-    CauseCode.LOAD_SIGN_OR_UNIT: 'check sign, unit and zero of the axial load; scale -1 turns it',
     CauseCode.TORQUE_CONSTANT: 'check torque constant and gear ratio',
-    CauseCode.SENSOR_OFFSET: 'set the zero of the torque sensor',
 }
 
 

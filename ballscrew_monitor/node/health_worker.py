@@ -26,7 +26,6 @@ from ballscrew_monitor.health.keeper import HealthKeeper
 from ballscrew_monitor.health.records import Health, SpectrumBin, Stretch
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.store import HealthStore
-from ballscrew_monitor.health.summary import surface_id
 from ballscrew_monitor.messages.health_messages import health_message
 from ballscrew_msgs.msg import AxisHealth
 from surrogate.files import InputError
@@ -35,6 +34,8 @@ from surrogate.surface import Surface
 MOST_STRETCHES = 10_000
 """Stretches that wait to be handed over; the oldest are dropped."""
 MOST_JOBS = 64
+SURFACE_DIGITS = 16
+"""Digits of the hash of a surface, without its corrections, that name it."""
 PATIENCE = 2.0  # [s] that the end of the node waits for the disk
 FAILED = 'the program failed at'
 
@@ -159,5 +160,6 @@ class HealthWorker:
         job.keeper.keep(today)
         if job.assesses and not self._ending:
             health = job.keeper.assess(job.now, job.surface, job.settings)
-            message = health_message(health, surface_id=surface_id(job.surface), policy=job.policy)
+            surface_id = job.surface.base_sha256[:SURFACE_DIGITS]
+            message = health_message(health, surface_id=surface_id, policy=job.policy)
             self.done.append((health, message))

@@ -7,6 +7,7 @@ import math
 from typing import Any
 
 from ballscrew_monitor.core.conversions import clock_text
+from ballscrew_monitor.health.causes import BEARING_DRAG
 from ballscrew_monitor.health.records import CauseCode, Condition
 from ballscrew_monitor.health.words import ADVICE, explained
 from ballscrew_monitor.messages.health_messages import stamp_of
@@ -82,7 +83,8 @@ def _cause(cause: HealthCause, known: Known) -> Phrase:
     if code is None:  # of another version
         return free(cause.text)
     size = known.get(PRELOAD, cause.size) if code is CauseCode.PRELOAD_LOST else cause.size
-    return phrase(f'change_{code.name.lower()}', **_interval(size))
+    name = 'bearing_play' if size.name == BEARING_DRAG else code.name.lower()
+    return phrase(f'change_{name}', **_interval(size))
 
 
 def _interval(quantity: HealthQuantity) -> dict[str, Any]:

@@ -19,6 +19,7 @@ from ballscrew_monitor.health.records import (
     Health,
     Quantity,
 )
+from ballscrew_monitor.health.summary import array_of
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.report.health_collect import run_mapped, Workers
 from ballscrew_monitor.report.health_folder import axis_folders, read_axis
@@ -30,7 +31,6 @@ from ballscrew_monitor.report.health_history import (
     read_history,
 )
 from ballscrew_monitor.report.machines import MachineAxis
-import numpy as np
 from surrogate.files import InputError, to_json
 from surrogate.progress import Progress
 from surrogate.surface import Surface
@@ -135,7 +135,7 @@ def spread_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     if not histories:
         raise InputError('no log can be read')
     surface = max(histories, key=lambda log: log.first).surface
-    cells = np.concatenate([log.summary.cells for log in histories])
+    cells = array_of(cell for log in histories for cell in log.cells)
     spread = spread_of(cells, Surface.load(Path(surface)).lead)
     if spread is None:
         raise InputError('its logs are too few')

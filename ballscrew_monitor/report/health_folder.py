@@ -22,7 +22,7 @@ from urllib.parse import quote, unquote
 
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.records import CELL
-from ballscrew_monitor.health.summary import date_text
+from ballscrew_monitor.health.summary import array_of, date_text
 from ballscrew_monitor.report.health_history import AxisHistory, read_history
 import polars as pl
 from surrogate.files import InputError, new_file, to_json
@@ -111,7 +111,7 @@ def keep(
 
 def frame_of(history: AxisHistory) -> pl.DataFrame:
     """Return the columns of a history."""
-    plain, cells = dataclasses.asdict(history), history.summary.cells
+    plain, cells = dataclasses.asdict(history), array_of(history.cells)
     facts = json.dumps(to_json({k: v for k, v in plain.items() if k not in COLUMNS}))
     count, names = len(cells), {name: plain[name] for name in ('machine', 'axis', 'log')}
     return pl.DataFrame(

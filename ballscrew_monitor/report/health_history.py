@@ -9,20 +9,19 @@ from typing import Any
 
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import MonitorSettings
-from ballscrew_monitor.health.assess import course, HealthSettings, Kept, without_order
-from ballscrew_monitor.health.baseline import named
+from ballscrew_monitor.health.assess import course, HealthSettings, without_order
+from ballscrew_monitor.health.baseline import since_days
 from ballscrew_monitor.health.collect import Collected, Collector
 from ballscrew_monitor.health.detection import BASELINE_DAYS
 from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.health.mixed import Prior, USUAL
 from ballscrew_monitor.health.peers import FEWEST_PEERS, Peer, ranked
-from ballscrew_monitor.health.records import Cell, Health, LogSummary, Missing, SpectrumBin
+from ballscrew_monitor.health.records import Cell, Health, KeptHealth, Missing, SpectrumBin
 from ballscrew_monitor.health.rows import has_torque_many, moves_many
 from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.stroke import motion_of, Positions, ReversalSums, StrokeSums
 from ballscrew_monitor.health.summary import add, array_of, nothing
 from ballscrew_monitor.report.machines import MachineAxis
-import numpy as np
 from numpy.typing import NDArray
 from surrogate.surface import Surface
 
@@ -53,12 +52,6 @@ class AxisHistory:
     def key(self) -> MachineAxis:
         """Return the key of the history that it belongs to."""
         return MachineAxis(self.machine, self.axis)
-
-    @property
-    def summary(self) -> LogSummary:
-        """Return the summary of the log."""
-        cells = array_of(self.cells)
-        return LogSummary(self.machine, self.axis, self.first, self.last, cells)
 
 
 class HistoryMaker:
@@ -188,16 +181,11 @@ def healths(
         baseline_days=baseline_days,
         prior=prior,
     )
-    kept = Kept(
-        np.concatenate([one.summary.cells for one in ordered]),
-        merged_bins([each for one in ordered for each in one.bins]),
+    kept = KeptHealth(
+        [cell for log in ordered for cell in log.cells],
+        merged_bins([each for log in ordered for each in log.bins]),
     )
-    if days is not None:
-        screw = surface.screw_name
-        chosen = named(
-            kept.cells, *days, reason='named by its days', named_at=days[1], screw=screw
-        )
-        kept = kept._replace(baselines=(chosen,))
+    kept = since_days(kept, days, surface.screw_name)
     return course(title or last.axis, kept, surface, settings)
 
 
@@ -228,7 +216,7 @@ def peers_among(histories: Sequence[AxisHistory], titles: Mapping[MachineAxis, s
         if len(axes) > FEWEST_PEERS:
             lead = Surface.load(Path(file)).lead
             cells = {
-                titles[axis]: np.concatenate([one.summary.cells for one in kept])
+                titles[axis]: array_of(cell for log in kept for cell in log.cells)
                 for axis, kept in axes.items()
             }
             peers += ranked(cells, lead)

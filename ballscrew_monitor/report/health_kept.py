@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.health.assess import course, HealthSettings
-from ballscrew_monitor.health.baseline import named
-from ballscrew_monitor.health.keeper import kept_of
+from ballscrew_monitor.health.baseline import since_days
 from ballscrew_monitor.health.records import Health, KeptHealth
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.report.machines import MachineAxis
@@ -66,11 +65,4 @@ def _course(
         baseline_days=baseline_days,
     )
     say(*kept.notes)
-    summaries = kept_of(kept)
-    if days is not None:
-        screw = surface.screw_name
-        chosen = named(
-            summaries.cells, *days, reason='named by its days', named_at=days[1], screw=screw
-        )
-        summaries = summaries._replace(baselines=(chosen,))
-    return course(title, summaries, surface, settings)
+    return course(title, since_days(kept, days, surface.screw_name), surface, settings)

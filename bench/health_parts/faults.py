@@ -36,6 +36,16 @@ class Fault:
         return replace(MOUNTED, **{self.part: value})
 
 
+class Loosened(Fault):
+    """A part that is nearly lost, and has play when three quarters of it are gone."""
+
+    def condition(self, day: Array) -> Condition:
+        """Return the condition of the axis on days [d]."""
+        begin = self.start + 0.75 * self.ramp
+        play = Fault(name='play', part='play', size=20e-6, start=begin, ramp=0.0)
+        return joined(Fault.condition(self, day), play.condition(day))
+
+
 CLEAN = Fault(name='clean')
 FAULTS = {
     fault.name: fault
@@ -68,3 +78,14 @@ def joined(first: Condition, second: Condition) -> Condition:
     }
     added = {name: getattr(first, name) + getattr(second, name) for name in ('zero', 'play')}
     return Condition(**both | added)
+
+
+STEP = Fault(name='step of 10 %', part='torque_constant', size=1.0 / 0.9, ramp=0.0)
+"""All torques fall by a tenth, at all speeds alike."""
+LOOSENED = {
+    fault.name: fault
+    for fault in (
+        Loosened(name='nut lost, with play', part='preload', size=0.1),
+        Loosened(name='bearing loose, with play', part='bearing', size=0.1),
+    )
+}

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import math
 from typing import Any, NamedTuple
 
-from ballscrew_monitor.health.causes import causes_of, likely
+from ballscrew_monitor.health.causes import causes_of
 from ballscrew_monitor.health.change import changes_of, marks_of
 from ballscrew_monitor.health.detection import Look, looks
 from ballscrew_monitor.health.history import History, history_of
-from ballscrew_monitor.health.records import CauseCode
+from ballscrew_monitor.health.records import CauseCode, CellKind
+from ballscrew_monitor.health.summary import array_of
+from ballscrew_monitor.health.where import lost_motion_grew
 from ballscrew_monitor.health.words import explained
 from health_parts.axis_year import AxisYear
 from health_parts.summaries import cells_of_year
@@ -68,7 +70,7 @@ def score_of(
     year: AxisYear, *, always_free: bool = False, judge: Judge = looks, causes: bool = True
 ) -> Course:
     """Return how a year was judged; another `judge` than the product has no `causes`."""
-    cells = cells_of_year(year, always_free=always_free)
+    cells = array_of(cells_of_year(year, always_free=always_free))
     history = history_of(cells, year.machine.size.lead)
     if history is None:
         return Course(
@@ -85,14 +87,17 @@ def score_of(
         )
     seen = list(judge(history))
     day = year.day[np.searchsorted([log.start for log in year.logs], history.start)]
-    first = day - day[0] <= QUARTER
+    first = np.isin(year.day, day[day - day[0] <= QUARTER])
     indicated = (1.0 + year.truth.change(first)) / constant_of(year)
     truth = indicated[np.searchsorted(year.day, day)] - 1.0
     pairs = [(one, _now(truth, one)) for one in seen if math.isfinite(one.low)]
     raised = [one for one in seen if one.raised]
     start = year.fault.start if year.fault.part else math.inf
     after = [one for one in raised if day[one.log] >= start]
-    told, right = _cause(history, after[-1], year) if after and causes else (False, False)
+    told = right = False
+    if after and causes:
+        reversals = cells[cells['kind'] == CellKind.REVERSAL]
+        told, right = _cause(history, reversals, after[-1], year)
     quarter = [one for one in seen if one.is_known and day[one.log] - day[0] >= QUARTER - 3.0]
     return Course(
         lost=float(np.mean(truth[-4:])),
@@ -123,12 +128,15 @@ def _half(look: Look) -> float:
     return 0.5 * (look.high - look.low)
 
 
-def _cause(history: History, look: Look, year: AxisYear) -> tuple[bool, bool]:
+def _cause(
+    history: History, reversals: np.ndarray, look: Look, year: AxisYear
+) -> tuple[bool, bool]:
     """Return whether a cause is told at a look, and whether the truth is among those told."""
-    until = history.until(look.log + 1)
-    change, marks = math.log1p(look.change), marks_of(until, look)
+    until, starts = history.until(look.log + 1), history.start
+    grew = lost_motion_grew(reversals, int(starts[look.onset]), int(starts[look.log]))
+    change, marks = math.log1p(look.change), marks_of(until, look)._replace(lost_motion=grew)
     causes = causes_of(changes_of(until, look), marks, change, year.machine.preload)
-    _, told = explained(likely(causes))
+    _, told = explained(causes)
     codes = {one.code for one in told}
     return bool(codes), bool(codes & CAUSES.get(year.fault.part, set()))
 

@@ -2,9 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Logs of an axis-year as rows of the judgement, and their summaries as the product makes them."""
 
+import math
+
 from ballscrew_monitor.health.collect import Collector
 from ballscrew_monitor.health.gather import GatherSettings
-from ballscrew_monitor.health.summary import add, array_of
+from ballscrew_monitor.health.records import Cell
+from ballscrew_monitor.health.stroke import ReversalSums
+from ballscrew_monitor.health.summary import add
 from ballscrew_monitor.judge.inputs import DEFAULT, DERIVED, MEASURED
 from ballscrew_monitor.judge.many import ROW
 from health_parts.axis_year import AxisYear, Log
@@ -13,7 +17,7 @@ from numpy.typing import NDArray
 from surrogate.surface import shipped_surface, Surface
 
 SECOND = 1_000_000_000  # [ns]
-STANDSTILL = 0.05  # [rad/s]
+STANDSTILL, MOVES = 0.05, 0.5  # [rad/s]
 ASSUMED = 313.15  # [K]
 
 
@@ -32,15 +36,27 @@ def rows_of(log: Log) -> NDArray[np.void]:
     return rows
 
 
-def cells_of_year(year: AxisYear, *, always_free: bool = False) -> NDArray[np.void]:
-    """Return the summaries of all logs of a year, an array of CELL."""
+def reversals_of(log: Log, lead: float) -> list[Cell]:
+    """Return the cell of the lost motion of a log with a scale; `lead` [m] of the screw."""
+    if log.table is None:
+        return []
+    reversals, moves = ReversalSums(), np.abs(log.speed) > MOVES
+    stamps = log.start + np.rint(log.time * SECOND).astype(np.int64)
+    speed = log.speed * lead / (2.0 * math.pi)
+    reversals.add(*(part[moves] for part in (stamps, speed, log.position, log.table)))
+    return reversals.cells(log.start)
+
+
+def cells_of_year(year: AxisYear, *, always_free: bool = False) -> list[Cell]:
+    """Return the cells of the summaries of all logs of a year."""
     surface = Surface.load(shipped_surface())
-    parts = []
+    parts: list[Cell] = []
     for log in year.logs:
         collector = Collector(surface, GatherSettings(always_free=always_free))
         stretches = collector.take_many(rows_of(log)).stretches + collector.finish().stretches
         cells: dict = {}
         for stretch in stretches:
             add(cells, stretch, log.start)
-        parts.append(array_of(cells.values()))
-    return np.concatenate(parts)
+        parts += cells.values()
+        parts += reversals_of(log, year.machine.size.lead)
+    return parts

@@ -10,7 +10,7 @@ from ballscrew_monitor.core.advice import Advisor, speed_advice
 from ballscrew_monitor.core.conversions import Direction, opposing_load
 from ballscrew_monitor.core.judgement import efficiency_to_clear, rcs_to_clear
 from ballscrew_monitor.health.records import Cell, Condition, Health
-from ballscrew_monitor.health.remedies import remedies_of
+from ballscrew_monitor.health.remedies import remedy_text
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.messages.state_messages import out_of_zone_message, USUAL
 from hypothesis import given
@@ -110,7 +110,7 @@ def health_of(point, surface, limits, *, free, usual):
         temperature=point.temperature,
         motor_torque=0.1,
     )
-    remedy = remedies_of([programme], surface, limits, speed_allowed=free).text
+    remedy = remedy_text([programme], surface, limits, speed_allowed=free)
     advice = '' if usual else remedy
     known = {'condition': Condition.NORMAL, 'verdict': 'normal'}
     return Health(axis='x', stamp=0, advice=advice, usual=usual, **known)

@@ -74,7 +74,6 @@ class Motion:
             'stretches': 4,
             'duration': 20.0,
             'speed': 50.0,
-            'ripple': 0.003,
             'axial_load': 500.0,
             'temperature': 313.0,
             'motor_torque': 0.5,

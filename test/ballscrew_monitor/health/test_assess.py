@@ -4,10 +4,17 @@
 
 import json
 
-from ballscrew_monitor.health.assess import course, DRAG, HealthSettings, Kept, SMALLEST
-from ballscrew_monitor.health.records import Baseline, CauseCode, Condition, LoadSource, Missing
+from ballscrew_monitor.health.assess import course, DRAG, HealthSettings, SMALLEST
+from ballscrew_monitor.health.records import (
+    Baseline,
+    CauseCode,
+    Condition,
+    KeptHealth,
+    LoadSource,
+    Missing,
+)
 from ballscrew_monitor.health.rows import DAY
-from ballscrew_monitor.health.summary import array_of, nothing
+from ballscrew_monitor.health.summary import nothing
 from ballscrew_monitor.health.words import health_record
 import numpy as np
 import pytest
@@ -49,7 +56,7 @@ class Axis:
         return cells
 
     def course(self, cells, baselines=()):
-        kept = Kept(array_of(cells), baselines=baselines)
+        kept = KeptHealth(cells, baselines=baselines)
         return course('x', kept, self.surface, self.settings)
 
 

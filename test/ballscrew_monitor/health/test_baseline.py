@@ -5,7 +5,6 @@
 from ballscrew_monitor.health.baseline import changed_screw, in_force, LEARNED, named
 from ballscrew_monitor.health.records import Baseline
 from ballscrew_monitor.health.rows import DAY
-from ballscrew_monitor.health.summary import array_of
 import pytest
 
 FIRST, HOUR = 20_000, 3600.0
@@ -13,7 +12,7 @@ FIRST, HOUR = 20_000, 3600.0
 
 @pytest.fixture(name='logs')
 def weekly_logs(motion):
-    return array_of(motion.cell(first_day=FIRST + 7 * week) for week in range(6))
+    return [motion.cell(first_day=FIRST + 7 * week) for week in range(6)]
 
 
 def test_without_an_event_the_baseline_is_that_of_the_first_days():

@@ -133,7 +133,6 @@ def year(random, *, loss=0.0, at=26, scatter=0.012, wander=0.0, weeks=52, swing=
         offset=0.0 * full,
         speed=full,
         load=0.0 * full,
-        ideal=0.0 * full,
         temperature=300.0 + warmth[:, None] * full,
         weight=full,
         standstill=np.full(weeks, np.nan),

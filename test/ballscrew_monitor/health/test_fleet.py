@@ -143,7 +143,6 @@ def sound_year(rng):
         offset=0.0 * full,
         speed=full,
         load=0.0 * full,
-        ideal=0.0 * full,
         temperature=300.0 + warmth[:, None],
         weight=full,
         standstill=np.full(WEEKS, np.nan),

@@ -217,7 +217,6 @@ def test_a_reported_speed_with_ripple_is_steady_as_far_as_it_ripples(gather, mot
     assert sum(one.duration for one in found) > 30.0
     ramp = motion.rows(np.linspace(5.0, 80.0, 30), rate=10)
     assert sum(one.duration for one in gather(ramp)) == 0.0
-    assert all(one.ripple == pytest.approx(0.03, rel=0.6) for one in found[-2:])
 
 
 def test_rest_with_a_torque_is_one_stretch_of_the_log(motion, surface):

@@ -142,7 +142,7 @@ def test_boundary_running_that_is_normal(says):
     before = point(0.2, day=first, hours=6.0), point(200.0, day=first, hours=4.0)
     usual = usual_boundary([*before, slow, fast], baseline(), SURFACE, TODAY)
     assert usual == pytest.approx((0.6, 0.6))
-    assert boundary_note(usual) == says('normal')
+    assert boundary_note(*usual) == says('normal')
     assert usual_boundary([*before, slow], baseline(), SURFACE, TODAY) is None
     assert usual_boundary([before[1], slow], baseline(), SURFACE, TODAY) is None
     assert usual_boundary([*before, slow], None, SURFACE, TODAY) is None

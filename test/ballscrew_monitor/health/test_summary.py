@@ -6,14 +6,13 @@ import dataclasses
 import functools
 import math
 
-from ballscrew_monitor.health.records import CELL, CellKind, LoadSource, Missing
+from ballscrew_monitor.health.records import CELL, Cell, CellKind, LoadSource, Missing
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.summary import (
     add,
     aged,
     array_of,
     by_place,
-    cells_of,
     key_of,
     merged,
     MOST_PLACES,
@@ -23,6 +22,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 import pytest
+from surrogate.surface.records import from_array
 
 SUMS = ('speed', 'axial_load', 'temperature', 'motor_torque')
 
@@ -41,7 +41,6 @@ def cells_strategy(motion):
         load=st.integers(0, 1),
         stretches=st.integers(1, 50),
         duration=st.floats(0.5, 500.0),
-        torque_squares=st.floats(0.0, 10.0),
         **dict.fromkeys(SUMS, number),
     )
 
@@ -60,7 +59,6 @@ def test_a_log_has_means_and_squares_of_its_stretches(motion):
     assert (cell.start, cell.first_day, cell.days) == (motion.noon, motion.today, 1)
     assert (cell.stretches, cell.duration, cell.speed_band) == (3, 15.0, 21)
     assert cell.motor_torque == pytest.approx(torques.mean())
-    assert cell.torque_squares == pytest.approx(3 * torques.var())
 
 
 def test_other_places_sources_and_logs_are_other_cells(motion):
@@ -89,7 +87,8 @@ def test_cells_and_their_array_are_the_same_in_the_order_of_logs(motion):
     array = array_of(cells)
     assert array.dtype == CELL
     assert sorted(array['start'].tolist()) == array['start'].tolist()
-    assert repr(cells_of(array)) == repr(sorted(cells, key=lambda one: one.start))
+    again = [from_array(Cell, element) for element in array]
+    assert repr(again) == repr(sorted(cells, key=lambda one: one.start))
     assert array_of([]).shape == (0,)
 
 
@@ -113,11 +112,11 @@ def test_a_clock_that_leaps_by_a_year_is_told_and_one_day_off_is_not(motion, say
 
 def test_cells_of_days_to_come_do_not_count_and_are_kept(motion, says):
     tomorrow, ahead = (motion.cell(first_day=motion.today + days) for days in (1, 366))
-    found = aged([motion.cell(), ahead, tomorrow], motion.today)
-    assert len(found.cells) == 2
-    assert found.future == (ahead,)
-    assert found.notes == (says('clock_ahead'),)
-    assert aged([*found.cells, *found.future], motion.today + 366).future == ()
+    cells, notes = aged([motion.cell(), ahead, tomorrow], motion.today)
+    assert len(cells) == 3
+    assert cells[-1] == ahead
+    assert notes == [says('clock_ahead')]
+    assert aged(cells, motion.today + 366)[1] == []
 
 
 def test_a_period_has_a_bounded_number_of_places(motion, says):
@@ -126,10 +125,10 @@ def test_a_period_has_a_bounded_number_of_places(motion, says):
         motion.cell(load_band=100 + number, stretches=2 + number)
         for number in range(MOST_PLACES + 5)
     ]
-    found = aged(many, motion.today)
-    assert (found.dropped, found.notes) == (5, (says('rare'),))
-    assert min(one.stretches for one in found.cells) == 7
-    cells = by_place(found.cells)
+    kept, notes = aged(many, motion.today)
+    assert notes == [says('rare')]
+    assert min(one.stretches for one in kept) == 7
+    cells = by_place(kept)
     assert add(cells, motion.stretch()) == says('full_day')
     assert add(cells, motion.stretch(start=motion.noon + DAY)) == ''
     assert len(cells) == MOST_PLACES + 1
@@ -150,26 +149,24 @@ def test_merging_is_associative_and_keeps_counts_and_sums(cells, data):
     for name in (*SUMS, 'stretches', 'duration'):
         assert getattr(found, name) == pytest.approx(getattr(other, name), abs=1e-9)
     assert totals([found]) == pytest.approx(totals([one, two, three]), abs=1e-6)
-    assert found.torque_squares >= one.torque_squares + two.torque_squares - 1e-9
 
 
 @given(data=st.data())
-def test_merging_of_single_stretches_is_the_variance(motion, data):
+def test_merging_of_single_stretches_is_their_mean(motion, data):
     torques = data.draw(st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=20))
     single = [motion.cell(stretches=1, motor_torque=one) for one in torques]
     found = functools.reduce(merged, single)
     assert found.stretches == len(torques)
     assert found.motor_torque == pytest.approx(np.mean(torques), abs=1e-12)
-    assert found.torque_squares == pytest.approx(len(torques) * np.var(torques), abs=1e-12)
 
 
 @given(data=st.data(), later=st.integers(0, 2000))
 def test_age_merges_and_loses_nothing_whenever_it_is_done(motion, cells, data, later):
     many = data.draw(st.lists(cells, max_size=15))
-    once = aged(many, motion.today + later)
-    twice = aged(aged(many, motion.today).cells, motion.today + later)
-    assert totals(once.cells) == pytest.approx(totals(many), rel=1e-6, abs=1e-6)
-    assert [key_of(one) for one in once.cells] == [key_of(one) for one in twice.cells]
-    assert (once.future, once.dropped, once.notes) == ((), 0, ())
-    for one in once.cells:
+    once, notes = aged(many, motion.today + later)
+    twice, _ = aged(aged(many, motion.today)[0], motion.today + later)
+    assert totals(once) == pytest.approx(totals(many), rel=1e-6, abs=1e-6)
+    assert [key_of(one) for one in once] == [key_of(one) for one in twice]
+    assert notes == []
+    for one in once:
         assert one.days == 1 or one.first_day % one.days == 0

@@ -10,15 +10,21 @@ follows the motor by a play operator, with pitch errors, growth, skew and noise.
 
 from collections import namedtuple
 from dataclasses import replace
-import math
 from pathlib import Path
 import sys
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.health.assess import assess, HealthSettings, Kept
-from ballscrew_monitor.health.records import Baseline, CauseCode, Cell, CellKind, Stretch
+from ballscrew_monitor.health.assess import assess, HealthSettings
+from ballscrew_monitor.health.records import (
+    Baseline,
+    CauseCode,
+    Cell,
+    CellKind,
+    KeptHealth,
+    Stretch,
+)
 from ballscrew_monitor.health.rows import DAY
-from ballscrew_monitor.health.stroke import ReversalSums, StrokeSums
+from ballscrew_monitor.health.stroke import StrokeSums
 from ballscrew_monitor.health.summary import array_of
 from ballscrew_monitor.health.where import (
     LOST,
@@ -34,8 +40,8 @@ import pytest
 sys.path.append(str(Path(__file__).resolve().parents[3] / 'bench'))
 from health_parts.along import WORN_AT  # noqa: E402, I100
 from health_parts.axis_year import axis_year  # noqa: E402
-from health_parts.faults import CLEAN, Fault, FAULTS, joined  # noqa: E402
-from health_parts.summaries import cells_of_year  # noqa: E402
+from health_parts.faults import CLEAN, FAULTS, LOOSENED  # noqa: E402
+from health_parts.summaries import cells_of_year, reversals_of  # noqa: E402
 
 Steady = namedtuple('Steady', 'begin end speed')
 
@@ -54,7 +60,7 @@ def steady_parts(log):
 
 def cells_of_log(log, lead):
     stamps = log.start + np.rint(log.time * SECOND).astype(np.int64)
-    stroke, reversals = StrokeSums(), ReversalSums()
+    stroke = StrokeSums()
     stroke.add(stamps, log.position, log.torque)
     stroke.take(
         Stretch(
@@ -68,15 +74,7 @@ def cells_of_log(log, lead):
         )
         for part in steady_parts(log)
     )
-    moves = np.abs(log.speed) > 0.5
-    if log.table is not None:
-        reversals.add(
-            stamps[moves],
-            log.speed[moves] * lead / (2.0 * math.pi),
-            log.position[moves],
-            log.table[moves],
-        )
-    return stroke.cells(log.start) + reversals.cells(log.start)
+    return stroke.cells(log.start) + reversals_of(log, lead)
 
 
 def told(seed, fault, **changes):
@@ -85,23 +83,22 @@ def told(seed, fault, **changes):
     lead = year.machine.size.lead
     cells = array_of(cell for log in year.logs for cell in cells_of_log(log, lead))
     begin = year.logs[0].start
-    return year, where_on_screw(cells, Baseline(begin=begin, end=begin + 91 * DAY, reason=''))
+    return year, *where_on_screw(cells, Baseline(begin=begin, end=begin + 91 * DAY, reason=''))
 
 
-def ratios(where):
+def ratios(quantities):
     return {
         tuple(map(float, one.name.split()[2:5:2])): one
-        for one in where.quantities
+        for one in quantities
         if one.name.startswith('friction at ')
     }
 
 
 @pytest.mark.parametrize('seed', range(8))
 def test_a_worn_place_is_told_where_it_is(seed):
-    year, where = told(seed, FAULTS['worn place'])
-    (note,) = where.notes
+    year, quantities, (note,) = told(seed, FAULTS['worn place'])
     worn = WORN_AT * year.machine.stroke * 1e3
-    low, high = max(ratios(where), key=lambda span: ratios(where)[span].value)
+    low, high = max(ratios(quantities), key=lambda span: ratios(quantities)[span].value)
     width = high - low
     assert low - 0.5 * width <= worn <= high + 0.5 * width
     assert f'{low:.0f} to {high:.0f} mm of the stroke' in note
@@ -111,23 +108,23 @@ def test_a_worn_place_is_told_where_it_is(seed):
 def test_a_change_of_the_whole_stroke_is_no_place(fault):
     held, steps = 0, 0
     for seed in range(6):
-        _, where = told(seed, FAULTS[fault])
-        assert where.notes == ()
-        assert len(where.quantities) >= 5
-        held += sum(one.low <= 1.0 <= one.high for one in where.quantities)
-        steps += len(where.quantities)
+        _, quantities, notes = told(seed, FAULTS[fault])
+        assert notes == []
+        assert len(quantities) >= 5
+        held += sum(one.low <= 1.0 <= one.high for one in quantities)
+        steps += len(quantities)
     if fault == 'clean':
         assert held >= 0.9 * steps
 
 
 @pytest.mark.parametrize('seed', range(4))
 def test_play_that_grows_is_told_with_its_size(seed):
-    _, where = told(seed, FAULTS['play 20 um'], scale=True)
-    found = {one.name: one for one in where.quantities}
+    _, quantities, notes = told(seed, FAULTS['play 20 um'], scale=True)
+    found = {one.name: one for one in quantities}
     for name in (LOST, LOST_CHANGE):
         assert found[name].value == pytest.approx(20.0, abs=2.0)
     assert found[LOST_TREND].low > 0.0
-    assert sum('the lost motion at reversals has grown by' in note for note in where.notes) == 1
+    assert sum('the lost motion at reversals has grown by' in note for note in notes) == 1
 
 
 @pytest.mark.parametrize('seed', range(4))
@@ -146,29 +143,15 @@ def test_play_that_grows_counts_from_its_date_on(seed):
     assert not lost_motion_grew(cells, begun, begun + 5 * DAY)  # one log after it
 
 
-class Loosened(Fault):
-    """A part that is nearly lost, and has play when three quarters of it are gone."""
-
-    def condition(self, day):
-        late = self.start + 0.75 * self.ramp
-        play = replace(FAULTS['play 20 um'], start=late, ramp=0.0)
-        return joined(Fault.condition(self, day), play.condition(day))
-
-
-NUT = Loosened(name='lost nut', part='preload', size=0.1)
-BEARING = Loosened(name='loose bearing', part='bearing', size=0.1)
+NUT, BEARING = LOOSENED.values()
 
 
 def causes_in(seed, fault, limits, surface, *, with_table=True):
     """Return the likely causes at the end of a year, the best first, and all of them by code."""
     year = axis_year(seed, fault, scale=True)
-    lead, cells = year.machine.size.lead, cells_of_year(year)
-    if with_table:
-        reversals = array_of(cell for log in year.logs for cell in cells_of_log(log, lead))
-        reversals = reversals[reversals['kind'] == CellKind.REVERSAL]
-        cells = np.concatenate([cells, reversals])
+    cells = [cell for cell in cells_of_year(year) if with_table or cell.kind != CellKind.REVERSAL]
     settings = HealthSettings(limits=limits)
-    health = assess('x', Kept(cells), surface, settings, now=year.logs[-1].start + SECOND)
+    health = assess('x', KeptHealth(cells), surface, settings, now=year.logs[-1].start + SECOND)
     return [one.code for one in health.causes if not one.excluded], health
 
 
@@ -200,9 +183,9 @@ def test_lost_motion_that_has_not_grown_proves_nothing(fault, usual_limits, surf
 def test_an_axis_that_keeps_its_play_has_no_note():
     held = 0
     for seed in range(5):
-        _, where = told(seed, CLEAN, scale=True)
-        assert where.notes == ()
-        found = {one.name: one for one in where.quantities}
+        _, quantities, notes = told(seed, CLEAN, scale=True)
+        assert notes == []
+        found = {one.name: one for one in quantities}
         assert abs(found[LOST].value) < 1.0
         assert found[LOST].low <= 0.0 <= found[LOST].high
         held += found[LOST_CHANGE].low <= 0.0 <= found[LOST_CHANGE].high
@@ -232,7 +215,7 @@ def test_the_trend_of_lost_motion_is_that_of_a_line():
 
 def test_what_is_missing_is_said():
     nothing = array_of([])
-    assert where_on_screw(nothing, None) == ((), ())
+    assert where_on_screw(nothing, None) == ([], [])
     few = array_of(reversal(20_000 + day, 1e-5) for day in range(2))
     assert lost_motion(few, None)[0][0].reason == 'not known yet: it needs three logs'
     some = array_of(reversal(20_000 + day, 1e-5) for day in range(5))

@@ -164,7 +164,7 @@ def test_a_named_baseline_outlives_the_node(axis, says):
     again = axis.health()
     assert (again.condition, again.baseline_end.sec) == (AxisHealth.CONDITION_UNKNOWN, 0)
     assert 'no log since the baseline was named' in again.verdict
-    last = axis.kept().baseline
+    last = axis.kept().baselines[-1]
     assert (last.reason, last.end, last.left_out) == ('new screw', 0, 7200.0)
     today = axis.node.now() // DAY
     begin, end = (Time(sec=(today - days) * DAY // SECOND) for days in (DAYS // 2, 1))

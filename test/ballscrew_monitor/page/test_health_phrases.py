@@ -3,14 +3,17 @@
 """Phrases of health follow from codes and numbers of its message as its sentences do."""
 
 from ballscrew_monitor.core.judgement import WarningPolicy
+from ballscrew_monitor.health.causes import BEARING_DRAG
 from ballscrew_monitor.health.records import Cause, CauseCode, Condition, Health, Quantity
 from ballscrew_monitor.health.words import advice_of, Certainty, explained, verdict_of
 from ballscrew_monitor.messages.health_messages import health_message
+from ballscrew_monitor.page.components import languages
 from ballscrew_monitor.page.health_phrases import advice_phrase, verdict_phrase
 from ballscrew_monitor.page.phrases import english
 from ballscrew_msgs.msg import AxisHealth, HealthCause, HealthQuantity
 from hypothesis import given
 from hypothesis import strategies as st
+import pytest
 
 CODES = st.lists(st.sampled_from(CauseCode), unique=True, max_size=5)
 SIZE = Quantity(name='size', unit='K', value=4.0, low=3.0, high=5.0)
@@ -115,3 +118,13 @@ def test_words_of_another_version_stay():
     message = AxisHealth(**worse, **told)
     assert verdict_phrase(message)['values']['why']['values']['cause'] == {'free': 'T'}
     assert advice_phrase(message) == {'free': 'A'}
+
+
+@pytest.mark.parametrize('language', languages())
+def test_a_support_bearing_with_play_is_no_wiper(language):
+    size = Quantity(name=BEARING_DRAG, unit='N m', value=-0.12, low=-0.2, high=-0.05)
+    bearing = Cause(code=CauseCode.WIPER, size=size, weight=0.5, excluded=False, text='T')
+    changed = Condition.WORSE, [bearing], quantity('drag change', -0.2), Quantity(name='preload')
+    why = verdict_phrase(message_of(*changed))['values']['why']
+    assert why['values']['cause']['key'] == 'change_bearing_play'
+    assert 'change_bearing_play' in languages()[language]

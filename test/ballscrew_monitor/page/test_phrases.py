@@ -9,7 +9,7 @@ from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.inputs import InputState, Source
 from ballscrew_monitor.core.judgement import Level, Reason, Zone
 from ballscrew_monitor.health.assess import DRAG, SMALLEST
-from ballscrew_monitor.health.energy import NAMES as ENERGIES
+from ballscrew_monitor.health.energy import AGAINST, BEYOND, LOST
 from ballscrew_monitor.health.life import NAMES as LIVES
 from ballscrew_monitor.health.peers import NAME as PEERS
 from ballscrew_monitor.health.records import CauseCode, Condition
@@ -44,7 +44,9 @@ QUANTITIES_OF_HEALTH = (
     'preload',
     *LUBRICATION,
     *SEVERITIES,
-    *ENERGIES,
+    LOST,
+    AGAINST,
+    BEYOND,
     *LIVES,
     PEERS,
 )

@@ -21,6 +21,7 @@ from ballscrew_monitor.health.records import (
     Health,
     Quantity,
 )
+from ballscrew_monitor.health.summary import array_of
 from ballscrew_monitor.report import health_collect
 from ballscrew_monitor.report.health_axes import read_health, same_start_note
 from ballscrew_monitor.report.health_collect import collect, Given, Workers
@@ -118,7 +119,7 @@ def test_an_entry_holds_the_friction_of_the_log(collected):
     assert key == history.key == MachineAxis('mill 3', 'x')
     assert notes == []
     assert Path(history.log) == log
-    cells = history.summary.cells
+    cells = array_of(history.cells)
     motion = cells[cells['kind'] == CellKind.MOTION]
     assert np.abs(motion['motor_torque']) == pytest.approx(FRICTION)
     assert (np.sign(motion['motor_torque']) == motion['direction']).all()
@@ -144,7 +145,8 @@ def test_a_log_or_map_that_has_changed_takes_the_place_of_what_was_kept(tmp_path
     collect([log], folder, given, Workers())
     assert judgements == ['a.csv', 'a.csv']
     (history,), _ = read_axis(next(iter(axis_folders(folder).values())))
-    motion = history.summary.cells[history.summary.cells['kind'] == CellKind.MOTION]
+    cells = array_of(history.cells)
+    motion = cells[cells['kind'] == CellKind.MOTION]
     assert np.abs(motion['motor_torque']) == pytest.approx(0.123456)
     assert len(list(folder.rglob('*.parquet'))) == 1
 

@@ -5,6 +5,7 @@
 import importlib.util
 
 from ballscrew_monitor.health.history import history_of
+from ballscrew_monitor.health.summary import array_of
 from health_parts import rivals
 from health_parts.axis_year import axis_year
 from health_parts.faults import FAULTS
@@ -17,7 +18,7 @@ INSTALLED = not rivals.missing()
 @pytest.fixture(scope='module')
 def history():
     year = axis_year(7001, FAULTS['preload -40 %'], wander=0.005, scatter=0.01)
-    return history_of(cells_of_year(year), year.machine.size.lead)
+    return history_of(array_of(cells_of_year(year)), year.machine.size.lead)
 
 
 def test_what_is_not_installed_is_named(monkeypatch):

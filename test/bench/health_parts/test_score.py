@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The product on twelve years of the independent generator."""
 
+from ballscrew_monitor.health import words
+from ballscrew_monitor.health.records import CauseCode
+from health_parts import score
 from health_parts.axis_year import axis_year
-from health_parts.faults import FAULTS
+from health_parts.faults import FAULTS, LOOSENED
 from health_parts.score import score_of
 import pytest
 
@@ -35,3 +38,19 @@ def test_a_lost_preload_is_found_with_its_cause(lost):
     assert sum(one.held for one in lost) >= 0.9 * sum(one.known for one in lost)
     assert all(one.right for one in found if one.told)
     assert sum(one.early for one in lost) == 0
+
+
+@pytest.mark.parametrize('fault', LOOSENED)
+def test_lost_motion_is_a_witness_of_what_is_loose(fault, monkeypatch):
+    """Beside the friction it leaves the nut and its support bearing, and nothing else."""
+    told = []
+
+    def explained(causes):
+        told.append(words.explained(causes))
+        return told[-1]
+
+    monkeypatch.setattr(score, 'explained', explained)
+    judged = score_of(axis_year(2, LOOSENED[fault], scale=True))
+    assert (judged.told, judged.right) == (True, True)
+    codes = {cause.code for cause in told[-1][1]}
+    assert codes <= {CauseCode.PRELOAD_LOST, CauseCode.WIPER}

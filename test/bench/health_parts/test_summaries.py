@@ -6,6 +6,7 @@ from functools import partial
 
 from ballscrew_monitor.health.detection import looks
 from ballscrew_monitor.health.peers import prior_of, spread_of
+from ballscrew_monitor.health.summary import array_of
 from health_parts.axis_year import axis_year
 from health_parts.score import score_of
 from health_parts.summaries import cells_of_year
@@ -19,7 +20,7 @@ SEEDS = range(8000, 8006)
 def courses():
     """Return the courses of clean years of six axes, each without and with its peers."""
     years = [axis_year(seed, size='32x10', days=240.0) for seed in SEEDS]
-    spreads = [spread_of(cells_of_year(year), year.machine.size.lead) for year in years]
+    spreads = [spread_of(array_of(cells_of_year(year)), year.machine.size.lead) for year in years]
     alone, together = [], []
     for at, year in enumerate(years):
         prior = prior_of([spread for other, spread in enumerate(spreads) if other != at])
