@@ -46,6 +46,7 @@ from ballscrew_monitor.health.records import (
 from ballscrew_monitor.health.remedies import remedies_of
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.summary import cells_of
+from ballscrew_monitor.health.usual import usual_warnings
 from ballscrew_monitor.health.where import lost_motion_grew, where_on_screw
 from ballscrew_monitor.health.words import advice_of, input_notes, missing_reason, verdict_of
 import numpy as np
@@ -256,6 +257,9 @@ def _latest(
         baseline=known,
         notes=[note for note in notes if note],
         usual=usual is not None,
+        usual_warnings=usual_warnings(
+            points, None if condition in CHANGED else known, surface, settings.limits
+        ),
         doubt=here.doubt if here is not None else 1.0,
     )
 

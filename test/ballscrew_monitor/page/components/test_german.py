@@ -109,7 +109,7 @@ def phrases_of_a_node():
 def test_all_that_has_a_code_is_said_whole(tab, greeted, english, language):
     """No value is left out, no sentence is free, and German holds no English."""
     tab.visit(greeted.url, language=language)
-    tab.until("document.querySelector('.word')?.textContent")
+    tab.until("document.querySelector('.sign.level .word')?.textContent")
     said = json.dumps(to_json(list(phrases_of_a_node())))
     texts = tab.ask(f"""{said}.map((one) => Words.told(one, page.axis.facts)
         .map((part) => part.lang ? '{{en}}' : part).join(''))""")
