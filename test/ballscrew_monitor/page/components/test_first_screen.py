@@ -144,7 +144,7 @@ def test_how_surely_it_is_outside_is_seen_and_read(shown, greeted, frames, chang
     greeted.send(
         *frames.state(**{'level': 'warn', 'zone': 'outside', 'headline': 'now'} | changes)
     )
-    shown.until("document.querySelector('.reason').textContent.startsWith('now')")
+    shown.until("document.querySelector('.reason').textContent.includes('now')")
     shown.reads('.sign.level .word', word)
     assert shown.ask("document.querySelector('.sign.level').dataset.state") == state
     bare = changes['outside'] == 'unbanded'
