@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""How surely one point is outside: beyond both bands, within them, or on a file without bands."""
+"""Certainty of a point outside: beyond both bands, within them, or on a file without bands."""
 
 import copy
 import math
