@@ -295,7 +295,7 @@ class Health:
     baseline: Baseline | None = None
     notes: Sequence[str] = ()
     usual: bool = False
-    usual_warnings: frozenset[UsualWarning] = frozenset()
+    usual_warnings: tuple[UsualWarning, ...] = ()
     doubt: float = 1.0
 
     @property

@@ -22,16 +22,17 @@ from surrogate.surface import Surface, Validity
 
 def usual_warnings(
     points: Sequence[Cell], baseline: Baseline | None, surface: Surface, limits: Limits
-) -> frozenset[UsualWarning]:
+) -> tuple[UsualWarning, ...]:
     """Return the warnings that the motion of a baseline would give; none without a baseline."""
     if baseline is None:
-        return frozenset()
-    return frozenset(
+        return ()
+    known = {
         UsualWarning(code, cell.speed_band, cell.load_band, cell.direction)
         for cell in points
         if baseline.begin <= cell.start < baseline.end
         for code in _broken(cell, surface, limits)
-    )
+    }
+    return tuple(sorted(known))
 
 
 def _broken(cell: Cell, surface: Surface, limits: Limits) -> list[Code]:

@@ -123,7 +123,7 @@ def axis_record(case: AxisCase, verdict: AxisVerdict) -> dict[str, Any]:
     """Return what is known of an axis; `<name>_reason` says why a number is missing."""
     summary, survey, surface = case.outcome.summary(), case.survey, case.surface
     return {
-        'normal': verdict.normal,
+        **({'normal': verdict.normal} if verdict.normal else {}),
         'verdict': verdict.whole,
         'standing': verdict.standing.value,
         'why': verdict.why,

@@ -9,6 +9,8 @@ const SIGNS = {
   normal: '✓', worse: '▲', slightly_changed: '△',
 };
 
+const FINE = { usual: 'nothing_usual', ok: 'nothing_to_do', rest: 'nothing_to_do', perhaps: 'nothing_to_do' };
+
 class FirstScreen {
   /** Build the screen of an axis. */
   constructor(axis) {
@@ -118,12 +120,8 @@ class FirstScreen {
   advice(condition) {
     const { axis } = this;
     const changed = ['worse', 'slightly_changed'].includes(condition);
-    const remedy = axis.state.advice || (changed && axis.health.advice);
-    if (remedy) {
-      return remedy;
-    }
-    const fine = { usual: 'nothing_usual', ok: 'nothing_to_do', rest: 'nothing_to_do' }[axis.level];
-    return fine && condition === 'normal' ? { key: fine } : '';
+    const fine = condition === 'normal' && FINE[axis.level];
+    return axis.state.advice || (changed && axis.health.advice) || (fine ? { key: fine } : '');
   }
 
   static shelved({ state }) {

@@ -172,6 +172,11 @@ def test_three_answers_stand_in_their_order(shown):
         ('slightly_changed', {'advice': 'Run on.'}, 'What to do: Run on.'),
         ('unknown', {}, ''),
         ('normal', {'level': 'warn', 'zone': 'outside'}, ''),
+        (
+            'normal',
+            {'level': 'warn', 'zone': 'outside', 'outside': 'perhaps'},
+            'What to do: nothing has to be done',
+        ),
     ],
 )
 def test_what_to_do_is_said_also_where_it_is_nothing(
