@@ -164,7 +164,8 @@ def in_digits(value, digits, unit):
 def read_off(tab):
     """Return level, reason, feed, speed, load and efficiency as the screen shows them."""
     found = tab.texts('.numbers :is(.big, .more)')
-    level = tab.text('.sign.level .word').removeprefix('Surely ').removeprefix('Perhaps ')
+    # How surely is said in words before it.
+    level = (tab.text('.sign.level .word') or '').removeprefix('Surely ').removeprefix('Perhaps ')
     return found and [level, tab.text('.reason'), *found[:3], found[6]]
 
 
