@@ -133,6 +133,13 @@ def add_fingerprint(parser: Parser) -> None:
     _add_number(parser, '--travel-mm', 'X', 'free travel of the axis [mm]', required=True)
     text = 'letter of the axis in the program (default %(default)s)'
     parser.add_argument('--axis', default='X', metavar='LETTER', help=text)
+    text = 'position at which the runs begin, in the coordinates of the program (default: here)'
+    _add_number(parser, '--start-mm', 'X', text)
+    dialects = 'iso', 'sinumerik', 'heidenhain', 'linuxcnc'
+    text = 'dialect of the control (default %(default)s)'
+    parser.add_argument('--dialect', choices=dialects, default='iso', help=text)
+    text = 'runs, with a dwell between them (default %(default)s)'
+    parser.add_argument('--runs', type=int, default=1, metavar='N', help=text)
 
 
 def add_import(parser: Parser) -> None:

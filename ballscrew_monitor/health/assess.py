@@ -46,6 +46,7 @@ from ballscrew_monitor.health.records import (
 from ballscrew_monitor.health.remedies import remedy_text
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.summary import array_of
+from ballscrew_monitor.health.usual import usual_warnings
 from ballscrew_monitor.health.where import lost_motion_grew, where_on_screw
 from ballscrew_monitor.health.words import advice_of, input_notes, missing_reason, verdict_of
 import numpy as np
@@ -177,6 +178,9 @@ class Course:
             baseline=known,
             notes=[*filter(None, notes), *_shaft_notes(surface, recent)],
             usual=usual is not None,
+            usual_warnings=usual_warnings(
+                points, None if changed else known, surface, settings.limits
+            ),
         )
 
     def _missing(self) -> str:

@@ -115,8 +115,8 @@ def look(history: History, *, baseline_days: float = BASELINE_DAYS, prior: Prior
     baseline = baseline_of(logs.time, now, baseline_days)
     sizes = np.array([len(part) for part in bins])
     if baseline.sum() < FEWEST_LOGS:
-        known = len(logs.time)
-        reason = f'{known} logs so far, a baseline needs {FEWEST_LOGS} and then two more'
+        needed = FEWEST_LOGS + 2
+        reason = f'{min(len(logs.time), needed)} of {needed} logs'
         return Look(index, float(time[-1]), reason=reason)
     found = estimate(logs, baseline, now, warm=history.warm, prior=prior)
     first = [int(part[0]) for part in bins]

@@ -9,14 +9,14 @@ a run that does is free of process force, and its stretches count.
 
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable
 import dataclasses
 import math
 from typing import NamedTuple
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.health.records import LoadSource, Stretch
-from surrogate.units import MILLI, MINUTE, RPM, TURN
+from surrogate.units import RPM, TURN
 
 STAIRCASE = tuple(rpm * RPM for rpm in (10.0, 20.0, 50.0, 100.0, 200.0, 500.0))
 """Speeds of the steps [rad/s]."""
@@ -113,15 +113,3 @@ def _step(speed: float, feed: float, travel: float) -> Step:
     strokes = max(1, math.ceil(LEAST_TIME * feed / travel))
     length = min(travel, LEAST_TIME * feed)
     return Step(speed, feed, strokes, 2.0 * strokes * length / feed)
-
-
-def program_of(steps: Sequence[Step], axis: str, travel: float) -> Iterator[str]:
-    """Yield a part program (ISO 6983) of a run on an axis, from where it stands."""
-    yield 'G91 (relative, free of load, warm, without cutting)'
-    for one in steps:
-        length = MILLI * min(travel, LEAST_TIME * one.feed)
-        feed = MILLI * MINUTE * one.feed
-        for _ in range(one.strokes):
-            yield f'G1 {axis}{length:.3f} F{feed:.1f}'
-            yield f'G1 {axis}{-length:.3f} F{feed:.1f}'
-    yield 'G90'

@@ -15,6 +15,7 @@ import enum
 import math
 from typing import NamedTuple
 
+from ballscrew_monitor.core.judgement import Code
 from surrogate.store import MAY_BE_NAN
 from surrogate.surface.records import dtype_of
 
@@ -241,6 +242,15 @@ class KeptHealth(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
+class UsualWarning(NamedTuple):
+    """Criterion that is broken, and the place: bands of speed and axial load, and direction."""
+
+    code: Code
+    speed_band: int
+    load_band: int
+    direction: int
+
+
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Health:
     """
@@ -249,8 +259,9 @@ class Health:
     `since` [ns] is the date of the change that is latched, 0 for none. `quantities` by name;
     causes in the order of their weight, the excluded ones last; `verdict` is one sentence,
     `advice` what to do, empty for nothing; `notes` tell what is not known, and why. `usual`: the
-    axis runs as much at the boundary as it did in its baseline, which is its normal. `doubt` [-]
-    is the probability that nothing lasting has come.
+    axis runs as much at the boundary as it did in its baseline, which is its normal;
+    `usual_warnings` are those that its baseline already had. `doubt` [-] is the probability that
+    nothing lasting has come.
 
     """
 
@@ -265,6 +276,7 @@ class Health:
     baseline: Baseline | None = None
     notes: Sequence[str] = ()
     usual: bool = False
+    usual_warnings: tuple[UsualWarning, ...] = ()
     doubt: float = 1.0
 
     @property

@@ -26,6 +26,7 @@ MOST_TOLD = 3
 """Causes that are told together."""
 LEAST_WEIGHT = 0.05
 """Weight of a cause that is told [-]: the others carry 95 %."""
+NOT_ASSESSED = 'nothing has been assessed yet'
 MISSING = {
     Missing.CLOCK: 'the clock was not set, or leapt',
     Missing.LOAD: 'the map takes the motor torque for the load, so that no friction is left: '
@@ -69,6 +70,22 @@ def verdict_of(
     if drag.low * drag.high <= 0.0:
         return f'Axis {axis} {state}: {date}it changed, and is now back at {change}.'
     return f'Axis {axis} {state}: {date}its friction is {lower_or_higher(drag)}; {_why(causes)}.'
+
+
+def normal_answer(health: Health | None) -> str:
+    """Return whether an axis is normal, or since when it has changed, in a few words."""
+    if health is None:
+        return f'not known yet: {NOT_ASSESSED}'
+    drag = next((one for one in health.quantities if one.name == 'drag change'), None)
+    if health.condition is Condition.NORMAL:
+        return 'normal for this axis'
+    if health.condition is Condition.UNKNOWN or drag is None:
+        return drag.reason if drag and not drag.is_known else 'not known yet: too few logs'
+    date = f'since about {date_words(health.since)}' if health.since else 'since its baseline'
+    if not drag.is_known or drag.low * drag.high <= 0.0:
+        return f'changed {date}, and its friction is now back'
+    word = 'changed' if health.condition is Condition.WORSE else 'slightly changed'
+    return f'{word} {date}: its friction is {lower_or_higher(drag)}'
 
 
 def lower_or_higher(drag: Quantity) -> str:

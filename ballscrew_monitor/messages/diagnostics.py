@@ -10,9 +10,18 @@ publishing; numbers are values, with the unit in brackets.
 """
 
 from collections.abc import Mapping, Sequence
+import math
 from typing import NamedTuple
 
-from ballscrew_monitor.core.conversions import celsius, clock_text, SECOND, seconds
+from ballscrew_monitor.core.conversions import (
+    celsius,
+    clock_text,
+    Direction,
+    kelvin,
+    opposing_load,
+    SECOND,
+    seconds,
+)
 from ballscrew_monitor.core.fault_codes import cause_code, Fault
 from ballscrew_monitor.core.inputs import InputSample, InputState, InputStatus, Refusal, Source
 from ballscrew_monitor.core.judgement import (
@@ -27,6 +36,10 @@ from ballscrew_monitor.core.judgement import (
 )
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.vitals import VitalSigns
+from ballscrew_monitor.health.assess import CHANGED
+from ballscrew_monitor.health.records import Health
+from ballscrew_monitor.health.words import normal_answer
+from ballscrew_monitor.judge.certainty import Outside, outside_of
 from ballscrew_monitor.messages import reasons
 from ballscrew_monitor.messages.reasons import Standing
 from ballscrew_msgs.msg import BallScrewState
@@ -39,6 +52,9 @@ CLOCK_STANDS = (
     'the clock stands still, nothing is seen to go stale: play /clock, or unset use_sim_time'
 )
 KEPT = 'sums, events and corrections are kept'
+USUAL_EVENTS = 'Usual events'
+"""Key of the numbers of warnings that the baseline of the axis already had."""
+NO_NEWS = '; usual for this axis'
 NO_WARNING = '; no warning, by warning.policy'
 RECORDED = 'what the node hears and says is recorded'
 IN_TIME = 'the node keeps up'
@@ -95,6 +111,12 @@ def code_of(status: DiagnosticStatus) -> int:
     texts = [pair.value for pair in status.values if pair.key == 'Code']
     codes = [int(text) for text in texts if len(text) < LONGEST_CODE and text.isdecimal()]
     return codes[0] if codes else 0
+
+
+def usual_of(status: DiagnosticStatus) -> frozenset[int]:
+    """Return the numbers of the warnings that the baseline of an axis already had."""
+    texts = ' '.join(pair.value for pair in status.values if pair.key == USUAL_EVENTS).split()
+    return frozenset(int(text) for text in texts if len(text) < LONGEST_CODE and text.isdecimal())
 
 
 def _say(status: DiagnosticStatus, said: StatusSummary) -> None:
@@ -182,6 +204,9 @@ def statuses(
     refused: str = '',
     defect: str = '',
     policy: WarningPolicy = WarningPolicy.ZONE,
+    usual: Sequence[int] = (),
+    health: Health | None = None,
+    advice: str = '',
 ) -> list[DiagnosticStatus]:
     """
     Return the three statuses of a configured axis of the `node`, by full name.
@@ -189,7 +214,8 @@ def statuses(
     `state` is its last one, if there is one, with its `inputs`; `cause` is that of its event;
     `links` says how each input is connected, None: the node is inactive; `refused` why the
     surface was not reloaded; `defect` is a sentence about one of the program; `policy` what is
-    warned of.
+    warned of; `usual` has the numbers of the warnings that the baseline already had; `health` is
+    the last assessment, and `advice` what to do about the last warning.
     While the clock stands no state tells that an input is dead, so nothing but a warning is held.
 
     """
@@ -211,12 +237,16 @@ def statuses(
         for status in parts[:2]:
             _say(status, _stale(Fault.INACTIVE if links is None else why))
     else:
-        for status, verdict in zip(parts, summaries(state, inputs, cause, links, policy)):
+        known = state.event_id in usual
+        both = summaries(state, inputs, cause, links, policy, usual=known)
+        for status, verdict in zip(parts, both):
             _say(status, verdict)
         if clock_stands:
-            warns = state.level == Level.WARN and policy.of_zone
+            warns = state.level == Level.WARN and _warns(policy, usual=known)
             for status in parts[1:2] if warns else parts[:2]:
                 _say(status, _stale(Fault.CLOCK_STANDS))
+        parts[0].values += key_values(_answers(state, surface, health, advice))
+        parts[0].values += key_values([(USUAL_EVENTS, ' '.join(map(str, usual)))])
         parts[0].values += key_values(_lubrication_values(state))
         parts[1].values += key_values(_input_values(inputs))
     if defect:
@@ -235,22 +265,31 @@ def summaries(
     cause: Code,
     links: Mapping[Source, Link],
     policy: WarningPolicy = WarningPolicy.ZONE,
+    *,
+    usual: bool = False,
 ) -> tuple[StatusSummary, StatusSummary]:
-    """Return what Lubrication and Inputs say; only a change of it is news."""
+    """
+    Return what Lubrication and Inputs say; only a change of it is news.
+
+    `usual`: the baseline of the axis already had the warning.
+
+    """
     standing, text, code = reasons.summary(state.axis, inputs, links)
     derived = any(status.state is InputState.DERIVED for status in inputs)
-    lubrication = _lubrication(state, cause_code(cause), policy, derived=derived)
+    fault = cause_code(cause)
+    lubrication = _lubrication(state, fault, policy, derived=derived, usual=usual)
     return lubrication, StatusSummary(_LEVELS[standing], text, code)
 
 
 def _lubrication(
-    state: BallScrewState, cause: Fault, policy: WarningPolicy, *, derived: bool
+    state: BallScrewState, cause: Fault, policy: WarningPolicy, *, derived: bool, usual: bool
 ) -> StatusSummary:
     """Return what is said of the lubrication; a warning that is not to call keeps its code."""
     if state.level == Level.WARN and not state.shelved:
-        if policy.of_zone:
+        if _warns(policy, usual=usual):
             return StatusSummary(WARN, cause.text, cause)
-        return StatusSummary(OK, f'{cause.text}{NO_WARNING}', cause)
+        why = NO_NEWS if usual else NO_WARNING
+        return StatusSummary(OK, f'{cause.text}{why}', cause)
     validity = PointValidity(state.result.validity)
     still = Gate.STANDSTILL in state.active_gates
     code = _NOT_JUDGED.get(validity, Fault.NONE)
@@ -268,6 +307,42 @@ def _lubrication(
     if still:  # nothing is amiss with an axis that has been parked since it was switched on
         return StatusSummary(OK, 'standstill, not judged for long enough yet')
     return StatusSummary(WARN, Fault.TOO_SHORT.text, Fault.TOO_SHORT)
+
+
+def _warns(policy: WarningPolicy, *, usual: bool) -> bool:
+    """Return True if a point outside the zone is warned of: who asks for changes, of new ones."""
+    return policy.of_zone and not (usual and policy.of_change)
+
+
+def _answers(
+    state: BallScrewState, surface: Surface, health: Health | None, advice: str
+) -> list[tuple[str, object]]:
+    """Return whether the axis is normal, whether it is outside the zone, and what to do."""
+    outside = outside_now(state, surface)
+    remedy = advice if outside is not Outside.NOT else ''
+    if not remedy and health is not None and health.condition in CHANGED:
+        remedy = health.advice
+    return [
+        ('Normal', normal_answer(health)),
+        ('Outside the zone', outside.value),
+        ('What to do', remedy),
+    ]
+
+
+def outside_now(state: BallScrewState, surface: Surface) -> Outside:
+    """Return how surely the point of a state is outside the zone."""
+    point, result = state.point, state.result
+    light = Gate.LIGHT_LOAD in state.active_gates
+    return outside_of(
+        state.zone,
+        surface,
+        rcs_limit=state.rcs_limit,
+        efficiency_limit=state.efficiency_limit,
+        speed=abs(point.speed),
+        load=opposing_load(point.axial_load, Direction(point.direction)),
+        temperature=kelvin(point.temperature),
+        efficiency=math.nan if light else result.efficiency,
+    )
 
 
 def _lubrication_values(state: BallScrewState) -> list[tuple[str, object]]:

@@ -11,13 +11,13 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.health.records import Cause, Condition, Health, Quantity
+from ballscrew_monitor.health.words import NOT_ASSESSED
 from ballscrew_monitor.messages.diagnostics import hardware_id, key_values, OK, WARN
 from ballscrew_monitor.messages.state_messages import fill_time
 from ballscrew_msgs import msg
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticStatus
 
-NOT_ASSESSED = 'nothing has been assessed yet'
 _CODES = {
     Condition.UNKNOWN: Fault.NOT_KNOWN,
     Condition.NORMAL: Fault.NONE,

@@ -245,17 +245,18 @@ def plain_values(state: msg.BallScrewState) -> dict[str, float | str | bool]:
     }
 
 
-def advice_text(target_speed: float, health: Health | None = None) -> str:
+def advice_text(target_speed: float, health: Health | None = None, *, usual: bool = False) -> str:
     """
     Return what to do about an event, empty where nothing is known to help.
 
     First comes what the workshop can change by itself, as the last `health` tells it, then a speed
-    [rad/s] where the process leaves it free. No load is ever named.
+    [rad/s] where the process leaves it free. No load is ever named. `usual`: the baseline of the
+    axis already had this warning.
 
     """
     workshop = '' if health is None else health.advice
     ways = [way for way in (workshop, speed_advice(target_speed)) if way]
-    if not ways and health is not None and health.usual:
+    if not ways and (usual or (health is not None and health.usual)):
         return USUAL
     return '; or '.join(ways)
 
@@ -271,7 +272,7 @@ def event_cause(memory: Any) -> msg.Finding:
 
 
 def out_of_zone_message(
-    monitor: Monitor, *, shelved: bool, health: Health | None = None
+    monitor: Monitor, *, shelved: bool, health: Health | None = None, usual: bool = False
 ) -> msg.OutOfZone:
     """
     Return the last event as a message; event 0 is inactive and says that there has been none.
@@ -288,7 +289,7 @@ def out_of_zone_message(
         duration=seconds(stamp - start),
         worst_value=float(memory.event_worst[ACTIVE]),
         cause=event_cause(memory),
-        advice=ending.text or advice_text(monitor.target_speed, health),
+        advice=ending.text or advice_text(monitor.target_speed, health, usual=usual),
         shelved=shelved,
         ending=int(ending.kind),
     )

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The warning of one axis: its topic, its log, what people do to it; topics that stay."""
 
+from collections import deque
 from collections.abc import Callable, Mapping
 import functools
 from typing import Any
@@ -10,6 +11,7 @@ from ballscrew_monitor.core.conversions import clock_text, seconds
 from ballscrew_monitor.core.judgement import EventEnd, Level
 from ballscrew_monitor.core.state import Ending, NAMELESS, NOT_SHELVED, Shelving
 from ballscrew_monitor.health.records import Health
+from ballscrew_monitor.health.usual import is_usual
 from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.messages.state_messages import advice_text, event_cause, out_of_zone_message
 from ballscrew_monitor.node.kept_axes import KeptAxes
@@ -21,6 +23,8 @@ from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
 from rclpy.publisher import Publisher
+
+MOST_USUAL = 100  # warnings that are known to be usual
 
 
 def quiet_publishers(node: LifecycleNode) -> functools.partial[Any]:
@@ -61,6 +65,7 @@ class Alarm:
         self._node, self._axis, self._publisher = node, axis, publisher
         self._kept, self._record = kept, record
         self.health: Health | None = None  # as it was assessed last
+        self.usual: deque[int] = deque(maxlen=MOST_USUAL)  # numbers of warnings
 
     def publish(self) -> None:
         """Publish the event that is active, or the last one."""
@@ -69,22 +74,37 @@ class Alarm:
     def _speak(self, publish: Callable[[OutOfZone], None]) -> None:
         monitor = self._axis.monitor
         shelved = bool(monitor.shelving.at(self._now).until)
-        message = out_of_zone_message(monitor, shelved=shelved, health=self.health)
+        message = out_of_zone_message(
+            monitor, shelved=shelved, health=self.health, usual=self.is_usual
+        )
         publish(message)
         self._record(f'~/{self._axis.name}/out_of_zone', message)
+
+    @property
+    def is_usual(self) -> bool:
+        """Return True if the baseline of the axis already had the last warning."""
+        return self._axis.monitor.memory.event_number in self.usual
+
+    @property
+    def advice(self) -> str:
+        """Return what to do about the last warning, empty where nothing is known to help."""
+        target = self._axis.monitor.target_speed
+        return advice_text(target, self.health, usual=self.is_usual)
 
     def follow(self, row: Row, frame: Mapping[str, list[float]]) -> None:
         """Keep the event that a row has begun, with a freeze frame, or ended, and then speak."""
         monitor = self._axis.monitor
         memory = monitor.memory
         active, number = memory.event_active, memory.event_number
+        if active and self.health is not None and is_usual(self.health, monitor.event_code, row):
+            self.usual.append(number)
         # First: who is killed meanwhile must not have said a number that is not kept.
         kind = Kind.EVENT_BEGIN if active else Kind.EVENT_END
         before = {'freeze_frame': frame} if active else {}
         self._note_event(kind, point=point_facts(row), **before)
         self.publish()
         if active:
-            texts = event_cause(memory).text, advice_text(monitor.target_speed, self.health)
+            texts = event_cause(memory).text, self.advice
             self._warn(f'event {number}: {"; ".join(filter(None, texts))}')
         elif monitor.level is Level.OK:
             self._say(f'event {number} is over')
@@ -158,8 +178,7 @@ class Alarm:
 
     def _note_event(self, kind: Kind, **facts: Any) -> None:
         monitor = self._axis.monitor
-        advice = advice_text(monitor.target_speed, self.health)
-        event = event_facts(monitor.memory, monitor.ending, advice)
+        event = event_facts(monitor.memory, monitor.ending, self.advice)
         self._note(kind, stamp=monitor.memory.event_stamp, **event, **facts)
 
     def _note(self, kind: Kind, **facts: Any) -> None:

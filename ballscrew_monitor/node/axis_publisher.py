@@ -367,11 +367,21 @@ class AxisPublisher:
             refused=self.refused,
             defect=self.defect,
             policy=self._policy,
+            usual=self.alarm.usual,
+            health=self.alarm.health,
+            advice=self.alarm.advice,
         )
 
     def _summaries(self) -> tuple[diagnostics.StatusSummary, ...]:
         cause = self.axis.monitor.event_code
-        return diagnostics.summaries(self._message, self._inputs, cause, self._links, self._policy)
+        return diagnostics.summaries(
+            self._message,
+            self._inputs,
+            cause,
+            self._links,
+            self._policy,
+            usual=self.alarm.is_usual,
+        )
 
     @property
     def _policy(self) -> WarningPolicy:

@@ -8,6 +8,7 @@ from typing import Any
 
 from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.judgement import Zone
+from ballscrew_monitor.judge.certainty import Outside
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.page import maps
 from ballscrew_monitor.page.frames import frame
@@ -22,6 +23,7 @@ MOST_EVENTS = 100  # the newest are kept
 NOTHING = {'level': UNKNOWN, 'zone': UNKNOWN, 'headline': phrase('nothing_heard')}
 NO_LIMITS = dict.fromkeys(('efficiency_limit', 'rcs_limit', 'light_load_N', 'standstill_rpm'))
 OUTSIDE = ZONES[Zone.OUTSIDE]
+ZONE_CODES = {name: code for code, name in ZONES.items()} | {UNKNOWN: int(Zone.UNKNOWN)}
 INACTIVE, GONE, ACTIVE = 'inactive', 'gone', 'active'
 """States of a node."""
 LUBRICATION = diagnostics.PARTS[0]
@@ -48,6 +50,7 @@ class AxisView:
         self.without = 0  # corrections of the node that the surface lacks
         self.map_frame: bytes | None = None
         self.grades: list[str] = []  # oils of which there are surfaces
+        self.usual: frozenset[int] = frozenset()  # warnings that the baseline already had
         self.codes: dict[str, int] = {}  # of the diagnostics by their parts
         self.is_changed = False  # what `hello` says
         self._heard = math.nan  # [s]
@@ -85,6 +88,11 @@ class AxisView:
         self.codes[part] = code
         if part == LUBRICATION and self.standing != GONE:
             self.stand(INACTIVE if code == Fault.INACTIVE else ACTIVE)
+
+    def hear_usual(self, numbers: frozenset[int]) -> None:
+        """Take the numbers of the warnings that the baseline of the axis already had."""
+        self._events_are_news |= numbers != self.usual
+        self.usual = numbers
 
     def stand(self, standing: str) -> None:
         """Take the state of the node."""
@@ -130,6 +138,16 @@ class AxisView:
         if self.surface is None or self.limits['rcs_limit'] is None or not len(rows):
             return None
         return maps.limit_record(self.surface, maps.limits_of(self.limits), rows[-1], self.warmth)
+
+    @property
+    def outside(self) -> Outside:
+        """Return how surely the newest row is outside the zone."""
+        rows = self.history.since(self.history.count - 1)
+        if self.surface is None or self.limits['rcs_limit'] is None or not len(rows):
+            return Outside.UNKNOWN
+        return maps.outside_at(
+            self.surface, self.limits, rows[-1], self.warmth, zone=ZONE_CODES[self.state['zone']]
+        )
 
     def hello(self) -> dict[str, Any]:
         """Return what the axis is."""
@@ -177,7 +195,10 @@ class AxisView:
 
     def events_frame(self) -> bytes:
         """Return the events, the newest first."""
-        events = [self.events[number] for number in sorted(self.events, reverse=True)]
+        events = [
+            {**self.events[number], 'usual': number in self.usual}
+            for number in sorted(self.events, reverse=True)
+        ]
         return frame('events', {'axis': self.name, 'events': events})
 
     def _state_frame(self, now: float, since: int, *, health: bool) -> bytes:
@@ -188,6 +209,8 @@ class AxisView:
             'age_s': self.age(now),
             'advice': self._advice(event),
             'event': event,
+            'outside': self.outside.value,
+            'usual': event is not None and event['active'] and event['id'] in self.usual,
             'limit': self.limit,
             'standing': self.standing,
             'faults': sorted(TOLD_FAULTS.intersection(self.codes.values())),

@@ -21,6 +21,7 @@ from ballscrew_monitor.core.conversions import (
     opposing_load,
 )
 from ballscrew_monitor.core.judgement import Limits
+from ballscrew_monitor.judge.certainty import Outside, outside_of
 from ballscrew_monitor.judge.full_point import answer
 from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.judge.zone import BY_VALIDITY
@@ -174,6 +175,23 @@ def limit_record(
     degrees, turn = warmth if math.isnan(heat) else heat, abs(speed) * RPM
     limit = limit_speed(surface, limits, opposing, degrees, speed=turn) / RPM
     return None if math.isnan(limit) else {'speed_rpm': limit}
+
+
+def outside_at(
+    surface: Surface, limits: Mapping[str, Any], row: Array, warmth: float, *, zone: int
+) -> Outside:
+    """Return how surely a row of a `zone` is outside; `warmth` [degC] is that of one without."""
+    speed, load, heat, efficiency = (row[COLUMNS.index(name)] for name in COLUMNS[1:5])
+    return outside_of(
+        zone,
+        surface,
+        rcs_limit=limits['rcs_limit'],
+        efficiency_limit=limits['efficiency_limit'],
+        speed=abs(speed) * RPM,
+        load=opposing_load(load, direction_of(speed)),
+        temperature=kelvin(warmth if math.isnan(heat) else heat),
+        efficiency=efficiency,
+    )
 
 
 def _everywhere(like: Array, *values: float) -> tuple[Array, ...]:

@@ -21,7 +21,7 @@ import time
 from typing import Any
 
 from ballscrew_monitor.core.fault_codes import Fault
-from ballscrew_monitor.messages.diagnostics import code_of, HOST, NODE_PART
+from ballscrew_monitor.messages.diagnostics import code_of, HOST, NODE_PART, PARTS, usual_of
 from ballscrew_monitor.node.topic import Apart, open_topic
 from ballscrew_monitor.page import records
 from ballscrew_monitor.page.axis_view import AxisView
@@ -177,6 +177,8 @@ class RosSide:
                 for view in views:
                     if axis in ('', view.axis):
                         self._later(view.hear_code, part, code_of(status))
+                        if part == PARTS[0]:
+                            self._later(view.hear_usual, usual_of(status))
 
     def _hear_node(self, node: str, status: DiagnosticStatus) -> None:
         """Show on which hosts nodes of one name run, until one of them says that it is alone."""

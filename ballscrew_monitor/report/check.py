@@ -81,7 +81,8 @@ def check_command(args: argparse.Namespace, nominal: Path) -> int:
         steps = next_steps(entries, checked)
         for entry in entries:
             for line in entry.result.lines if entry.result else ():
-                print(printable(f'{entry.name}: {line.verdict}'))
+                normal = f' Normal? {line.normal}.' if line.normal else ''
+                print(printable(f'{entry.name}:{normal} {line.verdict}'))
             if entry.result is None:
                 say(f'{entry.name}: {entry.failure}')
         for step in steps:
@@ -386,6 +387,7 @@ def _record(entries: Sequence[LogEntry], checked: Checked, steps: Sequence[str])
                 'map': checked.used.get(entry.folder, ''),
                 'axes': {
                     line.axis: {
+                        'normal': line.normal,
                         'standing': line.standing,
                         'verdict': line.verdict,
                         'expected': line.expected,

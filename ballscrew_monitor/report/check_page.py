@@ -132,8 +132,10 @@ def _surfaces(checked: Checked) -> Iterator[Markup]:
 def _zone(entries: Sequence[LogEntry]) -> Iterator[Markup]:
     for entry in entries:
         for line in entry.result.lines if entry.result else ():
-            sentence = element('p', f'{entry.name}: {line.verdict}', class_='sentence')
-            yield element('div', sentence, class_=f'verdict {line.standing}')
+            said = [f'Normal? {line.normal}.'] if line.normal else []
+            parts = [element('p', one) for one in said]
+            parts.append(element('p', f'{entry.name}: {line.verdict}', class_='sentence'))
+            yield element('div', *parts, class_=f'verdict {line.standing}')
     histories = [
         read_history(one) for entry in entries if entry.result for one in entry.result.histories
     ]

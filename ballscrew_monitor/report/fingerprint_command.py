@@ -3,12 +3,16 @@
 """`ballscrew fingerprint`: the reference run of an axis as a part program."""
 
 import argparse
+import math
 
 from ballscrew_monitor.core.interrupts import DONE
-from ballscrew_monitor.health.fingerprint import planned, program_of, Step
+from ballscrew_monitor.health.fingerprint import planned
+from ballscrew_monitor.health.part_program import DIALECTS, program_of
 from surrogate.files import InputError
 from surrogate.surface import shipped_surface, Surface
-from surrogate.units import MILLI, MINUTE, RPM
+from surrogate.units import MILLI
+
+MOST_RUNS = 20
 
 
 def fingerprint_command(args: argparse.Namespace) -> int:
@@ -17,19 +21,14 @@ def fingerprint_command(args: argparse.Namespace) -> int:
         raise InputError(f'--travel-mm is {args.travel_mm:g} mm, it must be above 0')
     if not (args.axis.isascii() and args.axis.isalpha()):
         raise InputError(f'--axis is {args.axis!r}, it must be the letter of an axis, such as X')
+    if not 1 <= args.runs <= MOST_RUNS:
+        raise InputError(f'--runs is {args.runs}, allowed is 1 to {MOST_RUNS}')
+    if not (args.start_mm is None or math.isfinite(args.start_mm)):
+        raise InputError(f'--start-mm is {args.start_mm:g} mm, it must be finite')
     travel = args.travel_mm / MILLI
     steps = planned(Surface.load(args.surface or shipped_surface()).lead, travel)
-    for line in (*map(_said, steps), _total(steps), *program_of(steps, args.axis, travel)):
+    start = math.nan if args.start_mm is None else args.start_mm / MILLI
+    dialect = DIALECTS[args.dialect]
+    for line in program_of(steps, args.axis, travel, dialect=dialect, runs=args.runs, start=start):
         print(line)
     return DONE
-
-
-def _said(step: Step) -> str:
-    return (
-        f'({step.speed / RPM:.0f} rev/min, {MILLI * MINUTE * step.feed:.0f} mm/min: '
-        f'{step.strokes} times forth and back, {step.time:.0f} s)'
-    )
-
-
-def _total(steps: list[Step]) -> str:
-    return f'({sum(step.time for step in steps):.0f} s in motion)'

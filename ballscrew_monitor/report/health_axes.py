@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.core.conversions import clock_text
+from ballscrew_monitor.core.judgement import Code
 from ballscrew_monitor.health.mixed import Prior, USUAL
 from ballscrew_monitor.health.peers import FEWEST_PEERS, priors, Spread, spread_of
 from ballscrew_monitor.health.records import (
@@ -18,6 +19,7 @@ from ballscrew_monitor.health.records import (
     Condition,
     Health,
     Quantity,
+    UsualWarning,
 )
 from ballscrew_monitor.health.summary import array_of
 from ballscrew_monitor.recordings.words import say
@@ -191,10 +193,12 @@ def read_health(plain: Mapping[str, Any]) -> Health:
         for one in map(dict, kept.pop('causes'))
     ]
     baseline = kept.pop('baseline')
+    usual = kept.pop('usual_warnings')
     return Health(
         condition=Condition(kept.pop('condition')),
         quantities=quantities,
         causes=causes,
+        usual_warnings=tuple(UsualWarning(Code(code), *place) for code, *place in usual),
         baseline=None if baseline is None else Baseline(**baseline),
         **kept,
     )

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.dates import AutoDateLocator, ConciseDateFormatter, date2num
 from matplotlib.figure import Figure
 import numpy as np
-from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, VERMILION
+from surrogate.plotting.style import BLUE, draw_picture, GREY, new_figure, SKY, VERMILION
 
 SHOWN = {DRAG: ('change of the friction [%]', 0.0, 'friction at equal speed and load')}
 WIDTH, HEIGHT = 8.0, 3.0  # [inch] of one quantity of one axis
@@ -39,14 +39,24 @@ def figure_health(found: Mapping[str, Sequence[Health]]) -> Figure:
 def _draw(panel: Axes, axis: str, name: str, courses: Sequence[Health]) -> None:
     label, normal, title = SHOWN[name]
     told = [(one, one.quantity(name)) for one in courses]
+    panel.set_title(f'Axis {axis}: {title}, 95 % intervals')
+    if not any(quantity.is_known for _, quantity in told):
+        panel.set_axis_off()
+        reason = told[-1][1].reason
+        panel.text(
+            0.5, 0.5, reason, transform=panel.transAxes, ha='center', va='center', wrap=True
+        )
+        return
     dates = date2num([_date(one.stamp) for one, _ in told])
     values, low, high = (
         100.0 * np.array([getattr(quantity, part) for _, quantity in told])
         for part in ('value', 'low', 'high')
     )
+    _shade(panel, courses[-1])
     panel.axhline(normal, color=GREY, lw=1.0)
     if name == DRAG:
-        panel.axhspan(-100 * TOLERANCE, 100 * TOLERANCE, color=GREY, alpha=0.2, lw=0)
+        band = -100 * TOLERANCE, 100 * TOLERANCE
+        panel.axhspan(*band, color=GREY, alpha=0.2, lw=0, label='normal')
     panel.errorbar(
         dates,
         values,
@@ -57,20 +67,25 @@ def _draw(panel: Axes, axis: str, name: str, courses: Sequence[Health]) -> None:
         capsize=3,
     )
     worse = [one.condition is Condition.WORSE for one, _ in told]
-    panel.plot(dates[worse], values[worse], 'D', color=VERMILION, ms=7, label='worse')
+    if np.isfinite(values[worse]).any():
+        panel.plot(dates[worse], values[worse], 'D', color=VERMILION, ms=7, label='worse')
     margin = 0.03 * max(float(np.ptp(dates)), 1.0)
     panel.set_xlim(dates.min() - margin, dates.max() + margin)
-    place = AutoDateLocator(maxticks=8)
-    panel.xaxis.set_major_locator(place)
-    panel.xaxis.set_major_formatter(ConciseDateFormatter(place))
-    if np.isfinite(values[worse]).any():
-        panel.legend(loc='best')
-    panel.set(title=f'Axis {axis}: {title}, 95 % intervals', xlabel='date (UTC)', ylabel=label)
-    if not np.isfinite(values).any():
-        reason = told[-1][1].reason
-        panel.text(
-            0.5, 0.3, reason, transform=panel.transAxes, ha='center', va='center', wrap=True
-        )
+    locator = AutoDateLocator(maxticks=8)
+    panel.xaxis.set_major_locator(locator)
+    panel.xaxis.set_major_formatter(ConciseDateFormatter(locator))
+    panel.legend(loc='center left', bbox_to_anchor=(1.0, 0.5), frameon=False)
+    panel.set(xlabel='date (UTC)', ylabel=label)
+
+
+def _shade(panel: Axes, health: Health) -> None:
+    """Shade the baseline of an axis, and mark since when it has changed."""
+    if health.baseline is not None:
+        ends = date2num([_date(health.baseline.begin), _date(health.baseline.end)])
+        panel.axvspan(*ends, color=SKY, alpha=0.25, lw=0, label='baseline')
+    if health.since:
+        since = date2num(_date(health.since))
+        panel.axvline(since, color=VERMILION, ls='--', label='changed')
 
 
 def _date(stamp: int) -> datetime.datetime:

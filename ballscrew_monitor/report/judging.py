@@ -41,6 +41,7 @@ from numpy.typing import NDArray
 from surrogate.surface import ContactOnset, onset_of_surface, Surface, ZoneLimits
 
 if TYPE_CHECKING:  # they ask for packages that printing does not need
+    from ballscrew_monitor.health.records import Health
     from ballscrew_monitor.report.health_history import AxisHistory, HistoryMaker
     from ballscrew_monitor.report.row_table import RowTable
 
@@ -95,7 +96,8 @@ class AxisCase:
 
     `nominal`: the parameters are those taken where nobody gave any; `numbered`: the recording
     tells how many messages were lost on their way to it; `onset`: where contact begins with the
-    oil as warm as it was in motion on average; `surely_outside` [s], NaN where nothing tells.
+    oil as warm as it was in motion on average; `surely_outside` [s], NaN where nothing tells;
+    `health` is that by this recording alone, where it was asked for.
 
     """
 
@@ -110,6 +112,7 @@ class AxisCase:
     nominal: bool = False
     numbered: bool = False
     history: 'AxisHistory | None' = None
+    health: 'Health | None' = None
     onset: ContactOnset | None = None
     balance: Balance = Balance()
     surely_outside: float = math.nan

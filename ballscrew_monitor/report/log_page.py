@@ -13,7 +13,6 @@ from ballscrew_monitor.recordings.summary import EventRecord, Summary
 from ballscrew_monitor.recordings.words import duration, NONE, number, share
 from ballscrew_monitor.report import buckets, provenance, time_series
 from ballscrew_monitor.report.buckets import axis_budgets, AxisBudget
-from ballscrew_monitor.report.health_history import health_after
 from ballscrew_monitor.report.health_part import health_chapter
 from ballscrew_monitor.report.judging import AxisCase, badness, LogCase, RCS
 from ballscrew_monitor.report.map_record import map_legend, operating_map, OperatingMap
@@ -39,11 +38,13 @@ LASTING = ' A warning goes on over standstill and over what could not be judged.
 def verdict_part(verdict: AxisVerdict) -> Markup:
     """Return the verdict as a box."""
     lines = [line for line in (verdict.why, verdict.remedy) if line]
+    first = [element('p', f'Normal? {verdict.normal}.')] if verdict.normal else []
     if verdict.remedy:
         lines[-1] = f'What to do: {verdict.remedy[0].lower()}{verdict.remedy[1:]}'
     lines += [verdict.contact] if verdict.contact else []
     return element(
         'div',
+        *first,
         element(
             'p',
             element('strong', f'{verdict.standing.word}:'),
@@ -65,10 +66,7 @@ def tiles(case: AxisCase, summary: Summary) -> Markup:
     facts = (
         (duration(case.survey.span), 'recorded'),
         (duration(running), f'in motion ({share(running, case.survey.span)})'),
-        (
-            NONE if summary.says_nothing else share(summary.outside_time, running),
-            'of the motion outside the optimal zone',
-        ),
+        _outside(case, summary),
         (str(len(summary.events)), 'warning' if len(summary.events) == 1 else 'warnings'),
         (f'{number(summary.energy_lost, 4)} J', 'lost to friction in the screw'),
         travel,
@@ -78,6 +76,14 @@ def tiles(case: AxisCase, summary: Summary) -> Markup:
         for value, text in facts
     )
     return element('div', *parts, class_='tiles')
+
+
+def _outside(case: AxisCase, summary: Summary) -> tuple[str, str]:
+    """Return the share of the motion surely outside, or outside where nothing tells how surely."""
+    sure = min(case.surely_outside, summary.outside_time)
+    word, time = ('', summary.outside_time) if math.isnan(sure) else ('surely ', sure)
+    part = NONE if summary.says_nothing else share(time, summary.running_time)
+    return part, f'of the motion {word}outside the optimal zone'
 
 
 def shares(case: AxisCase, summary: Summary) -> Markup:
@@ -300,7 +306,7 @@ def _axis_part(
         element('div', class_='series'),
         _legend([((kind,), text) for kind, text in time_series.BAR_LEGEND]),
         provenance.torque_part(case),
-        *([] if case.history is None else [health_chapter(health_after(case.history))]),
+        *([] if case.health is None else [health_chapter(case.health)]),
         provenance.inputs_part(case),
         provenance.gaps_part(case, budget.gaps),
         provenance.assumptions_part(case, log.parameters),

@@ -26,7 +26,7 @@ from ballscrew_monitor.recordings.declared import keys, plain
 from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report import logs
-from ballscrew_monitor.report.health_history import HistoryMaker
+from ballscrew_monitor.report.health_history import health_after, HistoryMaker
 from ballscrew_monitor.report.inputs_seen import hints_on, inputs_seen, NAMES
 from ballscrew_monitor.report.judged_bag import judged_bag
 from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare
@@ -78,9 +78,10 @@ class AxisLine:
     """
     What an overview says of an axis of a recording, and its machine.
 
-    `begins` [s] since 1970, time recorded, in motion and outside [s], NaN where not known; the
-    worst event in words, and its depth [-]. How many samples of the speed there should be, how
-    many were judged, and why no others; what to do, and the inputs that were not measured.
+    `begins` [s] since 1970, time recorded, in motion, outside and surely so [s], NaN where not
+    known; the worst event in words, and its depth [-]. How many samples of the speed there should
+    be, how many were judged, and why no others; what to do, whether it is normal, and the inputs
+    that were not measured.
 
     """
 
@@ -91,6 +92,7 @@ class AxisLine:
     recorded: float = math.nan
     running_time: float = math.nan
     outside_time: float = math.nan
+    surely_outside: float = math.nan
     warnings: int = 0
     worst: str = ''
     depth: float = math.nan
@@ -99,6 +101,7 @@ class AxisLine:
     judged: int = 0
     losses: str = ''
     remedy: str = ''
+    normal: str = ''
     unmeasured: Sequence[str] = ()
 
     @property
@@ -163,6 +166,7 @@ def report_log(
                 on_state=add_state,
                 health=HistoryMaker,
             )
+        log = with_health(log)
         with new_file(made / logs.STATES) as partial:
             store.write(partial)
         on_share(STORED_SHARE)
@@ -177,6 +181,17 @@ def report_log(
         logs.replace_report(made, out)
         on_share(1.0)
         return _result(log)
+
+
+def with_health(log: LogCase) -> LogCase:
+    """Return a recording with the health of its axes, as far as it alone tells it."""
+    axes = [
+        case
+        if case.history is None
+        else dataclasses.replace(case, health=health_after(case.history))
+        for case in log.axes
+    ]
+    return dataclasses.replace(log, axes=axes)
 
 
 def write_events(path: Path, log: LogCase) -> None:
@@ -212,7 +227,12 @@ def _axis_line(key: MachineAxis, verdict: AxisVerdict, case: AxisCase | None) ->
     machine, axis = key
     standing = verdict.standing.value
     line = AxisLine(
-        axis=axis, standing=standing, verdict=verdict.whole, machine=machine, remedy=verdict.remedy
+        axis=axis,
+        standing=standing,
+        verdict=verdict.whole,
+        machine=machine,
+        remedy=verdict.remedy,
+        normal=verdict.normal,
     )
     if case is None:
         return line
@@ -228,6 +248,7 @@ def _axis_line(key: MachineAxis, verdict: AxisVerdict, case: AxisCase | None) ->
         recorded=case.survey.span,
         running_time=math.nan if summary is None else summary.running_time,
         outside_time=case.outside_time,
+        surely_outside=min(case.surely_outside, case.outside_time),
         warnings=len(case.outcome.events),
         worst='' if worst is None else f'{worst.quantity} {worst.shown(worst.worst_value)}',
         depth=math.nan if worst is None else badness(worst)[0],

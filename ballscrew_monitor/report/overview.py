@@ -18,7 +18,7 @@ from ballscrew_monitor.report.page import element, Markup, page, table, TableCel
 from ballscrew_monitor.report.trend import Mark, trend
 
 SCRIPTS = ('format.js', 'table.js', 'overview.js')
-MARKS = {'good': 'optimal', 'bad': 'outside', 'unknown': 'unjudged'}
+MARKS = {'good': 'optimal', 'bad': 'outside', 'perhaps': 'perhaps', 'unknown': 'unjudged'}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -84,6 +84,7 @@ def overview_page(
                 'Recorded',
                 'Judged',
                 'In motion',
+                'Surely outside [%]',
                 'Outside [%]',
                 'Warnings',
                 'Worst warning',
@@ -116,15 +117,20 @@ def _verdict(entries: Sequence[LogEntry], listed: Sequence[Listed]) -> Markup:
     lost = sum(entry.result is None for entry in entries)
     sentence = (
         f'{counts["bad"]} of {len(listed)} axis recordings ran outside the optimal zone, '
+        f'{counts["perhaps"]} perhaps, '
         f'{counts["good"]} were good, {counts["unknown"]} could not be judged'
     )
     sentence += f'; {counted(lost, "recording")} could not be read.' if lost else '.'
-    kind = 'bad' if counts['bad'] else 'unknown' if counts['unknown'] or lost else 'good'
+    worst = {**counts, 'unknown': counts['unknown'] + lost}
+    kind = next((one for one in ('bad', 'perhaps', 'unknown') if worst[one]), 'good')
     return element('div', element('p', sentence, class_='sentence'), class_=f'verdict {kind}')
 
 
 def _row(entry: LogEntry, line: AxisLine, title: str) -> TableRow:
-    part = line.outside_time / line.running_time if line.running_time else math.nan
+    sure, part = (
+        time / line.running_time if line.running_time else math.nan
+        for time in (line.surely_outside, line.outside_time)
+    )
     link = element('a', entry.name, href=f'{quote(entry.folder)}/{PAGE}')
     return TableRow(
         (
@@ -140,6 +146,7 @@ def _row(entry: LogEntry, line: AxisLine, title: str) -> TableRow:
             _time(line.recorded),
             TableCell(f'{line.judged} of {line.expected}', kind='short', value=line.judged),
             _time(line.running_time),
+            TableCell(percent(sure).removesuffix(' %'), kind='number', value=sure),
             TableCell(percent(part).removesuffix(' %'), kind='number', value=part),
             TableCell(str(line.warnings), kind='short', value=line.warnings),
             TableCell(line.worst or NONE, kind='short', value=line.depth),

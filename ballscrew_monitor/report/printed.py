@@ -38,6 +38,8 @@ def log_lines(log: LogCase) -> Iterator[str]:
 def axis_lines(case: AxisCase) -> Iterator[str]:
     """Yield the lines about an axis that has rows."""
     verdict, summary = verdict_of(case), case.outcome.summary()
+    if verdict.normal:
+        yield _line('normal', verdict.normal)
     yield _line('verdict', verdict.whole)
     if verdict.why:
         yield _line('why', verdict.why)
@@ -121,6 +123,7 @@ def axis_record(case: AxisCase, verdict: AxisVerdict) -> dict[str, Any]:
     """Return what is known of an axis; `<name>_reason` says why a number is missing."""
     summary, survey, surface = case.outcome.summary(), case.survey, case.surface
     return {
+        **({'normal': verdict.normal} if verdict.normal else {}),
         'verdict': verdict.whole,
         'standing': verdict.standing.value,
         'why': verdict.why,

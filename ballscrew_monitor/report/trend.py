@@ -45,7 +45,9 @@ class Frame:
             pick(one for one in seen if math.isfinite(one)) for pick in (min, max)
         )
         edge = ROOM * (self.high - self.low)
-        self.low, self.high = self.low - edge, self.high + (edge or 0.01)
+        # Shares that are never negative stand on zero.
+        self.low = self.low - edge if self.low < 0.0 else 0.0
+        self.high += edge or 0.01
 
     def across(self, at: float) -> float:
         """Return the place of a date [px]."""

@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The verdict on an axis in one sentence: how long outside the zone, why, and what to do."""
+"""The verdict on an axis: whether it is normal, how long outside the zone, and what to do."""
 
 from collections.abc import Mapping
 import dataclasses
@@ -9,6 +9,7 @@ import math
 
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Reason
+from ballscrew_monitor.health.words import normal_answer
 from ballscrew_monitor.recordings.summary import EventRecord, Summary
 from ballscrew_monitor.recordings.words import counted, duration, list_of, percent, share
 from ballscrew_monitor.report.judging import AxisCase, LogCase, RCS
@@ -51,23 +52,35 @@ class VerdictKind(enum.Enum):
 
     GOOD = 'good'
     BAD = 'bad'
+    PERHAPS = 'perhaps'
     UNKNOWN = 'unknown'
 
     @property
     def word(self) -> str:
         """Return how a verdict begins."""
-        return {'good': 'Good', 'bad': 'Outside', 'unknown': 'Not known'}[self.value]
+        return {
+            'good': 'Good',
+            'bad': 'Outside',
+            'perhaps': 'Perhaps outside',
+            'unknown': 'Not known',
+        }[self.value]
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class AxisVerdict:
-    """The standing, in the rest of a sentence; why, what to do, and where contact begins."""
+    """
+    The standing, in the rest of a sentence; why, what to do, and where contact begins.
+
+    `normal` says whether the axis is as usual, empty where its health was not asked for.
+
+    """
 
     standing: VerdictKind = VerdictKind.UNKNOWN
     sentence: str
     why: str = ''
     remedy: str = ''
     contact: str = ''
+    normal: str = ''
 
     @property
     def whole(self) -> str:
@@ -91,7 +104,18 @@ def verdict_of(case: AxisCase) -> AxisVerdict:
     """Return the verdict on an axis that has rows, in the unit in which its log speaks."""
     verdict = _verdict(case)
     remedy = case.in_its_unit(verdict.remedy)
-    return dataclasses.replace(verdict, remedy=remedy, contact=case.contact)
+    normal = ''
+    if case.health is not None:
+        normal = normal_answer(case.health)
+        if verdict.standing in (VerdictKind.BAD, VerdictKind.PERHAPS):
+            remedy = _with_workshop(case.health.advice, remedy)
+    return dataclasses.replace(verdict, remedy=remedy, contact=case.contact, normal=normal)
+
+
+def _with_workshop(advice: str, remedy: str) -> str:
+    """Return what the workshop can change by itself, before what the process would."""
+    first = f'{advice[:1].upper()}{advice[1:]}.' if advice else ''
+    return f'{first[:-1]}; or {remedy}' if first and remedy else first or remedy
 
 
 def _verdict(case: AxisCase) -> AxisVerdict:
@@ -202,9 +226,11 @@ def _mostly_outside(summary: Summary) -> bool:
 
 def _outside(case: AxisCase, summary: Summary, more: str) -> AxisVerdict:
     time = _time_outside(case, summary)
+    sure = not case.surely_outside <= ROUNDING * summary.outside_time
+    standing = VerdictKind.BAD if sure else VerdictKind.PERHAPS
     if not summary.events and _mostly_outside(summary):
         return AxisVerdict(
-            standing=VerdictKind.BAD,
+            standing=standing,
             sentence=f'axis {case.axis} was outside its optimal zone {time}, each time too '
             f'briefly for a warning{more}.',
         )
@@ -215,7 +241,7 @@ def _outside(case: AxisCase, summary: Summary, more: str) -> AxisVerdict:
             f'for a warning{more}.',
         )
     return AxisVerdict(
-        standing=VerdictKind.BAD,
+        standing=standing,
         sentence=f'axis {case.axis} ran outside its optimal zone {time}, '
         f'with {counted(len(summary.events), "warning")}{more}.',
         why=_why(summary.events),

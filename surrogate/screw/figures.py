@@ -3,12 +3,12 @@
 """
 Pictures of a screw: of a solved point, of the onset of contact, of the sensitivity of a point.
 
-A point shows pressure, film and slip of all contacts that carry load, the onset its course over
-the pressure at which summits are cut, and the sensitivity what each input changes (a tornado).
+A point shows pressure, film and slip of all contacts that carry load, the onset lines of speed,
+new and run in at three temperatures, and the sensitivity what each input changes (a tornado).
 
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 import math
 from pathlib import Path
@@ -26,15 +26,18 @@ from surrogate.parameters import Lubricant, Screw
 from surrogate.plotting.style import (
     BLUE,
     draw_picture,
+    GREEN,
     GREY,
     MAP,
     new_figure,
     ORANGE,
     SKY,
     VERMILION,
+    YELLOW,
 )
 from surrogate.screw.nut import contact_slip, ScrewContact
-from surrogate.screw.screw_onset import ABOVE, onset_over_pressure
+from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import onset_point, with_raceway
 from surrogate.screw.sensitivity import EFFICIENCY_SPEED, ONSET, shown, TORQUE
 from surrogate.screw.solve import ScrewSolution
 from surrogate.units import GIGA, MICRO, MILLI, NANO, RPM, ZERO_CELSIUS
@@ -47,10 +50,12 @@ ARROWS = (5, 9)
 """Arrows of slip along and across a contact."""
 FILM_SPAN = 30.0
 """Top of the film scale over its bottom [-]."""
-CUTTING = 0.5e9, 20e9
-"""Cutting pressures that a sheet may state [Pa]."""
-STEPS = 8
-"""Cutting pressures along the curve [-]."""
+AROUND = -15.0, 0.0, 15.0
+"""Temperatures of the lines of speed about the one that is asked for [K]."""
+STATES = {'new': 'new', 'run_in': 'run in'}
+ZONES = ((VERMILION, '//', 'in contact'), (YELLOW, '', 'perhaps'), (GREEN, '', 'free of contact'))
+"""Colour, hatch for a print in grey, and word of the parts of a line of speed."""
+LABEL = {'boxstyle': 'round,pad=0.15', 'fc': 'w', 'ec': 'none'}
 PANELS = {
     ONSET: ('Contact begins', 'speed [rev/min]', RPM),
     TORQUE: ('Friction torque', 'torque [N m]', 1.0),
@@ -166,43 +171,50 @@ def draw_onset(
 
 
 def figure_onset(screw: Screw, lubricant: Lubricant, record: Mapping[str, Any]) -> Figure:
-    """Return the onset speed over the cutting pressure, with hardness and running-in marked."""
-    low, high = next(iter(record['states'].values()))['band']
-    sheet = screw.roughness
+    """Return a line of speed for each state and temperature: in contact, perhaps, and free."""
     screw = replace(screw, working_load=record['working_load_N'])
-    least = max(ABOVE * record['working_pressure_Pa'], 0.8 * sheet.run_in_low)
-    least, most = np.clip([least, 1.2 * sheet.hardness], *CUTTING)
-    pressures = np.geomspace(least, most, STEPS)
-    place = record['load_N'], record['temperature_K']
-    speed = np.array(onset_over_pressure(screw, lubricant, *place, pressures.tolist())) / RPM
-    figure = new_figure(6.4, 4.0)
-    axes, giga = figure.subplots(), GIGA * pressures
-    axes.fill_between(
-        giga, speed * low, speed * high, color=BLUE, alpha=0.2, label=f'within {high:g}'
-    )
-    axes.plot(giga, speed, color=BLUE, label='onset, RCS 0.01')
-    axes.axvspan(
-        GIGA * sheet.run_in_low,
-        GIGA * sheet.run_in_high,
-        color=ORANGE,
-        alpha=0.2,
-        label='run in, its range',
-    )
-    axes.axvline(GIGA * sheet.run_in_pressure, color=ORANGE, linestyle='--', label='run in')
-    axes.axvline(GIGA * sheet.hardness, color=VERMILION, linestyle=':', label='hardness: new')
+    rows = list(_onset_rows(screw, lubricant, record))
+    slowest = 0.3 * min((low for _, low, _ in rows if low), default=screw.fastest_speed / 30)
+    ends = slowest / RPM, screw.fastest_speed / RPM
+    figure = new_figure(7.2, 0.42 * len(rows) + 1.7)
+    axes = figure.subplots()
+    for place, (_, low, high) in enumerate(rows):
+        edges = np.clip([ends[0], low / RPM, high / RPM, ends[1]], *ends)
+        for begin, end, (colour, hatch, _) in zip(edges, edges[1:], ZONES):
+            axes.barh(place, end - begin, 0.72, begin, color=colour, hatch=hatch, ec='w', lw=0)
+        for edge in {speed for speed in edges[1:3].tolist() if ends[0] < speed < ends[1]}:
+            text = f'{edge:.0f}' if edge >= 100 else f'{edge:.2g}'
+            axes.annotate(text, (edge, place), ha='center', va='center', bbox=LABEL, size='small')
     axes.set(
         xscale='log',
-        yscale='log',
-        xlabel='pressure at which summits are cut [GPa]',
-        ylabel='speed at which contact begins [rev/min]',
-        title=f'{record["screw"]}, {record["oil"]}, {record["load_N"]:g} N, '
-        f'{record["temperature_K"] - ZERO_CELSIUS:g} °C',
+        xlim=ends,
+        xlabel='speed of the screw [rev/min]',
+        title=f'{record["screw"]}, {record["oil"]}, {record["load_N"]:g} N',
     )
-    ticks = [tick for tick in (1, 1.5, 2, 3, 5, 7, 10) if giga[0] <= tick <= giga[-1]]
-    axes.set_xticks(ticks, [f'{tick:g}' for tick in ticks])
-    axes.minorticks_off()
-    axes.legend(loc='lower right')
+    axes.set_yticks(range(len(rows)), [name for name, _, _ in rows])
+    axes.invert_yaxis()
+    axes.xaxis.set_major_formatter(lambda value, _: f'{value:g}')
+    patches = [Patch(fc=colour, hatch=hatch, ec='w', label=text) for colour, hatch, text in ZONES]
+    figure.legend(handles=patches, loc='outside lower center', ncols=3)
     return figure
+
+
+def _onset_rows(
+    screw: Screw, lubricant: Lubricant, record: Mapping[str, Any]
+) -> Iterator[tuple[str, float, float]]:
+    """Yield state and temperature in words, and between which speeds [rad/s] contact begins."""
+    warm = lubricant.minimum_temperature, lubricant.maximum_temperature
+    around = np.clip(record['temperature_K'] + np.array(AROUND), *warm).tolist()
+    for state, stated in record['states'].items():
+        opened = Contacts.of(with_raceway(screw, state=state))
+        least, most = stated.get('speed_range_rad_s', [stated['speed_rad_s']] * 2)
+        for kelvin in dict.fromkeys(around):
+            speed = onset_point(opened, lubricant, record['load_N'], kelvin)['speed_rad_s']
+            # Another temperature moves all speeds of a state alike.
+            ratio = speed / stated['speed_rad_s'] if speed else 0.0
+            low, high = stated['band']
+            name = f'{STATES[state]}, {kelvin - ZERO_CELSIUS:.0f} °C'
+            yield name, low * least * ratio, high * most * ratio
 
 
 def draw_sensitivity(folder: Path, record: Mapping[str, Any]) -> Path:

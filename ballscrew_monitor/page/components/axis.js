@@ -180,12 +180,17 @@ class Axis {
     return !this.gone && (this.age < STALE || Boolean(this.state && this.recorded));
   }
 
-  /** Return the level that may be shown: of old data none, and no good one at standstill. */
+  /** Return the level that may be shown: of old data none, no good one at standstill, and of a warning how sure it is. */
   get level() {
     if (!this.fresh) {
       return 'unknown';
     }
-    return this.state.at_rest && this.state.level !== 'warn' ? 'rest' : this.state.level;
+    const { level, zone, at_rest: rests, usual, outside } = this.state;
+    if (level !== 'warn') {
+      return rests ? 'rest' : level;
+    }
+    const certainty = zone === 'outside' && ['surely', 'perhaps'].includes(outside) ? outside : 'warn';
+    return usual ? 'usual' : certainty;
   }
 }
 

@@ -103,14 +103,15 @@ class Events {
   }
 
   row(event) {
-    const row = Format.element('tr', event.active ? 'bad' : '');
+    const row = Format.element('tr', event.usual ? 'usual' : event.active ? 'bad' : '');
     const when = Format.element('button', 'plain', Strips.clock(event.begin));
     when.type = 'button';
     when.title = Words.say('event_show');
     when.addEventListener('click', () => this.show(event.begin - 5, event.begin + event.duration_s + 5));
     const first = Format.element('td', 'short');
     first.append(when);
-    const length = Format.time(event.duration_s) + (event.active ? ` ${Words.say('event_active')}` : '');
+    const more = ['active', 'usual'].filter((one) => event[one]).map((one) => ` ${Words.say(`event_${one}`)}`);
+    const length = Format.time(event.duration_s) + more.join(',');
     const how = ['acknowledged', 'shelved'].find((one) => event[one]);
     const who = event.acknowledged_by || (how ? Words.say(`event_${how}`) : '');
     const advice = Format.element('td');

@@ -1,10 +1,15 @@
 // Copyright 2026 ballscrew_monitor contributors
 // SPDX-License-Identifier: Apache-2.0
-// What is read from two metres away: zone, condition, reason, advice, and how old it all is.
+// What is read from two metres away: is it normal, is it outside the zone, what to do; and how old it all is.
 
 'use strict';
 
-const SIGNS = { ok: '✓', warn: '▲', rest: '–', unknown: '?', normal: '✓', worse: '▲' };
+const SIGNS = {
+  ok: '✓', surely: '▲', perhaps: '△', warn: '▲', usual: '–', rest: '–', unknown: '?',
+  normal: '✓', worse: '▲', slightly_changed: '△',
+};
+
+const FINE = { usual: 'nothing_usual', ok: 'nothing_to_do', rest: 'nothing_to_do', perhaps: 'nothing_to_do' };
 
 class FirstScreen {
   /** Build the screen of an axis. */
@@ -21,10 +26,10 @@ class FirstScreen {
     return this.parts[name];
   }
 
-  /** Return the two signs: the zone, which changes within seconds, and the condition, in weeks. */
+  /** Return the two signs: the condition, which changes within weeks, and the zone, in seconds. */
   signs() {
     const holder = Format.element('div', 'signs');
-    for (const name of ['level', 'condition']) {
+    for (const name of ['condition', 'level']) {
       const sign = this.part(`${name}_sign`, 'div', `sign ${name}`);
       const glyph = this.part(`${name}_glyph`, 'span', 'glyph');
       glyph.setAttribute('aria-hidden', 'true');
@@ -38,7 +43,7 @@ class FirstScreen {
 
   told() {
     const holder = Format.element('div', 'told');
-    holder.append(...['reason', 'advice', 'change', 'shelved'].map((name) => this.part(name, 'p')));
+    holder.append(...['change', 'reason', 'advice', 'shelved'].map((name) => this.part(name, 'p')));
     return holder;
   }
 
@@ -72,9 +77,9 @@ class FirstScreen {
     const condition = axis.health?.condition ?? 'unknown';
     this.sign('condition', condition, Words.say(`condition_${condition}`));
     this.tell('reason', this.reason());
-    const advice = axis.fresh && axis.state.advice;
+    const advice = axis.fresh && this.advice(condition);
     this.tell('advice', advice ? { key: 'what_to_do', values: { advice } } : '');
-    this.tell('change', condition === 'worse' ? axis.health.verdict : '');
+    this.tell('change', condition === 'normal' ? '' : axis.health?.verdict ?? { key: 'health_none' });
     this.write('shelved', FirstScreen.shelved(axis));
     this.drawNumbers();
     this.drawInputs();
@@ -106,7 +111,17 @@ class FirstScreen {
     }
     const { level, zone, headline } = axis.state;
     const held = level === 'warn' && zone !== 'outside';
-    return held ? { key: 'warning_held', values: { reason: headline } } : headline;
+    const reason = held ? { key: 'warning_held', values: { reason: headline } } : headline;
+    return axis.state.outside === 'unbanded'
+      ? { key: 'first_second', values: { first: reason, second: { key: 'no_bands' } } } : reason;
+  }
+
+  /** Return what to do: against a warning, against a change, or nothing where that is known. */
+  advice(condition) {
+    const { axis } = this;
+    const changed = ['worse', 'slightly_changed'].includes(condition);
+    const fine = condition === 'normal' && FINE[axis.level];
+    return axis.state.advice || (changed && axis.health.advice) || (fine ? { key: fine } : '');
   }
 
   static shelved({ state }) {

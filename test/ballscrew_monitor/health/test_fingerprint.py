@@ -3,24 +3,13 @@
 """Reference runs: planned, printed, and known again among other motion."""
 
 import itertools
-import re
 
-from ballscrew_monitor.cli import main
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.health.fingerprint import (
-    LEAST_TIME,
-    PAUSE,
-    planned,
-    program_of,
-    Recogniser,
-    STAIRCASE,
-)
+from ballscrew_monitor.health.fingerprint import PAUSE, Recogniser, STAIRCASE
 from ballscrew_monitor.health.records import LoadSource
 from hypothesis import given
 from hypothesis import strategies as st
 import pytest
-from surrogate.surface import shipped_surface
-from surrogate.units import TURN
 
 DERIVED = LoadSource.DERIVED
 
@@ -98,38 +87,3 @@ def test_nothing_is_lost_or_turned_whatever_comes(motion, speeds, draw):
     parts = [run.take([one]) for one in made]
     found = [*itertools.chain(*parts), *run.finish()]
     assert [one.start for one in found] == [one.start for one in made]
-
-
-def test_the_program_moves_for_long_enough_at_each_step_and_returns():
-    lead, travel = 0.01, 0.3
-    steps = planned(lead, travel)
-    assert [one.feed for one in steps] == pytest.approx([s * lead / TURN for s in STAIRCASE])
-    assert all(one.time >= 2 * LEAST_TIME * 0.999 for one in steps)
-    moves = [
-        (float(length), float(feed))
-        for length, feed in re.findall(
-            r'X(-?[\d.]+) F([\d.]+)', '\n'.join(program_of(steps, 'X', travel))
-        )
-    ]
-    assert sum(length for length, _ in moves) == pytest.approx(0.0)
-    assert max(abs(length) for length, _ in moves) <= 300.0
-    assert sorted({feed for _, feed in moves}) == [100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0]
-    time = sum(abs(length) / feed * 60.0 for length, feed in moves)
-    assert time == pytest.approx(sum(one.time for one in steps))
-
-
-def test_the_command_prints_a_program(capsys):
-    assert main(['fingerprint', '--surface', str(shipped_surface()), '--travel-mm', '300']) == 0
-    out = capsys.readouterr().out.splitlines()
-    assert out[0] == '(10 rev/min, 100 mm/min: 1 times forth and back, 12 s)'
-    assert out[-1] == 'G90'
-    assert 'G1 X10.000 F100.0' in out
-
-
-@pytest.mark.parametrize(
-    ('key', 'wrong'),
-    [('travel', ('--travel-mm', '0')), ('axis', ('--travel-mm', '9', '--axis', 'X1'))],
-)
-def test_what_cannot_be_is_refused(says, capsys, key, wrong):
-    assert main(['fingerprint', *wrong]) == 2
-    assert says(key) in capsys.readouterr().err

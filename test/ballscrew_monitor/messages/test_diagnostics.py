@@ -13,6 +13,7 @@ from ballscrew_monitor.core.judgement import Code, Level, PointValidity, Warning
 from ballscrew_monitor.core.links import Link, Publisher
 from ballscrew_monitor.core.state import LoadDerivation, shelve
 from ballscrew_monitor.core.vitals import VitalSigns
+from ballscrew_monitor.health.records import Condition, Health, Quantity
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.messages.diagnostics import ERROR, OK, STALE, WARN
 from ballscrew_monitor.messages.state_messages import plain_values
@@ -39,6 +40,9 @@ def after(
     settings=None,
     links=None,
     policy=WarningPolicy.ZONE,
+    usual=(),
+    health=None,
+    advice='',
     **limits,
 ):
     delays = {'raise_delay': 0, 'clear_delay': 0}
@@ -54,6 +58,9 @@ def after(
         links=links or LINKS,
         clock_stands=clock_stands,
         policy=policy,
+        usual=usual,
+        health=health,
+        advice=advice,
     )
     return {status.name.rpartition(' ')[2]: status for status in made}
 
@@ -367,6 +374,60 @@ def test_the_code_of_a_status_is_its_first_value(core, events, codes):
 def test_a_warning_that_is_not_to_call_keeps_its_code(core, policy):
     found = after(core, LOAD, SPEED, surface=core.surface(rcs=0.5), policy=policy)
     assert codes_of(found.values()) == [Fault.RCS_HIGH, Fault.NONE, Fault.NONE]
+
+
+@pytest.mark.parametrize(
+    ('policy', 'level'),
+    [(WarningPolicy.ZONE, WARN), (WarningPolicy.BOTH, OK), (WarningPolicy.CHANGE, OK)],
+)
+def test_a_usual_warning_is_not_raised_by_who_asks_for_changes(core, policy, level):
+    """With the zone alone all stays as it is; another warning is raised as ever."""
+    surface = core.surface(rcs=0.5)
+    plain = after(core, LOAD, SPEED, surface=surface, policy=policy)['Lubrication']
+    found = after(core, LOAD, SPEED, surface=surface, policy=policy, usual=(1,))['Lubrication']
+    assert found.level == level
+    assert codes_of([found]) == [Fault.RCS_HIGH]
+    assert (said(found) == said(plain)) == (policy is WarningPolicy.ZONE)
+    assert diagnostics.usual_of(found) == {1}
+    assert diagnostics.usual_of(plain) == frozenset()
+    other = after(core, LOAD, SPEED, surface=surface, policy=policy, usual=(2, 3))['Lubrication']
+    assert said(other) == said(plain)
+
+
+def health_of(condition, **drag):
+    """Return a health with a change of the friction."""
+    quantity = Quantity(name='drag change', **drag)
+    day = 20_000 * 86_400 * SECOND
+    return Health(
+        axis='x',
+        stamp=day,
+        condition=condition,
+        verdict='',
+        advice='measure the backlash',
+        since=day,
+        quantities=[quantity],
+    )
+
+
+def test_three_answers_come_first_and_in_order(core):
+    health = health_of(Condition.UNKNOWN, reason='not known yet: 3 of 5 logs')
+    for rcs, outside, remedy in ((0.0, 'not', ''), (0.5, 'surely', 'look')):
+        surface = core.surface(rcs=rcs)
+        made = after(core, LOAD, SPEED, surface=surface, health=health, advice='look')
+        assert [(pair.key, pair.value) for pair in made['Lubrication'].values[1:4]] == [
+            ('Normal', 'not known yet: 3 of 5 logs'),
+            ('Outside the zone', outside),
+            ('What to do', remedy),
+        ]
+
+
+def test_the_remedy_of_a_change_is_an_answer_though_the_zone_is_fine(core):
+    worse = health_of(Condition.WORSE, value=-0.11, low=-0.13, high=-0.09)
+    found = after(core, LOAD, SPEED, surface=core.surface(rcs=0.0), health=worse)
+    values = values_of(found['Lubrication'])
+    assert values['Normal'].startswith('changed since about 4 October 2024')
+    assert values['Normal'].endswith('its friction is 11 % lower (9 to 13 %)')
+    assert values['What to do'] == 'measure the backlash'
 
 
 def test_what_holds_for_the_whole_axis_or_node_has_its_code(core):

@@ -11,6 +11,7 @@ import re
 import shutil
 
 from ballscrew_monitor.cli import main
+from ballscrew_monitor.core.judgement import Code
 from ballscrew_monitor.health.records import (
     Baseline,
     Cause,
@@ -20,6 +21,7 @@ from ballscrew_monitor.health.records import (
     Condition,
     Health,
     Quantity,
+    UsualWarning,
 )
 from ballscrew_monitor.health.summary import array_of
 from ballscrew_monitor.report import health_collect
@@ -340,6 +342,7 @@ def test_health_survives_plain_data():
         ],
         baseline=Baseline(begin=1, end=2, reason='named'),
         notes=['a note'],
+        usual_warnings=(UsualWarning(Code.RCS_HIGH, 3, -2, 1),),
     )
     plain = json.loads(json.dumps(to_json(dataclasses.asdict(health))))
     again = read_health(plain)

@@ -40,7 +40,11 @@ def test_hostile_names_are_text_the_verdict_comes_first_and_what_was_assumed_is_
     assert html.escape(HOSTILE) in text
     assert text.count('<script') == text.count('</script') == len(CHARTS) + 1
     main = written[1].partition('<main>')[2]
-    assert re.findall(r'<strong>([^<]*)</strong>', main) == ['Outside:', 'Good:', 'Not known:']
+    assert re.findall(r'<strong>([^<]*)</strong>', main) == [
+        'Perhaps outside:',
+        'Good:',
+        'Not known:',
+    ]
     assert main.index('class="verdict') < main.index('class="map"')
     assert '<span class="tag assumed">assumed</span>' in written[1]
 

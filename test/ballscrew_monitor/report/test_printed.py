@@ -114,7 +114,7 @@ def test_the_summary_is_strict_json_with_reasons_for_null(judged):
     assert record['unjudged_axes'] == ['y']
     assert record['assumptions']['x.lead'] == {'value': 0.01, 'reason': 'usual'}
     axis = record['axes']['x']
-    assert axis['standing'] == 'bad'
+    assert axis['standing'] == 'perhaps'
     assert axis['torque_residual']['rms_Nm'] is None
     assert axis['torque_residual']['rms_Nm_reason'] == 'no torque was measured in motion'
     assert record['axes']['y'] is None

@@ -50,3 +50,10 @@ def test_a_title_is_text_and_a_link_leads_there():
     drawn = trend([one, other, hostile])
     assert '<b>' not in drawn
     assert re.search('<a href="a b/report.html"><circle', drawn)
+
+
+@pytest.mark.parametrize(('values', 'bottom'), [((0.1, 0.4), 0.0), ((0.0, 0.0), 0.0)])
+def test_shares_stand_on_zero(values, bottom):
+    assert Frame(marks(*values), 0.0, 0.0).low == bottom
+    assert '>0 %<' in trend(marks(*values))
+    assert Frame(marks(*values), 0.0, 0.03).low < -0.03  # a change goes either way

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The sentence that comes first: what is said, and what is said to be unknown."""
 
+import dataclasses
 import math
 
 from ballscrew_monitor.core.judgement import PointSource, Reason, Zone
+from ballscrew_monitor.health.records import Condition, Health, Quantity
 from ballscrew_monitor.report.log_page import verdict_part
 from ballscrew_monitor.report.printed import axis_lines, axis_record
 from ballscrew_monitor.report.verdict import REMEDIES, verdict_of, VerdictKind
@@ -100,11 +102,11 @@ def test_good_needs_half_of_the_recording_but_for_standstill(judged, first, gap,
     whole, known = first + gap + last, first + last
     if abs(known - whole / 2) > 2:  # the last row before a gap lasts into it
         assert (verdict.standing is VerdictKind.GOOD) == (known > whole / 2)
-    assert verdict.standing is not VerdictKind.BAD
+    assert verdict.standing not in (VerdictKind.BAD, VerdictKind.PERHAPS)
 
 
 @pytest.mark.parametrize(
-    ('outside', 'standing'), [(30.0, VerdictKind.GOOD), (30.1, VerdictKind.BAD)]
+    ('outside', 'standing'), [(30.0, VerdictKind.GOOD), (30.1, VerdictKind.PERHAPS)]
 )
 def test_motion_that_was_mostly_outside_is_not_good_though_no_warning_lasted(
     judged, outside, standing, says
@@ -112,7 +114,7 @@ def test_motion_that_was_mostly_outside_is_not_good_though_no_warning_lasted(
     case = judged.case([judged.rows()], totals=totals(70.0, 60.0 - outside, outside))
     verdict = verdict_of(case)
     assert verdict.standing is standing
-    assert (verdict.whole == says('mostly_outside')) == (standing is VerdictKind.BAD)
+    assert (verdict.whole == says('mostly_outside')) == (standing is VerdictKind.PERHAPS)
     record = axis_record(case, verdict)
     assert (record['standing'], record['verdict']) == (standing.value, verdict.whole)
     assert f'verdict     {verdict.whole}' in list(axis_lines(case))
@@ -135,11 +137,53 @@ def test_outside_says_how_long_why_and_what_to_do(judged, says):
         ),
     ]
     verdict = verdict_of(judged.case([judged.rows()], events, totals=totals(60.0, 45.0, 15.0)))
-    assert verdict.standing is VerdictKind.BAD
+    assert verdict.standing is VerdictKind.PERHAPS
     assert verdict.sentence == says('ran_outside_optimal')
     assert says('up_42_load') in verdict.why
     assert says('efficiency_fell_60') in verdict.why
     assert verdict.remedy == says('as_warning_1')
+
+
+@pytest.mark.parametrize(
+    ('sure', 'standing'),
+    [
+        (0.0, VerdictKind.PERHAPS),
+        (0.14, VerdictKind.PERHAPS),
+        (0.16, VerdictKind.BAD),
+        (math.nan, VerdictKind.BAD),
+    ],
+)
+def test_only_what_is_surely_outside_is_bad(judged, sure, standing):
+    """More of the time outside than the rounding; a surface without bands does not tell."""
+    case = judged.case(
+        [judged.rows()], [judged.event(1, 0.1, 0.2)], totals=totals(60.0, 45.0, 15.0)
+    )
+    assert verdict_of(dataclasses.replace(case, surely_outside=sure)).standing is standing
+
+
+def test_whether_it_is_normal_comes_first_and_the_workshop_before_the_process(judged):
+    drag = Quantity(name='drag change', reason='not known yet: 1 of 5 logs')
+    health = Health(
+        axis='x',
+        stamp=0,
+        condition=Condition.UNKNOWN,
+        verdict='',
+        advice='take ISO VG 220',
+        quantities=[drag],
+    )
+    case = judged.case(
+        [judged.rows()], [judged.event(1, 0.1, 0.2)], totals=totals(60.0, 45.0, 15.0)
+    )
+    alone, verdict = verdict_of(case), verdict_of(dataclasses.replace(case, health=health))
+    assert alone.normal == ''
+    assert verdict.normal == 'not known yet: 1 of 5 logs'
+    assert verdict.remedy == f'Take ISO VG 220; or {alone.remedy}'
+    part = verdict_part(verdict)
+    places = [part.index(text) for text in ('Normal? not', verdict.sentence, 'What to do')]
+    assert places == sorted(places)
+    assert next(iter(axis_lines(dataclasses.replace(case, health=health)))).startswith('normal ')
+    stayed = judged.case([judged.rows()], totals=totals(60.0, 60.0))
+    assert verdict_of(dataclasses.replace(stayed, health=health)).remedy == ''
 
 
 def remedy(judged, *events):

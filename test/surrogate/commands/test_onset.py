@@ -57,8 +57,7 @@ def test_pressures_load_and_trace_are_those_of_the_sheet(record):
     assert found['load_N'] == 500.0
 
 
-def test_a_picture_is_drawn_where_it_is_asked_for(run, tmp_path, monkeypatch):
+def test_a_picture_is_drawn_where_it_is_asked_for(run, tmp_path):
     pytest.importorskip('matplotlib')
-    monkeypatch.setattr('surrogate.screw.figures.STEPS', 2)
     assert run('--screw', 'nominal', '--oil', 'iso_vg_68', '--plot', tmp_path / 'deep') == 0
     assert [path.name for path in (tmp_path / 'deep').iterdir()] == ['onset_nominal_iso_vg_68.png']

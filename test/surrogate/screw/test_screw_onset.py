@@ -249,27 +249,30 @@ def test_smooth_raceways_say_so(screw, oil):
     assert 'that load matters' not in page
 
 
-def test_the_picture_falls_with_the_cutting_pressure(screw, oil, record, monkeypatch):
-    monkeypatch.setattr('surrogate.screw.figures.STEPS', 3)
+def test_the_picture_is_a_line_of_speed_by_state_and_temperature(screw, oil, record):
+    """Where contact is sure ends and where it is free begins, as the record has them."""
     axes = figure_onset(screw, oil, record).axes[0]
-    speeds = axes.lines[0].get_ydata()
-    assert list(speeds) == sorted(speeds)
-    assert all(math.isfinite(one) for one in speeds)
-    assert '[rev/min]' in axes.get_ylabel()
-    assert '[GPa]' in axes.get_xlabel()
+    names = [label.get_text() for label in axes.get_yticklabels()]
+    assert names == [f'{state}, {warm} °C' for state in ('new', 'run in') for warm in (25, 40, 55)]
+    bars = [one for one in axes.patches if one.get_width() > 0]
+    ends = {}
+    for bar in bars:
+        ends.setdefault(round(bar.get_y() + 0.36), []).append(bar.get_x() + bar.get_width())
+    states = record['states']
+    low, high = (factor * states['new']['speed_rad_s'] / RPM for factor in states['new']['band'])
+    assert sorted(ends[1])[:2] == pytest.approx([low, high])
+    band, speeds = states['run_in']['band'], states['run_in']['speed_range_rad_s']
+    assert sorted(ends[4])[:2] == pytest.approx(
+        [band[0] * speeds[0] / RPM, band[1] * speeds[1] / RPM]
+    )
+    assert sorted(ends[0])[0] < sorted(ends[1])[0] < sorted(ends[2])[0]  # colder oil is thicker
+    assert {round(max(edges), 6) for edges in ends.values()} == {
+        round(screw.fastest_speed / RPM, 6)
+    }
 
 
-def test_the_picture_stays_among_pressures_that_a_sheet_may_state(screw, oil, record, monkeypatch):
-    cut = []
-
-    def speeds(pressed, lubricant, load, kelvin, pressures):
-        cut.append([run_in_at(pressed, one) for one in pressures])
-        return pressures
-
-    monkeypatch.setattr('surrogate.screw.figures.onset_over_pressure', speeds)
-    for hardness, low in ((20e9, 2e9), (7e9, 0.5e9)):
-        sheet = with_raceway(screw, hardness=hardness, run_in_low=low)
-        figure_onset(sheet, oil, record | {'working_pressure_Pa': 1e8, 'working_load_N': 5e3})
-    found = [[one.roughness.run_in_pressure for one in line] for line in cut]
-    assert (found[0][-1], found[1][0]) == (20e9, 0.5e9)
-    assert {one.working_load for line in cut for one in line} == {5e3}
+def test_the_picture_of_smooth_raceways_is_free_of_contact(screw, oil):
+    smooth = with_raceway(screw, rms=0.0)
+    axes = figure_onset(smooth, oil, onset_record(smooth, oil, 0.0, KELVIN)).axes[0]
+    wide = [bar for bar in axes.patches if bar.get_width() > 0]
+    assert len(wide) == len(axes.get_yticklabels())

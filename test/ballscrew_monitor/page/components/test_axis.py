@@ -14,7 +14,7 @@ KEPT = 36_000
 def rows(tab, greeted):
     """Return the tab with rows of two columns."""
     tab.visit(greeted.url)
-    tab.reads('.word', 'Optimal zone')
+    tab.reads('.sign.level .word', 'Optimal zone')
     tab.ask("globalThis.rows = new Rows(['stamp', 'load_N']); 0")
     return tab
 

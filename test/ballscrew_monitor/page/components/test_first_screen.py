@@ -16,7 +16,7 @@ HOSTILE = '<img src=x onerror=alert(1)><script>alert(2)</script>'
 @pytest.fixture
 def shown(tab, greeted):
     tab.visit(greeted.url)
-    tab.reads('.word', 'Optimal zone')
+    tab.reads('.sign.level .word', 'Optimal zone')
     return tab
 
 
@@ -129,6 +129,72 @@ def test_a_warning_that_is_only_held_says_so(shown, greeted, frames):
     shown.reads('.reason', 'too slow')
 
 
+@pytest.mark.parametrize(
+    ('changes', 'state', 'word'),
+    [
+        ({'outside': 'surely'}, 'surely', 'Surely outside the optimal zone'),
+        ({'outside': 'perhaps'}, 'perhaps', 'Perhaps outside the optimal zone'),
+        ({'outside': 'unbanded'}, 'warn', 'Outside the optimal zone'),
+        ({'outside': 'surely', 'usual': True}, 'usual', 'Outside the optimal zone, as usual'),
+        ({'outside': 'perhaps', 'zone': 'unknown'}, 'warn', 'Outside the optimal zone'),
+        ({'outside': 'perhaps', 'level': 'ok'}, 'ok', 'Optimal zone'),
+    ],
+)
+def test_how_surely_it_is_outside_is_seen_and_read(shown, greeted, frames, changes, state, word):
+    greeted.send(
+        *frames.state(**{'level': 'warn', 'zone': 'outside', 'headline': 'now'} | changes)
+    )
+    shown.until("document.querySelector('.reason').textContent.includes('now')")
+    shown.reads('.sign.level .word', word)
+    assert shown.ask("document.querySelector('.sign.level').dataset.state") == state
+    bare = changes['outside'] == 'unbanded'
+    assert shown.text('.reason').endswith('Build it again.') == bare
+
+
+def test_three_answers_stand_in_their_order(shown):
+    order = shown.ask("""['condition', 'level', 'advice'].map((name) => document
+        .querySelector(`.first .${name}`)).map((one, i, all) => !i
+        || Boolean(all[i - 1].compareDocumentPosition(one) & Node.DOCUMENT_POSITION_FOLLOWING))""")
+    assert order == [True, True, True]
+
+
+@pytest.mark.parametrize(
+    ('condition', 'state', 'advice'),
+    [
+        ('normal', {}, 'What to do: nothing has to be done'),
+        ('normal', {'at_rest': True}, 'What to do: nothing has to be done'),
+        (
+            'normal',
+            {'level': 'warn', 'zone': 'outside', 'usual': True},
+            'What to do: nothing has to be done: usual for this axis',
+        ),
+        ('worse', {}, 'What to do: Look at the nut.'),
+        ('slightly_changed', {'advice': 'Run on.'}, 'What to do: Run on.'),
+        ('unknown', {}, ''),
+        ('normal', {'level': 'warn', 'zone': 'outside'}, ''),
+        (
+            'normal',
+            {'level': 'warn', 'zone': 'outside', 'outside': 'perhaps'},
+            'What to do: nothing has to be done',
+        ),
+    ],
+)
+def test_what_to_do_is_said_also_where_it_is_nothing(
+    shown, greeted, frames, condition, state, advice
+):
+    health = frames.health(condition, advice='Look at the nut.')
+    greeted.send(*frames.state(health=health, headline='now', **state))
+    shown.until("document.querySelector('.reason').textContent.includes('now')")
+    shown.reads('.advice', advice)
+
+
+def test_while_it_learns_it_says_how_far_it_is(shown, greeted, frames):
+    health = frames.health('unknown', verdict='3 of 5 logs')
+    greeted.send(*frames.state(health=health))
+    shown.reads('.change', '3 of 5 logs')
+    shown.reads('.sign.condition .word', 'Normal? Not known yet')
+
+
 RCS = {'key': 'cause_rcs', 'values': {'value': {'rcs': 0.27}, 'limit': {'rcs': 0.01}}}
 ADVICE = {'key': 'advice_speed', 'values': {'speed': {'speed': 640.0}}}
 
@@ -211,7 +277,7 @@ def test_advice_condition_and_inputs_are_said(shown, greeted, frames):
         )
     )
     shown.reads('.advice', 'What to do: Run at 6.4 m/min.')
-    shown.reads('.sign.condition .word', 'Axis worse than before')
+    shown.reads('.sign.condition .word', 'Changed: worse than before')
     shown.reads('.change', 'The friction has risen by 30 %.')
     shown.reads('.shelved', 'Shelved for 10 min: run-in')
     shown.reads('.input', 'Load too oldThe last sample is 4 s old.')

@@ -65,7 +65,8 @@ def test_a_warning_of_a_recording_holds_no_english(tab, played, english):
     tab.visit(played)
     tab.until("document.querySelectorAll('.u-over').length === 7")
     tab.ask("page.live.ask({ do: 'pause' }); page.live.ask({ do: 'seek', s: 1.5 }); 0")
-    tab.reads('.sign.level .word', 'Außerhalb des optimalen Bereichs')
+    outside = "document.querySelector('.sign.level .word').textContent"
+    tab.until(f"{outside}.endsWith('außerhalb des optimalen Bereichs')")
     for place, begin in (('reason', 'Der Ölfilm ist zu dünn: '), ('advice', ADVICE)):
         tab.until(f"document.querySelector('.{place}').textContent.startsWith('{begin}')")
     tab.until("document.querySelector('.legend li') && document.querySelector('.events td')")
@@ -113,7 +114,7 @@ def phrases_of_a_node():
 def test_all_that_has_a_code_is_said_whole(tab, greeted, english, language):
     """No value is left out, no sentence is free, and German holds no English."""
     tab.visit(greeted.url, language=language)
-    tab.until("document.querySelector('.word')?.textContent")
+    tab.until("document.querySelector('.sign.level .word')?.textContent")
     said = json.dumps(to_json(list(phrases_of_a_node())))
     texts = tab.ask(f"""{said}.map((one) => Words.told(one, page.axis.facts)
         .map((part) => part.lang ? '{{en}}' : part).join(''))""")

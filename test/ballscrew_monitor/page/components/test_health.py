@@ -14,7 +14,9 @@ def test_quantities_have_value_interval_and_picture(tab, greeted, frames):
         ['Hours left at this programme', '8200 h', '6100 to 11000', ''],
         ['Share of life used', 'not known', 'not known yet: no whole day'],
     ]
-    assert tab.text('.health .sentence').startswith('Axis as usual The friction is as it was')
+    assert tab.text('.health .sentence').startswith(
+        'Normal for this axis The friction is as it was'
+    )
 
 
 def test_notes_of_the_node_are_read_below_the_advice(tab, greeted, frames):
@@ -45,7 +47,7 @@ def test_a_new_assessment_replaces_the_old_and_none_is_kept(tab, greeted, frames
     tab.visit(greeted.url)
     tab.until("document.querySelector('.health td')")
     greeted.send(*frames.state(health=frames.health('worse', verdict='Worse.', quantities=[])))
-    tab.reads('.health .sentence', 'Axis worse than before Worse.')
+    tab.reads('.health .sentence', 'Changed: worse than before Worse.')
     greeted.send(*frames.state())
     tab.until('page.painter.views.every((view) => !view.news)')
-    assert tab.text('.health .sentence') == 'Axis worse than before Worse.'
+    assert tab.text('.health .sentence') == 'Changed: worse than before Worse.'

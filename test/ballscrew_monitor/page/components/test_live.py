@@ -14,7 +14,7 @@ import pytest
 @pytest.fixture
 def shown(tab, greeted):
     tab.visit(greeted.url)
-    tab.reads('.word', 'Optimal zone')
+    tab.reads('.sign.level .word', 'Optimal zone')
     return tab
 
 
@@ -54,7 +54,7 @@ def test_a_lost_connection_is_said_and_comes_back_by_itself(shown, greeted, fram
     greeted.start()
     shown.until("document.querySelector('.link').hidden")
     greeted.send(*frames.state(level='warn'))
-    shown.reads('.word', 'Outside the optimal zone')
+    shown.reads('.sign.level .word', 'Outside the optimal zone')
     assert shown.ask('page.live.tries') == 0
 
 

@@ -19,7 +19,7 @@ AXE = Path(__file__).resolve().parents[3] / 'data' / 'axe'
 QUIET = 'page.painter.views.every((view) => !view.news)'
 LEVELS = {
     BallScrewState.LEVEL_OK: 'Optimal zone',
-    BallScrewState.LEVEL_WARN: 'Outside the optimal zone',
+    BallScrewState.LEVEL_WARN: 'outside the optimal zone',
     BallScrewState.LEVEL_UNKNOWN: 'Not known',
 }
 PROMPT = {'x__limits__raise_delay': 0.0, 'x__limits__clear_delay': 0.0}
@@ -164,7 +164,9 @@ def in_digits(value, digits, unit):
 def read_off(tab):
     """Return level, reason, feed, speed, load and efficiency as the screen shows them."""
     found = tab.texts('.numbers :is(.big, .more)')
-    return found and [tab.text('.sign.level .word'), tab.text('.reason'), *found[:3], found[6]]
+    # How surely is said in words before it.
+    level = (tab.text('.sign.level .word') or '').removeprefix('Surely ').removeprefix('Perhaps ')
+    return found and [level, tab.text('.reason'), *found[:3], found[6]]
 
 
 def reason_of(state):

@@ -5,7 +5,7 @@
 
 def test_news_is_drawn_once_and_a_failure_stops_no_other(tab, greeted):
     tab.visit(greeted.url)
-    tab.reads('.word', 'Optimal zone')
+    tab.reads('.sign.level .word', 'Optimal zone')
     tab.ask("""
       globalThis.failed = [];
       globalThis.drawn = [0, 0];
@@ -24,7 +24,7 @@ def test_news_is_drawn_once_and_a_failure_stops_no_other(tab, greeted):
 
 def test_what_a_frame_has_no_time_for_is_drawn_in_the_next(tab, greeted):
     tab.visit(greeted.url)
-    tab.reads('.word', 'Optimal zone')
+    tab.reads('.sign.level .word', 'Optimal zone')
     tab.ask("""
       globalThis.at = [];
       globalThis.painter = new Painter(() => {});

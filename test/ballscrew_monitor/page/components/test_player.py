@@ -5,7 +5,7 @@
 
 def test_the_player_is_there_for_a_recording_and_asks(tab, greeted, wait_for):
     tab.visit(greeted.url)
-    tab.reads('.word', 'Optimal zone')
+    tab.reads('.sign.level .word', 'Optimal zone')
     assert tab.ask("document.querySelector('.player').hidden")
     clock = {'kind': 'clock', 'at_s': 12.0, 'span_s': 60.0, 'rate': 2, 'playing': True}
     greeted.send(clock)
@@ -27,7 +27,7 @@ def test_the_player_is_there_for_a_recording_and_asks(tab, greeted, wait_for):
 
 def test_a_recording_that_stands_still_does_not_grow_old(tab, greeted, frames):
     tab.visit(greeted.url)
-    tab.reads('.word', 'Optimal zone')
+    tab.reads('.sign.level .word', 'Optimal zone')
     greeted.send({'kind': 'clock', 'at_s': 12.0, 'span_s': 60.0, 'rate': 1, 'playing': False})
     greeted.send(*frames.state(age_s=100.0, headline='At its place.'))
     tab.reads('.reason', 'At its place.')

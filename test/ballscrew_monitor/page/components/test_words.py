@@ -59,7 +59,7 @@ def test_every_key_is_said_and_every_text_that_is_said_has_one(frames):
 
 def test_values_are_filled_in_once_and_unknown_keys_show_themselves(tab, greeted):
     tab.visit(greeted.url)
-    tab.reads('.word', 'Optimal zone')
+    tab.reads('.sign.level .word', 'Optimal zone')
     said = json.loads(
         tab.ask("""JSON.stringify([
           Words.say('limit_at', { limit: '{limit} {x}' }), Words.say('no such key'),
@@ -77,7 +77,7 @@ def test_values_are_filled_in_once_and_unknown_keys_show_themselves(tab, greeted
 
 def test_german_numbers_have_a_comma(tab, greeted, frames):
     tab.visit(greeted.url, language='de')
-    tab.reads('.word', 'Optimaler Bereich')
+    tab.reads('.sign.level .word', 'Optimaler Bereich')
     assert tab.ask('document.documentElement.lang') == 'de'
     greeted.send(*frames.state(rows=frames.rows(1, speed_rpm=672.4)))
     tab.reads('.big', '6,72 m/min')

@@ -1,0 +1,54 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Usual warnings of an axis: those of a kind, speed and load that its baseline already had.
+
+A place is a band of speed, a band of load and a direction. In its baseline the axis moved steadily
+at a place; where the surface says that this motion breaks a limit, a warning for the same reason
+at this place is usual.
+
+"""
+
+from collections.abc import Sequence
+import math
+
+from ballscrew_monitor.core.judgement import Code, Limits
+from ballscrew_monitor.health.bands import load_band, speed_band
+from ballscrew_monitor.health.lubrication import opposed
+from ballscrew_monitor.health.records import Baseline, Cell, Health, UsualWarning
+from ballscrew_monitor.judge.records import Row
+from surrogate.surface import Surface, Validity
+
+
+def usual_warnings(
+    points: Sequence[Cell], baseline: Baseline | None, surface: Surface, limits: Limits
+) -> tuple[UsualWarning, ...]:
+    """Return the warnings that the motion of a baseline would give; none without a baseline."""
+    if baseline is None:
+        return ()
+    known = {
+        UsualWarning(code, cell.speed_band, cell.load_band, cell.direction)
+        for cell in points
+        if baseline.begin <= cell.start < baseline.end
+        for code in _broken(cell, surface, limits)
+    }
+    return tuple(sorted(known))
+
+
+def _broken(cell: Cell, surface: Surface, limits: Limits) -> list[Code]:
+    load = opposed(cell)
+    found = surface.lookup(abs(cell.speed), load, cell.temperature)
+    if found.validity is not Validity.VALID:
+        return []
+    codes = [Code.RCS_HIGH] if found.rcs >= limits.rcs else []
+    if abs(load) >= limits.light_load and found.efficiency < limits.efficiency:
+        codes.append(Code.EFFICIENCY_LOW)
+    return codes
+
+
+def is_usual(health: Health, code: Code, row: Row) -> bool:
+    """Return True if the baseline of an axis already had a warning that a `row` raises."""
+    if not row.speed or not math.isfinite(row.speed + row.axial_load):
+        return False
+    place = speed_band(abs(row.speed)), load_band(row.axial_load), 1 if row.speed > 0.0 else -1
+    return UsualWarning(code, *place) in health.usual_warnings
