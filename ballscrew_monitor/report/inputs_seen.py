@@ -195,13 +195,15 @@ def _rate(case: AxisCase, source: Source) -> float:
     if math.isclose(received[source], received[Source.SPEED], rel_tol=SAME_RATE):
         source = Source.SPEED
     gaps, silent = case.survey.gaps[source], 0.0
+    refused = sum(case.outcome.refused.get(source, {}).values())
     if source is not Source.SPEED:
         silent = seconds(case.settings.timeouts[source]) * gaps.count
-        if case.outcome.refused.get(source):
+        if refused:
             return steps / span  # of these gaps some are no silence
-    rest = span - gaps.time - silent
-    usual = 2 * gaps.count < steps and rest > 0.0
-    return (steps - gaps.count) / rest if usual else steps / span
+    rest, valid = span - gaps.time - silent, steps - refused
+    usual = 2 * gaps.count < valid and rest > 0.0
+    # Messages that were refused came in gaps or between them: neither rate is too high.
+    return max(steps / span, (valid - gaps.count) / rest if usual else 0.0)
 
 
 def _origin(case: AxisCase, source: Source) -> str:

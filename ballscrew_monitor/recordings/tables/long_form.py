@@ -45,8 +45,15 @@ ROLES = {
 """Words over the columns of a table with a value a line, without blanks and signs."""
 TIMES = re.compile('time|zeit|date|datum|stamp', re.I)
 AXIS = re.compile('axis|achse|joint|gelenk', re.I)
-BAD = frozenset({'bad', 'invalid', 'schlecht', 'ungültig'})
-"""Words of a quality by which a value is not known."""
+GOOD = re.compile(r'(?i:good|ok|valid|gut|gültig|gueltig)(?![^\W_])|Good(?=[A-Z])')
+BAD = frozenset(
+    'bad invalid uncertain questionable stale nodata timeout commfail commfailure notconnected '
+    'schlecht ungültig ungueltig unsicher'.split()
+)
+"""Words of a quality by which a value is not known, without blanks and signs."""
+GOOD_BYTE = 0x80  # set in a quality of OPC (0xC0) and of PROFIBUS (0x80) that is good
+BAD_STATUS = 0xC000_0000  # bits of a status of OPC UA, none of which is set in a good one
+IN_PER_CENT = frozenset({0, 100})  # of the samples that are good
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -109,7 +116,7 @@ def read_long(path: Path) -> tuple[pl.DataFrame, str]:
     first = form.first
     cells = _columns(lines[first:], form)
     times = [pl.col(f'{place}').alias(f'time {place}') for place in form.times]
-    rows = cells.select(*times, name=_told_apart(cells, form), value=_values(form))
+    rows = cells.select(*times, name=_told_apart(cells, form), value=_values(cells, form))
     if form.unit >= 0:
         rows = rows.with_columns(name=_with_units(rows['name'], cells[f'{form.unit}']))
     heads = ['', form.names[form.name]]  # which stand above each part of an export
@@ -288,13 +295,47 @@ def _told_apart(cells: pl.DataFrame, form: LongForm) -> pl.Series:
     return names
 
 
-def _values(form: LongForm) -> pl.Expr:
+def _values(cells: pl.DataFrame, form: LongForm) -> pl.Expr:
     """Return the values; one of bad quality is not known."""
     value = pl.col(f'{form.value}')
     if form.quality < 0:
         return value
-    quality = pl.col(f'{form.quality}').str.to_lowercase()
-    return pl.when(quality.is_in(list(BAD))).then(pl.lit('nan')).otherwise(value)
+    bad = bad_qualities(cells[f'{form.quality}'].drop_nulls().unique().to_list())
+    quality = pl.col(f'{form.quality}')
+    return pl.when(quality.is_in(bad)).then(pl.lit('nan')).otherwise(value)
+
+
+def bad_qualities(cells: Sequence[str]) -> list[str]:
+    """
+    Return those of the qualities of a table by which a value is not known.
+
+    Where some say that a value is good, all others say that it is not. Numbers are a byte of OPC
+    or PROFIBUS, a status of OPC UA, or per cent; others, such as a state of a machine, say nothing
+    of a value.
+
+    """
+    codes = {
+        cell: int(cell, 0) for cell in cells if re.fullmatch(r'0x[\da-fA-F]+|0|[1-9]\d*', cell)
+    }
+    values = {*codes.values()}
+    words = [cell for cell in cells if cell and cell not in codes]
+    are_words = any(map(GOOD.match, words))
+    if max(values, default=0) > BAD_STATUS >> 2:
+        bad = [cell for cell, code in codes.items() if code & BAD_STATUS]
+    elif any(code & GOOD_BYTE for code in values):
+        bad = [cell for cell, code in codes.items() if not code & GOOD_BYTE]
+    elif values == IN_PER_CENT:
+        bad = [cell for cell, code in codes.items() if not code]
+    else:
+        bad = []
+    return [
+        *bad,
+        *(
+            cell
+            for cell in words
+            if not GOOD.match(cell) and (are_words or re.sub(r'[\W_]+', '', cell.lower()) in BAD)
+        ),
+    ]
 
 
 def _with_units(names: pl.Series, units: pl.Series) -> pl.Series:

@@ -63,6 +63,16 @@ def test_a_gap_of_an_input_of_its_own_rate_is_left_out_with_its_timeout(judged, 
     assert seen_of(case, Source.LOAD).rate == pytest.approx(rate)
 
 
+@pytest.mark.parametrize('source', [Source.SPEED, Source.LOAD])
+@pytest.mark.parametrize('silent', [False, True])
+def test_messages_that_are_refused_in_a_gap_raise_no_rate(judged, source, silent):
+    blocks = [judged.rows(0, 50), judged.rows(550, 50)]
+    received = 100 if silent else 600  # those of the gap came, and were no numbers
+    refused = {} if silent else {one: {Why.NOT_A_NUMBER: 500} for one in Source}
+    case = judged.case(blocks, inputs=statuses(judged, received=received), refused=refused)
+    assert seen_of(case, source).rate == pytest.approx(100.0, rel=0.01)
+
+
 @pytest.mark.parametrize(
     ('stated', 'origin', 'known'),
     [([], 'assumed, 40 °C', 'assumed'), (['temperature_degC'], 'stated, 40 °C', 'stated')],
