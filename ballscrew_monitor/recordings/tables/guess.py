@@ -32,6 +32,7 @@ from ballscrew_monitor.recordings.tables.dates import (
 )
 from ballscrew_monitor.recordings.tables.mapping import MOTOR
 from ballscrew_monitor.recordings.tables.names import Named, read_name
+from ballscrew_monitor.recordings.tables.own_times import is_own_time
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
 from ballscrew_monitor.recordings.tables.series import are_apart, of_amounts, unclear_sign
@@ -132,6 +133,7 @@ class _Guesser:
         self.step, self.epoch, self.date_from = math.nan, '', ''
         self.order = ''  # of day and month in the head
         self.groups: dict[str, str] = {}
+        self.unclear_times: set[str] = set()
         self.members: dict[tuple[str, tuple[int, int]], str] = {}
         self.times = [one for one in self.named if self._may_be_time(one)]
         self.named = [one for one in self.named if one not in self.times or one.kind == 'time']
@@ -382,21 +384,34 @@ class _Guesser:
 
     def _set_own_times(self, time: Named) -> None:
         """Give inputs of another group the column of their time: the nearest before them."""
-        base = re.sub(r'_duplicated_\d+$', '', time.column)
-        alike = {
-            one.column
-            for one in self.times
-            if re.sub(r'_duplicated_\d+$', '', one.column) == base and one.column in self.data
-        }
+        columns = {one.column: self._own_time(time, one) for one in self.times}
+        columns = {column: own for column, own in columns.items() if own is not None}
         held = self.source.names()
-        self.groups = {
-            one.column: next(
-                (each for each in reversed(held[: held.index(one.column)]) if each in alike),
-                time.column,
-            )
-            for chosen in self.axes.values()
-            for one in chosen.values()
-        }
+        for one in [one for chosen in self.axes.values() for one in chosen.values()]:
+            before = (each for each in reversed(held[: held.index(one.column)]) if each in columns)
+            column = next(before, time.column)
+            self.groups[one.column] = column
+            if not columns[column]:
+                self.unclear_times.add(one.column)
+
+    def _own_time(self, time: Named, one: Named) -> bool | None:
+        """Return whether a time is that of other columns, None for a time of none."""
+        if _base(one.column) == _base(time.column) and one.column in self.data:
+            return True
+        if one.kind != 'time' or one.column not in self.data:
+            return None
+        values, main = self.data[one.column], self.data[time.column]
+        if self._is(estimates.is_of_days, one) or self._fault(one, values):
+            return None
+        units = [
+            self._unit_of_time(each, column[np.isfinite(column)])[0]
+            for each, column in ((time, main), (one, values))
+        ]
+        is_alike = units[0] == units[1] and (time.column in self.timed) == (
+            one.column in self.timed
+        )
+        factors = [SCALES[unit][0] if all(units) else 1.0 for unit in units]
+        return is_own_time(main * factors[0], values * factors[1], is_alike=is_alike)
 
     def _set_epoch(self, why: str, *, since: float | None = None) -> None:
         """State the time of the first row by the head or the name of the file, or assume one."""
@@ -536,6 +551,7 @@ class _Guesser:
             self._set_magnitude(name, kind)
             group = self.groups.get(used[kind]['column'], time)
             used[kind] |= {'time': group} if group != time else {}
+            self._say_time(name, kind, time)
         for key, value in (('screw', SCREW), ('oil', OIL)):
             self._assume(f'{name}.{key}', value, 'the log does not say it; the shipped one')
         why = f'the log does not say it; that of {SCREW}'
@@ -555,6 +571,26 @@ class _Guesser:
             speeds = self.extremes[used['speed']['column']]
             unit = self._unit(name, 'speed')
             self.notes += estimates.oddities(name, speeds, unit, conversions.LINEAR_SPEED_UNITS)
+
+    def _say_time(self, name: str, kind: str, time: str) -> None:
+        """Say of an input that it has another time than the first, and ask if it may have."""
+        place = self.used[name][kind]
+        column, own = place['column'], place.get('time', time)
+        if not own or _base(own) == _base(time):
+            return
+        if column not in self.unclear_times:
+            self.notes.append(
+                f'axis {name}: {short(column)} has the times of {short(own)}, which stands '
+                'before it'
+            )
+            return
+        place['time'] = None
+        self.groups.pop(column)
+        self.unstated.append(
+            f'state axes.{name}.{kind}.time in the map, {time} if {column} has the times of its '
+            f'row: it stands behind {own}, which has another unit or other years than {time}; '
+            'where these are its times, give both in one unit'
+        )
 
     def _is_used(self, one: Named) -> bool:
         """Tell whether a column says something: a force or current of nothing but 0 is unknown."""
@@ -736,6 +772,7 @@ class _Guesser:
             if kind in axis
         }
         used |= {entry['value'] for entry in self.assumed.values()} | set(time.values())
+        used |= set(self.groups.values())
         self.notes += names.left_out([one for one in self.named if one.column not in used])
 
 
@@ -743,6 +780,11 @@ class _Guesser:
 def _usual_lead() -> float:
     """Return the lead [m] of the screw that is assumed."""
     return Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead
+
+
+def _base(column: str) -> str:
+    """Return the name that a column has in the file, where others may have it too."""
+    return re.sub(r'_duplicated_\d+$', '', column)
 
 
 def _period(times: Array) -> float:

@@ -336,7 +336,7 @@ class _Part:
     def text(self, name: str, default: str = '') -> str:
         value = self.take(name, default)
         if not isinstance(value, str):
-            raise InputError(f'{self._prefix}.{name} is {value!r}, it must be a text')
+            raise InputError(f'{self._prefix}.{name} is {_said(value)}, it must be a text')
         return value
 
     def order(self) -> str:

@@ -399,3 +399,68 @@ def test_words_in_the_rows_of_another_signal_are_to_be_left_empty(guessed, says)
     holed = np.where(rows % 7 == 0, np.nan, SPEED)
     made = guessed({'t_s': TIME, 'v_x [mm/s]': holed, 'f_x [N]': holed})
     assert says('joined') not in made.notes
+
+
+@pytest.mark.parametrize('names', [('Time A [ms]', 'Time B [ms]'), ('Zeit 1 [ms]', 'Zeit 2 [ms]')])
+def test_columns_have_the_time_before_them_whatever_its_name(names, tmp_path, write_csv, says):
+    first, second = names
+    columns = {
+        first: TIME * 1e3,
+        'X_vel [mm/s]': SPEED,
+        second: 1e3 + TIME * 1250.0,
+        'X_torque [Nm]': np.arange(200) - 100.0,
+    }
+    path = write_csv(tmp_path / 'log.csv', columns, form='{:.9g}')
+    made = guess(path)
+    torque = made.content['axes']['x']['torque']
+    assert torque == {'column': 'X_torque [Nm]', 'unit': 'N m', 'time': second}
+    assert [line.split(',')[0] for line in made.picture[:2]] == [
+        'Group 1: 20 ms',
+        'Group 2: 25 ms',
+    ]
+    assert says('own_time', time=second) in made.notes
+    assert not any('not used' in note for note in made.notes)
+    series = read_series(path, make_map(made.content))
+    groups = list(series.blocks())
+    number = series.places['X_torque [Nm]']
+    stamps = np.concatenate([rows[number].stamps for rows in groups])
+    assert (stamps - series.begin) / 1e9 == pytest.approx(1.0 + 1.25 * TIME)
+
+
+def test_equal_names_of_times_are_all_used(tmp_path):
+    rows = ''.join(f'{at};{at % 7};{at + 500};{at % 9 - 4}\n' for at in range(0, 2000, 10))
+    log = tmp_path / 'log.csv'
+    log.write_text(f'Time [ms];X_vel [mm/s];Time [ms];X_torque [Nm]\n{rows}')
+    made = guess(log)
+    assert made.content['axes']['x']['torque']['time'] == 'Time [ms]_duplicated_0'
+    assert not any('not used' in note for note in made.notes)
+
+
+@pytest.mark.parametrize('other', [1.7e9 + TIME, TIME + 1e-4, np.full(200, 0.02)])
+def test_a_second_time_of_the_same_rows_is_none_of_its_own(other, guessed):
+    columns = {
+        'Time A [s]': TIME,
+        'v_x [mm/s]': SPEED,
+        'Time B [s]': other,
+        'x_torque [Nm]': -SPEED,
+    }
+    made = guessed(columns, form='{:.14g}')
+    assert made.content['time']['column'] == 'Time A [s]'
+    assert 'time' not in made.content['axes']['x']['torque']
+    assert not made.unstated
+
+
+def test_a_second_time_in_another_unit_is_asked_for(guessed, refused, says):
+    second = 1e3 + TIME * 1250.0
+    columns = {
+        'Time A [s]': TIME,
+        'v_x [mm/s]': SPEED,
+        'Time B [ms]': second,
+        'x_torque [Nm]': -SPEED,
+    }
+    made = guessed(columns, form='{:.9g}')
+    assert made.content['axes']['x']['torque']['time'] is None
+    assert made.unstated == (says('times_of_two_units'),)
+    refused('blank_time', make_map, made.content)
+    made.content['axes']['x']['torque']['time'] = 'Time A [s]'
+    assert make_map(made.content)
