@@ -27,7 +27,7 @@ Key = TypeVar('Key')
 LEVEL = 0.1
 """Share of false alarms among the axes that are told worse in a year, at most in the mean [-]."""
 ALARM = 0.02
-"""Probability that an axis without a change alarms by itself within a year [-]."""
+"""Probability that an axis without a change alarms by itself within a year, at most [-]."""
 YEAR, WEEK = 365 * DAY, 7 * DAY
 SHARES = 2.10974
 """Sum of 1/(n ln(n)^2) over all n from 2 on."""
@@ -158,5 +158,5 @@ def _text(own: Mapping[Key, Sequence[Health]], fleet: Mapping[Key, Sequence[Heal
     return (
         f'{len(own)} axes, {worse} of them worse: in the mean at most {100 * LEVEL:.0f} % of such '
         f'are so by chance; by its own logs alone each, {alone} would be worse, with '
-        f'{ALARM * len(own):.2g} false alarms a year'
+        f'at most {ALARM * len(own):.2g} false alarms a year'
     )

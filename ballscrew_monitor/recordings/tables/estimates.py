@@ -231,12 +231,6 @@ class Midnights:
         return made
 
 
-def is_rising(values: Array) -> bool:
-    """Tell whether values can be times: they rise, but for a few."""
-    steps = np.diff(values[np.isfinite(values)])
-    return bool(len(steps) and np.mean(steps >= 0.0) > 0.9 and steps.sum() > 0.0)
-
-
 def oddities(name: str, speed: Array, unit: str, factors: Mapping[str, float]) -> list[str]:
     """Return what is odd about a linear speed: none at all, or more [m/s] than axes do."""
     if is_silent(speed):

@@ -74,6 +74,7 @@ def test_peers_narrow_the_interval_and_it_still_holds(families):
     alone, together = np.abs(value - change) <= reach, np.abs(of_peers - change) <= reach_of_peers
     of_model = [np.sqrt((part / 1.96) ** 2 - MODEL_DOUBT**2) for part in (reach, reach_of_peers)]
     assert np.median(of_model[1] / of_model[0]) < 0.92
+    assert np.median(reach_of_peers / reach) < 0.95  # the whole interval, as it is said
     assert together.mean() >= 0.9
     assert alone.mean() >= 0.9
     assert np.mean((of_peers - change) ** 2) < 0.8 * np.mean((value - change) ** 2)
