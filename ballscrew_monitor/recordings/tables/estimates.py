@@ -25,6 +25,8 @@ LONGEST_AXIS = 20.0  # [m]
 MANY = 8  # rows that tell whether torques are amounts
 CLEARLY = 2.0  # times the sum of squares of the better of two readings
 FACTOR = 1.5  # by which a place and its speed may disagree
+BARELY = 0.05  # of the largest amount is noise about zero
+BACK = 0.01  # of the way of an axis that reverses, at least, leads in either direction
 
 
 def is_silent(values: Array) -> bool:
@@ -151,17 +153,40 @@ def unit_by_motion(
 
 
 def is_one_sided(extremes: Array) -> bool:
-    """Return True if no value between the least and the most has the sign of another."""
-    return bool(extremes.any() and (extremes >= 0.0).all() | (extremes <= 0.0).all())
+    """Return True if values between the least and the most have one sign, but for noise."""
+    least, most = float(np.min(extremes)), float(np.max(extremes))
+    smaller, larger = sorted([max(-least, 0.0), max(most, 0.0)])
+    return larger > 0.0 and smaller <= BARELY * larger
 
 
-def is_magnitude(torque: Array, speed: Array) -> bool | None:
+def reverses(ways: Array) -> bool:
+    """
+    Return True if an axis moves in both directions by its ways from row to row, or its speeds [-].
+
+    Jitter at rest makes little way, and a jump, such as to the begin of another run, is a single
+    step.
+
+    """
+    ways = ways[np.isfinite(ways) & (ways != 0.0)]
+    if len(ways) < 2:
+        return False
+    same = np.sign(ways[1:]) == np.sign(ways[:-1])
+    lasting = np.append(same, False) | np.append(False, same)
+    usual = float(np.quantile(np.abs(ways), 0.99))
+    steps = np.clip(ways[lasting], -usual, usual)
+    ahead, back = float(steps[steps > 0.0].sum()), -float(steps[steps < 0.0].sum())
+    return min(ahead, back) > BACK * (ahead + back)
+
+
+def is_magnitude(torque: Array, speed: Array, *, makes_load: bool) -> bool | None:
     """
     Return whether torques of one sign are amounts [-] in rows at equal distances, None if unclear.
 
     Friction, viscous or not, turns with the motion, a weight does not, and what accelerates does
     so with neither: amounts have an even part of the speed [-], torques with a sign an odd one.
-    An axis that does not reverse shows no amounts; torques at other times show nothing.
+    An axis that does not reverse shows no amounts; torques at other times show nothing. Amounts
+    that differ by direction look as torques with a sign do: where a torque makes the load, it is
+    unclear whether it has one.
 
     """
     if len(speed) < MANY:
@@ -172,7 +197,7 @@ def is_magnitude(torque: Array, speed: Array) -> bool | None:
     if good.sum() < MANY:
         return None if min(known) >= MANY else False
     torque, speed, push = torque[good], speed[good], push[good]
-    if not (speed > 0.0).any() or not (speed < 0.0).any():
+    if not reverses(speed):
         return False
     ways, once = np.sign(speed), np.ones(len(speed))
     misses = []
@@ -183,7 +208,7 @@ def is_magnitude(torque: Array, speed: Array) -> bool | None:
     amounts, signed = (miss + 1e-9 * float(torque @ torque) for miss in misses)
     if max(amounts, signed) < CLEARLY * min(amounts, signed):
         return None
-    return amounts < signed
+    return None if signed < amounts and makes_load else amounts < signed
 
 
 def slopes(positions: Array) -> Array:

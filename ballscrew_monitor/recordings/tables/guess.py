@@ -659,7 +659,8 @@ class _Guesser:
         speed = self.data[motion.column]
         speed = speed if 'speed' in chosen else estimates.slopes(speed)
         torque = self.data[place['column']]
-        magnitude = estimates.is_magnitude(torque, speed)
+        makes_load = 'load' not in self.used[name]
+        magnitude = estimates.is_magnitude(torque, speed, makes_load=makes_load)
         if magnitude is None and self.head.program and self.head.program.are_amounts:
             magnitude = True
         if magnitude is None:

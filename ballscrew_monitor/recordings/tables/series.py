@@ -211,7 +211,8 @@ def _with_sign(path: Path, axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
         data = table.head(SHOWING)
         speed = line(data[motion.name], motion, 1.0)
         speed = speed if 'speed' in axis.columns else slopes(speed)
-        magnitude = is_magnitude(line(data[column.name], column, 1.0), speed)
+        torque, makes_load = line(data[column.name], column, 1.0), bool(axis.load_from)
+        magnitude = is_magnitude(torque, speed, makes_load=makes_load)
         if magnitude is None:
             apart = are_apart(table, column.name, motion.name)
             raise InputError(

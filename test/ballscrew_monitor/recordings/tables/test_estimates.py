@@ -5,9 +5,11 @@
 from ballscrew_monitor.recordings.tables.estimates import (
     DAY,
     is_magnitude,
+    is_one_sided,
     Midnights,
     period,
     position_unit,
+    reverses,
     speed_unit,
 )
 from hypothesis import given
@@ -62,7 +64,30 @@ def test_what_is_no_time_of_a_day_stays_so_and_passes_no_midnight():
 def test_torques_at_other_times_do_not_show_whether_they_are_amounts():
     speed = np.sin(np.arange(200) / 20.0)
     torque, odd = np.abs(np.sign(speed) + 0.3 * np.cos(np.arange(200) / 20.0)), np.arange(200) % 2
-    assert is_magnitude(torque, speed)
-    assert not is_magnitude(torque, np.abs(speed))
+    assert is_magnitude(torque, speed, makes_load=True)
+    assert not is_magnitude(torque, np.abs(speed), makes_load=True)
     apart = np.where(odd, torque, np.nan), np.where(odd, np.nan, speed)
-    assert is_magnitude(*apart) is None
+    assert is_magnitude(*apart, makes_load=False) is None
+
+
+@pytest.mark.parametrize(
+    ('extremes', 'expected'),
+    [((0.0, 1.9), True), ((-1.9, 0.03), True), ((-0.3, 1.9), False), ((0.0, 0.0), False)],
+)
+def test_noise_about_zero_is_no_other_sign(extremes, expected):
+    assert is_one_sided(np.array(extremes)) is expected
+
+
+@pytest.mark.parametrize(
+    ('ways', 'expected'),
+    [
+        ([5.0] * 50 + [-0.1, -0.1, -0.2] * 10, True),
+        ([5.0] * 50 + [-0.01, 0.01] * 500, False),  # jitter at rest
+        ([*[5.0] * 50, -250.0] * 4, False),  # the next run begins where the last did
+        ([5.0, np.nan, 0.0] * 9 + [-5.0, 0.0, np.nan] * 9, True),
+        ([], False),
+    ],
+)
+def test_an_axis_reverses_if_it_goes_some_way_in_both_directions(ways, expected):
+    assert reverses(np.array(ways)) is expected
+    assert reverses(-np.array(ways)) is expected

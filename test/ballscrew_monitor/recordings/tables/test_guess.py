@@ -31,12 +31,14 @@ def test_a_mill_log_is_understood(mill_log, says, refused):
     assert axes['x'] == {
         'speed': {'column': 'X1_ActualVelocity'},
         'position': {'column': 'X1_ActualPosition'},
-        'current': {'column': 'X1_CurrentFeedback', 'unit': None},
+        'current': {'column': 'X1_CurrentFeedback', 'unit': None, 'magnitude': None},
     }
     assert axes['z']['load'] == {'unknown': 'Z1_CurrentFeedback is always 0'}
     assert 'current' not in axes['z']
     assert made.content['time'] == {'rate_Hz': None}
-    assert made.unstated == (*map(says, ('current_x', 'current_y', 'state_rate')),)
+    assert made.unstated == (
+        *map(says, ('current_x', 'sign_x', 'current_y', 'sign_y', 'state_rate')),
+    )
     assert f'#   {made.unstated[0]}\n' in made.text
     assert assumed['x.speed.unit']['value'] == 'mm/s'
     assert assumed['x.load.from']['value'] == 'current'
@@ -47,7 +49,7 @@ def test_a_mill_log_is_understood(mill_log, says, refused):
     assert yaml.safe_load(made.text) == made.content
     refused('blank_rate', make_map, made.content)
     for name in ('x', 'y'):
-        axes[name]['current']['unit'] = 'A'
+        axes[name]['current'] |= {'unit': 'A', 'magnitude': False}
     assert make_map(made.content | {'time': {'rate_Hz': 10.0}}).rate == 10.0
 
 
@@ -98,7 +100,7 @@ def test_amounts_of_a_torque_are_said(weight, magnitude, guessed, says):
     made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, 'x_torque_Nm': torque})
     assert made.content['axes']['x']['torque'].get('magnitude') is magnitude
     assert (says('amounts') in made.notes) is bool(magnitude)
-    assert not made.unstated
+    assert made.unstated == (() if magnitude else (says('unclear_amounts'),))
 
 
 @pytest.mark.parametrize(('amount', 'unit'), [(0.9, None), (25.0, None), (2500.0, 'N')])

@@ -72,11 +72,35 @@ def test_amounts_of_a_torque_get_the_sign_of_the_motion(read, says, motion, sign
     assert says('amounts') not in signed.notes
 
 
-def test_a_torque_that_holds_a_weight_keeps_its_sign(read, says):
+def test_a_torque_that_holds_a_weight_keeps_its_sign_beside_a_measured_load(read, says):
     torque = 6.0 + FRICTION
-    found = read({'t': TIME, 'v': SPEED, 'm': torque}, OF_TORQUE)
+    axis = OF_TORQUE | {'load': {'column': 'f', 'unit': 'N'}}
+    found = read({'t': TIME, 'v': SPEED, 'm': torque, 'f': -torque}, axis)
     np.testing.assert_allclose(found.torque, torque)
     assert says('amounts') not in found.notes
+
+
+@pytest.mark.parametrize('motion', ['v', 'p'])
+@pytest.mark.parametrize(
+    'torque',
+    [6.0 + FRICTION, np.abs(0.3 + FRICTION), np.where(SPEED > 0.0, 1.9, 1.3)],
+    ids=['weight', 'amounts', 'steady'],
+)
+def test_the_map_decides_on_the_sign_of_a_torque_that_makes_the_load(
+    read, refused, torque, motion
+):
+    """What is more in one direction may be a weight, or the amount of what turns round."""
+    position = {'position': {'column': 'p', 'unit': 'mm'}, 'lead_mm': 10.0}
+    axis = OF_TORQUE if motion == 'v' else position | {
+        key: OF_TORQUE[key] for key in ('torque', 'load')
+    }
+    columns = {'t': TIME, 'v': SPEED, 'p': POSITION, 'm': torque}
+    refused('unclear_amounts', read, columns, axis)
+    for magnitude, signs in ((True, np.sign(SPEED)), (False, 1.0)):
+        stated = axis | {'torque': axis['torque'] | {'magnitude': magnitude}}
+        moves = np.abs(SPEED) > 3.0
+        found = read(columns, stated).torque[moves]
+        np.testing.assert_allclose(found, (signs * torque)[moves], rtol=1e-6)
 
 
 def test_a_steady_torque_of_one_sign_is_refused_until_the_map_says_what_it_is(read, refused):
