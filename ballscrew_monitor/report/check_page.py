@@ -91,8 +91,8 @@ def next_steps(entries: Sequence[LogEntry], checked: Checked) -> list[str]:
     elif not checked.is_oil_known:
         steps.append(f'State the oil, --oil: {checked.sheets[1]} was assumed')
     for name, words in NEEDED.items():
-        measured = {line.axis for line in lines if name not in line.unmeasured}
-        axes = dict.fromkeys(line.axis for line in lines if line.axis not in measured)
+        recorded = {line.axis for line in lines if name not in line.missing}
+        axes = dict.fromkeys(line.axis for line in lines if line.axis not in recorded)
         if axes:
             steps.append(f'Record {words} of axis {", ".join(axes)}')
     if not any(run.sheet for run in checked.runs):

@@ -26,6 +26,7 @@ from ballscrew_monitor.report.survey import Extremes, Gaps
 from surrogate.units import MILLI, RPM, TURN
 
 MEASURED = 'measured'
+READ_AS_LOAD = 'the axial load is worked out from it'
 LAG_TOLD = 0.01  # [s] between stamp and arrival from which on it is told
 SAME_RATE = 0.01  # between numbers of messages [-] up to which two inputs came together
 IN_THE_MAP = 'check its unit, its scale and the lead in the map'
@@ -107,7 +108,9 @@ class InputSeen:
     @property
     def silence(self) -> str:
         """Return why there is no number."""
-        return 'no valid sample was received' if self.place else 'the input is not recorded'
+        if self.place:
+            return 'no valid sample was received'
+        return READ_AS_LOAD if self.measured else 'the input is not recorded'
 
     @property
     def unstamped(self) -> str:
@@ -145,6 +148,15 @@ class InputSeen:
 def inputs_seen(case: AxisCase) -> list[InputSeen]:
     """Return all inputs of an axis, also those that it does not have."""
     return [_seen(case, source) for source in NAMES]
+
+
+def missing_inputs(case: AxisCase) -> list[str]:
+    """Return the names of inputs of an axis that are worth recording, as the log has none."""
+    return [
+        NAMES[seen.source]
+        for seen in inputs_seen(case)
+        if not seen.measured and (seen.source is Source.TEMPERATURE or math.isnan(seen.low))
+    ]
 
 
 def hints_on(cases: Iterable[AxisCase]) -> list[str]:
@@ -234,6 +246,9 @@ def _without_topic(case: AxisCase, source: Source, sources: frozenset[PointSourc
         known = case.facts.default_temperature_known
         origin = f'{known}, {celsius(case.settings.default_temperature):.4g} °C'
         return InputSeen(source=source, origin=origin, measured=False, stated=known == 'stated')
+    if source is Source.TORQUE and case.facts.torque_is_load:
+        whose = 'its current is ' if case.facts.load_from == 'current' else ''
+        return InputSeen(source=source, origin=f'{whose}recorded, {READ_AS_LOAD}', measured=True)
     return InputSeen(source=source, origin='not recorded', measured=False)
 
 

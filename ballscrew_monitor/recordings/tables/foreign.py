@@ -100,7 +100,10 @@ def read_signals(path: Path, kind: str) -> Signals:
 
 
 def _json(path: Path) -> Signals:
-    content = json.loads(path.read_bytes())
+    try:
+        content = json.loads(path.read_bytes())
+    except RecursionError:
+        raise ValueError('its lists nest too deeply') from None
     header = content.get('Header') if isinstance(content, dict) else None
     if isinstance(header, dict) and 'SignalListHFData' in header:
         return _sinumerik_json(content)
@@ -115,19 +118,35 @@ def _json(path: Path) -> Signals:
 
 def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
     """Return the fast signals of a data recorder: a row for each cycle of the control."""
-    header = content['Header']
+    header, parts = content['Header'], content.get('Payload')
+    listed = header['SignalListHFData']
+    if not _are_all(dict, listed) or not all('Name' in signal for signal in listed):
+        raise ValueError('SignalListHFData of its Header must be a list of signals with a Name')
+    if not _are_all(dict, parts) or not _are_all(list, [p.get('HFData', []) for p in parts]):
+        raise ValueError('its Payload must be a list of parts, HFData in each a list of rows')
     names = []
-    for signal in header['SignalListHFData']:
+    for signal in listed:
         name, axis = str(signal['Name']), str(signal.get('Axis', ''))
         plain, letter = name.split('|')[0], axis if re.fullmatch(r'[A-Za-z]\d?', axis) else ''
         plain = f'{plain} [{OF_RECORDER[plain]}]' if plain in OF_RECORDER else plain
         names.append(f'{letter} {plain}' if letter else plain)
-    rows = [row for part in content['Payload'] for row in part.get('HFData', ())]
+    rows = [row for part in parts for row in part.get('HFData', ())]
+    if not rows:
+        raise ValueError('no part of its Payload holds a row of HFData')
+    if not _are_all(list, rows) or {*map(len, rows)} != {len(names)}:
+        raise ValueError(f'a row of HFData holds other than {len(names)} cells, one a signal')
     columns = list(zip(*rows, strict=True))
     held = {name: list(column) for name, column in zip(unlike(names), columns, strict=True)}
-    start = str(header.get('Initial', {}).get('Time', ''))
-    period = float(header.get('CycleTimeMs') or math.nan) * 1e-3
+    begin, cycle = header.get('Initial'), header.get('CycleTimeMs') or math.nan
+    if not isinstance(cycle, int | float):
+        raise ValueError('CycleTimeMs of its Header is no number')
+    start = str(begin.get('Time', '')) if isinstance(begin, dict) else ''
+    period = float(cycle) * 1e-3
     return Signals(frame=pl.DataFrame(held, strict=False), period=period, start=start)
+
+
+def _are_all(kind: type, values: object) -> bool:
+    return isinstance(values, list) and all(isinstance(one, kind) for one in values)
 
 
 def _xml(path: Path) -> Signals:

@@ -165,9 +165,11 @@ def _message(cells: Sequence[str]) -> tuple[int, list[str], list[list[str]]]:
     names, rest = rest[:count], rest[count:]
     arrays: list[list[str]] = []
     for _ in FIELDS if names else ():
+        if not rest:
+            raise ValueError(f'a line ends before the numbers of its {count} joints')
         size = 1 if rest[:1] == [''] else count
         arrays.append([] if rest[:1] == [''] else rest[:size])
         rest = rest[size:]
-    if names and (rest or len(arrays[-1]) not in (0, count)):
+    if names and (rest or any(len(one) not in (0, count) for one in arrays)):
         raise ValueError(f'a line holds other numbers than those of its {count} joints')
     return stamp, names, arrays

@@ -8,7 +8,7 @@ import math
 from ballscrew_monitor.core.inputs import InputState, Source, Why
 from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.report.balance import Balance
-from ballscrew_monitor.report.inputs_seen import hints_on, inputs_seen, Trouble
+from ballscrew_monitor.report.inputs_seen import hints_on, inputs_seen, missing_inputs, Trouble
 import numpy as np
 import pytest
 
@@ -119,6 +119,19 @@ def test_what_is_worked_out_is_not_called_measured(judged, source, assumed, stat
     case = judged.case([judged.rows()], values=judged.values(**TORQUE), known=known)
     seen = seen_of(case, source)
     assert (seen.origin, seen.measured) == (says(origin), says(origin) == 'measured')
+
+
+@pytest.mark.parametrize(
+    ('load_from', 'origin'),
+    [('torque', 'torque_read_as_load'), ('current', 'current_read_as_load'), ('', 'no_torque')],
+)
+def test_a_torque_that_is_taken_for_the_load_is_recorded(judged, load_from, origin, says):
+    case = judged.case([judged.rows()], known={'load_from': load_from})
+    seen = seen_of(case, Source.TORQUE)
+    assert seen.origin == says(origin)
+    assert ('not recorded' in seen.silence) is not bool(load_from)
+    assert ('Motor torque' in missing_inputs(case)) is not bool(load_from)
+    assert 'Axial load' not in missing_inputs(case)
 
 
 def test_what_was_worked_out_or_assumed_is_marked(judged):

@@ -44,6 +44,25 @@ def test_a_load_of_a_data_recorder_is_a_torque_in_per_cent(tmp_path):
     assert axis['torque_rated_Nm'] is None
 
 
+@pytest.mark.parametrize(
+    ('key', 'change'),
+    [
+        ('rows', {'Payload': []}),
+        ('ragged', {'Payload': [{'HFData': [[1, 2.0], [1]]}]}),
+        ('parts', {'Payload': {'HFData': [[1, 2.0]]}}),
+        ('signals', {'Header': {'SignalListHFData': ['a', 'b']}}),
+        ('cycle', {'Header': {'CycleTimeMs': 'two', 'SignalListHFData': []}}),
+        ('deep', {}),
+    ],
+)
+def test_what_is_wrong_with_a_trace_is_said_in_its_own_words(key, change, tmp_path, refused):
+    path = tmp_path / 'log.json'
+    signals = [] if key == 'cycle' else [{'Name': f'ENC_POS|{at}', 'Axis': 'X'} for at in '12']
+    content = {'Header': {'SignalListHFData': signals}, 'Payload': [{'HFData': [[]]}]} | change
+    path.write_text('[' * 100_000 if key == 'deep' else json.dumps(content))
+    refused(key, guess, path)
+
+
 def sinumerik_xml(path):
     records = ''.join(
         f'<rec time="{time:.4f}" f1="{place:.6f}" f2="1.5"/>' for time, place in zip(TIME, PLACE)
