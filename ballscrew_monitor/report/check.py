@@ -10,12 +10,13 @@ Maps, parameters, sheets and surfaces are written beside the page.
 """
 
 import argparse
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
 from pathlib import Path
+import re
 import sys
-from typing import Any
+from typing import Any, TypeVar
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED
 from ballscrew_monitor.core.prerequisites import require
@@ -34,6 +35,7 @@ from ballscrew_monitor.report.logs import find_logs, folder_names
 from ballscrew_monitor.report.many_logs import INDEX, LogToReport, report_each
 from ballscrew_monitor.report.overview import LogEntry, overview_page
 from ballscrew_monitor.report.parameters import parameters_for
+from surrogate.datasheet import key_of, read_yaml
 from surrogate.files import canonical_json, InputError, json_text, printable, replace_file
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
 from surrogate.progress import Progress
@@ -42,6 +44,8 @@ from surrogate.units import MILLI
 
 MAPS, SURFACES, SHEETS = 'maps', 'surfaces', 'sheets'
 BESIDE = '.map.yaml'
+KEY = re.compile(r'^(\w+):', re.M)
+Sheet = TypeVar('Sheet', Screw, Lubricant)
 OIL = 'iso_vg_68'
 UNCERTAINTY = 0.1  # [N m] of a torque whose map is guessed
 
@@ -101,12 +105,13 @@ def sheets_of(folder: Path, screw: str | None, oil: str | None) -> tuple[Screw, 
     """
     Return the sheets of screw and oil that are named, or lie in the folder; None without a screw.
 
-    Raises InputError for a sheet that cannot be read, and for several screws or oils.
+    Raises InputError for a file of the folder that has a key of a sheet and cannot be read as one,
+    and for several screws or oils.
 
     """
     files = sorted(folder.glob('*.yaml')) if folder.is_dir() else []
-    screws = [load_screw(screw)] if screw else list(_sheets(files, load_screw))
-    oils = [load_lubricant(oil)] if oil else list(_sheets(files, load_lubricant))
+    screws = [load_screw(screw)] if screw else list(_sheets(files, Screw, load_screw))
+    oils = [load_lubricant(oil)] if oil else list(_sheets(files, Lubricant, load_lubricant))
     for option, found in (('--screw', screws), ('--oil', oils)):
         if len(found) > 1:
             names = ', '.join(one.name for one in found)
@@ -116,10 +121,22 @@ def sheets_of(folder: Path, screw: str | None, oil: str | None) -> tuple[Screw, 
     return screws[0], oils[0] if oils else load_lubricant(OIL)
 
 
-def _sheets(files: Sequence[Path], load: Any) -> Iterator[Any]:
+def _sheets(files: Sequence[Path], kind: type, load: Callable[[str], Sheet]) -> Iterator[Sheet]:
+    """Yield the sheets of a kind among files: those with a key that only this kind has."""
+    keys = {of: {key_of(spec) for spec in dataclasses.fields(of)} for of in (Screw, Lubricant)}
+    own = keys[kind] - set.intersection(*keys.values())
     for file in files:
-        with contextlib.suppress(InputError):
+        if not file.name.endswith(BESIDE) and own & _top_keys(file):
             yield load(str(file))
+
+
+def _top_keys(file: Path) -> set[str]:
+    """Return the keys of a YAML file, as they begin its lines where it is no YAML."""
+    try:
+        content = read_yaml(file)
+    except InputError:
+        return set(KEY.findall(file.read_text(encoding='utf-8', errors='replace')))
+    return set(map(str, content)) if isinstance(content, dict) else set()
 
 
 def _check(
@@ -240,9 +257,18 @@ def _open(
 
 
 def map_beside(log: Path) -> Path | None:
-    """Return the map that lies beside a table, `feed.map.yaml` for `feed.csv`, None without."""
-    path = log.with_suffix(BESIDE)
-    return path if path.is_file() else None
+    """
+    Return the map that lies beside a table, None without.
+
+    `feed.csv.map.yaml` is that of feed.csv; `feed.map.yaml` as well, but for feed.json beside it.
+
+    """
+    own, shared = log.with_name(f'{log.name}{BESIDE}'), log.with_suffix(BESIDE)
+    if own.is_file():
+        return own
+    table = log.with_suffix('.csv')
+    is_first = table == log or not table.is_file()
+    return shared if is_first and shared.is_file() else None
 
 
 def _with_sheets(first: Guess, sheets: tuple[Screw, Lubricant] | None) -> Guess:

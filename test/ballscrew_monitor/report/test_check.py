@@ -9,6 +9,7 @@ import shutil
 from ballscrew_monitor import cli
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.tables.mapping import read_map
+from ballscrew_monitor.report.check import map_beside, sheets_of
 from ballscrew_monitor.report.free_run import identified
 from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.settings.parameters import read_file
@@ -143,6 +144,40 @@ def test_several_screws_in_a_folder_need_a_name(tmp_path, capsys, says):
         shutil.copy(find_sheet(name, 'screws'), folder)
     assert check(folder, tmp_path) == 2
     assert says('several_screws', folder=folder) in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ('kind', 'name', 'old', 'new', 'key'),
+    [
+        ('screws', 'nominal', 'lead_mm: 10.0', 'lead_mm: 10,0', 'unread_lead'),
+        ('screws', 'nominal', 'lead_mm:', 'steigung_mm:', 'unread_key'),
+        ('screws', 'nominal', 'lead_mm: 10.0', 'lead_mm: [10.0', 'unread_yaml'),
+        ('lubricants', 'iso_vg_32', 'density_kg_m3:', 'density_kg_m3: x', 'unread_oil'),
+    ],
+)
+def test_a_sheet_that_cannot_be_read_is_one_sentence(kind, name, old, new, key, tmp_path, refused):
+    text = find_sheet(name, kind).read_text()
+    assert old in text
+    (tmp_path / 'my.yaml').write_text(text.replace(old, new))
+    with refused(key, file=tmp_path / 'my.yaml'):
+        sheets_of(tmp_path, None, None)
+
+
+def test_a_file_of_other_keys_is_no_sheet(tmp_path):
+    (tmp_path / 'feed.map.yaml').write_text('log: feed.csv\naxes: {x: {lead_mm: 5,0}}\n')
+    (tmp_path / 'machine.yaml').write_text('name: mill\nlist: [1\n')
+    assert sheets_of(tmp_path, None, None) is None
+
+
+def test_a_map_beside_is_that_of_one_log(tmp_path):
+    for name in ('feed.json', 'feed.map.yaml'):
+        (tmp_path / name).write_text('')
+    assert map_beside(tmp_path / 'feed.json') == tmp_path / 'feed.map.yaml'
+    (tmp_path / 'feed.csv').write_text('')
+    assert map_beside(tmp_path / 'feed.csv') == tmp_path / 'feed.map.yaml'
+    assert map_beside(tmp_path / 'feed.json') is None
+    (tmp_path / 'feed.json.map.yaml').write_text('')
+    assert map_beside(tmp_path / 'feed.json') == tmp_path / 'feed.json.map.yaml'
 
 
 def run_of(tmp_path, name, drag, load=0.0, **more):
