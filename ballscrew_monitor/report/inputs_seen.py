@@ -214,8 +214,9 @@ def _rate(case: AxisCase, source: Source) -> float:
             return steps / span  # of these gaps some are no silence
     rest, valid = span - gaps.time - silent, steps - refused
     usual = 2 * gaps.count < valid and rest > 0.0
+    rate = (valid - gaps.count) / rest if usual else steps / span
     # Messages that were refused came in gaps or between them: neither rate is too high.
-    return max(steps / span, (valid - gaps.count) / rest if usual else 0.0)
+    return max(rate, steps / span) if refused else rate
 
 
 def _origin(case: AxisCase, source: Source) -> str:

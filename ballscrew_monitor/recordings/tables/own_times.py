@@ -1,6 +1,6 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a second column of times is that of the columns right of it, as scopes write them."""
+"""Second columns of times, which scopes write left of the columns that they belong to."""
 
 from ballscrew_monitor.recordings.tables.cells import Array
 import numpy as np

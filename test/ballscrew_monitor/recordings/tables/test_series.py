@@ -91,9 +91,11 @@ def test_the_map_decides_on_the_sign_of_a_torque_that_makes_the_load(
 ):
     """What is more in one direction may be a weight, or the amount of what turns round."""
     position = {'position': {'column': 'p', 'unit': 'mm'}, 'lead_mm': 10.0}
-    axis = OF_TORQUE if motion == 'v' else position | {
-        key: OF_TORQUE[key] for key in ('torque', 'load')
-    }
+    axis = (
+        OF_TORQUE
+        if motion == 'v'
+        else position | {key: OF_TORQUE[key] for key in ('torque', 'load')}
+    )
     columns = {'t': TIME, 'v': SPEED, 'p': POSITION, 'm': torque}
     refused('unclear_amounts', read, columns, axis)
     for magnitude, signs in ((True, np.sign(SPEED)), (False, 1.0)):
