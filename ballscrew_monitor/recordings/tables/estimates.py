@@ -23,6 +23,7 @@ FINEST = 1e-5  # of seconds that are written; of days it would be 0.9 s
 ALIKE = 0.8  # squared correlation of a motion and its speed
 LONGEST_AXIS = 20.0  # [m]
 MANY = 8  # rows that tell whether torques are amounts
+STRETCHES = 2000  # of a motion, at least, that tell how far a speed goes
 CLEARLY = 2.0  # times the sum of squares of the better of two readings
 FACTOR = 1.5  # by which a place and its speed may disagree
 BARELY = 0.05  # of the largest amount is noise about zero
@@ -51,26 +52,77 @@ def period(motions: Sequence[tuple[Array, Array]]) -> float:
     return across / along if across > 0.0 and along > 0.0 else math.nan
 
 
-def speed_unit(speeds: Array, motion: tuple[Array, Array] | None, step: float) -> tuple[str, str]:
-    """
-    Return the linear unit of speeds and why it is that.
-
-    A motion, positions [m] and such speeds a `step` [s] apart, decides if it is known; else the
-    largest amount does.
-
-    """
-    if motion is not None and math.isfinite(step):
-        position, speed = motion
-        for unit, factor in LINEAR_SPEED_UNITS.items():
-            found = period([(position, speed * factor)])
-            if step / FACTOR < found < step * FACTOR:
-                return unit, 'it agrees with the position over time'
-    largest = float(np.nanmax(np.abs(speeds)))
+def largest_speed_unit(largest: float) -> tuple[str, str]:
+    """Return the linear unit of speeds up to a largest amount [-] and why it is that."""
     if largest <= FAST:
         return 'm/s', f'its largest amount is {largest:.3g}'
     if largest <= FASTEST:
         return 'mm/s', f'its largest amount is {largest:.3g}, more than a feed axis does in m/s'
     return 'mm/min', f'its largest amount is {largest:.3g}, more than a feed axis does in mm/s'
+
+
+def way_per_speed(position: tuple[Array, Array], speed: tuple[Array, Array]) -> float:
+    """
+    Return how far an axis moves for a unit and second of its speed, NaN if both are not alike.
+
+    Places and speeds [-] each stand behind their times [s]. Least squares over some thousand
+    stretches, between which the speed is integrated by the trapezoidal rule.
+
+    """
+    times, places = (column[np.isfinite(position).all(axis=0)] for column in position)
+    seconds, speeds = (column[np.isfinite(speed).all(axis=0)] for column in speed)
+    if min(len(places), len(speeds)) < MANY:
+        return math.nan
+    every = max(len(places) // STRETCHES, 1)
+    ways = np.append(0.0, np.cumsum((speeds[1:] + speeds[:-1]) / 2 * np.diff(seconds)))
+    moved = np.diff(places[::every])
+    expected = np.diff(np.interp(times[::every], seconds, ways))
+    across, along = float(moved @ expected), float(expected @ expected)
+    if not along > 0.0 or across**2 < ALIKE * along * float(moved @ moved):
+        return math.nan
+    return abs(across) / along
+
+
+def unit_by_factor(factor: float, units: Mapping[str, float]) -> str:
+    """Return the unit that a factor is near to, empty if it is near to none."""
+    return next((unit for unit, one in units.items() if abs(factor / one - 1.0) < NEAR), '')
+
+
+def fault_of_speed(speed: Array, position: Array, places: Array) -> str:
+    """
+    Return why speeds are not those of a position, empty if they may be.
+
+    Of both the least and the most are given, and the first `places` in a row. A channel that is
+    not connected gives nothing but zeros, and a meter may give amounts.
+
+    """
+    if is_silent(speed):
+        return 'is always 0 while the position moves' if np.ptp(position) > 0.0 else ''
+    if is_one_sided(speed) and reverses(np.diff(places[np.isfinite(places)])):
+        return 'never changes its sign while the position goes back and forth'
+    return ''
+
+
+class Turns:
+    """Positions within one turn made to go on where they begin again: the shorter way is taken."""
+
+    def __init__(self, turn: float) -> None:
+        """Begin with the first row; a turn is so long in the unit of the positions."""
+        self._turn, self._last = turn, np.zeros(0)
+
+    def counted(self, positions: Array) -> Array:
+        """Return further positions with their whole turns, NaN where they are."""
+        known = np.isfinite(positions)
+        every = np.unwrap(np.append(self._last, positions[known]), period=self._turn)
+        counted = positions.copy()
+        counted[known] = every[len(self._last) :]
+        self._last = every[-1:]
+        return counted
+
+
+def is_within_turn(extremes: Array, turn: float) -> bool:
+    """Return True if the least and the most of positions are those of a scale of one turn."""
+    return turn / 2 < float(np.ptp(extremes)) <= turn * (1.0 + 1e-6)
 
 
 def position_unit(position: Array) -> tuple[str, str]:

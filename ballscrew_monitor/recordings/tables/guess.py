@@ -35,14 +35,19 @@ from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.own_times import is_own_time
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
-from ballscrew_monitor.recordings.tables.series import are_apart, of_amounts, unclear_sign
+from ballscrew_monitor.recordings.tables.series import (
+    are_apart,
+    of_amounts,
+    of_slope,
+    unclear_sign,
+)
 from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.time_gate import RATE, TimeGate
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface
-from surrogate.units import MILLI
+from surrogate.units import MILLI, TURN
 import yaml
 
 SCREW, OIL = 'nominal', 'iso_vg_68'
@@ -57,6 +62,9 @@ APART = 0.05  # of the rows that hold neither of two signals of joined tables
 MANY = 10  # rows of which one is not known, of a signal in the rows of another
 TURNS = 6.3  # range of a joint from which its unit is no metre
 SEPARATED_BY = {';': 'semicolons', ',': 'commas', '\t': 'tabs', '|': 'bars', ' ': 'blanks'}
+SPEED_UNITS = {False: conversions.LINEAR_SPEED_UNITS, True: conversions.ROTARY_SPEED_UNITS}
+"""Units of speeds of a table, and of the screw."""
+LEADS = (1e-3, 0.1)  # [m] of ball screws
 ORDER_OR_SIGN = ('.', ',', 'order')
 JOINT = re.compile(
     r'(?P<before>.*?)(?P<field>name|position|velocity|effort)(?P<number>\[?_?\d+\]?)$'
@@ -131,6 +139,7 @@ class _Guesser:
         self.notes: list[str] = []
         self.used: dict[str, dict[str, Any]] = {}
         self.step, self.epoch, self.date_from = math.nan, '', ''
+        self.clock: tuple[str, Array, float] | None = None  # time column, its times and unit [s]
         self.order = ''  # of day and month in the head
         self.groups: dict[str, str] = {}
         self.unclear_times: set[str] = set()
@@ -175,7 +184,7 @@ class _Guesser:
         if rows < table.rows:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
         self._forget_texts()
-        self._forget_still()
+        self._forget_speeds()
 
     def _unnamed(self) -> str:
         """Return in a sentence how a map names the columns of a table without names."""
@@ -224,18 +233,15 @@ class _Guesser:
         labelled = program.labelled if one.column in self.head.labelled else ''
         return dict(program.times).get(one.column.split(' [')[0], labelled)
 
-    def _forget_still(self) -> None:
-        """Leave out speeds of nothing but 0 beside a position that moves."""
+    def _forget_speeds(self) -> None:
+        """Leave out speeds that cannot be those of the position beside them."""
         for name, chosen in self.axes.items():
             if {'speed', 'position'} <= set(chosen):
-                speed, position = (
-                    self.extremes[chosen[kind].column] for kind in ('speed', 'position')
-                )
-                if not speed.any() and position[0] != position[1]:
-                    self.notes.append(
-                        f'axis {name}: {chosen.pop("speed").column} is always 0 while the '
-                        'position moves: the speed is the slope of the position'
-                    )
+                speed, position = (chosen[kind].column for kind in ('speed', 'position'))
+                extremes = self.extremes[speed], self.extremes[position]
+                if fault := estimates.fault_of_speed(*extremes, self.data[position]):
+                    chosen.pop('speed')
+                    self.notes.append(of_slope(name, speed, fault))
 
     def result(self) -> Guess:
         time = self._time_column()
@@ -379,6 +385,7 @@ class _Guesser:
             )
         if unit:
             self.step = step * SCALES[unit][0]
+            self.clock = one.column, values * SCALES[unit][0], SCALES[unit][0]
         self._set_own_times(one)
         return {'column': one.column} | ({} if why else {'unit': unit or None})
 
@@ -627,9 +634,11 @@ class _Guesser:
         elif kind == 'speed' and (turning := names.turning_unit(place['column'])):
             unit, why = turning, 'its name is that of a turning speed'
         elif kind == 'speed':
-            metres, speed = self._metres(name), self.data[place['column']]
-            motion = None if metres is None else (metres, speed)
-            unit, why = estimates.speed_unit(values, motion, self.step)
+            unit, why = self._unit_of_speed(name, place['column'])
+            if not unit:
+                place['unit'] = None
+                self.unstated.append(f'state axes.{name}.speed.unit in the map: {why}')
+                return
         elif kind == 'load' and (largest := self._largest_load()) <= HARDEST:
             self._leave_open(name, largest)
             return
@@ -657,7 +666,8 @@ class _Guesser:
             return
         motion = chosen.get('speed') or chosen['position']
         speed = self.data[motion.column]
-        speed = speed if 'speed' in chosen else estimates.slopes(speed)
+        if 'speed' not in chosen:
+            speed = estimates.slopes(self._places(motion.column, motion.unit))
         torque = self.data[place['column']]
         makes_load = 'load' not in self.used[name]
         magnitude = estimates.is_magnitude(torque, speed, makes_load=makes_load)
@@ -703,14 +713,48 @@ class _Guesser:
             {'position': 'rad', 'speed': 'rad/s', 'torque': 'N m'}.get(kind, '') if turns else ''
         )
 
-    def _metres(self, name: str) -> Array | None:
-        """Return the position of an axis [m], None if there is none that is linear."""
+    def _unit_of_speed(self, name: str, column: str) -> tuple[str, str]:
+        """Return the unit of a speed and why, or no unit and why the map must state it."""
+        largest = estimates.largest_speed_unit(float(np.nanmax(np.abs(self.extremes[column]))))
         if 'position' not in self.used[name]:
-            return None
+            return largest
         position = self.axes[name]['position']
-        values, extremes = self.data[position.column], self.extremes[position.column]
-        unit = position.unit or estimates.position_unit(extremes)[0]
-        return values * LINEAR_POSITION_UNITS[unit] if unit in LINEAR_POSITION_UNITS else None
+        unit = position.unit or estimates.position_unit(self.extremes[position.column])[0]
+        of_screw = unit in conversions.ROTARY_POSITION_UNITS
+        factor = self._way_per_speed(position.column, unit, column)
+        if math.isnan(factor):
+            return largest
+        if fitting := estimates.unit_by_factor(factor, SPEED_UNITS[of_screw]):
+            also = '' if position.unit else ', as it would if both were in inches'
+            return fitting, f'it agrees with the position over time{also}'
+        leads = _leads(factor, of_screw=of_screw)
+        told = f'{factor:.3g} {"rad" if of_screw else "m"} in a second for each of it'
+        may = f', as it would in {" or ".join(leads)}' if leads else ''
+        return '', f'{column} states none that is known, and {position.column} moves {told}{may}'
+
+    def _way_per_speed(self, position: str, unit: str, speed: str) -> float:
+        """Return how far a position [m or rad] moves in a second for each of a speed, or NaN."""
+        clocks = [self._clock(column) for column in (position, speed)]
+        if not all(map(len, clocks)):
+            return math.nan
+        places = self._places(position, unit) * conversions.POSITION_UNITS[unit]
+        return estimates.way_per_speed((clocks[0], places), (clocks[1], self.data[speed]))
+
+    def _clock(self, column: str) -> Array:
+        """Return the times of the rows of a column [s], none where they are not known."""
+        if self.clock is None:
+            count = len(self.data[column]) if math.isfinite(self.head.period) else 0
+            return np.arange(count, dtype=np.float64) * self.head.period
+        time, times, unit = self.clock
+        own = self.groups.get(column, time)
+        return times if own == time else self.data[own] * unit
+
+    def _places(self, column: str, unit: str) -> Array:
+        """Return positions, whole turns counted where they are those of a scale of one turn."""
+        turn = TURN / conversions.ROTARY_POSITION_UNITS.get(unit, math.nan)
+        if estimates.is_within_turn(self.extremes[column], turn):
+            return estimates.Turns(turn).counted(self.data[column])
+        return self.data[column]
 
     def _set_oil(self, name: str, place: dict[str, Any]) -> None:
         """Say of a temperature that does not say so that it is taken for that of the oil."""
@@ -795,6 +839,20 @@ def _period(times: Array) -> float:
     changes = np.diff(np.flatnonzero(steps > 0.0))
     share = float(np.median(changes)) if len(changes) else 1.0
     return float(np.median(rising)) / share if len(rising) else math.nan
+
+
+def _leads(factor: float, *, of_screw: bool) -> list[str]:
+    """Return the units of a speed with the leads at which it makes its position."""
+    leads = {
+        unit: of / factor * TURN if of_screw else factor * TURN / of
+        for unit, of in SPEED_UNITS[not of_screw].items()
+    }
+    least, most = LEADS
+    return [
+        f'{unit} at a lead of {lead * MILLI:.3g} mm'
+        for unit, lead in leads.items()
+        if least <= lead <= most
+    ]
 
 
 def _rates(step: float) -> str:

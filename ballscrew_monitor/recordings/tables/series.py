@@ -19,10 +19,13 @@ from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.dates import dated
 from ballscrew_monitor.recordings.tables.estimates import (
     FACTOR,
+    fault_of_speed,
     is_magnitude,
     is_one_sided,
+    is_within_turn,
     NEAR,
     slopes,
+    Turns,
 )
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, MOTOR, TableMap
 from ballscrew_monitor.recordings.tables.quantities import MOTION
@@ -40,6 +43,10 @@ BETWEEN = 2.0  # [s] between runs, at least: longer than a sample is fresh
 LONG_GAP = 20.0  # times the usual time between rows, the same
 LONG = 3.0  # times the usual time between rows: across more the speed is not known
 SHOWING = 100_000  # of the first rows, which show whether torques are amounts
+DOUBTFUL = 0.45  # of a turn between rows: noise may make it a motion the other way
+OF_ONE_TURN = (
+    'stays within a turn: where it jumps by more than half of one, the axis is taken to go on'
+)
 FARTHEST = 1e100  # position in whatever unit, so that squares of what is moved have a sum
 ALIKE = 0.9  # squared correlation from which a speed and its position are of one motion
 
@@ -70,6 +77,7 @@ class Series:
     mapping: TableMap
     places: Mapping[str, int]
     _times: tuple[Times, ...]
+    _turns: Mapping[str, float]
 
     @property
     def counts(self) -> tuple[int, ...]:
@@ -97,15 +105,34 @@ class Series:
             (axis, {kind for kind in quantities_of(axis) if self.of(axis, kind) == number})
             for axis in self.mapping.axes
         ]
-        blocks: Iterable[tuple[Rows, slice]] = ((rows, slice(None)) for rows in times.rows())
+        every = self._with_turns(times)
+        blocks: Iterable[tuple[Rows, slice]] = ((rows, slice(None)) for rows in every)
         if any('speed' in kinds and 'speed' not in axis.columns for axis, kinds in held):
-            blocks = _with_neighbours(times.rows())
+            blocks = _with_neighbours(every)
         for rows, part in blocks:
             columns: dict[str, Array] = {}
             for axis, kinds in held:
                 quantities = _axis(axis, kinds, rows, part, self)
                 columns |= {f'{axis.name}.{kind}': one for kind, one in quantities.items()}
             yield Rows(stamps=rows.stamps[part], columns=columns)
+
+    def _with_turns(self, times: Times) -> Iterator[Rows]:
+        """Yield the rows of a group; positions that begin again after each turn go on."""
+        turns = {name: turn for name, turn in self._turns.items() if name in times.group.columns}
+        scales = {name: Turns(turn) for name, turn in turns.items()}
+        for rows in times.rows():
+            columns = {name: scale.counted(rows.columns[name]) for name, scale in scales.items()}
+            soon = np.diff(rows.stamps) <= LONG * SECOND * times.usual_period
+            for name, places in columns.items():
+                steps = np.abs(np.diff(places))[soon] / turns[name]
+                if (steps > DOUBTFUL).any():
+                    raise InputError(
+                        f'{short(name)} begins again after each turn, and moves by up to '
+                        f'{np.nanmax(steps):.2g} turns from row to row, which may be of either '
+                        f'direction above {DOUBTFUL:g}: record more rows in a second, or take it '
+                        'out of the map'
+                    )
+            yield dataclasses.replace(rows, columns={**rows.columns, **columns})
 
     def of(self, axis: AxisMap, kind: str) -> int:
         """Return the group in which a quantity of an axis is."""
@@ -156,10 +183,11 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
             raise InputError(f'{table.left_out[name]}: name a time that is read, or {INSTEAD}')
     _check_positions(path, mapping, table)
     axes = [_readable(axis, table.left_out) for axis in mapping.axes]
-    still = [_moving(axis, table) for axis in axes]
-    signed = [_with_sign(path, axis, table) for axis, _ in still]
+    moving = [_moving(axis, table) for axis in axes]
+    signed = [_with_sign(path, axis, table) for axis, _ in moving]
     held = dataclasses.replace(mapping, axes=tuple(axis for axis, _ in signed))
     times = [Times(table, held, group, shown) for group in groups_of(table, held)]
+    turns = dict(_turns_of(held, table))
     _check_magnitudes(path, held, [one.group.columns for one in times])
     run_begins, run_borders = _place(path, times)
     notes = [note for one in times for note in one.notes()]
@@ -173,29 +201,34 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
         run_borders=tuple(run_borders),
         notes=(
             *_losses(mapping, table.left_out),
-            *filter(None, (note for _, note in [*still, *signed])),
+            *filter(None, (note for _, note in [*moving, *signed])),
             *table.notes,
+            *(f'{short(name)} {OF_ONE_TURN}' for name in turns),
             *dict.fromkeys(notes),
         ),
         mapping=held,
         places={name: at for at, one in enumerate(times) for name in one.group.columns},
         _times=tuple(times),
+        _turns=turns,
     )
 
 
 def _moving(axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
-    """Return an axis without a speed of nothing but 0 beside a position that moves; a note."""
+    """Return an axis without a speed that cannot be that of its position; a note."""
     if not set(MOTION) <= set(axis.columns):
         return axis, ''
-    speed, position = (table.readings[axis.columns[kind].name].extremes for kind in MOTION)
-    if speed.any() or position[0] == position[1]:
+    speed, position = (axis.columns[kind].name for kind in MOTION)
+    places = table.readings[position].extremes, table.head(SHOWING)[position]
+    fault = fault_of_speed(table.readings[speed].extremes, *places)
+    if not fault:
         return axis, ''
     columns = {kind: column for kind, column in axis.columns.items() if kind != 'speed'}
-    note = (
-        f'axis {axis.name}: {short(axis.columns["speed"].name)} is always 0 while the position '
-        'moves: the speed is the slope of the position'
-    )
-    return dataclasses.replace(axis, columns=columns), note
+    return dataclasses.replace(axis, columns=columns), of_slope(axis.name, speed, fault)
+
+
+def of_slope(axis: str, speed: str, fault: str) -> str:
+    """Return why the speed of an axis is worked out from its position."""
+    return f'axis {axis}: {short(speed)} {fault}: the speed is the slope of the position'
 
 
 def _with_sign(path: Path, axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
@@ -221,6 +254,17 @@ def _with_sign(path: Path, axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
         column = dataclasses.replace(column, magnitude=magnitude)
         axis = dataclasses.replace(axis, columns={**axis.columns, kind: column})
     return axis, of_amounts(axis.name, kind, column.name) if column.magnitude else ''
+
+
+def _turns_of(mapping: TableMap, table: Table) -> Iterator[tuple[str, float]]:
+    """Yield the columns of positions that stay within a turn, and how long that is in each."""
+    for axis in mapping.axes:
+        column = axis.columns.get('position')
+        if column is None or column.unit not in conversions.ROTARY_POSITION_UNITS:
+            continue
+        turn = TURN / abs(column.scale * conversions.ROTARY_POSITION_UNITS[column.unit])
+        if is_within_turn(table.readings[column.name].extremes, turn):
+            yield column.name, turn
 
 
 def unclear_sign(axis: str, kind: str, column: str, *, apart: bool) -> str:
