@@ -92,8 +92,8 @@ def fault_of_speed(speed: Array, position: Array, places: Array) -> str:
     """
     Return why speeds are not those of a position, empty if they may be.
 
-    Of both the least and the most are given, and the first `places` in a row. A channel that is
-    not connected gives nothing but zeros, and a meter may give amounts.
+    Of both the least and the most [-] are given, and the first `places` [-] in a row. A channel
+    that is not connected gives nothing but zeros, and a meter may give amounts.
 
     """
     if is_silent(speed):

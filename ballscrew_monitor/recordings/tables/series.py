@@ -120,11 +120,12 @@ class Series:
         """Yield the rows of a group; positions that begin again after each turn go on."""
         turns = {name: turn for name, turn in self._turns.items() if name in times.group.columns}
         scales = {name: Turns(turn) for name, turn in turns.items()}
+        stamps, ends = np.zeros(0, np.int64), dict.fromkeys(turns, np.zeros(0))
         for rows in times.rows():
+            soon = np.diff(np.append(stamps, rows.stamps)) <= LONG * SECOND * times.usual_period
             columns = {name: scale.counted(rows.columns[name]) for name, scale in scales.items()}
-            soon = np.diff(rows.stamps) <= LONG * SECOND * times.usual_period
             for name, places in columns.items():
-                steps = np.abs(np.diff(places))[soon] / turns[name]
+                steps = np.abs(np.diff(np.append(ends[name], places)))[soon] / turns[name]
                 if (steps > DOUBTFUL).any():
                     raise InputError(
                         f'{short(name)} begins again after each turn, and moves by up to '
@@ -132,6 +133,8 @@ class Series:
                         f'direction above {DOUBTFUL:g}: record more rows in a second, or take it '
                         'out of the map'
                     )
+                ends[name] = places[-1:]
+            stamps = rows.stamps[-1:]
             yield dataclasses.replace(rows, columns={**rows.columns, **columns})
 
     def of(self, axis: AxisMap, kind: str) -> int:

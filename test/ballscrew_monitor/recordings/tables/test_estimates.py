@@ -6,11 +6,15 @@ from ballscrew_monitor.recordings.tables.estimates import (
     DAY,
     is_magnitude,
     is_one_sided,
+    is_within_turn,
+    largest_speed_unit,
     Midnights,
     period,
     position_unit,
     reverses,
-    speed_unit,
+    Turns,
+    unit_by_factor,
+    way_per_speed,
 )
 from hypothesis import given
 from hypothesis import strategies as st
@@ -33,8 +37,56 @@ def test_the_axis_that_moves_decides_on_the_period():
     ('largest', 'unit'), [(2.0, 'm/s'), (2.1, 'mm/s'), (2000.0, 'mm/s'), (2001.0, 'mm/min')]
 )
 def test_the_largest_speed_tells_the_unit_where_nothing_else_does(largest, unit):
-    speed = np.array([0.0, -largest, np.nan])
-    assert speed_unit(speed, None, 0.1)[0] == unit
+    assert largest_speed_unit(largest)[0] == unit
+
+
+@given(st.floats(1e-4, 1e4), st.floats(0.2, 5.0), st.sampled_from([-1.0, 1.0]))
+def test_the_way_for_each_of_a_speed_is_that_of_its_integral(factor, frequency, sign):
+    """The integral of a sine is a cosine; both have rows of their own."""
+    times, seconds = np.arange(0.0, 20.0, 0.013), np.arange(0.0, 20.0, 0.004)
+    places = 3.0 - sign * factor * np.cos(frequency * times) / frequency
+    speeds = np.sin(frequency * seconds)
+    speeds[::7] = np.nan
+    found = way_per_speed((times, places), (seconds, speeds))
+    assert found == pytest.approx(factor, rel=0.01)
+
+
+def test_a_speed_of_another_motion_tells_no_way():
+    times = np.arange(0.0, 20.0, 0.01)
+    place, other = np.sin(times), np.sin(3.0 * times)
+    assert np.isnan(way_per_speed((times, place), (times, other)))
+    assert np.isnan(way_per_speed((times, place), (times, np.zeros(len(times)))))
+    assert np.isnan(way_per_speed((times[:3], place[:3]), (times, other)))
+
+
+def test_a_unit_is_near_to_its_factor():
+    units = {'m/s': 1.0, 'mm/s': 1e-3}
+    assert [unit_by_factor(value, units) for value in (1.04, 0.97e-3, 1.06)] == ['m/s', 'mm/s', '']
+
+
+@given(
+    st.lists(st.floats(-0.49, 0.49), min_size=1, max_size=40),
+    st.integers(1, 41),
+    st.sampled_from([1.0, 360.0]),
+)
+def test_turns_of_a_scale_are_counted_in_blocks_of_any_size(steps, block, turn):
+    true = turn * np.cumsum([0.1, *steps])
+    told, scale = true % turn, Turns(turn)
+    parts = np.split(told, range(block, len(told), block))
+    counted = np.concatenate([scale.counted(part) for part in parts])
+    np.testing.assert_allclose(np.diff(counted), np.diff(true), atol=1e-9 * turn)
+    np.testing.assert_allclose(counted % turn, told, atol=1e-9 * turn)
+
+
+def test_unknown_positions_stay_so_and_count_no_turn():
+    found = Turns(360.0).counted(np.array([np.nan, 350.0, np.nan, 10.0]))
+    np.testing.assert_array_equal(found, [np.nan, 350.0, np.nan, 370.0])
+    assert Turns(360.0).counted(np.zeros(0)).size == 0
+
+
+def test_a_scale_of_one_turn_is_used_for_the_most_of_it():
+    ends = [(0.0, 359.9), (-180.0, 180.0), (0.0, 170.0), (0.0, 720.0)]
+    assert [is_within_turn(np.array(pair), 360.0) for pair in ends] == [True, True, False, False]
 
 
 def test_the_largest_place_tells_the_unit():

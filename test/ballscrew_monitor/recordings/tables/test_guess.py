@@ -14,6 +14,8 @@ import yaml
 
 TIME = np.arange(200) / 50.0
 SPEED = 100.0 * np.sin(TIME)
+TURNING = 2.0 * np.sin(TIME * 2.0)  # of the screw in a second
+PLACE = 3.0 - np.cos(TIME * 2.0)  # the turns that these are
 
 
 @pytest.fixture
@@ -466,3 +468,40 @@ def test_a_second_time_in_another_unit_is_asked_for(guessed, refused, says):
     refused('blank_time', make_map, made.content)
     made.content['axes']['x']['torque']['time'] = 'Time A [s]'
     assert make_map(made.content)
+
+
+@pytest.mark.parametrize(
+    ('position', 'unit', 'name'),
+    [
+        ({'x_pos_mm': 10.0 * PLACE}, 'rev/min', 'turning'),
+        ({'x_pos_deg': 360.0 * PLACE}, 'mm/s', 'feeding'),
+    ],
+)
+def test_a_speed_that_does_not_make_its_position_is_asked_for(position, unit, name, guessed, says):
+    """A screw of 10 mm a turn makes the place of 60 speeds a second, or of 10."""
+    speed = {'rev/min': 60.0, 'mm/s': 10.0}[unit] * TURNING
+    made = guessed({'t_s': TIME, **position, 'x_speed': speed, 'x_force_N': SPEED}, form='{:.9g}')
+    assert made.content['axes']['x']['speed'] == {'column': 'x_speed', 'unit': None}
+    assert made.unstated == (says(name),)
+    made.content['axes']['x']['speed']['unit'] = unit
+    assert make_map(made.content)
+
+
+@pytest.mark.parametrize('unit', ['mm/s', 'mm/min', 'm/min', 'm/s'])
+def test_a_speed_that_makes_its_position_has_its_unit(unit, guessed):
+    scale = {'mm/s': 10.0, 'mm/min': 600.0, 'm/min': 0.6, 'm/s': 0.01}[unit]
+    made = guessed({'t_s': TIME, 'x_pos_mm': 10.0 * PLACE, 'x_speed': scale * TURNING})
+    assert made.content['assumed']['x.speed.unit']['value'] == unit
+    made = guessed({'t_s': TIME, 'x_pos': 10.0 * PLACE, 'x_speed': scale * TURNING})
+    assert 'inches' in made.content['assumed']['x.speed.unit']['reason']
+
+
+def test_a_speed_without_a_sign_gives_way_to_its_position(guessed, says):
+    made = guessed({'t_s': TIME, 'x_pos_mm': 10.0 * PLACE, 'x_speed_mm_s': abs(10.0 * TURNING)})
+    assert 'speed' not in made.content['axes']['x']
+    assert says('amounts_of_speed') in made.notes
+
+
+def test_a_position_within_a_turn_tells_the_unit_of_its_speed(guessed):
+    made = guessed({'t_s': TIME, 'x_pos_deg': 360.0 * PLACE % 360.0, 'x_speed': 60.0 * TURNING})
+    assert made.content['assumed']['x.speed.unit']['value'] == 'rev/min'

@@ -13,6 +13,7 @@ from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import force_of, read_series
 import numpy as np
 import pytest
+from surrogate.files import InputError
 
 TIME = np.arange(400) / 50.0
 SPEED = 100.0 * np.sin(TIME)  # [mm/s]
@@ -282,3 +283,26 @@ def test_a_gap_noise_and_rest_say_nothing_a_wrong_sign_or_factor_is_told(notes):
     assert not notes(SPEED, 'mm/s', 0.0 * POSITION)
     assert notes(-SPEED, 'mm/s')[0].endswith('one of both has the wrong sign of its scale')
     assert notes(3.0 * SPEED, 'mm/s')[0].endswith('the time and the lead')
+
+
+def test_turns_of_a_position_are_counted(read):
+    """The slope of a sine of turns is a cosine, whichever turn the scale is in."""
+    turns = 4.0 * np.sin(TIME)
+    axis = {'lead_mm': 10.0, 'position': {'column': 'p', 'unit': 'deg'}}
+    rows = read({'t': TIME, 'p': 360.0 * turns % 360.0}, axis)
+    assert rows.speed[1:-1] == pytest.approx(2 * np.pi * 4.0 * np.cos(TIME[1:-1]), abs=0.01)
+    assert any('p stays within a turn' in note for note in rows.notes)
+
+
+def test_turns_that_too_few_rows_tell_are_refused(read):
+    axis = {'lead_mm': 10.0, 'position': {'column': 'p', 'unit': 'rev', 'scale': 0.5}}
+    with pytest.raises(InputError, match='begins again after each turn'):
+        read({'t': TIME, 'p': 2.0 * (0.46 * np.arange(400) % 1.0)}, axis)
+
+
+def test_a_speed_without_a_sign_gives_way_to_its_position(read, says):
+    axis = AXIS | {'position': {'column': 'p', 'unit': 'mm'}}
+    rows = read({'t': TIME, 'v': abs(SPEED), 'p': POSITION}, axis)
+    true = 2 * np.pi / 10.0 * SPEED
+    assert rows.speed[1:-1] == pytest.approx(true[1:-1], abs=0.05)
+    assert says('amounts_of_speed') in rows.notes
