@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+LONG = 3.0  # times the usual time between rows: across more nothing is known
 NEAR = 0.05  # part by which a speed may miss what its position says
 FAST = 2.0  # [m/s] no feed axis moves faster
 FASTEST = 2000.0  # in mm/s, the same
@@ -22,12 +23,9 @@ RARE, SHORTEST = 0.01, 0.95e-5  # [Hz] of the slowest, and [s] between rows of t
 FINEST = 1e-5  # of seconds that are written; of days it would be 0.9 s
 ALIKE = 0.8  # squared correlation of a motion and its speed
 LONGEST_AXIS = 20.0  # [m]
-MANY = 8  # rows that tell whether torques are amounts
+FEW = 8  # rows that tell no way of a speed
 STRETCHES = 2000  # of a motion, at least, that tell how far a speed goes
-CLEARLY = 2.0  # times the sum of squares of the better of two readings
 FACTOR = 1.5  # by which a place and its speed may disagree
-BARELY = 0.05  # of the largest amount is noise about zero
-BACK = 0.01  # of the way of an axis that reverses, at least, leads in either direction
 
 
 def is_silent(values: Array) -> bool:
@@ -65,42 +63,41 @@ def way_per_speed(position: tuple[Array, Array], speed: tuple[Array, Array]) -> 
     """
     Return how far an axis moves for a unit and second of its speed, NaN if both are not alike.
 
-    Places and speeds [-] each stand behind their times [s]. Least squares over some thousand
-    stretches, between which the speed is integrated by the trapezoidal rule.
+    Places and speeds [-] each stand behind their times [s], of which the first run counts. Least
+    squares over some thousand stretches without a gap, for which the speed is integrated by the
+    trapezoidal rule.
 
     """
-    times, places = (column[np.isfinite(position).all(axis=0)] for column in position)
-    seconds, speeds = (column[np.isfinite(speed).all(axis=0)] for column in speed)
-    if min(len(places), len(speeds)) < MANY:
+    times, places = _first_run(*position)
+    seconds, speeds = _first_run(*speed)
+    if min(len(places), len(speeds)) < FEW:
         return math.nan
     every = max(len(places) // STRETCHES, 1)
     ways = np.append(0.0, np.cumsum((speeds[1:] + speeds[:-1]) / 2 * np.diff(seconds)))
-    moved = np.diff(places[::every])
-    expected = np.diff(np.interp(times[::every], seconds, ways))
+    times, places = times[::every], places[::every]
+    steps, moved = np.diff(times), np.diff(places)
+    expected = np.diff(np.interp(times, seconds, ways))
+    within = (times[:-1] >= seconds[0]) & (times[1:] <= seconds[-1])
+    good = within & (steps <= LONG * np.median(steps))
+    moved, expected = moved[good], expected[good]
     across, along = float(moved @ expected), float(expected @ expected)
     if not along > 0.0 or across**2 < ALIKE * along * float(moved @ moved):
         return math.nan
     return abs(across) / along
 
 
+def _first_run(times: Array, values: Array) -> tuple[Array, Array]:
+    """Return known values with their times until these begin again."""
+    known = np.isfinite(times) & np.isfinite(values)
+    times, values = times[known], values[known]
+    ends = np.flatnonzero(np.diff(times) < 0.0)
+    run = slice(int(ends[0]) + 1 if len(ends) else None)
+    return times[run], values[run]
+
+
 def unit_by_factor(factor: float, units: Mapping[str, float]) -> str:
     """Return the unit that a factor is near to, empty if it is near to none."""
     return next((unit for unit, one in units.items() if abs(factor / one - 1.0) < NEAR), '')
-
-
-def fault_of_speed(speed: Array, position: Array, places: Array) -> str:
-    """
-    Return why speeds are not those of a position, empty if they may be.
-
-    Of both the least and the most [-] are given, and the first `places` [-] in a row. A channel
-    that is not connected gives nothing but zeros, and a meter may give amounts.
-
-    """
-    if is_silent(speed):
-        return 'is always 0 while the position moves' if np.ptp(position) > 0.0 else ''
-    if is_one_sided(speed) and reverses(np.diff(places[np.isfinite(places)])):
-        return 'never changes its sign while the position goes back and forth'
-    return ''
 
 
 class Turns:
@@ -202,74 +199,6 @@ def unit_by_motion(
         < NEAR
     }
     return fits.pop() if len(fits) == 1 else ''
-
-
-def is_one_sided(extremes: Array) -> bool:
-    """Return True if values between the least and the most have one sign, but for noise."""
-    least, most = float(np.min(extremes)), float(np.max(extremes))
-    smaller, larger = sorted([max(-least, 0.0), max(most, 0.0)])
-    return larger > 0.0 and smaller <= BARELY * larger
-
-
-def reverses(ways: Array) -> bool:
-    """
-    Return True if an axis moves in both directions by its ways from row to row, or its speeds [-].
-
-    Jitter at rest makes little way, and a jump, such as to the begin of another run, is a single
-    step.
-
-    """
-    ways = ways[np.isfinite(ways) & (ways != 0.0)]
-    if len(ways) < 2:
-        return False
-    same = np.sign(ways[1:]) == np.sign(ways[:-1])
-    lasting = np.append(same, False) | np.append(False, same)
-    usual = float(np.quantile(np.abs(ways), 0.99))
-    steps = np.clip(ways[lasting], -usual, usual)
-    ahead, back = float(steps[steps > 0.0].sum()), -float(steps[steps < 0.0].sum())
-    return min(ahead, back) > BACK * (ahead + back)
-
-
-def is_magnitude(torque: Array, speed: Array, *, makes_load: bool) -> bool | None:
-    """
-    Return whether torques of one sign are amounts [-] in rows at equal distances, None if unclear.
-
-    Friction, viscous or not, turns with the motion, a weight does not, and what accelerates does
-    so with neither: amounts have an even part of the speed [-], torques with a sign an odd one.
-    An axis that does not reverse shows no amounts; torques at other times show nothing. Amounts
-    that differ by direction look as torques with a sign do: where a torque makes the load, it is
-    unclear whether it has one.
-
-    """
-    if len(speed) < MANY:
-        return False
-    push = np.gradient(speed)
-    good = np.isfinite(torque) & np.isfinite(speed) & np.isfinite(push) & (speed != 0.0)
-    known = np.isfinite(torque).sum(), (np.isfinite(speed) & (speed != 0.0)).sum()
-    if good.sum() < MANY:
-        return None if min(known) >= MANY else False
-    torque, speed, push = torque[good], speed[good], push[good]
-    if not reverses(speed):
-        return False
-    ways, once = np.sign(speed), np.ones(len(speed))
-    misses = []
-    for parts in ([once, np.abs(speed), ways * push], [once, ways, speed, push]):
-        terms = np.column_stack(parts)
-        fit = np.linalg.lstsq(terms, torque, rcond=None)[0]
-        misses.append(float(np.sum((torque - terms @ fit) ** 2)))
-    amounts, signed = (miss + 1e-9 * float(torque @ torque) for miss in misses)
-    if max(amounts, signed) < CLEARLY * min(amounts, signed):
-        return None
-    return None if signed < amounts and makes_load else amounts < signed
-
-
-def slopes(positions: Array) -> Array:
-    """Return the changes of positions from row to row [-], of those that hold one."""
-    known = np.flatnonzero(np.isfinite(positions))
-    found = np.full(len(positions), math.nan)
-    if len(known) > 1:
-        found[known] = np.gradient(positions[known])
-    return found
 
 
 def is_of_days(extremes: Array) -> bool:

@@ -22,6 +22,7 @@ from typing import Any
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
+from ballscrew_monitor.recordings.tables.amounts import are_amounts, fault_of_speed
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
 from ballscrew_monitor.recordings.tables.dates import (
     dates_by_name,
@@ -30,14 +31,15 @@ from ballscrew_monitor.recordings.tables.dates import (
     NAME,
     start_in_head,
 )
-from ballscrew_monitor.recordings.tables.mapping import MOTOR
+from ballscrew_monitor.recordings.tables.mapping import MOTOR, SIGNED
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.own_times import is_own_time
-from ballscrew_monitor.recordings.tables.quantities import INPUTS, RATED, SCALES, UNITS
+from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
 from ballscrew_monitor.recordings.tables.series import (
     are_apart,
     of_amounts,
+    OF_SLOPE,
     of_slope,
     unclear_sign,
 )
@@ -63,7 +65,9 @@ MANY = 10  # rows of which one is not known, of a signal in the rows of another
 TURNS = 6.3  # range of a joint from which its unit is no metre
 SEPARATED_BY = {';': 'semicolons', ',': 'commas', '\t': 'tabs', '|': 'bars', ' ': 'blanks'}
 SPEED_UNITS = {False: conversions.LINEAR_SPEED_UNITS, True: conversions.ROTARY_SPEED_UNITS}
-"""Units of speeds of a table, and of the screw."""
+POSITION_UNITS = {False: LINEAR_POSITION_UNITS, True: conversions.ROTARY_POSITION_UNITS}
+"""Units of a table, and of a screw."""
+SAME_LEAD = 0.01  # part by which a lead out of a log may miss a usual one
 LEADS = (1e-3, 0.1)  # [m] of ball screws
 ORDER_OR_SIGN = ('.', ',', 'order')
 JOINT = re.compile(
@@ -142,6 +146,7 @@ class _Guesser:
         self.clock: tuple[str, Array, float] | None = None  # time column, its times and unit [s]
         self.order = ''  # of day and month in the head
         self.groups: dict[str, str] = {}
+        self.ways: dict[str, float] = {}  # of a position for a unit and second of its speed
         self.unclear_times: set[str] = set()
         self.members: dict[tuple[str, tuple[int, int]], str] = {}
         self.times = [one for one in self.named if self._may_be_time(one)]
@@ -239,7 +244,7 @@ class _Guesser:
             if {'speed', 'position'} <= set(chosen):
                 speed, position = (chosen[kind].column for kind in ('speed', 'position'))
                 extremes = self.extremes[speed], self.extremes[position]
-                if fault := estimates.fault_of_speed(*extremes, self.data[position]):
+                if fault := fault_of_speed(*extremes, self.data[position]):
                     chosen.pop('speed')
                     self.notes.append(of_slope(name, speed, fault))
 
@@ -553,6 +558,8 @@ class _Guesser:
             if kind in chosen and self._is_used(chosen[kind])
         }
         self._forget_unitless(name)
+        self.ways[name] = self._way_per_speed(name)
+        self._compare(name)
         for kind in used:
             self._set_unit(name, kind)
             self._set_magnitude(name, kind)
@@ -561,8 +568,8 @@ class _Guesser:
             self._say_time(name, kind, time)
         for key, value in (('screw', SCREW), ('oil', OIL)):
             self._assume(f'{name}.{key}', value, 'the log does not say it; the shipped one')
-        why = f'the log does not say it; that of {SCREW}'
-        self._assume(f'{name}.lead_mm', float(f'{_usual_lead() * MILLI:.6g}'), why)
+        lead, why = self._lead(name)
+        self._assume(f'{name}.lead_mm', float(f'{lead * MILLI:.4g}'), why)
         self._set_load(name)
         if 'torque' in used and self._unit(name, 'torque') == RATED:
             self._state_motor(name, 'torque')
@@ -624,21 +631,17 @@ class _Guesser:
     def _set_unit(self, name: str, kind: str) -> None:
         place, stated = self.used[name][kind], self.axes[name][kind].unit
         if stated:
-            place['unit'] = stated
+            place.setdefault('unit', stated)
             return
         values = self.extremes[place['column']]
         if place['column'] in self.joints and (unit := self._unit_of_joint(name, kind, values)):
             why = 'positions of joints are in rad or m, and none is so large in m'
         elif kind == 'position':
-            unit, why = estimates.position_unit(values)
+            unit, why = self._unit_of_position(name, place['column'])
         elif kind == 'speed' and (turning := names.turning_unit(place['column'])):
             unit, why = turning, 'its name is that of a turning speed'
         elif kind == 'speed':
             unit, why = self._unit_of_speed(name, place['column'])
-            if not unit:
-                place['unit'] = None
-                self.unstated.append(f'state axes.{name}.speed.unit in the map: {why}')
-                return
         elif kind == 'load' and (largest := self._largest_load()) <= HARDEST:
             self._leave_open(name, largest)
             return
@@ -655,27 +658,32 @@ class _Guesser:
             unit, why = 'K', f'its least is {np.nanmin(values):.3g}'
         else:
             unit, why = next(iter(UNITS[kind])), 'the usual one'
+        if not unit:
+            place['unit'] = None
+            self.unstated.append(f'state axes.{name}.{kind}.unit in the map: {why}')
+            return
         self._assume(
             f'{name}.{kind}.unit', unit, f'{place["column"]} states none that is known; {why}'
         )
 
     def _set_magnitude(self, name: str, kind: str) -> None:
-        """Say of a torque or current of one sign whether it holds amounts."""
+        """Say of a column of one sign whether it holds amounts, or let the map say it."""
         chosen, place = self.axes[name], self.used[name][kind]
-        if kind not in MOTOR or not estimates.is_one_sided(self.extremes[place['column']]):
+        if kind not in SIGNED:
             return
-        motion = chosen.get('speed') or chosen['position']
-        speed = self.data[motion.column]
-        if 'speed' not in chosen:
-            speed = estimates.slopes(self._places(motion.column, motion.unit))
-        torque = self.data[place['column']]
-        makes_load = 'load' not in self.used[name]
-        magnitude = estimates.is_magnitude(torque, speed, makes_load=makes_load)
-        if magnitude is None and self.head.program and self.head.program.are_amounts:
+        data = {
+            each: self._places(self.used[name][each]['column'], chosen[each].unit)
+            for each in (*MOTION, *SIGNED)
+            if each in self.used[name]
+        }
+        magnitude = are_amounts(kind, data, makes_load='load' not in self.used[name])
+        program = self.head.program
+        if magnitude is None and kind in MOTOR and program and program.are_amounts:
             magnitude = True
         if magnitude is None:
             place['magnitude'] = None
-            apart = are_apart(self.table, place['column'], motion.column)
+            motion = chosen.get('speed') or chosen['position']
+            apart = kind in MOTOR and are_apart(self.table, place['column'], motion.column)
             self.unstated.append(unclear_sign(name, kind, place['column'], apart=apart))
         elif magnitude:
             place['magnitude'] = True
@@ -715,15 +723,16 @@ class _Guesser:
 
     def _unit_of_speed(self, name: str, column: str) -> tuple[str, str]:
         """Return the unit of a speed and why, or no unit and why the map must state it."""
-        largest = estimates.largest_speed_unit(float(np.nanmax(np.abs(self.extremes[column]))))
+        largest = float(np.nanmax(np.abs(self.extremes[column])))
         if 'position' not in self.used[name]:
-            return largest
+            none = f'{column} states none that is known, and no position tells it'
+            return '', f'{none}; its largest amount is {largest:.3g}'
         position = self.axes[name]['position']
         unit = position.unit or estimates.position_unit(self.extremes[position.column])[0]
         of_screw = unit in conversions.ROTARY_POSITION_UNITS
-        factor = self._way_per_speed(position.column, unit, column)
+        factor = self.ways[name] * conversions.POSITION_UNITS[unit]
         if math.isnan(factor):
-            return largest
+            return estimates.largest_speed_unit(largest)
         if fitting := estimates.unit_by_factor(factor, SPEED_UNITS[of_screw]):
             also = '' if position.unit else ', as it would if both were in inches'
             return fitting, f'it agrees with the position over time{also}'
@@ -732,13 +741,69 @@ class _Guesser:
         may = f', as it would in {" or ".join(leads)}' if leads else ''
         return '', f'{column} states none that is known, and {position.column} moves {told}{may}'
 
-    def _way_per_speed(self, position: str, unit: str, speed: str) -> float:
-        """Return how far a position [m or rad] moves in a second for each of a speed, or NaN."""
+    def _unit_of_position(self, name: str, column: str) -> tuple[str, str]:
+        """Return the unit of a position and why, or no unit and why the map must state it."""
+        speed, way = self.axes[name].get('speed'), self.ways[name]
+        if speed is None or not speed.unit or math.isnan(way):
+            return estimates.position_unit(self.extremes[column])
+        per_unit = conversions.SPEED_UNITS[speed.unit] / way
+        of_screw = speed.unit in conversions.ROTARY_SPEED_UNITS
+        if fitting := estimates.unit_by_factor(per_unit, POSITION_UNITS[of_screw]):
+            return fitting, 'it agrees with the speed over time'
+        return '', (
+            f'{column} states none that is known, and moves by {way:.3g} in a second for each '
+            f'{speed.unit} of {speed.column}'
+        )
+
+    def _way_per_speed(self, name: str) -> float:
+        """Return how far a position moves in a second for each of its speed, NaN if it is apart."""
+        used = self.used[name]
+        if not set(MOTION) <= set(used):
+            return math.nan
+        speed, position = (used[kind]['column'] for kind in MOTION)
         clocks = [self._clock(column) for column in (position, speed)]
         if not all(map(len, clocks)):
             return math.nan
-        places = self._places(position, unit) * conversions.POSITION_UNITS[unit]
+        places = self._places(position, self.axes[name]['position'].unit)
         return estimates.way_per_speed((clocks[0], places), (clocks[1], self.data[speed]))
+
+    def _compare(self, name: str) -> None:
+        """Leave out a command that the position does not follow, and ask for another unit."""
+        chosen, way = self.axes[name], self.ways[name]
+        if math.isnan(way) or not all(chosen[kind].unit for kind in MOTION):
+            return
+        speed, position = (chosen[kind] for kind in MOTION)
+        of_screw = speed.unit in conversions.ROTARY_SPEED_UNITS
+        if of_screw != (position.unit in conversions.ROTARY_POSITION_UNITS):
+            return
+        factor = way * conversions.POSITION_UNITS[position.unit]
+        factor /= conversions.SPEED_UNITS[speed.unit]
+        if abs(factor - 1.0) < estimates.NEAR:
+            return
+        why = f'{position.column} moves {factor:.3g} times as far as {speed.column} says'
+        if speed.rank < 0:
+            del self.used[name]['speed'], chosen['speed']
+            self.notes.append(f'axis {name}: {why}, a command: {OF_SLOPE}')
+            return
+        self.used[name]['speed']['unit'] = None
+        self.unstated.append(f'state axes.{name}.speed.unit in the map: {why} in {speed.unit}')
+
+    def _lead(self, name: str) -> tuple[float, str]:
+        """Return the lead [m] of an axis and why it is that; speed and position may tell it."""
+        usual, way = _usual_lead(), self.ways[name]
+        why = f'the log does not say it; that of {SCREW}'
+        units = [self._unit(name, kind) for kind in MOTION if kind in self.used[name]]
+        if math.isnan(way) or not all(units):
+            return usual, why
+        speed, position = units
+        of_screw = speed in conversions.ROTARY_SPEED_UNITS
+        if of_screw == (position in conversions.ROTARY_POSITION_UNITS):
+            return usual, why
+        factor = way * conversions.POSITION_UNITS[position] / conversions.SPEED_UNITS[speed]
+        lead = TURN * factor if of_screw else TURN / factor
+        whole = round(2.0 * lead * MILLI) / 2.0 / MILLI
+        near = next((each for each in (usual, whole) if abs(lead - each) < SAME_LEAD * lead), lead)
+        return near, f'position and speed of axis {name} agree at {lead * MILLI:.4g} mm'
 
     def _clock(self, column: str) -> Array:
         """Return the times of the rows of a column [s], none where they are not known."""
@@ -747,7 +812,10 @@ class _Guesser:
             return np.arange(count, dtype=np.float64) * self.head.period
         time, times, unit = self.clock
         own = self.groups.get(column, time)
-        return times if own == time else self.data[own] * unit
+        times = times if own == time else self.data[own] * unit
+        if (np.diff(times) == 0.0).any():  # rows share times, and will be spread
+            return times[0] + np.arange(len(times)) * _period(times)
+        return times
 
     def _places(self, column: str, unit: str) -> Array:
         """Return positions, whole turns counted where they are those of a scale of one turn."""

@@ -39,6 +39,9 @@ from surrogate.units import MICRO, MILLI
 DERIVED = ('current', 'torque', 'motor_torque')
 """A load may be worked out from a current or torque, or by the node from the motor torque."""
 MOTOR = ('torque', 'current')
+NAMES = {'load': 'force', 'speed': 'speed'}
+SIGNED = (*MOTOR, *NAMES)
+"""Quantities whose sign decides, which some columns leave out."""
 NUMBERS = {
     'lead_mm': (0.1, 1000.0),
     'torque_constant_Nm_per_A': (1e-6, 1e3),
@@ -88,6 +91,8 @@ PLACES = {
     'AXIS.current': 'column of the motor current, or % of the rated one',
     'AXIS.torque.magnitude': '`true` for amounts without a sign, which get that of the motion; '
     'also for `current`; needed only if the log does not show it',
+    'AXIS.load.magnitude': '`false` for a force with a sign, also for `speed`; needed only if the '
+    'log does not show it',
     'AXIS.temperature': 'column of the oil temperature',
     'AXIS.lead_mm': 'lead of the screw; needed',
     'AXIS.torque_constant_Nm_per_A': 'for a load from the current',
@@ -360,7 +365,12 @@ class _Part:
         part = self if at else _Part(f'{self._prefix}.{kind}', self._values)
         name, units, time = part.text('column'), UNITS[kind], '' if at else part.text('time')
         unit = part.take('unit')
-        magnitude = part.flag('magnitude', None) if kind in MOTOR else None
+        magnitude = part.flag('magnitude', None) if kind in SIGNED else None
+        if magnitude and kind not in MOTOR:
+            raise InputError(
+                f'{part._prefix}.magnitude is true, it must be false: amounts of a {NAMES[kind]} '
+                'cannot be judged, name another column or none'
+            )
         numbers = [part.take(key, default) for key, default in (('scale', 1.0), ('offset', 0.0))]
         if name and not (isinstance(unit, str) and unit in units):
             found = 'missing' if unit is None else repr(unit)

@@ -2,16 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rates and units estimated from the numbers of a log."""
 
+from ballscrew_monitor.recordings.tables.amounts import is_magnitude, is_one_sided, reverses
 from ballscrew_monitor.recordings.tables.estimates import (
     DAY,
-    is_magnitude,
-    is_one_sided,
     is_within_turn,
     largest_speed_unit,
     Midnights,
     period,
     position_unit,
-    reverses,
     Turns,
     unit_by_factor,
     way_per_speed,
@@ -122,12 +120,22 @@ def test_torques_at_other_times_do_not_show_whether_they_are_amounts():
     assert is_magnitude(*apart, makes_load=False) is None
 
 
+RUNNING = np.repeat([0.0, 75.0, 0.0, -40.0], 100)
+
+
 @pytest.mark.parametrize(
-    ('extremes', 'expected'),
-    [((0.0, 1.9), True), ((-1.9, 0.03), True), ((-0.3, 1.9), False), ((0.0, 0.0), False)],
+    ('torque', 'expected'),
+    [
+        (np.abs(RUNNING), True),
+        (np.abs(RUNNING) - 2.0, True),
+        (np.where(np.arange(400) == 150, -50.0, np.abs(RUNNING)), True),
+        (np.where(RUNNING == 0.0, -30.0, np.abs(RUNNING)), True),
+        (RUNNING, False),
+        (0.0 * RUNNING, False),
+    ],
 )
-def test_noise_about_zero_is_no_other_sign(extremes, expected):
-    assert is_one_sided(np.array(extremes)) is expected
+def test_noise_a_glitch_and_rest_are_no_other_sign(torque, expected):
+    assert is_one_sided(torque, RUNNING) is expected
 
 
 @pytest.mark.parametrize(
