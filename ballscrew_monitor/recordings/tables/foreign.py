@@ -21,7 +21,7 @@ from xml.etree import ElementTree
 from ballscrew_monitor.recordings.tables import line_messages, long_form
 from ballscrew_monitor.recordings.tables.cells import readable
 from ballscrew_monitor.recordings.tables.heads import Head, Property, unlike
-from ballscrew_monitor.recordings.tables.layouts import ADAPTER, Format
+from ballscrew_monitor.recordings.tables.layouts import ADAPTER, Format, RECORDER
 from ballscrew_monitor.recordings.tables.quantities import RATED
 import numpy as np
 import polars as pl
@@ -142,7 +142,8 @@ def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
         raise ValueError('CycleTimeMs of its Header is no number')
     start = str(begin.get('Time', '')) if isinstance(begin, dict) else ''
     period = float(cycle) * 1e-3
-    return Signals(frame=pl.DataFrame(held, strict=False), period=period, start=start)
+    frame = pl.DataFrame(held, strict=False)
+    return Signals(frame=frame, period=period, start=start, program=RECORDER)
 
 
 def _are_all(kind: type, values: object) -> bool:

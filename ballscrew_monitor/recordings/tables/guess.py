@@ -59,7 +59,6 @@ TEMPERATURE = 40.0  # [degC]
 NUMBERS = 4_000_000  # of the first rows that are in memory
 EPOCH = '2000-01-01T00:00:00Z'
 LATE = 2_147_483_648.0  # [s] since 1970: no stamp is later
-HARDEST = 1000.0  # amount of a force that no axis is driven with in kN
 APART = 0.05  # of the rows that hold neither of two signals of joined tables
 MANY = 10  # rows of which one is not known, of a signal in the rows of another
 TURNS = 6.3  # range of a joint from which its unit is no metre
@@ -151,9 +150,10 @@ class _Guesser:
         self.members: dict[tuple[str, tuple[int, int]], str] = {}
         self.times = [one for one in self.named if self._may_be_time(one)]
         self.named = [one for one in self.named if one not in self.times or one.kind == 'time']
+        self.by_axis = names.by_axis([one for one in self.named if one.kind != 'time'])
         self.axes = {
             name: chosen
-            for name, found in names.by_axis([o for o in self.named if o.kind != 'time']).items()
+            for name, found in self.by_axis.items()
             if {'speed', 'position'} & set(chosen := names.best(found))
         }
         if not self.axes:
@@ -585,6 +585,24 @@ class _Guesser:
             speeds = self.extremes[used['speed']['column']]
             unit = self._unit(name, 'speed')
             self.notes += estimates.oddities(name, speeds, unit, conversions.LINEAR_SPEED_UNITS)
+        self._ask_for_columns(name)
+
+    def _ask_for_columns(self, name: str) -> None:
+        """Let the map name the column of a quantity that several may be."""
+        for kind, one in self.axes[name].items():
+            if kind not in self.used[name] or kind == 'temperature':
+                continue
+            others = [
+                column
+                for column in names.rivals(self.by_axis[name], one)
+                if not estimates.is_silent(self.extremes.get(column, np.ones(1)))
+            ]
+            if others:
+                self.used[name][kind]['column'] = None
+                self.unstated.append(
+                    f'state axes.{name}.{kind}.column in the map: '
+                    f'{" or ".join([one.column, *others])}'
+                )
 
     def _say_time(self, name: str, kind: str, time: str) -> None:
         """Say of an input that it has another time than the first, and ask if it may have."""
@@ -630,8 +648,10 @@ class _Guesser:
 
     def _set_unit(self, name: str, kind: str) -> None:
         place, stated = self.used[name][kind], self.axes[name][kind].unit
+        if 'unit' in place:
+            return
         if stated:
-            place.setdefault('unit', stated)
+            place['unit'] = stated
             return
         values = self.extremes[place['column']]
         if place['column'] in self.joints and (unit := self._unit_of_joint(name, kind, values)):
@@ -642,25 +662,19 @@ class _Guesser:
             unit, why = turning, 'its name is that of a turning speed'
         elif kind == 'speed':
             unit, why = self._unit_of_speed(name, place['column'])
-        elif kind == 'load' and (largest := self._largest_load()) <= HARDEST:
-            self._leave_open(name, largest)
-            return
         elif kind == 'load':
-            unit, why = 'N', f'a force of {largest:.3g} is more than axes are driven with in kN'
+            unit, why = '', self._unit_of_load(name)
         elif kind in MOTOR:
-            place['unit'] = None
-            self.unstated.append(
-                f'state axes.{name}.{kind}.unit in the map, {" or ".join(UNITS[kind])}: '
-                f'{place["column"]} states none that is known, and the load is worked out from it'
-            )
-            return
+            unit = ''
+            why = f'{place["column"]} states none that is known, and tells the load'
         elif kind == 'temperature' and np.nanmin(values) > TEMPERATURE * 5:
             unit, why = 'K', f'its least is {np.nanmin(values):.3g}'
         else:
             unit, why = next(iter(UNITS[kind])), 'the usual one'
         if not unit:
             place['unit'] = None
-            self.unstated.append(f'state axes.{name}.{kind}.unit in the map: {why}')
+            units = f', {" or ".join(UNITS[kind])}' if kind not in MOTION else ''
+            self.unstated.append(f'state axes.{name}.{kind}.unit in the map{units}: {why}')
             return
         self._assume(
             f'{name}.{kind}.unit', unit, f'{place["column"]} states none that is known; {why}'
@@ -689,28 +703,20 @@ class _Guesser:
             place['magnitude'] = True
             self.notes.append(of_amounts(name, kind, place['column']))
 
-    def _leave_open(self, name: str, largest: float) -> None:
-        """Let the map ask for the unit of a force, and offer what the load may be of instead."""
-        place, chosen = self.used[name]['load'], self.axes[name]
-        place['unit'] = None
+    def _unit_of_load(self, name: str) -> str:
+        """Return why the unit of a force is open, and what the load may be of instead."""
+        chosen, column = self.axes[name], self.used[name]['load']['column']
         instead = ''
         for kind in [one for one in MOTOR if one in chosen and self._is_used(chosen[one])][:1]:
-            column, unit = chosen[kind].column, chosen[kind].unit or next(iter(UNITS[kind]))
+            other, unit = chosen[kind].column, chosen[kind].unit or next(iter(UNITS[kind]))
             instead = (
-                f'; or write `load: {{from: {kind}}}` and `{kind}: {{column: {column}, unit: '
-                f'{unit}}}` there, so that {column} tells the load'
+                f'; or write `load: {{from: {kind}}}` and `{kind}: {{column: {other}, unit: '
+                f'{unit}}}` there, so that {other} tells the load'
             )
-        self.unstated.append(
-            f'state axes.{name}.load.unit in the map, {" or ".join(UNITS["load"])}: '
-            f'{place["column"]} states none that is known, and forces of up to {largest:.3g} may '
-            f'be in any{instead}'
-        )
-
-    def _largest_load(self) -> float:
-        """Return the largest amount of all forces that state no unit."""
-        loads = [chosen['load'] for chosen in self.axes.values() if 'load' in chosen]
-        return max(
-            float(np.nanmax(np.abs(self.extremes[one.column]))) for one in loads if not one.unit
+        largest = float(np.nanmax(np.abs(self.extremes[column])))
+        return (
+            f'{column} states none that is known, and forces of up to {largest:.3g} may be in '
+            f'any{instead}'
         )
 
     def _unit_of_joint(self, name: str, kind: str, values: Array) -> str:
@@ -744,6 +750,8 @@ class _Guesser:
     def _unit_of_position(self, name: str, column: str) -> tuple[str, str]:
         """Return the unit of a position and why, or no unit and why the map must state it."""
         speed, way = self.axes[name].get('speed'), self.ways[name]
+        if speed is None and not (self.head.program and self.head.program.metric):
+            return '', f'{column} states none that is known, and no speed tells it'
         if speed is None or not speed.unit or math.isnan(way):
             return estimates.position_unit(self.extremes[column])
         per_unit = conversions.SPEED_UNITS[speed.unit] / way
@@ -756,7 +764,7 @@ class _Guesser:
         )
 
     def _way_per_speed(self, name: str) -> float:
-        """Return how far a position moves in a second for each of its speed, NaN if it is apart."""
+        """Return how far a position moves in a second for each of its speed, NaN if not alike."""
         used = self.used[name]
         if not set(MOTION) <= set(used):
             return math.nan
@@ -770,7 +778,10 @@ class _Guesser:
     def _compare(self, name: str) -> None:
         """Leave out a command that the position does not follow, and ask for another unit."""
         chosen, way = self.axes[name], self.ways[name]
-        if math.isnan(way) or not all(chosen[kind].unit for kind in MOTION):
+        if math.isnan(way):
+            self._ask_which_moves(name)
+            return
+        if not all(chosen[kind].unit for kind in MOTION):
             return
         speed, position = (chosen[kind] for kind in MOTION)
         of_screw = speed.unit in conversions.ROTARY_SPEED_UNITS
@@ -783,10 +794,24 @@ class _Guesser:
         why = f'{position.column} moves {factor:.3g} times as far as {speed.column} says'
         if speed.rank < 0:
             del self.used[name]['speed'], chosen['speed']
+            self.ways[name] = math.nan
             self.notes.append(f'axis {name}: {why}, a command: {OF_SLOPE}')
             return
         self.used[name]['speed']['unit'] = None
         self.unstated.append(f'state axes.{name}.speed.unit in the map: {why} in {speed.unit}')
+
+    def _ask_which_moves(self, name: str) -> None:
+        """Let the map choose between a speed and a position that is not its integral."""
+        used = self.used[name]
+        if not set(MOTION) <= set(used):
+            return
+        columns = [used[kind]['column'] for kind in MOTION]
+        if all(len(self._clock(one)) and np.ptp(self.extremes[one]) for one in columns):
+            used['speed']['unit'] = None
+            self.unstated.append(
+                f'state axes.{name}.speed.unit in the map: {columns[1]} does not move as '
+                f'{columns[0]} says; take one of both out of the map if it is wrong'
+            )
 
     def _lead(self, name: str) -> tuple[float, str]:
         """Return the lead [m] of an axis and why it is that; speed and position may tell it."""

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names of columns, read: axis, quantity, unit as it is spelt; and the columns of each axis."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import dataclasses
 import re
 
@@ -39,7 +39,8 @@ KINDS = {
 # Words that make a column something else, whatever else its name says.
 OTHERS = frozenset(
     'acceleration accel acc jerk ffw diff dev cont ctrl voltage volt volts power error deviation '
-    'feedrate rate override '
+    'feedrate rate override std stddev variance max maximum peak threshold feedforward difference '
+    'simulated estimated clamping '
     'program sequence number line block inertia bus count index status limit percent pct '
     'beschleunigung ruck spannung leistung fehler abweichung programm satz zeile nummer'.split()
 )
@@ -49,7 +50,7 @@ ELSEWHERE = frozenset(
 MEASURED = frozenset('actual act feedback fb measured meas encoder enc real ist istwert'.split())
 WANTED = frozenset(
     'command commanded cmd com des vcmd set setpoint target reference ref demand desired nominal '
-    'soll sollwert'.split()
+    'soll sollwert programmed prog planned interpolator'.split()
 )
 QUALIFIERS = frozenset('filtered smoothed mean average avg rms value wert'.split())
 PROCESSED = frozenset('output raw'.split())
@@ -249,18 +250,46 @@ def by_axis(named: Sequence[Named]) -> dict[str, list[Named]]:
         return {'x': general}
     grouped = {one.column for group in groups.values() for one in group}
     shared = INPUTS if len(groups) == 1 else ('temperature',)
-    oil = [one for one in general if one.kind in shared and one.column not in grouped]
+    oil = [
+        one
+        for one in general
+        if one.kind in shared
+        and one.column not in grouped
+        and not (names and ROTARY & set(words_of(one.column)[:1]))
+    ]
     return {name: [*group, *oil] for name, group in groups.items()}
 
 
 def best(found: Sequence[Named]) -> dict[str, Named]:
     """Return for each kind the column that is most likely the measured quantity."""
-    ranked = sorted(found, key=lambda one: (one.place != 'axis', -one.rank))
     chosen: dict[str, Named] = {}
-    for one in ranked:
+    for one in sorted(found, key=_likelihood(found)):
         if one.kind in INPUTS:
             chosen.setdefault(one.kind, one)
     return chosen
+
+
+def rivals(found: Sequence[Named], one: Named) -> list[str]:
+    """Return columns of the quantity of a column that are as likely the measured one."""
+    of_kind = [each for each in found if each.kind == one.kind]
+    likelihood = _likelihood(of_kind)
+    return [
+        each.column
+        for each in of_kind
+        if each is not one
+        and likelihood(each) == likelihood(one)
+        and (one.kind != 'position' or each.unit != one.unit)
+    ]
+
+
+def _likelihood(found: Sequence[Named]) -> Callable[[Named], tuple[bool, int, int]]:
+    """Return the order of columns; words that others of the quantity do not have count last."""
+    words = {one.column: set(words_without_unit(one.column, one.kind)) for one in found}
+    common = {
+        kind: set.intersection(*(words[one.column] for one in found if one.kind == kind))
+        for kind in {one.kind for one in found}
+    }
+    return lambda one: (one.place != 'axis', -one.rank, len(words[one.column] - common[one.kind]))
 
 
 def told_by_words(named: Sequence[Named]) -> list[str]:

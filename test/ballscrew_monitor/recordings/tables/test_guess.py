@@ -105,17 +105,11 @@ def test_amounts_of_a_torque_are_said(weight, magnitude, guessed, says):
     assert made.unstated == (() if magnitude else (says('unclear_amounts'),))
 
 
-@pytest.mark.parametrize(('amount', 'unit'), [(0.9, None), (25.0, None), (2500.0, 'N')])
-def test_a_force_is_in_newtons_if_no_axis_holds_as_many_kilonewtons(
-    amount, unit, guessed, refused, says
-):
+@pytest.mark.parametrize('amount', [0.9, 25.0, 2500.0])
+def test_the_unit_of_a_force_is_asked_for(amount, guessed, refused, says):
     force = amount * np.cos(TIME)
-    made = guessed({'t_s': TIME, 'v_x': SPEED, 'f_x': force, 'curr_x': SPEED / 50})
+    made = guessed({'t_s': TIME, 'v_x_mm_s': SPEED, 'f_x': force, 'curr_x': SPEED / 50})
     assert says('current_left_out') in made.notes
-    if unit:
-        assert made.content['assumed']['x.load.unit']['value'] == unit
-        assert not made.unstated
-        return
     assert made.content['axes']['x']['load'] == {'column': 'f_x', 'unit': None}
     assert 'x.load.unit' not in made.content['assumed']
     assert 'current' not in made.content['axes']['x']
@@ -147,21 +141,22 @@ def test_position_and_time_tell_the_unit_of_the_speed(factor, unit, guessed):
 
 
 def test_what_cannot_be_told_is_said_or_refused(guessed, refused, says):
-    made = guessed({'x_vel': SPEED, 'x_force_N': SPEED})
+    made = guessed({'x_vel_mm_s': SPEED, 'x_force_N': SPEED})
     assert made.content['time'] == {'rate_Hz': None}
     assert made.unstated == (says('no_time'),)
     refused('column_looks_like', guessed, {'a': TIME, 'b': TIME})
-    made = guessed({'t': TIME, 'x_speed_furlong': SPEED, 'x_force_N': SPEED})
-    reason = made.content['assumed']['x.speed.unit']['reason']
-    assert reason.startswith('x_speed_furlong states none that is known')
+    made = guessed({'t_s': TIME, 'x_speed_furlong': SPEED, 'x_force_N': SPEED})
+    assert made.content['axes']['x']['speed']['unit'] is None
+    assert made.unstated == (says('no_speed_unit'),)
+    made = guessed({'t_s': TIME, 'x_position': SPEED, 'x_force_N': SPEED})
+    assert made.content['axes']['x']['position']['unit'] is None
 
 
 def test_of_a_long_log_the_first_rows_tell_the_rate_and_all_the_ranges(guessed, monkeypatch, says):
     monkeypatch.setattr(guess_module, 'NUMBERS', 300)
     late = np.where(np.arange(200) < 150, 0.0, 1.0)
-    made = guessed({'t': TIME, 'x_vel': late * SPEED, 'x_force_N': late})
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': late * SPEED, 'x_force_N': late * SPEED})
     assert made.content['axes']['x']['load'] == {'column': 'x_force_N', 'unit': 'N'}
-    assert made.content['assumed']['x.speed.unit']['value'] == 'mm/s'
     assert says('rate_units_those') in made.notes
     assert not any('never moves' in note for note in made.notes)
 
@@ -223,11 +218,11 @@ def test_axes_are_told_by_the_words_in_which_names_differ(guessed, says):
 
 
 def test_a_time_by_name_comes_before_one_by_unit_and_one_that_does_not_rise_is_said(guessed, says):
-    columns = {'served_ms': TIME * 1e3, 'time_s': TIME, 'x_vel': SPEED, 'x_force_N': SPEED}
+    columns = {'served_ms': TIME * 1e3, 'time_s': TIME, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED}
     assert guessed(columns).content['time']['column'] == 'time_s'
     del columns['time_s']
     assert guessed(columns).content['time'] == {'column': 'served_ms', 'unit': 'ms'}
-    made = guessed({'Zeit_ms': -TIME, 'x_vel': SPEED, 'x_force_N': SPEED})
+    made = guessed({'Zeit_ms': -TIME, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED})
     assert made.content['time'] == {'rate_Hz': None}
     assert made.unstated == (says('still_time'),)
 
@@ -244,7 +239,8 @@ def test_ticks_are_a_time_by_their_amount_and_small_whole_numbers_of_any_unit(gu
 
 
 def test_a_column_of_another_time_is_left_out_where_one_is_read(guessed):
-    columns = {'Time': ['some time'] * 200, 'time_s': TIME, 'x_vel': SPEED, 'x_force_N': SPEED}
+    columns = {'time_s': TIME, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED}
+    columns = {'Time': ['some time'] * 200} | columns
     made = guessed(columns)
     assert made.content['time'] == {'column': 'time_s', 'unit': 's'}
     assert not made.unstated
@@ -252,7 +248,7 @@ def test_a_column_of_another_time_is_left_out_where_one_is_read(guessed):
 
 
 def test_what_a_map_says_first_stays_in_comments(guessed):
-    columns = {'Time': ['1\n: 2'] * 200, 'x_vel': SPEED, 'x_force_N': SPEED}
+    columns = {'Time': ['1\n: 2'] * 200, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED}
     columns = {name: [f'"{one}"' for one in column] for name, column in columns.items()}
     made = guessed(columns)
     assert len(made.unstated) == 1
@@ -274,7 +270,7 @@ def test_a_german_log_is_understood(tmp_path):
         at = begin + dt.timedelta(milliseconds=20 * row)
         number = f'{speed * 60:.4f}'.replace('.', ',')
         clock = f'{at:%d.%m.%Y;%H:%M:%S},{at.microsecond // 1000:03d}'
-        lines.append(f'{clock};{number};{row + 1};41,5')
+        lines.append(f'{clock};{number};{row - 100};41,5')
     text = [
         'Maschine;DMU 50;;;',
         'Datum;Uhrzeit;Geschw.;Axialkraft;Öltemperatur',
@@ -341,7 +337,7 @@ def test_a_name_states_the_unit_of_its_time(name, unit, guessed):
 def test_a_relative_time_is_dated_by_the_name(name, moment, tmp_path, write_csv):
     path = tmp_path / name
     path.parent.mkdir(exist_ok=True)
-    made = guess(write_csv(path, {'t_s': TIME, 'x_vel': SPEED}))
+    made = guess(write_csv(path, {'t_s': TIME, 'x_vel_mm_s': SPEED}))
     assert made.content['date_from'] == 'name'
     assert 'time.epoch' not in made.content['assumed']
     assert make_map(made.content).date_from == 'name'
@@ -505,3 +501,66 @@ def test_a_speed_without_a_sign_gives_way_to_its_position(guessed, says):
 def test_a_position_within_a_turn_tells_the_unit_of_its_speed(guessed):
     made = guessed({'t_s': TIME, 'x_pos_deg': 360.0 * PLACE % 360.0, 'x_speed': 60.0 * TURNING})
     assert made.content['assumed']['x.speed.unit']['value'] == 'rev/min'
+
+
+def test_a_command_gives_way_to_a_position_that_does_not_follow_it(guessed, says):
+    columns = {'t_s': TIME, 'x_actual_position_mm': 10.0 * PLACE}
+    made = guessed(columns | {'x_command_velocity_mm_s': 15.0 * TURNING}, form='{:.9g}')
+    assert 'speed' not in made.content['axes']['x']
+    assert says('command') in made.notes
+    made = guessed(columns | {'x_velocity_mm_s': 15.0 * TURNING}, form='{:.9g}')
+    assert made.unstated == (says('contradiction'),)
+    made = guessed(columns | {'x_velocity_mm_s': 10.0 * np.sin(5.0 * TIME)}, form='{:.9g}')
+    assert made.unstated == (says('another_motion'),)
+
+
+@pytest.mark.parametrize(('lead', 'value'), [(10.02, 10.0), (4.97, 5.0), (6.35, 6.35)])
+def test_a_log_of_screw_and_table_tells_the_lead(lead, value, guessed):
+    columns = {'t_s': TIME, 'x_pos_mm': lead * PLACE, 'x_speed_rpm': 60.0 * TURNING}
+    assumed = guessed(columns, form='{:.9g}').content['assumed']['x.lead_mm']
+    assert assumed['value'] == pytest.approx(value, rel=1e-3)
+    assert 'agree' in assumed['reason']
+    columns = {'t_s': TIME, 'x_pos_rev': PLACE, 'x_speed_mm_s': lead * TURNING}
+    assumed = guessed(columns, form='{:.9g}').content['assumed']['x.lead_mm']
+    assert assumed['value'] == pytest.approx(value, rel=1e-3)
+
+
+def test_a_speed_tells_the_unit_of_its_position(guessed, says):
+    made = guessed({'t_s': TIME, 'x_pos': PLACE / 100.0, 'x_speed_mm_s': 10.0 * TURNING})
+    assert made.content['assumed']['x.position.unit']['value'] == 'm'
+    made = guessed({'t_s': TIME, 'x_pos': PLACE, 'x_speed_mm_s': 10.0 * TURNING}, form='{:.9g}')
+    assert made.unstated == (says('position_of_no_unit'),)
+
+
+def test_of_columns_that_are_as_likely_the_map_names_one(guessed, refused, says):
+    columns = {'t_s': TIME, 'X motor velocity [mm/s]': SPEED, 'X table velocity [mm/s]': SPEED}
+    made = guessed(columns)
+    assert made.unstated == (says('which_column'),)
+    refused('blank_column', make_map, made.content)
+    made.content['axes']['x']['speed']['column'] = 'X table velocity [mm/s]'
+    assert make_map(made.content)
+
+
+@pytest.mark.parametrize(
+    'other', ['programmed velocity', 'velocity std', 'max velocity', 'filtered velocity']
+)
+def test_a_plain_name_is_the_measured_one(other, guessed):
+    made = guessed({'t_s': TIME, f'X {other} [mm/s]': 2 * SPEED, 'X velocity [mm/s]': SPEED})
+    assert made.content['axes']['x']['speed']['column'] == 'X velocity [mm/s]'
+    assert not made.unstated
+
+
+def test_a_force_and_a_speed_of_one_sign_are_asked_for(guessed, refused, says):
+    made = guessed({'t_s': TIME, 'v_x [mm/s]': TURNING, 'f_x [N]': 9.0 + abs(TURNING)})
+    assert made.unstated == (says('one_sign_of_force'),)
+    made.content['axes']['x']['load']['magnitude'] = True
+    refused('amounts_of_force', make_map, made.content)
+    made.content['axes']['x']['load']['magnitude'] = False
+    assert make_map(made.content)
+    made = guessed({'t_s': TIME, 'v_x [mm/s]': abs(TURNING), 'm_x [Nm]': TURNING})
+    assert made.unstated == (says('one_sign_of_speed'),)
+
+
+def test_a_column_of_a_rotary_axis_is_none_of_the_only_linear_one(guessed):
+    columns = {'t_s': TIME, 'C speed [rpm]': SPEED, 'Y position [mm]': 10.0 * PLACE}
+    assert 'speed' not in guessed(columns).content['axes']['y']

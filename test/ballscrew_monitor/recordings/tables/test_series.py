@@ -75,7 +75,7 @@ def test_amounts_of_a_torque_get_the_sign_of_the_motion(read, says, motion, sign
 
 def test_a_torque_that_holds_a_weight_keeps_its_sign_beside_a_measured_load(read, says):
     torque = 6.0 + FRICTION
-    axis = OF_TORQUE | {'load': {'column': 'f', 'unit': 'N'}}
+    axis = OF_TORQUE | {'load': {'column': 'f', 'unit': 'N', 'magnitude': False}}
     found = read({'t': TIME, 'v': SPEED, 'm': torque, 'f': -torque}, axis)
     np.testing.assert_allclose(found.torque, torque)
     assert says('amounts') not in found.notes
@@ -306,3 +306,15 @@ def test_a_speed_without_a_sign_gives_way_to_its_position(read, says):
     true = 2 * np.pi / 10.0 * SPEED
     assert rows.speed[1:-1] == pytest.approx(true[1:-1], abs=0.05)
     assert says('amounts_of_speed') in rows.notes
+
+
+def test_a_force_and_a_speed_of_one_sign_are_refused_until_the_map_says_that_they_have_one(
+    read, refused
+):
+    axis = AXIS | {'load': {'column': 'f', 'unit': 'N'}}
+    columns = {'t': TIME, 'v': SPEED, 'f': 900.0 + abs(SPEED)}
+    refused('one_sign_of_force', read, columns, axis)
+    axis['load']['magnitude'] = False
+    np.testing.assert_allclose(read(columns, axis).load, columns['f'])
+    axis = AXIS | {'torque': {'column': 'm', 'unit': 'N m'}, 'load': {'from': 'torque'}}
+    refused('one_sign_of_speed', read, {'t': TIME, 'v': abs(SPEED), 'm': FRICTION}, axis)
