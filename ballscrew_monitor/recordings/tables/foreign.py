@@ -118,11 +118,11 @@ def _json(path: Path) -> Signals:
 
 def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
     """Return the fast signals of a data recorder: a row for each cycle of the control."""
-    header, parts = content['Header'], content.get('Payload')
-    listed = header['SignalListHFData']
-    if not _are_all(dict, listed) or not all('Name' in signal for signal in listed):
+    header, parts = content['Header'], _list_of(dict, content.get('Payload'))
+    listed = _list_of(dict, header['SignalListHFData'])
+    if listed is None or not all('Name' in signal for signal in listed):
         raise ValueError('SignalListHFData of its Header must be a list of signals with a Name')
-    if not _are_all(dict, parts) or not _are_all(list, [p.get('HFData', []) for p in parts]):
+    if parts is None or not _are_all(list, [p.get('HFData', []) for p in parts]):
         raise ValueError('its Payload must be a list of parts, HFData in each a list of rows')
     names = []
     for signal in listed:
@@ -143,6 +143,11 @@ def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
     start = str(begin.get('Time', '')) if isinstance(begin, dict) else ''
     period = float(cycle) * 1e-3
     return Signals(frame=pl.DataFrame(held, strict=False), period=period, start=start)
+
+
+def _list_of(kind: type, values: Any) -> Any:
+    """Return values if they are a list of a kind, else None."""
+    return values if _are_all(kind, values) else None
 
 
 def _are_all(kind: type, values: object) -> bool:

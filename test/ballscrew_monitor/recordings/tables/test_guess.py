@@ -36,9 +36,7 @@ def test_a_mill_log_is_understood(mill_log, says, refused):
     assert axes['z']['load'] == {'unknown': 'Z1_CurrentFeedback is always 0'}
     assert 'current' not in axes['z']
     assert made.content['time'] == {'rate_Hz': None}
-    assert made.unstated == (
-        *map(says, ('current_x', 'sign_x', 'current_y', 'sign_y', 'state_rate')),
-    )
+    assert made.unstated == (*map(says, ('current_x', 'sign_x', 'current_y', 'state_rate')),)
     assert f'#   {made.unstated[0]}\n' in made.text
     assert assumed['x.speed.unit']['value'] == 'mm/s'
     assert assumed['x.load.from']['value'] == 'current'
