@@ -387,6 +387,10 @@ _NUMBERS = {sign: _grouped(sign) for sign in OTHER_SIGN}
 """Forms of numbers by their decimal sign."""
 
 
+class Unreadable(ValueError):
+    """What a reader finds wrong with a file, in the words of its kind."""
+
+
 @contextlib.contextmanager
 def readable(failure: str, *kinds: type[Exception]) -> Iterator[None]:
     """
