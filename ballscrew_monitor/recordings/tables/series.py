@@ -146,6 +146,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
         path,
         columns,
         layout=mapping.layout,
+        sheet=mapping.sheet,
         decimal=mapping.decimal,
         order=mapping.order,
         optional=columns,
