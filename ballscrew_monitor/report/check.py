@@ -121,10 +121,13 @@ def sheets_of(folder: Path, screw: str | None, oil: str | None) -> tuple[Screw, 
     return screws[0], oils[0] if oils else load_lubricant(OIL)
 
 
-def _sheets(files: Sequence[Path], kind: type, load: Callable[[str], Sheet]) -> Iterator[Sheet]:
+def _sheets(
+    files: Sequence[Path], kind: type[Sheet], load: Callable[[str], Sheet]
+) -> Iterator[Sheet]:
     """Yield the sheets of a kind among files: those with a key that only this kind has."""
-    keys = {of: {key_of(spec) for spec in dataclasses.fields(of)} for of in (Screw, Lubricant)}
-    own = keys[kind] - set.intersection(*keys.values())
+    other = Lubricant if kind is Screw else Screw
+    own, others = ({key_of(spec) for spec in dataclasses.fields(of)} for of in (kind, other))
+    own -= others
     for file in files:
         if not file.name.endswith(BESIDE) and own & _top_keys(file):
             yield load(str(file))

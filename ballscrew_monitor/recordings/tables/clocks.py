@@ -52,6 +52,8 @@ HOURS = (
     '%H%M%S%.f',
 )
 """Times of a day; the last one stands behind a date alone."""
+MINUTES = '%M:%S.%f'
+"""Minutes and seconds of an hour, as a spreadsheet shows a time in tenths of seconds."""
 MONTHS = (
     (r'(?i)\bj(?:an|än|aen)(?:uar|ner)?\b', 'Jan'),
     (r'(?i)\bfebruar\b', 'Feb'),
@@ -106,7 +108,10 @@ class TimeForm:
 
     def _seconds(self, texts: pl.Series) -> pl.Series:
         if self.kind == 'hours':
-            hours = texts.str.to_time(self.pattern, strict=False)
+            if self.pattern == MINUTES:
+                texts = '0:' + texts
+            pattern = '%H:%M:%S%.f' if self.pattern == MINUTES else self.pattern
+            hours = texts.str.to_time(pattern, strict=False)
             return hours.cast(pl.Int64).cast(pl.Float64) / SECOND
         if self.kind == 'day':
             days = texts.str.to_date(self.pattern, strict=False)
@@ -161,7 +166,11 @@ def _all_forms() -> dict[TimeForm, tuple[set[str], re.Pattern[str]]]:
         for order, date in DATES
         for hours in HOURS
     )
-    of_day = (TimeForm(pattern=hours, kind='hours') for hours in HOURS[:-1] if '%z' not in hours)
+    of_day = (
+        TimeForm(pattern=hours, kind='hours')
+        for hours in (*HOURS[:-1], MINUTES)
+        if '%z' not in hours
+    )
     days = (TimeForm(pattern=date, kind='day', order=order) for order, date in DATES)
     return {
         form: (set(re.sub(r'%\.?\w', '', form.pattern)), _shape(form.pattern))

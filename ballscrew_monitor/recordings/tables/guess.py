@@ -45,6 +45,7 @@ from ballscrew_monitor.recordings.tables.series import (
 )
 from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.time_gate import RATE, TimeGate
+from ballscrew_monitor.recordings.tables.unit_names import unknown_unit
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
@@ -156,10 +157,11 @@ class _Guesser:
             for name, found in self.by_axis.items()
             if {'speed', 'position'} & set(chosen := names.best(found))
         }
+        unknown = names.unknown_units(self.named)
         if not self.axes:
             raise InputError(
                 f'log {path}: no column looks like the speed or position of an axis, it holds '
-                f'{listed(source.names())}'
+                f'{"; ".join([listed(source.names()), *unknown])}'
             )
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
         used = list(dict.fromkeys(one.column for one in [*columns, *self.times]))
@@ -185,7 +187,10 @@ class _Guesser:
         self.notes += [
             f'{why}; it is left out' for name, why in table.left_out.items() if name not in times
         ]
-        self.notes += [*table.notes, *names.told_by_words(self.named)]
+        self.notes += [*table.notes, *unknown, *names.told_by_words(self.named)]
+        for one in [one for one in columns if one.column in self.data and one.scale != 1.0]:
+            self.data[one.column] = self.data[one.column] * one.scale
+            self.extremes[one.column] = self.extremes[one.column] * one.scale
         if rows < table.rows:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
         self._forget_texts()
@@ -197,14 +202,14 @@ class _Guesser:
         count = len(head.names)
         between = SEPARATED_BY.get(head.separator, repr(head.separator))
         held = f'{count}, separated by {between}' if count > 1 else 'one'
-        period = head.period if math.isfinite(head.period) else 0.001
+        rate = f'{1.0 / head.period:g}' if math.isfinite(head.period) else '(rows in a second)'
         epoch = f"epoch: '{EPOCH}'"
         by_column = f' or `time: {{column: column 1, unit: s, {epoch}}}`' if count > 1 else ''
         return (
             f'log {self.path}: no line names its columns, of which it has {held}: a map calls '
             f'them by their numbers, such as `axes: {{x: {{position: {{column: column '
             f'{min(count, 2)}, unit: mm}}, lead_mm: 10.0}}}}`, with `time: {{rate_Hz: '
-            f'{1.0 / period:g}, {epoch}}}`{by_column}'
+            f'{rate}, {epoch}}}`{by_column}'
         )
 
     def _texts(self) -> dict[str, str]:
@@ -224,7 +229,7 @@ class _Guesser:
     def _may_be_time(self, one: Named) -> bool:
         """Return True if a column may be the time by its name, or as the head names it nothing."""
         return (
-            (one.kind == 'time' and one.place == 'machine')
+            (one.kind == 'time' and one.place in ('machine', 'axis'))
             or one.column in self.head.labelled
             or bool(self._unit_of_program(one))
             or (one is self.named[0] and not one.kind)
@@ -257,8 +262,14 @@ class _Guesser:
         self._say_what_is_joined()
         self._say_what_is_left_out(time)
         content: dict[str, Any] = {'log': self.path.name}
+        if others := self.source.other_sheets:
+            content['sheet'] = self.source.sheet
+            self.notes.append(
+                f'sheet {short(self.source.sheet)} is read, not {listed(others)}: `sheet` in the '
+                'map names another'
+            )
         content |= {'date_from': self.date_from} if self.date_from else {}
-        content |= {'decimal': None} if '.' in self.doubts or ',' in self.doubts else {}
+        content |= {'decimal': None} if self._is_decimal_open() else {}
         time |= {'order': self.order} if self.order else {}
         time |= {'order': None} if 'order' in self.doubts else {}
         content |= {'time': time, 'axes': self.used, 'assumed': self.assumed}
@@ -268,6 +279,10 @@ class _Guesser:
             notes=tuple(self.notes),
             picture=tuple(self._picture(time)),
         )
+
+    def _is_decimal_open(self) -> bool:
+        """Return True if the decimal sign is to be stated, so that no number is known."""
+        return '.' in self.doubts or ',' in self.doubts
 
     def _assume(self, key: str, value: Any, reason: str) -> None:
         self.assumed[key] = {'value': value, 'reason': reason}
@@ -481,7 +496,8 @@ class _Guesser:
                     self.members.setdefault(key, column)
         for number, (key, members) in enumerate(groups.items()):
             step = self._period_of(key[0], self.members[key], time)
-            each = f'{1e3 * step:.4g} ms' if math.isfinite(step) else 'an unknown period'
+            known = math.isfinite(step) and not self._is_decimal_open()
+            each = f'{1e3 * step:.4g} ms' if known else 'an unknown period'
             yield f'Group {number + 1}: {each}, {", ".join(members)}'
         head = self.head
         between = SEPARATED_BY.get(head.separator, repr(head.separator))
@@ -554,6 +570,7 @@ class _Guesser:
         chosen = self.axes[name]
         used = self.used[name] = {
             kind: {'column': chosen[kind].column}
+            | ({'scale': chosen[kind].scale} if chosen[kind].scale != 1.0 else {})
             for kind in INPUTS
             if kind in chosen and self._is_used(chosen[kind])
         }
@@ -581,7 +598,7 @@ class _Guesser:
                 TEMPERATURE,
                 'no column is the oil temperature of this axis',
             )
-        if 'speed' in used:
+        if 'speed' in used and not self._is_decimal_open():
             speeds = self.extremes[used['speed']['column']]
             unit = self._unit(name, 'speed')
             self.notes += estimates.oddities(name, speeds, unit, conversions.LINEAR_SPEED_UNITS)
@@ -758,6 +775,10 @@ class _Guesser:
         of_screw = speed.unit in conversions.ROTARY_SPEED_UNITS
         if fitting := estimates.unit_by_factor(per_unit, POSITION_UNITS[of_screw]):
             return fitting, 'it agrees with the speed over time'
+        least, most = LEADS
+        for unit, metres in LINEAR_POSITION_UNITS.items():
+            if of_screw and least <= (lead := TURN * metres / per_unit) <= most:
+                return unit, f'it agrees with the speed at a lead of {lead * MILLI:.3g} mm'
         return '', (
             f'{column} states none that is known, and moves by {way:.3g} in a second for each '
             f'{speed.unit} of {speed.column}'
@@ -869,7 +890,13 @@ class _Guesser:
         silent = [chosen[kind].column for kind in ('load', 'torque', 'current') if kind in chosen]
         lost = [f'{", ".join(self.lost[name])} holds no number'] if self.lost[name] else []
         still = [f'{", ".join(silent)} is always 0'] if silent else []
-        why = ', '.join([*lost, *still]) or 'no force, torque or current'
+        doubtful = [
+            f'{one.column} is in {unknown_unit(one.column)}, which is no unit of a {one.doubtful}'
+            for one in self.named
+            if one.doubtful in ('load', *MOTOR)
+            and one.axis in ('', *(each.axis for each in chosen.values()))
+        ]
+        why = ', '.join([*lost, *still, *doubtful]) or 'no force, torque or current'
         used['load'] = {'unknown': why}
         self.notes.append(f'axis {name}: the load is not known ({why}), nothing will be judged')
 

@@ -57,11 +57,12 @@ NUMBERS = {
 LINES = {'skip': (0, 1000), 'header_rows': (0, 2)}
 """Numbers of lines, with the least and the most allowed."""
 TEXTS = ('screw', 'oil', 'surface')
-TOP_TEXTS = ('machine', 'date_from', 'decimal')
+TOP_TEXTS = ('machine', 'date_from', 'decimal', 'sheet')
 DATES = ('name', 'header', 'modified')
 PLACES = {
     'decimal': "`'.'` or `','`: decimal sign of columns in which no cell shows it, as 5.400 may "
     'be 5400; the other sign parts thousands',
+    'sheet': 'name of the sheet of a workbook; without it the first with a table is read',
     'skip': 'lines before the names of the columns, if these are not found by themselves',
     'header_rows': 'rows of names there: 2 with the units or parts of names below, 0 for a table '
     'without names, whose columns are `column 1`, `column 2` and so on',
@@ -194,6 +195,7 @@ class TableMap:
     """
 
     layout: Layout | None
+    sheet: str
     decimal: str
     order: str
     time: Column | None
@@ -265,6 +267,7 @@ def make_map(content: Any) -> TableMap:
     time = _Part('time', values)
     made = TableMap(
         layout=_layout(content),
+        sheet=_sheet(content),
         decimal=_decimal(content),
         order=time.order(),
         time=time.column('time', at='time'),
@@ -309,6 +312,14 @@ def _layout(content: Mapping[str, Any]) -> Layout | None:
         if not (isinstance(value, int) and low <= value <= high) or isinstance(value, bool):
             raise InputError(f'{key} is {value!r}, it must be a whole number, {low} to {high}')
     return Layout(**found) if set(LINES) & set(content) else None
+
+
+def _sheet(content: Mapping[str, Any]) -> str:
+    """Return the name of the sheet that a map states, empty for none."""
+    name = content.get('sheet', '')
+    if 'sheet' in content and not (isinstance(name, str) and name):
+        raise InputError(f'sheet is {_said(name)}, it must be a text, the name of a sheet')
+    return str(name)
 
 
 def _decimal(content: Mapping[str, Any]) -> str:

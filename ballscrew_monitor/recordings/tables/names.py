@@ -6,15 +6,18 @@ from collections.abc import Callable, Sequence
 import dataclasses
 import re
 
-from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED
+from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, UNITS
 from ballscrew_monitor.recordings.tables.unit_names import (
     BRACKETS,
+    converted_unit,
     kind_by_unit,
+    LETTERED,
     unit_of,
+    unknown_unit,
     words_of,
     words_without_unit,
 )
-from ballscrew_monitor.recordings.words import listed
+from ballscrew_monitor.recordings.words import listed, short
 
 LINEAR = frozenset('xyz')
 SECONDARY = frozenset('uvw')  # with a number: alone they mean other things, too
@@ -69,7 +72,6 @@ JOINED = re.compile(
     r'(?P<letter>[vfipmVFIPM])(?P<of>[xyz]))(?![a-z])'
 )
 """Axis and quantity in one word, as of MTConnect: Xact, X1actm, Zfrt; or Fx, vz."""
-LETTERED = re.compile(r'[\[(]([XYZxyz]\d?)[\])]')
 JOINED_WORDS = {
     'act': 'act position',
     'actm': 'act position',
@@ -102,7 +104,8 @@ class Named:
     What the name of a column says.
 
     Axis such as x1, empty for none; `place` is axis, spindle, other or machine; kind of quantity
-    or nothing; unit or nothing; `rank` is how much it is the measured quantity.
+    or nothing; unit or nothing, with the `scale` to it of another one [-]; `rank` is how much it
+    is the measured quantity. `doubtful` is the kind of a column whose unit is not known.
 
     """
 
@@ -112,6 +115,8 @@ class Named:
     kind: str
     unit: str
     rank: int
+    scale: float = 1.0
+    doubtful: str = ''
 
 
 def read_name(column: str, text: str = '') -> Named:
@@ -133,10 +138,25 @@ def read_name(column: str, text: str = '') -> Named:
     unit = unit_of(column, kind) or unit_of(told, kind)
     if kind == 'time' and not unit and words[:1] == ['seconds']:  # such as seconds_elapsed
         unit = 's'
-    # In another unit than those of the quantity it is another quantity.
-    if BRACKETS.search(column) and not unit:
-        kind = ''
-    return Named(column=column, place=place, axis=axis, kind=kind, unit=unit, rank=rank)
+    scale, doubtful = 1.0, ''
+    if kind and not unit:
+        unit, scale = converted_unit(column, kind)
+    if kind == 'torque' and not unit:  # FANUC calls the current so
+        unit = unit_of(column, 'current')
+        kind = 'current' if unit else kind
+    # In another unit than those of the quantity it may be another quantity.
+    if unknown_unit(column) and not unit:
+        kind, doubtful = '', kind
+    return Named(
+        column=column,
+        place=place,
+        axis=axis,
+        kind=kind,
+        unit=unit,
+        rank=rank,
+        scale=scale,
+        doubtful=doubtful,
+    )
 
 
 def _is_part_of_the_rated_torque(column: str, words: Sequence[str]) -> bool:
@@ -187,7 +207,7 @@ def _place(words: Sequence[str]) -> tuple[str, str]:
         ):
             return 'spindle', ''
         if number == 0 and len(word) == 1 and digits:
-            return ('rotary' if word in ROTARY else 'other'), ''
+            return 'rotary' if word in ROTARY else 'machine' if word == 't' else 'other', ''
     return 'machine', ''
 
 
@@ -290,6 +310,17 @@ def _likelihood(found: Sequence[Named]) -> Callable[[Named], tuple[bool, int, in
         for kind in {one.kind for one in found}
     }
     return lambda one: (one.place != 'axis', -one.rank, len(words[one.column] - common[one.kind]))
+
+
+def unknown_units(named: Sequence[Named]) -> list[str]:
+    """Return sentences about columns that may be inputs, were their units known."""
+    return [
+        f'column {short(repr(one.column))} is in {short(unknown_unit(one.column))}, which is no '
+        f'unit of a {one.doubtful}: write `{one.doubtful}: {{column: {short(one.column)}, unit: '
+        f'{next(iter(UNITS[one.doubtful]))}, scale: ...}}` in the map, what one of it is'
+        for one in named
+        if one.doubtful in INPUTS and one.place in ('axis', 'machine')
+    ]
 
 
 def told_by_words(named: Sequence[Named]) -> list[str]:

@@ -180,6 +180,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
         path,
         columns,
         layout=mapping.layout,
+        sheet=mapping.sheet,
         decimal=mapping.decimal,
         order=mapping.order,
         optional=columns,
@@ -351,7 +352,7 @@ def _place(path: Path, times: Sequence[Times]) -> tuple[list[int], list[int]]:
     alike = [one.gate for one in times if len(one.gate.runs) == runs]
     offsets, begins = run_offsets(alike, gap)
     for one in times:
-        one.place(offsets, [run.row for run in motion[0].gate.runs])
+        one.place(offsets, [run.row for run in motion[0].gate.runs], begins)
     begin = min(one.first for one in times)
     for one in times:
         one.since(begin)

@@ -38,9 +38,7 @@ def test_a_mill_log_is_understood(mill_log, says, refused):
     assert axes['z']['load'] == {'unknown': 'Z1_CurrentFeedback is always 0'}
     assert 'current' not in axes['z']
     assert made.content['time'] == {'rate_Hz': None}
-    assert made.unstated == (
-        *map(says, ('current_x', 'sign_x', 'current_y', 'sign_y', 'state_rate')),
-    )
+    assert made.unstated == (*map(says, ('current_x', 'sign_x', 'current_y', 'state_rate')),)
     assert f'#   {made.unstated[0]}\n' in made.text
     assert assumed['x.speed.unit']['value'] == 'mm/s'
     assert assumed['x.load.from']['value'] == 'current'
@@ -564,3 +562,95 @@ def test_a_force_and_a_speed_of_one_sign_are_asked_for(guessed, refused, says):
 def test_a_column_of_a_rotary_axis_is_none_of_the_only_linear_one(guessed):
     columns = {'t_s': TIME, 'C speed [rpm]': SPEED, 'Y position [mm]': 10.0 * PLACE}
     assert 'speed' not in guessed(columns).content['axes']['y']
+
+
+@pytest.mark.parametrize(
+    ('name', 'unit', 'scale', 'read'),
+    [
+        ('x force [daN]', 'N', 10.0, 'load'),
+        ('x_force_kgf', 'N', 9.80665, 'load'),
+        ('X load (lbf)', 'N', 4.4482216152605, 'load'),
+        ('x torque [mNm]', 'N m', 1e-3, 'torque'),
+        ('x_torque_Ncm', 'N m', 1e-2, 'torque'),
+    ],
+)
+def test_a_unit_that_is_so_many_of_another_is_read(name, unit, scale, read, tmp_path, write_csv):
+    columns = {'t_s': TIME, 'x_vel_mm_s': SPEED, name: -SPEED}
+    path = write_csv(tmp_path / 'log.csv', columns)
+    made = guess(path)
+    assert made.content['axes']['x'][read] == {'column': name, 'scale': scale, 'unit': unit}
+    assert not made.unstated
+    (rows,) = [rows for (rows,) in read_series(path, make_map(made.content)).blocks()]
+    assert rows.columns[f'x.{read}'] == pytest.approx(-SPEED * scale, abs=1e-2)
+
+
+@pytest.mark.parametrize(
+    ('name', 'mm_per_s'),
+    [('x speed (in/min)', 25.4 / 60), ('x_vel_um_s', 1e-3), ('x speed [deg/s]', 10 / 360)],
+)
+def test_a_speed_of_another_unit_turns_the_screw_as_far(name, mm_per_s, tmp_path, write_csv):
+    path = write_csv(tmp_path / 'log.csv', {'t_s': TIME, name: SPEED, 'x_force_N': 1e4 * SPEED})
+    (rows,) = [rows for (rows,) in read_series(path, make_map(guess(path).content)).blocks()]
+    turns = rows.columns['x.speed'] / (2 * np.pi)
+    assert turns * 10.0 == pytest.approx(SPEED * mm_per_s, rel=1e-3, abs=1e-4)  # lead 10 mm
+
+
+def test_a_place_in_another_unit_goes_with_its_speed(guessed):
+    place = 1e3 * np.cumsum(SPEED) * (TIME[1] - TIME[0])
+    made = guessed({'t_s': TIME, 'X_pos_um': place, 'x_vel': SPEED}, form='{:.9g}')
+    assert made.content['assumed']['x.speed.unit']['value'] == 'mm/s'
+
+
+def test_a_unit_that_is_not_known_is_named(guessed, refused, says):
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, 'x force [slug]': SPEED})
+    assert says('unit_slug') in made.notes
+    why = 'x force [slug] is in slug, which is no unit of a load'
+    assert made.content['axes']['x']['load'] == {'unknown': why}
+    refused('unit_furlong', guessed, {'t_s': TIME, 'x vel [furlong/h]': SPEED})
+
+
+def test_an_axis_in_brackets_is_no_unit(guessed):
+    columns = {'Time(ms)': TIME * 1e3, 'POSF(X)': 5.0 * PLACE, 'SPEED(X)(rpm)': 60.0 * TURNING}
+    made = guessed(columns | {'TCMD(X)(A)': SPEED}).content
+    axis = made['axes']['x']
+    assert made['assumed']['x.position.unit']['value'] == 'mm'
+    assert made['assumed']['x.lead_mm']['value'] == 5.0
+    assert {kind: one.get('unit') for kind, one in axis.items()} == {
+        'speed': 'rev/min',
+        'position': None,
+        'current': 'A',
+    }
+    axis = guessed(columns | {'TCMD(X)': SPEED}).content['axes']['x']
+    assert axis['torque'] == {'column': 'TCMD(X)', 'unit': None}
+
+
+@pytest.mark.parametrize('names', [('t1 [s]', 't2 [s]'), ('x_vel time [s]', 'x_torque time [s]')])
+def test_times_may_be_numbered_or_named_after_their_column(names, guessed):
+    first, second = names
+    columns = {first: TIME, 'x_vel [mm/s]': SPEED, second: 1.0 + 1.25 * TIME}
+    made = guessed(columns | {'x_torque [Nm]': -SPEED}, form='{:.9g}')
+    assert made.content['time'] == {'column': first, 'unit': 's'}
+    assert made.content['axes']['x']['torque']['time'] == second
+
+
+def test_minutes_and_seconds_of_an_hour_are_a_time(tmp_path):
+    log = tmp_path / 'log.csv'
+    tenths = range(35_900, 36_100)
+    rows = ''.join(
+        f'{at // 600 % 60:02}:{at % 600 // 10:02}.{at % 10};{at % 7};1\n' for at in tenths
+    )
+    log.write_text(f'time;x_vel_mm_s;x_force_N\n{rows}')
+    made = guess(log)
+    assert made.content['time'] == {'column': 'time', 'unit': 's'}
+    (rows,) = [rows for (rows,) in read_series(log, make_map(made.content)).blocks()]
+    assert np.diff(rows.stamps) / 1e9 == pytest.approx(0.1)
+
+
+def test_nothing_is_said_of_numbers_whose_sign_is_open(tmp_path):
+    log = tmp_path / 'log.txt'
+    rows = ''.join(f'{at}\t{at},500\t{at + 1},250\n' for at in range(1, 200))
+    log.write_text(f't [s]\tspeed X [m/min]\tforce X [kN]\n{rows}')
+    made = guess(log)
+    assert made.content['decimal'] is None
+    assert made.picture[0].startswith('Group 1: an unknown period')
+    assert not any('moves' in note for note in made.notes)

@@ -176,3 +176,19 @@ def test_a_table_with_a_column_of_texts_is_none(head, tmp_path):
     ]
     path.write_text('\n'.join([head, *rows]))
     assert source_of(path).names() == head.split(';')
+
+
+@pytest.mark.parametrize('names', [('time', 'turn'), ('time 0', 'name')])
+def test_a_signal_may_be_called_as_the_time_is(names, tmp_path):
+    path = tmp_path / 'log.csv'
+    rows = [f'{at},{name},{at}' for at in range(20) for name in (*names, 'x_pos_mm')]
+    path.write_text('\n'.join(['time,tag,value', *rows]))
+    held = [name.split('_dup')[0] for name in source_of(path).names()]
+    assert held == ['time', *names, 'x_pos_mm']
+
+
+def test_an_id_is_the_name_of_a_signal_where_nothing_else_is(tmp_path):
+    path = tmp_path / 'log.csv'
+    rows = [f'{at},{name},{at % 3}' for at in range(20) for name in ('z_speed_mm_s', 'z_force_N')]
+    path.write_text('\n'.join(['time,id,val', *rows]))
+    assert source_of(path).names() == ['time', 'z_speed_mm_s', 'z_force_N']
