@@ -33,7 +33,7 @@ from ballscrew_monitor.recordings.tables.dates import (
 from ballscrew_monitor.recordings.tables.mapping import MOTOR
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.own_times import is_own_time
-from ballscrew_monitor.recordings.tables.quantities import INPUTS, RATED, SCALES, UNITS
+from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
 from ballscrew_monitor.recordings.tables.series import are_apart, of_amounts, unclear_sign
 from ballscrew_monitor.recordings.tables.sources import source_of
@@ -109,6 +109,17 @@ def guess(path: Path, *, shown: Shown = shown_progress) -> Guess:
 
     """
     return _Guesser(path, shown).result()
+
+
+def names_motion(path: Path) -> bool:
+    """Return False for a table whose names of columns are all of other things than a motion."""
+    with contextlib.suppress(InputError):
+        source = source_of(path)
+        texts = source.head.symbols
+        named = [read_name(name, texts.get(name, '')) for name in source.names()]
+        kinds = {kind for one in named for kind in (one.kind, one.doubtful)}
+        return not source.head.named or bool(kinds & set(MOTION))
+    return True
 
 
 class _Guesser:
