@@ -24,11 +24,11 @@ from ballscrew_monitor.recordings import log_facts
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_files import is_bag
 from ballscrew_monitor.recordings.opener import opened_log
-from ballscrew_monitor.recordings.tables.guess import Guess, guess
+from ballscrew_monitor.recordings.tables.guess import Guess, guess, names_motion
 from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.tables.sources import is_log
 from ballscrew_monitor.recordings.words import counted, say
-from ballscrew_monitor.report.check_page import check_parts, Checked, next_steps
+from ballscrew_monitor.report.check_page import check_parts, Checked, next_steps, without_motion
 from ballscrew_monitor.report.command import check_most_unjudged, is_bad
 from ballscrew_monitor.report.free_run import FreeRun, identified
 from ballscrew_monitor.report.logs import find_logs, folder_names
@@ -63,6 +63,7 @@ class _Log:
     bag: Bag | None = None
     values: Mapping[str, Any] = dataclasses.field(default_factory=dict)
     failure: str = ''
+    is_other: bool = False  # a short table of anything but a motion
 
     @property
     def used(self) -> Path | None:
@@ -88,6 +89,8 @@ def check_command(args: argparse.Namespace, nominal: Path) -> int:
                 print(printable(f'{entry.name}: {line.verdict}'))
             if entry.result is None:
                 say(f'{entry.name}: {entry.failure}')
+        if checked.others:
+            say(without_motion(checked.others))
         for step in steps:
             print(printable(f'to do: {step}'))
         bad = sum(
@@ -149,7 +152,8 @@ def _check(
     nominal: Path,
 ) -> tuple[list[LogEntry], Checked]:
     """Do all that a check does with recordings; return their entries, and what these rest on."""
-    logs = _opened(paths, sheets, args, nominal)
+    opened = _opened(paths, sheets, args, nominal)
+    logs = [log for log in opened if not log.is_other or _is_named(log, args)]
     _write_maps(logs, args.out)
     runs = list(_free_runs(logs, sheets, args.out)) if sheets else []
     surfaces = _give_surfaces(logs, sheets, runs, args) if sheets else {}
@@ -163,6 +167,7 @@ def _check(
         used={
             log.folder: str(log.used.relative_to(args.out)) for log in logs if log.used is not None
         },
+        others=tuple(log.path.name for log in opened if log not in logs),
         unstated={log.path.name: log.guess.unstated for log in logs if log.guess},
     )
     title, parts = f'Check of {args.folder.resolve().name}', check_parts(entries, checked)
@@ -193,6 +198,11 @@ def _opened(
         more = f' (and {len(logs) - 1} more)' if len(logs) > 1 else ''
         raise InputError(f'nothing in {args.folder} can be read: {logs[0].failure}{more}')
     return logs
+
+
+def _is_named(log: _Log, args: argparse.Namespace) -> bool:
+    """Return True if somebody says that a file is a recording."""
+    return log.is_free or log.path == args.folder
 
 
 def _write_maps(logs: Sequence[_Log], out: Path) -> None:
@@ -257,6 +267,7 @@ def _open(
         log.values = parameters_for(log.bag, args.params, nominal).values
     except (InputError, SurfaceError) as error:
         log.failure = str(error)
+        log.is_other = log.mapping is None and not names_motion(log.path) and not is_log(log.path)
 
 
 def map_beside(log: Path) -> Path | None:
@@ -428,5 +439,6 @@ def _record(entries: Sequence[LogEntry], checked: Checked, steps: Sequence[str])
         },
         'identified': {run.axis: run.text for run in checked.runs},
         'surfaces': dict(checked.surfaces),
+        'no_recordings': list(checked.others),
         'what_to_do': list(steps),
     }

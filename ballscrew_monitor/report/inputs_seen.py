@@ -44,9 +44,10 @@ OF_MOTOR = {
 """Places of a map that make a torque of what a column holds, with their words."""
 
 WORDS = {Source.LOAD: 'axial load', Source.TORQUE: 'motor torque'}
+DRIVES = 'it drives the nut both ways'
 TURNED = {
     Source.SPEED: 'load and motor torque drive it the other way',
-    Source.LOAD: 'the motor torque falls where it asks for more, or it drives the nut both ways',
+    Source.LOAD: f'the motor torque falls where it asks for more, or {DRIVES}',
     Source.TORQUE: 'it brakes where friction must be overcome',
 }
 """Reasons to think that the sign of an input is turned."""
@@ -340,7 +341,9 @@ def contradictions(case: AxisCase, source: Source, parameter: str) -> Sequence[s
     """Return that sign or size of an input contradicts the others, and what may mend it."""
     factor = case.balance.factor
     if source is case.balance.turned:
-        doubt = f'{parameter}: its sign looks turned ({TURNED[source]})'
+        alone = source is Source.LOAD and Source.TORQUE not in case.inputs
+        why = DRIVES if alone else TURNED[source]
+        doubt = f'{parameter}: its sign looks turned ({why})'
         return [f'{doubt}: {_write(case, source, "scale: -1")}, or 1 if it is -1']
     if source is not Source.LOAD or math.isnan(factor):
         return []

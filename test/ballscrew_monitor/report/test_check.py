@@ -91,6 +91,29 @@ def test_logs_of_any_ending_are_found_and_other_files_are_not(tmp_path, capsys):
     assert record['recordings']['cut.rec']['axes']['x']['judged'] == 2000
 
 
+def test_remarks_and_lists_are_no_bad_recordings(tmp_path, capsys, says):
+    folder = tmp_path / 'logs'
+    write(folder / 'cut.csv', SPEEDS)
+    (folder / 'README.txt').write_text('Messungen vom 15.03.2025\nMotor 3,5 Nm\n')
+    (folder / 'parts.csv').write_text('Datum;Teil;Stueck\n1.1.2025;A;5\n2.1.2025;B;6\n')
+    assert check(folder, tmp_path, *SHEETS, '--json') == 0
+    printed = capsys.readouterr()
+    assert says('no_motion') in printed.err
+    record = json.loads(printed.out)
+    assert set(record['recordings']) == {'cut.csv'}
+    assert record['no_recordings'] == ['README.txt', 'parts.csv']
+    assert not [step for step in record['what_to_do'] if 'map' in step]
+    assert says('no_motion') in (tmp_path / 'out' / 'index.html').read_text()
+
+
+def test_a_long_table_of_unknown_names_is_a_bad_recording(tmp_path, capsys, says):
+    folder = tmp_path / 'logs'
+    write(folder / 'cut.csv', SPEEDS)
+    (folder / 'channels.csv').write_text('a,b\n' + ''.join(f'{at},{at % 7}\n' for at in range(99)))
+    assert check(folder, tmp_path, *SHEETS, '--json') == 1
+    assert says('lay_map') in json.loads(capsys.readouterr().out)['what_to_do']
+
+
 def test_without_a_sheet_the_page_asks_for_one(tmp_path, capsys, says):
     write(tmp_path / 'logs' / 'cut.csv', SPEEDS)
     assert check(tmp_path / 'logs', tmp_path, '--json') == 0

@@ -277,3 +277,8 @@ def test_a_wrong_size_is_told_with_the_unit_that_fits(judged, factor, friction, 
     case = judged.case([judged.rows()], values=judged.values(**TORQUE), known=known)
     case = dataclasses.replace(case, balance=Balance(factor=factor, friction=friction))
     assert says(key) in hints_on([case])
+
+
+def test_a_load_turned_without_a_torque_says_nothing_of_a_torque(judged, says):
+    case = dataclasses.replace(judged.case([judged.rows()]), balance=Balance(turned=Source.LOAD))
+    assert hints_on([case]) == [says('turned_alone')]
