@@ -25,7 +25,6 @@ ALIKE = 0.8  # squared correlation of a motion and its speed
 LONGEST_AXIS = 20.0  # [m]
 FEW = 8  # rows that tell no way of a speed
 STRETCHES = 2000  # of a motion, at least, that tell how far a speed goes
-FACTOR = 1.5  # by which a place and its speed may disagree
 
 
 def is_silent(values: Array) -> bool:

@@ -45,7 +45,7 @@ from ballscrew_monitor.recordings.tables.series import (
 )
 from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.time_gate import RATE, TimeGate
-from ballscrew_monitor.recordings.tables.unit_names import unknown_unit
+from ballscrew_monitor.recordings.tables.unit_names import unknown_unit, words_of
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
@@ -54,6 +54,7 @@ from surrogate.units import MILLI, TURN
 import yaml
 
 SCREW, OIL = 'nominal', 'iso_vg_68'
+OF_DEGF = 'scale 0.555556 and offset -17.7778 make of it'
 TORQUE_CONSTANT = 0.1  # [N m/A]
 EFFICIENCY = 0.9
 TEMPERATURE = 40.0  # [degC]
@@ -596,8 +597,7 @@ class _Guesser:
             self._say_time(name, kind, time)
         for key, value in (('screw', SCREW), ('oil', OIL)):
             self._assume(f'{name}.{key}', value, 'the log does not say it; the shipped one')
-        lead, why = self._lead(name)
-        self._assume(f'{name}.lead_mm', float(f'{lead * MILLI:.4g}'), why)
+        self._set_lead(name)
         self._set_load(name)
         if 'torque' in used and self._unit(name, 'torque') == RATED:
             self._state_motor(name, 'torque')
@@ -613,7 +613,19 @@ class _Guesser:
             speeds = self.extremes[used['speed']['column']]
             unit = self._unit(name, 'speed')
             self.notes += estimates.oddities(name, speeds, unit, conversions.LINEAR_SPEED_UNITS)
+        self._say_direction(name)
         self._ask_for_columns(name)
+
+    def _say_direction(self, name: str) -> None:
+        """Say of a speed without a position that has one sign what that is taken for."""
+        speed = self.used[name].get('speed')
+        if speed and 'position' not in self.used[name]:
+            least, most = self.extremes[speed['column']]
+            if least * most >= 0.0 and most > least and 'magnitude' not in speed:
+                self.notes.append(
+                    f'axis {name}: {short(speed["column"])} never changes its sign: all motion is '
+                    'taken to be in one direction'
+                )
 
     def _ask_for_columns(self, name: str) -> None:
         """Let the map name the column of a quantity that several may be."""
@@ -695,6 +707,8 @@ class _Guesser:
         elif kind in MOTOR:
             unit = ''
             why = f'{place["column"]} states none that is known, and tells the load'
+        elif kind == 'temperature' and words_of(place['column'])[-1:] == ['f']:
+            unit, why = '', f'{place["column"]} may be in degF: unit degC, {OF_DEGF}'
         elif kind == 'temperature' and np.nanmin(values) > TEMPERATURE * 5:
             unit, why = 'K', f'its least is {np.nanmin(values):.3g}'
         else:
@@ -845,22 +859,34 @@ class _Guesser:
                 f'{columns[0]} says; take one of both out of the map if it is wrong'
             )
 
-    def _lead(self, name: str) -> tuple[float, str]:
-        """Return the lead [m] of an axis and why it is that; speed and position may tell it."""
-        usual, way = _usual_lead(), self.ways[name]
+    def _set_lead(self, name: str) -> None:
+        """Assume the lead of the usual screw; where the log has another the map states it."""
+        usual, lead = _usual_lead(), self._lead(name)
         why = f'the log does not say it; that of {SCREW}'
+        if abs(lead / usual - 1.0) <= SAME_LEAD:
+            why = f'that of {SCREW}, at which position and speed agree'
+        elif math.isfinite(lead):
+            self.used[name]['lead_mm'] = None
+            self.unstated.append(
+                f'state axes.{name}.lead_mm in the map: {self.axes[name]["position"].column} and '
+                f'{self.axes[name]["speed"].column} agree at {lead * MILLI:.4g} mm; behind a gear '
+                'a scale makes of either that of the screw'
+            )
+            return
+        self._assume(f'{name}.lead_mm', float(f'{usual * MILLI:.6g}'), why)
+
+    def _lead(self, name: str) -> float:
+        """Return the lead [m] at which the speed of a screw makes a position, NaN where unknown."""
+        way = self.ways[name]
         units = [self._unit(name, kind) for kind in MOTION if kind in self.used[name]]
         if math.isnan(way) or not all(units):
-            return usual, why
+            return math.nan
         speed, position = units
         of_screw = speed in conversions.ROTARY_SPEED_UNITS
         if of_screw == (position in conversions.ROTARY_POSITION_UNITS):
-            return usual, why
+            return math.nan
         factor = way * conversions.POSITION_UNITS[position] / conversions.SPEED_UNITS[speed]
-        lead = TURN * factor if of_screw else TURN / factor
-        whole = round(2.0 * lead * MILLI) / 2.0 / MILLI
-        near = next((each for each in (usual, whole) if abs(lead - each) < SAME_LEAD * lead), lead)
-        return near, f'position and speed of axis {name} agree at {lead * MILLI:.4g} mm'
+        return TURN * factor if of_screw else TURN / factor
 
     def _clock(self, column: str) -> Array:
         """Return the times of the rows of a column [s], none where they are not known."""

@@ -138,6 +138,8 @@ def read_name(column: str, text: str = '') -> Named:
     unit = unit_of(column, kind) or unit_of(told, kind)
     if kind == 'time' and not unit and words[:1] == ['seconds']:  # such as seconds_elapsed
         unit = 's'
+    if kind != 'time' and 'min' in words_without_unit(told, kind):
+        kind = ''  # the least of several, as beside a maximum
     scale, doubtful = 1.0, ''
     if kind and not unit:
         unit, scale = converted_unit(column, kind)

@@ -18,7 +18,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables.amounts import are_amounts, fault_of_speed
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.dates import dated
-from ballscrew_monitor.recordings.tables.estimates import FACTOR, is_within_turn, NEAR, Turns
+from ballscrew_monitor.recordings.tables.estimates import is_within_turn, NEAR, Turns
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, Column, MOTOR, SIGNED, TableMap
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import open_table, Table
@@ -544,7 +544,7 @@ class Fit:
         if not 0.0 < both < math.inf or abs(self._across) < math.sqrt(ALIKE) * both:
             return ''
         factor = self._across / self._by_speed
-        if 1.0 / FACTOR < factor < FACTOR:
+        if abs(factor - 1.0) <= NEAR:
             return ''
         return (
             f'axis {self._axis.name}: its position moves {factor:.4g} times as far as its speed '

@@ -512,15 +512,29 @@ def test_a_command_gives_way_to_a_position_that_does_not_follow_it(guessed, says
     assert made.unstated == (says('another_motion'),)
 
 
-@pytest.mark.parametrize(('lead', 'value'), [(10.02, 10.0), (4.97, 5.0), (6.35, 6.35)])
-def test_a_log_of_screw_and_table_tells_the_lead(lead, value, guessed):
-    columns = {'t_s': TIME, 'x_pos_mm': lead * PLACE, 'x_speed_rpm': 60.0 * TURNING}
-    assumed = guessed(columns, form='{:.9g}').content['assumed']['x.lead_mm']
-    assert assumed['value'] == pytest.approx(value, rel=1e-3)
-    assert 'agree' in assumed['reason']
-    columns = {'t_s': TIME, 'x_pos_rev': PLACE, 'x_speed_mm_s': lead * TURNING}
-    assumed = guessed(columns, form='{:.9g}').content['assumed']['x.lead_mm']
-    assert assumed['value'] == pytest.approx(value, rel=1e-3)
+@pytest.mark.parametrize(('lead', 'asked'), [(10.02, False), (5.0, True), (3.3333, True)])
+def test_a_log_of_screw_and_table_tells_the_lead(lead, asked, guessed, refused, says):
+    """Behind a gear the speed is that of the motor, and the lead is none of the screw."""
+    for columns in (
+        {'x_pos_mm': lead * PLACE, 'x_speed_rpm': 60.0 * TURNING},
+        {'x_pos_rev': PLACE, 'x_speed_mm_s': lead * TURNING},
+    ):
+        made = guessed({'t_s': TIME} | columns, form='{:.9g}')
+        assert ('x.lead_mm' in made.content['assumed']) is not asked
+        assert len(made.unstated) == asked
+        if asked:
+            refused('blank_lead', make_map, made.content)
+            position, speed = columns
+            lead_mm = f'{lead:.4g}'
+            assert made.unstated == (says('lead', position=position, speed=speed, lead=lead_mm),)
+
+
+def test_a_speed_of_one_sign_alone_is_said_and_a_temperature_in_fahrenheit_asked_for(
+    guessed, says
+):
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': abs(SPEED), 'oil_temp_F': 90.0 + TIME})
+    assert says('one_direction') in made.notes
+    assert made.unstated == (says('fahrenheit'),)
 
 
 def test_a_speed_tells_the_unit_of_its_position(guessed, says):
@@ -540,7 +554,8 @@ def test_of_columns_that_are_as_likely_the_map_names_one(guessed, refused, says)
 
 
 @pytest.mark.parametrize(
-    'other', ['programmed velocity', 'velocity std', 'max velocity', 'filtered velocity']
+    'other',
+    ['programmed velocity', 'velocity std', 'max velocity', 'filtered velocity', 'velocity min'],
 )
 def test_a_plain_name_is_the_measured_one(other, guessed):
     made = guessed({'t_s': TIME, f'X {other} [mm/s]': 2 * SPEED, 'X velocity [mm/s]': SPEED})
@@ -614,7 +629,7 @@ def test_an_axis_in_brackets_is_no_unit(guessed):
     made = guessed(columns | {'TCMD(X)(A)': SPEED}).content
     axis = made['axes']['x']
     assert made['assumed']['x.position.unit']['value'] == 'mm'
-    assert made['assumed']['x.lead_mm']['value'] == 5.0
+    assert axis.pop('lead_mm') is None
     assert {kind: one.get('unit') for kind, one in axis.items()} == {
         'speed': 'rev/min',
         'position': None,
