@@ -143,9 +143,10 @@ def read_name(column: str, text: str = '') -> Named:
     scale, doubtful = 1.0, ''
     if kind and not unit:
         unit, scale = converted_unit(column, kind)
-    if kind == 'torque' and not unit:  # FANUC calls the current so
-        unit = unit_of(column, 'current')
-        kind = 'current' if unit else kind
+    for other in ('current', 'load'):  # FANUC calls a current so, and joints that slide a force
+        if kind == 'torque' and not unit and BRACKETS.search(column):
+            unit = unit_of(column, other)
+            kind = other if unit else kind
     # In another unit than those of the quantity it may be another quantity.
     if unknown_unit(column) and not unit:
         kind, doubtful = '', kind

@@ -624,6 +624,14 @@ def test_a_unit_that_is_not_known_is_named(guessed, refused, says):
     refused('unit_furlong', guessed, {'t_s': TIME, 'x vel [furlong/h]': SPEED})
 
 
+@pytest.mark.parametrize(
+    ('name', 'kind', 'unit'), [('x torque [A]', 'current', 'A'), ('Effort X [N]', 'load', 'N')]
+)
+def test_the_unit_tells_what_a_torque_or_an_effort_is(name, kind, unit, guessed):
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, name: -9.0 * SPEED})
+    assert made.content['axes']['x'][kind] == {'column': name, 'unit': unit}
+
+
 def test_an_axis_in_brackets_is_no_unit(guessed):
     columns = {'Time(ms)': TIME * 1e3, 'POSF(X)': 5.0 * PLACE, 'SPEED(X)(rpm)': 60.0 * TURNING}
     made = guessed(columns | {'TCMD(X)(A)': SPEED}).content
