@@ -159,7 +159,12 @@ def beyond_the_lookup(path, named):
         # The page over many recordings, on the workers of the sweeps, and the style of pictures.
         'report': {'surrogate.progress'} | PLOTTING | TASKS,
         # One command goes from logs by way of sheets and surfaces to a page.
-        'check.py': {'surrogate.builder.tiers', 'surrogate.parameters', 'surrogate.surface.file'},
+        'check.py': {
+            'surrogate.builder.tiers',
+            'surrogate.datasheet',
+            'surrogate.parameters',
+            'surrogate.surface.file',
+        },
         'free_run.py': {
             'surrogate.datasheet_writer',
             'surrogate.identify.data',

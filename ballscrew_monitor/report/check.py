@@ -10,12 +10,13 @@ Maps, parameters, sheets and surfaces are written beside the page.
 """
 
 import argparse
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
 from pathlib import Path
+import re
 import sys
-from typing import Any
+from typing import Any, TypeVar
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED
 from ballscrew_monitor.core.prerequisites import require
@@ -23,17 +24,18 @@ from ballscrew_monitor.recordings import log_facts
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_files import is_bag
 from ballscrew_monitor.recordings.opener import opened_log
-from ballscrew_monitor.recordings.tables.guess import Guess, guess
+from ballscrew_monitor.recordings.tables.guess import Guess, guess, names_motion
 from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.tables.sources import is_log
 from ballscrew_monitor.recordings.words import counted, say
-from ballscrew_monitor.report.check_page import check_parts, Checked, next_steps
+from ballscrew_monitor.report.check_page import check_parts, Checked, next_steps, without_motion
 from ballscrew_monitor.report.command import check_most_unjudged, is_bad
 from ballscrew_monitor.report.free_run import FreeRun, identified
 from ballscrew_monitor.report.logs import find_logs, folder_names
 from ballscrew_monitor.report.many_logs import INDEX, LogToReport, report_each
 from ballscrew_monitor.report.overview import LogEntry, overview_page
 from ballscrew_monitor.report.parameters import parameters_for
+from surrogate.datasheet import key_of, read_yaml
 from surrogate.files import canonical_json, InputError, json_text, printable, replace_file
 from surrogate.parameters import load_lubricant, load_screw, Lubricant, Screw
 from surrogate.progress import Progress
@@ -42,6 +44,8 @@ from surrogate.units import MILLI
 
 MAPS, SURFACES, SHEETS = 'maps', 'surfaces', 'sheets'
 BESIDE = '.map.yaml'
+KEY = re.compile(r'^(\w+):', re.M)
+Sheet = TypeVar('Sheet', Screw, Lubricant)
 OIL = 'iso_vg_68'
 UNCERTAINTY = 0.1  # [N m] of a torque whose map is guessed
 
@@ -59,6 +63,7 @@ class _Log:
     bag: Bag | None = None
     values: Mapping[str, Any] = dataclasses.field(default_factory=dict)
     failure: str = ''
+    is_other: bool = False  # a short table of anything but a motion
 
     @property
     def used(self) -> Path | None:
@@ -85,6 +90,8 @@ def check_command(args: argparse.Namespace, nominal: Path) -> int:
                 print(printable(f'{entry.name}:{normal} {line.verdict}'))
             if entry.result is None:
                 say(f'{entry.name}: {entry.failure}')
+        if checked.others:
+            say(without_motion(checked.others))
         for step in steps:
             print(printable(f'to do: {step}'))
         bad = sum(
@@ -102,12 +109,13 @@ def sheets_of(folder: Path, screw: str | None, oil: str | None) -> tuple[Screw, 
     """
     Return the sheets of screw and oil that are named, or lie in the folder; None without a screw.
 
-    Raises InputError for a sheet that cannot be read, and for several screws or oils.
+    Raises InputError for a file of the folder that has a key of a sheet and cannot be read as one,
+    and for several screws or oils.
 
     """
     files = sorted(folder.glob('*.yaml')) if folder.is_dir() else []
-    screws = [load_screw(screw)] if screw else list(_sheets(files, load_screw))
-    oils = [load_lubricant(oil)] if oil else list(_sheets(files, load_lubricant))
+    screws = [load_screw(screw)] if screw else list(_sheets(files, Screw, load_screw))
+    oils = [load_lubricant(oil)] if oil else list(_sheets(files, Lubricant, load_lubricant))
     for option, found in (('--screw', screws), ('--oil', oils)):
         if len(found) > 1:
             names = ', '.join(one.name for one in found)
@@ -117,10 +125,25 @@ def sheets_of(folder: Path, screw: str | None, oil: str | None) -> tuple[Screw, 
     return screws[0], oils[0] if oils else load_lubricant(OIL)
 
 
-def _sheets(files: Sequence[Path], load: Any) -> Iterator[Any]:
+def _sheets(
+    files: Sequence[Path], kind: type[Sheet], load: Callable[[str], Sheet]
+) -> Iterator[Sheet]:
+    """Yield the sheets of a kind among files: those with a key that only this kind has."""
+    other = Lubricant if kind is Screw else Screw
+    own, others = ({key_of(spec) for spec in dataclasses.fields(of)} for of in (kind, other))
+    own -= others
     for file in files:
-        with contextlib.suppress(InputError):
+        if not file.name.endswith(BESIDE) and own & _top_keys(file):
             yield load(str(file))
+
+
+def _top_keys(file: Path) -> set[str]:
+    """Return the keys of a YAML file, as they begin its lines where it is no YAML."""
+    try:
+        content = read_yaml(file)
+    except InputError:
+        return set(KEY.findall(file.read_text(encoding='utf-8', errors='replace')))
+    return set(map(str, content)) if isinstance(content, dict) else set()
 
 
 def _check(
@@ -130,7 +153,8 @@ def _check(
     nominal: Path,
 ) -> tuple[list[LogEntry], Checked]:
     """Do all that a check does with recordings; return their entries, and what these rest on."""
-    logs = _opened(paths, sheets, args, nominal)
+    opened = _opened(paths, sheets, args, nominal)
+    logs = [log for log in opened if not log.is_other or _is_named(log, args)]
     _write_maps(logs, args.out)
     runs = list(_free_runs(logs, sheets, args.out)) if sheets else []
     surfaces = _give_surfaces(logs, sheets, runs, args) if sheets else {}
@@ -144,6 +168,7 @@ def _check(
         used={
             log.folder: str(log.used.relative_to(args.out)) for log in logs if log.used is not None
         },
+        others=tuple(log.path.name for log in opened if log not in logs),
         unstated={log.path.name: log.guess.unstated for log in logs if log.guess},
     )
     title, parts = f'Check of {args.folder.resolve().name}', check_parts(entries, checked)
@@ -174,6 +199,11 @@ def _opened(
         more = f' (and {len(logs) - 1} more)' if len(logs) > 1 else ''
         raise InputError(f'nothing in {args.folder} can be read: {logs[0].failure}{more}')
     return logs
+
+
+def _is_named(log: _Log, args: argparse.Namespace) -> bool:
+    """Return True if somebody says that a file is a recording."""
+    return log.is_free or log.path == args.folder
 
 
 def _write_maps(logs: Sequence[_Log], out: Path) -> None:
@@ -238,12 +268,22 @@ def _open(
         log.values = parameters_for(log.bag, args.params, nominal).values
     except (InputError, SurfaceError) as error:
         log.failure = str(error)
+        log.is_other = log.mapping is None and not names_motion(log.path) and not is_log(log.path)
 
 
 def map_beside(log: Path) -> Path | None:
-    """Return the map that lies beside a table, `feed.map.yaml` for `feed.csv`, None without."""
-    path = log.with_suffix(BESIDE)
-    return path if path.is_file() else None
+    """
+    Return the map that lies beside a table, None without.
+
+    `feed.csv.map.yaml` is that of feed.csv; `feed.map.yaml` as well, but for feed.json beside it.
+
+    """
+    own, shared = log.with_name(f'{log.name}{BESIDE}'), log.with_suffix(BESIDE)
+    if own.is_file():
+        return own
+    table = log.with_suffix('.csv')
+    is_first = table == log or not table.is_file()
+    return shared if is_first and shared.is_file() else None
 
 
 def _with_sheets(first: Guess, sheets: tuple[Screw, Lubricant] | None) -> Guess:
@@ -401,5 +441,6 @@ def _record(entries: Sequence[LogEntry], checked: Checked, steps: Sequence[str])
         },
         'identified': {run.axis: run.text for run in checked.runs},
         'surfaces': dict(checked.surfaces),
+        'no_recordings': list(checked.others),
         'what_to_do': list(steps),
     }

@@ -7,7 +7,7 @@ import dataclasses
 from pathlib import Path
 from urllib.parse import quote
 
-from ballscrew_monitor.recordings.words import NONE
+from ballscrew_monitor.recordings.words import listed, NONE
 from ballscrew_monitor.report.free_run import FreeRun, RECORD
 from ballscrew_monitor.report.health_history import by_axis, healths, read_history
 from ballscrew_monitor.report.health_part import verdict_box
@@ -30,7 +30,8 @@ class Checked:
 
     Names of the sheets of screw and oil, None without one; folders of recordings that are said to
     be `free`, which need not be judged, and what they gave; surfaces by axis; the map or
-    parameters that were used by folder; what a guess could not state, by recording.
+    parameters that were used by folder; names of `others`, short tables without a motion; what a
+    guess could not state, by recording.
 
     """
 
@@ -40,7 +41,16 @@ class Checked:
     runs: tuple[FreeRun, ...]
     surfaces: Mapping[str, str]
     used: Mapping[str, str]
+    others: tuple[str, ...]
     unstated: Mapping[str, Sequence[str]]
+
+
+def without_motion(names: Sequence[str]) -> str:
+    """Return in a sentence which files are taken for no recordings."""
+    return (
+        'no recordings, as no column is named as a motion and few rows are of numbers: '
+        f'{listed(names)}'
+    )
 
 
 def check_parts(entries: Sequence[LogEntry], checked: Checked) -> list[Markup]:
@@ -53,6 +63,7 @@ def check_parts(entries: Sequence[LogEntry], checked: Checked) -> list[Markup]:
             ('Recording', 'Axis', 'Expected', 'Judged', 'Reasons of the differences', 'Map'),
             _rows(entries, checked),
         ),
+        *([element('p', f'{without_motion(checked.others)}.')] if checked.others else []),
         element('h2', 'Friction beside the contacts'),
         *_identified(checked),
         element('h2', 'Surfaces'),
@@ -75,9 +86,10 @@ def next_steps(entries: Sequence[LogEntry], checked: Checked) -> list[str]:
         if one.result is None and not checked.unstated.get(one.name)
     ]
     if steps:
+        first = ': maps/ beside this page holds the first ones'
         steps.append(
-            'Lay a map beside each table that needs one, feed.map.yaml for feed.csv: maps/ beside '
-            'this page holds the first ones'
+            'Lay a map beside each table that needs one, feed.map.yaml for feed.csv'
+            + (first if any(checked.unstated.values()) else '')
         )
     judged = [one for one in entries if one.result and one.folder not in checked.free]
     lines = [line for one in judged if one.result for line in one.result.lines]
@@ -91,8 +103,8 @@ def next_steps(entries: Sequence[LogEntry], checked: Checked) -> list[str]:
     elif not checked.is_oil_known:
         steps.append(f'State the oil, --oil: {checked.sheets[1]} was assumed')
     for name, words in NEEDED.items():
-        measured = {line.axis for line in lines if name not in line.unmeasured}
-        axes = dict.fromkeys(line.axis for line in lines if line.axis not in measured)
+        recorded = {line.axis for line in lines if name not in line.missing}
+        axes = dict.fromkeys(line.axis for line in lines if line.axis not in recorded)
         if axes:
             steps.append(f'Record {words} of axis {", ".join(axes)}')
     if not any(run.sheet for run in checked.runs):

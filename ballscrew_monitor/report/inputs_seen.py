@@ -26,6 +26,7 @@ from ballscrew_monitor.report.survey import Extremes, Gaps
 from surrogate.units import MILLI, RPM, TURN
 
 MEASURED = 'measured'
+READ_AS_LOAD = 'the axial load is worked out from it'
 LAG_TOLD = 0.01  # [s] between stamp and arrival from which on it is told
 SAME_RATE = 0.01  # between numbers of messages [-] up to which two inputs came together
 IN_THE_MAP = 'check its unit, its scale and the lead in the map'
@@ -43,9 +44,10 @@ OF_MOTOR = {
 """Places of a map that make a torque of what a column holds, with their words."""
 
 WORDS = {Source.LOAD: 'axial load', Source.TORQUE: 'motor torque'}
+DRIVES = 'it drives the nut both ways'
 TURNED = {
     Source.SPEED: 'load and motor torque drive it the other way',
-    Source.LOAD: 'the motor torque falls where it asks for more, or it drives the nut both ways',
+    Source.LOAD: f'the motor torque falls where it asks for more, or {DRIVES}',
     Source.TORQUE: 'it brakes where friction must be overcome',
 }
 """Reasons to think that the sign of an input is turned."""
@@ -107,7 +109,9 @@ class InputSeen:
     @property
     def silence(self) -> str:
         """Return why there is no number."""
-        return 'no valid sample was received' if self.place else 'the input is not recorded'
+        if self.place:
+            return 'no valid sample was received'
+        return READ_AS_LOAD if self.measured else 'the input is not recorded'
 
     @property
     def unstamped(self) -> str:
@@ -145,6 +149,15 @@ class InputSeen:
 def inputs_seen(case: AxisCase) -> list[InputSeen]:
     """Return all inputs of an axis, also those that it does not have."""
     return [_seen(case, source) for source in NAMES]
+
+
+def missing_inputs(case: AxisCase) -> list[str]:
+    """Return the names of inputs of an axis that are worth recording, as the log has none."""
+    return [
+        NAMES[seen.source]
+        for seen in inputs_seen(case)
+        if not seen.measured and (seen.source is Source.TEMPERATURE or math.isnan(seen.low))
+    ]
 
 
 def hints_on(cases: Iterable[AxisCase]) -> list[str]:
@@ -195,13 +208,16 @@ def _rate(case: AxisCase, source: Source) -> float:
     if math.isclose(received[source], received[Source.SPEED], rel_tol=SAME_RATE):
         source = Source.SPEED
     gaps, silent = case.survey.gaps[source], 0.0
+    refused = sum(case.outcome.refused.get(source, {}).values())
     if source is not Source.SPEED:
         silent = seconds(case.settings.timeouts[source]) * gaps.count
-        if case.outcome.refused.get(source):
+        if refused:
             return steps / span  # of these gaps some are no silence
-    rest = span - gaps.time - silent
-    usual = 2 * gaps.count < steps and rest > 0.0
-    return (steps - gaps.count) / rest if usual else steps / span
+    rest, valid = span - gaps.time - silent, steps - refused
+    usual = 2 * gaps.count < valid and rest > 0.0
+    rate = (valid - gaps.count) / rest if usual else steps / span
+    # Messages that were refused came in gaps or between them: neither rate is too high.
+    return max(rate, steps / span) if refused else rate
 
 
 def _origin(case: AxisCase, source: Source) -> str:
@@ -232,6 +248,9 @@ def _without_topic(case: AxisCase, source: Source, sources: frozenset[PointSourc
         known = case.facts.default_temperature_known
         origin = f'{known}, {celsius(case.settings.default_temperature):.4g} °C'
         return InputSeen(source=source, origin=origin, measured=False, stated=known == 'stated')
+    if source is Source.TORQUE and case.facts.torque_is_load:
+        whose = 'its current is ' if case.facts.load_from == 'current' else ''
+        return InputSeen(source=source, origin=f'{whose}recorded, {READ_AS_LOAD}', measured=True)
     return InputSeen(source=source, origin='not recorded', measured=False)
 
 
@@ -322,7 +341,9 @@ def contradictions(case: AxisCase, source: Source, parameter: str) -> Sequence[s
     """Return that sign or size of an input contradicts the others, and what may mend it."""
     factor = case.balance.factor
     if source is case.balance.turned:
-        doubt = f'{parameter}: its sign looks turned ({TURNED[source]})'
+        alone = source is Source.LOAD and Source.TORQUE not in case.inputs
+        why = DRIVES if alone else TURNED[source]
+        doubt = f'{parameter}: its sign looks turned ({why})'
         return [f'{doubt}: {_write(case, source, "scale: -1")}, or 1 if it is -1']
     if source is not Source.LOAD or math.isnan(factor):
         return []

@@ -27,7 +27,7 @@ from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report import logs
 from ballscrew_monitor.report.health_history import health_after, HistoryMaker
-from ballscrew_monitor.report.inputs_seen import hints_on, inputs_seen, NAMES
+from ballscrew_monitor.report.inputs_seen import hints_on, missing_inputs
 from ballscrew_monitor.report.judged_bag import judged_bag
 from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare
 from ballscrew_monitor.report.ledger import speed_ledger, unjudged_share
@@ -102,7 +102,7 @@ class AxisLine:
     losses: str = ''
     remedy: str = ''
     normal: str = ''
-    unmeasured: Sequence[str] = ()
+    missing: Sequence[str] = ()
 
     @property
     def key(self) -> MachineAxis:
@@ -243,7 +243,7 @@ def _axis_line(key: MachineAxis, verdict: AxisVerdict, case: AxisCase | None) ->
         expected=ledger.expected if ledger else 0,
         judged=ledger.judged if ledger else 0,
         losses=ledger.words if ledger else '',
-        unmeasured=[NAMES[seen.source] for seen in inputs_seen(case) if not seen.measured],
+        missing=missing_inputs(case),
         begins=case.begins,
         recorded=case.survey.span,
         running_time=math.nan if summary is None else summary.running_time,

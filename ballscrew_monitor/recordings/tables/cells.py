@@ -22,7 +22,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables import signs
 from ballscrew_monitor.recordings.tables.clocks import SAMPLE, time_forms, TimeForm
 from ballscrew_monitor.recordings.tables.quantities import OTHER_SIGN
-from ballscrew_monitor.recordings.words import short
+from ballscrew_monitor.recordings.words import counted, short
 import numpy as np
 from numpy.typing import NDArray
 import polars as pl
@@ -188,7 +188,7 @@ class Cells:
                 f'{self._first_row}'
             )
         note = (
-            f'{self.where} holds {chosen.bad} cells without a number, the first is '
+            f'{self.where} holds {counted(chosen.bad, "cell")} without a number, the first is '
             f'{chosen.first}; they count as unknown'
         )
         extremes = np.array([chosen.least, chosen.most])
@@ -385,6 +385,10 @@ def _grouped(sign: str) -> Form:
 
 _NUMBERS = {sign: _grouped(sign) for sign in OTHER_SIGN}
 """Forms of numbers by their decimal sign."""
+
+
+class Unreadable(ValueError):
+    """What a reader finds wrong with a file, in the words of its kind."""
 
 
 @contextlib.contextmanager

@@ -8,7 +8,7 @@ two entries, and all cells decide between them.
 
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 import dataclasses
 import functools
 import re
@@ -52,11 +52,19 @@ HOURS = (
     '%H%M%S%.f',
 )
 """Times of a day; the last one stands behind a date alone."""
-MONTHS = {
-    'Januar ': 'January ', 'Februar ': 'February ', 'März': 'March', 'Mär': 'March',
-    'Mrz': 'March', 'Maerz': 'March', 'Mai': 'May', 'Juni': 'June', 'Juli': 'July',
-    'Okt': 'Oct', 'Oktober': 'October', 'Dez': 'Dec', 'Dezember': 'December',
-}  # fmt: skip
+MINUTES = '%M:%S.%f'
+"""Minutes and seconds of an hour, as a spreadsheet shows a time in tenths of seconds."""
+MONTHS = (
+    (r'(?i)\bj(?:an|än|aen)(?:uar|ner)?\b', 'Jan'),
+    (r'(?i)\bfebruar\b', 'Feb'),
+    (r'(?i)\bm(?:(?:ä|ae|a\x{308})rz?|rz)\b', 'Mar'),
+    (r'(?i)\bmai\b', 'May'),
+    (r'(?i)\bjuni\b', 'Jun'),
+    (r'(?i)\bjuli\b', 'Jul'),
+    (r'(?i)\bsept\b', 'Sep'),
+    (r'(?i)\bokt(?:ober)?\b', 'Oct'),
+    (r'(?i)\bdez(?:ember)?\b', 'Dec'),
+)
 """German names of months that differ from the English ones."""
 STEPS = (
     (r'^\s+|\s+$', ''),
@@ -66,7 +74,9 @@ STEPS = (
     (r'(\d:\d\d),(\d)', '$1.$2'),
     (r'(\d:\d\d:\d\d):(\d)', '$1.$2'),
     (r'(?i)\s*\b?([ap])\.? ?m\.?$', ' ${1}m'),
-    (r'([A-Za-z]{3,})\.', '$1'),
+    (r'(\d\.)([\p{L}\p{M}]{3})', '$1 $2'),
+    (r'([\p{L}\p{M}]{3,})\.(\d)', '$1 $2'),
+    (r'([\p{L}\p{M}]{3,})\.', '$1'),
     (r'(\d)[-_](\d\d?:)', '$1 $2'),
     (r'[,\s_]+', ' '),
 )
@@ -98,7 +108,10 @@ class TimeForm:
 
     def _seconds(self, texts: pl.Series) -> pl.Series:
         if self.kind == 'hours':
-            hours = texts.str.to_time(self.pattern, strict=False)
+            if self.pattern == MINUTES:
+                texts = '0:' + texts
+            pattern = '%H:%M:%S%.f' if self.pattern == MINUTES else self.pattern
+            hours = texts.str.to_time(pattern, strict=False)
             return hours.cast(pl.Int64).cast(pl.Float64) / SECOND
         if self.kind == 'day':
             days = texts.str.to_date(self.pattern, strict=False)
@@ -121,30 +134,23 @@ def time_forms(texts: pl.Series) -> Iterator[tuple[TimeForm, ...]]:
         if not replaced.equals(sample):
             steps.append(step)
             sample = replaced
-    english = sample.str.replace_many(MONTHS)
-    months = not english.equals(sample)
+    english = _replaced(sample, MONTHS)
     by_hours: dict[str, list[TimeForm]] = {}
     signs = {letter for letter in ''.join(sample) if not letter.isalnum()}
     written = [text for text in english.to_list() if len(text) <= LONGEST_TIME]
     for form, (needed, shape) in _all_forms().items():
         if not needed <= signs or not any(map(shape.fullmatch, written)):
             continue
-        made = dataclasses.replace(form, steps=(*steps, *([_GERMAN] if months else [])))
+        made = dataclasses.replace(form, steps=(*steps, *(MONTHS if '%B' in form.pattern else ())))
         if made._seconds(english).null_count() < len(sample):
             key = re.sub('%[dm]', '', form.pattern) if form.order else form.pattern
             by_hours.setdefault(key, []).append(made)
     yield from map(tuple, by_hours.values())
 
 
-_GERMAN = ('German months', '')
-
-
-def _replaced(texts: pl.Series, steps: object) -> pl.Series:
-    for pattern, replacement in steps:  # type: ignore[attr-defined]
-        if pattern == _GERMAN[0]:
-            texts = texts.str.replace_many(MONTHS)
-        else:
-            texts = texts.str.replace_all(pattern, replacement)
+def _replaced(texts: pl.Series, steps: Iterable[tuple[str, str]]) -> pl.Series:
+    for pattern, replacement in steps:
+        texts = texts.str.replace_all(pattern, replacement)
     return texts
 
 
@@ -160,7 +166,11 @@ def _all_forms() -> dict[TimeForm, tuple[set[str], re.Pattern[str]]]:
         for order, date in DATES
         for hours in HOURS
     )
-    of_day = (TimeForm(pattern=hours, kind='hours') for hours in HOURS[:-1] if '%z' not in hours)
+    of_day = (
+        TimeForm(pattern=hours, kind='hours')
+        for hours in (*HOURS[:-1], MINUTES)
+        if '%z' not in hours
+    )
     days = (TimeForm(pattern=date, kind='day', order=order) for order, date in DATES)
     return {
         form: (set(re.sub(r'%\.?\w', '', form.pattern)), _shape(form.pattern))

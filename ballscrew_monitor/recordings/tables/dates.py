@@ -103,7 +103,7 @@ def start_in_head(head: Head) -> Start:
 
 def _by_head(path: Path, mapping: TableMap) -> datetime.datetime | None:
     """Return when a log begins by the start that its head states, else by a date in it."""
-    start = start_in_head(source_of(path, mapping.layout).head)
+    start = start_in_head(source_of(path, mapping.layout, mapping.sheet).head)
     moment = start.moments.get(mapping.order, start.known)
     if moment is not None:
         return datetime.datetime.fromtimestamp(moment, datetime.UTC)

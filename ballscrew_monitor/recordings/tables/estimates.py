@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+LONG = 3.0  # times the usual time between rows: across more nothing is known
 NEAR = 0.05  # part by which a speed may miss what its position says
 FAST = 2.0  # [m/s] no feed axis moves faster
 FASTEST = 2000.0  # in mm/s, the same
@@ -22,9 +23,8 @@ RARE, SHORTEST = 0.01, 0.95e-5  # [Hz] of the slowest, and [s] between rows of t
 FINEST = 1e-5  # of seconds that are written; of days it would be 0.9 s
 ALIKE = 0.8  # squared correlation of a motion and its speed
 LONGEST_AXIS = 20.0  # [m]
-MANY = 8  # rows that tell whether torques are amounts
-CLEARLY = 2.0  # times the sum of squares of the better of two readings
-FACTOR = 1.5  # by which a place and its speed may disagree
+FEW = 8  # rows that tell no way of a speed
+STRETCHES = 2000  # of a motion, at least, that tell how far a speed goes
 
 
 def is_silent(values: Array) -> bool:
@@ -49,26 +49,76 @@ def period(motions: Sequence[tuple[Array, Array]]) -> float:
     return across / along if across > 0.0 and along > 0.0 else math.nan
 
 
-def speed_unit(speeds: Array, motion: tuple[Array, Array] | None, step: float) -> tuple[str, str]:
-    """
-    Return the linear unit of speeds and why it is that.
-
-    A motion, positions [m] and such speeds a `step` [s] apart, decides if it is known; else the
-    largest amount does.
-
-    """
-    if motion is not None and math.isfinite(step):
-        position, speed = motion
-        for unit, factor in LINEAR_SPEED_UNITS.items():
-            found = period([(position, speed * factor)])
-            if step / FACTOR < found < step * FACTOR:
-                return unit, 'it agrees with the position over time'
-    largest = float(np.nanmax(np.abs(speeds)))
+def largest_speed_unit(largest: float) -> tuple[str, str]:
+    """Return the linear unit of speeds up to a largest amount [-] and why it is that."""
     if largest <= FAST:
         return 'm/s', f'its largest amount is {largest:.3g}'
     if largest <= FASTEST:
         return 'mm/s', f'its largest amount is {largest:.3g}, more than a feed axis does in m/s'
     return 'mm/min', f'its largest amount is {largest:.3g}, more than a feed axis does in mm/s'
+
+
+def way_per_speed(position: tuple[Array, Array], speed: tuple[Array, Array]) -> float:
+    """
+    Return how far an axis moves for a unit and second of its speed, NaN if both are not alike.
+
+    Places and speeds [-] each stand behind their times [s], of which the first run counts. Least
+    squares over some thousand stretches without a gap, for which the speed is integrated by the
+    trapezoidal rule.
+
+    """
+    times, places = _first_run(*position)
+    seconds, speeds = _first_run(*speed)
+    if min(len(places), len(speeds)) < FEW:
+        return math.nan
+    every = max(len(places) // STRETCHES, 1)
+    ways = np.append(0.0, np.cumsum((speeds[1:] + speeds[:-1]) / 2 * np.diff(seconds)))
+    times, places = times[::every], places[::every]
+    steps, moved = np.diff(times), np.diff(places)
+    expected = np.diff(np.interp(times, seconds, ways))
+    within = (times[:-1] >= seconds[0]) & (times[1:] <= seconds[-1])
+    good = within & (steps <= LONG * np.median(steps))
+    moved, expected = moved[good], expected[good]
+    across, along = float(moved @ expected), float(expected @ expected)
+    if not along > 0.0 or across**2 < ALIKE * along * float(moved @ moved):
+        return math.nan
+    return abs(across) / along
+
+
+def _first_run(times: Array, values: Array) -> tuple[Array, Array]:
+    """Return known values with their times until these begin again."""
+    known = np.isfinite(times) & np.isfinite(values)
+    times, values = times[known], values[known]
+    ends = np.flatnonzero(np.diff(times) < 0.0)
+    run = slice(int(ends[0]) + 1 if len(ends) else None)
+    return times[run], values[run]
+
+
+def unit_by_factor(factor: float, units: Mapping[str, float]) -> str:
+    """Return the unit that a factor is near to, empty if it is near to none."""
+    return next((unit for unit, one in units.items() if abs(factor / one - 1.0) < NEAR), '')
+
+
+class Turns:
+    """Positions within one turn made to go on where they begin again: the shorter way is taken."""
+
+    def __init__(self, turn: float) -> None:
+        """Begin with the first row; a turn is so long in the unit of the positions."""
+        self._turn, self._last = turn, np.zeros(0)
+
+    def counted(self, positions: Array) -> Array:
+        """Return further positions with their whole turns, NaN where they are."""
+        known = np.isfinite(positions)
+        every = np.unwrap(np.append(self._last, positions[known]), period=self._turn)
+        counted = positions.copy()
+        counted[known] = every[len(self._last) :]
+        self._last = every[-1:]
+        return counted
+
+
+def is_within_turn(extremes: Array, turn: float) -> bool:
+    """Return True if the least and the most of positions are those of a scale of one turn."""
+    return turn / 2 < float(np.ptp(extremes)) <= turn * (1.0 + 1e-6)
 
 
 def position_unit(position: Array) -> tuple[str, str]:
@@ -148,51 +198,6 @@ def unit_by_motion(
         < NEAR
     }
     return fits.pop() if len(fits) == 1 else ''
-
-
-def is_one_sided(extremes: Array) -> bool:
-    """Return True if no value between the least and the most has the sign of another."""
-    return bool(extremes.any() and (extremes >= 0.0).all() | (extremes <= 0.0).all())
-
-
-def is_magnitude(torque: Array, speed: Array) -> bool | None:
-    """
-    Return whether torques of one sign are amounts [-] in rows at equal distances, None if unclear.
-
-    Friction, viscous or not, turns with the motion, a weight does not, and what accelerates does
-    so with neither: amounts have an even part of the speed [-], torques with a sign an odd one.
-    An axis that does not reverse shows no amounts; torques at other times show nothing.
-
-    """
-    if len(speed) < MANY:
-        return False
-    push = np.gradient(speed)
-    good = np.isfinite(torque) & np.isfinite(speed) & np.isfinite(push) & (speed != 0.0)
-    known = np.isfinite(torque).sum(), (np.isfinite(speed) & (speed != 0.0)).sum()
-    if good.sum() < MANY:
-        return None if min(known) >= MANY else False
-    torque, speed, push = torque[good], speed[good], push[good]
-    if not (speed > 0.0).any() or not (speed < 0.0).any():
-        return False
-    ways, once = np.sign(speed), np.ones(len(speed))
-    misses = []
-    for parts in ([once, np.abs(speed), ways * push], [once, ways, speed, push]):
-        terms = np.column_stack(parts)
-        fit = np.linalg.lstsq(terms, torque, rcond=None)[0]
-        misses.append(float(np.sum((torque - terms @ fit) ** 2)))
-    amounts, signed = (miss + 1e-9 * float(torque @ torque) for miss in misses)
-    if max(amounts, signed) < CLEARLY * min(amounts, signed):
-        return None
-    return amounts < signed
-
-
-def slopes(positions: Array) -> Array:
-    """Return the changes of positions from row to row [-], of those that hold one."""
-    known = np.flatnonzero(np.isfinite(positions))
-    found = np.full(len(positions), math.nan)
-    if len(known) > 1:
-        found[known] = np.gradient(positions[known])
-    return found
 
 
 def is_of_days(extremes: Array) -> bool:

@@ -8,7 +8,8 @@ signal of other times than its neighbours has rows of its own.
 
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+import contextlib
 import dataclasses
 import importlib
 import json
@@ -19,17 +20,30 @@ from typing import Any
 from xml.etree import ElementTree
 
 from ballscrew_monitor.recordings.tables import line_messages, long_form
-from ballscrew_monitor.recordings.tables.cells import readable
+from ballscrew_monitor.recordings.tables.cells import first_line, readable, Unreadable
 from ballscrew_monitor.recordings.tables.heads import Head, Property, unlike
-from ballscrew_monitor.recordings.tables.layouts import ADAPTER, Format
+from ballscrew_monitor.recordings.tables.layouts import ADAPTER, Format, RECORDER
 from ballscrew_monitor.recordings.tables.quantities import RATED
 import numpy as np
 import polars as pl
+from polars.exceptions import PolarsError
 from surrogate import limits
 from surrogate.files import InputError
 
 OF_RECORDER = {'LOAD': RATED, 'TORQUE': 'N m', 'CURRENT': 'A'}
 """Units of signals of a data recorder, which its file does not state."""
+EXPECTED = {
+    'json': 'a list of records, lists by the names of signals, or the trace of a data recorder',
+    'xml': 'a trace with signals, frames and a record for each time',
+    'shdr': 'lines of an MTConnect adapter, a time and pairs of a name and a value each',
+    'echo': 'the messages of one topic, a line each with numbers for all of its joints',
+    'long': 'a table with a time, the name of a signal and its value in each line',
+    'mat': 'a file of MATLAB with arrays of numbers',
+    'hdf': 'a file of HDF5 with arrays of numbers',
+    'tdms': 'a TDMS file with channels of numbers',
+    'mdf': 'an MDF file with signals of numbers',
+}
+"""What a file of each kind must be."""
 DOCUMENT = re.compile('<!(?:DOCTYPE|ENTITY)', re.I)
 SIGNATURES = ((b'TDSm', 'tdms'), (b'MDF     ', 'mdf'), (b'MATLAB 5.0', 'mat'), (b'\x89HDF', 'hdf'))
 
@@ -92,11 +106,29 @@ def read_signals(path: Path, kind: str) -> Signals:
             f'log {path} has more than {most // limits.MEGA} MB, allowed for its kind: save its '
             'signals as CSV or Parquet'
         )
-    with readable(f'log {path} cannot be read', Exception):
+    with readable(f'log {path} cannot be read'), _of_its_kind(path, kind):
         signals = READERS[kind](path)
     if not signals.frame.height:
         raise InputError(f'log {path} holds no signal with numbers')
     return signals
+
+
+@contextlib.contextmanager
+def _of_its_kind(path: Path, kind: str) -> Iterator[None]:
+    """Raise InputError for all that a reader meets in a file that is not as its kind should be."""
+    failure = f'log {path} cannot be read'
+    try:
+        yield
+    except (InputError, PolarsError, MemoryError):
+        raise
+    except (Unreadable, json.JSONDecodeError, ElementTree.ParseError) as error:
+        raise InputError(f'{failure}: {first_line(error)}') from None
+    except RecursionError:
+        raise InputError(f'{failure}: its lists nest too deeply') from None
+    except Exception:
+        raise InputError(
+            f'{failure}, it must be {EXPECTED[kind]}: correct it, or save its signals as CSV'
+        ) from None
 
 
 def _json(path: Path) -> Signals:
@@ -110,31 +142,55 @@ def _json(path: Path) -> Signals:
         if not records:
             return Signals(frame=_side_by_side(lists))
         content = records[0]
+    if not _are_all(dict, content):
+        raise TypeError
     return Signals(frame=pl.from_dicts(content, infer_schema_length=None))
 
 
 def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
     """Return the fast signals of a data recorder: a row for each cycle of the control."""
-    header = content['Header']
+    header, parts = content['Header'], _list_of(dict, content.get('Payload'))
+    listed = _list_of(dict, header['SignalListHFData'])
+    if listed is None or not all('Name' in signal for signal in listed):
+        raise Unreadable('SignalListHFData of its Header must be a list of signals with a Name')
+    if parts is None or not _are_all(list, [p.get('HFData', []) for p in parts]):
+        raise Unreadable('its Payload must be a list of parts, HFData in each a list of rows')
     names = []
-    for signal in header['SignalListHFData']:
+    for signal in listed:
         name, axis = str(signal['Name']), str(signal.get('Axis', ''))
         plain, letter = name.split('|')[0], axis if re.fullmatch(r'[A-Za-z]\d?', axis) else ''
         plain = f'{plain} [{OF_RECORDER[plain]}]' if plain in OF_RECORDER else plain
         names.append(f'{letter} {plain}' if letter else plain)
-    rows = [row for part in content['Payload'] for row in part.get('HFData', ())]
+    rows = [row for part in parts for row in part.get('HFData', ())]
+    if not rows:
+        raise Unreadable('no part of its Payload holds a row of HFData')
+    if not _are_all(list, rows) or {*map(len, rows)} != {len(names)}:
+        raise Unreadable(f'a row of HFData holds other than {len(names)} cells, one a signal')
     columns = list(zip(*rows, strict=True))
     held = {name: list(column) for name, column in zip(unlike(names), columns, strict=True)}
-    start = str(header.get('Initial', {}).get('Time', ''))
-    period = float(header.get('CycleTimeMs') or math.nan) * 1e-3
-    return Signals(frame=pl.DataFrame(held, strict=False), period=period, start=start)
+    begin, cycle = header.get('Initial'), header.get('CycleTimeMs') or math.nan
+    if not isinstance(cycle, int | float):
+        raise Unreadable('CycleTimeMs of its Header is no number')
+    start = str(begin.get('Time', '')) if isinstance(begin, dict) else ''
+    period = float(cycle) * 1e-3
+    frame = pl.DataFrame(held, strict=False)
+    return Signals(frame=frame, period=period, start=start, program=RECORDER)
+
+
+def _list_of(kind: type, values: Any) -> Any:
+    """Return values if they are a list of a kind, else None."""
+    return values if _are_all(kind, values) else None
+
+
+def _are_all(kind: type, values: object) -> bool:
+    return isinstance(values, list) and all(isinstance(one, kind) for one in values)
 
 
 def _xml(path: Path) -> Signals:
     """Return the signals of a trace: names by their keys, and a record for each time."""
     text = path.read_text('utf-8', errors='replace')
     if DOCUMENT.search(text):
-        raise ValueError('it states a type of document')
+        raise Unreadable('it states a type of document')
     root = ElementTree.fromstring(text)
     named, keys, rows, start = {}, {}, [], ''
     for element in root.iter():
@@ -193,7 +249,7 @@ def _hdf(path: Path) -> Signals:
         def visit(name: str, item: Any) -> None:
             if isinstance(item, h5py.Dataset) and item.dtype.kind in 'iuf':
                 if item.size * 8 > limits.WORKBOOK:
-                    raise ValueError(f'{name} comes to more than {limits.WORKBOOK} bytes')
+                    raise Unreadable(f'{name} comes to more than {limits.WORKBOOK} bytes')
                 unit = item.attrs.get('unit', item.attrs.get('units', b''))
                 told = unit.decode() if isinstance(unit, bytes) else str(unit)
                 called = name.replace('/', '.')

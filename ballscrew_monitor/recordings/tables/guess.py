@@ -22,6 +22,7 @@ from typing import Any
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
+from ballscrew_monitor.recordings.tables.amounts import are_amounts, fault_of_speed
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
 from ballscrew_monitor.recordings.tables.dates import (
     dates_by_name,
@@ -30,32 +31,45 @@ from ballscrew_monitor.recordings.tables.dates import (
     NAME,
     start_in_head,
 )
-from ballscrew_monitor.recordings.tables.mapping import MOTOR
+from ballscrew_monitor.recordings.tables.mapping import MOTOR, SIGNED
 from ballscrew_monitor.recordings.tables.names import Named, read_name
-from ballscrew_monitor.recordings.tables.quantities import INPUTS, RATED, SCALES, UNITS
+from ballscrew_monitor.recordings.tables.own_times import is_own_time
+from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
-from ballscrew_monitor.recordings.tables.series import are_apart, of_amounts, unclear_sign
+from ballscrew_monitor.recordings.tables.series import (
+    are_apart,
+    of_amounts,
+    OF_SLOPE,
+    of_slope,
+    unclear_sign,
+)
 from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.time_gate import RATE, TimeGate
+from ballscrew_monitor.recordings.tables.unit_names import unknown_unit, words_of
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
 import numpy as np
 from surrogate.files import InputError
 from surrogate.surface import find_surface, Surface
-from surrogate.units import MILLI
+from surrogate.units import MILLI, TURN
 import yaml
 
 SCREW, OIL = 'nominal', 'iso_vg_68'
+OF_DEGF = 'scale 0.555556 and offset -17.7778 make of it'
 TORQUE_CONSTANT = 0.1  # [N m/A]
 EFFICIENCY = 0.9
 TEMPERATURE = 40.0  # [degC]
 NUMBERS = 4_000_000  # of the first rows that are in memory
 EPOCH = '2000-01-01T00:00:00Z'
 LATE = 2_147_483_648.0  # [s] since 1970: no stamp is later
-HARDEST = 1000.0  # amount of a force that no axis is driven with in kN
 APART = 0.05  # of the rows that hold neither of two signals of joined tables
 MANY = 10  # rows of which one is not known, of a signal in the rows of another
 TURNS = 6.3  # range of a joint from which its unit is no metre
 SEPARATED_BY = {';': 'semicolons', ',': 'commas', '\t': 'tabs', '|': 'bars', ' ': 'blanks'}
+SPEED_UNITS = {False: conversions.LINEAR_SPEED_UNITS, True: conversions.ROTARY_SPEED_UNITS}
+POSITION_UNITS = {False: LINEAR_POSITION_UNITS, True: conversions.ROTARY_POSITION_UNITS}
+"""Units of a table, and of a screw."""
+SAME_LEAD = 0.01  # part by which a lead out of a log may miss a usual one
+LEADS = (1e-3, 0.1)  # [m] of ball screws
 ORDER_OR_SIGN = ('.', ',', 'order')
 JOINT = re.compile(
     r'(?P<before>.*?)(?P<field>name|position|velocity|effort)(?P<number>\[?_?\d+\]?)$'
@@ -109,6 +123,17 @@ def guess(path: Path, *, shown: Shown = shown_progress) -> Guess:
     return _Guesser(path, shown).result()
 
 
+def names_motion(path: Path) -> bool:
+    """Return False for a table whose names of columns are all of other things than a motion."""
+    with contextlib.suppress(InputError):
+        source = source_of(path)
+        texts = source.head.symbols
+        named = [read_name(name, texts.get(name, '')) for name in source.names()]
+        kinds = {kind for one in named for kind in (one.kind, one.doubtful)}
+        return not source.head.named or bool(kinds & set(MOTION))
+    return True
+
+
 class _Guesser:
     """
     What is found so far.
@@ -130,20 +155,25 @@ class _Guesser:
         self.notes: list[str] = []
         self.used: dict[str, dict[str, Any]] = {}
         self.step, self.epoch, self.date_from = math.nan, '', ''
+        self.clock: tuple[str, Array, float] | None = None  # time column, its times and unit [s]
         self.order = ''  # of day and month in the head
         self.groups: dict[str, str] = {}
+        self.ways: dict[str, float] = {}  # of a position for a unit and second of its speed
+        self.unclear_times: set[str] = set()
         self.members: dict[tuple[str, tuple[int, int]], str] = {}
         self.times = [one for one in self.named if self._may_be_time(one)]
         self.named = [one for one in self.named if one not in self.times or one.kind == 'time']
+        self.by_axis = names.by_axis([one for one in self.named if one.kind != 'time'])
         self.axes = {
             name: chosen
-            for name, found in names.by_axis([o for o in self.named if o.kind != 'time']).items()
+            for name, found in self.by_axis.items()
             if {'speed', 'position'} & set(chosen := names.best(found))
         }
+        unknown = names.unknown_units(self.named)
         if not self.axes:
             raise InputError(
                 f'log {path}: no column looks like the speed or position of an axis, it holds '
-                f'{listed(source.names())}'
+                f'{"; ".join([listed(source.names()), *unknown])}'
             )
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
         used = list(dict.fromkeys(one.column for one in [*columns, *self.times]))
@@ -169,11 +199,14 @@ class _Guesser:
         self.notes += [
             f'{why}; it is left out' for name, why in table.left_out.items() if name not in times
         ]
-        self.notes += [*table.notes, *names.told_by_words(self.named)]
+        self.notes += [*table.notes, *unknown, *names.told_by_words(self.named)]
+        for one in [one for one in columns if one.column in self.data and one.scale != 1.0]:
+            self.data[one.column] = self.data[one.column] * one.scale
+            self.extremes[one.column] = self.extremes[one.column] * one.scale
         if rows < table.rows:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
         self._forget_texts()
-        self._forget_still()
+        self._forget_speeds()
 
     def _unnamed(self) -> str:
         """Return in a sentence how a map names the columns of a table without names."""
@@ -181,14 +214,14 @@ class _Guesser:
         count = len(head.names)
         between = SEPARATED_BY.get(head.separator, repr(head.separator))
         held = f'{count}, separated by {between}' if count > 1 else 'one'
-        period = head.period if math.isfinite(head.period) else 0.001
+        rate = f'{1.0 / head.period:g}' if math.isfinite(head.period) else '(rows in a second)'
         epoch = f"epoch: '{EPOCH}'"
         by_column = f' or `time: {{column: column 1, unit: s, {epoch}}}`' if count > 1 else ''
         return (
             f'log {self.path}: no line names its columns, of which it has {held}: a map calls '
             f'them by their numbers, such as `axes: {{x: {{position: {{column: column '
             f'{min(count, 2)}, unit: mm}}, lead_mm: 10.0}}}}`, with `time: {{rate_Hz: '
-            f'{1.0 / period:g}, {epoch}}}`{by_column}'
+            f'{rate}, {epoch}}}`{by_column}'
         )
 
     def _texts(self) -> dict[str, str]:
@@ -208,7 +241,7 @@ class _Guesser:
     def _may_be_time(self, one: Named) -> bool:
         """Return True if a column may be the time by its name, or as the head names it nothing."""
         return (
-            (one.kind == 'time' and one.place == 'machine')
+            (one.kind == 'time' and one.place in ('machine', 'axis'))
             or one.column in self.head.labelled
             or bool(self._unit_of_program(one))
             or (one is self.named[0] and not one.kind)
@@ -222,18 +255,15 @@ class _Guesser:
         labelled = program.labelled if one.column in self.head.labelled else ''
         return dict(program.times).get(one.column.split(' [')[0], labelled)
 
-    def _forget_still(self) -> None:
-        """Leave out speeds of nothing but 0 beside a position that moves."""
+    def _forget_speeds(self) -> None:
+        """Leave out speeds that cannot be those of the position beside them."""
         for name, chosen in self.axes.items():
             if {'speed', 'position'} <= set(chosen):
-                speed, position = (
-                    self.extremes[chosen[kind].column] for kind in ('speed', 'position')
-                )
-                if not speed.any() and position[0] != position[1]:
-                    self.notes.append(
-                        f'axis {name}: {chosen.pop("speed").column} is always 0 while the '
-                        'position moves: the speed is the slope of the position'
-                    )
+                speed, position = (chosen[kind].column for kind in ('speed', 'position'))
+                extremes = self.extremes[speed], self.extremes[position]
+                if fault := fault_of_speed(*extremes, self.data[position]):
+                    chosen.pop('speed')
+                    self.notes.append(of_slope(name, speed, fault))
 
     def result(self) -> Guess:
         time = self._time_column()
@@ -244,8 +274,14 @@ class _Guesser:
         self._say_what_is_joined()
         self._say_what_is_left_out(time)
         content: dict[str, Any] = {'log': self.path.name}
+        if others := self.source.other_sheets:
+            content['sheet'] = self.source.sheet
+            self.notes.append(
+                f'sheet {short(self.source.sheet)} is read, not {listed(others)}: `sheet` in the '
+                'map names another'
+            )
         content |= {'date_from': self.date_from} if self.date_from else {}
-        content |= {'decimal': None} if '.' in self.doubts or ',' in self.doubts else {}
+        content |= {'decimal': None} if self._is_decimal_open() else {}
         time |= {'order': self.order} if self.order else {}
         time |= {'order': None} if 'order' in self.doubts else {}
         content |= {'time': time, 'axes': self.used, 'assumed': self.assumed}
@@ -255,6 +291,10 @@ class _Guesser:
             notes=tuple(self.notes),
             picture=tuple(self._picture(time)),
         )
+
+    def _is_decimal_open(self) -> bool:
+        """Return True if the decimal sign is to be stated, so that no number is known."""
+        return '.' in self.doubts or ',' in self.doubts
 
     def _assume(self, key: str, value: Any, reason: str) -> None:
         self.assumed[key] = {'value': value, 'reason': reason}
@@ -377,26 +417,40 @@ class _Guesser:
             )
         if unit:
             self.step = step * SCALES[unit][0]
+            self.clock = one.column, values * SCALES[unit][0], SCALES[unit][0]
         self._set_own_times(one)
         return {'column': one.column} | ({} if why else {'unit': unit or None})
 
     def _set_own_times(self, time: Named) -> None:
         """Give inputs of another group the column of their time: the nearest before them."""
-        base = re.sub(r'_duplicated_\d+$', '', time.column)
-        alike = {
-            one.column
-            for one in self.times
-            if re.sub(r'_duplicated_\d+$', '', one.column) == base and one.column in self.data
-        }
+        columns = {one.column: self._own_time(time, one) for one in self.times}
+        columns = {column: own for column, own in columns.items() if own is not None}
         held = self.source.names()
-        self.groups = {
-            one.column: next(
-                (each for each in reversed(held[: held.index(one.column)]) if each in alike),
-                time.column,
-            )
-            for chosen in self.axes.values()
-            for one in chosen.values()
-        }
+        for one in [one for chosen in self.axes.values() for one in chosen.values()]:
+            before = (each for each in reversed(held[: held.index(one.column)]) if each in columns)
+            column = next(before, time.column)
+            self.groups[one.column] = column
+            if not columns[column]:
+                self.unclear_times.add(one.column)
+
+    def _own_time(self, time: Named, one: Named) -> bool | None:
+        """Return whether a time is that of other columns, None for a time of none."""
+        if _base(one.column) == _base(time.column) and one.column in self.data:
+            return True
+        if one.kind != 'time' or one.column not in self.data:
+            return None
+        values, main = self.data[one.column], self.data[time.column]
+        if self._is(estimates.is_of_days, one) or self._fault(one, values):
+            return None
+        units = [
+            self._unit_of_time(each, column[np.isfinite(column)])[0]
+            for each, column in ((time, main), (one, values))
+        ]
+        is_alike = units[0] == units[1] and (time.column in self.timed) == (
+            one.column in self.timed
+        )
+        factors = [SCALES[unit][0] if all(units) else 1.0 for unit in units]
+        return is_own_time(main * factors[0], values * factors[1], is_alike=is_alike)
 
     def _set_epoch(self, why: str, *, since: float | None = None) -> None:
         """State the time of the first row by the head or the name of the file, or assume one."""
@@ -454,7 +508,8 @@ class _Guesser:
                     self.members.setdefault(key, column)
         for number, (key, members) in enumerate(groups.items()):
             step = self._period_of(key[0], self.members[key], time)
-            each = f'{1e3 * step:.4g} ms' if math.isfinite(step) else 'an unknown period'
+            known = math.isfinite(step) and not self._is_decimal_open()
+            each = f'{1e3 * step:.4g} ms' if known else 'an unknown period'
             yield f'Group {number + 1}: {each}, {", ".join(members)}'
         head = self.head
         between = SEPARATED_BY.get(head.separator, repr(head.separator))
@@ -527,19 +582,22 @@ class _Guesser:
         chosen = self.axes[name]
         used = self.used[name] = {
             kind: {'column': chosen[kind].column}
+            | ({'scale': chosen[kind].scale} if chosen[kind].scale != 1.0 else {})
             for kind in INPUTS
             if kind in chosen and self._is_used(chosen[kind])
         }
         self._forget_unitless(name)
+        self.ways[name] = self._way_per_speed(name)
+        self._compare(name)
         for kind in used:
             self._set_unit(name, kind)
             self._set_magnitude(name, kind)
             group = self.groups.get(used[kind]['column'], time)
             used[kind] |= {'time': group} if group != time else {}
+            self._say_time(name, kind, time)
         for key, value in (('screw', SCREW), ('oil', OIL)):
             self._assume(f'{name}.{key}', value, 'the log does not say it; the shipped one')
-        why = f'the log does not say it; that of {SCREW}'
-        self._assume(f'{name}.lead_mm', float(f'{_usual_lead() * MILLI:.6g}'), why)
+        self._set_lead(name)
         self._set_load(name)
         if 'torque' in used and self._unit(name, 'torque') == RATED:
             self._state_motor(name, 'torque')
@@ -551,10 +609,60 @@ class _Guesser:
                 TEMPERATURE,
                 'no column is the oil temperature of this axis',
             )
-        if 'speed' in used:
+        if 'speed' in used and not self._is_decimal_open():
             speeds = self.extremes[used['speed']['column']]
             unit = self._unit(name, 'speed')
             self.notes += estimates.oddities(name, speeds, unit, conversions.LINEAR_SPEED_UNITS)
+        self._say_direction(name)
+        self._ask_for_columns(name)
+
+    def _say_direction(self, name: str) -> None:
+        """Say of a speed without a position that has one sign what that is taken for."""
+        speed = self.used[name].get('speed')
+        if speed and 'position' not in self.used[name]:
+            least, most = self.extremes[speed['column']]
+            if least * most >= 0.0 and most > least and 'magnitude' not in speed:
+                self.notes.append(
+                    f'axis {name}: {short(speed["column"])} never changes its sign: all motion is '
+                    'taken to be in one direction'
+                )
+
+    def _ask_for_columns(self, name: str) -> None:
+        """Let the map name the column of a quantity that several may be."""
+        for kind, one in self.axes[name].items():
+            if kind not in self.used[name] or kind == 'temperature':
+                continue
+            others = [
+                column
+                for column in names.rivals(self.by_axis[name], one)
+                if not estimates.is_silent(self.extremes.get(column, np.ones(1)))
+            ]
+            if others:
+                self.used[name][kind]['column'] = None
+                self.unstated.append(
+                    f'state axes.{name}.{kind}.column in the map: '
+                    f'{" or ".join([one.column, *others])}'
+                )
+
+    def _say_time(self, name: str, kind: str, time: str) -> None:
+        """Say of an input that it has another time than the first, and ask if it may have."""
+        place = self.used[name][kind]
+        column, own = place['column'], place.get('time', time)
+        if not own or _base(own) == _base(time):
+            return
+        if column not in self.unclear_times:
+            self.notes.append(
+                f'axis {name}: {short(column)} has the times of {short(own)}, which stands '
+                'before it'
+            )
+            return
+        place['time'] = None
+        self.groups.pop(column)
+        self.unstated.append(
+            f'state axes.{name}.{kind}.time in the map, {time} if {column} has the times of its '
+            f'row: it stands behind {own}, which has another unit or other years than {time}; '
+            'where these are its times, give both in one unit'
+        )
 
     def _is_used(self, one: Named) -> bool:
         """Tell whether a column says something: a force or current of nothing but 0 is unknown."""
@@ -580,6 +688,8 @@ class _Guesser:
 
     def _set_unit(self, name: str, kind: str) -> None:
         place, stated = self.used[name][kind], self.axes[name][kind].unit
+        if 'unit' in place:
+            return
         if stated:
             place['unit'] = stated
             return
@@ -587,75 +697,68 @@ class _Guesser:
         if place['column'] in self.joints and (unit := self._unit_of_joint(name, kind, values)):
             why = 'positions of joints are in rad or m, and none is so large in m'
         elif kind == 'position':
-            unit, why = estimates.position_unit(values)
+            unit, why = self._unit_of_position(name, place['column'])
         elif kind == 'speed' and (turning := names.turning_unit(place['column'])):
             unit, why = turning, 'its name is that of a turning speed'
         elif kind == 'speed':
-            metres, speed = self._metres(name), self.data[place['column']]
-            motion = None if metres is None else (metres, speed)
-            unit, why = estimates.speed_unit(values, motion, self.step)
-        elif kind == 'load' and (largest := self._largest_load()) <= HARDEST:
-            self._leave_open(name, largest)
-            return
+            unit, why = self._unit_of_speed(name, place['column'])
         elif kind == 'load':
-            unit, why = 'N', f'a force of {largest:.3g} is more than axes are driven with in kN'
+            unit, why = '', self._unit_of_load(name)
         elif kind in MOTOR:
-            place['unit'] = None
-            self.unstated.append(
-                f'state axes.{name}.{kind}.unit in the map, {" or ".join(UNITS[kind])}: '
-                f'{place["column"]} states none that is known, and the load is worked out from it'
-            )
-            return
+            unit = ''
+            why = f'{place["column"]} states none that is known, and tells the load'
+        elif kind == 'temperature' and words_of(place['column'])[-1:] == ['f']:
+            unit, why = '', f'{place["column"]} may be in degF: unit degC, {OF_DEGF}'
         elif kind == 'temperature' and np.nanmin(values) > TEMPERATURE * 5:
             unit, why = 'K', f'its least is {np.nanmin(values):.3g}'
         else:
             unit, why = next(iter(UNITS[kind])), 'the usual one'
+        if not unit:
+            place['unit'] = None
+            units = f', {" or ".join(UNITS[kind])}' if kind not in MOTION else ''
+            self.unstated.append(f'state axes.{name}.{kind}.unit in the map{units}: {why}')
+            return
         self._assume(
             f'{name}.{kind}.unit', unit, f'{place["column"]} states none that is known; {why}'
         )
 
     def _set_magnitude(self, name: str, kind: str) -> None:
-        """Say of a torque or current of one sign whether it holds amounts."""
+        """Say of a column of one sign whether it holds amounts, or let the map say it."""
         chosen, place = self.axes[name], self.used[name][kind]
-        if kind not in MOTOR or not estimates.is_one_sided(self.extremes[place['column']]):
+        if kind not in SIGNED:
             return
-        motion = chosen.get('speed') or chosen['position']
-        speed = self.data[motion.column]
-        speed = speed if 'speed' in chosen else estimates.slopes(speed)
-        torque = self.data[place['column']]
-        magnitude = estimates.is_magnitude(torque, speed)
-        if magnitude is None and self.head.program and self.head.program.are_amounts:
+        data = {
+            each: self._places(self.used[name][each]['column'], chosen[each].unit)
+            for each in (*MOTION, *SIGNED)
+            if each in self.used[name]
+        }
+        magnitude = are_amounts(kind, data, makes_load='load' not in self.used[name])
+        program = self.head.program
+        if magnitude is None and kind in MOTOR and program and program.are_amounts:
             magnitude = True
         if magnitude is None:
             place['magnitude'] = None
-            apart = are_apart(self.table, place['column'], motion.column)
+            motion = chosen.get('speed') or chosen['position']
+            apart = kind in MOTOR and are_apart(self.table, place['column'], motion.column)
             self.unstated.append(unclear_sign(name, kind, place['column'], apart=apart))
         elif magnitude:
             place['magnitude'] = True
             self.notes.append(of_amounts(name, kind, place['column']))
 
-    def _leave_open(self, name: str, largest: float) -> None:
-        """Let the map ask for the unit of a force, and offer what the load may be of instead."""
-        place, chosen = self.used[name]['load'], self.axes[name]
-        place['unit'] = None
+    def _unit_of_load(self, name: str) -> str:
+        """Return why the unit of a force is open, and what the load may be of instead."""
+        chosen, column = self.axes[name], self.used[name]['load']['column']
         instead = ''
         for kind in [one for one in MOTOR if one in chosen and self._is_used(chosen[one])][:1]:
-            column, unit = chosen[kind].column, chosen[kind].unit or next(iter(UNITS[kind]))
+            other, unit = chosen[kind].column, chosen[kind].unit or next(iter(UNITS[kind]))
             instead = (
-                f'; or write `load: {{from: {kind}}}` and `{kind}: {{column: {column}, unit: '
-                f'{unit}}}` there, so that {column} tells the load'
+                f'; or write `load: {{from: {kind}}}` and `{kind}: {{column: {other}, unit: '
+                f'{unit}}}` there, so that {other} tells the load'
             )
-        self.unstated.append(
-            f'state axes.{name}.load.unit in the map, {" or ".join(UNITS["load"])}: '
-            f'{place["column"]} states none that is known, and forces of up to {largest:.3g} may '
-            f'be in any{instead}'
-        )
-
-    def _largest_load(self) -> float:
-        """Return the largest amount of all forces that state no unit."""
-        loads = [chosen['load'] for chosen in self.axes.values() if 'load' in chosen]
-        return max(
-            float(np.nanmax(np.abs(self.extremes[one.column]))) for one in loads if not one.unit
+        largest = float(np.nanmax(np.abs(self.extremes[column])))
+        return (
+            f'{column} states none that is known, and forces of up to {largest:.3g} may be in '
+            f'any{instead}'
         )
 
     def _unit_of_joint(self, name: str, kind: str, values: Array) -> str:
@@ -666,14 +769,143 @@ class _Guesser:
             {'position': 'rad', 'speed': 'rad/s', 'torque': 'N m'}.get(kind, '') if turns else ''
         )
 
-    def _metres(self, name: str) -> Array | None:
-        """Return the position of an axis [m], None if there is none that is linear."""
+    def _unit_of_speed(self, name: str, column: str) -> tuple[str, str]:
+        """Return the unit of a speed and why, or no unit and why the map must state it."""
+        largest = float(np.nanmax(np.abs(self.extremes[column])))
         if 'position' not in self.used[name]:
-            return None
+            none = f'{column} states none that is known, and no position tells it'
+            return '', f'{none}; its largest amount is {largest:.3g}'
         position = self.axes[name]['position']
-        values, extremes = self.data[position.column], self.extremes[position.column]
-        unit = position.unit or estimates.position_unit(extremes)[0]
-        return values * LINEAR_POSITION_UNITS[unit] if unit in LINEAR_POSITION_UNITS else None
+        unit = position.unit or estimates.position_unit(self.extremes[position.column])[0]
+        of_screw = unit in conversions.ROTARY_POSITION_UNITS
+        factor = self.ways[name] * conversions.POSITION_UNITS[unit]
+        if math.isnan(factor):
+            return estimates.largest_speed_unit(largest)
+        if fitting := estimates.unit_by_factor(factor, SPEED_UNITS[of_screw]):
+            also = '' if position.unit else ', as it would if both were in inches'
+            return fitting, f'it agrees with the position over time{also}'
+        leads = _leads(factor, of_screw=of_screw)
+        told = f'{factor:.3g} {"rad" if of_screw else "m"} in a second for each of it'
+        may = f', as it would in {" or ".join(leads)}' if leads else ''
+        return '', f'{column} states none that is known, and {position.column} moves {told}{may}'
+
+    def _unit_of_position(self, name: str, column: str) -> tuple[str, str]:
+        """Return the unit of a position and why, or no unit and why the map must state it."""
+        speed, way = self.axes[name].get('speed'), self.ways[name]
+        if speed is None and not (self.head.program and self.head.program.metric):
+            return '', f'{column} states none that is known, and no speed tells it'
+        if speed is None or not speed.unit or math.isnan(way):
+            return estimates.position_unit(self.extremes[column])
+        per_unit = conversions.SPEED_UNITS[speed.unit] / way
+        of_screw = speed.unit in conversions.ROTARY_SPEED_UNITS
+        if fitting := estimates.unit_by_factor(per_unit, POSITION_UNITS[of_screw]):
+            return fitting, 'it agrees with the speed over time'
+        least, most = LEADS
+        for unit, metres in LINEAR_POSITION_UNITS.items():
+            if of_screw and least <= (lead := TURN * metres / per_unit) <= most:
+                return unit, f'it agrees with the speed at a lead of {lead * MILLI:.3g} mm'
+        return '', (
+            f'{column} states none that is known, and moves by {way:.3g} in a second for each '
+            f'{speed.unit} of {speed.column}'
+        )
+
+    def _way_per_speed(self, name: str) -> float:
+        """Return how far a position moves in a second for each of its speed, NaN if not alike."""
+        used = self.used[name]
+        if not set(MOTION) <= set(used):
+            return math.nan
+        speed, position = (used[kind]['column'] for kind in MOTION)
+        clocks = [self._clock(column) for column in (position, speed)]
+        if not all(map(len, clocks)):
+            return math.nan
+        places = self._places(position, self.axes[name]['position'].unit)
+        return estimates.way_per_speed((clocks[0], places), (clocks[1], self.data[speed]))
+
+    def _compare(self, name: str) -> None:
+        """Leave out a command that the position does not follow, and ask for another unit."""
+        chosen, way = self.axes[name], self.ways[name]
+        if math.isnan(way):
+            self._ask_which_moves(name)
+            return
+        if not all(chosen[kind].unit for kind in MOTION):
+            return
+        speed, position = (chosen[kind] for kind in MOTION)
+        of_screw = speed.unit in conversions.ROTARY_SPEED_UNITS
+        if of_screw != (position.unit in conversions.ROTARY_POSITION_UNITS):
+            return
+        factor = way * conversions.POSITION_UNITS[position.unit]
+        factor /= conversions.SPEED_UNITS[speed.unit]
+        if abs(factor - 1.0) < estimates.NEAR:
+            return
+        why = f'{position.column} moves {factor:.3g} times as far as {speed.column} says'
+        if speed.rank < 0:
+            del self.used[name]['speed'], chosen['speed']
+            self.ways[name] = math.nan
+            self.notes.append(f'axis {name}: {why}, a command: {OF_SLOPE}')
+            return
+        self.used[name]['speed']['unit'] = None
+        self.unstated.append(f'state axes.{name}.speed.unit in the map: {why} in {speed.unit}')
+
+    def _ask_which_moves(self, name: str) -> None:
+        """Let the map choose between a speed and a position that is not its integral."""
+        used = self.used[name]
+        if not set(MOTION) <= set(used):
+            return
+        columns = [used[kind]['column'] for kind in MOTION]
+        if all(len(self._clock(one)) and np.ptp(self.extremes[one]) for one in columns):
+            used['speed']['unit'] = None
+            self.unstated.append(
+                f'state axes.{name}.speed.unit in the map: {columns[1]} does not move as '
+                f'{columns[0]} says; take one of both out of the map if it is wrong'
+            )
+
+    def _set_lead(self, name: str) -> None:
+        """Assume the lead of the usual screw; where the log has another the map states it."""
+        usual, lead = _usual_lead(), self._lead(name)
+        why = f'the log does not say it; that of {SCREW}'
+        if abs(lead / usual - 1.0) <= SAME_LEAD:
+            why = f'that of {SCREW}, at which position and speed agree'
+        elif math.isfinite(lead):
+            self.used[name]['lead_mm'] = None
+            self.unstated.append(
+                f'state axes.{name}.lead_mm in the map: {self.axes[name]["position"].column} and '
+                f'{self.axes[name]["speed"].column} agree at {lead * MILLI:.4g} mm; behind a gear '
+                'a scale makes of either that of the screw'
+            )
+            return
+        self._assume(f'{name}.lead_mm', float(f'{usual * MILLI:.6g}'), why)
+
+    def _lead(self, name: str) -> float:
+        """Return the lead [m] by which the speed of a screw makes a position, NaN: not known."""
+        way = self.ways[name]
+        units = [self._unit(name, kind) for kind in MOTION if kind in self.used[name]]
+        if math.isnan(way) or not all(units):
+            return math.nan
+        speed, position = units
+        of_screw = speed in conversions.ROTARY_SPEED_UNITS
+        if of_screw == (position in conversions.ROTARY_POSITION_UNITS):
+            return math.nan
+        factor = way * conversions.POSITION_UNITS[position] / conversions.SPEED_UNITS[speed]
+        return TURN * factor if of_screw else TURN / factor
+
+    def _clock(self, column: str) -> Array:
+        """Return the times of the rows of a column [s], none where they are not known."""
+        if self.clock is None:
+            count = len(self.data[column]) if math.isfinite(self.head.period) else 0
+            return np.arange(count, dtype=np.float64) * self.head.period
+        time, times, unit = self.clock
+        own = self.groups.get(column, time)
+        times = times if own == time else self.data[own] * unit
+        if (np.diff(times) == 0.0).any():  # rows share times, and will be spread
+            return times[0] + np.arange(len(times)) * _period(times)
+        return times
+
+    def _places(self, column: str, unit: str) -> Array:
+        """Return positions, whole turns counted where they are those of a scale of one turn."""
+        turn = TURN / conversions.ROTARY_POSITION_UNITS.get(unit, math.nan)
+        if estimates.is_within_turn(self.extremes[column], turn):
+            return estimates.Turns(turn).counted(self.data[column])
+        return self.data[column]
 
     def _set_oil(self, name: str, place: dict[str, Any]) -> None:
         """Say of a temperature that does not say so that it is taken for that of the oil."""
@@ -695,7 +927,13 @@ class _Guesser:
         silent = [chosen[kind].column for kind in ('load', 'torque', 'current') if kind in chosen]
         lost = [f'{", ".join(self.lost[name])} holds no number'] if self.lost[name] else []
         still = [f'{", ".join(silent)} is always 0'] if silent else []
-        why = ', '.join([*lost, *still]) or 'no force, torque or current'
+        doubtful = [
+            f'{one.column} is in {unknown_unit(one.column)}, which is no unit of a {one.doubtful}'
+            for one in self.named
+            if one.doubtful in ('load', *MOTOR)
+            and one.axis in ('', *(each.axis for each in chosen.values()))
+        ]
+        why = ', '.join([*lost, *still, *doubtful]) or 'no force, torque or current'
         used['load'] = {'unknown': why}
         self.notes.append(f'axis {name}: the load is not known ({why}), nothing will be judged')
 
@@ -736,6 +974,7 @@ class _Guesser:
             if kind in axis
         }
         used |= {entry['value'] for entry in self.assumed.values()} | set(time.values())
+        used |= set(self.groups.values())
         self.notes += names.left_out([one for one in self.named if one.column not in used])
 
 
@@ -745,6 +984,11 @@ def _usual_lead() -> float:
     return Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead
 
 
+def _base(column: str) -> str:
+    """Return the name that a column has in the file, where others may have it too."""
+    return re.sub(r'_duplicated_\d+$', '', column)
+
+
 def _period(times: Array) -> float:
     """Return the usual time between rows, which may share times."""
     steps = np.diff(times)
@@ -752,6 +996,20 @@ def _period(times: Array) -> float:
     changes = np.diff(np.flatnonzero(steps > 0.0))
     share = float(np.median(changes)) if len(changes) else 1.0
     return float(np.median(rising)) / share if len(rising) else math.nan
+
+
+def _leads(factor: float, *, of_screw: bool) -> list[str]:
+    """Return the units of a speed with the leads at which it makes its position."""
+    leads = {
+        unit: of / factor * TURN if of_screw else factor * TURN / of
+        for unit, of in SPEED_UNITS[not of_screw].items()
+    }
+    least, most = LEADS
+    return [
+        f'{unit} at a lead of {lead * MILLI:.3g} mm'
+        for unit, lead in leads.items()
+        if least <= lead <= most
+    ]
 
 
 def _rates(step: float) -> str:

@@ -9,7 +9,7 @@ it, rows as wide as the block say something of each column, and narrow ones of t
 """
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 import csv
 import dataclasses
 import functools
@@ -39,7 +39,7 @@ NUMBER = re.compile(
 )
 TIME = re.compile(
     r'(?:\w{2,9}\.?,? )?(?=.*\d)(?:\d{1,4}[-./ ](?:\d{1,2}|\w{3,9}\.?)[-./ ]\d{1,4}|\w{3,9}\.? '
-    r'\d{1,2},? \d{4}|\d{8}(?=T))?,?[ T_-]?(?:\d{1,2}:\d{2}(?::\d{2}(?:[.,:]\d+)?)?)?'
+    r'\d{1,2},? \d{4}|\d{8}(?=T))?,?[ T_-]?(?:\d{1,2}:\d{2}(?::\d{2}(?:[.,:]\d+)?|\.\d+)?)?'
     r'(?: ?[AaPp]\.?[Mm]\.?)?(?: ?(?:Z|UTC|GMT|[-+]\d{2}:?\d{2}))?'
 )
 """A date, a time of day or both."""
@@ -182,6 +182,8 @@ class _Block:
             for count, kind in zip(counts, kinds[at], strict=False):
                 count[kind] += 1
         self.numeric = [count['n'] >= MOSTLY * (count['n'] + count['x']) > 0 for count in counts]
+        first = counts[0] if counts else Counter()
+        self.indented = first['-'] >= MOSTLY * first.total()  # as where no time is written
         while self.width and not counts[self.width - 1].keys() - {'-'}:
             self.width -= 1  # a sign at the end of each line parts nothing
         fits = {at for at in self.data if self._fits(kinds[at])}
@@ -190,6 +192,8 @@ class _Block:
 
     def _fits(self, kinds: Sequence[str]) -> bool:
         """Return True if a row holds a number or nothing wherever most rows do."""
+        if self.indented and kinds[0] == 'x':
+            return False
         return not any(
             number and kind == 'x' for number, kind in zip(self.numeric, kinds, strict=False)
         )
@@ -306,14 +310,15 @@ class _Above:
         }
         symbols = self._row('symbol')
         properties = self._properties()
-        period, row = self._period(properties)
+        periods = self._periods(told)
+        period, row = self._period(properties, {*periods.values()})
         return Head(
             names=told,
             separator=self.separator,
             begin=self.block.begin,
             first=first,
             symbols={name: symbol for name, symbol in zip(told, symbols) if symbol},
-            periods=self._periods(told),
+            periods=periods,
             labelled=frozenset(labelled),
             named=named,
             program=self.program,
@@ -429,8 +434,17 @@ class _Above:
                 found[kind] = Property(text=text, row=line.row)
         return found
 
-    def _period(self, properties: Mapping[str, Property]) -> tuple[float, int]:
-        """Return the period [s] that the head states for the file, and the row that does so."""
+    def _period(
+        self, properties: Mapping[str, Property], of_columns: Collection[float]
+    ) -> tuple[float, int]:
+        """
+        Return the period [s] that the head states, and the row that does so, 0 if for columns.
+
+        That of columns is one of the file if it is the same for all.
+
+        """
+        if len(of_columns) == 1:
+            return next(iter(of_columns)), 0
         if 'period' in properties:
             stated = properties['period']
             return period_of(stated.text, 's'), stated.row

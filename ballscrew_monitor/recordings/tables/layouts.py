@@ -61,7 +61,7 @@ class Format:
 
     `mark` is found in the head; `times` are units of columns of the time by their names, and
     `labelled` is that of a column of which the head says no more than the word for a name; loads
-    without a sign `are_amounts` by the standard that the program follows.
+    without a sign `are_amounts` and lengths are `metric` by the standard that it follows.
 
     """
 
@@ -70,6 +70,7 @@ class Format:
     times: tuple[tuple[str, str], ...] = ()
     labelled: str = ''
     are_amounts: bool = False
+    metric: bool = False
 
 
 FORMATS = (
@@ -89,8 +90,10 @@ FORMATS = (
     ),
 )
 """Programs that are recognised by their heads."""
-ADAPTER = Format(program='an MTConnect adapter', mark=re.compile('(?!)'), are_amounts=True)
+NO_MARK = re.compile('(?!)')
+ADAPTER = Format(program='an MTConnect adapter', mark=NO_MARK, are_amounts=True, metric=True)
 """What writes SHDR: MTConnect states a load as a part of the rated one, without a sign."""
+RECORDER = Format(program='a data recorder of SINUMERIK', mark=NO_MARK, metric=True)
 
 
 def property_of(label: str) -> str:

@@ -16,6 +16,7 @@ import re
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables import names
+from ballscrew_monitor.recordings.tables.cells import Unreadable
 from ballscrew_monitor.recordings.tables.long_form import decoded, FEWEST, is_number
 from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.quantities import MOTION
@@ -110,14 +111,14 @@ def read_echo(path: Path) -> pl.DataFrame:
     parts = [_message(cells) for cells in csv.reader(lines)]
     joints = parts[0][1]
     if not joints:
-        raise ValueError(
+        raise Unreadable(
             'its lines are those of `ros2 topic echo --csv` without names: seconds, nanoseconds, '
             f'frame and {len(next(csv.reader(lines))) - 3} cells. Only joints state theirs: '
             'record the topic by `ros2 bag record`, which ballscrew replay reads as it is, or '
             'write names above the columns'
         )
     if any(names != joints for _, names, _ in parts):
-        raise ValueError('its lines are of different joints: echo one topic at a time')
+        raise Unreadable('its lines are of different joints: echo one topic at a time')
     held = {'stamp': pl.Series([stamp for stamp, _, _ in parts]).cast(pl.Datetime('ns'))}
     for number, joint in enumerate(joints):
         held[f'name_{number}'] = pl.Series([joint] * len(parts))
@@ -159,15 +160,17 @@ def _message(cells: Sequence[str]) -> tuple[int, list[str], list[list[str]]]:
     try:
         stamp = int(cells[0]) * SECOND + int(cells[1])
     except (ValueError, IndexError):
-        raise ValueError(f'a line begins with {short(repr(cells[:2]))}, no stamp') from None
+        raise Unreadable(f'a line begins with {short(repr(cells[:2]))}, no stamp') from None
     rest = [cell.strip() for cell in cells[3:]]
     count = next((at for at, cell in enumerate(rest) if not cell or is_number(cell)), len(rest))
     names, rest = rest[:count], rest[count:]
     arrays: list[list[str]] = []
     for _ in FIELDS if names else ():
+        if not rest:
+            raise Unreadable(f'a line ends before the numbers of its {count} joints')
         size = 1 if rest[:1] == [''] else count
         arrays.append([] if rest[:1] == [''] else rest[:size])
         rest = rest[size:]
-    if names and (rest or len(arrays[-1]) not in (0, count)):
-        raise ValueError(f'a line holds other numbers than those of its {count} joints')
+    if names and (rest or any(len(one) not in (0, count) for one in arrays)):
+        raise Unreadable(f'a line holds other numbers than those of its {count} joints')
     return stamp, names, arrays

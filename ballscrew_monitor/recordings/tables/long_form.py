@@ -16,7 +16,8 @@ from pathlib import Path
 import re
 import statistics
 
-from ballscrew_monitor.recordings.tables.heads import NO_NUMBER, NUMBER, TIME
+from ballscrew_monitor.recordings.tables.cells import Unreadable
+from ballscrew_monitor.recordings.tables.heads import NO_NUMBER, NUMBER, TIME, unlike
 from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.unit_names import BRACKETS, is_unit
 from ballscrew_monitor.recordings.words import short
@@ -31,6 +32,7 @@ LOOKED_AT = 200  # of the first lines
 FEWEST = 4  # lines that show what a text is
 MOSTLY = 0.9  # of the lines
 MOST_PARTS = 64  # that one word tells apart, such as axes
+OWN = '\t'  # before names of columns that no signal has
 REPEATED = 2  # lines that a name of a signal has, at least, on average
 ROLES = {
     'name': frozenset(
@@ -45,8 +47,15 @@ ROLES = {
 """Words over the columns of a table with a value a line, without blanks and signs."""
 TIMES = re.compile('time|zeit|date|datum|stamp', re.I)
 AXIS = re.compile('axis|achse|joint|gelenk', re.I)
-BAD = frozenset({'bad', 'invalid', 'schlecht', 'ungültig'})
-"""Words of a quality by which a value is not known."""
+GOOD = re.compile(r'(?i:good|ok|valid|gut|gültig|gueltig)(?![^\W_])|Good(?=[A-Z])')
+BAD = frozenset(
+    'bad invalid uncertain questionable stale nodata timeout commfail commfailure notconnected '
+    'schlecht ungültig ungueltig unsicher'.split()
+)
+"""Words of a quality by which a value is not known, without blanks and signs."""
+GOOD_BYTE = 0x80  # set in a quality of OPC (0xC0) and of PROFIBUS (0x80) that is good
+BAD_STATUS = 0xC000_0000  # bits of a status of OPC UA, none of which is set in a good one
+IN_PER_CENT = frozenset({0, 100})  # of the samples that are good
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -105,23 +114,24 @@ def read_long(path: Path) -> tuple[pl.DataFrame, str]:
     lines = decoded(path.read_bytes()).splitlines()
     form = long_form(lines)
     if form is None:
-        raise ValueError('its first lines hold a name and a value each, all of them do not')
+        raise Unreadable('its first lines hold a name and a value each, all of them do not')
     first = form.first
     cells = _columns(lines[first:], form)
-    times = [pl.col(f'{place}').alias(f'time {place}') for place in form.times]
-    rows = cells.select(*times, name=_told_apart(cells, form), value=_values(form))
+    times = [pl.col(f'{place}').alias(f'{OWN}time {place}') for place in form.times]
+    rows = cells.select(*times, name=_told_apart(cells, form), value=_values(cells, form))
     if form.unit >= 0:
         rows = rows.with_columns(name=_with_units(rows['name'], cells[f'{form.unit}']))
     heads = ['', form.names[form.name]]  # which stand above each part of an export
     rows = rows.filter(~cells[f'{form.name}'].fill_null('').is_in(heads))
     if rows['name'].n_unique() > limits.COLUMNS:
-        raise ValueError(f'it names more than {limits.COLUMNS} signals')
-    of_time = [f'time {place}' for place in form.times]
-    rows = rows.with_columns(turn=pl.int_range(pl.len()).over([*of_time, 'name']))
-    wide = rows.pivot(on='name', index=[*of_time, 'turn'], values='value', maintain_order=True)
-    signals = [name for name in wide.columns if name not in (*of_time, 'turn')]
-    names = {f'time {place}': name for place, name in form.times.items()}
-    return wide.select(*of_time, *signals).rename(names), form.separator
+        raise Unreadable(f'it names more than {limits.COLUMNS} signals')
+    of_time, turn = [f'{OWN}time {place}' for place in form.times], f'{OWN}turn'
+    rows = rows.with_columns(pl.int_range(pl.len()).over([*of_time, 'name']).alias(turn))
+    wide = rows.pivot(on='name', index=[*of_time, turn], values='value', maintain_order=True)
+    signals = [name for name in wide.columns if name not in (*of_time, turn)]
+    wide = wide.select(*of_time, *signals)
+    wide.columns = list(unlike([*form.times.values(), *signals]))
+    return wide, form.separator
 
 
 def long_form(lines: Sequence[str]) -> LongForm | None:
@@ -180,13 +190,15 @@ def _cells(line: str, separator: str) -> list[str]:
 
 
 def _roles(row: Sequence[str]) -> dict[str, int]:
-    """Return the column of each role by the words of a row."""
+    """Return the column of each role by the words of a row; an `id` is a name without another."""
     found: dict[str, int] = {}
-    for at, cell in enumerate(row):
-        plain = re.sub(r'[\W\d_]+', '', BRACKETS.sub('', cell).lower())
+    words = [re.sub(r'[\W\d_]+', '', BRACKETS.sub('', cell).lower()) for cell in row]
+    for at, plain in enumerate(words):
         role = next((role for role, words in ROLES.items() if plain in words), '')
         if role:
             found.setdefault(role, at)
+    if 'name' not in found and 'id' in words:
+        found['name'] = words.index('id')
     return found
 
 
@@ -288,13 +300,47 @@ def _told_apart(cells: pl.DataFrame, form: LongForm) -> pl.Series:
     return names
 
 
-def _values(form: LongForm) -> pl.Expr:
+def _values(cells: pl.DataFrame, form: LongForm) -> pl.Expr:
     """Return the values; one of bad quality is not known."""
     value = pl.col(f'{form.value}')
     if form.quality < 0:
         return value
-    quality = pl.col(f'{form.quality}').str.to_lowercase()
-    return pl.when(quality.is_in(list(BAD))).then(pl.lit('nan')).otherwise(value)
+    bad = bad_qualities(cells[f'{form.quality}'].drop_nulls().unique().to_list())
+    quality = pl.col(f'{form.quality}')
+    return pl.when(quality.is_in(bad)).then(pl.lit('nan')).otherwise(value)
+
+
+def bad_qualities(cells: Sequence[str]) -> list[str]:
+    """
+    Return those of the qualities of a table by which a value is not known.
+
+    Where some say that a value is good, all others say that it is not. Numbers are a byte of OPC
+    or PROFIBUS, a status of OPC UA, or per cent; others, such as a state of a machine, say nothing
+    of a value.
+
+    """
+    codes = {
+        cell: int(cell, 0) for cell in cells if re.fullmatch(r'0x[\da-fA-F]+|0|[1-9]\d*', cell)
+    }
+    values = {*codes.values()}
+    words = [cell for cell in cells if cell and cell not in codes]
+    are_words = any(map(GOOD.match, words))
+    if max(values, default=0) > BAD_STATUS >> 2:
+        bad = [cell for cell, code in codes.items() if code & BAD_STATUS]
+    elif any(code & GOOD_BYTE for code in values):
+        bad = [cell for cell, code in codes.items() if not code & GOOD_BYTE]
+    elif values == IN_PER_CENT:
+        bad = [cell for cell, code in codes.items() if not code]
+    else:
+        bad = []
+    return [
+        *bad,
+        *(
+            cell
+            for cell in words
+            if not GOOD.match(cell) and (are_words or re.sub(r'[\W_]+', '', cell.lower()) in BAD)
+        ),
+    ]
 
 
 def _with_units(names: pl.Series, units: pl.Series) -> pl.Series:
@@ -303,7 +349,7 @@ def _with_units(names: pl.Series, units: pl.Series) -> pl.Series:
     called: dict[str, str] = {}
     for name, unit in pairs.drop_nulls('name').iter_rows():
         if name in called and unit != called[name]:
-            raise ValueError(
+            raise Unreadable(
                 f'signal {short(repr(name))} is in {called[name] or "no unit"} and in '
                 f'{unit or "no unit"}: one of them must go'
             )

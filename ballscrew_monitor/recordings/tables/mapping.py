@@ -39,6 +39,9 @@ from surrogate.units import MICRO, MILLI
 DERIVED = ('current', 'torque', 'motor_torque')
 """A load may be worked out from a current or torque, or by the node from the motor torque."""
 MOTOR = ('torque', 'current')
+NAMES = {'load': 'force', 'speed': 'speed'}
+SIGNED = (*MOTOR, *NAMES)
+"""Quantities whose sign decides, which some columns leave out."""
 NUMBERS = {
     'lead_mm': (0.1, 1000.0),
     'torque_constant_Nm_per_A': (1e-6, 1e3),
@@ -54,11 +57,12 @@ NUMBERS = {
 LINES = {'skip': (0, 1000), 'header_rows': (0, 2)}
 """Numbers of lines, with the least and the most allowed."""
 TEXTS = ('screw', 'oil', 'surface')
-TOP_TEXTS = ('machine', 'date_from', 'decimal')
+TOP_TEXTS = ('machine', 'date_from', 'decimal', 'sheet')
 DATES = ('name', 'header', 'modified')
 PLACES = {
     'decimal': "`'.'` or `','`: decimal sign of columns in which no cell shows it, as 5.400 may "
     'be 5400; the other sign parts thousands',
+    'sheet': 'name of the sheet of a workbook; without it the first with a table is read',
     'skip': 'lines before the names of the columns, if these are not found by themselves',
     'header_rows': 'rows of names there: 2 with the units or parts of names below, 0 for a table '
     'without names, whose columns are `column 1`, `column 2` and so on',
@@ -88,6 +92,8 @@ PLACES = {
     'AXIS.current': 'column of the motor current, or % of the rated one',
     'AXIS.torque.magnitude': '`true` for amounts without a sign, which get that of the motion; '
     'also for `current`; needed only if the log does not show it',
+    'AXIS.load.magnitude': '`false` for a force with a sign, also for `speed`; needed only if the '
+    'log does not show it',
     'AXIS.temperature': 'column of the oil temperature',
     'AXIS.lead_mm': 'lead of the screw; needed',
     'AXIS.torque_constant_Nm_per_A': 'for a load from the current',
@@ -189,6 +195,7 @@ class TableMap:
     """
 
     layout: Layout | None
+    sheet: str
     decimal: str
     order: str
     time: Column | None
@@ -260,6 +267,7 @@ def make_map(content: Any) -> TableMap:
     time = _Part('time', values)
     made = TableMap(
         layout=_layout(content),
+        sheet=_sheet(content),
         decimal=_decimal(content),
         order=time.order(),
         time=time.column('time', at='time'),
@@ -306,6 +314,14 @@ def _layout(content: Mapping[str, Any]) -> Layout | None:
     return Layout(**found) if set(LINES) & set(content) else None
 
 
+def _sheet(content: Mapping[str, Any]) -> str:
+    """Return the name of the sheet that a map states, empty for none."""
+    name = content.get('sheet', '')
+    if 'sheet' in content and not (isinstance(name, str) and name):
+        raise InputError(f'sheet is {_said(name)}, it must be a text, the name of a sheet')
+    return str(name)
+
+
 def _decimal(content: Mapping[str, Any]) -> str:
     """Return the decimal sign that a map states, empty if it leaves that to the cells."""
     sign = content.get('decimal', '')
@@ -336,7 +352,7 @@ class _Part:
     def text(self, name: str, default: str = '') -> str:
         value = self.take(name, default)
         if not isinstance(value, str):
-            raise InputError(f'{self._prefix}.{name} is {value!r}, it must be a text')
+            raise InputError(f'{self._prefix}.{name} is {_said(value)}, it must be a text')
         return value
 
     def order(self) -> str:
@@ -360,7 +376,12 @@ class _Part:
         part = self if at else _Part(f'{self._prefix}.{kind}', self._values)
         name, units, time = part.text('column'), UNITS[kind], '' if at else part.text('time')
         unit = part.take('unit')
-        magnitude = part.flag('magnitude', None) if kind in MOTOR else None
+        magnitude = part.flag('magnitude', None) if kind in SIGNED else None
+        if magnitude and kind not in MOTOR:
+            raise InputError(
+                f'{part._prefix}.magnitude is true, it must be false: amounts of a {NAMES[kind]} '
+                'cannot be judged, name another column or none'
+            )
         numbers = [part.take(key, default) for key, default in (('scale', 1.0), ('offset', 0.0))]
         if name and not (isinstance(unit, str) and unit in units):
             found = 'missing' if unit is None else repr(unit)

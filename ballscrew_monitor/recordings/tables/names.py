@@ -2,19 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names of columns, read: axis, quantity, unit as it is spelt; and the columns of each axis."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import dataclasses
 import re
 
-from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED
+from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, UNITS
 from ballscrew_monitor.recordings.tables.unit_names import (
     BRACKETS,
+    converted_unit,
     kind_by_unit,
+    LETTERED,
     unit_of,
+    unknown_unit,
     words_of,
     words_without_unit,
 )
-from ballscrew_monitor.recordings.words import listed
+from ballscrew_monitor.recordings.words import listed, short
 
 LINEAR = frozenset('xyz')
 SECONDARY = frozenset('uvw')  # with a number: alone they mean other things, too
@@ -39,7 +42,8 @@ KINDS = {
 # Words that make a column something else, whatever else its name says.
 OTHERS = frozenset(
     'acceleration accel acc jerk ffw diff dev cont ctrl voltage volt volts power error deviation '
-    'feedrate rate override '
+    'feedrate rate override std stddev variance max maximum peak threshold feedforward difference '
+    'simulated estimated clamping '
     'program sequence number line block inertia bus count index status limit percent pct '
     'beschleunigung ruck spannung leistung fehler abweichung programm satz zeile nummer'.split()
 )
@@ -49,7 +53,7 @@ ELSEWHERE = frozenset(
 MEASURED = frozenset('actual act feedback fb measured meas encoder enc real ist istwert'.split())
 WANTED = frozenset(
     'command commanded cmd com des vcmd set setpoint target reference ref demand desired nominal '
-    'soll sollwert'.split()
+    'soll sollwert programmed prog planned interpolator'.split()
 )
 QUALIFIERS = frozenset('filtered smoothed mean average avg rms value wert'.split())
 PROCESSED = frozenset('output raw'.split())
@@ -68,7 +72,6 @@ JOINED = re.compile(
     r'(?P<letter>[vfipmVFIPM])(?P<of>[xyz]))(?![a-z])'
 )
 """Axis and quantity in one word, as of MTConnect: Xact, X1actm, Zfrt; or Fx, vz."""
-LETTERED = re.compile(r'[\[(]([XYZxyz]\d?)[\])]')
 JOINED_WORDS = {
     'act': 'act position',
     'actm': 'act position',
@@ -101,7 +104,8 @@ class Named:
     What the name of a column says.
 
     Axis such as x1, empty for none; `place` is axis, spindle, other or machine; kind of quantity
-    or nothing; unit or nothing; `rank` is how much it is the measured quantity.
+    or nothing; unit or nothing, with the `scale` to it of another one [-]; `rank` is how much it
+    is the measured quantity. `doubtful` is the kind of a column whose unit is not known.
 
     """
 
@@ -111,6 +115,8 @@ class Named:
     kind: str
     unit: str
     rank: int
+    scale: float = 1.0
+    doubtful: str = ''
 
 
 def read_name(column: str, text: str = '') -> Named:
@@ -132,10 +138,28 @@ def read_name(column: str, text: str = '') -> Named:
     unit = unit_of(column, kind) or unit_of(told, kind)
     if kind == 'time' and not unit and words[:1] == ['seconds']:  # such as seconds_elapsed
         unit = 's'
-    # In another unit than those of the quantity it is another quantity.
-    if BRACKETS.search(column) and not unit:
-        kind = ''
-    return Named(column=column, place=place, axis=axis, kind=kind, unit=unit, rank=rank)
+    if kind != 'time' and 'min' in words_without_unit(told, kind):
+        kind = ''  # the least of several, as beside a maximum
+    scale, doubtful = 1.0, ''
+    if kind and not unit:
+        unit, scale = converted_unit(column, kind)
+    for other in ('current', 'load'):  # FANUC calls a current so, and joints that slide a force
+        if kind == 'torque' and not unit and BRACKETS.search(column):
+            unit = unit_of(column, other)
+            kind = other if unit else kind
+    # In another unit than those of the quantity it may be another quantity.
+    if unknown_unit(column) and not unit:
+        kind, doubtful = '', kind
+    return Named(
+        column=column,
+        place=place,
+        axis=axis,
+        kind=kind,
+        unit=unit,
+        rank=rank,
+        scale=scale,
+        doubtful=doubtful,
+    )
 
 
 def _is_part_of_the_rated_torque(column: str, words: Sequence[str]) -> bool:
@@ -186,7 +210,7 @@ def _place(words: Sequence[str]) -> tuple[str, str]:
         ):
             return 'spindle', ''
         if number == 0 and len(word) == 1 and digits:
-            return ('rotary' if word in ROTARY else 'other'), ''
+            return 'rotary' if word in ROTARY else 'machine' if word == 't' else 'other', ''
     return 'machine', ''
 
 
@@ -249,18 +273,57 @@ def by_axis(named: Sequence[Named]) -> dict[str, list[Named]]:
         return {'x': general}
     grouped = {one.column for group in groups.values() for one in group}
     shared = INPUTS if len(groups) == 1 else ('temperature',)
-    oil = [one for one in general if one.kind in shared and one.column not in grouped]
+    oil = [
+        one
+        for one in general
+        if one.kind in shared
+        and one.column not in grouped
+        and not (names and ROTARY & set(words_of(one.column)[:1]))
+    ]
     return {name: [*group, *oil] for name, group in groups.items()}
 
 
 def best(found: Sequence[Named]) -> dict[str, Named]:
     """Return for each kind the column that is most likely the measured quantity."""
-    ranked = sorted(found, key=lambda one: (one.place != 'axis', -one.rank))
     chosen: dict[str, Named] = {}
-    for one in ranked:
+    for one in sorted(found, key=_likelihood(found)):
         if one.kind in INPUTS:
             chosen.setdefault(one.kind, one)
     return chosen
+
+
+def rivals(found: Sequence[Named], one: Named) -> list[str]:
+    """Return columns of the quantity of a column that are as likely the measured one."""
+    of_kind = [each for each in found if each.kind == one.kind]
+    likelihood = _likelihood(of_kind)
+    return [
+        each.column
+        for each in of_kind
+        if each is not one
+        and likelihood(each) == likelihood(one)
+        and (one.kind != 'position' or each.unit != one.unit)
+    ]
+
+
+def _likelihood(found: Sequence[Named]) -> Callable[[Named], tuple[bool, int, int]]:
+    """Return the order of columns; words that others of the quantity do not have count last."""
+    words = {one.column: set(words_without_unit(one.column, one.kind)) for one in found}
+    common = {
+        kind: set.intersection(*(words[one.column] for one in found if one.kind == kind))
+        for kind in {one.kind for one in found}
+    }
+    return lambda one: (one.place != 'axis', -one.rank, len(words[one.column] - common[one.kind]))
+
+
+def unknown_units(named: Sequence[Named]) -> list[str]:
+    """Return sentences about columns that may be inputs, were their units known."""
+    return [
+        f'column {short(repr(one.column))} is in {short(unknown_unit(one.column))}, which is no '
+        f'unit of a {one.doubtful}: write `{one.doubtful}: {{column: {short(one.column)}, unit: '
+        f'{next(iter(UNITS[one.doubtful]))}, scale: ...}}` in the map, what one of it is'
+        for one in named
+        if one.doubtful in INPUTS and one.place in ('axis', 'machine')
+    ]
 
 
 def told_by_words(named: Sequence[Named]) -> list[str]:

@@ -98,6 +98,7 @@ def open_table(
     names: Collection[str],
     *,
     layout: Layout | None = None,
+    sheet: str = '',
     decimal: str = '',
     order: str = '',
     optional: Collection[str] = (),
@@ -110,7 +111,7 @@ def open_table(
     unless the `decimal` sign is stated; an `optional` one without a number is left out.
 
     """
-    source = source_of(path, layout)
+    source = source_of(path, layout, sheet)
     _check_names(source, names, layout)
     table = look_through(
         source, names, decimal=decimal, order=order, optional=optional, shown=shown
@@ -232,7 +233,7 @@ def _check_names(source: Source, names: Collection[str], layout: Layout | None) 
                 f'{short(near)} may be meant'
                 for near in difflib.get_close_matches(name, held, n=1)
             ]
-            if layout is not None and name in source_of(source.path).names():
+            if layout is not None and name in source_of(source.path, sheet=source.sheet).names():
                 hints.append('it is found without `skip` and `header_rows` in the map')
             if not source.head.named:
                 hints.append('no line names them')

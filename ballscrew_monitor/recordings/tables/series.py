@@ -15,16 +15,11 @@ from pathlib import Path
 
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.tables.amounts import are_amounts, fault_of_speed
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.dates import dated
-from ballscrew_monitor.recordings.tables.estimates import (
-    FACTOR,
-    is_magnitude,
-    is_one_sided,
-    NEAR,
-    slopes,
-)
-from ballscrew_monitor.recordings.tables.mapping import AxisMap, MOTOR, TableMap
+from ballscrew_monitor.recordings.tables.estimates import is_within_turn, NEAR, Turns
+from ballscrew_monitor.recordings.tables.mapping import AxisMap, Column, MOTOR, SIGNED, TableMap
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import open_table, Table
 from ballscrew_monitor.recordings.tables.time_gate import INSTEAD, run_offsets
@@ -40,6 +35,21 @@ BETWEEN = 2.0  # [s] between runs, at least: longer than a sample is fresh
 LONG_GAP = 20.0  # times the usual time between rows, the same
 LONG = 3.0  # times the usual time between rows: across more the speed is not known
 SHOWING = 100_000  # of the first rows, which show whether torques are amounts
+DOUBTFUL = 0.45  # of a turn between rows: noise may make it a motion the other way
+OF_SLOPE = 'the speed is the slope of the position'
+OF_ONE_TURN = (
+    'stays within a turn: where it jumps by more than half of one, the axis is taken to go on'
+)
+ONE_SIGN = {
+    **dict.fromkeys(
+        MOTOR,
+        'never changes its sign while the axis reverses, as amounts do, and a torque that holds a '
+        'weight',
+    ),
+    'load': 'never changes its sign while the axis reverses, as amounts do, and a weight',
+    'speed': 'never changes its sign, but the torque turns between motions, as beside amounts',
+}
+"""What makes a sign doubtful, by quantity."""
 FARTHEST = 1e100  # position in whatever unit, so that squares of what is moved have a sum
 ALIKE = 0.9  # squared correlation from which a speed and its position are of one motion
 
@@ -70,6 +80,7 @@ class Series:
     mapping: TableMap
     places: Mapping[str, int]
     _times: tuple[Times, ...]
+    _turns: Mapping[str, float]
 
     @property
     def counts(self) -> tuple[int, ...]:
@@ -97,15 +108,38 @@ class Series:
             (axis, {kind for kind in quantities_of(axis) if self.of(axis, kind) == number})
             for axis in self.mapping.axes
         ]
-        blocks: Iterable[tuple[Rows, slice]] = ((rows, slice(None)) for rows in times.rows())
+        every = self._with_turns(times)
+        blocks: Iterable[tuple[Rows, slice]] = ((rows, slice(None)) for rows in every)
         if any('speed' in kinds and 'speed' not in axis.columns for axis, kinds in held):
-            blocks = _with_neighbours(times.rows())
+            blocks = _with_neighbours(every)
         for rows, part in blocks:
             columns: dict[str, Array] = {}
             for axis, kinds in held:
                 quantities = _axis(axis, kinds, rows, part, self)
                 columns |= {f'{axis.name}.{kind}': one for kind, one in quantities.items()}
             yield Rows(stamps=rows.stamps[part], columns=columns)
+
+    def _with_turns(self, times: Times) -> Iterator[Rows]:
+        """Yield the rows of a group; positions that begin again after each turn go on."""
+        turns = {name: turn for name, turn in self._turns.items() if name in times.group.columns}
+        scales = {name: Turns(turn) for name, turn in turns.items()}
+        stamps, ends = np.zeros(0, np.int64), dict.fromkeys(turns, np.zeros(0))
+        for rows in times.rows():
+            steps = np.diff(np.append(stamps, rows.stamps))
+            soon = steps <= int(LONG * SECOND * times.usual_period)
+            columns = {name: scale.counted(rows.columns[name]) for name, scale in scales.items()}
+            for name, places in columns.items():
+                moved = np.abs(np.diff(np.append(ends[name], places)))[soon] / turns[name]
+                if (moved > DOUBTFUL).any():
+                    raise InputError(
+                        f'{short(name)} begins again after each turn, and moves by up to '
+                        f'{np.nanmax(moved):.2g} turns from row to row, which may be of either '
+                        f'direction above {DOUBTFUL:g}: record more rows in a second, or take it '
+                        'out of the map'
+                    )
+                ends[name] = places[-1:]
+            stamps = rows.stamps[-1:]
+            yield dataclasses.replace(rows, columns={**rows.columns, **columns})
 
     def of(self, axis: AxisMap, kind: str) -> int:
         """Return the group in which a quantity of an axis is."""
@@ -146,6 +180,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
         path,
         columns,
         layout=mapping.layout,
+        sheet=mapping.sheet,
         decimal=mapping.decimal,
         order=mapping.order,
         optional=columns,
@@ -156,8 +191,9 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
             raise InputError(f'{table.left_out[name]}: name a time that is read, or {INSTEAD}')
     _check_positions(path, mapping, table)
     axes = [_readable(axis, table.left_out) for axis in mapping.axes]
-    still = [_moving(axis, table) for axis in axes]
-    signed = [_with_sign(path, axis, table) for axis, _ in still]
+    moving = [_moving(axis, table) for axis in axes]
+    turns = dict(_turns_of(axes, table))
+    signed = [_with_sign(path, axis, table, turns) for axis, _ in moving]
     held = dataclasses.replace(mapping, axes=tuple(axis for axis, _ in signed))
     times = [Times(table, held, group, shown) for group in groups_of(table, held)]
     _check_magnitudes(path, held, [one.group.columns for one in times])
@@ -173,65 +209,95 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
         run_borders=tuple(run_borders),
         notes=(
             *_losses(mapping, table.left_out),
-            *filter(None, (note for _, note in [*still, *signed])),
+            *filter(None, (note for _, note in [*moving, *signed])),
             *table.notes,
+            *(f'{short(name)} {OF_ONE_TURN}' for name in turns),
             *dict.fromkeys(notes),
         ),
         mapping=held,
         places={name: at for at, one in enumerate(times) for name in one.group.columns},
         _times=tuple(times),
+        _turns=turns,
     )
 
 
 def _moving(axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
-    """Return an axis without a speed of nothing but 0 beside a position that moves; a note."""
+    """Return an axis without a speed that cannot be that of its position; a note."""
     if not set(MOTION) <= set(axis.columns):
         return axis, ''
-    speed, position = (table.readings[axis.columns[kind].name].extremes for kind in MOTION)
-    if speed.any() or position[0] == position[1]:
+    speed, position = (axis.columns[kind].name for kind in MOTION)
+    places = table.readings[position].extremes, table.head(SHOWING)[position]
+    fault = fault_of_speed(table.readings[speed].extremes, *places)
+    if not fault:
         return axis, ''
     columns = {kind: column for kind, column in axis.columns.items() if kind != 'speed'}
-    note = (
-        f'axis {axis.name}: {short(axis.columns["speed"].name)} is always 0 while the position '
-        'moves: the speed is the slope of the position'
-    )
-    return dataclasses.replace(axis, columns=columns), note
+    return dataclasses.replace(axis, columns=columns), of_slope(axis.name, speed, fault)
 
 
-def _with_sign(path: Path, axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
-    """Return an axis whose torque or current says whether it holds amounts; a note if it does."""
-    kind = next((kind for kind in MOTOR if kind in axis.columns), '')
-    if not kind:
-        return axis, ''
-    column = axis.columns[kind]
-    if column.magnitude is None:
-        if not is_one_sided(line(table.readings[column.name].extremes, column, 1.0)):
-            return axis, ''
-        motion = axis.columns.get('speed') or axis.columns['position']
-        data = table.head(SHOWING)
-        speed = line(data[motion.name], motion, 1.0)
-        speed = speed if 'speed' in axis.columns else slopes(speed)
-        magnitude = is_magnitude(line(data[column.name], column, 1.0), speed)
-        if magnitude is None:
-            apart = are_apart(table, column.name, motion.name)
-            raise InputError(
-                f'log {path}: {unclear_sign(axis.name, kind, column.name, apart=apart)}'
-            )
-        column = dataclasses.replace(column, magnitude=magnitude)
-        axis = dataclasses.replace(axis, columns={**axis.columns, kind: column})
-    return axis, of_amounts(axis.name, kind, column.name) if column.magnitude else ''
+def of_slope(axis: str, speed: str, fault: str) -> str:
+    """Return why the speed of an axis is worked out from its position."""
+    return f'axis {axis}: {short(speed)} {fault}: {OF_SLOPE}'
+
+
+def _with_sign(
+    path: Path, axis: AxisMap, table: Table, turns: Mapping[str, float]
+) -> tuple[AxisMap, str]:
+    """
+    Return an axis whose torque or current says whether it holds amounts; a note if it does.
+
+    Raises InputError where neither the rows nor the map tell whether a column has a sign.
+
+    """
+    kinds = [kind for kind in SIGNED if kind in axis.columns]
+    data, note = _first_rows(axis, table, turns), ''
+    for kind in kinds:
+        column = axis.columns[kind]
+        if column.magnitude is None:
+            magnitude = are_amounts(kind, data, makes_load=bool(axis.load_from))
+            if magnitude is None:
+                apart = kind in MOTOR and are_apart(table, column.name, _motion(axis).name)
+                raise InputError(
+                    f'log {path}: {unclear_sign(axis.name, kind, column.name, apart=apart)}'
+                )
+            column = dataclasses.replace(column, magnitude=magnitude)
+            axis = dataclasses.replace(axis, columns={**axis.columns, kind: column})
+        if column.magnitude:
+            note = of_amounts(axis.name, kind, column.name)
+    return axis, note
+
+
+def _first_rows(axis: AxisMap, table: Table, turns: Mapping[str, float]) -> dict[str, Array]:
+    """Return the first rows of what has a sign and of the motion, in the units of the map."""
+    columns = {kind: axis.columns[kind] for kind in (*MOTION, *SIGNED) if kind in axis.columns}
+    rows = table.head(SHOWING)
+    for name in {column.name for column in columns.values()} & set(turns):
+        rows[name] = Turns(turns[name]).counted(rows[name])
+    return {kind: line(rows[column.name], column, 1.0) for kind, column in columns.items()}
+
+
+def _motion(axis: AxisMap) -> Column:
+    return axis.columns.get('speed') or axis.columns['position']
+
+
+def _turns_of(axes: Iterable[AxisMap], table: Table) -> Iterator[tuple[str, float]]:
+    """Yield the columns of positions that stay within a turn, and how long that is in each."""
+    for axis in axes:
+        column = axis.columns.get('position')
+        if column is None or column.unit not in conversions.ROTARY_POSITION_UNITS:
+            continue
+        turn = TURN / abs(column.scale * conversions.ROTARY_POSITION_UNITS[column.unit])
+        if is_within_turn(table.readings[column.name].extremes, turn):
+            yield column.name, turn
 
 
 def unclear_sign(axis: str, kind: str, column: str, *, apart: bool) -> str:
     """Return what decides whether a column of one sign holds amounts, at times of its own."""
-    why = (
-        f'{short(column)} never changes its sign while the axis reverses, as amounts do, and a '
-        'torque that holds a weight'
-    )
-    if apart:
+    why = f'{short(column)} {ONE_SIGN[kind]}'
+    if apart or kind not in MOTOR:
+        also = ', and amounts need the times of the motion' if apart else ''
         return (
             f'state `axes.{axis}.{kind}.magnitude: false` in the map if it has a sign, else take '
-            f'the column out of the map: {why}, and amounts need the times of the motion'
+            f'the column out of the map: {why}{also}'
         )
     return f'state axes.{axis}.{kind}.magnitude in the map, true or false: {why}'
 
@@ -253,7 +319,7 @@ def of_amounts(axis: str, kind: str, column: str) -> str:
 def _check_magnitudes(path: Path, mapping: TableMap, groups: Sequence[Collection[str]]) -> None:
     """Raise InputError for amounts at other times than those of the motion."""
     for axis in mapping.axes:
-        motion = axis.columns.get('speed') or axis.columns['position']
+        motion = _motion(axis)
         for kind in MOTOR:
             column = axis.columns.get(kind)
             if column is None or not column.magnitude:
@@ -286,7 +352,7 @@ def _place(path: Path, times: Sequence[Times]) -> tuple[list[int], list[int]]:
     alike = [one.gate for one in times if len(one.gate.runs) == runs]
     offsets, begins = run_offsets(alike, gap)
     for one in times:
-        one.place(offsets, [run.row for run in motion[0].gate.runs])
+        one.place(offsets, [run.row for run in motion[0].gate.runs], begins)
     begin = min(one.first for one in times)
     for one in times:
         one.since(begin)
@@ -478,7 +544,7 @@ class Fit:
         if not 0.0 < both < math.inf or abs(self._across) < math.sqrt(ALIKE) * both:
             return ''
         factor = self._across / self._by_speed
-        if 1.0 / FACTOR < factor < FACTOR:
+        if abs(factor - 1.0) <= NEAR:
             return ''
         return (
             f'axis {self._axis.name}: its position moves {factor:.4g} times as far as its speed '

@@ -22,7 +22,7 @@ from ballscrew_monitor.recordings.tables import foreign, heads
 from ballscrew_monitor.recordings.tables.cells import first_line, readable
 from ballscrew_monitor.recordings.tables.heads import Head, Line
 from ballscrew_monitor.recordings.tables.quantities import Layout
-from ballscrew_monitor.recordings.tables.workbook import first_sheet
+from ballscrew_monitor.recordings.tables.workbook import read_sheet
 from ballscrew_monitor.recordings.words import short
 import numpy as np
 from numpy.typing import NDArray
@@ -60,7 +60,8 @@ class Source:
 
     The columns that are read may come to `most` [bytes]: those at rest take next to no room in a
     file of Parquet, so that all of them together tell nothing. `read` reads some columns part by
-    part, those of a text by their types where all cells of the part are of these.
+    part, those of a text by their types where all cells of the part are of these. Of a workbook it
+    is one `sheet`.
 
     """
 
@@ -69,6 +70,8 @@ class Source:
     rows: int
     read: Callable[[list[str], Types], Iterator[pl.DataFrame]]
     most: float = math.inf
+    sheet: str = ''
+    other_sheets: tuple[str, ...] = ()
 
     def names(self) -> list[str]:
         """Return the names of all columns."""
@@ -99,13 +102,18 @@ class Source:
                 yield from batch.iter_slices(BLOCK) if batch.height else ()
 
 
-def source_of(path: Path, layout: Layout | None = None) -> Source:
-    """Return the table in a file, its cells as they stand; raises InputError without one."""
+def source_of(path: Path, layout: Layout | None = None, sheet: str = '') -> Source:
+    """
+    Return the table in a file, its cells as they stand; raises InputError without one.
+
+    Of a workbook it is that in a `sheet`, or in the first sheet with a table.
+
+    """
     head = _head_of(path)
     if head.startswith(PARQUET):
         return _parquet(path)
     if head.startswith(ZIP):
-        return _sheet(path, layout)
+        return _sheet(path, layout, sheet)
     if kind := foreign.kind_of(head):
         signals = foreign.read_signals(path, kind)
         _check_columns(path, signals.frame.width)
@@ -200,9 +208,10 @@ def _inner(kind: Any) -> list[Any]:
     return [kind.inner] if isinstance(kind, pl.List | pl.Array) else []
 
 
-def _sheet(path: Path, layout: Layout | None) -> Source:
-    """Return the first sheet of a workbook; raises ImportError without its reader."""
-    cells = first_sheet(path)
+def _sheet(path: Path, layout: Layout | None, name: str) -> Source:
+    """Return a sheet of a workbook; raises ImportError without its reader."""
+    sheet = read_sheet(path, name)
+    cells = sheet.cells
     _check_columns(path, cells.width)
     rows = cells.head(LINES).iter_rows()
     lines = [
@@ -213,7 +222,8 @@ def _sheet(path: Path, layout: Layout | None) -> Source:
         head = heads.find_head(lines, layout)
     before = head.first - 1
     frame = cells[before:].select(cells.columns[: len(head.names)])
-    return of_frame(path, frame.lazy(), head, frame.height, math.inf)
+    source = of_frame(path, frame.lazy(), head, frame.height, math.inf)
+    return dataclasses.replace(source, sheet=sheet.name, other_sheets=sheet.others)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

@@ -4,13 +4,15 @@
 The gate of the times of a table: in which runs they rise, and what no recording does.
 
 A row that is earlier than one before it came late if the time is back within a few rows. If it is
-not, the time begins again there: another run was appended, or a clock was set back for winter.
+not, the time begins again there: another run was appended, or a clock was set back for winter. One
+that is set on for summer leaves out the hour after a full one in the night to a Sunday.
 
 """
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
 import dataclasses
+import datetime
 import math
 
 from ballscrew_monitor.recordings.tables.estimates import Array, DAY, RARE, SHORTEST
@@ -27,7 +29,10 @@ SHARED = 0.05  # of the rows that may have the time of the row before
 REGULAR = 0.8  # of the usual number of rows that share a time
 MOST = 0.9  # of the times that are shared by the usual number
 HOUR = 3600.0  # [s]
-CLOSE = 10.0  # [s] by which the fall of a clock may miss an hour
+CLOSE = 10.0  # [s] by which the step of a clock may miss an hour
+SUMMER = (3, 9, 10)  # months in which clocks are set on, in the north and in the south
+SUNDAY = 6
+NIGHT = 4  # o'clock, before which that is
 RUNS = 1000  # more runs than any logger appends
 INSTEAD = 'state time.rate_Hz instead of time.column in the map'
 
@@ -40,7 +45,7 @@ class Run:
     rows: int
     begin: float
     end: float
-    shift: float = 0.0  # [s] of a clock that was set back
+    shift: float = 0.0  # [s] of a clock that was set
     last: int = 0
 
 
@@ -48,10 +53,10 @@ class TimeGate:
     """Times of the rows of a table, looked through in the order of the file."""
 
     def __init__(self, *, wall: bool = False) -> None:
-        """Begin with no row; a clock on the `wall` may be set back by an hour."""
+        """Begin with no row; a clock on the `wall` may be set back or on by an hour."""
         self._wall = wall
         self.runs: list[Run] = []
-        self.clocks: list[tuple[int, float]] = []  # row from which a clock was set back [s]
+        self.clocks: list[tuple[int, float]] = []  # row from which a clock was set, by minus [s]
         self.count = self.late = 0
         self._fallen = self._equal = 0
         self._unordered = False
@@ -73,13 +78,32 @@ class TimeGate:
             moment = float(times[at]), int(rows[at])
             self._least = min(self._least, moment, key=lambda one: one[0])
             self._most = max(self._most, moment, key=lambda one: one[0])
+        cuts = self._set_on(times)
         self._add_steps(times, rows)
         self.count += len(times)
         if not self._unordered and len(self.runs) <= RUNS:
-            width = len(times) if self._goes_on(times) else WINDOW
-            for begin in range(0, len(times), width):
-                end = begin + width
-                self._follow(times[begin:end], rows[begin:end])
+            for number, cut in enumerate([0, *cuts]):
+                part = slice(cut, [*cuts, len(times)][number])
+                if number and not self._pending:
+                    self.runs[-1].shift -= HOUR
+                    self.clocks.append((int(rows[cut]), -HOUR))
+                self._follow_all(times[part], rows[part])
+
+    def _set_on(self, times: Array) -> list[int]:
+        """Return the places in a block before which a clock was set on by an hour."""
+        if not self._wall:
+            return []
+        last = self._last if len(self._last) else times[:1]
+        before = np.concatenate([last, times[:-1]])
+        leaps = (times - before >= HOUR) & (times - before <= HOUR + CLOSE)
+        return [at for at in np.flatnonzero(leaps).tolist() if _is_set_on(before[at], times[at])]
+
+    def _follow_all(self, times: Array, rows: RowNumbers) -> None:
+        """Follow the runs through rows, in few steps where all rise."""
+        width = len(times) if len(times) and self._goes_on(times) else WINDOW
+        for begin in range(0, len(times), width):
+            end = begin + width
+            self._follow(times[begin:end], rows[begin:end])
 
     def _add_steps(self, times: Array, rows: RowNumbers) -> None:
         """Count the steps between rows, and how many share each time."""
@@ -206,10 +230,12 @@ class TimeGate:
         return found
 
     def words(self) -> list[str]:
-        """Return in a sentence each the runs, and where a clock was set back."""
+        """Return in a sentence each the runs, and where a clock was set back or on."""
         found = [
             f'the clock is set back by an hour in row {row}: times go on there'
-            for row, _ in self.clocks
+            if back > 0.0
+            else f'the clock is set on by an hour in row {row}: times go on there without it'
+            for row, back in self.clocks
         ]
         if len(self.runs) > 1:
             listed = [
@@ -316,6 +342,16 @@ def run_offsets(gates: Sequence[TimeGate], gap: float) -> tuple[list[float], lis
             begins.append(begin + offsets[-1])
         end = max(run.end for run in parts) + offsets[-1]
     return offsets, begins
+
+
+def _is_set_on(before: float, after: float) -> bool:
+    """Return True if dated times [s] of neighbours leave out the hour that a summer takes."""
+    hour = before // HOUR * HOUR + HOUR  # that was to come
+    if before < DAY * 365 or not 0.0 <= after - hour - HOUR <= CLOSE:
+        return False
+    left_out = datetime.datetime.fromtimestamp(hour, datetime.UTC)
+    is_night = left_out.weekday() == SUNDAY and left_out.hour < NIGHT
+    return is_night and left_out.month in SUMMER
 
 
 def _run(time: float, row: int) -> Run:

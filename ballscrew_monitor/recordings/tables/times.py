@@ -260,9 +260,13 @@ class Times:
             self._check_gate()
         self._shifts = dict[int, float]()
 
-    def place(self, offsets: Sequence[float], rows: Sequence[int]) -> None:
+    def place(
+        self, offsets: Sequence[float], rows: Sequence[int], run_begins: Sequence[float]
+    ) -> None:
         """
         Place the runs by their offsets [s]; those of the motion begin in some rows of the file.
+
+        All but the first then begin at times [s], before which there is a pause.
 
         Few slow samples do not show where runs begin: these follow the motion. Slow samples with
         more runs than a motion that has one stay as they are.
@@ -277,10 +281,11 @@ class Times:
         else:
             self.gate.runs = self.gate.runs[:1]
         if self._shifts or self._spread:  # else they stay as they were looked through
-            self._course = Course()
+            self._course = Course(run_begins)
             columns = self.group.time_columns or list(self.group.columns)[:1]
             for _, times, _ in self._placed(columns):
                 self._course.add(times)
+        self._run_begins = np.array(run_begins)
         self._late, self._steps = self._course.late, self._course.steps
         self._begin = self.first = self._course.begin
         self.last = self._course.end
@@ -293,7 +298,8 @@ class Times:
             self._steps = Steps()
             with self._shown(self._table.rows, 'rows put in order') as show:
                 for rows in self.rows(show):
-                    self._steps.add((rows.stamps - self.begin).astype(np.float64))
+                    runs = np.searchsorted(self._stamps(self._run_begins), rows.stamps, 'right')
+                    self._steps.add((rows.stamps - self.begin).astype(np.float64), runs)
 
     @property
     def begin(self) -> int:
@@ -328,7 +334,7 @@ class Times:
         found += [f'{log} {one}' for one in self.gate.words()]
         if self.count < 2:
             return found
-        if gaps := self._steps.gaps() - len(self.gate.runs) + 1:
+        if gaps := self._steps.gaps():
             which = 'gap is' if gaps == 1 else 'gaps are'
             found.append(
                 f'{log} {gaps} {which} longer than {HUGE_GAP} rows, the longest is '
@@ -436,10 +442,11 @@ class Times:
 class Course:
     """Times [s] in the order of their rows: extent, steps between rows, and the latest row."""
 
-    def __init__(self) -> None:
-        """Begin with no row."""
+    def __init__(self, run_begins: Sequence[float] = ()) -> None:
+        """Begin with no row; steps to the begins of further runs [s] are pauses."""
         self.begin, self.end = math.inf, -math.inf
         self.late = 0.0  # by which a row comes after a later one
+        self._run_begins = np.array(run_begins)
         self.steps = Steps()
 
     def add(self, times: Array) -> None:
@@ -451,7 +458,8 @@ class Course:
         with np.errstate(over='ignore'):  # what gives no stamp is refused afterwards
             self.late = max(self.late, float((latest - times).max()))
             self.end = float(latest[-1])
-            self.steps.add(np.clip((times - self.begin) * SECOND, -LARGEST, LARGEST))
+            stamps = np.clip((times - self.begin) * SECOND, -LARGEST, LARGEST)
+            self.steps.add(stamps, np.searchsorted(self._run_begins, times, 'right'))
 
 
 def line(values: Array, column: Column, factor: float) -> Array:
@@ -466,17 +474,21 @@ class Steps:
         """Begin with no row."""
         self._counts = np.zeros(_BINS, np.int64)
         self._sums = np.zeros(_BINS)
-        self._last = np.zeros(0)
+        self._last, self._last_run = np.zeros(0), np.zeros(0, np.int64)
         self._rows = 0
         self.longest, self.longest_row = 0.0, 0  # [ns], of the row before it
 
-    def add(self, stamps: Array) -> None:
-        """Count the steps to and between the next rows, of stamps [ns]."""
+    def add(self, stamps: Array, runs: NDArray[np.int64] | None = None) -> None:
+        """Count the steps to and between the next rows of a run [-], of stamps [ns]."""
         steps = np.diff(np.concatenate([self._last, stamps]))
-        if len(steps):
-            bins = _bins(steps)
+        if runs is not None:
+            steps[np.diff(np.concatenate([self._last_run, runs])) != 0] = -1.0
+            self._last_run = runs[-1:]
+        within = steps[steps >= 0.0]
+        if len(within):
+            bins = _bins(within)
             np.add.at(self._counts, bins, 1)
-            np.add.at(self._sums, bins, steps)
+            np.add.at(self._sums, bins, within)
             at = int(steps.argmax())
             if steps[at] > self.longest:
                 self.longest = float(steps[at])
@@ -486,8 +498,10 @@ class Steps:
 
     @property
     def median(self) -> float:
-        """Return the time between rows [ns] that half of them keep; needs two rows."""
+        """Return the time between rows [ns] that half of them keep, 0 without two of a run."""
         total = int(self._counts.sum())
+        if not total:
+            return 0.0
         middle = np.searchsorted(
             np.cumsum(self._counts), [(total - 1) // 2, total // 2], side='right'
         )

@@ -16,6 +16,8 @@ COMPOUND = re.compile(
 )
 """A German word of several, such as Motorstrom."""
 BRACKETS = re.compile(r'[\[(]([^\])]+)[\])]')
+LETTERED = re.compile(r'[\[(]([XYZxyz]\d?)[\])]')
+"""The letter of an axis in brackets, as of FANUC."""
 _PER = re.compile(r'[\s_]*(?:/|_|\s|(?<![a-z])per(?![a-z]))[\s_]*')
 _CAMEL_PER = re.compile(r'(?<=[a-z])Per(?=[A-Z])')
 _LONGEST = 4  # words of a unit, such as m per min in camel case
@@ -41,6 +43,66 @@ _ALIASES = {
 }
 
 
+_CONVERTED: dict[str, dict[str, tuple[str, float]]] = {
+    'speed': {
+        'in/min': ('mm/min', 25.4),
+        'ipm': ('mm/min', 25.4),
+        'in/s': ('mm/s', 25.4),
+        'ips': ('mm/s', 25.4),
+        'cm/s': ('mm/s', 10.0),
+        'um/s': ('mm/s', 1e-3),
+        'deg/s': ('rev/min', 1.0 / 6.0),
+        'deg/min': ('rev/min', 1.0 / 360.0),
+        'rev/s': ('rev/min', 60.0),
+        'rps': ('rev/min', 60.0),
+    },
+    'position': {
+        'in': ('mm', 25.4),
+        'inch': ('mm', 25.4),
+        'cm': ('mm', 10.0),
+        'um': ('mm', 1e-3),
+        'µm': ('mm', 1e-3),
+        'μm': ('mm', 1e-3),
+    },
+    'load': {
+        'dan': ('N', 10.0),
+        'lbf': ('N', 4.4482216152605),
+        'kgf': ('N', 9.80665),
+        'kp': ('N', 9.80665),
+    },
+    'torque': {
+        'mnm': ('N m', 1e-3),
+        'ncm': ('N m', 1e-2),
+        'dnm': ('N m', 1e-1),
+        'knm': ('N m', 1e3),
+        'lbf/in': ('N m', 0.1129848290276167),
+        'lbf/ft': ('N m', 1.3558179483314004),
+    },
+    'current': {'ka': ('A', 1e3)},
+}
+"""Spellings of units that a map writes as one of its own and a scale."""
+_IN_BRACKETS = frozenset({'in', 'kp'})  # which are words, too
+
+
+def converted_unit(column: str, kind: str) -> tuple[str, float]:
+    """
+    Return the unit of a map and the scale to it [-] of a unit that it does not know.
+
+    The unit is empty where a name of a column states none that is so many times one of a map.
+
+    """
+    known = _CONVERTED.get(kind, {})
+    inside = (_plain(text) for text in BRACKETS.findall(column))
+    texts = [*inside, *(text for text in _ends(column) if text not in _IN_BRACKETS)]
+    return next((known[text] for text in texts if text in known), ('', 1.0))
+
+
+def unknown_unit(column: str) -> str:
+    """Return what the last brackets of a name state that is no unit and no axis, else nothing."""
+    texts = BRACKETS.findall(LETTERED.sub(' ', column))
+    return texts[-1].strip() if texts else ''
+
+
 def unit_of(column: str, kind: str) -> str:
     """Return the unit of a kind of quantity that a name of a column states, empty if none."""
     known = _SPELLINGS.get(kind, {})
@@ -50,7 +112,8 @@ def unit_of(column: str, kind: str) -> str:
 def is_unit(text: str) -> bool:
     """Tell whether a text is a unit of any quantity, in brackets or not."""
     plain = _plain(text.strip().strip('[]()'))
-    return any(plain in known for known in _SPELLINGS.values())
+    spelt = [*map(set, _SPELLINGS.values()), *map(set, _CONVERTED.values())]
+    return any(plain in known for known in spelt)
 
 
 def kind_by_unit(column: str) -> tuple[str, str]:
@@ -77,7 +140,7 @@ def words_of(text: str) -> list[str]:
 
 def words_without_unit(column: str, kind: str) -> list[str]:
     """Return the words of a name, without the unit of a kind of quantity at its end."""
-    known = _SPELLINGS.get(kind, {})
+    known = set(_SPELLINGS.get(kind, {})) | set(_CONVERTED.get(kind, {}))
     text = next((text for text in _ends(column) if text in known), '')
     return words_of(_before(column, text) if text else column)
 

@@ -1,7 +1,9 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-The first sheet of a workbook (xlsx) as texts; what it comes to is known before it is read.
+A sheet of a workbook (xlsx) as texts; what it comes to is known before it is read.
+
+It is the sheet that a map names, else the first with rows of numbers, which holds a table.
 
 The reader makes a rectangle of all cells, the empty ones too, so that one cell far off fills the
 memory. What the sheet says of its size may be wrong: the references of the cells tell it. It reads
@@ -9,7 +11,8 @@ in a process of its own, which may use so much memory and no more.
 
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+import dataclasses
 import functools
 import importlib
 from pathlib import Path
@@ -22,13 +25,16 @@ import zipfile
 import zlib
 
 from ballscrew_monitor.recordings.tables.cells import readable
-from ballscrew_monitor.recordings.words import short
+from ballscrew_monitor.recordings.tables.heads import holds_numbers, Line
+from ballscrew_monitor.recordings.words import listed, short
 import polars as pl
 from surrogate import limits
 from surrogate.child import result_apart
 from surrogate.files import InputError
 
 CELL_SIZE = limits.XLSX_CELL
+LOOKED_AT = 2000  # rows of a sheet that tell whether it holds a table
+FEWEST = (20, 3)  # rows of numbers of a table, if not those of any sheet
 UNPACKABLE = (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError, OSError)
 NO_DAY = '1899-12-31 '
 """Day that a sheet adds to a time of day."""
@@ -41,44 +47,80 @@ SIZES = CELL_SIZE // 8  # of a sheet unpacked: a cell is written in eight bytes 
 VALUES = ('v', 'is')  # elements that hold the value of a cell
 
 
-def first_sheet(path: Path) -> pl.DataFrame:
-    """Return the cells of the first sheet; raises InputError, ImportError without its reader."""
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Sheet:
+    """A sheet: its name, its cells, and the names of the other sheets of its workbook."""
+
+    name: str
+    cells: pl.DataFrame
+    others: tuple[str, ...]
+
+
+def read_sheet(path: Path, name: str = '') -> Sheet:
+    """Return a sheet of a workbook; raises InputError, ImportError without its reader."""
     importlib.import_module('fastexcel')  # it is optional
     _check_size(path)
     state = path.stat()
-    return _read_apart(path.resolve(), str(path), state.st_mtime_ns, state.st_size)
+    return _read_apart(path.resolve(), str(path), name, state.st_mtime_ns, state.st_size)
 
 
 @functools.lru_cache(maxsize=1)  # a log is opened again and again; its cells are a file in memory
-def _read_apart(place: Path, shown: str, *state: int) -> pl.DataFrame:
+def _read_apart(place: Path, shown: str, name: str, *state: int) -> Sheet:
     with tempfile.TemporaryDirectory(prefix='ballscrew_sheet_') as folder:
         target = Path(folder) / 'cells.arrow'
-        inputs = {'path': shown, 'target': str(target)}
+        inputs = {'path': shown, 'target': str(target), 'sheet': name}
         failure = f'log {shown} cannot be read'
         task = f'{__name__}:write_cells'
-        result_apart(task, inputs, memory=limits.MEMORY, failure=failure)
-        return pl.read_ipc(target)  # its memory is the file, which stays though its name goes
+        read = result_apart(task, inputs, memory=limits.MEMORY, failure=failure)
+        cells = pl.read_ipc(target)  # its memory is the file, which stays though its name goes
+        return Sheet(name=read['name'], cells=cells, others=tuple(read['others']))
 
 
 def write_cells(inputs: Mapping[str, str]) -> dict[str, Any]:
-    """Write the cells of the first sheet of the workbook `path` to `target`; raises InputError."""
-    path = inputs['path']
+    """Write the cells of a sheet of the workbook `path` to `target`; raises InputError."""
+    path, stated = inputs['path'], inputs['sheet']
     with readable(f'log {path} cannot be read', Exception):
         names = importlib.import_module('fastexcel').read_excel(path).sheet_names
     if not names:
         raise InputError(f'log {path} lists no sheet, the workbook is damaged: save it as CSV')
+    if stated and stated not in names:
+        raise InputError(f'log {path}: sheet {short(repr(stated))} is missing, {_held(names)}')
+    only = stated or (names[0] if len(names) == 1 else '')
+    tried = [(only, 0)] if only else [(name, fewest) for fewest in FEWEST for name in names]
+    for name, fewest in tried:
+        cells = _texts(path, name)
+        if only or _holds_table(cells, fewest):
+            cells.write_ipc(inputs['target'])
+            return {'name': name, 'others': [one for one in names if one != name]}
+    raise InputError(f'log {path}: no sheet has rows of numbers, {_held(names)}')
+
+
+def _held(names: Sequence[str]) -> str:
+    return f'the workbook holds {listed(names)}: name one by `sheet` in the map'
+
+
+def _holds_table(cells: pl.DataFrame, fewest: int) -> bool:
+    """Return True if cells have so many rows of numbers."""
+    lines = [
+        Line(raw='', row=number + 1, cells=tuple(cell or '' for cell in row))
+        for number, row in enumerate(cells.head(LOOKED_AT).iter_rows())
+    ]
+    return cells.width > 1 and holds_numbers(lines, fewest)
+
+
+def _texts(path: str, name: str) -> pl.DataFrame:
+    """Return the cells of a sheet as texts; raises InputError."""
     with readable(f'log {path} cannot be read', Exception):
         cells = pl.read_excel(
             path,
+            sheet_name=name,
             engine='calamine',
             has_header=False,
             infer_schema_length=0,
             drop_empty_rows=False,
             drop_empty_cols=False,
         )
-        texts = cells.select(pl.all().cast(pl.String).str.strip_prefix(NO_DAY))
-        texts.write_ipc(inputs['target'])
-    return {}
+        return cells.select(pl.all().cast(pl.String).str.strip_prefix(NO_DAY))
 
 
 def _check_size(path: Path) -> None:

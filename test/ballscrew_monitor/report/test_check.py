@@ -9,6 +9,7 @@ import shutil
 from ballscrew_monitor import cli
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.tables.mapping import read_map
+from ballscrew_monitor.report.check import map_beside, sheets_of
 from ballscrew_monitor.report.free_run import identified
 from ballscrew_monitor.report.parameters import parameters_for
 from ballscrew_monitor.settings.parameters import read_file
@@ -90,6 +91,29 @@ def test_logs_of_any_ending_are_found_and_other_files_are_not(tmp_path, capsys):
     assert record['recordings']['cut.rec']['axes']['x']['judged'] == 2000
 
 
+def test_remarks_and_lists_are_no_bad_recordings(tmp_path, capsys, says):
+    folder = tmp_path / 'logs'
+    write(folder / 'cut.csv', SPEEDS)
+    (folder / 'README.txt').write_text('Messungen vom 15.03.2025\nMotor 3,5 Nm\n')
+    (folder / 'parts.csv').write_text('Datum;Teil;Stueck\n1.1.2025;A;5\n2.1.2025;B;6\n')
+    assert check(folder, tmp_path, *SHEETS, '--json') == 0
+    printed = capsys.readouterr()
+    assert says('no_motion') in printed.err
+    record = json.loads(printed.out)
+    assert set(record['recordings']) == {'cut.csv'}
+    assert record['no_recordings'] == ['README.txt', 'parts.csv']
+    assert not [step for step in record['what_to_do'] if 'map' in step]
+    assert says('no_motion') in (tmp_path / 'out' / 'index.html').read_text()
+
+
+def test_a_long_table_of_unknown_names_is_a_bad_recording(tmp_path, capsys, says):
+    folder = tmp_path / 'logs'
+    write(folder / 'cut.csv', SPEEDS)
+    (folder / 'channels.csv').write_text('a,b\n' + ''.join(f'{at},{at % 7}\n' for at in range(99)))
+    assert check(folder, tmp_path, *SHEETS, '--json') == 1
+    assert says('lay_map') in json.loads(capsys.readouterr().out)['what_to_do']
+
+
 def test_without_a_sheet_the_page_asks_for_one(tmp_path, capsys, says):
     write(tmp_path / 'logs' / 'cut.csv', SPEEDS)
     assert check(tmp_path / 'logs', tmp_path, '--json') == 0
@@ -143,6 +167,40 @@ def test_several_screws_in_a_folder_need_a_name(tmp_path, capsys, says):
         shutil.copy(find_sheet(name, 'screws'), folder)
     assert check(folder, tmp_path) == 2
     assert says('several_screws', folder=folder) in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ('kind', 'name', 'old', 'new', 'key'),
+    [
+        ('screws', 'nominal', 'lead_mm: 10.0', 'lead_mm: 10,0', 'unread_lead'),
+        ('screws', 'nominal', 'lead_mm:', 'steigung_mm:', 'unread_key'),
+        ('screws', 'nominal', 'lead_mm: 10.0', 'lead_mm: [10.0', 'unread_yaml'),
+        ('lubricants', 'iso_vg_32', 'density_kg_m3:', 'density_kg_m3: x', 'unread_oil'),
+    ],
+)
+def test_a_sheet_that_cannot_be_read_is_one_sentence(kind, name, old, new, key, tmp_path, refused):
+    text = find_sheet(name, kind).read_text()
+    assert old in text
+    (tmp_path / 'my.yaml').write_text(text.replace(old, new))
+    with refused(key, file=tmp_path / 'my.yaml'):
+        sheets_of(tmp_path, None, None)
+
+
+def test_a_file_of_other_keys_is_no_sheet(tmp_path):
+    (tmp_path / 'feed.map.yaml').write_text('log: feed.csv\naxes: {x: {lead_mm: 5,0}}\n')
+    (tmp_path / 'machine.yaml').write_text('name: mill\nlist: [1\n')
+    assert sheets_of(tmp_path, None, None) is None
+
+
+def test_a_map_beside_is_that_of_one_log(tmp_path):
+    for name in ('feed.json', 'feed.map.yaml'):
+        (tmp_path / name).write_text('')
+    assert map_beside(tmp_path / 'feed.json') == tmp_path / 'feed.map.yaml'
+    (tmp_path / 'feed.csv').write_text('')
+    assert map_beside(tmp_path / 'feed.csv') == tmp_path / 'feed.map.yaml'
+    assert map_beside(tmp_path / 'feed.json') is None
+    (tmp_path / 'feed.json.map.yaml').write_text('')
+    assert map_beside(tmp_path / 'feed.json') == tmp_path / 'feed.json.map.yaml'
 
 
 def run_of(tmp_path, name, drag, load=0.0, **more):

@@ -8,7 +8,7 @@ import math
 from ballscrew_monitor.core.inputs import InputState, Source, Why
 from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.report.balance import Balance
-from ballscrew_monitor.report.inputs_seen import hints_on, inputs_seen, Trouble
+from ballscrew_monitor.report.inputs_seen import hints_on, inputs_seen, missing_inputs, Trouble
 import numpy as np
 import pytest
 
@@ -63,6 +63,16 @@ def test_a_gap_of_an_input_of_its_own_rate_is_left_out_with_its_timeout(judged, 
     assert seen_of(case, Source.LOAD).rate == pytest.approx(rate)
 
 
+@pytest.mark.parametrize('source', [Source.SPEED, Source.LOAD])
+@pytest.mark.parametrize('silent', [False, True])
+def test_messages_that_are_refused_in_a_gap_raise_no_rate(judged, source, silent):
+    blocks = [judged.rows(0, 50), judged.rows(550, 50)]
+    received = 100 if silent else 600  # those of the gap came, and were no numbers
+    refused = {} if silent else {one: {Why.NOT_A_NUMBER: 500} for one in Source}
+    case = judged.case(blocks, inputs=statuses(judged, received=received), refused=refused)
+    assert seen_of(case, source).rate == pytest.approx(100.0, rel=0.01)
+
+
 @pytest.mark.parametrize(
     ('stated', 'origin', 'known'),
     [([], 'assumed, 40 °C', 'assumed'), (['temperature_degC'], 'stated, 40 °C', 'stated')],
@@ -109,6 +119,19 @@ def test_what_is_worked_out_is_not_called_measured(judged, source, assumed, stat
     case = judged.case([judged.rows()], values=judged.values(**TORQUE), known=known)
     seen = seen_of(case, source)
     assert (seen.origin, seen.measured) == (says(origin), says(origin) == 'measured')
+
+
+@pytest.mark.parametrize(
+    ('load_from', 'origin'),
+    [('torque', 'torque_read_as_load'), ('current', 'current_read_as_load'), ('', 'no_torque')],
+)
+def test_a_torque_that_is_taken_for_the_load_is_recorded(judged, load_from, origin, says):
+    case = judged.case([judged.rows()], known={'load_from': load_from})
+    seen = seen_of(case, Source.TORQUE)
+    assert seen.origin == says(origin)
+    assert ('not recorded' in seen.silence) is not bool(load_from)
+    assert ('Motor torque' in missing_inputs(case)) is not bool(load_from)
+    assert 'Axial load' not in missing_inputs(case)
 
 
 def test_what_was_worked_out_or_assumed_is_marked(judged):
@@ -254,3 +277,8 @@ def test_a_wrong_size_is_told_with_the_unit_that_fits(judged, factor, friction, 
     case = judged.case([judged.rows()], values=judged.values(**TORQUE), known=known)
     case = dataclasses.replace(case, balance=Balance(factor=factor, friction=friction))
     assert says(key) in hints_on([case])
+
+
+def test_a_load_turned_without_a_torque_says_nothing_of_a_torque(judged, says):
+    case = dataclasses.replace(judged.case([judged.rows()]), balance=Balance(turned=Source.LOAD))
+    assert hints_on([case]) == [says('turned_alone')]

@@ -5,6 +5,7 @@
 from pathlib import Path
 
 from ballscrew_monitor.recordings.tables.cells import Cells
+from ballscrew_monitor.recordings.words import counted
 from hypothesis import assume, example, given, strategies
 import numpy as np
 import polars as pl
@@ -78,4 +79,4 @@ def check_column(texts, block):
     np.testing.assert_allclose(reading.numbers(column), wanted, rtol=0, atol=1e-6)
     np.testing.assert_allclose(reading.extremes, [np.nanmin(wanted), np.nanmax(wanted)], atol=1e-6)
     missing = int(np.isnan(wanted).sum()) - texts.count(None)
-    assert (f'holds {missing} cells without a number' in reading.note) == bool(missing)
+    assert (f'holds {counted(missing, "cell")} without a number' in reading.note) == bool(missing)

@@ -58,7 +58,7 @@ def content_of(log, rate=10.0):
     content = guess(log).content
     for axis in content['axes'].values():
         if 'unit' in axis.get('current', {}):
-            axis['current']['unit'] = 'A'
+            axis['current'] |= {'unit': 'A', 'magnitude': False}
     if 'rate_Hz' in content['time']:
         content['time']['rate_Hz'] = rate
     return content
@@ -419,6 +419,7 @@ def test_a_guess_is_a_map_that_works_once_the_rate_is_stated(mill_log, tmp_path,
         assert cli.main(command) == 2, command
         assert says('blank_rate') in capsys.readouterr().err
     stated = captured.out.replace('rate_Hz: null', 'rate_Hz: 10').replace('unit: null', 'unit: A')
+    stated = stated.replace('magnitude: null', 'magnitude: false')
     mapping.write_text(stated)
     assert cli.main(['import', str(mill_log), '--config', str(mapping), '--out', str(bag)]) == 0
     assert '  assumed x.lead_mm = 10.0: ' in capsys.readouterr().out

@@ -6,6 +6,7 @@ import json
 import math
 import sys
 
+from ballscrew_monitor.recordings.tables import foreign
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
@@ -42,6 +43,25 @@ def test_a_load_of_a_data_recorder_is_a_torque_in_per_cent(tmp_path):
     axis = guess(path).content['axes']['x']
     assert axis['torque'] == {'column': 'X LOAD [%]', 'unit': '%'}
     assert axis['torque_rated_Nm'] is None
+
+
+@pytest.mark.parametrize(
+    ('key', 'change'),
+    [
+        ('rows', {'Payload': []}),
+        ('ragged', {'Payload': [{'HFData': [[1, 2.0], [1]]}]}),
+        ('parts', {'Payload': {'HFData': [[1, 2.0]]}}),
+        ('signals', {'Header': {'SignalListHFData': ['a', 'b']}}),
+        ('cycle', {'Header': {'CycleTimeMs': 'two', 'SignalListHFData': []}}),
+        ('deep', {}),
+    ],
+)
+def test_what_is_wrong_with_a_trace_is_said_in_its_own_words(key, change, tmp_path, refused):
+    path = tmp_path / 'log.json'
+    signals = [] if key == 'cycle' else [{'Name': f'ENC_POS|{at}', 'Axis': 'X'} for at in '12']
+    content = {'Header': {'SignalListHFData': signals}, 'Payload': [{'HFData': [[]]}]} | change
+    path.write_text('[' * 100_000 if key == 'deep' else json.dumps(content))
+    refused(key, guess, path)
 
 
 def sinumerik_xml(path):
@@ -127,3 +147,39 @@ def test_a_reader_that_is_not_installed_is_named(
     path = tmp_path / 'log.bin'
     path.write_bytes(content + bytes(64))
     refused(key, guess, path)
+
+
+@pytest.mark.parametrize(
+    ('content', 'key'),
+    [
+        (b'[1, {"a": 2}]', 'no_json'),
+        (b'{"Header": 3, "a": [{"b": 1}, 3]}', 'no_json'),
+        (b'MATLAB 5.0' + bytes(200), 'no_mat'),
+        (b'\x89HDF\r\n\x1a\n' + bytes(200), 'no_hdf'),
+    ],
+)
+def test_a_file_that_is_not_as_its_kind_is_one_sentence(content, key, tmp_path, refused):
+    path = tmp_path / 'log'
+    path.write_bytes(content)
+    refused(key, guess, path)
+
+
+@pytest.mark.parametrize('error', [KeyError('a'), IndexError(), TypeError('x'), ValueError('y')])
+@pytest.mark.parametrize(
+    ('kind', 'key'),
+    [
+        ('json', 'no_json'),
+        ('shdr', 'no_shdr'),
+        ('echo', 'no_echo'),
+        ('long', 'no_long'),
+        ('xml', 'no_xml'),
+    ],
+)
+def test_no_reader_says_what_python_says(kind, key, error, tmp_path, monkeypatch, refused):
+    def read(path):
+        raise error
+
+    monkeypatch.setitem(foreign.READERS, kind, read)
+    path = tmp_path / 'log'
+    path.write_text('{}')
+    refused(key, foreign.read_signals, path, kind)

@@ -14,6 +14,8 @@ import yaml
 
 TIME = np.arange(200) / 50.0
 SPEED = 100.0 * np.sin(TIME)
+TURNING = 2.0 * np.sin(TIME * 2.0)  # of the screw in a second
+PLACE = 3.0 - np.cos(TIME * 2.0)  # the turns that these are
 
 
 @pytest.fixture
@@ -31,12 +33,12 @@ def test_a_mill_log_is_understood(mill_log, says, refused):
     assert axes['x'] == {
         'speed': {'column': 'X1_ActualVelocity'},
         'position': {'column': 'X1_ActualPosition'},
-        'current': {'column': 'X1_CurrentFeedback', 'unit': None},
+        'current': {'column': 'X1_CurrentFeedback', 'unit': None, 'magnitude': None},
     }
     assert axes['z']['load'] == {'unknown': 'Z1_CurrentFeedback is always 0'}
     assert 'current' not in axes['z']
     assert made.content['time'] == {'rate_Hz': None}
-    assert made.unstated == (*map(says, ('current_x', 'current_y', 'state_rate')),)
+    assert made.unstated == (*map(says, ('current_x', 'sign_x', 'current_y', 'state_rate')),)
     assert f'#   {made.unstated[0]}\n' in made.text
     assert assumed['x.speed.unit']['value'] == 'mm/s'
     assert assumed['x.load.from']['value'] == 'current'
@@ -47,7 +49,7 @@ def test_a_mill_log_is_understood(mill_log, says, refused):
     assert yaml.safe_load(made.text) == made.content
     refused('blank_rate', make_map, made.content)
     for name in ('x', 'y'):
-        axes[name]['current']['unit'] = 'A'
+        axes[name]['current'] |= {'unit': 'A', 'magnitude': False}
     assert make_map(made.content | {'time': {'rate_Hz': 10.0}}).rate == 10.0
 
 
@@ -98,20 +100,14 @@ def test_amounts_of_a_torque_are_said(weight, magnitude, guessed, says):
     made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, 'x_torque_Nm': torque})
     assert made.content['axes']['x']['torque'].get('magnitude') is magnitude
     assert (says('amounts') in made.notes) is bool(magnitude)
-    assert not made.unstated
+    assert made.unstated == (() if magnitude else (says('unclear_amounts'),))
 
 
-@pytest.mark.parametrize(('amount', 'unit'), [(0.9, None), (25.0, None), (2500.0, 'N')])
-def test_a_force_is_in_newtons_if_no_axis_holds_as_many_kilonewtons(
-    amount, unit, guessed, refused, says
-):
+@pytest.mark.parametrize('amount', [0.9, 25.0, 2500.0])
+def test_the_unit_of_a_force_is_asked_for(amount, guessed, refused, says):
     force = amount * np.cos(TIME)
-    made = guessed({'t_s': TIME, 'v_x': SPEED, 'f_x': force, 'curr_x': SPEED / 50})
+    made = guessed({'t_s': TIME, 'v_x_mm_s': SPEED, 'f_x': force, 'curr_x': SPEED / 50})
     assert says('current_left_out') in made.notes
-    if unit:
-        assert made.content['assumed']['x.load.unit']['value'] == unit
-        assert not made.unstated
-        return
     assert made.content['axes']['x']['load'] == {'column': 'f_x', 'unit': None}
     assert 'x.load.unit' not in made.content['assumed']
     assert 'current' not in made.content['axes']['x']
@@ -143,21 +139,22 @@ def test_position_and_time_tell_the_unit_of_the_speed(factor, unit, guessed):
 
 
 def test_what_cannot_be_told_is_said_or_refused(guessed, refused, says):
-    made = guessed({'x_vel': SPEED, 'x_force_N': SPEED})
+    made = guessed({'x_vel_mm_s': SPEED, 'x_force_N': SPEED})
     assert made.content['time'] == {'rate_Hz': None}
     assert made.unstated == (says('no_time'),)
     refused('column_looks_like', guessed, {'a': TIME, 'b': TIME})
-    made = guessed({'t': TIME, 'x_speed_furlong': SPEED, 'x_force_N': SPEED})
-    reason = made.content['assumed']['x.speed.unit']['reason']
-    assert reason.startswith('x_speed_furlong states none that is known')
+    made = guessed({'t_s': TIME, 'x_speed_furlong': SPEED, 'x_force_N': SPEED})
+    assert made.content['axes']['x']['speed']['unit'] is None
+    assert made.unstated == (says('no_speed_unit'),)
+    made = guessed({'t_s': TIME, 'x_position': SPEED, 'x_force_N': SPEED})
+    assert made.content['axes']['x']['position']['unit'] is None
 
 
 def test_of_a_long_log_the_first_rows_tell_the_rate_and_all_the_ranges(guessed, monkeypatch, says):
     monkeypatch.setattr(guess_module, 'NUMBERS', 300)
     late = np.where(np.arange(200) < 150, 0.0, 1.0)
-    made = guessed({'t': TIME, 'x_vel': late * SPEED, 'x_force_N': late})
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': late * SPEED, 'x_force_N': late * SPEED})
     assert made.content['axes']['x']['load'] == {'column': 'x_force_N', 'unit': 'N'}
-    assert made.content['assumed']['x.speed.unit']['value'] == 'mm/s'
     assert says('rate_units_those') in made.notes
     assert not any('never moves' in note for note in made.notes)
 
@@ -219,11 +216,11 @@ def test_axes_are_told_by_the_words_in_which_names_differ(guessed, says):
 
 
 def test_a_time_by_name_comes_before_one_by_unit_and_one_that_does_not_rise_is_said(guessed, says):
-    columns = {'served_ms': TIME * 1e3, 'time_s': TIME, 'x_vel': SPEED, 'x_force_N': SPEED}
+    columns = {'served_ms': TIME * 1e3, 'time_s': TIME, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED}
     assert guessed(columns).content['time']['column'] == 'time_s'
     del columns['time_s']
     assert guessed(columns).content['time'] == {'column': 'served_ms', 'unit': 'ms'}
-    made = guessed({'Zeit_ms': -TIME, 'x_vel': SPEED, 'x_force_N': SPEED})
+    made = guessed({'Zeit_ms': -TIME, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED})
     assert made.content['time'] == {'rate_Hz': None}
     assert made.unstated == (says('still_time'),)
 
@@ -240,7 +237,8 @@ def test_ticks_are_a_time_by_their_amount_and_small_whole_numbers_of_any_unit(gu
 
 
 def test_a_column_of_another_time_is_left_out_where_one_is_read(guessed):
-    columns = {'Time': ['some time'] * 200, 'time_s': TIME, 'x_vel': SPEED, 'x_force_N': SPEED}
+    columns = {'time_s': TIME, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED}
+    columns = {'Time': ['some time'] * 200} | columns
     made = guessed(columns)
     assert made.content['time'] == {'column': 'time_s', 'unit': 's'}
     assert not made.unstated
@@ -248,7 +246,7 @@ def test_a_column_of_another_time_is_left_out_where_one_is_read(guessed):
 
 
 def test_what_a_map_says_first_stays_in_comments(guessed):
-    columns = {'Time': ['1\n: 2'] * 200, 'x_vel': SPEED, 'x_force_N': SPEED}
+    columns = {'Time': ['1\n: 2'] * 200, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED}
     columns = {name: [f'"{one}"' for one in column] for name, column in columns.items()}
     made = guessed(columns)
     assert len(made.unstated) == 1
@@ -270,7 +268,7 @@ def test_a_german_log_is_understood(tmp_path):
         at = begin + dt.timedelta(milliseconds=20 * row)
         number = f'{speed * 60:.4f}'.replace('.', ',')
         clock = f'{at:%d.%m.%Y;%H:%M:%S},{at.microsecond // 1000:03d}'
-        lines.append(f'{clock};{number};{row + 1};41,5')
+        lines.append(f'{clock};{number};{row - 100};41,5')
     text = [
         'Maschine;DMU 50;;;',
         'Datum;Uhrzeit;Geschw.;Axialkraft;Öltemperatur',
@@ -337,7 +335,7 @@ def test_a_name_states_the_unit_of_its_time(name, unit, guessed):
 def test_a_relative_time_is_dated_by_the_name(name, moment, tmp_path, write_csv):
     path = tmp_path / name
     path.parent.mkdir(exist_ok=True)
-    made = guess(write_csv(path, {'t_s': TIME, 'x_vel': SPEED}))
+    made = guess(write_csv(path, {'t_s': TIME, 'x_vel_mm_s': SPEED}))
     assert made.content['date_from'] == 'name'
     assert 'time.epoch' not in made.content['assumed']
     assert make_map(made.content).date_from == 'name'
@@ -399,3 +397,283 @@ def test_words_in_the_rows_of_another_signal_are_to_be_left_empty(guessed, says)
     holed = np.where(rows % 7 == 0, np.nan, SPEED)
     made = guessed({'t_s': TIME, 'v_x [mm/s]': holed, 'f_x [N]': holed})
     assert says('joined') not in made.notes
+
+
+@pytest.mark.parametrize('names', [('Time A [ms]', 'Time B [ms]'), ('Zeit 1 [ms]', 'Zeit 2 [ms]')])
+def test_columns_have_the_time_before_them_whatever_its_name(names, tmp_path, write_csv, says):
+    first, second = names
+    columns = {
+        first: TIME * 1e3,
+        'X_vel [mm/s]': SPEED,
+        second: 1e3 + TIME * 1250.0,
+        'X_torque [Nm]': np.arange(200) - 100.0,
+    }
+    path = write_csv(tmp_path / 'log.csv', columns, form='{:.9g}')
+    made = guess(path)
+    torque = made.content['axes']['x']['torque']
+    assert torque == {'column': 'X_torque [Nm]', 'unit': 'N m', 'time': second}
+    assert [line.split(',')[0] for line in made.picture[:2]] == [
+        'Group 1: 20 ms',
+        'Group 2: 25 ms',
+    ]
+    assert says('own_time', time=second) in made.notes
+    assert not any('not used' in note for note in made.notes)
+    series = read_series(path, make_map(made.content))
+    groups = list(series.blocks())
+    number = series.places['X_torque [Nm]']
+    stamps = np.concatenate([rows[number].stamps for rows in groups])
+    assert (stamps - series.begin) / 1e9 == pytest.approx(1.0 + 1.25 * TIME)
+
+
+def test_equal_names_of_times_are_all_used(tmp_path):
+    rows = ''.join(f'{at};{at % 7};{at + 500};{at % 9 - 4}\n' for at in range(0, 2000, 10))
+    log = tmp_path / 'log.csv'
+    log.write_text(f'Time [ms];X_vel [mm/s];Time [ms];X_torque [Nm]\n{rows}')
+    made = guess(log)
+    assert made.content['axes']['x']['torque']['time'] == 'Time [ms]_duplicated_0'
+    assert not any('not used' in note for note in made.notes)
+
+
+@pytest.mark.parametrize('other', [1.7e9 + TIME, TIME + 1e-4, np.full(200, 0.02)])
+def test_a_second_time_of_the_same_rows_is_none_of_its_own(other, guessed):
+    columns = {
+        'Time A [s]': TIME,
+        'v_x [mm/s]': SPEED,
+        'Time B [s]': other,
+        'x_torque [Nm]': -SPEED,
+    }
+    made = guessed(columns, form='{:.14g}')
+    assert made.content['time']['column'] == 'Time A [s]'
+    assert 'time' not in made.content['axes']['x']['torque']
+    assert not made.unstated
+
+
+def test_a_second_time_in_another_unit_is_asked_for(guessed, refused, says):
+    second = 1e3 + TIME * 1250.0
+    columns = {
+        'Time A [s]': TIME,
+        'v_x [mm/s]': SPEED,
+        'Time B [ms]': second,
+        'x_torque [Nm]': -SPEED,
+    }
+    made = guessed(columns, form='{:.9g}')
+    assert made.content['axes']['x']['torque']['time'] is None
+    assert made.unstated == (says('times_of_two_units'),)
+    refused('blank_time', make_map, made.content)
+    made.content['axes']['x']['torque']['time'] = 'Time A [s]'
+    assert make_map(made.content)
+
+
+@pytest.mark.parametrize(
+    ('position', 'unit', 'name'),
+    [
+        ({'x_pos_mm': 10.0 * PLACE}, 'rev/min', 'turning'),
+        ({'x_pos_deg': 360.0 * PLACE}, 'mm/s', 'feeding'),
+    ],
+)
+def test_a_speed_that_does_not_make_its_position_is_asked_for(position, unit, name, guessed, says):
+    """A screw of 10 mm a turn makes the place of 60 speeds a second, or of 10."""
+    speed = {'rev/min': 60.0, 'mm/s': 10.0}[unit] * TURNING
+    made = guessed({'t_s': TIME, **position, 'x_speed': speed, 'x_force_N': SPEED}, form='{:.9g}')
+    assert made.content['axes']['x']['speed'] == {'column': 'x_speed', 'unit': None}
+    assert made.unstated == (says(name),)
+    made.content['axes']['x']['speed']['unit'] = unit
+    assert make_map(made.content)
+
+
+@pytest.mark.parametrize('unit', ['mm/s', 'mm/min', 'm/min', 'm/s'])
+def test_a_speed_that_makes_its_position_has_its_unit(unit, guessed):
+    scale = {'mm/s': 10.0, 'mm/min': 600.0, 'm/min': 0.6, 'm/s': 0.01}[unit]
+    made = guessed({'t_s': TIME, 'x_pos_mm': 10.0 * PLACE, 'x_speed': scale * TURNING})
+    assert made.content['assumed']['x.speed.unit']['value'] == unit
+    made = guessed({'t_s': TIME, 'x_pos': 10.0 * PLACE, 'x_speed': scale * TURNING})
+    assert 'inches' in made.content['assumed']['x.speed.unit']['reason']
+
+
+def test_a_speed_without_a_sign_gives_way_to_its_position(guessed, says):
+    made = guessed({'t_s': TIME, 'x_pos_mm': 10.0 * PLACE, 'x_speed_mm_s': abs(10.0 * TURNING)})
+    assert 'speed' not in made.content['axes']['x']
+    assert says('amounts_of_speed') in made.notes
+
+
+def test_a_position_within_a_turn_tells_the_unit_of_its_speed(guessed):
+    made = guessed({'t_s': TIME, 'x_pos_deg': 360.0 * PLACE % 360.0, 'x_speed': 60.0 * TURNING})
+    assert made.content['assumed']['x.speed.unit']['value'] == 'rev/min'
+
+
+def test_a_command_gives_way_to_a_position_that_does_not_follow_it(guessed, says):
+    columns = {'t_s': TIME, 'x_actual_position_mm': 10.0 * PLACE}
+    made = guessed(columns | {'x_command_velocity_mm_s': 15.0 * TURNING}, form='{:.9g}')
+    assert 'speed' not in made.content['axes']['x']
+    assert says('command') in made.notes
+    made = guessed(columns | {'x_velocity_mm_s': 15.0 * TURNING}, form='{:.9g}')
+    assert made.unstated == (says('contradiction'),)
+    made = guessed(columns | {'x_velocity_mm_s': 10.0 * np.sin(5.0 * TIME)}, form='{:.9g}')
+    assert made.unstated == (says('another_motion'),)
+
+
+@pytest.mark.parametrize(('lead', 'asked'), [(10.02, False), (5.0, True), (3.3333, True)])
+def test_a_log_of_screw_and_table_tells_the_lead(lead, asked, guessed, refused, says):
+    """Behind a gear the speed is that of the motor, and the lead is none of the screw."""
+    for columns in (
+        {'x_pos_mm': lead * PLACE, 'x_speed_rpm': 60.0 * TURNING},
+        {'x_pos_rev': PLACE, 'x_speed_mm_s': lead * TURNING},
+    ):
+        made = guessed({'t_s': TIME} | columns, form='{:.9g}')
+        assert ('x.lead_mm' in made.content['assumed']) is not asked
+        assert len(made.unstated) == asked
+        if asked:
+            refused('blank_lead', make_map, made.content)
+            position, speed = columns
+            lead_mm = f'{lead:.4g}'
+            assert made.unstated == (says('lead', position=position, speed=speed, lead=lead_mm),)
+
+
+def test_a_speed_of_one_sign_alone_is_said_and_a_temperature_in_fahrenheit_asked_for(
+    guessed, says
+):
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': abs(SPEED), 'oil_temp_F': 90.0 + TIME})
+    assert says('one_direction') in made.notes
+    assert made.unstated == (says('fahrenheit'),)
+
+
+def test_a_speed_tells_the_unit_of_its_position(guessed, says):
+    made = guessed({'t_s': TIME, 'x_pos': PLACE / 100.0, 'x_speed_mm_s': 10.0 * TURNING})
+    assert made.content['assumed']['x.position.unit']['value'] == 'm'
+    made = guessed({'t_s': TIME, 'x_pos': PLACE, 'x_speed_mm_s': 10.0 * TURNING}, form='{:.9g}')
+    assert made.unstated == (says('position_of_no_unit'),)
+
+
+def test_of_columns_that_are_as_likely_the_map_names_one(guessed, refused, says):
+    columns = {'t_s': TIME, 'X motor velocity [mm/s]': SPEED, 'X table velocity [mm/s]': SPEED}
+    made = guessed(columns)
+    assert made.unstated == (says('which_column'),)
+    refused('blank_column', make_map, made.content)
+    made.content['axes']['x']['speed']['column'] = 'X table velocity [mm/s]'
+    assert make_map(made.content)
+
+
+@pytest.mark.parametrize(
+    'other',
+    ['programmed velocity', 'velocity std', 'max velocity', 'filtered velocity', 'velocity min'],
+)
+def test_a_plain_name_is_the_measured_one(other, guessed):
+    made = guessed({'t_s': TIME, f'X {other} [mm/s]': 2 * SPEED, 'X velocity [mm/s]': SPEED})
+    assert made.content['axes']['x']['speed']['column'] == 'X velocity [mm/s]'
+    assert not made.unstated
+
+
+def test_a_force_and_a_speed_of_one_sign_are_asked_for(guessed, refused, says):
+    made = guessed({'t_s': TIME, 'v_x [mm/s]': TURNING, 'f_x [N]': 9.0 + abs(TURNING)})
+    assert made.unstated == (says('one_sign_of_force'),)
+    made.content['axes']['x']['load']['magnitude'] = True
+    refused('amounts_of_force', make_map, made.content)
+    made.content['axes']['x']['load']['magnitude'] = False
+    assert make_map(made.content)
+    made = guessed({'t_s': TIME, 'v_x [mm/s]': abs(TURNING), 'm_x [Nm]': TURNING})
+    assert made.unstated == (says('one_sign_of_speed'),)
+
+
+def test_a_column_of_a_rotary_axis_is_none_of_the_only_linear_one(guessed):
+    columns = {'t_s': TIME, 'C speed [rpm]': SPEED, 'Y position [mm]': 10.0 * PLACE}
+    assert 'speed' not in guessed(columns).content['axes']['y']
+
+
+@pytest.mark.parametrize(
+    ('name', 'unit', 'scale', 'read'),
+    [
+        ('x force [daN]', 'N', 10.0, 'load'),
+        ('x_force_kgf', 'N', 9.80665, 'load'),
+        ('X load (lbf)', 'N', 4.4482216152605, 'load'),
+        ('x torque [mNm]', 'N m', 1e-3, 'torque'),
+        ('x_torque_Ncm', 'N m', 1e-2, 'torque'),
+    ],
+)
+def test_a_unit_that_is_so_many_of_another_is_read(name, unit, scale, read, tmp_path, write_csv):
+    columns = {'t_s': TIME, 'x_vel_mm_s': SPEED, name: -SPEED}
+    path = write_csv(tmp_path / 'log.csv', columns)
+    made = guess(path)
+    assert made.content['axes']['x'][read] == {'column': name, 'scale': scale, 'unit': unit}
+    assert not made.unstated
+    (rows,) = [rows for (rows,) in read_series(path, make_map(made.content)).blocks()]
+    assert rows.columns[f'x.{read}'] == pytest.approx(-SPEED * scale, abs=1e-2)
+
+
+@pytest.mark.parametrize(
+    ('name', 'mm_per_s'),
+    [('x speed (in/min)', 25.4 / 60), ('x_vel_um_s', 1e-3), ('x speed [deg/s]', 10 / 360)],
+)
+def test_a_speed_of_another_unit_turns_the_screw_as_far(name, mm_per_s, tmp_path, write_csv):
+    path = write_csv(tmp_path / 'log.csv', {'t_s': TIME, name: SPEED, 'x_force_N': 1e4 * SPEED})
+    (rows,) = [rows for (rows,) in read_series(path, make_map(guess(path).content)).blocks()]
+    turns = rows.columns['x.speed'] / (2 * np.pi)
+    assert turns * 10.0 == pytest.approx(SPEED * mm_per_s, rel=1e-3, abs=1e-4)  # lead 10 mm
+
+
+def test_a_place_in_another_unit_goes_with_its_speed(guessed):
+    place = 1e3 * np.cumsum(SPEED) * (TIME[1] - TIME[0])
+    made = guessed({'t_s': TIME, 'X_pos_um': place, 'x_vel': SPEED}, form='{:.9g}')
+    assert made.content['assumed']['x.speed.unit']['value'] == 'mm/s'
+
+
+def test_a_unit_that_is_not_known_is_named(guessed, refused, says):
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, 'x force [slug]': SPEED})
+    assert says('unit_slug') in made.notes
+    why = 'x force [slug] is in slug, which is no unit of a load'
+    assert made.content['axes']['x']['load'] == {'unknown': why}
+    refused('unit_furlong', guessed, {'t_s': TIME, 'x vel [furlong/h]': SPEED})
+
+
+@pytest.mark.parametrize(
+    ('name', 'kind', 'unit'), [('x torque [A]', 'current', 'A'), ('Effort X [N]', 'load', 'N')]
+)
+def test_the_unit_tells_what_a_torque_or_an_effort_is(name, kind, unit, guessed):
+    made = guessed({'t_s': TIME, 'x_vel_mm_s': SPEED, name: -9.0 * SPEED})
+    assert made.content['axes']['x'][kind] == {'column': name, 'unit': unit}
+
+
+def test_an_axis_in_brackets_is_no_unit(guessed):
+    columns = {'Time(ms)': TIME * 1e3, 'POSF(X)': 5.0 * PLACE, 'SPEED(X)(rpm)': 60.0 * TURNING}
+    made = guessed(columns | {'TCMD(X)(A)': SPEED}).content
+    axis = made['axes']['x']
+    assert made['assumed']['x.position.unit']['value'] == 'mm'
+    assert axis.pop('lead_mm') is None
+    assert {kind: one.get('unit') for kind, one in axis.items()} == {
+        'speed': 'rev/min',
+        'position': None,
+        'current': 'A',
+    }
+    axis = guessed(columns | {'TCMD(X)': SPEED}).content['axes']['x']
+    assert axis['torque'] == {'column': 'TCMD(X)', 'unit': None}
+
+
+@pytest.mark.parametrize('names', [('t1 [s]', 't2 [s]'), ('x_vel time [s]', 'x_torque time [s]')])
+def test_times_may_be_numbered_or_named_after_their_column(names, guessed):
+    first, second = names
+    columns = {first: TIME, 'x_vel [mm/s]': SPEED, second: 1.0 + 1.25 * TIME}
+    made = guessed(columns | {'x_torque [Nm]': -SPEED}, form='{:.9g}')
+    assert made.content['time'] == {'column': first, 'unit': 's'}
+    assert made.content['axes']['x']['torque']['time'] == second
+
+
+def test_minutes_and_seconds_of_an_hour_are_a_time(tmp_path):
+    log = tmp_path / 'log.csv'
+    tenths = range(35_900, 36_100)
+    rows = ''.join(
+        f'{at // 600 % 60:02}:{at % 600 // 10:02}.{at % 10};{at % 7};1\n' for at in tenths
+    )
+    log.write_text(f'time;x_vel_mm_s;x_force_N\n{rows}')
+    made = guess(log)
+    assert made.content['time'] == {'column': 'time', 'unit': 's'}
+    (rows,) = [rows for (rows,) in read_series(log, make_map(made.content)).blocks()]
+    assert np.diff(rows.stamps) / 1e9 == pytest.approx(0.1)
+
+
+def test_nothing_is_said_of_numbers_whose_sign_is_open(tmp_path):
+    log = tmp_path / 'log.txt'
+    rows = ''.join(f'{at}\t{at},500\t{at + 1},250\n' for at in range(1, 200))
+    log.write_text(f't [s]\tspeed X [m/min]\tforce X [kN]\n{rows}')
+    made = guess(log)
+    assert made.content['decimal'] is None
+    assert made.picture[0].startswith('Group 1: an unknown period')
+    assert not any('moves' in note for note in made.notes)

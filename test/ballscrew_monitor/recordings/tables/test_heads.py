@@ -86,3 +86,17 @@ def test_a_period_is_found_wherever_it_stands(line, period):
 def test_a_remark_about_a_name_does_not_name_the_columns():
     head = head_of('Name;x\nTimestamp;ActVelo [mm/s];Force [N]\n1;2;3\n2;3;4\n3;4;5')
     assert head.names == ('Timestamp', 'ActVelo [mm/s]', 'Force [N]')
+
+
+def test_rows_that_begin_with_an_empty_cell_are_told_from_those_about_columns():
+    head = [
+        'Samples\t90\t90',
+        'X0\t0.0\t0.0',
+        'Delta_X\t0.01\t0.01',
+        'X_Value\tPosition Z\tForce Z',
+    ]
+    rows = [f'\t{at}.5\t{at}.25' for at in range(30)]
+    lines = [Line(raw=raw, row=row + 1) for row, raw in enumerate([*head, *rows])]
+    found = find_head(lines)
+    assert (found.names, found.first) == (('X_Value', 'Position Z', 'Force Z'), 5)
+    assert found.period == 0.01

@@ -66,6 +66,13 @@ def test_a_topic_of_changing_joints_is_refused(tmp_path, refused):
     refused('joints', guess, path)
 
 
+def test_a_line_with_fewer_numbers_than_joints_is_refused(tmp_path, refused):
+    path = tmp_path / 'joints.csv'
+    lines = [f'{BEGIN},{at * 10_000_000},,x_axis,y_axis,1,2,3' for at in range(50)]
+    path.write_text('\n'.join(lines))
+    refused('fewer', guess, path)
+
+
 def adapter(path):
     """Write places and loads on change, on lines of their own, the load without a sign."""
     lines = []

@@ -111,6 +111,7 @@ CELL = st.none() | st.floats(-2000.0, 2000.0)
 ROW = st.tuples(STEP, CELL, CELL, CELL, CELL, st.none() | st.floats(10.0, 70.0))
 WHOLE = (10, 100.0, -500.0, 0.7, 3.0, 40.0)
 MOVED = (10, 110.0, -400.0, 0.8, 4.0, None)
+SLOWLY_WARM = [*[(1, *[None] * 5)] * 14, (1, *[None] * 4, 10.0), (400, *[None] * 4, 10.0)]
 
 
 @given(
@@ -233,6 +234,7 @@ def by_run(log, values):
     runs=st.integers(2, 3),
     block=st.sampled_from([7, 1000]),
 )
+@example(axes=MAPS[2], rows=SLOWLY_WARM, runs=2, block=7)
 @settings(max_examples=12, deadline=None)
 def test_each_run_is_judged_as_if_it_were_alone(axes, rows, runs, block):
     """Its rows are bit for bit those of a log of this run, as a table and as the bag of it."""

@@ -6,6 +6,7 @@ import itertools
 import math
 
 from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.long_form import bad_qualities
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
 from ballscrew_monitor.recordings.tables.sources import source_of
@@ -127,6 +128,34 @@ def test_a_value_of_bad_quality_is_not_known(tmp_path):
     assert np.flatnonzero(np.isnan(rows.columns['x.position'])).tolist() == [1]
 
 
+@pytest.mark.parametrize(
+    ('good', 'bad'),
+    [
+        (['192', '216'], ['0', '24', '64']),  # OPC DA: GGxxxxxx, where 11 is good
+        (['0xC0'], ['0x00', '0x18']),
+        (['128'], ['0', '16', '64']),  # PROFIBUS, and WinCC by it
+        (['0', '1024'], ['2147483648', '2165637120', '1073741824']),  # OPC UA, severity on top
+        (['100'], ['0']),  # per cent of the samples
+        (['Good', 'GoodLocalOverride', 'Good, Non-specific'], ['Comm Fail', 'Uncertain']),
+        (['OK', ''], ['Fault']),
+        (['Gut'], ['Schlecht', 'Unsicher']),
+        ([''], ['BAD', 'No Data', 'Not_Connected']),
+        (['AUTO', 'RUN', 'Goods'], []),  # no quality, but a state of the machine
+        (['0', '1', '2'], []),
+    ],
+)
+def test_a_quality_is_good_as_its_standard_has_it(good, bad):
+    assert sorted(bad_qualities([*good, *bad])) == sorted(bad)
+
+
+def test_a_value_whose_quality_of_opc_is_no_good_is_not_known(tmp_path):
+    lines = [f'{lines};192' for lines in lines_of(['time', 'name', 'value'])]
+    lines[0] = lines[0].replace('192', 'Quality')
+    lines[4] = lines[4].replace(';192', ';0')
+    rows = read(tmp_path / 'log.csv', lines)
+    assert np.flatnonzero(np.isnan(rows.columns['x.position'])).tolist() == [1]
+
+
 def test_a_signal_in_two_units_is_refused(tmp_path, refused):
     lines = lines_of(['time', 'name', 'value', 'unit'])
     path = tmp_path / 'log.csv'
@@ -147,3 +176,19 @@ def test_a_table_with_a_column_of_texts_is_none(head, tmp_path):
     ]
     path.write_text('\n'.join([head, *rows]))
     assert source_of(path).names() == head.split(';')
+
+
+@pytest.mark.parametrize('names', [('time', 'turn'), ('time 0', 'name')])
+def test_a_signal_may_be_called_as_the_time_is(names, tmp_path):
+    path = tmp_path / 'log.csv'
+    rows = [f'{at},{name},{at}' for at in range(20) for name in (*names, 'x_pos_mm')]
+    path.write_text('\n'.join(['time,tag,value', *rows]))
+    held = [name.split('_dup')[0] for name in source_of(path).names()]
+    assert held == ['time', *names, 'x_pos_mm']
+
+
+def test_an_id_is_the_name_of_a_signal_where_nothing_else_is(tmp_path):
+    path = tmp_path / 'log.csv'
+    rows = [f'{at},{name},{at % 3}' for at in range(20) for name in ('z_speed_mm_s', 'z_force_N')]
+    path.write_text('\n'.join(['time,id,val', *rows]))
+    assert source_of(path).names() == ['time', 'z_speed_mm_s', 'z_force_N']

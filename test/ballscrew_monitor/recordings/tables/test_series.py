@@ -13,6 +13,7 @@ from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import force_of, read_series
 import numpy as np
 import pytest
+from surrogate.files import InputError
 
 TIME = np.arange(400) / 50.0
 SPEED = 100.0 * np.sin(TIME)  # [mm/s]
@@ -72,11 +73,37 @@ def test_amounts_of_a_torque_get_the_sign_of_the_motion(read, says, motion, sign
     assert says('amounts') not in signed.notes
 
 
-def test_a_torque_that_holds_a_weight_keeps_its_sign(read, says):
+def test_a_torque_that_holds_a_weight_keeps_its_sign_beside_a_measured_load(read, says):
     torque = 6.0 + FRICTION
-    found = read({'t': TIME, 'v': SPEED, 'm': torque}, OF_TORQUE)
+    axis = OF_TORQUE | {'load': {'column': 'f', 'unit': 'N', 'magnitude': False}}
+    found = read({'t': TIME, 'v': SPEED, 'm': torque, 'f': -torque}, axis)
     np.testing.assert_allclose(found.torque, torque)
     assert says('amounts') not in found.notes
+
+
+@pytest.mark.parametrize('motion', ['v', 'p'])
+@pytest.mark.parametrize(
+    'torque',
+    [6.0 + FRICTION, np.abs(0.3 + FRICTION), np.where(SPEED > 0.0, 1.9, 1.3)],
+    ids=['weight', 'amounts', 'steady'],
+)
+def test_the_map_decides_on_the_sign_of_a_torque_that_makes_the_load(
+    read, refused, torque, motion
+):
+    """What is more in one direction may be a weight, or the amount of what turns round."""
+    position = {'position': {'column': 'p', 'unit': 'mm'}, 'lead_mm': 10.0}
+    axis = (
+        OF_TORQUE
+        if motion == 'v'
+        else position | {key: OF_TORQUE[key] for key in ('torque', 'load')}
+    )
+    columns = {'t': TIME, 'v': SPEED, 'p': POSITION, 'm': torque}
+    refused('unclear_amounts', read, columns, axis)
+    for magnitude, signs in ((True, np.sign(SPEED)), (False, 1.0)):
+        stated = axis | {'torque': axis['torque'] | {'magnitude': magnitude}}
+        moves = np.abs(SPEED) > 3.0
+        found = read(columns, stated).torque[moves]
+        np.testing.assert_allclose(found, (signs * torque)[moves], rtol=1e-6)
 
 
 def test_a_steady_torque_of_one_sign_is_refused_until_the_map_says_what_it_is(read, refused):
@@ -256,3 +283,38 @@ def test_a_gap_noise_and_rest_say_nothing_a_wrong_sign_or_factor_is_told(notes):
     assert not notes(SPEED, 'mm/s', 0.0 * POSITION)
     assert notes(-SPEED, 'mm/s')[0].endswith('one of both has the wrong sign of its scale')
     assert notes(3.0 * SPEED, 'mm/s')[0].endswith('the time and the lead')
+
+
+def test_turns_of_a_position_are_counted(read):
+    """The slope of a sine of turns is a cosine, whichever turn the scale is in."""
+    turns = 4.0 * np.sin(TIME)
+    axis = {'lead_mm': 10.0, 'position': {'column': 'p', 'unit': 'deg'}}
+    rows = read({'t': TIME, 'p': 360.0 * turns % 360.0}, axis)
+    assert rows.speed[1:-1] == pytest.approx(2 * np.pi * 4.0 * np.cos(TIME[1:-1]), abs=0.01)
+    assert any('p stays within a turn' in note for note in rows.notes)
+
+
+def test_turns_that_too_few_rows_tell_are_refused(read):
+    axis = {'lead_mm': 10.0, 'position': {'column': 'p', 'unit': 'rev', 'scale': 0.5}}
+    with pytest.raises(InputError, match='begins again after each turn'):
+        read({'t': TIME, 'p': 2.0 * (0.46 * np.arange(400) % 1.0)}, axis)
+
+
+def test_a_speed_without_a_sign_gives_way_to_its_position(read, says):
+    axis = AXIS | {'position': {'column': 'p', 'unit': 'mm'}}
+    rows = read({'t': TIME, 'v': abs(SPEED), 'p': POSITION}, axis)
+    true = 2 * np.pi / 10.0 * SPEED
+    assert rows.speed[1:-1] == pytest.approx(true[1:-1], abs=0.05)
+    assert says('amounts_of_speed') in rows.notes
+
+
+def test_a_force_and_a_speed_of_one_sign_are_refused_until_the_map_says_that_they_have_one(
+    read, refused
+):
+    axis = AXIS | {'load': {'column': 'f', 'unit': 'N'}}
+    columns = {'t': TIME, 'v': SPEED, 'f': 900.0 + abs(SPEED)}
+    refused('one_sign_of_force', read, columns, axis)
+    axis['load']['magnitude'] = False
+    np.testing.assert_allclose(read(columns, axis).load, columns['f'])
+    axis = AXIS | {'torque': {'column': 'm', 'unit': 'N m'}, 'load': {'from': 'torque'}}
+    refused('one_sign_of_speed', read, {'t': TIME, 'v': abs(SPEED), 'm': FRICTION}, axis)

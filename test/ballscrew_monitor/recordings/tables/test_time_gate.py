@@ -11,6 +11,7 @@ import datetime as dt
 from pathlib import Path
 import tempfile
 
+from ballscrew_monitor.recordings.tables.clocks import moments_of
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
@@ -219,6 +220,41 @@ def test_a_clock_that_is_set_back_for_winter_goes_on(read):
     assert 'set back by an hour in row 42' in series.notes[-1]
 
 
+@pytest.mark.parametrize('block', [1, 7, 40, 80])
+@pytest.mark.parametrize(
+    ('last', 'left_out'),
+    [
+        ('2025-03-30 01:59:59.97', True),  # of Berlin
+        ('2025-03-30 00:59:59.97', True),  # of London
+        ('2025-03-09 01:59:59.97', True),  # of New York
+        ('2025-10-05 01:59:59.97', True),  # of Sydney
+        ('2025-03-31 01:59:59.97', False),  # a Monday
+        ('2025-03-30 01:30:00.00', False),
+        ('2025-03-30 13:59:59.97', False),
+        ('2025-06-29 01:59:59.97', False),
+    ],
+)
+@pytest.mark.parametrize('wall', [True, False])
+def test_a_clock_that_is_set_on_for_summer_leaves_out_an_hour(last, left_out, block, wall):
+    begin = dt.datetime.fromisoformat(f'{last}+00:00').timestamp()
+    times = begin + np.arange(-39, 41) / 20 + 3600.0 * (np.arange(80) >= 40)
+    gate = gated(times, block, wall=wall)
+    (run,) = gate.runs
+    assert run.end - run.begin == pytest.approx(79 / 20 + 3600.0 * (not (wall and left_out)))
+    assert gate.shifts([0.0]) == ({42: -3600.0} if wall and left_out else {})
+
+
+@pytest.mark.parametrize('zone', ['', '+01:00'])
+def test_a_log_of_a_night_in_which_summer_begins_has_no_hole(read, zone):
+    begin = dt.datetime(2025, 3, 30, 1, 59, 58)
+    true = [dt.timedelta(seconds=row / 20) for row in range(80)]
+    times = [begin + one + dt.timedelta(hours=row >= 40) for row, one in enumerate(true)]
+    series = read([f'{one:%Y-%m-%d %H:%M:%S.%f}{zone}' for one in times])
+    stamps = np.concatenate([block.stamps for (block,) in series.blocks()])
+    assert stamps[-1] - stamps[0] == pytest.approx(3.95e9 + 3.6e12 * bool(zone))
+    assert ('set on by an hour in row 42' in series.notes[-1]) is not bool(zone)
+
+
 @given(
     st.floats(0.0, 50.0),
     st.lists(st.integers(AGAIN + 1, 60), min_size=2, max_size=5),
@@ -279,6 +315,31 @@ def test_in_whatever_form_a_time_stands_the_rate_is_right_or_refused(form, decad
     rate = 10**decade
     found = outcome(*form, rate, appended=appended)
     assert found is None or found == pytest.approx(rate, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ('month', 'names'),
+    [
+        (1, 'Januar Jan Jan. Jän. Jänner'),
+        (2, 'Februar Feb.'),
+        (3, 'März Mär Mär. Mrz Mrz. MÄRZ Maerz March Ma\u0308rz'),
+        (4, 'April Apr.'),
+        (5, 'Mai MAI May'),
+        (6, 'Juni Jun. June'),
+        (7, 'Juli Jul. July'),
+        (8, 'August Aug.'),
+        (9, 'September Sept. Sep.'),
+        (10, 'Oktober Okt. OKT October Oct'),
+        (11, 'November Nov.'),
+        (12, 'Dezember Dez. December Dec'),
+    ],
+)
+@pytest.mark.parametrize('form', ['15. {} 2025', '15.{} 2025', '15-{}-2025', 'Sa., 15. {} 2025'])
+def test_a_month_is_told_by_its_name(month, names, form):
+    true = dt.datetime(2025, month, 15, 8, 15, 30, tzinfo=dt.UTC).timestamp()
+    for name in names.split():
+        moments = [moment for moment, _ in moments_of(f'{form.format(name)} 08:15:30.000')]
+        assert moments == [true], name
 
 
 @pytest.mark.parametrize('form', ['iso', 'iso T', 'zone', 'German', 'year first', 'of the day'])

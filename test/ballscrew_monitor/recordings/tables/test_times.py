@@ -33,3 +33,13 @@ def test_equal_steps_are_told_to_the_last_bit_and_one_of_exactly_a_hundred_is_no
     assert counted(np.zeros(4), 4).gaps() == 0
     for last, gaps in ((100.0, 0), (101.0, 1)):
         assert counted(np.cumsum([0.0, *[7.0] * 9, 7.0 * last]), 4).gaps() == gaps
+
+
+@pytest.mark.parametrize('block', [1, 2, 9])
+def test_a_pause_between_runs_is_no_step(block):
+    stamps, runs = np.array([0.0, 20, 420, 90_000, 90_020, 90_420]), np.repeat([0, 1], 3)
+    steps = Steps()
+    for begin in range(0, len(stamps), block):
+        end = begin + block
+        steps.add(stamps[begin:end], runs[begin:end])
+    assert (steps.median, steps.longest, steps.longest_row) == (210.0, 400.0, 2)

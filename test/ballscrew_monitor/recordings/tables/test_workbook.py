@@ -9,7 +9,10 @@ import types
 import zipfile
 
 from ballscrew_monitor.recordings.tables import workbook
-from ballscrew_monitor.recordings.tables.workbook import first_sheet, write_cells
+from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.series import read_series
+from ballscrew_monitor.recordings.tables.workbook import read_sheet, write_cells
 import openpyxl
 import polars as pl
 import pytest
@@ -63,12 +66,12 @@ def with_row(row):
 
 @pytest.mark.parametrize('form', FORMS)
 def test_cells_are_the_same_however_they_are_told(form, book):
-    assert first_sheet(book(FORMS[form])).rows() == ROWS
+    assert read_sheet(book(FORMS[form])).cells.rows() == ROWS
 
 
 @pytest.mark.parametrize('form', FORMS)
 def test_a_cell_far_off_is_refused_before_anything_is_read(form, book, unread, refused):
-    refused('far_off', first_sheet, book(lambda text: with_row(FAR)(FORMS[form](text))))
+    refused('far_off', read_sheet, book(lambda text: with_row(FAR)(FORMS[form](text))))
 
 
 @pytest.mark.parametrize(
@@ -82,7 +85,7 @@ def test_a_cell_far_off_is_refused_before_anything_is_read(form, book, unread, r
     ],
 )
 def test_no_reference_hides_behind_others(row, book, unread, refused):
-    refused('far_off_anywhere', first_sheet, book(with_row(row)))
+    refused('far_off_anywhere', read_sheet, book(with_row(row)))
 
 
 @pytest.mark.parametrize('size', [1, 7, 64])
@@ -91,7 +94,7 @@ def test_a_reference_may_lie_across_blocks(size, book, unread, refused, monkeypa
     monkeypatch.setattr(limits, 'most_unpacked', lambda packed: 10**9)
     monkeypatch.setattr(limits, 'WORKBOOK', 10**9)
     monkeypatch.setattr(limits, 'MEGA', size)
-    refused('far_off_anywhere', first_sheet, path)
+    refused('far_off_anywhere', read_sheet, path)
 
 
 @pytest.mark.parametrize(
@@ -105,7 +108,7 @@ def test_a_reference_may_lie_across_blocks(size, book, unread, refused, monkeypa
     ids=['format', 'no value', 'formula', 'row'],
 )
 def test_cells_without_a_value_are_none(row, book):
-    assert first_sheet(book(with_row(row))).rows() == ROWS
+    assert read_sheet(book(with_row(row))).cells.rows() == ROWS
 
 
 @pytest.mark.parametrize(
@@ -123,15 +126,15 @@ def test_a_sheet_that_is_none_is_refused(key, change, book, unread, refused, mon
     monkeypatch.setattr(limits, 'most_unpacked', lambda packed: 10**9)
     monkeypatch.setattr(limits, 'LINE', 4000)
     monkeypatch.setattr(limits, 'MEGA', 1000)
-    refused(key, first_sheet, path)
+    refused(key, read_sheet, path)
 
 
 def test_a_workbook_without_a_sheet_is_refused(book, unread, refused):
-    refused('no_part', first_sheet, book(left_out=['xl/worksheets/sheet1.xml']))
+    refused('no_part', read_sheet, book(left_out=['xl/worksheets/sheet1.xml']))
 
 
 def test_a_workbook_that_lists_no_sheet_is_refused(book, refused):
-    refused('no_list', first_sheet, book(left_out=['xl/workbook.xml']))
+    refused('no_list', read_sheet, book(left_out=['xl/workbook.xml']))
 
 
 class Panic(BaseException):
@@ -147,7 +150,7 @@ def test_a_panic_of_the_reader_is_a_sentence_and_an_interrupt_is_none(
         raise raised.pop()
 
     monkeypatch.setattr(pl, 'read_excel', read)
-    inputs = {'path': str(book()), 'target': str(tmp_path / 'cells')}
+    inputs = {'path': str(book()), 'target': str(tmp_path / 'cells'), 'sheet': ''}
     for error in (Panic('capacity overflow'), IndexError('capacity overflow')):
         raised.append(error)
         refused('panic', write_cells, inputs)
@@ -159,14 +162,14 @@ def test_a_panic_of_the_reader_is_a_sentence_and_an_interrupt_is_none(
 
 def test_a_reader_that_needs_too_much_memory_is_a_sentence(book, refused, monkeypatch):
     monkeypatch.setattr(limits, 'MEMORY', 1000)
-    refused('memory', first_sheet, book())
+    refused('memory', read_sheet, book())
 
 
 def test_a_workbook_is_read_once_as_long_as_it_is_the_same(book, monkeypatch):
     path = book()
-    cells = first_sheet(path)
+    cells = read_sheet(path)
     monkeypatch.setattr(workbook, 'result_apart', None)
-    assert first_sheet(path) is cells
+    assert read_sheet(path) is cells
 
 
 def test_what_a_cell_comes_to_is_that_of_the_whole_sheet(book, monkeypatch, refused):
@@ -176,6 +179,52 @@ def test_what_a_cell_comes_to_is_that_of_the_whole_sheet(book, monkeypatch, refu
     monkeypatch.setattr(limits, 'SPARSE', 0)
     monkeypatch.setattr(limits, 'PACKING', 100)
     monkeypatch.setattr(workbook, 'CELL_SIZE', 10 * size // 8)
-    assert first_sheet(path).rows() == ROWS
+    assert read_sheet(path).cells.rows() == ROWS
     monkeypatch.setattr(workbook, 'CELL_SIZE', 10 * size // 8 + 1)
-    refused('eight_cells', first_sheet, path)
+    refused('eight_cells', read_sheet, path)
+
+
+@pytest.fixture
+def books(tmp_path):
+    """Return the function that writes a workbook of several sheets, rows by their names."""
+
+    def write(sheets):
+        made, path = openpyxl.Workbook(), tmp_path / 'log.xlsx'
+        made.remove(made.active)
+        for name, rows in sheets.items():
+            sheet = made.create_sheet(name)
+            for row in rows:
+                sheet.append(row)
+        made.save(path)
+        return path
+
+    return write
+
+
+INFO = [('Maschine', 'DMU'), ('Takt', 20), ('Nummer', 7), ('Jahr', 2025)]
+DATA = [('t_s', 'x_vel_mm_s', 'x_force_N'), *((at / 50, at % 9, -at) for at in range(60))]
+OTHER = [('t_s', 'x_vel_mm_s', 'x_force_N'), *((at / 10, at % 7, -at) for at in range(60))]
+
+
+def test_the_sheet_with_a_table_is_read_and_the_others_are_named(books, says):
+    path = books({'Info': INFO, 'Daten': DATA, 'Leer': []})
+    made = guess(path)
+    assert made.content['sheet'] == 'Daten'
+    assert says('other_sheets') in made.notes
+    assert read_series(path, make_map(made.content)).count == 60
+    assert 'sheet' not in guess(books({'Daten': DATA})).content
+
+
+def test_a_map_names_the_sheet(books, refused):
+    path = books({'Info': INFO, 'Daten': DATA, 'Later': OTHER})
+    content = guess(path).content
+    assert content['sheet'] == 'Daten'
+    for name, period in (('Daten', 0.02), ('Later', 0.1)):
+        series = read_series(path, make_map(content | {'sheet': name}))
+        assert series.usual_period == pytest.approx(period)
+    refused('no_such_sheet', read_series, path, make_map(content | {'sheet': 'Messung'}))
+    refused('sheet_number', make_map, content | {'sheet': 2})
+
+
+def test_sheets_without_numbers_are_named(books, refused):
+    refused('no_numbers', guess, books({'Info': [('Maschine', 'DMU')], 'Text': [('a', 'b')]}))

@@ -1,0 +1,150 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Signs of columns, which some meters and controls leave out."""
+
+from collections.abc import Mapping
+import math
+
+from ballscrew_monitor.recordings.tables.cells import Array
+from ballscrew_monitor.recordings.tables.mapping import MOTOR
+import numpy as np
+
+MANY = 8  # rows that tell whether torques are amounts
+CLEARLY = 2.0  # times the sum of squares of the better of two readings
+BARELY = 0.05  # of an amount is noise about zero
+BACK = 0.01  # of the way of an axis that reverses, at least, leads in either direction
+SAME_TURN = 0.2  # of the largest mean torque of motions that turns with none of them
+
+
+def are_amounts(kind: str, data: Mapping[str, Array], *, makes_load: bool) -> bool | None:
+    """
+    Return whether a column of an axis holds amounts, None if unclear, by kind of quantity.
+
+    `data` has what else is known of the axis in the same rows, in whatever unit [-]; `makes_load`
+    says that the load is worked out from the torque or current.
+
+    """
+    values = data[kind]
+    if kind == 'speed':
+        motor = next((data[each] for each in MOTOR if each in data), None)
+        unclear = 'position' not in data and not (values < -BARELY * np.nanmax(values)).any()
+        return None if unclear and motor is not None and turns_by_torque(motor, values) else False
+    speed = data['speed'] if 'speed' in data else slopes(data['position'])
+    if not is_one_sided(values, speed):
+        return False
+    if kind in MOTOR:
+        return is_magnitude(values, speed, makes_load=makes_load)
+    return None if reverses(speed) else False
+
+
+def is_one_sided(values: Array, speed: Array) -> bool:
+    """
+    Return True if values [-] have one sign while an axis moves by its speed [-], but for noise.
+
+    Values at other times than the speed count in motion and at rest.
+
+    """
+    known = np.isfinite(values) & (values != 0.0)
+    amounts = np.abs(np.nan_to_num(speed))
+    moving = known & (amounts > BARELY * amounts.max(initial=0.0))
+    values = values[moving if moving.any() else known]
+    ahead, back = float(values[values > 0.0].sum()), -float(values[values < 0.0].sum())
+    return max(ahead, back) > 0.0 and min(ahead, back) <= BARELY * (ahead + back)
+
+
+def reverses(ways: Array) -> bool:
+    """
+    Return True if an axis moves in both directions by its ways from row to row, or its speeds [-].
+
+    Jitter at rest makes little way, and a jump, such as to the begin of another run, is a single
+    step.
+
+    """
+    ways = ways[np.isfinite(ways) & (ways != 0.0)]
+    if len(ways) < 2:
+        return False
+    same = np.sign(ways[1:]) == np.sign(ways[:-1])
+    lasting = np.append(same, False) | np.append(False, same)
+    usual = float(np.quantile(np.abs(ways), 0.99))
+    steps = np.clip(ways[lasting], -usual, usual)
+    ahead, back = float(steps[steps > 0.0].sum()), -float(steps[steps < 0.0].sum())
+    return min(ahead, back) > BACK * (ahead + back)
+
+
+def is_magnitude(torque: Array, speed: Array, *, makes_load: bool) -> bool | None:
+    """
+    Return whether torques of one sign are amounts [-] in rows at equal distances, None if unclear.
+
+    Friction, viscous or not, turns with the motion, a weight does not, and what accelerates does
+    so with neither: amounts have an even part of the speed [-], torques with a sign an odd one.
+    An axis that does not reverse shows no amounts; torques at other times show nothing. Amounts
+    that differ by direction look as torques with a sign do: where a torque makes the load, it is
+    unclear whether it has one.
+
+    """
+    if len(speed) < MANY:
+        return False
+    push = np.gradient(speed)
+    good = np.isfinite(torque) & np.isfinite(speed) & np.isfinite(push) & (speed != 0.0)
+    known = np.isfinite(torque).sum(), (np.isfinite(speed) & (speed != 0.0)).sum()
+    if good.sum() < MANY:
+        return None if min(known) >= MANY else False
+    torque, speed, push = torque[good], speed[good], push[good]
+    if not reverses(speed):
+        return False
+    ways, once = np.sign(speed), np.ones(len(speed))
+    misses = []
+    for parts in ([once, np.abs(speed), ways * push], [once, ways, speed, push]):
+        terms = np.column_stack(parts)
+        fit = np.linalg.lstsq(terms, torque, rcond=None)[0]
+        misses.append(float(np.sum((torque - terms @ fit) ** 2)))
+    amounts, signed = (miss + 1e-9 * float(torque @ torque) for miss in misses)
+    if max(amounts, signed) < CLEARLY * min(amounts, signed):
+        return None
+    return None if signed < amounts and makes_load else amounts < signed
+
+
+def slopes(positions: Array) -> Array:
+    """Return the changes of positions from row to row [-], of those that hold one."""
+    known = np.flatnonzero(np.isfinite(positions))
+    found = np.full(len(positions), math.nan)
+    if len(known) > 1:
+        found[known] = np.gradient(positions[known])
+    return found
+
+
+def fault_of_speed(speed: Array, position: Array, places: Array) -> str:
+    """
+    Return why speeds are not those of a position, empty if they may be.
+
+    Of both the least and the most [-] are given, and the first `places` [-] in a row. A channel
+    that is not connected gives nothing but zeros, and a meter may give amounts.
+
+    """
+    if not np.nan_to_num(speed).any():
+        return 'is always 0 while the position moves' if np.ptp(position) > 0.0 else ''
+    least, most = sorted(abs(float(end)) for end in speed)
+    is_one_sided = speed[0] * speed[1] >= 0.0 or least <= BARELY * most
+    if is_one_sided and reverses(np.diff(places[np.isfinite(places)])):
+        return 'never changes its sign while the position goes back and forth'
+    return ''
+
+
+def turns_by_torque(torque: Array, speed: Array) -> bool:
+    """
+    Return True if a torque [-] turns with motions whose speed [-] never does.
+
+    The mean over a motion is that of friction and load, since what accelerates also brakes.
+
+    """
+    good = np.isfinite(torque) & np.isfinite(speed)
+    torque, speed = torque[good], np.abs(speed[good])
+    moving = speed > BARELY * speed.max(initial=0.0)
+    ends = np.flatnonzero(np.diff(moving)) + 1
+    means = [
+        float(part.mean())
+        for part, moves in zip(np.split(torque, ends), np.split(moving, ends), strict=True)
+        if len(part) >= MANY and moves[0]
+    ]
+    least, most = min(means, default=0.0), max(means, default=0.0)
+    return least < -SAME_TURN * most and most > -SAME_TURN * least
