@@ -31,6 +31,7 @@ from surrogate.screw.contacts import (
 )
 from surrogate.screw.nut import load_change, make_nut, NutLoad, ScrewContact, solve_nut, SolvedNut
 from surrogate.screw.opened import Contacts
+from surrogate.screw.oversize import LIGHT_SHARE, make_oversize, solve_oversize
 from surrogate.screw.point import ScrewPoint
 
 TIER = 'full'
@@ -96,15 +97,20 @@ def solve_screw(
     if any(nut.force for nut in nuts):
         contacts = make_contacts(opened, lubricant, point, settings)
     loaded, relieved = (float(normal_force(screw, nut.force)) for nut in nuts)
+    four_points = screw.nut == 'oversize'
+    if four_points:
+        relieved = max(relieved, LIGHT_SHARE * loaded)
     with at(nut=1):
         pairs = [solve_sides(contacts, (loaded, loaded), near[:2])]
-    same = nuts[0].force == nuts[1].force
+    same = loaded == relieved
     with at(nut=2):
         pairs.append(pairs[0] if same else solve_sides(contacts, (relieved, relieved), near[2:]))
-    solved = []
+    solved, tolerance = [], settings.coupling_tolerance
+    if four_points and loaded > 0:
+        found = solve_oversize(screw, point, nuts, contacts, pairs, tolerance=tolerance)
+        return _combine(opened, point, found)
     for place, (nut, pair) in enumerate(zip(nuts, pairs, strict=True)):
         with at(nut=place + 1):
-            tolerance = settings.coupling_tolerance
             solved.append(solve_nut(screw, point, nut, contacts, pair, tolerance=tolerance))
     return _combine(opened, point, _without_floating(screw, point, nuts, solved))
 
@@ -129,17 +135,17 @@ def rebalance_screw(
     screw = opened.sheet
     _check_same_load(screw, point, found)
     sides = make_contacts(opened, lubricant, point, settings or ScrewSettings())
-    loaded, relieved = (
-        tuple(
-            with_oil_of(side, contact.solved)
+    pairs = [
+        [
+            with_oil_of(side, contact.solved) if contact.solved is not None else None
             for side, contact in zip(sides, contacts, strict=True)
-            if contact.solved is not None
-        )
+        ]
         for contacts in (found.contacts[:2], found.contacts[2:])
-    )
+    ]
     nuts = _nut_loads(screw, point)
-    pairs = zip(nuts, (loaded, relieved), strict=True)
-    solved = [make_nut(screw, point, *given) for given in pairs]
+    if screw.nut == 'oversize':
+        return _combine(opened, point, make_oversize(screw, point, nuts, pairs))
+    solved = [make_nut(screw, point, *given) for given in zip(nuts, pairs, strict=True)]
     return _combine(opened, point, _without_floating(screw, point, nuts, solved))
 
 
@@ -160,6 +166,7 @@ def _check_same_load(screw: Screw, point: OperatingPoint, found: ScrewSolution) 
         force > 0 and contact.solved is None
         for place, contact in enumerate(found.contacts)
         for force in [wanted[place // len(SIDES)]]
+        if screw.nut != 'oversize' or place < len(SIDES)
     )
     apart = max(abs(new - old) for new, old in zip(wanted, found.normal_forces, strict=True))
     if unsolved or apart > SAME_FORCE * max(wanted):

@@ -365,7 +365,7 @@ def test_inputs_that_make_no_sense_are_refused(screw, given_input, text):
 def test_floors_fall_by_a_ratio_from_far_above_the_slip_to_that_of_the_problem(screw, ratio):
     """The last stage has the lower floor of both laws; an infinite ratio leaves no other."""
     laws = [coulomb_traction(screw, side, 0.05, slip_floor=f) for side, f in zip(SIDES, (1e-4, 1))]
-    problem = BallProblem(
+    problem = TwoPointBall(
         screw=screw,
         speed=-SPEED,
         flank=1,
