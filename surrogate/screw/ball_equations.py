@@ -168,9 +168,9 @@ class FourPointBall(BallProblem):
     """
     A ball between both flanks of screw and nut; the pair that carries more comes first.
 
-    Normal force without friction of the other pair, and of each under preload alone [N]: by it the
-    ball is too large, and the grooves lie at the contact angle then. Derived: approach under 1 N on
-    each side [m].
+    Normal force without friction of the other pair, and of each under preload alone [N], which
+    the oversize makes; the ball then touches at the nominal contact angle. Derived: approach under
+    1 N on each side [m].
 
     """
 
@@ -354,7 +354,7 @@ def screw_torque(
     problem: BallProblem, which: int, values: Vector, friction: Vector
 ) -> tuple[float, float]:
     """
-    Return torque about the axis [N m] and axial force [N] that a flank of the screw gives the ball.
+    Return torque about the axis [N m] and axial force [N] of a flank of the screw on the ball.
 
     Moments of all that acts on the ball at the contact, taken about the axis, which passes r_m
     along n from the ball centre; both along k; unscaled unknowns.

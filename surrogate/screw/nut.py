@@ -33,6 +33,9 @@ CREEP = 1e-3
 """Screw speed of the limit of slow motion [rad/s]."""
 COUPLING_ROUNDS = 4
 """Most times that contacts are solved again under the forces of the balance [-]."""
+FLOATING_SHARE = 0.02
+"""Share of the load of the other nut below which a nut that is not solved counts as idle [-]: its
+balls float on films thicker than their approach."""
 NEGLECTED_FRICTION = 3e-4
 """Share of the friction of a contact on nodes that the balance leaves out [-]."""
 

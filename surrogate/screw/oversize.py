@@ -11,7 +11,6 @@ ball off a flank of the lighter pair, it rests on three.
 """
 
 from collections.abc import Sequence
-import math
 
 from surrogate.formulas.load_sharing import IDLE_SHARE, normal_force
 from surrogate.parameters import OperatingPoint, Screw
@@ -23,6 +22,7 @@ from surrogate.screw.nut import (
     COUPLING_ROUNDS,
     CREEP,
     flanks_of,
+    FLOATING_SHARE,
     load_change,
     NutLoad,
     SolvedNut,
@@ -32,7 +32,7 @@ LIGHT_SHARE = 0.05
 """Least normal force of the lighter pair over that of the other under which its contacts are first
 solved [-]: friction alone presses the ball by about as much."""
 
-Pair = Sequence[SolvedContact]
+Pair = Sequence[SolvedContact | None]
 
 
 def solve_oversize(
@@ -65,18 +65,18 @@ def solve_oversize(
 
 def _again(contacts: Sequence[RollingContact], nut: SolvedNut, pair: Pair) -> Pair:
     """Return a pair solved under the forces of the balance, a flank that was left as it was."""
-    first, second = (
-        found.ball.normal_force if found.solved is not None else one.pressed.condition.load
-        for found, one in zip(nut.contacts, pair, strict=True)
-    )
-    return solve_sides(contacts, (first, second), [(one.smooth, one.pressed) for one in pair])
+    forces = []
+    for contact, before in zip(nut.contacts, pair, strict=True):
+        if before is None:
+            return pair
+        pressed = contact.solved is not None
+        load = before.pressed.condition.load
+        forces.append(contact.ball.normal_force if pressed else load)
+    return solve_sides(contacts, (forces[0], forces[1]))
 
 
 def make_oversize(
-    screw: Screw,
-    point: OperatingPoint,
-    carried: Sequence[NutLoad],
-    pairs: Sequence[Sequence[SolvedContact | None]],
+    screw: Screw, point: OperatingPoint, carried: Sequence[NutLoad], pairs: Sequence[Pair]
 ) -> list[SolvedNut]:
     """Balance the ball between its pairs of solved contacts, None of a flank that it leaves."""
     for load, pair in zip(carried, pairs, strict=True):

@@ -29,7 +29,15 @@ from surrogate.screw.contacts import (
     SolvedContact,
     with_oil_of,
 )
-from surrogate.screw.nut import load_change, make_nut, NutLoad, ScrewContact, solve_nut, SolvedNut
+from surrogate.screw.nut import (
+    FLOATING_SHARE,
+    load_change,
+    make_nut,
+    NutLoad,
+    ScrewContact,
+    solve_nut,
+    SolvedNut,
+)
 from surrogate.screw.opened import Contacts
 from surrogate.screw.oversize import LIGHT_SHARE, make_oversize, solve_oversize
 from surrogate.screw.point import ScrewPoint
@@ -41,9 +49,6 @@ SOLVED = (
     'Solved: four contacts and the balls of both nuts.',
 )
 """Status by the number of nuts that carry load."""
-FLOATING_SHARE = 0.02
-"""Share of the load of the other nut below which a nut that is not solved counts as idle [-]: its
-balls float on films thicker than their approach."""
 SAME_FORCE = 1e-3
 """Normal forces that differ by less, over the larger, count as the same [-]."""
 
@@ -145,7 +150,10 @@ def rebalance_screw(
     nuts = _nut_loads(screw, point)
     if screw.nut == 'oversize':
         return _combine(opened, point, make_oversize(screw, point, nuts, pairs))
-    solved = [make_nut(screw, point, *given) for given in zip(nuts, pairs, strict=True)]
+    solved = [
+        make_nut(screw, point, nut, [one for one in pair if one is not None])
+        for nut, pair in zip(nuts, pairs, strict=True)
+    ]
     return _combine(opened, point, _without_floating(screw, point, nuts, solved))
 
 
