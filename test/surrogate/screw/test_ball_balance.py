@@ -17,7 +17,7 @@ from surrogate.formulas.sliding import ellipse_nodes
 from surrogate.parameters import load_screw
 from surrogate.screw import ball_balance
 from surrogate.screw.ball_balance import _floors, balance_ball, BalanceSettings, FIRST_FLOOR
-from surrogate.screw.ball_equations import BallProblem
+from surrogate.screw.ball_equations import BallFlank, TwoPointBall
 from surrogate.screw.ball_motion import axis_vector, contact_frame, slip_field, slip_floor
 from surrogate.screw.ball_result import BalanceStatus, BallContact
 from surrogate.screw.ball_traction import coulomb_traction, SolvedTraction
@@ -368,10 +368,11 @@ def test_floors_fall_by_a_ratio_from_far_above_the_slip_to_that_of_the_problem(s
     problem = TwoPointBall(
         screw=screw,
         speed=-SPEED,
-        flank=1,
-        tractions=(laws[0], laws[1]),
-        rolling_forces=(0.0, 0.0),
-        normal_force=27.6,
+        flanks=tuple(
+            BallFlank(side=side, flank=1, traction=law, rolling_force=0.0)
+            for side, law in zip(SIDES, laws)
+        ),
+        force_unit=27.6,
         axial_force=None,
     )
     floors = _floors(problem, ratio)
