@@ -9,6 +9,7 @@ Raceway and ball are each cut alone and then added, as the contact adds them.
 
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 import math
 
@@ -101,10 +102,18 @@ class RunningContact:
         """Shortest wave of raceway and ball [m]."""
         return min(2 * math.pi / float(waves.wave_number[-1]) for waves in self.waves.values())
 
+    def wave_above(self, least: float) -> float:
+        """Return the shortest wave of raceway and ball that is not below `least` [m]."""
+        lengths = [2 * math.pi / waves.wave_number for waves in self.waves.values()]
+        every = np.concatenate(lengths)
+        return float(every[every >= least].min(initial=float(every.max())))
 
-def running_tiles(contact: RunningContact, *, shortest: float = 0.0) -> list[Tile]:
+
+def running_tiles(
+    contact: RunningContact, *, shortest: float = 0.0, draws: Sequence[int] = range(TILES)
+) -> list[Tile]:
     """
-    Return tiles of a raceway with its ball in their state; none where both are smooth.
+    Return tiles of a raceway with its ball in their state, one a draw; none where both are smooth.
 
     Waves not shorter than `shortest` [m]. Raises InputError where the largest working load presses
     the contact by more than the cutting pressure.
@@ -123,7 +132,7 @@ def running_tiles(contact: RunningContact, *, shortest: float = 0.0) -> list[Til
         )
     size, shape = tile_size(contact, shortest=shortest)
     modulus, tiles = 0.5 * contact.reduced_modulus, []
-    for draw in range(TILES):
+    for draw in draws:
         drawn = (
             draw_tile(waves, draw, size=size, shape=shape, shortest=shortest, field=field)
             for field, waves in fields.items()

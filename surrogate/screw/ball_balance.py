@@ -117,15 +117,17 @@ def balance_ball(
 
 def balance_pairs(problem: BallProblem, settings: BalanceSettings) -> tuple[BallBalance, ...]:
     """Return the balance of a ball for each pair of its flanks; all end with one status."""
-    found = _solve(problem, settings)
-    status = found.status
+    iterate = _solve(problem, settings)
+    status = iterate.status
     if status is BalanceStatus.CONVERGED:
-        balances = converged_balances(problem, found.unknowns, found.steps)
+        balances = converged_balances(problem, iterate.unknowns, iterate.steps)
         if balances[0].imbalance <= settings.balance_tolerance:
             return balances
         status = BalanceStatus.STALLED
     return tuple(
-        BallBalance(status=status, speed=problem.speed, flank=place.flank, iterations=found.steps)
+        BallBalance(
+            status=status, speed=problem.speed, flank=place.flank, iterations=iterate.steps
+        )
         for place in problem.flanks[::2]
     )
 
@@ -171,17 +173,17 @@ def _solve(problem: BallProblem, settings: BalanceSettings) -> _Iterate:
     coarse = tuple(replace(place, traction=place.traction.sample()) for place in problem.flanks)
     rough = replace(problem, flanks=coarse)
     for ratio in STAGE_RATIOS:
-        found = _Iterate(unknowns=problem.frictionless())
+        iterate = _Iterate(unknowns=problem.frictionless())
         stages = [replace(rough, slip_floor=floor) for floor in _floors(problem, ratio)]
         for stage in (*stages, problem):
             sharp = stage.slip_floor == problem.slip_floor
             tolerance = settings.step_tolerance if sharp else STAGE_TOLERANCE
-            found = _newton(stage, found, tolerance, settings.newton_limit)
-            if found.status is not BalanceStatus.CONVERGED:
+            iterate = _newton(stage, iterate, tolerance, settings.newton_limit)
+            if iterate.status is not BalanceStatus.CONVERGED:
                 break
         else:
-            return found
-    return found
+            return iterate
+    return iterate
 
 
 def _floors(problem: BallProblem, ratio: float) -> list[float]:
@@ -206,9 +208,9 @@ def _newton(problem: BallProblem, start: _Iterate, tolerance: float, limit: int)
     Methods for Nonlinear Problems (2004), section 3.3.
 
     """
-    unknowns, found = start.unknowns, wrenches(problem, start.unknowns)
+    unknowns, friction = start.unknowns, wrenches(problem, start.unknowns)
     for steps in range(start.steps + 1, start.steps + 1 + limit):
-        imbalance, jacobian = linearise(problem, unknowns, found)
+        imbalance, jacobian = linearise(problem, unknowns, friction)
         if not _regular(jacobian):
             return _Iterate(unknowns, BalanceStatus.UNDETERMINED, steps)
         step = np.asarray(np.linalg.solve(jacobian, -imbalance), dtype=np.float64)
@@ -221,7 +223,7 @@ def _newton(problem: BallProblem, start: _Iterate, tolerance: float, limit: int)
             legal = _legal(problem, unknowns + SMALLEST_DAMPING * step)
             status = BalanceStatus.STALLED if legal else BalanceStatus.OUT_OF_RANGE
             return _Iterate(unknowns, status, steps)
-        unknowns, found = trial
+        unknowns, friction = trial
     return _Iterate(unknowns, BalanceStatus.STALLED, steps)
 
 
@@ -233,12 +235,12 @@ def _search(
     while damping >= SMALLEST_DAMPING:
         trial = unknowns + damping * step
         if _legal(problem, trial):
-            found = wrenches(problem, trial)
+            friction = wrenches(problem, trial)
             left = np.linalg.solve(
-                jacobian, residual(problem, trial, [wrench.values for wrench in found])
+                jacobian, residual(problem, trial, [wrench.values for wrench in friction])
             )
             if np.linalg.norm(left) <= (1 - 0.5 * damping) * np.linalg.norm(step):
-                return trial, found
+                return trial, friction
         damping *= 0.5
     return None
 
@@ -252,7 +254,7 @@ def _legal(problem: BallProblem, unknowns: Array) -> bool:
 
 
 def _regular(jacobian: Array) -> bool:
-    """Tell whether the equations decide every unknown, whatever the size of their rows."""
+    """Return True if the equations decide every unknown, whatever the size of their rows."""
     rows = np.abs(jacobian).max(axis=1, keepdims=True)
     if not (np.isfinite(jacobian).all() and rows.min() > 0):
         return False

@@ -330,7 +330,7 @@ def residual(problem: BallProblem, unknowns: Vector, friction: Sequence[Vector])
 
 
 def linearise(
-    problem: BallProblem, unknowns: Array, found: Sequence[Wrench]
+    problem: BallProblem, unknowns: Array, friction_at: Sequence[Wrench]
 ) -> tuple[Array, Array]:
     """
     Return the residual and its exact Jacobian [-] at scaled unknowns and the friction there.
@@ -344,10 +344,10 @@ def linearise(
     friction = [
         wrench.values[:, None]
         + 1j * (wrench.by_motion @ motion.imag + np.outer(wrench.by_load, np.imag(load)))
-        for wrench, motion, load in zip(found, moved, loads)
+        for wrench, motion, load in zip(friction_at, moved, loads)
     ]
     jacobian = residual(problem, steps, friction).imag / COMPLEX_STEP
-    return residual(problem, unknowns, [wrench.values for wrench in found]), jacobian
+    return residual(problem, unknowns, [wrench.values for wrench in friction_at]), jacobian
 
 
 def screw_torque(

@@ -147,20 +147,20 @@ def balanced_nut(
     if ball is not None and not ball.converged:
         failure = f'{carried.nut} nut, ball: {ball.status.value}'
     contacts = tuple(
-        _contact(screw, carried.nut, side, one, ball)
-        for side, one in zip(SIDES, solved, strict=True)
+        _contact(screw, carried.nut, side, contact, ball)
+        for side, contact in zip(SIDES, solved, strict=True)
     )
     return SolvedNut(force=carried.force, contacts=contacts, ball=ball, failure=failure)
 
 
 def contact_failure(name: NutName, solved: Sequence[SolvedContact | None]) -> str:
     """Return the sentence of the first contact that did not converge, or nothing."""
-    for side, one in zip(SIDES, solved, strict=True):
-        if one is None:
+    for side, contact in zip(SIDES, solved, strict=True):
+        if contact is None:
             continue
-        for kind, found in (('smooth', one.smooth), ('rough', one.pressed)):
-            if not found.converged:
-                return f'{name} nut, {side}, {kind} contact: {found.status.value}'
+        for kind, solution in (('smooth', contact.smooth), ('rough', contact.pressed)):
+            if not solution.converged:
+                return f'{name} nut, {side}, {kind} contact: {solution.status.value}'
     return ''
 
 
@@ -233,27 +233,30 @@ def flanks_of(
             side=side,
             flank=flank,
             traction=solved_traction(
-                one.pressed,
+                contact.pressed,
                 asperity_friction=screw.roughness.asperity_friction,
-                asperity_share=one.friction_share,
+                asperity_share=contact.friction_share,
                 slip_floor=floor,
                 neglected=NEGLECTED_FRICTION,
             ),
-            rolling_force=rolling_force(screw, one),
+            rolling_force=rolling_force(screw, contact),
         )
-        if one is not None
+        if contact is not None
         else BallFlank(side=side, flank=flank, traction=FreeTraction(), rolling_force=0.0)
-        for side, one in zip(SIDES, solved, strict=True)
+        for side, contact in zip(SIDES, solved, strict=True)
     )
 
 
 def rolling_force(screw: Screw, solved: SolvedContact) -> float:
     """Return the force that resists rolling on each surface [N]: oil, inlet tail, hysteresis."""
-    found = solved.pressed
+    pressed = solved.pressed
     elastic = hysteresis_force(
-        screw.hysteresis_loss, found.condition.load, found.semi_axis_x, found.contact.radius_x
+        screw.hysteresis_loss,
+        pressed.condition.load,
+        pressed.semi_axis_x,
+        pressed.contact.radius_x,
     )
-    return solved.asperities.loss_factor * found.whole_rolling_force + elastic
+    return solved.asperities.loss_factor * pressed.whole_rolling_force + elastic
 
 
 def friction_coefficient(
@@ -272,9 +275,9 @@ def friction_coefficient(
 
 
 def contact_slip(
-    screw: Screw, found: ContactSolution, side: Side, motion: BallMotion
+    screw: Screw, solution: ContactSolution, side: Side, motion: BallMotion
 ) -> tuple[Array, Array]:
     """Return the slip along and across the track [m/s] on the nodes of a contact."""
-    x, y = np.meshgrid(found.x, found.y, indexing='ij')
+    x, y = np.meshgrid(solution.x, solution.y, indexing='ij')
     turn = 1 if side == 'screw' else -1  # the nut's entrainment runs against t
     return slip_field(screw, side, motion, turn * x, turn * y)

@@ -5,6 +5,7 @@
 from dataclasses import replace
 import math
 
+from coulomb import coulomb_traction, hertz_nodes
 import numpy as np
 import pytest
 from surrogate.files import InputError
@@ -15,7 +16,6 @@ from surrogate.screw import closed_form, rebalance_screw, solve_screw
 from surrogate.screw.ball_balance import balance_four_points
 from surrogate.screw.ball_equations import BallFlank
 from surrogate.screw.ball_motion import axis_vector, contact_frame, slip_floor
-from surrogate.screw.ball_traction import coulomb_traction, hertz_nodes
 from surrogate.screw.opened import Contacts
 from surrogate.units import RPM, ZERO_CELSIUS
 

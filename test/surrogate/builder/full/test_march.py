@@ -24,7 +24,7 @@ BEGINS, NEVER = (
 
 def test_a_strip_of_long_waves_begins_to_touch_near_what_the_law_tells(screw, oil):
     """Within the 1.6 by which the law misses raceways without waves below 10 um."""
-    tasks = march_tasks(screw, oil, shortest=0.5, transits=6.0)
+    tasks = march_tasks(screw, oil, waves=2.0, transits=6.0)
     assert list(tasks) == ['strip 1', 'strip 2', 'strip 3']
     found = march_task(json.loads(json.dumps(tasks['strip 1'])))
     assert json.loads(json.dumps(found)) == found
