@@ -58,8 +58,8 @@ class CatalogueScrew(Checked):
         'ball diameter (default 0.635 leads, 0.2 diameters at most)', 'mm', 1e-3, 0.3, 100.0
     )
     nut: str = _asked(
-        'nut: double (two nuts), offset (one nut, its halves shifted), oversize (one nut, preloaded '
-        'by its balls) or plain (no preload)',
+        'nut: double (two nuts), offset (one nut, its halves shifted), oversize (one nut, its '
+        'balls preload it) or plain (no preload)',
         choice(*NUTS),
     )
     turns: float | None = _number('loaded turns of one nut, all circuits', '', 1.0, 0.5, 100.0)
