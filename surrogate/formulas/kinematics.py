@@ -82,7 +82,6 @@ def slip_arm(
     semi_axis_y: ArrayLike,
     *,
     spin: float | None = None,
-    gross: float = 0.0,
 ) -> Array:
     """
     Return the slip speed per screw speed [m/s per rad/s] at `x`, `y` [m] from the contact centre.
@@ -90,8 +89,7 @@ def slip_arm(
     Spin and curvature slip (Heathcote) run along the track, helical slip and spin across it. The
     curvature slip y^2/(2 R_d) is taken about its mean under Hertz pressure, a_y^2/5 with the
     semi-axis a_y [m], because a free ball carries no net traction along the track. The `spin`
-    [rad/s per rad/s] is that of a ball between two flanks unless it is given, and `gross` [m/s per
-    rad/s] the slip along the track of a ball that is held elsewhere.
+    [rad/s per rad/s] is that of a ball between two flanks unless it is given.
 
     """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
@@ -99,5 +97,5 @@ def slip_arm(
     relative_rolling = rates.entrainment / screw_contact(screw, side).radius_x
     bulge = (y * y - np.asarray(semi_axis_y) ** 2 / 5) / (2 * heathcote_radius(screw, side))
     turn = rates.spin if spin is None else spin
-    along = gross + turn * y - relative_rolling * bulge
+    along = turn * y - relative_rolling * bulge
     return np.asarray(np.hypot(along, rates.helical_slip - turn * x))

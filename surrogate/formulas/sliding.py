@@ -79,14 +79,13 @@ def sliding_friction(
     speed: Array,
     *,
     spin: float | None = None,
-    gross: float = 0.0,
 ) -> Sliding:
     """
     Integrate the traction of one contact; all arrays share one shape.
 
     `ellipse` under the normal force, `film` [m], asperity `share` [-], screw `speed` [rad/s], at
-    least 0, `spin` and `gross` slip as in `slip_arm`. At speed zero the film carries no traction
-    and the limit of slow motion remains.
+    least 0, `spin` as in `slip_arm`. At speed zero the film carries no traction and the limit of
+    slow motion remains.
 
     """
     x, y, weight = ellipse_nodes()
@@ -98,7 +97,6 @@ def sliding_friction(
         ellipse.semi_axis_y[..., None] * y,
         ellipse.semi_axis_y[..., None],
         spin=spin,
-        gross=gross,
     )
     viscosity = viscosity_roelands_1966(
         pressure, oil.viscosity[..., None], oil.pressure_viscosity[..., None]

@@ -5,7 +5,8 @@ Ratios of solved screws to formulas, which few points tell.
 
 Load sharing, kinematics and the law of asperity contact are the same in both tiers. What is left,
 films, traction and the balance of the balls, differs by a factor that varies slowly with speed,
-load and temperature; RCS and asperity share do not differ.
+load and temperature; RCS and asperity share do not differ. Oversize balls change their motion near
+unloading, which no formula follows: there the solved loads are close to each other.
 
 """
 
@@ -20,7 +21,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import distance_transform_edt
 from surrogate.builder.closed_form import temperature_nodes
 from surrogate.builder.full.chain import chain_inputs, SENSES, solved_chain
-from surrogate.builder.full.nodes import beside_idle, LIGHTEST, Nodes
+from surrogate.builder.full.nodes import beside_idle, four_point_loads, LIGHTEST, Nodes
 from surrogate.builder.full.settings import FullSettings
 from surrogate.files import InputError
 from surrogate.formulas.film import film_ratio
@@ -85,6 +86,9 @@ def _temperatures(lubricant: Lubricant, settings: FullSettings) -> Array:
 def _pieces(screw: Screw, settings: FullSettings) -> Iterator[Array]:
     """Yield loads [N] up to the idle load and beyond it, as far as the range reaches."""
     (least, most), (below, above) = settings.load_sizes, beside_idle(screw)
+    if screw.nut == 'oversize':
+        yield four_point_loads(screw, settings)
+        return
     if above <= 0:
         yield np.geomspace(max(least, LIGHTEST * most), most, len(LOADS))
         return
