@@ -210,6 +210,13 @@ class Screw(Checked):
                 f'screw: preload_N is {self.preload:g} N, allowed is up to static_rating_kN '
                 f'({self.static_rating * 1e-3:g} kN)'
             )
+        largest = self.static_rating / 2**1.5
+        if self.nut == 'oversize' and self.preload > largest:
+            raise InputError(
+                f'screw: preload_N is {self.preload:g} N with nut oversize, allowed is up to '
+                f'{largest:.4g} N: one pair of flanks carries 2.83 preloads as the other is '
+                f'relieved, and static_rating_kN is {self.static_rating * 1e-3:g} kN'
+            )
         if (self.free_length is None) != (self.support is None):
             given, other = 'free_length_mm', 'support'
             if self.free_length is None:

@@ -87,9 +87,14 @@ class CatalogueScrew(Checked):
     )
 
     def __post_init__(self) -> None:
-        """Check every range, that enough is given, and that no diameter is a radius."""
+        """Check ranges, that enough is given, and that turns and diameters fit."""
         Checked.__post_init__(self)
         _check_needed(self, self.NEEDED[:-1] if self.nut == 'plain' else self.NEEDED)
+        if self.nut == 'offset' and self.balls is None and (self.turns or 0.0) < 2:
+            raise InputError(
+                f'turns is {self.turns:g} with nut offset, allowed is 2 or more: each half of the '
+                'nut has a turn'
+            )
         if self.nominal_diameter is None or self.pitch_diameter is None:
             return
         low, high = (share * MILLI * self.nominal_diameter for share in PITCH_OVER_NOMINAL)

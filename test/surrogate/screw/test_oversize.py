@@ -199,6 +199,14 @@ def test_the_preload_fits_the_nut(nut, preload):
         replace(TWO_NUTS, nut=nut, preload=preload)
 
 
+def test_a_preload_beyond_what_one_pair_of_flanks_carries_is_refused():
+    """Relieved of one pair by 2.83 preloads, the other carries them: at most C0."""
+    largest = TWO_NUTS.static_rating / 2.828427
+    assert replace(SCREW, preload=0.999 * largest).preload < largest
+    with pytest.raises(InputError, match='with nut oversize, allowed is up to 3.333e.04 N'):
+        replace(SCREW, preload=1.001 * largest)
+
+
 def test_a_nut_of_two_flanks_is_stated_as_before_and_oversize_balls_are_not():
     """Surfaces of the one hold for the other, but not for oversize balls."""
     assert replace(TWO_NUTS, nut='offset').stated() == TWO_NUTS.stated()
