@@ -125,11 +125,11 @@ class FreeTraction:
     slip_floor: float = math.inf
 
     def places(self, load: float) -> tuple[Array, Array]:
-        """Return no places."""
+        """Return no places [m] under a `load` [N]."""
         return np.empty(0), np.empty(0)
 
     def strengths(self, load: float) -> tuple[Array, Array, Array, Array]:
-        """Return no strengths."""
+        """Return no strengths under a `load` [N]."""
         return np.empty(0), np.empty(0), np.empty(0), np.empty(0)
 
     def sample(self) -> 'FreeTraction':
