@@ -19,7 +19,6 @@ from surrogate.screw.contacts import RollingContact, solve_sides, SolvedContact
 from surrogate.screw.nut import (
     balanced_nut,
     contact_failure,
-    COUPLING_ROUNDS,
     CREEP,
     flanks_of,
     FLOATING_SHARE,
@@ -31,6 +30,10 @@ from surrogate.screw.nut import (
 LIGHT_SHARE = 0.05
 """Least normal force of the lighter pair over that of the other under which its contacts are first
 solved [-]: friction alone presses the ball by about as much."""
+
+DAMPINGS = (1.0, 1.0, 0.5, 0.5, 0.5, 0.5)
+"""Steps from the solved normal forces to those of the balance, in logarithms [-]: the force of a
+light flank may come back from a whole one."""
 
 Pair = Sequence[SolvedContact | None]
 
@@ -48,30 +51,32 @@ def solve_oversize(
     Balance the ball of a nut with oversize balls between its pairs of solved contacts.
 
     Friction and inertia move the normal forces; where by more than the `tolerance` [-], contacts
-    are solved again under the forces found, until they agree or `COUPLING_ROUNDS`.
+    are solved again under the forces found, until they agree or all `DAMPINGS` are used.
 
     """
     light = carried[1].force < FLOATING_SHARE * carried[0].force
     if light and contact_failure(carried[1].nut, pairs[1]):
         pairs = pairs[0], (None, None)
     nuts = make_oversize(screw, point, carried, pairs)
-    for _ in range(COUPLING_ROUNDS):
+    for damping in DAMPINGS:
         if not max(load_change(nut) for nut in nuts) > tolerance:
             break
-        pairs = [_again(contacts, nut, pair) for nut, pair in zip(nuts, pairs, strict=True)]
+        pairs = [
+            _again(contacts, nut, pair, damping) for nut, pair in zip(nuts, pairs, strict=True)
+        ]
         nuts = make_oversize(screw, point, carried, pairs)
     return nuts
 
 
-def _again(contacts: Sequence[RollingContact], nut: SolvedNut, pair: Pair) -> Pair:
-    """Return a pair solved under the forces of the balance, a flank that was left as it was."""
+def _again(contacts: Sequence[RollingContact], nut: SolvedNut, pair: Pair, damping: float) -> Pair:
+    """Return a pair solved under forces towards those of the balance, of left flanks as before."""
     forces = []
     for contact, before in zip(nut.contacts, pair, strict=True):
         if before is None:
             return pair
-        pressed = contact.solved is not None
         load = before.pressed.condition.load
-        forces.append(contact.ball.normal_force if pressed else load)
+        ratio = contact.ball.normal_force / load if contact.solved is not None else 1.0
+        forces.append(load * ratio**damping)
     return solve_sides(contacts, (forces[0], forces[1]))
 
 
