@@ -38,6 +38,8 @@ CORRECTED = tuple(name for name in FIELDS if name not in SHARES)
 """Fields that differ between the tiers."""
 SPEEDS = (0.0, 0.25, 0.42, 0.58, 0.71, 0.83, 0.92, 0.96, 1.0)
 """Solved speeds over the range, in logarithms [-]: they crowd where the balls feel inertia."""
+FOUR_POINT_SPEEDS = tuple(sorted({*SPEEDS, 0.15, 0.34, 0.5, 0.65, 0.77}))
+"""Those of oversize balls [-]: near unloading their motion changes with friction."""
 LOADS = (0.0, 0.375, 0.75, 0.9, 1.0)
 """Solved loads between none and the idle load [-]."""
 FILMS = 'central_film', 'minimum_film'
@@ -70,8 +72,9 @@ class SolvedGrid:
 def solved_grid(screw: Screw, lubricant: Lubricant, settings: FullSettings) -> SolvedGrid:
     """Return the points that are solved for a surface of some settings."""
     low, high = np.log(settings.speed_range)
+    shares = FOUR_POINT_SPEEDS if screw.nut == 'oversize' else SPEEDS
     return SolvedGrid(
-        speeds=np.exp(low + (high - low) * np.array(SPEEDS)),
+        speeds=np.exp(low + (high - low) * np.array(shares)),
         pieces=tuple(_pieces(screw, settings)),
         temperature=_temperatures(lubricant, settings),
     )
