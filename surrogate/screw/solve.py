@@ -49,6 +49,7 @@ SOLVED = (
     'Solved: four contacts and the balls of both nuts.',
 )
 """Status by the number of nuts that carry load."""
+FOUR_POINTS_SOLVED = 'Solved: oversize balls and their {} contacts.'
 SAME_FORCE = 1e-3
 """Normal forces that differ by less, over the larger, count as the same [-]."""
 
@@ -204,11 +205,11 @@ def _combine(opened: Contacts, point: OperatingPoint, nuts: Sequence[SolvedNut])
     contacts = nuts[0].contacts + nuts[1].contacts
     worst = worst_contact(contacts)
     worn = contacts[worst].solved if contacts else None
+    done = SOLVED[sum(nut.force > 0 for nut in nuts)]
+    if screw.nut == 'oversize':
+        done = FOUR_POINTS_SOLVED.format(sum(contact.solved is not None for contact in contacts))
     solution = ScrewSolution(
-        status=next(
-            (nut.failure for nut in nuts if nut.failure),
-            SOLVED[sum(nut.force > 0 for nut in nuts)],
-        ),
+        status=next((nut.failure for nut in nuts if nut.failure), done),
         converged=not any(nut.failure for nut in nuts),
         contacts=contacts,
         worst_contact=worst,

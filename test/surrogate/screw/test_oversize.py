@@ -160,6 +160,7 @@ def test_a_point_of_a_screw_carries_the_load_and_keeps_the_energy():
         assert 1.3 * two.friction_torque < found.friction_torque < 4.0 * two.friction_torque
     idle = [contact for contact in found.contacts if contact.solved is None]
     assert [(contact.nut, contact.side) for contact in idle] == [('relieved', 'screw')]
+    assert found.status == 'Solved: oversize balls and their 3 contacts.'
 
 
 def test_at_rest_a_point_is_the_ball_under_boundary_friction():
