@@ -43,6 +43,8 @@ __all__ = [
 ]
 
 NAME = (r'[A-Za-z0-9][A-Za-z0-9_.-]*', 'letters, digits and _ . - (it becomes a file name)')
+NUTS = ('double', 'offset', 'oversize', 'plain')
+"""Nuts of catalogues, by what preloads them."""
 SUPPORTS = ('fixed_fixed', 'fixed_supported', 'supported_supported', 'fixed_free')
 """How the bearings of a screw hold its ends."""
 VISCOSITY_MISMATCH = 2.0
@@ -83,6 +85,12 @@ class Screw(Checked):
         means='part of file names; a node accepts a surface only for the name that it states',
     )
     source: str = text(means='where the numbers come from')
+    nut: str = choice(
+        *NUTS,
+        default='double',
+        means='double (two nuts against each other), offset (one nut, its halves shifted), '
+        'oversize (one nut, balls that press both flanks) or plain (no preload)',
+    )
     pitch_radius: float = quantity(
         'mm', 1e-3, 1.0, 500.0, means='radius of the circle of the ball centres'
     )
@@ -192,10 +200,22 @@ class Screw(Checked):
                 f'screw: ball_diameter_mm is {self.ball_diameter * 1e3:g} mm, allowed is less '
                 f'than pitch_radius_mm ({self.pitch_radius * 1e3:g} mm)'
             )
+        if (self.preload == 0) != (self.nut == 'plain') and self.nut in ('plain', 'oversize'):
+            allowed = '0 N' if self.nut == 'plain' else 'more than 0 N'
+            raise InputError(
+                f'screw: preload_N is {self.preload:g} N with nut {self.nut}, allowed is {allowed}'
+            )
         if self.preload > self.static_rating:
             raise InputError(
                 f'screw: preload_N is {self.preload:g} N, allowed is up to static_rating_kN '
                 f'({self.static_rating * 1e-3:g} kN)'
+            )
+        largest = self.static_rating / 2**1.5
+        if self.nut == 'oversize' and self.preload > largest:
+            raise InputError(
+                f'screw: preload_N is {self.preload:g} N with nut oversize, allowed is up to '
+                f'{largest:.4g} N: one pair of flanks carries 2.83 preloads as the other is '
+                f'relieved, and static_rating_kN is {self.static_rating * 1e-3:g} kN'
             )
         if (self.free_length is None) != (self.support is None):
             given, other = 'free_length_mm', 'support'
@@ -220,8 +240,16 @@ class Screw(Checked):
                 )
 
     def stated(self) -> dict[str, Any]:
-        """Return the values by name on which a solve depends."""
-        return {name: value for name, value in asdict(self).items() if name not in self.SERVICE}
+        """
+        Return the values by name on which a solve depends.
+
+        Of nuts, oversize balls alone have other contacts.
+
+        """
+        values = asdict(self)
+        if self.nut != 'oversize':
+            del values['nut']
+        return {name: value for name, value in values.items() if name not in self.SERVICE}
 
     def service(self) -> dict[str, Any]:
         """Return the values by name that are stated for life, critical speed and buckling."""

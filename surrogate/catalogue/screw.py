@@ -21,6 +21,8 @@ BALL_OVER_LEAD, BALL_OVER_DIAMETER = 0.635, 0.2
 """Usual ball diameter over lead, and the largest over the nominal diameter [-]."""
 PRELOAD_SHARE = 0.05
 """Usual preload over C [-]."""
+OVERSIZE_SHARE = 0.05
+"""Largest preload over C of oversize balls, by makers [-]."""
 MEASURED = typical(0.0, '0 until ballscrew identify gives it')
 STEEL = {
     'young_modulus': typical(206e9, '200 to 212: bearing steel'),
@@ -51,6 +53,8 @@ def screw_of(given: CatalogueScrew) -> tuple[Screw, dict[str, str]]:
         f'; {GIGA * rated_pressure(screw):.2f} GPa on a ball, usual 4.0 to 4.5'
     )
     words = '2.83 preloads, which unload the relieved nut'
+    if screw.nut == 'oversize':
+        words = '2.83 preloads, which unload one pair of flanks'
     if not screw.preload:
         words = '2.83 % of C0, without preload: state the largest axial load'
     load = derived(working_load(screw), words)
@@ -67,6 +71,7 @@ def _values(given: CatalogueScrew) -> dict[str, Any]:
         'name': given.name or f'screw_{nominal:g}x{MILLI * given.lead:g}',
         'source': given.source or 'Values of a catalogue, completed by ballscrew screw new.',
         'pitch_radius': Noted(0.5 * diameter.value, diameter.note),
+        'nut': Noted(given.nut, 'given'),
         'lead': Noted(given.lead, 'given'),
         'ball_diameter': ball,
         'contact_angle': typical(math.pi / 4, '40 to 50'),
@@ -103,7 +108,7 @@ def _balls(given: CatalogueScrew, diameter: float, ball: float) -> Noted:
     Those of one nut; of an offset nut its halves stand for both nuts.
 
     """
-    halved = given.nut == 'offset'
+    halved, spaced = given.nut == 'offset', given.spacers == 'yes'
     if given.balls is not None:
         if halved:
             return Noted(given.balls // 2, f'derived (half of the {given.balls} balls of the nut)')
@@ -111,7 +116,9 @@ def _balls(given: CatalogueScrew, diameter: float, ball: float) -> Noted:
     circle = math.hypot(math.pi * diameter, given.lead)
     turns = (given.turns or math.nan) / (2 if halved else 1)
     half = f', half of the {given.turns:g} of the nut' if halved else ''
-    return Noted(int(turns * circle / ball), f'derived ({turns:g} turns{half})')
+    spacers = ', every second ball a spacer' if spaced else ''
+    balls = int(turns * circle / ball / (2 if spaced else 1))
+    return Noted(balls, f'derived ({turns:g} turns{half}{spacers})')
 
 
 def equal_halves(given: CatalogueScrew) -> Iterator[str]:
@@ -125,8 +132,20 @@ def equal_halves(given: CatalogueScrew) -> Iterator[str]:
         )
 
 
+def heavy_preload(screw: Screw) -> Iterator[str]:
+    """Yield in a sentence that oversize balls are preloaded by more than makers allow."""
+    rating = screw.dynamic_rating
+    if screw.nut == 'oversize' and rating and screw.preload > OVERSIZE_SHARE * rating:
+        yield (
+            f'preload_N: {screw.preload:g} N is {100 * screw.preload / rating:.2g} % of C, and '
+            f'makers preload oversize balls by at most {100 * OVERSIZE_SHARE:g} %'
+        )
+
+
 def _preload(given: CatalogueScrew) -> Noted:
     """Return the preload, as a force or as a share of C."""
+    if given.nut == 'plain' and given.preload is None and given.preload_share is None:
+        return derived(0.0, 'a plain nut has none')
     if given.preload is not None or given.dynamic_rating is None:
         return Noted(given.preload, 'given')
     share, rating = given.preload_share, given.dynamic_rating

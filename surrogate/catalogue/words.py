@@ -7,20 +7,11 @@ from typing import Any, ClassVar
 
 from surrogate.datasheet import Checked, choice, count, key_of, quantity, text
 from surrogate.files import InputError
-from surrogate.parameters import NAME
+from surrogate.parameters import NAME, NUTS
 from surrogate.units import MILLI
 
 ACCURACY = ('0', '1', '2', '3', '4', '5', '7', '10')
 """Classes of ISO 3408-3 and JIS B 1192."""
-NUTS = ('double', 'offset', 'oversize', 'plain')
-"""Nuts of catalogues, by what preloads them; the first two are modelled."""
-NOT_MODELLED = {
-    'oversize': 'an oversize ball touches at four places, which is not modelled, and a double nut '
-    'has a tenth of its spin: choose another nut for the same screw',
-    'plain': 'a nut without preload has axial play, which is not modelled: under a load that '
-    'never changes its sign it is --nut double with --preload-N 0 and the balls of this nut',
-}
-"""Why no sheet is made of a nut, and what can be done."""
 PITCH_OVER_NOMINAL = (0.9, 1.15)
 """Ball circle over nominal diameter [-] beyond which one of them is another number."""
 
@@ -67,11 +58,15 @@ class CatalogueScrew(Checked):
         'ball diameter (default 0.635 leads, 0.2 diameters at most)', 'mm', 1e-3, 0.3, 100.0
     )
     nut: str = _asked(
-        'nut: double (two nuts), offset (one nut, its halves shifted), oversize (balls) or plain',
+        'nut: double (two nuts), offset (one nut, its halves shifted), oversize (one nut, its '
+        'balls preload it) or plain (no preload)',
         choice(*NUTS),
     )
     turns: float | None = _number('loaded turns of one nut, all circuits', '', 1.0, 0.5, 100.0)
     balls: int | None = _asked('loaded balls of one nut (default by turns)', count(1, 10000))
+    spacers: str | None = _asked(
+        'is every second ball a smaller spacer: yes or no (default)', choice('yes', 'no')
+    )
     dynamic_rating: float | None = _number(
         'dynamic load rating C of one nut, of half an offset one', 'kN', 1e3, 0.1, 1e5
     )
@@ -92,12 +87,13 @@ class CatalogueScrew(Checked):
     )
 
     def __post_init__(self) -> None:
-        """Check ranges, that enough is given, that the nut is modelled, no diameter a radius."""
+        """Check ranges, that enough is given, and that turns and diameters fit."""
         Checked.__post_init__(self)
-        _check_needed(self)
-        if self.nut in NOT_MODELLED:
+        _check_needed(self, self.NEEDED[:-1] if self.nut == 'plain' else self.NEEDED)
+        if self.nut == 'offset' and self.balls is None and (self.turns or 0.0) < 2:
             raise InputError(
-                f'nut is {self.nut}, allowed is double or offset: {NOT_MODELLED[self.nut]}'
+                f'turns is {self.turns:g} with nut offset, allowed is 2 or more: each half of the '
+                'nut has a turn'
             )
         if self.nominal_diameter is None or self.pitch_diameter is None:
             return
@@ -142,13 +138,15 @@ class CatalogueOil(Checked):
     def __post_init__(self) -> None:
         """Check every range, and that enough is given."""
         Checked.__post_init__(self)
-        _check_needed(self)
+        _check_needed(self, self.NEEDED)
 
 
-def _check_needed(values: CatalogueScrew | CatalogueOil) -> None:
+def _check_needed(
+    values: CatalogueScrew | CatalogueOil, needed: tuple[tuple[str, ...], ...]
+) -> None:
     """Raise InputError for what cannot be derived, with the words among which to choose."""
     specs = {spec.name: spec for spec in fields(values)}
-    for names in values.NEEDED:
+    for names in needed:
         if all(getattr(values, name) is None for name in names):
             words = [word for name in names for word in specs[name].metadata.get('choice', ())]
             allowed = f': {" or ".join(words)}' * bool(words)

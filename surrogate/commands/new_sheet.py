@@ -79,9 +79,10 @@ def _complete(name: str, texts: Mapping[Any, str]) -> tuple[Any, dict[str, str]]
 
         return oil_of(given)
     from surrogate.catalogue.raceways import typical_roughness
-    from surrogate.catalogue.screw import equal_halves, screw_of
+    from surrogate.catalogue.screw import equal_halves, heavy_preload, screw_of
     from surrogate.formulas.plausibility import doubts
 
     screw, notes = screw_of(given)
-    tell([*doubts(screw), *equal_halves(given), *typical_roughness(given)])
+    preload = heavy_preload(screw)
+    tell([*doubts(screw), *preload, *equal_halves(given), *typical_roughness(given)])
     return screw, notes

@@ -75,19 +75,27 @@ def heathcote_radius(screw: Screw, side: Side) -> float:
 
 
 def slip_arm(
-    screw: Screw, side: Side, x: ArrayLike, y: ArrayLike, semi_axis_y: ArrayLike
+    screw: Screw,
+    side: Side,
+    x: ArrayLike,
+    y: ArrayLike,
+    semi_axis_y: ArrayLike,
+    *,
+    spin: float | None = None,
 ) -> Array:
     """
     Return the slip speed per screw speed [m/s per rad/s] at `x`, `y` [m] from the contact centre.
 
     Spin and curvature slip (Heathcote) run along the track, helical slip and spin across it. The
     curvature slip y^2/(2 R_d) is taken about its mean under Hertz pressure, a_y^2/5 with the
-    semi-axis a_y [m], because a free ball carries no net traction along the track.
+    semi-axis a_y [m], because a free ball carries no net traction along the track. The `spin`
+    [rad/s per rad/s] is that of a ball between two flanks unless it is given.
 
     """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     rates = no_slip_rates(screw)
     relative_rolling = rates.entrainment / screw_contact(screw, side).radius_x
     bulge = (y * y - np.asarray(semi_axis_y) ** 2 / 5) / (2 * heathcote_radius(screw, side))
-    along = rates.spin * y - relative_rolling * bulge
-    return np.asarray(np.hypot(along, rates.helical_slip - rates.spin * x))
+    turn = rates.spin if spin is None else spin
+    along = turn * y - relative_rolling * bulge
+    return np.asarray(np.hypot(along, rates.helical_slip - turn * x))

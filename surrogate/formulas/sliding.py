@@ -77,12 +77,15 @@ def sliding_friction(
     share: Array,
     oil: LubricantState,
     speed: Array,
+    *,
+    spin: float | None = None,
 ) -> Sliding:
     """
     Integrate the traction of one contact; all arrays share one shape.
 
     `ellipse` under the normal force, `film` [m], asperity `share` [-], screw `speed` [rad/s], at
-    least 0. At speed zero the film carries no traction and the limit of slow motion remains.
+    least 0, `spin` as in `slip_arm`. At speed zero the film carries no traction and the limit of
+    slow motion remains.
 
     """
     x, y, weight = ellipse_nodes()
@@ -93,6 +96,7 @@ def sliding_friction(
         ellipse.semi_axis_x[..., None] * x,
         ellipse.semi_axis_y[..., None] * y,
         ellipse.semi_axis_y[..., None],
+        spin=spin,
     )
     viscosity = viscosity_roelands_1966(
         pressure, oil.viscosity[..., None], oil.pressure_viscosity[..., None]

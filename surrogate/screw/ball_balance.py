@@ -9,28 +9,29 @@ the loads on the screw, and from the power lost in the contacts.
 
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 import math
 
 import numpy as np
 from surrogate.files import InputError
+from surrogate.formulas.geometry import helix_angle, SIDES
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.parameters import Screw
 from surrogate.screw.ball_equations import (
+    BallFlank,
     BallProblem,
+    FourPointBall,
     linearise,
-    no_slip_unknowns,
-    normal_forces,
-    NUT_ANGLE,
     residual,
-    SCREW_ANGLE,
+    TwoPointBall,
     wrenches,
 )
 from surrogate.screw.ball_motion import Array, Flank
 from surrogate.screw.ball_result import (
     BalanceStatus,
     BallBalance,
-    converged_balance,
+    converged_balances,
     unloaded_balance,
 )
 from surrogate.screw.ball_traction import Traction, Wrench
@@ -94,34 +95,85 @@ def balance_ball(
     _check(speed, flank, normal_force, axial_force)
     _check_rolling('screw_rolling_force', screw_rolling_force)
     _check_rolling('nut_rolling_force', nut_rolling_force)
-    problem = BallProblem(
+    force = normal_force
+    if force is None:
+        assert axial_force is not None
+        force = _normal_force(screw, axial_force)
+    laws = (screw_traction, screw_rolling_force), (nut_traction, nut_rolling_force)
+    problem = TwoPointBall(
         screw=screw,
         speed=float(speed),
-        flank=flank,
-        tractions=(screw_traction, nut_traction),
-        rolling_forces=(screw_rolling_force, nut_rolling_force),
-        normal_force=normal_force,
+        flanks=tuple(
+            BallFlank(side=side, flank=flank, traction=traction, rolling_force=rolling)
+            for side, (traction, rolling) in zip(SIDES, laws)
+        ),
+        force_unit=force,
         axial_force=axial_force,
     )
-    if problem.force_unit == 0:
+    if force == 0:
         return unloaded_balance(problem)
-    settings = settings or BalanceSettings()
+    return balance_pairs(problem, settings or BalanceSettings())[0]
+
+
+def balance_pairs(problem: BallProblem, settings: BalanceSettings) -> tuple[BallBalance, ...]:
+    """Return the balance of a ball for each pair of its flanks; all end with one status."""
     iterate = _solve(problem, settings)
     status = iterate.status
     if status is BalanceStatus.CONVERGED:
-        balance = converged_balance(problem, iterate.unknowns, iterate.steps)
-        if balance.imbalance <= settings.balance_tolerance:
-            return balance
+        balances = converged_balances(problem, iterate.unknowns, iterate.steps)
+        if balances[0].imbalance <= settings.balance_tolerance:
+            return balances
         status = BalanceStatus.STALLED
-    return BallBalance(status=status, speed=problem.speed, flank=flank, iterations=iterate.steps)
+    return tuple(
+        BallBalance(
+            status=status, speed=problem.speed, flank=place.flank, iterations=iterate.steps
+        )
+        for place in problem.flanks[::2]
+    )
+
+
+def balance_four_points(
+    screw: Screw,
+    speed: float,
+    *,
+    flanks: tuple[BallFlank, ...],
+    axial_forces: Sequence[float],
+    preload_force: float,
+    settings: BalanceSettings | None = None,
+) -> tuple[BallBalance, ...]:
+    """
+    Balance one ball that touches all four flanks at a screw `speed` [rad/s], not zero.
+
+    `flanks` of screw and nut that carry more, then the others; axial forces per ball [N] of both
+    pairs without friction, whose difference the ball carries; normal force of all under preload
+    alone [N], above 0. Friction moves the normal forces and may lift the ball off a flank of the
+    lighter pair. Returns the balance for each pair: torque, axial force and power add up.
+
+    """
+    loaded, relieved = (_normal_force(screw, force) for force in axial_forces)
+    problem = FourPointBall(
+        screw=screw,
+        speed=float(speed),
+        flanks=flanks,
+        force_unit=loaded,
+        axial_force=axial_forces[0] - axial_forces[1],
+        relieved_force=relieved,
+        preload_force=preload_force,
+    )
+    return balance_pairs(problem, settings or BalanceSettings())
+
+
+def _normal_force(screw: Screw, axial_force: float) -> float:
+    """Return the normal force without friction [N] of a ball under an axial force [N]."""
+    return axial_force / (math.sin(screw.contact_angle) * math.cos(helix_angle(screw)))
 
 
 def _solve(problem: BallProblem, settings: BalanceSettings) -> _Iterate:
     """Solve with friction that sharpens in a few large stages, or else in many small ones."""
-    screw, nut = problem.tractions
-    rough = replace(problem, tractions=(screw.sample(), nut.sample()))
+    coarse = tuple(replace(place, traction=place.traction.sample()) for place in problem.flanks)
+    rough = replace(problem, flanks=coarse)
     for ratio in STAGE_RATIOS:
-        iterate = _Iterate(unknowns=no_slip_unknowns(problem))
+        iterate = _Iterate(unknowns=problem.frictionless())
         stages = [replace(rough, slip_floor=floor) for floor in _floors(problem, ratio)]
         for stage in (*stages, problem):
             sharp = stage.slip_floor == problem.slip_floor
@@ -143,7 +195,7 @@ def _floors(problem: BallProblem, ratio: float) -> list[float]:
 
     """
     slip = no_slip_rates(problem.screw).helical_slip * abs(problem.speed)
-    own = min(law.slip_floor for law in problem.tractions)
+    own = min(place.traction.slip_floor for place in problem.flanks)
     count = math.ceil(max(0.0, math.log(FIRST_FLOOR * slip / own, ratio)))
     return [*(own * ratio**power for power in range(count, 0, -1)), problem.slip_floor]
 
@@ -177,7 +229,7 @@ def _newton(problem: BallProblem, start: _Iterate, tolerance: float, limit: int)
 
 def _search(
     problem: BallProblem, unknowns: Array, step: Array, jacobian: Array
-) -> tuple[Array, tuple[Wrench, Wrench]] | None:
+) -> tuple[Array, list[Wrench]] | None:
     """Return the first damped step that is legal and leaves a shorter one to go, and friction."""
     damping = 1.0
     while damping >= SMALLEST_DAMPING:
@@ -185,7 +237,7 @@ def _search(
         if _legal(problem, trial):
             friction = wrenches(problem, trial)
             left = np.linalg.solve(
-                jacobian, residual(problem, trial, (friction[0].values, friction[1].values))
+                jacobian, residual(problem, trial, [wrench.values for wrench in friction])
             )
             if np.linalg.norm(left) <= (1 - 0.5 * damping) * np.linalg.norm(step):
                 return trial, friction
@@ -194,10 +246,10 @@ def _search(
 
 
 def _legal(problem: BallProblem, unknowns: Array) -> bool:
-    """Return True if both contacts press and lie on the loaded flank."""
+    """Return True if all contacts press and lie on their flanks."""
     values = problem.scales * unknowns
-    angles = values[[SCREW_ANGLE, NUT_ANGLE]]
-    pressed = min(normal_forces(problem, values)) > 0
+    angles = np.array(problem.angles(values))
+    pressed = min(problem.normal_forces(values)[:2]) > 0
     return bool(pressed and angles.min() > 0 and angles.max() < 0.5 * math.pi)
 
 

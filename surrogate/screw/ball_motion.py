@@ -147,6 +147,29 @@ def no_slip_motion(screw: Screw, speed: float, flank: Flank = 1) -> BallMotion:
     )
 
 
+def four_point_motion(screw: Screw, speed: float, flank: Flank = 1) -> BallMotion:
+    """
+    Return the motion without gross slip at all four flanks for a screw `speed` [rad/s].
+
+    Orbit rate and rolling are those of two flanks, about an axis across the track that is, but for
+    the helix, parallel to the screw's: every flank spins. Helical slip is split evenly.
+
+    """
+    rates, angle = no_slip_rates(screw), screw.contact_angle
+    return BallMotion(
+        screw_speed=speed,
+        orbit_rate=rates.orbit * speed,
+        rotation=(
+            0.5 * speed * math.sin(helix_angle(screw)),
+            0.0,
+            speed * rates.rolling / math.cos(angle),
+        ),
+        screw_angle=angle,
+        nut_angle=angle,
+        flank=flank,
+    )
+
+
 def slip_floor(screw: Screw, speed: float) -> float:
     """
     Return the floor of the slip speed [m/s] for a screw `speed` [rad/s].

@@ -11,10 +11,7 @@ from surrogate.screw.ball_equations import (
     ball_motion,
     BallProblem,
     motions,
-    normal_forces,
-    NUT_ANGLE,
     residual,
-    SCREW_ANGLE,
     screw_torque,
     wrenches,
 )
@@ -64,13 +61,13 @@ class BallContact:
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BallBalance:
     """
-    One balanced ball; all numbers are NaN unless it converged.
+    One balanced ball between a pair of flanks; all numbers are NaN unless it converged.
 
     Contacts with screw and nut, motion (None unless converged), axial force [N] of the ball on the
     screw along the loaded flank; torque [N m] that drives the screw against this ball, positive
     along the motion, from the loads on the screw (`torque`) and from axial force and lost power
-    (`energy_torque`); Newton steps of the last attempt; largest imbalance over the normal force
-    [-].
+    (`energy_torque`), which agree for all pairs of a ball together; Newton steps of the last
+    attempt; largest imbalance over the normal force [-].
 
     """
 
@@ -107,35 +104,45 @@ class BallBalance:
         return self.power / abs(self.speed)
 
 
-def converged_balance(problem: BallProblem, unknowns: Array, iterations: int) -> BallBalance:
+def converged_balances(
+    problem: BallProblem, unknowns: Array, iterations: int
+) -> tuple[BallBalance, ...]:
     """
-    Return the result at scaled unknowns [-] that are in balance.
+    Return the result for each pair of flanks at scaled unknowns [-] that are in balance.
 
     Energy: the torque along the motion is F_z L/(2 pi), signed as the load opposes or drives, and
     the lost power over the speed.
 
     """
     friction, values = wrenches(problem, unknowns), problem.scales * unknowns
-    contacts = [_contact(problem, which, values, friction[which]) for which in (0, 1)]
-    torque, pushed = screw_torque(problem, values, friction[0].values)
-    sense = math.copysign(1.0, problem.speed)
-    axial_force = -problem.flank * pushed
-    power = contacts[0].power + contacts[1].power
-    ideal = problem.flank * axial_force * problem.screw.lead / (2 * math.pi)
-    imbalance = residual(problem, unknowns, (friction[0].values, friction[1].values))
-    return BallBalance(
-        status=BalanceStatus.CONVERGED,
-        speed=problem.speed,
-        flank=problem.flank,
-        screw=contacts[0],
-        nut=contacts[1],
-        motion=ball_motion(problem, values),
-        axial_force=axial_force,
-        torque=sense * torque,
-        energy_torque=sense * ideal + power / abs(problem.speed),
-        iterations=iterations,
-        imbalance=float(np.abs(imbalance).max()),
-    )
+    imbalance = residual(problem, unknowns, [wrench.values for wrench in friction])
+    sense, moved = math.copysign(1.0, problem.speed), motions(problem, values)
+    balances = []
+    for pair in range(0, len(problem.flanks), 2):
+        on_screw, on_nut = (
+            _contact(problem, which, values, friction[which], moved[which])
+            for which in (pair, pair + 1)
+        )
+        flank = problem.flanks[pair].flank
+        torque, pushed = screw_torque(problem, pair, values, friction[pair].values)
+        axial_force = -flank * pushed
+        ideal = flank * axial_force * problem.screw.lead / (2 * math.pi)
+        balances.append(
+            BallBalance(
+                status=BalanceStatus.CONVERGED,
+                speed=problem.speed,
+                flank=flank,
+                screw=on_screw,
+                nut=on_nut,
+                motion=ball_motion(problem, pair, values),
+                axial_force=axial_force,
+                torque=sense * torque,
+                energy_torque=sense * ideal + (on_screw.power + on_nut.power) / abs(problem.speed),
+                iterations=iterations,
+                imbalance=float(np.abs(imbalance).max()),
+            )
+        )
+    return tuple(balances)
 
 
 def unloaded_balance(problem: BallProblem) -> BallBalance:
@@ -161,12 +168,13 @@ def unloaded_balance(problem: BallProblem) -> BallBalance:
     )
 
 
-def _contact(problem: BallProblem, which: int, values: Array, friction: Wrench) -> BallContact:
-    """Return one contact at unscaled unknowns in balance, with its friction."""
-    motion = motions(problem, values)[which]
+def _contact(
+    problem: BallProblem, which: int, values: Array, friction: Wrench, motion: Array
+) -> BallContact:
+    """Return one contact at unscaled unknowns in balance, with its friction and motion."""
     return BallContact(
-        angle=float(values[(SCREW_ANGLE, NUT_ANGLE)[which]]),
-        normal_force=float(normal_forces(problem, values)[which]),
+        angle=float(problem.angles(values)[which]),
+        normal_force=float(problem.normal_forces(values)[which]),
         traction_along=float(friction.values[0]),
         traction_across=float(friction.values[1]),
         spin_moment=float(friction.values[3]),

@@ -117,6 +117,26 @@ class SolvedTraction:
         return replace(self, nodes=self.nodes.taken(slice(None, None, SAMPLE), SAMPLE))
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FreeTraction:
+    """No friction at all: a flank without a contact, or one that the ball has left."""
+
+    growth: float = 0.0
+    slip_floor: float = math.inf
+
+    def places(self, load: float) -> tuple[Array, Array]:
+        """Return no places [m] under a `load` [N]."""
+        return np.empty(0), np.empty(0)
+
+    def strengths(self, load: float) -> tuple[Array, Array, Array, Array]:
+        """Return no strengths under a `load` [N]."""
+        return np.empty(0), np.empty(0), np.empty(0), np.empty(0)
+
+    def sample(self) -> 'FreeTraction':
+        """Return itself."""
+        return self
+
+
 def solved_traction(
     solution: ContactSolution,
     *,
@@ -165,7 +185,7 @@ def integrate_traction(
     slip_floor: float = 0.0,
 ) -> Wrench:
     """
-    Integrate the friction of one contact with normal force `load` [N].
+    Integrate the friction of one contact with normal force `load` [N]; none without load.
 
     Slip as in `slip_maps`; `motion` against the raceway [m/s, rad/s] as `relative_motion` gives
     it; `direction` of the entrainment along t, 1 or -1; a slip floor [m/s] above that of the law.
@@ -173,6 +193,8 @@ def integrate_traction(
     forces.
 
     """
+    if not load > 0:
+        traction, load = FreeTraction(), 1.0
     x, y = (direction * place for place in traction.places(load))
     values, by_motion, by_size, power = sum_friction(
         x,

@@ -5,7 +5,8 @@ Closed-form tier: the whole chain by published formulas, for one point or many a
 
 A first guess and a cross-check of the full model, labelled `closed_form` wherever it is shown.
 What asperities do follows from the same topography as there. Ball inertia, the tilt of the contact
-lines and elastic hysteresis are left to the full model.
+lines and elastic hysteresis are left to the full model. An oversize ball turns about an axis
+parallel to the screw's under any load, which is too much friction near and beyond unloading.
 
 """
 
@@ -25,7 +26,8 @@ from surrogate.formulas.inlet import inlet_speed
 from surrogate.formulas.load_sharing import normal_force, nut_forces, NutName
 from surrogate.formulas.lubricant import lubricant_state, LubricantState
 from surrogate.formulas.sliding import sliding_friction
-from surrogate.parameters import Lubricant
+from surrogate.parameters import Lubricant, Screw
+from surrogate.screw.ball_motion import four_point_motion, relative_motion
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.opened import Contacts
 from surrogate.screw.point import PointContact, ScrewPoint
@@ -34,6 +36,9 @@ Array = NDArray[np.float64]
 Touching = tuple[Array, Array, Array]
 """RCS, asperity share and rolling loss over that of a smooth contact [-]."""
 TIER = 'closed_form'
+THIRD_FLANK = 0.05
+"""Least force of the lighter pair of flanks over that of the other [-]: friction across the track
+wedges an oversize ball against it. Solves find 0.03 to 0.1."""
 STATUS = 'closed form: published formulas, asperity contact by the topography'
 
 
@@ -63,6 +68,8 @@ def solve(
     screw, oil = opened.sheet, lubricant_state(lubricant, temperature)
     entrained = opened.rates.entrainment * speed
     forces = nut_forces(load, screw.preload)
+    if screw.nut == 'oversize':
+        forces = forces[0], np.maximum(forces[1], THIRD_FLANK * forces[0])
     nuts: tuple[tuple[NutName, Array], ...] = (('loaded', forces[0]), ('relieved', forces[1]))
 
     def inlet(side: Side, force: Array) -> Array:
@@ -84,6 +91,23 @@ def solve(
     return _combine(opened, contacts, speed)
 
 
+def _slip(screw: Screw, nut: NutName, side: Side) -> dict[str, float]:
+    """Return the spin of a flank of an oversize ball per screw speed; nothing for other balls."""
+    if screw.nut != 'oversize':
+        return {}
+    motion = four_point_motion(screw, 1.0)
+    *_, spin, _ = relative_motion(
+        screw,
+        side,
+        angle=screw.contact_angle,
+        flank=1 if nut == 'loaded' else -1,
+        speed=1.0,
+        orbit=motion.orbit_rate,
+        rotation=motion.rotation,
+    )
+    return {'spin': abs(float(spin))}
+
+
 def _solve_contact(
     opened: Contacts,
     nut: NutName,
@@ -103,7 +127,8 @@ def _solve_contact(
     film = central_film_hamrock_dowson_1977(contact, g)
     ratio = film_ratio(film, screw.composite_rms)
     rcs, share, loss = touching(side, force, slow, ratio)
-    sliding = sliding_friction(screw, side, ellipse, np.nan_to_num(film), share, oil, speed)
+    thickness, slip = np.nan_to_num(film), _slip(screw, nut, side)
+    sliding = sliding_friction(screw, side, ellipse, thickness, share, oil, speed, **slip)
     rolling = loss * np.nan_to_num(rolling_force_biboulet_houpert_2010(contact, g))
     return PointContact(
         nut=nut,

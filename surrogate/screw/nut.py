@@ -22,9 +22,10 @@ from surrogate.formulas.sliding import hysteresis_force
 from surrogate.parameters import OperatingPoint, Screw
 from surrogate.results import number
 from surrogate.screw.ball_balance import balance_ball
+from surrogate.screw.ball_equations import BallFlank
 from surrogate.screw.ball_motion import Array, BallMotion, Flank, slip_field, slip_floor
 from surrogate.screw.ball_result import BallBalance, BallContact
-from surrogate.screw.ball_traction import solved_traction
+from surrogate.screw.ball_traction import FreeTraction, solved_traction
 from surrogate.screw.contacts import RollingContact, smooth_film, solve_sides, SolvedContact
 from surrogate.screw.point import PointContact
 
@@ -32,6 +33,9 @@ CREEP = 1e-3
 """Screw speed of the limit of slow motion [rad/s]."""
 COUPLING_ROUNDS = 4
 """Most times that contacts are solved again under the forces of the balance [-]."""
+FLOATING_SHARE = 0.02
+"""Share of the load of the other nut below which a nut that is not solved counts as idle [-]: its
+balls float on films thicker than their approach."""
 NEGLECTED_FRICTION = 3e-4
 """Share of the friction of a contact on nodes that the balance leaves out [-]."""
 
@@ -121,27 +125,39 @@ def load_change(nut: SolvedNut) -> float:
 
 
 def make_nut(
-    screw: Screw, point: OperatingPoint, carried: NutLoad, solved: tuple[SolvedContact, ...]
+    screw: Screw, point: OperatingPoint, carried: NutLoad, solved: Sequence[SolvedContact]
 ) -> SolvedNut:
     """Balance the ball of a nut between its solved contacts."""
-    name, force = carried.nut, carried.force
-    if force == 0:
-        idle = tuple(_contact(screw, name, side, None, None) for side in SIDES)
-        return SolvedNut(force=force, contacts=idle, ball=None)
-    failure, ball = _failure(name, solved), None
+    if carried.force == 0:
+        return balanced_nut(screw, carried, (None, None), None)
+    failure, ball = contact_failure(carried.nut, solved), None
     if not failure:
-        ball = balance_nut(screw, point, force, carried.flank, solved)
-        failure = '' if ball.converged else f'{name} nut, ball: {ball.status.value}'
+        ball = balance_nut(screw, point, carried.force, carried.flank, solved)
+    return balanced_nut(screw, carried, solved, ball, failure)
+
+
+def balanced_nut(
+    screw: Screw,
+    carried: NutLoad,
+    solved: Sequence[SolvedContact | None],
+    ball: BallBalance | None,
+    failure: str = '',
+) -> SolvedNut:
+    """Return a nut by its contacts, None without load, and the balance of its ball."""
+    if ball is not None and not ball.converged:
+        failure = f'{carried.nut} nut, ball: {ball.status.value}'
     contacts = tuple(
-        _contact(screw, name, side, contact, ball)
+        _contact(screw, carried.nut, side, contact, ball)
         for side, contact in zip(SIDES, solved, strict=True)
     )
-    return SolvedNut(force=force, contacts=contacts, ball=ball, failure=failure)
+    return SolvedNut(force=carried.force, contacts=contacts, ball=ball, failure=failure)
 
 
-def _failure(name: NutName, solved: tuple[SolvedContact, ...]) -> str:
+def contact_failure(name: NutName, solved: Sequence[SolvedContact | None]) -> str:
     """Return the sentence of the first contact that did not converge, or nothing."""
     for side, contact in zip(SIDES, solved, strict=True):
+        if contact is None:
+            continue
         for kind, solution in (('smooth', contact.smooth), ('rough', contact.pressed)):
             if not solution.converged:
                 return f'{name} nut, {side}, {kind} contact: {solution.status.value}'
@@ -194,29 +210,40 @@ def balance_nut(
     solved: Sequence[SolvedContact],
 ) -> BallBalance:
     """Balance one ball of a nut that carries an axial `force` [N] between two solved contacts."""
-    speed = abs(point.speed) or CREEP
-    floor = slip_floor(screw, speed)
-    friction = screw.roughness.asperity_friction
-    tractions = [
-        solved_traction(
-            contact.pressed,
-            asperity_friction=friction,
-            asperity_share=contact.friction_share,
-            slip_floor=floor,
-            neglected=NEGLECTED_FRICTION,
-        )
-        for contact in solved
-    ]
-    rolling = [rolling_force(screw, contact) for contact in solved]
+    on_screw, on_nut = flanks_of(screw, point, flank, solved)
     return balance_ball(
         screw,
-        speed,
-        screw_traction=tractions[0],
-        nut_traction=tractions[1],
+        abs(point.speed) or CREEP,
+        screw_traction=on_screw.traction,
+        nut_traction=on_nut.traction,
         axial_force=force / screw.loaded_balls_per_nut,
         flank=flank,
-        screw_rolling_force=rolling[0],
-        nut_rolling_force=rolling[1],
+        screw_rolling_force=on_screw.rolling_force,
+        nut_rolling_force=on_nut.rolling_force,
+    )
+
+
+def flanks_of(
+    screw: Screw, point: OperatingPoint, flank: Flank, solved: Sequence[SolvedContact | None]
+) -> tuple[BallFlank, ...]:
+    """Return the flanks of screw and nut by a ball, with their friction, none without contact."""
+    floor = slip_floor(screw, abs(point.speed) or CREEP)
+    return tuple(
+        BallFlank(
+            side=side,
+            flank=flank,
+            traction=solved_traction(
+                contact.pressed,
+                asperity_friction=screw.roughness.asperity_friction,
+                asperity_share=contact.friction_share,
+                slip_floor=floor,
+                neglected=NEGLECTED_FRICTION,
+            ),
+            rolling_force=rolling_force(screw, contact),
+        )
+        if contact is not None
+        else BallFlank(side=side, flank=flank, traction=FreeTraction(), rolling_force=0.0)
+        for side, contact in zip(SIDES, solved, strict=True)
     )
 
 

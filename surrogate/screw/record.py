@@ -228,9 +228,11 @@ def rating_warnings(screw: Screw, lubricant: Lubricant, point: OperatingPoint) -
             f'load: {abs(point.load):.4g} N, the static rating is {screw.static_rating:.4g} N'
         )
     if screw.preload and abs(point.load) >= UNLOADING_RATIO * screw.preload:
+        what = 'the relieved nut carries nothing'
+        if screw.nut == 'oversize':
+            what = 'friction alone presses the relieved flanks'
         warnings.append(
-            'load: the relieved nut carries nothing, unloading begins at '
-            f'{UNLOADING_RATIO * screw.preload:.4g} N'
+            f'load: {what}, unloading begins at {UNLOADING_RATIO * screw.preload:.4g} N'
         )
     low, high = lubricant.minimum_temperature, lubricant.maximum_temperature
     if not low <= point.temperature <= high:

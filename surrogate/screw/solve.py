@@ -29,8 +29,17 @@ from surrogate.screw.contacts import (
     SolvedContact,
     with_oil_of,
 )
-from surrogate.screw.nut import load_change, make_nut, NutLoad, ScrewContact, solve_nut, SolvedNut
+from surrogate.screw.nut import (
+    FLOATING_SHARE,
+    load_change,
+    make_nut,
+    NutLoad,
+    ScrewContact,
+    solve_nut,
+    SolvedNut,
+)
 from surrogate.screw.opened import Contacts
+from surrogate.screw.oversize import LIGHT_SHARE, make_oversize, solve_oversize
 from surrogate.screw.point import ScrewPoint
 
 TIER = 'full'
@@ -40,9 +49,7 @@ SOLVED = (
     'Solved: four contacts and the balls of both nuts.',
 )
 """Status by the number of nuts that carry load."""
-FLOATING_SHARE = 0.02
-"""Share of the load of the other nut below which a nut that is not solved counts as idle [-]: its
-balls float on films thicker than their approach."""
+FOUR_POINTS_SOLVED = 'Solved: oversize balls and their {} contacts.'
 SAME_FORCE = 1e-3
 """Normal forces that differ by less, over the larger, count as the same [-]."""
 
@@ -96,15 +103,20 @@ def solve_screw(
     if any(nut.force for nut in nuts):
         contacts = make_contacts(opened, lubricant, point, settings)
     loaded, relieved = (float(normal_force(screw, nut.force)) for nut in nuts)
+    four_points = screw.nut == 'oversize'
+    if four_points:
+        relieved = max(relieved, LIGHT_SHARE * loaded)
     with at(nut=1):
         pairs = [solve_sides(contacts, (loaded, loaded), near[:2])]
-    same = nuts[0].force == nuts[1].force
+    same = loaded == relieved
     with at(nut=2):
         pairs.append(pairs[0] if same else solve_sides(contacts, (relieved, relieved), near[2:]))
-    solved = []
+    solved, tolerance = [], settings.coupling_tolerance
+    if four_points and loaded > 0:
+        solved = solve_oversize(screw, point, nuts, contacts, pairs, tolerance=tolerance)
+        return _combine(opened, point, solved)
     for place, (nut, pair) in enumerate(zip(nuts, pairs, strict=True)):
         with at(nut=place + 1):
-            tolerance = settings.coupling_tolerance
             solved.append(solve_nut(screw, point, nut, contacts, pair, tolerance=tolerance))
     return _combine(opened, point, _without_floating(screw, point, nuts, solved))
 
@@ -118,7 +130,7 @@ def rebalance_screw(
     settings: ScrewSettings | None = None,
 ) -> ScrewSolution:
     """
-    Balance the balls again on the contacts of `found`: faster than a solve by far.
+    Balance the balls again on the contacts of a solution: faster than a solve by far.
 
     For another asperity friction or parasitic torque, which no contact knows of, this is what a
     solve gives. Another oil or speed must keep the product of viscosity and speed, which pressure
@@ -129,17 +141,20 @@ def rebalance_screw(
     screw = opened.sheet
     _check_same_load(screw, point, solution)
     sides = make_contacts(opened, lubricant, point, settings or ScrewSettings())
-    loaded, relieved = (
-        tuple(
-            with_oil_of(side, contact.solved)
+    pairs = [
+        [
+            with_oil_of(side, contact.solved) if contact.solved is not None else None
             for side, contact in zip(sides, contacts, strict=True)
-            if contact.solved is not None
-        )
+        ]
         for contacts in (solution.contacts[:2], solution.contacts[2:])
-    )
+    ]
     nuts = _nut_loads(screw, point)
-    pairs = zip(nuts, (loaded, relieved), strict=True)
-    solved = [make_nut(screw, point, *given) for given in pairs]
+    if screw.nut == 'oversize':
+        return _combine(opened, point, make_oversize(screw, point, nuts, pairs))
+    solved = [
+        make_nut(screw, point, nut, [contact for contact in pair if contact is not None])
+        for nut, pair in zip(nuts, pairs, strict=True)
+    ]
     return _combine(opened, point, _without_floating(screw, point, nuts, solved))
 
 
@@ -160,6 +175,7 @@ def _check_same_load(screw: Screw, point: OperatingPoint, solution: ScrewSolutio
         force > 0 and contact.solved is None
         for place, contact in enumerate(solution.contacts)
         for force in [wanted[place // len(SIDES)]]
+        if screw.nut != 'oversize' or place < len(SIDES)
     )
     apart = max(abs(new - old) for new, old in zip(wanted, solution.normal_forces, strict=True))
     if unsolved or apart > SAME_FORCE * max(wanted):
@@ -189,11 +205,11 @@ def _combine(opened: Contacts, point: OperatingPoint, nuts: Sequence[SolvedNut])
     contacts = nuts[0].contacts + nuts[1].contacts
     worst = worst_contact(contacts)
     worn = contacts[worst].solved if contacts else None
+    done = SOLVED[sum(nut.force > 0 for nut in nuts)]
+    if screw.nut == 'oversize':
+        done = FOUR_POINTS_SOLVED.format(sum(contact.solved is not None for contact in contacts))
     solution = ScrewSolution(
-        status=next(
-            (nut.failure for nut in nuts if nut.failure),
-            SOLVED[sum(nut.force > 0 for nut in nuts)],
-        ),
+        status=next((nut.failure for nut in nuts if nut.failure), done),
         converged=not any(nut.failure for nut in nuts),
         contacts=contacts,
         worst_contact=worst,

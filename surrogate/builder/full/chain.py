@@ -102,8 +102,9 @@ def _turned(
     if not all(contact.converged for contact in solution.loaded_contacts):
         return solution
     against = replace(point, load=-point.load)
-    # Balls that float on one side may hold on the other: an idle nut is solved again.
-    if all(solution.normal_forces) and solution.load_change <= settings.coupling_tolerance:
+    # Balls that float on one side may hold on the other: idle contacts are solved again.
+    pressed = len(solution.loaded_contacts) == len(solution.contacts)
+    if pressed and solution.load_change <= settings.coupling_tolerance:
         balanced = rebalance_screw(opened, lubricant, against, solution, settings=settings)
         if balanced.load_change <= settings.coupling_tolerance:
             return balanced

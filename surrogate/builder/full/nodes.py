@@ -5,7 +5,8 @@ Nodes of a full-tier surface: mapped speeds, loads that crowd the idle load, tem
 
 At the idle load torque and RCS jump, because the balls of the relieved nut are no longer solved;
 so a node lies on either side of it, and some crowd below, where the contacts of that nut shrink to
-nothing. Temperatures are even in the logarithm of the viscosity, speeds crowd the onset.
+nothing. Oversize balls are solved under any load; nodes crowd the loads between which their motion
+changes. Temperatures are even in the logarithm of the viscosity, speeds crowd the onset.
 
 """
 
@@ -16,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from surrogate.builder.closed_form import speed_coordinates, temperature_nodes
 from surrogate.builder.full.settings import FullSettings
-from surrogate.formulas.load_sharing import idle_load
+from surrogate.formulas.load_sharing import idle_load, UNLOADING_RATIO
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_speeds
@@ -24,6 +25,8 @@ from surrogate.screw.screw_onset import onset_speeds
 Array = NDArray[np.float64]
 BESIDE = 1e-4
 """Distance of the nodes beside the idle load, over that load [-]."""
+FOUR_POINT_LOADS = (0.0, 0.2, 0.4, 0.55, 0.65, 0.72, 0.78, 0.84, 0.9, 0.96, 1.05, 1.25)
+"""Loads on oversize balls over that which unloads a pair of their flanks [-]."""
 LIGHTEST = 0.003
 """Least load of a screw without preload over the largest [-]."""
 
@@ -70,7 +73,9 @@ def signed_loads(screw: Screw, settings: FullSettings) -> tuple[Array, list[floa
     low, high = settings.load_range
     (_, most), beside = settings.load_sizes, beside_idle(screw)
     below, above = beside
-    if above <= 0:
+    if screw.nut == 'oversize':
+        sizes = four_point_loads(screw, settings)
+    elif above <= 0:
         # Without preload there is no contact at zero load: nodes crowd towards it.
         cells = settings.load_cells + settings.unloaded_cells
         sizes = np.union1d(0.0, np.geomspace(LIGHTEST * most, most, cells))
@@ -90,6 +95,13 @@ def signed_loads(screw: Screw, settings: FullSettings) -> tuple[Array, list[floa
         if load == 0 or any(math.isclose(abs(load), edge, rel_tol=1e-9) for edge in beside)
     ]
     return nodes, breaks
+
+
+def four_point_loads(screw: Screw, settings: FullSettings) -> Array:
+    """Return the magnitudes of the load [N] in the range under which oversize balls are solved."""
+    least, most = settings.load_sizes
+    loads = UNLOADING_RATIO * screw.preload * np.array(FOUR_POINT_LOADS)
+    return np.unique([least, *loads[(loads > least) & (loads < most)], most])
 
 
 def beside_idle(screw: Screw) -> tuple[float, float]:

@@ -5,7 +5,8 @@ Ratios of solved screws to formulas, which few points tell.
 
 Load sharing, kinematics and the law of asperity contact are the same in both tiers. What is left,
 films, traction and the balance of the balls, differs by a factor that varies slowly with speed,
-load and temperature; RCS and asperity share do not differ.
+load and temperature; RCS and asperity share do not differ. Oversize balls change their motion near
+unloading, which no formula follows: there the solved loads are close to each other.
 
 """
 
@@ -20,7 +21,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import distance_transform_edt
 from surrogate.builder.closed_form import temperature_nodes
 from surrogate.builder.full.chain import chain_inputs, SENSES, solved_chain
-from surrogate.builder.full.nodes import beside_idle, LIGHTEST, Nodes
+from surrogate.builder.full.nodes import beside_idle, four_point_loads, LIGHTEST, Nodes
 from surrogate.builder.full.settings import FullSettings
 from surrogate.files import InputError
 from surrogate.formulas.film import film_ratio
@@ -37,6 +38,8 @@ CORRECTED = tuple(name for name in FIELDS if name not in SHARES)
 """Fields that differ between the tiers."""
 SPEEDS = (0.0, 0.25, 0.42, 0.58, 0.71, 0.83, 0.92, 0.96, 1.0)
 """Solved speeds over the range, in logarithms [-]: they crowd where the balls feel inertia."""
+FOUR_POINT_SPEEDS = tuple(sorted({*SPEEDS, 0.15, 0.34, 0.5, 0.65, 0.77}))
+"""Those of oversize balls [-]: near unloading their motion changes with friction."""
 LOADS = (0.0, 0.375, 0.75, 0.9, 1.0)
 """Solved loads between none and the idle load [-]."""
 FILMS = 'central_film', 'minimum_film'
@@ -69,8 +72,9 @@ class SolvedGrid:
 def solved_grid(screw: Screw, lubricant: Lubricant, settings: FullSettings) -> SolvedGrid:
     """Return the points that are solved for a surface of some settings."""
     low, high = np.log(settings.speed_range)
+    shares = FOUR_POINT_SPEEDS if screw.nut == 'oversize' else SPEEDS
     return SolvedGrid(
-        speeds=np.exp(low + (high - low) * np.array(SPEEDS)),
+        speeds=np.exp(low + (high - low) * np.array(shares)),
         pieces=tuple(_pieces(screw, settings)),
         temperature=_temperatures(lubricant, settings),
     )
@@ -85,6 +89,9 @@ def _temperatures(lubricant: Lubricant, settings: FullSettings) -> Array:
 def _pieces(screw: Screw, settings: FullSettings) -> Iterator[Array]:
     """Yield loads [N] up to the idle load and beyond it, as far as the range reaches."""
     (least, most), (below, above) = settings.load_sizes, beside_idle(screw)
+    if screw.nut == 'oversize':
+        yield four_point_loads(screw, settings)
+        return
     if above <= 0:
         yield np.geomspace(max(least, LIGHTEST * most), most, len(LOADS))
         return

@@ -16,6 +16,7 @@ from ballscrew_monitor.settings.parameters import read_file
 import pytest
 from surrogate.parameters import find_sheet, load_lubricant, load_screw
 from surrogate.surface import shipped_surface
+from surrogate.surface.file import read
 
 SPEEDS = [20.0, 40.0, 60.0, 80.0, 100.0]
 QUICK = ['--tier', 'closed_form', '--workers', '1']
@@ -232,3 +233,21 @@ def test_a_free_run_tells_how_much_more_drag_there_is(tmp_path):
 def test_a_run_under_load_is_none_unless_somebody_says_so(tmp_path):
     assert run_of(tmp_path, 'cut', 0.6, load=-1500.0) is None
     assert run_of(tmp_path, 'cut', 0.6, load=-1500.0, is_free=True) is not None
+
+
+def test_a_single_nut_with_oversize_balls_goes_from_its_catalogue_page_to_a_verdict(
+    tmp_path, capsys
+):
+    folder = tmp_path / 'logs'
+    write(folder / 'cut.csv', SPEEDS)
+    page = ['--nominal-diameter-mm', '40', '--lead-mm', '10', '--ball-diameter-mm', '6.35']
+    page += ['--nut', 'oversize', '--turns', '4', '--dynamic-rating-kN', '37.89']
+    assert cli.main(['screw', 'new', *page, '--out', str(folder / 'screw.yaml')]) == 0
+    capsys.readouterr()
+    assert check(folder, tmp_path, '--oil', 'iso_vg_68', '--json') == 0
+    record = json.loads(capsys.readouterr().out)
+    axis = record['recordings']['cut.csv']['axes']['x']
+    assert (axis['expected'], axis['judged']) == (2000, 2000)
+    assert axis['verdict']
+    inputs = read(record['surfaces']['x']).header['inputs']
+    assert inputs['screw']['nut'] == 'oversize'

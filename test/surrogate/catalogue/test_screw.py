@@ -6,7 +6,7 @@ import math
 import re
 
 import pytest
-from surrogate.catalogue.screw import equal_halves, screw_of
+from surrogate.catalogue.screw import equal_halves, heavy_preload, screw_of
 from surrogate.catalogue.words import CatalogueScrew
 from surrogate.datasheet_writer import write_sheet
 from surrogate.formulas.plausibility import rated_pressure
@@ -112,6 +112,24 @@ def test_halves_that_need_not_be_equal_are_named(says):
         offset = CatalogueScrew(**SIZE | {'nut': 'offset'} | counted)
         assert list(equal_halves(offset)) == ([says(key)] if key else [])
         assert list(equal_halves(CatalogueScrew(**SIZE | counted))) == []
+
+
+def test_spacers_halve_the_loaded_balls():
+    given = CatalogueScrew(**SIZE | {'nut': 'oversize', 'spacers': 'yes'}, ball_diameter=3.175e-3)
+    screw, notes = screw_of(given)
+    assert screw.loaded_balls_per_nut == 40  # of 81
+    assert notes['loaded_balls_per_nut'] == 'derived (4 turns, every second ball a spacer)'
+
+
+def test_a_heavy_preload_of_oversize_balls_is_named(says):
+    """Above 5 % of C 10.91 kN, 545.5 N; two nuts may have it."""
+    for nut, preload, expected in (
+        ('oversize', 870.0, [says('above_five_per_cent')]),
+        ('oversize', 545.0, []),
+        ('double', 870.0, []),
+    ):
+        screw, _ = screw_of(CatalogueScrew(**SIZE | {'nut': nut}, preload=preload))
+        assert list(heavy_preload(screw)) == expected
 
 
 def test_without_preload_no_nut_is_relieved():

@@ -45,13 +45,17 @@ def test_what_cannot_be_derived_is_asked_for(without, key, refused):
         ({'process': 'cast'}, 'process_cast'),
         ({'turns': 500.0}, 'turns_500'),
         ({'nut': 'single'}, 'nut_single'),
-        ({'nut': 'oversize'}, 'nut_oversize'),
-        ({'nut': 'plain'}, 'nut_plain'),
+        ({'nut': 'offset', 'turns': 1.5}, 'turns_1_5'),
     ],
 )
 def test_a_value_that_no_catalogue_has_is_refused(content, key, refused):
-    """A radius as a diameter, a word as a number; nor a nut that is not modelled."""
+    """A radius as a diameter, a word as a number, an offset nut without two halves."""
     refused(key, sheet_of, CatalogueScrew, ENOUGH | content, 'screw new')
+
+
+def test_a_plain_nut_needs_no_preload():
+    content = {name: value for name, value in ENOUGH.items() if name != 'preload_N'}
+    assert sheet_of(CatalogueScrew, content | {'nut': 'plain'}, 'screw new').preload is None
 
 
 def test_an_oil_needs_its_grade(refused):

@@ -60,18 +60,24 @@ def test_from_the_page_of_a_catalogue_to_the_onset(run, tmp_path, capsys, says, 
 
 
 def test_a_page_of_a_single_nut_does_not_become_two_nuts(run, tmp_path, capsys, says, refused):
-    """Its kind is asked for: an offset nut has two halves of its turns, the others no sheet."""
+    """Its kind is asked for; an offset nut has two halves of its turns, the others all of them."""
     path = tmp_path / 'my.yaml'
     page = ('--nominal-diameter-mm', 40, '--lead-mm', 10, '--ball-diameter-mm', 6.35)
     page += ('--turns', 5, '--dynamic-rating-kN', 21.3, '--ra-um', 0.16, '--out', path)
     refused('nut_missing', run, 'screw', 'new', *page)
-    for nut, key in (('oversize', 'nut_oversize'), ('plain', 'nut_plain')):
-        refused(key, run, 'screw', 'new', '--nut', nut, *page)
+    refused('nut_turns', run, 'screw', 'new', '--nut', 'offset', *page, '--turns', 1.5)
+    refused('plain_preloaded', run, 'screw', 'new', '--nut', 'plain', *page, '--preload-N', 500)
     assert not path.exists()
     assert run('screw', 'new', '--nut', 'offset', *page) == 0
     assert capsys.readouterr() == (f'{path}\n', says('five_turns'))
     # A ball circle of 41.27 mm and a lead of 10 mm give 130.0 mm a turn, 20.5 balls.
     assert load_screw(str(path)).loaded_balls_per_nut == int(2.5 * 20.477)
+    for nut, preload in (('oversize', 1065.0), ('plain', 0.0)):
+        assert run('screw', 'new', '--nut', nut, *page, '--force') == 0
+        assert capsys.readouterr() == (f'{path}\n', '')
+        single = load_screw(str(path))
+        assert (single.nut, single.preload) == (nut, preload)
+        assert single.loaded_balls_per_nut == int(5 * 20.477)
 
 
 def test_a_grease_loads(run, tmp_path, capsys):

@@ -18,7 +18,7 @@ from surrogate.formulas.sliding import ellipse_nodes
 from surrogate.parameters import load_screw
 from surrogate.screw import ball_balance
 from surrogate.screw.ball_balance import _floors, balance_ball, BalanceSettings, FIRST_FLOOR
-from surrogate.screw.ball_equations import BallProblem
+from surrogate.screw.ball_equations import BallFlank, TwoPointBall
 from surrogate.screw.ball_motion import axis_vector, contact_frame, slip_field, slip_floor
 from surrogate.screw.ball_result import BalanceStatus, BallContact
 from surrogate.screw.ball_traction import SolvedTraction
@@ -366,13 +366,14 @@ def test_inputs_that_make_no_sense_are_refused(screw, given_input, text):
 def test_floors_fall_by_a_ratio_from_far_above_the_slip_to_that_of_the_problem(screw, ratio):
     """The last stage has the lower floor of both laws; an infinite ratio leaves no other."""
     laws = [coulomb_traction(screw, side, 0.05, slip_floor=f) for side, f in zip(SIDES, (1e-4, 1))]
-    problem = BallProblem(
+    problem = TwoPointBall(
         screw=screw,
         speed=-SPEED,
-        flank=1,
-        tractions=(laws[0], laws[1]),
-        rolling_forces=(0.0, 0.0),
-        normal_force=27.6,
+        flanks=tuple(
+            BallFlank(side=side, flank=1, traction=law, rolling_force=0.0)
+            for side, law in zip(SIDES, laws)
+        ),
+        force_unit=27.6,
         axial_force=None,
     )
     floors = _floors(problem, ratio)

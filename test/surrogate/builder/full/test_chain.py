@@ -102,6 +102,17 @@ def test_balls_that_move_their_forces_are_solved_again():
         assert found['friction_torque'] == pytest.approx(single.friction_torque, rel=0.01)
 
 
+def test_a_turned_load_is_solved_on_the_flank_that_a_ball_had_left():
+    """Oversize balls near unloading rest on three flanks, and on another one the other way."""
+    screw = replace(load_screw('iso3408_40x10'), nut='oversize')
+    load = 2.6 * screw.preload
+    for sense, sign in (('opposing', 1), ('assisting', -1)):
+        point = OperatingPoint(speed=15.0, load=sign * load, temperature=WARM)
+        cold = solve_screw(Contacts.of(screw), OIL, point, settings=GRIDS[0])
+        turned = chain(load, WARM, [15.0], screw)[sense][0]
+        assert turned['friction_torque'] == pytest.approx(cold.friction_torque, rel=1e-3)
+
+
 def test_a_contact_that_fails_costs_the_others_nothing(monkeypatch):
     """The next speed starts from cold and converges; the failed load is not turned round."""
     starts, solve = [], screw_contacts.solve_contact

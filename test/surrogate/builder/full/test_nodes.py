@@ -7,16 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from surrogate.builder.full.nodes import BESIDE, signed_loads, surface_nodes
+from surrogate.builder.full.ratios import solved_grid
 from surrogate.builder.full.settings import default_full_settings
 from surrogate.formulas.geometry import screw_contact
 from surrogate.formulas.inlet import inlet_speed, SPEED_EXPONENT
 from surrogate.formulas.kinematics import no_slip_rates
 from surrogate.formulas.load_sharing import idle_load, normal_force
+from surrogate.parameters import load_lubricant
 from surrogate.screw.contacts import oil_at
 from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_speeds, SMOOTH_ONSET
 
 WARM = 313.15
+OIL = load_lubricant('iso_vg_68')
 
 
 @pytest.fixture(name='settings')
@@ -50,6 +53,18 @@ def test_loads_crowd_towards_the_idle_one(screw, settings):
     assert shared(settings) == pytest.approx(crowded)
     nodes, _ = signed_loads(screw, replace(settings, load_range=(0.0, 1500.0)))
     assert nodes.tolist() == [0.0, 375.0, 750.0, 1125.0, 1500.0]
+
+
+def test_oversize_balls_have_nodes_where_their_motion_changes(screw, settings):
+    """Steps below 0.3 preloads from 1.5 to 2.9; no break but zero, for nothing jumps."""
+    oversize = replace(screw, nut='oversize')
+    nodes, breaks = signed_loads(oversize, settings)
+    assert breaks == [0.0]
+    assert nodes.tolist() == (-nodes[::-1]).tolist()
+    changing = nodes[(nodes > 1.5 * screw.preload) & (nodes < 2.9 * screw.preload)]
+    assert len(changing) >= 6
+    assert np.diff(changing).max() < 0.3 * screw.preload
+    assert solved_grid(oversize, OIL, settings).loads.tolist() == nodes[nodes >= 0].tolist()
 
 
 @pytest.mark.parametrize('ends', [(0.0, 1500.0), (-300.0, 5000.0), (400.0, 900.0), (3e3, 4e3)])
