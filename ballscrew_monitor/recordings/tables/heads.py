@@ -96,6 +96,23 @@ class Head:
     period: float = math.nan
     period_row: int = 0
 
+    def surplus(self, row: int, cells: int) -> str:
+        """Return what is wrong with a row of more cells than there are columns."""
+        return _surplus(row, cells, len(self.names), self.separator)
+
+
+def _surplus(row: int, cells: int, names: int, separator: str) -> str:
+    twice = separator == ',' and cells <= 2 * names
+    cure = (
+        'if the decimal sign is a comma, save the table with semicolons between its cells, else '
+        if twice
+        else ''
+    )
+    return (
+        f'row {row} holds {cells} cells, its columns have {names} names: {cure}name each column, '
+        'or take surplus cells out'
+    )
+
 
 def find_head(lines: Sequence[Line], layout: Layout | None = None) -> Head:
     """
@@ -289,6 +306,8 @@ class _Above:
 
     def head(self, first: int) -> Head:
         names, named = self._names()
+        if named and len(names) < self.width:
+            raise ValueError(self._surplus(first, len(names)))
         filled = [at + 1 for at, name in enumerate(names) if name]
         self.width = max([self.width, *filled])  # columns without a number have names, too
         names = [*names[: self.width], *[''] * (self.width - len(names))]
@@ -321,6 +340,11 @@ class _Above:
             period=period,
             period_row=row,
         )
+
+    def _surplus(self, first: int, names: int) -> str:
+        rows = self.block.rows[self.block.begin :]
+        at = next((at for at, row in enumerate(rows) if any(row[names:])), 0)
+        return _surplus(first + at, len(rows[at]), names, self.separator)
 
     def _row(self, kind: str) -> list[str]:
         row = self.rows.get(kind, [])

@@ -20,12 +20,13 @@ from ballscrew_monitor.recordings.tables.clocks import moments_of
 from ballscrew_monitor.recordings.tables.quantities import Layout, OTHER_SIGN
 from ballscrew_monitor.recordings.tables.signs import decide, Decision
 from ballscrew_monitor.recordings.tables.sources import Source, source_of
-from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
+from ballscrew_monitor.recordings.words import counted, listed, short, Shown, shown_progress
 import numpy as np
 from numpy.typing import NDArray
 import polars as pl
 from surrogate.files import InputError
 
+SHORT = 0.05  # of the rows, at most, that may be left out as they hold too few cells
 SURE_BETWEEN = ('', ',')
 """Separators of cells whose sign is decimal if the log does not show the other one."""
 
@@ -149,6 +150,7 @@ def look_through(
             show(rows / source.rows)
     if not rows:
         raise InputError(f'log {source.path} holds no row, at least two are needed')
+    short_rows = _short_rows(source, rows)
     decision = _decision(source, found, decimal)
     shown_order = order or _order(source, found)
     readings: dict[str, Reading] = {}
@@ -167,6 +169,7 @@ def look_through(
         readings=readings,
         rows=rows,
         notes=(
+            *short_rows,
             *(one.note for one in readings.values() if one.note),
             *_decided(source, found, decision),
         ),
@@ -175,6 +178,20 @@ def look_through(
         decision=decision,
         source=source,
     )
+
+
+def _short_rows(source: Source, rows: int) -> list[str]:
+    """Return in a sentence how many rows hold too few cells; raises InputError for too many."""
+    short, names = source.short, len(source.head.names)
+    if not short.count:
+        return []
+    words = (
+        f'log {source.path}: {counted(short.count, "row")} of {rows} with fewer cells than the '
+        f'{names} columns, the first is row {short.first} with {short.cells}'
+    )
+    if short.count > max(1, SHORT * rows):
+        raise InputError(f'{words}: write an empty cell where a column has no value')
+    return [f'{words}; left out']
 
 
 def _decided(source: Source, found: Mapping[str, Cells], decision: Decision) -> list[str]:

@@ -19,7 +19,7 @@ import re
 from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.tables import foreign, heads
-from ballscrew_monitor.recordings.tables.cells import first_line, readable
+from ballscrew_monitor.recordings.tables.cells import empties, first_line, readable
 from ballscrew_monitor.recordings.tables.heads import Head, Line
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.workbook import first_sheet
@@ -53,6 +53,28 @@ Types = Mapping[str, Any]
 """Types of columns of a text whose cells are known to be plain numbers."""
 
 
+@dataclasses.dataclass(kw_only=True, slots=True)
+class ShortRows:
+    """Rows of fewer cells than a table has columns: how many, the first of them and its cells."""
+
+    count: int = 0
+    first: int = 0
+    cells: int = 0
+
+    def left_out(
+        self, rows: pl.DataFrame, widths: NDArray[np.int64], width: int, first: int
+    ) -> pl.DataFrame:
+        """Return rows from `first` on, those of too few cells without any, and count these."""
+        short = (widths > 0) & (widths < width)
+        if len(widths) != rows.height or not short.any():
+            return rows
+        if not self.count:
+            at = int(short.argmax())
+            self.first, self.cells = first + at, int(widths[at])
+        self.count += int(short.sum())
+        return rows.select(pl.when(pl.Series(~short)).then(pl.all()))
+
+
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Source:
     """
@@ -60,7 +82,8 @@ class Source:
 
     The columns that are read may come to `most` [bytes]: those at rest take next to no room in a
     file of Parquet, so that all of them together tell nothing. `read` reads some columns part by
-    part, those of a text by their types where all cells of the part are of these.
+    part, those of a text by their types where all cells of the part are of these. `short`
+    are the rows of too few cells since it began.
 
     """
 
@@ -69,6 +92,7 @@ class Source:
     rows: int
     read: Callable[[list[str], Types], Iterator[pl.DataFrame]]
     most: float = math.inf
+    short: ShortRows = dataclasses.field(default_factory=ShortRows)
 
     def names(self) -> list[str]:
         """Return the names of all columns."""
@@ -303,26 +327,56 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
         'raise_if_empty': False,
     }
     places = {name: at for at, name in enumerate(head.names)}
-    # Names for as many columns stand before each part.
-    line = head.separator.join(map(str, range(len(head.names)))) + text.line_end
+    width, short = len(head.names), ShortRows()
+    # Names for as many columns and one more, which must be empty, stand before each part.
+    line = head.separator.join(map(str, range(width + 1))) + text.line_end
 
     def read(names: list[str], types: Types) -> Iterator[pl.DataFrame]:
-        tries = TRIES
+        tries, row, short.count = TRIES, head.first, 0
         chosen = sorted(set(names), key=places.__getitem__)
-        options['columns'] = [places[name] for name in chosen]
+        options['columns'] = [*(places[name] for name in chosen), width]
         called = {str(places[name]): name for name in chosen}
         with text.stream() as stream:
             stream.seek(begins[head.begin])
             for part in _parts(stream, text.line_end.encode()):
                 content = SPACES.sub(b' ', EDGES.sub(b'', part)) if blanks else part
-                content = b''.join([line.encode(), content])
+                whole = _are_whole(content, head.separator, text.line_end, width)
                 known = {str(places[name]): kind for name, kind in types.items() if tries}
-                cells = _typed(content, known, options)
+                named = b''.join([line.encode(), content])
+                cells = _typed(named, known, options) if whole else None
                 tries -= cells is None
-                cells = pl.read_csv(content, **options) if cells is None else cells
+                cells = pl.read_csv(named, **options) if cells is None else cells
+                surplus = ~empties(cells[str(width)])
+                if not whole or surplus.any():
+                    widths = _widths(content, head.separator, text.line_end)
+                    if surplus.any():
+                        at = int(surplus.argmax())
+                        found = int(widths[at]) if len(widths) == cells.height else width + 1
+                        raise InputError(f'log {path}: {head.surplus(row + at, found)}')
+                    cells = short.left_out(cells, widths, width, row)
+                row += cells.height
                 yield cells.rename(called).select(names)
 
-    return Source(path=path, head=head, rows=text.lines_about, read=read)
+    return Source(path=path, head=head, rows=text.lines_about, read=read, short=short)
+
+
+def _are_whole(content: bytes, separator: str, line_end: str, width: int) -> bool:
+    """Return True if a text has as many cells as rows of a width have, unless some make up."""
+    lines = content.count(line_end.encode()) + (not content.endswith(line_end.encode()))
+    return content.count(separator.encode()) == (width - 1) * lines
+
+
+def _widths(content: bytes, separator: str, line_end: str) -> NDArray[np.int64]:
+    """Return how many cells each row of a text holds, 0 of a blank one; comments are no rows."""
+    letters = np.frombuffer(content, np.uint8)
+    outside = np.cumsum(letters == ord('"')) % 2 == 0
+    ends = np.flatnonzero((letters == ord(line_end)) & outside)
+    ends = ends if content.endswith(line_end.encode()) else np.append(ends, len(letters))
+    begins = np.append(0, ends[:-1] + 1)
+    signs = np.append(0, np.cumsum((letters == ord(separator)) & outside))
+    blank = (ends == begins) | ((ends == begins + 1) & (letters[begins] == ord('\r')))
+    widths = np.where(blank, 0, signs[ends] - signs[begins] + 1)
+    return widths[letters[begins] != ord(heads.COMMENT)]
 
 
 def _typed(content: bytes, types: Types, options: Mapping[str, Any]) -> pl.DataFrame | None:

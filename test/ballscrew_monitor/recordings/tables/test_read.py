@@ -36,7 +36,7 @@ def test_numbers_come_as_they_are(tmp_path):
     [
         'a;b\n1,5;2\n2,5;3\n',
         'a\tb\n1.5\t2\n2.5\t3\n',
-        '# a comment\na,b\n1.5,2,surplus\n2.5,3\n',
+        '# a comment\na,b\n1.5,2,\n2.5,3\n',
         '# of axis x, drive 3, in the night, at the mill\na;b\n1.5;2\n2.5;3\n',
         b'a,b,\xb5\n1.5,2,1\n2.5,3,1\n',
         'a;b;"c, d, e, f"\n1,5;2;1\n2,5;3;1\n',
@@ -83,6 +83,26 @@ def test_an_optional_column_whose_cells_hold_several_values_is_left_out(cells, t
     assert 'it must hold numbers' in table.left_out['v']
 
 
+@pytest.mark.parametrize(
+    ('text', 'key'),
+    [
+        ('t,v,F\n' + 9 * '0,01,1,5,2,5\n', 'decimal_comma'),
+        ('t;v\n' + 5 * '1;2\n' + '1;2;3\n' + 5 * '1;2\n', 'one_more'),
+        ('t;v\n' + 3000 * '1;2\n' + '1;2;1;2\n3\n', 'late'),
+        ('t;v\n' + 8 * '1;2\n2\n', 'fewer'),
+    ],
+)
+def test_rows_of_more_cells_than_names_or_often_fewer_are_refused(text, key, tmp_path, refused):
+    refused(key, open_table, text_log(tmp_path, text), ['t', 'v'])
+
+
+def test_a_row_of_fewer_cells_is_left_out_and_counted(tmp_path, says):
+    """Which of its cells is missing is not known: none of them is read, however others are."""
+    table = open_table(text_log(tmp_path, 't;v;w\n' + 30 * '1;2;x\n' + '1;3\n\n'), ['t', 'v'])
+    assert np.nansum(table.head(99)['v']) == 60
+    assert says('short_row') in table.notes[0]
+
+
 def test_times_of_day_become_seconds(tmp_path):
     text = 't\n2026-01-02T03:04:05.5Z\n2026-01-02T03:04:06.5Z\n'
     values = open_table(text_log(tmp_path, text), ['t']).head(99)['t']
@@ -104,7 +124,7 @@ def test_a_column_is_read_in_the_form_of_most_cells(tmp_path, monkeypatch, block
 
 
 def test_cells_without_a_finite_number_are_unknown_and_counted(tmp_path, says, refused):
-    table = open_table(text_log(tmp_path, 'a,b\n1,2\n1,oops\n1,\n1'), ['a', 'b'])
+    table = open_table(text_log(tmp_path, 'a,b\n1,2\n1,oops\n1,\n1,'), ['a', 'b'])
     assert np.isnan(table.head(99)['b']).tolist() == [False, True, True, True]
     assert table.notes[0].endswith(says('column_b'))
     table = open_table(text_log(tmp_path, 'a\n1\nNaN\ninf\n4\n'), ['a'])
