@@ -101,6 +101,19 @@ class Head:
         return _surplus(row, cells, len(self.names), self.separator)
 
 
+def are_other_names(cells: Sequence[str], names: Sequence[str]) -> bool:
+    """Return True if cells of columns are names or units, and others than those of the head."""
+    words = [cell.strip(f'{COMMENT} []()') for cell in cells]
+    texts = [word for word in words if word and not word[0].isdigit()]
+    if len(texts) < len(words) or not any(is_unit(one) or read_name(one).kind for one in texts):
+        return False
+    known = [
+        {name.strip(' []()'), BRACKETS.sub('', name).strip(), *BRACKETS.findall(name)}
+        for name in names
+    ]
+    return any(one not in held for one, held in zip(words, known, strict=True))
+
+
 def _surplus(row: int, cells: int, names: int, separator: str) -> str:
     twice = separator == ',' and cells <= 2 * names
     cure = (

@@ -15,6 +15,7 @@ import difflib
 from pathlib import Path
 from typing import Any
 
+from ballscrew_monitor.recordings.tables import heads
 from ballscrew_monitor.recordings.tables.cells import Array, Cells, empties, Reading
 from ballscrew_monitor.recordings.tables.clocks import moments_of
 from ballscrew_monitor.recordings.tables.quantities import Layout, OTHER_SIGN
@@ -27,6 +28,7 @@ import polars as pl
 from surrogate.files import InputError
 
 SHORT = 0.05  # of the rows, at most, that may be left out as they hold too few cells
+WORD, ROW = r'^\s*"?[\[(]?\p{L}', '\0row'
 SURE_BETWEEN = ('', ',')
 """Separators of cells whose sign is decimal if the log does not show the other one."""
 
@@ -138,6 +140,7 @@ def look_through(
     rows, types = 0, dict[str, Any]()
     with shown(source.rows, 'rows looked through') as show:
         for block in source.blocks(list(found), types):
+            _check_names_within(source, block, source.head.first + rows)
             for name, cells in found.items():
                 if name in left_out:
                     continue
@@ -178,6 +181,21 @@ def look_through(
         decision=decision,
         source=source,
     )
+
+
+def _check_names_within(source: Source, block: pl.DataFrame, first: int) -> None:
+    """Raise InputError for a row of other names or units, below which columns hold others."""
+    if any(kind != pl.String for kind in block.dtypes):
+        return
+    words = block.with_row_index(ROW).filter(
+        pl.all_horizontal(pl.all().exclude(ROW).str.contains(WORD))
+    )
+    for row, *cells in words.iter_rows():
+        if heads.are_other_names(cells, block.columns):
+            raise InputError(
+                f'log {source.path}: row {first + row} names or measures its columns otherwise '
+                f'than the head, {listed(cells)}: split the log there'
+            )
 
 
 def _short_rows(source: Source, rows: int) -> list[str]:

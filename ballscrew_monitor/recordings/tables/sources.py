@@ -23,7 +23,7 @@ from ballscrew_monitor.recordings.tables.cells import empties, first_line, reada
 from ballscrew_monitor.recordings.tables.heads import Head, Line
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.workbook import first_sheet
-from ballscrew_monitor.recordings.words import short
+from ballscrew_monitor.recordings.words import listed, short
 import numpy as np
 from numpy.typing import NDArray
 import polars as pl
@@ -42,6 +42,7 @@ ZIP, PARQUET = b'PK\3\4', b'PAR1'
 EDGES = re.compile(rb'^[ \t]+|[ \t]+(?=\r?$)', re.M)
 SPACES = re.compile(rb'[ \t]+')
 """Blanks at the ends of lines, and between cells that they part."""
+REMARK, LINE_FEED = re.compile(rb'^#(.*)$', re.M), b'\n'
 WIDE_MARKS = (b'\xff\xfe', b'\xfe\xff')
 NARROW_MARK = b'\xef\xbb\xbf'
 CODINGS = ('utf-8', 'cp1252', 'latin-1')
@@ -340,6 +341,7 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
             stream.seek(begins[head.begin])
             for part in _parts(stream, text.line_end.encode()):
                 content = SPACES.sub(b' ', EDGES.sub(b'', part)) if blanks else part
+                _check_remarks(path, content, row, head)
                 whole = _are_whole(content, head.separator, text.line_end, width)
                 known = {str(places[name]): kind for name, kind in types.items() if tries}
                 named = b''.join([line.encode(), content])
@@ -358,6 +360,18 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
                 yield cells.rename(called).select(names)
 
     return Source(path=path, head=head, rows=text.lines_about, read=read, short=short)
+
+
+def _check_remarks(path: Path, content: bytes, row: int, head: Head) -> None:
+    """Raise InputError for a comment of other names or units than those of the head."""
+    for match in REMARK.finditer(content) if heads.COMMENT.encode() in content else ():
+        cells = match[1].decode(errors='replace').strip().split(head.separator)
+        if len(cells) == len(head.names) > 1 and heads.are_other_names(cells, head.names):
+            raise InputError(
+                f'log {path}: row {row + content.count(LINE_FEED, 0, match.start())} names or '
+                f'measures its columns otherwise than the head, {listed(cells)}: split the log '
+                'there'
+            )
 
 
 def _are_whole(content: bytes, separator: str, line_end: str, width: int) -> bool:

@@ -96,6 +96,17 @@ def test_rows_of_more_cells_than_names_or_often_fewer_are_refused(text, key, tmp
     refused(key, open_table, text_log(tmp_path, text), ['t', 'v'])
 
 
+@pytest.mark.parametrize('below', ['t [s];v [m/min]', 's;m/min', '# t [s];v [m/min]', 't;F [N]'])
+def test_other_names_or_units_below_the_head_are_refused(below, tmp_path, refused):
+    rows = 9 * '1;2\n'
+    for head in ('t [s];v [mm/s]', 't;v\ns;mm/s'):
+        path = text_log(tmp_path, f'{head}\n{rows}{below}\n{rows}')
+        refused('other_names', open_table, path, column_names(path))
+    for head in ('t [s];v [mm/s]', 't;v\ns;mm/s'):
+        path = text_log(tmp_path, f'{head}\n{rows}{head}\n{rows}ERROR;ERROR\n')
+        assert np.nansum(open_table(path, column_names(path)).head(99)['v [mm/s]']) == 36
+
+
 def test_a_row_of_fewer_cells_is_left_out_and_counted(tmp_path, says):
     """Which of its cells is missing is not known: none of them is read, however others are."""
     table = open_table(text_log(tmp_path, 't;v;w\n' + 30 * '1;2;x\n' + '1;3\n\n'), ['t', 'v'])
