@@ -74,6 +74,12 @@ def test_a_map_may_state_where_the_names_stand():
         ('Abtastrate = 2 kHz', 5e-4),
         ('dt;0,01', 0.01),
         ('Operator: 12', None),
+        ('Sample period: 20 [ms]', 0.02),
+        ('Sample rate: 6000 /min', None),
+        ('Sample rate [1/min]: 6000', None),
+        ('Sample rate: 100 Sa/s', None),
+        ('Sample time: 1 ms x 10', None),
+        ('Sample rate: 6 kHz / 60', None),
     ],
 )
 def test_a_period_is_found_wherever_it_stands(line, period):
