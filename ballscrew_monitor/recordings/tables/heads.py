@@ -47,6 +47,7 @@ NO_NUMBER = frozenset(
     {'nan', 'n/a', 'na', 'null', 'none', 'inf', '-inf', '-nan', '#n/a', '--', '-'}
 )
 """Cells that stand for a number that is not known."""
+FACTOR = re.compile(r'(scale|scaling|scale ?factor|gain|offset|faktor|skalierung)s?\W*$')
 MOSTLY = 0.8
 SURE = 0.7  # weight of blanks, which stand in texts and dates as well
 FULL = 0.5  # of the cells of the fullest row: emptier ones belong to no table
@@ -79,7 +80,7 @@ class Head:
     The first cells are the line `begin` of those that were looked at, in the row `first` of the
     file. `symbols` are longer names, `periods` [s] those that columns state, NaN for none;
     `labelled` are the columns that the head gives no name of their own; without `named` it names
-    none. `properties` are those of the file by their words.
+    none. `properties` are those of the file by their words, `factors` a row that scales cells.
 
     """
 
@@ -95,6 +96,7 @@ class Head:
     properties: Mapping[str, Property] = dataclasses.field(default_factory=dict)
     period: float = math.nan
     period_row: int = 0
+    factors: str = ''
 
     def surplus(self, row: int, cells: int) -> str:
         """Return what is wrong with a row of more cells than there are columns."""
@@ -352,7 +354,23 @@ class _Above:
             properties=properties,
             period=period,
             period_row=row,
+            factors=self._factors(),
         )
+
+    def _factors(self) -> str:
+        """Return the first row that states a scale other than 1, or an offset other than 0."""
+        first = self.block.rows[self.block.begin : self.block.begin + FOLLOWING]
+        for row in [*(row for _, row in self.lines), *first]:
+            label, *cells = row or ['']
+            key, sign, value = label.partition(':')
+            match = FACTOR.search(key.lower())
+            numbers = [one for one in ([value] if sign else cells) if _kind(one.strip()) == 'n']
+            plain = re.compile(
+                '1(?:[.,]0*)?' if match and match[1] != 'offset' else '0(?:[.,]0*)?'
+            )
+            if match and not all(plain.fullmatch(one.strip()) for one in numbers):
+                return ' '.join(filter(None, row))
+        return ''
 
     def _surplus(self, first: int, names: int) -> str:
         rows = self.block.rows[self.block.begin :]

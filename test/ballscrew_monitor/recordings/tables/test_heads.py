@@ -92,3 +92,17 @@ def test_a_period_is_found_wherever_it_stands(line, period):
 def test_a_remark_about_a_name_does_not_name_the_columns():
     head = head_of('Name;x\nTimestamp;ActVelo [mm/s];Force [N]\n1;2;3\n2;3;4\n3;4;5')
     assert head.names == ('Timestamp', 'ActVelo [mm/s]', 'Force [N]')
+
+
+@pytest.mark.parametrize(
+    ('text', 'factors'),
+    [
+        ('Name;v;F\nScaleFactor;0.1;1\nOffset;0;0\n', 'ScaleFactor 0.1 1'),
+        ('Name;v;F\nScale;1;1.0\nOffset;0;5\n', 'Offset 0 5'),
+        ('t;v;F\nGain;2;1\n', 'Gain 2 1'),
+        ('v scale: 2\nt;v;F\n', 'v scale: 2'),
+        ('Name;v;F\nScaleFactor;1;1\nOffset;0;0.0\n', ''),
+    ],
+)
+def test_a_row_that_scales_the_cells_is_known(text, factors):
+    assert head_of(text + 9 * '1;2;3\n').factors == factors
