@@ -121,6 +121,12 @@ def test_times_of_day_become_seconds(tmp_path):
     assert values[1] - values[0] == 1.0
 
 
+def test_what_follows_a_colon_is_a_whole_number_of_milliseconds(tmp_path):
+    cells = ''.join(f'11:59:{54 + row // 1000}:{row % 1000}\n' for row in range(0, 3000, 10))
+    values = open_table(text_log(tmp_path, f't\n{cells}'), ['t']).head(999)['t']
+    np.testing.assert_allclose(np.diff(values), 0.01)
+
+
 @pytest.mark.parametrize('block', [1, 2, 99])
 def test_a_column_is_read_in_the_form_of_most_cells(tmp_path, monkeypatch, block, says):
     monkeypatch.setattr(sources, 'BLOCK', block)
