@@ -25,6 +25,7 @@ ALIKE = 0.8  # squared correlation of a motion and its speed
 LONGEST_AXIS = 20.0  # [m]
 FEW = 8  # rows that tell no way of a speed
 STRETCHES = 2000  # of a motion, at least, that tell how far a speed goes
+ROUNDED = 1e-3  # of a turn, by which a scale of few digits goes beyond one
 
 
 def is_silent(values: Array) -> bool:
@@ -118,7 +119,7 @@ class Turns:
 
 def is_within_turn(extremes: Array, turn: float) -> bool:
     """Return True if the least and the most of positions are those of a scale of one turn."""
-    return turn / 2 < float(np.ptp(extremes)) <= turn * (1.0 + 1e-6)
+    return turn / 2 < float(np.ptp(extremes)) <= turn * (1.0 + ROUNDED)
 
 
 def position_unit(position: Array) -> tuple[str, str]:

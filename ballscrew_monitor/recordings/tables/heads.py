@@ -47,6 +47,7 @@ NO_NUMBER = frozenset(
     {'nan', 'n/a', 'na', 'null', 'none', 'inf', '-inf', '-nan', '#n/a', '--', '-'}
 )
 """Cells that stand for a number that is not known."""
+FACTOR = re.compile(r'(scale|scaling|scale ?factor|gain|offset|faktor|skalierung)s?\W*$')
 MOSTLY = 0.8
 SURE = 0.7  # weight of blanks, which stand in texts and dates as well
 FULL = 0.5  # of the cells of the fullest row: emptier ones belong to no table
@@ -79,7 +80,7 @@ class Head:
     The first cells are the line `begin` of those that were looked at, in the row `first` of the
     file. `symbols` are longer names, `periods` [s] those that columns state, NaN for none;
     `labelled` are the columns that the head gives no name of their own; without `named` it names
-    none. `properties` are those of the file by their words.
+    none. `properties` are those of the file by their words, `factors` a row that scales cells.
 
     """
 
@@ -95,6 +96,37 @@ class Head:
     properties: Mapping[str, Property] = dataclasses.field(default_factory=dict)
     period: float = math.nan
     period_row: int = 0
+    factors: str = ''
+
+    def surplus(self, row: int, cells: int) -> str:
+        """Return what is wrong with a row of more cells than there are columns."""
+        return _surplus(row, cells, len(self.names), self.separator)
+
+
+def are_other_names(cells: Sequence[str], names: Sequence[str]) -> bool:
+    """Return True if cells of columns are names or units, and others than those of the head."""
+    words = [cell.strip(f'{COMMENT} []()') for cell in cells]
+    texts = [word for word in words if word and not word[0].isdigit()]
+    if len(texts) < len(words) or not any(is_unit(one) or read_name(one).kind for one in texts):
+        return False
+    known = [
+        {name.strip(' []()'), BRACKETS.sub('', name).strip(), *BRACKETS.findall(name)}
+        for name in names
+    ]
+    return any(one not in held for one, held in zip(words, known, strict=True))
+
+
+def _surplus(row: int, cells: int, names: int, separator: str) -> str:
+    twice = separator == ',' and cells <= 2 * names
+    cure = (
+        'if the decimal sign is a comma, save the table with semicolons between its cells, else '
+        if twice
+        else ''
+    )
+    return (
+        f'row {row} holds {cells} cells, its columns have {names} names: {cure}name each column, '
+        'or take surplus cells out'
+    )
 
 
 def find_head(lines: Sequence[Line], layout: Layout | None = None) -> Head:
@@ -293,6 +325,8 @@ class _Above:
 
     def head(self, first: int) -> Head:
         names, named = self._names()
+        if named and len(names) < self.width:
+            raise ValueError(self._surplus(first, len(names)))
         filled = [at + 1 for at, name in enumerate(names) if name]
         self.width = max([self.width, *filled])  # columns without a number have names, too
         names = [*names[: self.width], *[''] * (self.width - len(names))]
@@ -325,7 +359,28 @@ class _Above:
             properties=properties,
             period=period,
             period_row=row,
+            factors=self._factors(),
         )
+
+    def _factors(self) -> str:
+        """Return the first row that states a scale other than 1, or an offset other than 0."""
+        first = self.block.rows[self.block.begin : self.block.begin + FOLLOWING]
+        for row in [*(row for _, row in self.lines), *first]:
+            label, *cells = row or ['']
+            key, sign, value = label.partition(':')
+            match = FACTOR.search(key.lower())
+            numbers = [one for one in ([value] if sign else cells) if _kind(one.strip()) == 'n']
+            plain = re.compile(
+                '1(?:[.,]0*)?' if match and match[1] != 'offset' else '0(?:[.,]0*)?'
+            )
+            if match and not all(plain.fullmatch(one.strip()) for one in numbers):
+                return ' '.join(filter(None, row))
+        return ''
+
+    def _surplus(self, first: int, names: int) -> str:
+        rows = self.block.rows[self.block.begin :]
+        at = next((at for at, row in enumerate(rows) if any(row[names:])), 0)
+        return _surplus(first + at, len(rows[at]), names, self.separator)
 
     def _row(self, kind: str) -> list[str]:
         row = self.rows.get(kind, [])

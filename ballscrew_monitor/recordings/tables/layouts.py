@@ -8,6 +8,7 @@ A property is what a head says of the file or of a column: its name, unit, perio
 """
 
 import dataclasses
+import math
 import re
 
 PROPERTIES: dict[str, frozenset[str]] = {
@@ -47,9 +48,13 @@ REMARK = re.compile(
     re.I,
 )
 """A period or rate that a remark states in a sentence."""
+STATED = re.compile(r'([\d.,]+(?:e[-+]?\d+)?)\s*[\[(]?\s*([^\s\d\[\]()]*)[\])]?', re.I)
+PERIOD = re.compile('([nuµμm]?)s(?:ec(?:onds?)?|ek(?:unden?)?)?')
+RATE = re.compile('(k?)hz')
+"""A number with its unit; units of a period and of a rate."""
 PERIODS = {'n': 1e-9, 'u': 1e-6, 'µ': 1e-6, 'μ': 1e-6, 'm': 1e-3, 's': 1.0}
-RATES = {'h': 1.0, 'k': 1e3}
-"""First letters of units of a period [s] and of a rate [Hz]."""
+RATES = {'': 1.0, 'k': 1e3}
+"""Units [s] of a period and [Hz] of a rate by their first letter."""
 SEPARATED = re.compile(r'^\s*"?sep=(?P<sign>.)', re.I)
 """The line by which a spreadsheet tells what separates cells."""
 
@@ -108,16 +113,21 @@ def format_of(head: str) -> Format | None:
 
 
 def period_of(text: str, unit: str = '') -> float:
-    """Return the period [s] that a text states, in its own unit or another; NaN for none."""
-    match = re.match(r'\s*([\d.,]+(?:e[-+]?\d+)?)\s*([a-zµμ]*)', text, re.I)
-    stated = (match[2] if match else '') or unit
+    """
+    Return the period [s] that a text states, in its own unit or another; NaN for none.
+
+    Nothing else may stand beside number and unit: it would make them another period.
+
+    """
+    match = STATED.fullmatch(text.strip())
     try:
-        number = float(match[1].replace(',', '.')) if match and match[1] else 0.0
+        number = float(match[1].replace(',', '.')) if match else 0.0
     except ValueError:
         number = 0.0
-    letter = stated[:1].lower()
-    if number <= 0.0:
-        return float('nan')
-    if stated.lower().endswith('hz') and letter in RATES:
-        return 1.0 / (number * RATES[letter])
-    return number * PERIODS[letter] if letter in PERIODS else float('nan')
+    stated = (match[2] if match else '').lower() or unit.lower()
+    if number <= 0.0 or not stated:
+        return math.nan
+    if match := RATE.fullmatch(stated):
+        return 1.0 / (number * RATES[match[1]])
+    match = PERIOD.fullmatch(stated)
+    return number * PERIODS[match[1] or 's'] if match else math.nan

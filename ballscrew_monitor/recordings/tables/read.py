@@ -15,17 +15,20 @@ import difflib
 from pathlib import Path
 from typing import Any
 
+from ballscrew_monitor.recordings.tables import heads
 from ballscrew_monitor.recordings.tables.cells import Array, Cells, empties, Reading
 from ballscrew_monitor.recordings.tables.clocks import moments_of
 from ballscrew_monitor.recordings.tables.quantities import Layout, OTHER_SIGN
 from ballscrew_monitor.recordings.tables.signs import decide, Decision
 from ballscrew_monitor.recordings.tables.sources import Source, source_of
-from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
+from ballscrew_monitor.recordings.words import counted, listed, short, Shown, shown_progress
 import numpy as np
 from numpy.typing import NDArray
 import polars as pl
 from surrogate.files import InputError
 
+SHORT = 0.05  # of the rows, at most, that may be left out as they hold too few cells
+WORD, ROW = r'^\s*"?[\[(]?\p{L}', '\0row'
 SURE_BETWEEN = ('', ',')
 """Separators of cells whose sign is decimal if the log does not show the other one."""
 
@@ -138,6 +141,7 @@ def look_through(
     rows, types = 0, dict[str, Any]()
     with shown(source.rows, 'rows looked through') as show:
         for block in source.blocks(list(found), types):
+            _check_names_within(source, block, source.head.first + rows)
             for name, cells in found.items():
                 if name in left_out:
                     continue
@@ -150,6 +154,7 @@ def look_through(
             show(rows / source.rows)
     if not rows:
         raise InputError(f'log {source.path} holds no row, at least two are needed')
+    short_rows = _short_rows(source, rows)
     decision = _decision(source, found, decimal)
     shown_order = order or _order(source, found)
     readings: dict[str, Reading] = {}
@@ -168,6 +173,7 @@ def look_through(
         readings=readings,
         rows=rows,
         notes=(
+            *short_rows,
             *(one.note for one in readings.values() if one.note),
             *_decided(source, found, decision),
         ),
@@ -176,6 +182,35 @@ def look_through(
         decision=decision,
         source=source,
     )
+
+
+def _check_names_within(source: Source, block: pl.DataFrame, first: int) -> None:
+    """Raise InputError for a row of other names or units, below which columns hold others."""
+    if any(kind != pl.String for kind in block.dtypes):
+        return
+    words = block.with_row_index(ROW).filter(
+        pl.all_horizontal(pl.all().exclude(ROW).str.contains(WORD))
+    )
+    for row, *cells in words.iter_rows():
+        if heads.are_other_names(cells, block.columns):
+            raise InputError(
+                f'log {source.path}: row {first + row} names or measures its columns otherwise '
+                f'than the head, {listed(cells)}: split the log there'
+            )
+
+
+def _short_rows(source: Source, rows: int) -> list[str]:
+    """Return in a sentence how many rows hold too few cells; raises InputError for too many."""
+    short, names = source.short, len(source.head.names)
+    if not short.count:
+        return []
+    words = (
+        f'log {source.path}: {counted(short.count, "row")} of {rows} with fewer cells than the '
+        f'{names} columns, the first is row {short.first} with {short.cells}'
+    )
+    if short.count > max(1, SHORT * rows):
+        raise InputError(f'{words}: write an empty cell where a column has no value')
+    return [f'{words}; left out']
 
 
 def _decided(source: Source, found: Mapping[str, Cells], decision: Decision) -> list[str]:

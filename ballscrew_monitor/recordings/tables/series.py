@@ -189,6 +189,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     for name in mapping.time_columns:
         if name in table.left_out:
             raise InputError(f'{table.left_out[name]}: name a time that is read, or {INSTEAD}')
+    _check_factors(path, mapping, table)
     _check_positions(path, mapping, table)
     axes = [_readable(axis, table.left_out) for axis in mapping.axes]
     moving = [_moving(axis, table) for axis in axes]
@@ -357,6 +358,17 @@ def _place(path: Path, times: Sequence[Times]) -> tuple[list[int], list[int]]:
     for one in times:
         one.since(begin)
     return times[0].stamps(begins), times[0].stamps([begin - gap / 2 for begin in begins])
+
+
+def _check_factors(path: Path, mapping: TableMap, table: Table) -> None:
+    """Raise InputError where the head scales columns and the map none."""
+    columns = [column for axis in mapping.axes for column in axis.columns.values()]
+    factors = table.source.head.factors
+    if factors and all(column.scale == 1.0 and column.offset == 0.0 for column in columns):
+        raise InputError(
+            f'log {path}: its head states {short(repr(factors))}: state `scale` and `offset` of '
+            'these columns in the map, or take that row out if the cells hold it'
+        )
 
 
 def _check_positions(path: Path, mapping: TableMap, table: Table) -> None:

@@ -19,11 +19,11 @@ import re
 from typing import Any, BinaryIO
 
 from ballscrew_monitor.recordings.tables import foreign, heads
-from ballscrew_monitor.recordings.tables.cells import first_line, readable
+from ballscrew_monitor.recordings.tables.cells import empties, first_line, readable
 from ballscrew_monitor.recordings.tables.heads import Head, Line
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.workbook import read_sheet
-from ballscrew_monitor.recordings.words import short
+from ballscrew_monitor.recordings.words import listed, short
 import numpy as np
 from numpy.typing import NDArray
 import polars as pl
@@ -42,6 +42,7 @@ ZIP, PARQUET = b'PK\3\4', b'PAR1'
 EDGES = re.compile(rb'^[ \t]+|[ \t]+(?=\r?$)', re.M)
 SPACES = re.compile(rb'[ \t]+')
 """Blanks at the ends of lines, and between cells that they part."""
+REMARK, LINE_FEED = re.compile(rb'^#(.*)$', re.M), b'\n'
 WIDE_MARKS = (b'\xff\xfe', b'\xfe\xff')
 NARROW_MARK = b'\xef\xbb\xbf'
 CODINGS = ('utf-8', 'cp1252', 'latin-1')
@@ -53,6 +54,28 @@ Types = Mapping[str, Any]
 """Types of columns of a text whose cells are known to be plain numbers."""
 
 
+@dataclasses.dataclass(kw_only=True, slots=True)
+class ShortRows:
+    """Rows of fewer cells than a table has columns: how many, the first of them and its cells."""
+
+    count: int = 0
+    first: int = 0
+    cells: int = 0
+
+    def left_out(
+        self, rows: pl.DataFrame, widths: NDArray[np.int64], width: int, first: int
+    ) -> pl.DataFrame:
+        """Return rows from `first` on, those of too few cells without any, and count these."""
+        short = (widths > 0) & (widths < width)
+        if len(widths) != rows.height or not short.any():
+            return rows
+        if not self.count:
+            at = int(short.argmax())
+            self.first, self.cells = first + at, int(widths[at])
+        self.count += int(short.sum())
+        return rows.select(pl.when(pl.Series(~short)).then(pl.all()))
+
+
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Source:
     """
@@ -61,7 +84,7 @@ class Source:
     The columns that are read may come to `most` [bytes]: those at rest take next to no room in a
     file of Parquet, so that all of them together tell nothing. `read` reads some columns part by
     part, those of a text by their types where all cells of the part are of these. Of a workbook it
-    is one `sheet`.
+    is one `sheet`. `short` are the rows of too few cells since it began.
 
     """
 
@@ -72,6 +95,7 @@ class Source:
     most: float = math.inf
     sheet: str = ''
     other_sheets: tuple[str, ...] = ()
+    short: ShortRows = dataclasses.field(default_factory=ShortRows)
 
     def names(self) -> list[str]:
         """Return the names of all columns."""
@@ -313,26 +337,69 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
         'raise_if_empty': False,
     }
     places = {name: at for at, name in enumerate(head.names)}
-    # Names for as many columns stand before each part.
-    line = head.separator.join(map(str, range(len(head.names)))) + text.line_end
+    width, short = len(head.names), ShortRows()
+    # Names for as many columns and one more, which must be empty, stand before each part.
+    line = head.separator.join(map(str, range(width + 1))) + text.line_end
 
     def read(names: list[str], types: Types) -> Iterator[pl.DataFrame]:
-        tries = TRIES
+        tries, row, short.count = TRIES, head.first, 0
         chosen = sorted(set(names), key=places.__getitem__)
-        options['columns'] = [places[name] for name in chosen]
+        options['columns'] = [*(places[name] for name in chosen), width]
         called = {str(places[name]): name for name in chosen}
         with text.stream() as stream:
             stream.seek(begins[head.begin])
             for part in _parts(stream, text.line_end.encode()):
                 content = SPACES.sub(b' ', EDGES.sub(b'', part)) if blanks else part
-                content = b''.join([line.encode(), content])
+                _check_remarks(path, content, row, head)
+                whole = _are_whole(content, head.separator, text.line_end, width)
                 known = {str(places[name]): kind for name, kind in types.items() if tries}
-                cells = _typed(content, known, options)
+                named = b''.join([line.encode(), content])
+                cells = _typed(named, known, options) if whole else None
                 tries -= cells is None
-                cells = pl.read_csv(content, **options) if cells is None else cells
+                cells = pl.read_csv(named, **options) if cells is None else cells
+                surplus = ~empties(cells[str(width)])
+                if not whole or surplus.any():
+                    widths = _widths(content, head.separator, text.line_end)
+                    if surplus.any():
+                        at = int(surplus.argmax())
+                        found = int(widths[at]) if len(widths) == cells.height else width + 1
+                        raise InputError(f'log {path}: {head.surplus(row + at, found)}')
+                    cells = short.left_out(cells, widths, width, row)
+                row += cells.height
                 yield cells.rename(called).select(names)
 
-    return Source(path=path, head=head, rows=text.lines_about, read=read)
+    return Source(path=path, head=head, rows=text.lines_about, read=read, short=short)
+
+
+def _check_remarks(path: Path, content: bytes, row: int, head: Head) -> None:
+    """Raise InputError for a comment of other names or units than those of the head."""
+    for match in REMARK.finditer(content) if heads.COMMENT.encode() in content else ():
+        cells = match[1].decode(errors='replace').strip().split(head.separator)
+        if len(cells) == len(head.names) > 1 and heads.are_other_names(cells, head.names):
+            raise InputError(
+                f'log {path}: row {row + content.count(LINE_FEED, 0, match.start())} names or '
+                f'measures its columns otherwise than the head, {listed(cells)}: split the log '
+                'there'
+            )
+
+
+def _are_whole(content: bytes, separator: str, line_end: str, width: int) -> bool:
+    """Return True if a text has as many cells as rows of a width have, unless some make up."""
+    lines = content.count(line_end.encode()) + (not content.endswith(line_end.encode()))
+    return content.count(separator.encode()) == (width - 1) * lines
+
+
+def _widths(content: bytes, separator: str, line_end: str) -> NDArray[np.int64]:
+    """Return how many cells each row of a text holds, 0 of a blank one; comments are no rows."""
+    letters = np.frombuffer(content, np.uint8)
+    outside = np.cumsum(letters == ord('"')) % 2 == 0
+    ends = np.flatnonzero((letters == ord(line_end)) & outside)
+    ends = ends if content.endswith(line_end.encode()) else np.append(ends, len(letters))
+    begins = np.append(0, ends[:-1] + 1)
+    signs = np.append(0, np.cumsum((letters == ord(separator)) & outside))
+    blank = (ends == begins) | ((ends == begins + 1) & (letters[begins] == ord('\r')))
+    widths = np.where(blank, 0, signs[ends] - signs[begins] + 1)
+    return widths[letters[begins] != ord(heads.COMMENT)]
 
 
 def _typed(content: bytes, types: Types, options: Mapping[str, Any]) -> pl.DataFrame | None:

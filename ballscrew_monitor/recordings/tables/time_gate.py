@@ -33,6 +33,7 @@ CLOSE = 10.0  # [s] by which the step of a clock may miss an hour
 SUMMER = (3, 9, 10)  # months in which clocks are set on, in the north and in the south
 SUNDAY = 6
 NIGHT = 4  # o'clock, before which that is
+FEWEST = 20  # rows of a run, on average, of more than a few
 RUNS = 1000  # more runs than any logger appends
 INSTEAD = 'state time.rate_Hz instead of time.column in the map'
 
@@ -287,6 +288,13 @@ class TimeGate:
             before, time, row = self._first_fall
             return (
                 f'it does not rise: row {row} has {time:.12g} s after {before:.12g} s',
+                INSTEAD,
+            )
+        runs = len(self.runs)
+        if runs > AGAIN and self.count < FEWEST * runs:
+            return (
+                f'it begins again {runs - 1} times, each {self.count / runs:.3g} rows, as a '
+                f'counter does that overflows: first in row {self.runs[1].row}',
                 INSTEAD,
             )
         return '', ''

@@ -85,6 +85,9 @@ def test_unknown_positions_stay_so_and_count_no_turn():
 def test_a_scale_of_one_turn_is_used_for_the_most_of_it():
     ends = [(0.0, 359.9), (-180.0, 180.0), (0.0, 170.0), (0.0, 720.0)]
     assert [is_within_turn(np.array(pair), 360.0) for pair in ends] == [True, True, False, False]
+    radians = [(0.0, 6.2832), (-3.1416, 3.1416), (0.0, 6.3)]
+    turn = 2.0 * np.pi
+    assert [is_within_turn(np.array(pair), turn) for pair in radians] == [True, True, False]
 
 
 def test_the_largest_place_tells_the_unit():

@@ -74,6 +74,12 @@ def test_a_map_may_state_where_the_names_stand():
         ('Abtastrate = 2 kHz', 5e-4),
         ('dt;0,01', 0.01),
         ('Operator: 12', None),
+        ('Sample period: 20 [ms]', 0.02),
+        ('Sample rate: 6000 /min', None),
+        ('Sample rate [1/min]: 6000', None),
+        ('Sample rate: 100 Sa/s', None),
+        ('Sample time: 1 ms x 10', None),
+        ('Sample rate: 6 kHz / 60', None),
     ],
 )
 def test_a_period_is_found_wherever_it_stands(line, period):
@@ -100,3 +106,17 @@ def test_rows_that_begin_with_an_empty_cell_are_told_from_those_about_columns():
     found = find_head(lines)
     assert (found.names, found.first) == (('X_Value', 'Position Z', 'Force Z'), 5)
     assert found.period == 0.01
+
+
+@pytest.mark.parametrize(
+    ('text', 'factors'),
+    [
+        ('Name;v;F\nScaleFactor;0.1;1\nOffset;0;0\n', 'ScaleFactor 0.1 1'),
+        ('Name;v;F\nScale;1;1.0\nOffset;0;5\n', 'Offset 0 5'),
+        ('t;v;F\nGain;2;1\n', 'Gain 2 1'),
+        ('v scale: 2\nt;v;F\n', 'v scale: 2'),
+        ('Name;v;F\nScaleFactor;1;1\nOffset;0;0.0\n', ''),
+    ],
+)
+def test_a_row_that_scales_the_cells_is_known(text, factors):
+    assert head_of(text + 9 * '1;2;3\n').factors == factors

@@ -36,7 +36,7 @@ def test_numbers_come_as_they_are(tmp_path):
     [
         'a;b\n1,5;2\n2,5;3\n',
         'a\tb\n1.5\t2\n2.5\t3\n',
-        '# a comment\na,b\n1.5,2,surplus\n2.5,3\n',
+        '# a comment\na,b\n1.5,2,\n2.5,3\n',
         '# of axis x, drive 3, in the night, at the mill\na;b\n1.5;2\n2.5;3\n',
         b'a,b,\xb5\n1.5,2,1\n2.5,3,1\n',
         'a;b;"c, d, e, f"\n1,5;2;1\n2,5;3;1\n',
@@ -83,11 +83,48 @@ def test_an_optional_column_whose_cells_hold_several_values_is_left_out(cells, t
     assert 'it must hold numbers' in table.left_out['v']
 
 
+@pytest.mark.parametrize(
+    ('text', 'key'),
+    [
+        ('t,v,F\n' + 9 * '0,01,1,5,2,5\n', 'decimal_comma'),
+        ('t;v\n' + 5 * '1;2\n' + '1;2;3\n' + 5 * '1;2\n', 'one_more'),
+        ('t;v\n' + 3000 * '1;2\n' + '1;2;1;2\n3\n', 'late'),
+        ('t;v\n' + 8 * '1;2\n2\n', 'fewer'),
+    ],
+)
+def test_rows_of_more_cells_than_names_or_often_fewer_are_refused(text, key, tmp_path, refused):
+    refused(key, open_table, text_log(tmp_path, text), ['t', 'v'])
+
+
+@pytest.mark.parametrize('below', ['t [s];v [m/min]', 's;m/min', '# t [s];v [m/min]', 't;F [N]'])
+def test_other_names_or_units_below_the_head_are_refused(below, tmp_path, refused):
+    rows = 9 * '1;2\n'
+    for head in ('t [s];v [mm/s]', 't;v\ns;mm/s'):
+        path = text_log(tmp_path, f'{head}\n{rows}{below}\n{rows}')
+        refused('other_names', open_table, path, column_names(path))
+    for head in ('t [s];v [mm/s]', 't;v\ns;mm/s'):
+        path = text_log(tmp_path, f'{head}\n{rows}{head}\n{rows}ERROR;ERROR\n')
+        assert np.nansum(open_table(path, column_names(path)).head(99)['v [mm/s]']) == 36
+
+
+def test_a_row_of_fewer_cells_is_left_out_and_counted(tmp_path, says):
+    """Which of its cells is missing is not known: none of them is read, however others are."""
+    table = open_table(text_log(tmp_path, 't;v;w\n' + 30 * '1;2;x\n' + '1;3\n\n'), ['t', 'v'])
+    assert np.nansum(table.head(99)['v']) == 60
+    assert says('short_row') in table.notes[0]
+
+
 def test_times_of_day_become_seconds(tmp_path):
     text = 't\n2026-01-02T03:04:05.5Z\n2026-01-02T03:04:06.5Z\n'
     values = open_table(text_log(tmp_path, text), ['t']).head(99)['t']
     assert values[0] == 1767323045.5
     assert values[1] - values[0] == 1.0
+
+
+def test_what_follows_a_colon_is_a_whole_number_of_milliseconds(tmp_path):
+    cells = ''.join(f'11:59:{54 + row // 1000}:{row % 1000}\n' for row in range(0, 3000, 10))
+    values = open_table(text_log(tmp_path, f't\n{cells}'), ['t']).head(999)['t']
+    np.testing.assert_allclose(np.diff(values), 0.01)
 
 
 @pytest.mark.parametrize('block', [1, 2, 99])
@@ -104,7 +141,7 @@ def test_a_column_is_read_in_the_form_of_most_cells(tmp_path, monkeypatch, block
 
 
 def test_cells_without_a_finite_number_are_unknown_and_counted(tmp_path, says, refused):
-    table = open_table(text_log(tmp_path, 'a,b\n1,2\n1,oops\n1,\n1'), ['a', 'b'])
+    table = open_table(text_log(tmp_path, 'a,b\n1,2\n1,oops\n1,\n1,'), ['a', 'b'])
     assert np.isnan(table.head(99)['b']).tolist() == [False, True, True, True]
     assert table.notes[0].endswith(says('column_b'))
     table = open_table(text_log(tmp_path, 'a\n1\nNaN\ninf\n4\n'), ['a'])

@@ -183,7 +183,7 @@ def test_parts_of_a_text_leave_no_trace(tmp_path, monkeypatch, end, last):
         'y";3',
         '',
         '4',
-        '5;6;7',
+        '5;6',
         '# a note',
         ';8',
         '9;"10"',
@@ -199,7 +199,6 @@ def test_parts_of_a_text_leave_no_trace(tmp_path, monkeypatch, end, last):
     assert [row for row in whole if row[0]] == [
         ('1', '2'),
         ('x;' + end + 'y', '3'),
-        ('4', None),
         ('5', '6'),
         ('9', '10'),
     ]

@@ -77,6 +77,11 @@ def test_more_rows_in_a_second_than_any_table_has_are_refused(read, refused):
     assert read(days, scale=86400).usual_period == pytest.approx(0.05, rel=0.01)
 
 
+def test_a_counter_that_overflows_often_is_no_time(read, refused):
+    refused('overflow', read, np.arange(1200) * 5000 % 65536, unit='us')
+    assert read(np.arange(1200) * 1000 % 65536, unit='us').count == 1200
+
+
 def test_more_than_ten_years_are_refused(read, refused):
     steps = np.arange(500.0)
     steps[-1] = 10 * YEAR
