@@ -15,7 +15,7 @@ import math
 from surrogate.asperities.law import ONSET_RCS
 from surrogate.asperities.running_in import running_tiles, RunningContact
 from surrogate.asperities.topography import acting_roughness
-from surrogate.asperities.topography_onset import LAG_FACTOR, NODE_FACTOR, TopographyOnset
+from surrogate.asperities.topography_onset import COARSE_FILM, TopographyOnset
 from surrogate.ehl import ContactLubricant
 from surrogate.ehl.kernels.fft import good_length
 from surrogate.ehl.moving import (
@@ -46,8 +46,6 @@ MOVED, MOVES = 4.0, 3
 """Factor by which a span that does not hold the onset is moved, and how often at most [-]."""
 MARCHED = MarchStatus.CONVERGED, MarchStatus.SOME_STEPS
 """How a march ends that made all its transits."""
-BIASED = NODE_FACTOR * LAG_FACTOR
-"""Onset that the law tells over that of marches on these nodes under a falling speed [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -70,7 +68,7 @@ class RacewayStrip:
     def told(self) -> float:
         """Onset speed that the law tells of this very tile, biased as marches are [m/s]."""
         acting = acting_roughness([self.tile], 0.5 * self.strip.reduced_modulus, self.shortest)
-        law = TopographyOnset(acting=acting, factor=1 / BIASED)
+        law = TopographyOnset(acting=acting, film_factor=1 / COARSE_FILM)
         return float(law.speeds(self.strip.line, self.oil, self.film_floor))
 
     def march(self, expected: float, *, transits: float = TRANSITS) -> tuple[float, SpeedRamp]:

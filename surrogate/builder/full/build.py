@@ -98,10 +98,10 @@ def _surface(
 
 
 def _rcs_deviation(opened: Contacts, lubricant: Lubricant, nodes: Nodes) -> Array:
-    """Return the change of RCS [-] from half of the onset's deviation slower to as much faster."""
-    half = 0.5 * opened.law.deviation
-    axes = nodes.load, nodes.temperature, nodes.log_onset
-    slower, faster = (
-        solve_grid(opened, lubricant, nodes.s + apart, *axes)['rcs'] for apart in (-half, half)
+    """Return the change of RCS [-] from an onset half of its deviation later to as much sooner."""
+    axes = nodes.s, nodes.load, nodes.temperature, nodes.log_onset
+    later, sooner = (
+        solve_grid(opened.with_law(opened.law.shifted(half)), lubricant, *axes)['rcs']
+        for half in (0.5, -0.5)
     )
-    return np.asarray(slower - faster)
+    return np.asarray(later - sooner)
