@@ -1,0 +1,45 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Designed marches: what they span, and that a row is the strip that its case makes."""
+
+import pytest
+from surrogate.tasks.table import read_table
+
+
+@pytest.fixture(scope='module', name='marches')
+def load_marches(study):
+    return study('film_marches')
+
+
+@pytest.fixture(scope='module')
+def rows(marches):
+    return {row.march: row for row in read_table(marches.RESULTS, marches.Marched)}
+
+
+def test_every_case_was_marched_and_spans_roughness_lay_state_and_screw(marches, rows):
+    names = [case.march for case in marches.CASES]
+    assert names == list(rows)
+    for role in ('fit', 'held out'):
+        part = [case for case in marches.CASES if case.role == role]
+        assert {case.lay for case in part} == {'isotropic', 'longitudinal', 'transverse'}
+        assert {case.state for case in part} == {'new', 'run_in'}
+        assert max(case.rms_um for case in part) >= 0.4
+        assert min(case.rms_um for case in part) <= 0.06
+    draws = {
+        role: {case.draw for case in marches.CASES if case.role == role}
+        for role in ('fit', 'choice', 'held out')
+    }
+    assert not draws['held out'] & (draws['fit'] | draws['choice'])
+
+
+@pytest.mark.parametrize('name', ['40x10 0.2 longi run_in', '16x5 0.15 isotr new draw=44'])
+def test_a_row_is_the_strip_of_its_case(marches, rows, name):
+    """Half length, pressure and shortest wave; the gap of what is left at the marched onset."""
+    row = next(row for march, row in rows.items() if march.startswith(name))
+    strip = marches.strip_of(next(case for case in marches.CASES if case.march == row.march))
+    assert 1e6 * strip.strip.semi_axis == pytest.approx(row.half_um, rel=1e-3)
+    assert 1e-9 * strip.strip.max_pressure == pytest.approx(row.pressure_GPa, rel=1e-3)
+    assert 1e6 * strip.shortest == pytest.approx(row.shortest_um, rel=1e-3)
+    film, gap, wave, left = marches.left_at(strip, row.onset_m_s)
+    found = [1e9 * film, 1e9 * gap, 1e6 * wave, 1e9 * left]
+    assert found == pytest.approx([row.film_nm, row.gap_nm, row.wave_um, row.left_nm], rel=0.01)
