@@ -115,4 +115,4 @@ def onset_of(contact: RunningContact) -> TopographyOnset:
     if not tiles:
         return TopographyOnset(acting=None)
     modulus = 0.5 * contact.reduced_modulus
-    return TopographyOnset(acting=acting_roughness(tiles, modulus, contact.shortest_wave))
+    return TopographyOnset(acting=acting_roughness(tiles, modulus, contact.resolved_wave))
