@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
-from surrogate.asperities.law import FILM_BANDS
+from surrogate.asperities.law import FILM_BANDS, FILM_POWER
 from surrogate.asperities.strips import raceway_strips, RacewayStrip
 from surrogate.asperities.topography import (
     lay_of,
@@ -29,7 +29,7 @@ from surrogate.asperities.topography import (
     UNCUT,
     WAVE_POWER,
 )
-from surrogate.asperities.topography_onset import COARSE_FILM, film_at_onset
+from surrogate.asperities.topography_onset import COARSE_FILM, film_at_onset, FLOORS
 from surrogate.ehl import ContactLubricant
 from surrogate.ehl.moving import SpeedRamp
 from surrogate.formulas.geometry import Side
@@ -281,6 +281,12 @@ def told_over_marched(row: Marched) -> float:
     return float(film) / COARSE_FILM / (1e-9 * row.film_nm)
 
 
+def slope_of(row: Marched) -> float:
+    """Return the slope of film over that of the law in speed [-]; its floors do not fall."""
+    floors = FLOORS * row.floor_nm / (told_over_marched(row) * row.film_nm)
+    return row.slope * (1 - floors) + FILM_POWER * floors
+
+
 def report(rows: Sequence[Marched]) -> Iterator[str]:
     """Yield each march, and the scatter of each lay and role."""
     logs = {row.march: math.log(told_over_marched(row)) for row in rows}
@@ -288,7 +294,7 @@ def report(rows: Sequence[Marched]) -> Iterator[str]:
         log = logs[row.march]
         yield (
             f'{row.march:60} {row.role:9} film {row.film_nm:6.1f} nm, told/marched '
-            f'{math.exp(log):.2f} in film, {math.exp(log / row.slope):.2f} in speed'
+            f'{math.exp(log):.2f} in film, {math.exp(log / slope_of(row)):.2f} in speed'
         )
     for role in ('fit', 'choice', 'held out'):
         for lay, band in FILM_BANDS.items():

@@ -62,8 +62,12 @@ class Strip:
     @property
     def told(self) -> float:
         """Onset speed that the topography of this very tile tells, biased as marches are [m/s]."""
+        return self.told_at(1.0)
+
+    def told_at(self, film: float) -> float:
+        """Return it where the film is `film` times that of the law [-]."""
         acting = acting_roughness([self.tile], 0.5 * self.strip.reduced_modulus, self.shortest)
-        law = TopographyOnset(acting=acting, film_factor=1 / COARSE_FILM)
+        law = TopographyOnset(acting=acting, film_factor=film / COARSE_FILM)
         return float(law.speeds(self.strip.line, self.oil, self.film_floor))
 
 

@@ -33,7 +33,7 @@ from surrogate.raceway.tile import draw_tile, Tile
 from surrogate.units import GIGA
 
 TILES, LONG_TILES = 3, 1
-"""Tiles of a raceway, each of another draw, and those where one holds more waves than three [-]."""
+"""Tiles of a raceway, each of another draw, and of one whose tiles are long [-]."""
 LONG = 48
 """Shortest waves along a tile from which on it is long [-]."""
 LENGTH, WIDTH = 4.0, 2.0

@@ -53,7 +53,6 @@ def onset_of_sheets(screw: Screw, lubricant: Lubricant, temperature: float) -> C
         oil=lubricant.name,
         viscosity=lubricant.kinematic_viscosity_40,
         rms=screw.roughness.rms,
-        lay=screw.roughness.lay,
         calibrated=screw.roughness.onset_band is not None,
         lead=screw.lead,
     )

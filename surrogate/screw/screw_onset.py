@@ -190,7 +190,7 @@ def extrapolated(screw: Screw) -> list[str]:
     """Return where a screw lies outside the strips that were marched, in words."""
     sheet, (shortest, longest) = screw.roughness, MARCHED_WAVES
     calibrated = sheet.onset_band is not None
-    found = [law_doubt(rms=sheet.rms, lay=sheet.lay, calibrated=calibrated)]
+    found = [law_doubt(rms=sheet.rms, calibrated=calibrated)]
     if not shortest <= sheet.cutoff_short <= longest:
         found.append(f'short cut-off {MICRO * sheet.cutoff_short:g} um (marched: 1.3 to 9.8 um)')
     if screw.ball_roughness is not None:

@@ -50,7 +50,7 @@ KEYS = {
     '`at_high`',
     'unknown_band': 'least and largest onset over the stated one by what is not known',
     'numerical_band': 'the same by the law of contact',
-    'law_doubt': 'where the law is off by more; else empty',
+    'law_doubt': 'where the law is beyond the marches; else empty',
     'measure': 'the two measurements that narrow `unknown_band` most, each with the band that is '
     'left',
 }
@@ -93,9 +93,7 @@ def sensitivity_record(
         'unknown_band': _without(rows),
         'numerical_band': numerical_band(case),
         'law_doubt': law_doubt(
-            rms=screw.roughness.rms,
-            lay=screw.roughness.lay,
-            calibrated=screw.roughness.onset_band is not None,
+            rms=screw.roughness.rms, calibrated=screw.roughness.onset_band is not None
         ),
         'measure': _narrowed(rows),
     }

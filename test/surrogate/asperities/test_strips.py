@@ -43,7 +43,7 @@ def test_waves_longer_than_all_take_the_longest(screw):
     contact = RunningContact.of(screw, 'screw')
     longest = 2 * math.pi / contact.waves[0].wave_number[0]
     assert contact.wave_above(1.0) == pytest.approx(longest)
-    assert contact.wave_above(0.0) == pytest.approx(contact.shortest_wave)
+    assert contact.wave_above(0.0) == pytest.approx(contact.resolved_wave)
 
 
 @pytest.fixture
