@@ -61,6 +61,8 @@ from surrogate.studies.tasks import (
 from surrogate.surface.aims import EFFICIENCY_LIMIT, RCS_LIMIT
 from surrogate.units import MILLI, NANO
 
+SLOPE = 0.60
+"""Slope of film over the law of the onset in speed, of the screw of the study [-]."""
 ROUGHNESS = 120.0
 """Rq of the published screw [nm]."""
 MARK_SPEED = 502.65
@@ -156,7 +158,7 @@ def figure_stribeck(law: AsperityLaw, rows: Rows) -> Figure:
 def _draw_shares(axes: Axes, law: AsperityLaw, rows: Rows) -> None:
     """Draw RCS where the roughness rolls, and where it stands still."""
     rolling = screw_speeds(rows, 'rcs')
-    speed, spread = entrainment(rolling.at), math.exp(law.deviation)
+    speed, spread = entrainment(rolling.at), math.exp(law.deviation / SLOPE)
     share = np.maximum(rolling.mean, NO_CONTACT)
     axes.fill_betweenx(share, speed / spread, speed * spread, color='0.85', linewidth=0)
     standing, contact = screw_speeds(rows, 'rcs', STANDING), contact_speeds(rows)
@@ -360,7 +362,8 @@ def figure_zone(screw: Screw, law: AsperityLaw, rows: Rows) -> Figure:
     found.line(axes, found.rcs, [RCS_LIMIT], linestyles=['solid'], linewidths=1.8, **red)
     found.line(axes, found.eta, [EFFICIENCY_LIMIT], linewidths=1.8, **blue)
     for sign in (-1, 1):
-        shifted = found._replace(speed=math.exp(sign * law.deviation) * found.speed)
+        apart = math.exp(sign * law.deviation / SLOPE)
+        shifted = found._replace(speed=apart * found.speed)
         shifted.line(axes, found.rcs, [RCS_LIMIT], linestyles='dotted', linewidths=1, **red)
     others = found.line(axes, found.eta, [0.7, 0.9, 0.95, 0.98], colors=[GREY], linewidths=0.7)
     _map_axes(axes, rows)
