@@ -65,18 +65,31 @@ class TopographyOnset:
         if self.acting is None:
             return np.zeros(np.shape(line.max_pressure))
         pressure = np.asarray(line.max_pressure)[..., None]
-        every, speed = replace(line, max_pressure=pressure), np.exp(LOG_SPEEDS)
-        M1, L = moes_line(every, speed, oil.viscosity, oil.pressure_viscosity)
-        reduction = M1**0.75 / np.sqrt(L) / every.semi_axis
-        central = central_film_line(every, speed, oil.viscosity, oil.pressure_viscosity)
-        wanted = film_at_onset(self.acting.height(reduction, pressure), floor, pressure)
-        spare = np.log(central) - np.log(film * self.film_factor * wanted)
+        every = replace(line, max_pressure=pressure)
+        spare = np.log(self.film_over_law(every, np.exp(LOG_SPEEDS), oil, floor) / film)
         below = spare[..., :-1] < 0
         last = len(LOG_SPEEDS) - 2 - np.argmax(below[..., ::-1], axis=-1)
         low, high = (np.take_along_axis(spare, (last + k)[..., None], -1)[..., 0] for k in (0, 1))
         step = LOG_SPEEDS[1] - LOG_SPEEDS[0]
         fastest = np.exp(LOG_SPEEDS[last] - low / (high - low) * step)
         return self.factor * np.asarray(np.where(below.any(axis=-1), fastest, 0.0))
+
+    def film_over_law(
+        self, line: Line, speed: ArrayLike, oil: ContactLubricant, floor: float
+    ) -> Array:
+        """
+        Return the smooth film over that at which the law lets contact begin [-].
+
+        At entrainment speeds [m/s] of a rough raceway, film floor [m].
+
+        """
+        assert self.acting is not None
+        M1, L = moes_line(line, speed, oil.viscosity, oil.pressure_viscosity)
+        reduction = M1**0.75 / np.sqrt(L) / line.semi_axis
+        central = central_film_line(line, speed, oil.viscosity, oil.pressure_viscosity)
+        height = self.acting.height(reduction, line.max_pressure)
+        wanted = film_at_onset(height, floor, line.max_pressure)
+        return np.asarray(central / (self.film_factor * wanted))
 
     def speed(
         self,
