@@ -68,8 +68,8 @@ def _failed() -> int:
     number, path = tempfile.mkstemp(prefix='ballscrew_failure_', suffix='.txt')
     with os.fdopen(number, 'w', encoding='utf-8', errors='backslashreplace') as file:
         file.write(text)
-    what = text.strip().splitlines()[-1][:300]
-    say(f'this is a fault of the program ({what}): please report it with the file {path}')
+    line = text.strip().splitlines()[-1][:300]
+    say(f'this is a fault of the program ({line}): please report it with the file {path}')
     return BUG
 
 
@@ -231,9 +231,9 @@ def _events(args: argparse.Namespace) -> int:
             print(json.dumps(record))
             continue
         event = f'event {record["event"]}' if 'event' in record else ''
-        told = next((str(record[name]) for name in TOLD if record.get(name)), '')
+        subject = next((str(record[name]) for name in TOLD if record.get(name)), '')
         by = f'by {record["name"]}' if record.get('name') else ''
-        words = ': '.join(filter(None, (event, by, told)))
+        words = ': '.join(filter(None, (event, by, subject)))
         line = f'{entry.time}  {entry.axis or "-":<8}  {entry.kind!s:<14}  {words}'
         print(printable(line.rstrip()))
     return 0

@@ -3,17 +3,22 @@
 """
 Play axis-years of known truth, and print how good the health is that is made of their logs.
 
-Usage: python bench/health.py [--years N] [--clean N] [--seed S]. The years come from catalogues
-and textbooks (`health_parts/axis_year.py`) and share no formula with the product. A year is made
-into logs, these into summaries, and a look is taken after each log.
+Usage: python bench/health.py [--years N] [--clean N] [--seed S] [--rivals] [--public FOLDER]. The
+years come from catalogues and textbooks (`health_parts/axis_year.py`) and share no formula with
+the product. A year is made into logs, these into summaries, and a look is taken after each log.
+--rivals puts two libraries beside the product, --public takes public measurements instead.
 
 """
 
 import argparse
 from collections.abc import Iterator
+from pathlib import Path
 
+from ballscrew_monitor.health.detection import looks
 from health_parts.axis_year import axis_year
 from health_parts.faults import FAULTS
+from health_parts.public_data import print_public
+from health_parts.rivals import INSTALL, missing, rivals
 from health_parts.score import Kind, print_table, Score, score_of
 from surrogate.progress import Progress
 
@@ -42,13 +47,39 @@ def kinds(years: int, clean: int) -> Iterator[tuple[Kind, int]]:
             yield Kind(way, OTHER, options), few
 
 
+def compare(years: int, clean: int, seed: int) -> None:
+    """Print a line for the product and for each rival, on the same years."""
+    if lacking := missing():
+        raise SystemExit(f'{" and ".join(lacking)} not installed: {INSTALL}, and set PYTHONPATH')
+    judges = {'the product': looks, **rivals()}
+    bar, table = Progress((clean + 2 * years) * len(judges), 'years'), []
+    for fault, count in (('clean', clean), ('preload -20 %', years), ('preload -40 %', years)):
+        drawn = [axis_year(seed + number, FAULTS[fault]) for number in range(count)]
+        for name, judge in judges.items():
+            courses = []
+            for year in drawn:
+                courses.append(score_of(year, judge=judge, causes=judge is looks))
+                bar.step()
+            table.append(Score.of(Kind(name, fault, {}), courses))
+    bar.close()
+    print_table(table)
+
+
 def main() -> None:
     """Draw, assess, and print a line for each kind of years."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--years', type=int, default=2, help='years of each fault')
     parser.add_argument('--clean', type=int, default=4, help='years without a fault')
     parser.add_argument('--seed', type=int, default=1000, help='of the first year')
+    parser.add_argument('--rivals', action='store_true', help='beside statsmodels and ruptures')
+    parser.add_argument('--public', type=Path, help='folder of the public measurements')
     args = parser.parse_args()
+    if args.rivals:
+        compare(args.years, args.clean, args.seed)
+        return
+    if args.public is not None:
+        print_public(args.public)
+        return
     table: list[Score] = []
     wanted = list(kinds(args.years, args.clean))
     bar = Progress(sum(count for _, count in wanted), 'years')

@@ -105,7 +105,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument('--minutes', type=float, default=0.1, help='watch on the memory [min]')
     parser.add_argument('--axes', type=numbers(int), default=[1, 4, 16], help='such as 1,4,16')
     parser.add_argument('--rates', type=numbers(float), default=[100.0, 1000.0], help='[Hz]')
-    parser.add_argument('--record', default='off', help='what the node records of itself')
+    parser.add_argument('--record', default='never', help='what the node records of itself')
     parser.add_argument('--out', type=Path, help='folder for node.csv and node.png')
     return parser.parse_args()
 

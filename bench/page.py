@@ -194,7 +194,7 @@ def measure_node(axes: int, rate: float, pairs: int, seconds: float) -> None:
     beside: list[Turn] = []
     with free_domain() as domain:
         os.environ.update(ros_environment(domain))
-        with peers(domain, axes, 0.0, 'off') as (_, node, _):
+        with peers(domain, axes, 0.0, 'never') as (_, node, _):
             for _ in range(pairs):
                 alone.append(node.take_turn(rate, seconds))
                 with watched(domain):

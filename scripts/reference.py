@@ -177,9 +177,18 @@ def sheet_default(spec: Any) -> str:
     return str(default)
 
 
+VERSIONS = """\
+Interfaces grow by fields at the end of a message, and no field changes its meaning: programs that
+use them build again without a change, and a bag is read by the definitions that it holds. On the
+wire versions do not mix. Of a message with a field more at its very end an older subscriber reads
+the fields that it knows; a newer subscriber cannot decode the older message, and logs that or
+hears nothing; behind a nested message that has grown, and in services, values are wrong or
+missing. Give node, page and listeners of a domain one version of `ballscrew_msgs`."""
+
+
 def message_page() -> str:
     """Return the page of all messages, services and the action."""
-    parts = []
+    parts = [VERSIONS]
     for path in sorted((TREE / 'msg_defs').glob('*/*.*')):
         if path.suffix in ('.msg', '.srv', '.action'):
             parts += [f'## {path.stem}', *message_parts(path)]

@@ -213,11 +213,9 @@ class Workers:
         self._heard: queue.SimpleQueue[tuple[Worker | str, Frame]] = queue.SimpleQueue()
 
     def __enter__(self) -> Self:
-        """Return the workers."""
         return self
 
     def __exit__(self, *error: object) -> None:
-        """End all workers, also those at work."""
         self.close(UNWIND)
 
     def submit(self, name: str, task: str, inputs: Mapping[str, Any]) -> None:
@@ -238,9 +236,9 @@ class Workers:
             heard.append(self._heard.get(timeout=seconds) if seconds else self._heard.get_nowait())
             while True:
                 heard.append(self._heard.get_nowait())
-        found = [(self._take(source, frame), frame) for source, frame in heard]
+        frames = [(self._take(source, frame), frame) for source, frame in heard]
         self._begin()
-        return [(name, frame) for name, frame in found if name is not None]
+        return [(name, frame) for name, frame in frames if name is not None]
 
     def cancel(self, name: str) -> None:
         """Let the task of a name know that its result is for nobody."""
@@ -250,7 +248,7 @@ class Workers:
 
     def kill(self, name: str) -> None:
         """End the worker of a task; nothing more is heard of it."""
-        for worker in [one for one, other in self._names.items() if other == name]:
+        for worker in [source for source, other in self._names.items() if other == name]:
             del self._names[worker]
             worker.kill()
 

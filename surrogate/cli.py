@@ -25,7 +25,6 @@ class Parser(argparse.ArgumentParser):
     """Takes -1e3 for a number too, and not for an option, and so do its subcommands."""
 
     def __init__(self, **kwargs: Any) -> None:
-        """Make a parser as the standard library does."""
         super().__init__(**kwargs)
         self._negative_number_matcher = re.compile(r'-(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$', re.I)
 

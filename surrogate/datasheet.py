@@ -116,7 +116,6 @@ class Checked:
     WHERE: ClassVar[str] = ''
 
     def __post_init__(self) -> None:
-        """Raise InputError for a value that is not allowed; None is absent where it may be."""
         where = self.WHERE or type(self).__name__.lower()
         for spec in fields(self):  # type: ignore[arg-type]
             value, rules = getattr(self, spec.name), spec.metadata
@@ -214,7 +213,7 @@ def _unknown_key(key: str, specs: dict[str, Any]) -> str:
 def _value(spec: Any, raw: Any, where: str) -> Any:
     key, rules = key_of(spec), spec.metadata
     if 'block' in rules:
-        keys = [key_of(one) for one in fields(rules['block'])]
+        keys = [key_of(entry) for entry in fields(rules['block'])]
         if isinstance(raw, list) and len(raw) == len(keys):
             raw = dict(zip(keys, raw, strict=True))
         return sheet_of(rules['block'], raw, f'{where}: {key}')
@@ -227,7 +226,7 @@ def _value(spec: Any, raw: Any, where: str) -> Any:
         return raw
     if 'many' in rules:
         return tuple(
-            _number(spec, one, where) for one in (raw if isinstance(raw, list) else [raw])
+            _number(spec, entry, where) for entry in (raw if isinstance(raw, list) else [raw])
         )
     return _number(spec, raw, where)
 

@@ -58,6 +58,9 @@ levels do no harm.
 """
 SURFACE = 256 * 2**20
 """Largest surface file, and the most that it may come to when unpacked [byte]."""
+# Of an operating point, asked or on file.
+SPEED, LOAD = 1e5, 1e7  # [rev/min], [N]
+COLDEST, HOTTEST = -60.0, 250.0  # [degC]
 
 
 def most_unpacked(size: int) -> int:

@@ -24,6 +24,7 @@ from surrogate.datasheet import (
     text,
 )
 from surrogate.files import InputError
+from surrogate.limits import COLDEST, HOTTEST, LOAD, SPEED
 from surrogate.raceway.standards import long_cutoff_iso_21920, RA_OVER_RQ
 from surrogate.raceway.stated import BallRoughness, Roughness
 from surrogate.units import RPM, ZERO_CELSIUS
@@ -184,7 +185,6 @@ class Screw(Checked):
     )
 
     def __post_init__(self) -> None:
-        """Check every range and that the balls fit on the pitch circle."""
         # slots=True makes a new class, so the zero-argument super() is not available here.
         Checked.__post_init__(self)
         if self.ball_diameter >= self.pitch_radius:
@@ -336,7 +336,6 @@ class Lubricant(Checked):
     )
 
     def __post_init__(self) -> None:
-        """Check every range, that oil thins when warm, and that the range holds the reference."""
         Checked.__post_init__(self)
         if self.kinematic_viscosity_100 >= self.kinematic_viscosity_40:
             raise InputError(
@@ -395,9 +394,9 @@ class OperatingPoint(Checked):
 
     """
 
-    speed: float = quantity('rpm', RPM, -1e5, 1e5)
-    load: float = quantity('N', 1.0, -1e7, 1e7)
-    temperature: float = quantity('degC', 1.0, -60.0, 250.0, shift=ZERO_CELSIUS)
+    speed: float = quantity('rpm', RPM, -SPEED, SPEED)
+    load: float = quantity('N', 1.0, -LOAD, LOAD)
+    temperature: float = quantity('degC', 1.0, COLDEST, HOTTEST, shift=ZERO_CELSIUS)
 
     @property
     def opposing_load(self) -> float:

@@ -81,5 +81,7 @@ def plain_values(
         return None if root is None else loader.construct_document(root)
     except Exception as error:  # noqa: BLE001 a bad date or tag raises anything
         reason = ' '.join(str(error).split())
-        told = isinstance(error, yaml.YAMLError)
-        raise InputError(reason if told else f'a value is not of its kind ({reason})') from None
+        is_syntax = isinstance(error, yaml.YAMLError)
+        raise InputError(
+            reason if is_syntax else f'a value is not of its kind ({reason})'
+        ) from None

@@ -129,7 +129,11 @@ class Progress:
             left = spent * (1 - self._share) / self._share
         else:
             left = (self._total - self._done) * spent / new
-        return ', '.join(filter(None, (_speed(new / spent), f'{_duration(left)} left')))
+        if left < 90:
+            words = f'{left:.0f} s'
+        else:
+            words = f'{left / 60:.0f} min' if left < 5400 else f'{left / 3600:.1f} h'
+        return ', '.join(filter(None, (_speed(new / spent), f'{words} left')))
 
 
 def _speed(rate: float) -> str:
@@ -137,10 +141,3 @@ def _speed(rate: float) -> str:
     if rate >= 1:
         return f'{rate:.3g} per s'
     return f'{1 / rate:.2g} s each' if rate else ''
-
-
-def _duration(seconds: float) -> str:
-    """Return a time in the unit that a person would use."""
-    if seconds < 90:
-        return f'{seconds:.0f} s'
-    return f'{seconds / 60:.0f} min' if seconds < 5400 else f'{seconds / 3600:.1f} h'

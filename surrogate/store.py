@@ -90,10 +90,10 @@ class Table:
         """Return the statements that make the table."""
         parts = [f'"{name}" {kind}' for name, kind in self.columns.items()]
         parts += [f'PRIMARY KEY ("{self.key}")'] if self.key else []
-        made = [f'CREATE TABLE {self.name} ({", ".join(parts)})']
+        statements = [f'CREATE TABLE {self.name} ({", ".join(parts)})']
         if self.index:
-            made.append(f'CREATE INDEX {self.name}_of ON {self.name} ({self.index})')
-        return made
+            statements.append(f'CREATE INDEX {self.name}_of ON {self.name} ({self.index})')
+        return statements
 
     def row(self, record: Any, **beside: Any) -> dict[str, Any]:
         """Return a record as a row; columns `beside` it are NULL unless given."""
@@ -101,7 +101,7 @@ class Table:
         for name, kind in self.fields.items():
             value = getattr(record, name)
             if hasattr(kind, '_fields'):
-                row |= {f'{name}_{part}': one for part, one in value._asdict().items()}
+                row |= {f'{name}_{part}': number for part, number in value._asdict().items()}
             elif isinstance(value, tuple):
                 row[name] = struct.pack(f'<{len(value)}d', *value)
             elif isinstance(value, bool | enum.IntEnum):
@@ -134,7 +134,6 @@ class Table:
 
     @functools.cached_property
     def _unknown(self) -> set[str]:
-        """Return the fields that may be NaN."""
         fields = dataclasses.fields(self.kind)
         return {
             field.name
@@ -174,11 +173,12 @@ class Store:
         self.file, self.limit = file, limit
         self._tables, self._version, self._alone = tuple(tables), version, alone
         self._database: Any = None
+        self._identity: tuple[int, int] | None = None
 
     @property
     def is_open(self) -> bool:
-        """Return True if the file is open, and still there."""
-        return self._database is not None and self.file.exists()
+        """Return True if the file is open, and still there: not gone, and no other one."""
+        return self._database is not None and identity(self.file) == self._identity
 
     @property
     def database(self) -> sqlite3.Connection:
@@ -198,6 +198,7 @@ class Store:
         self.file.parent.mkdir(parents=True, exist_ok=True)
         database = connected(self.file, self.limit, alone=self._alone)
         self.use(database)
+        self._identity = identity(self.file)
         if is_empty(database, self._version):
             statements = [line for table in self._tables for line in table.schema]
             with database:
@@ -249,8 +250,8 @@ class Store:
         statement = f'INSERT OR REPLACE INTO {table.name} ({names}) VALUES ({values})'
         last = 0
         for record in records:
-            found = self.database.execute(statement, table.row(record, **beside))
-            last = int(found.lastrowid or 0)
+            cursor = self.database.execute(statement, table.row(record, **beside))
+            last = int(cursor.lastrowid or 0)
         return last
 
     def rows(self, table: Table, which: str = '', values: Iterable[Any] = ()) -> list[Any]:
@@ -292,6 +293,15 @@ class Store:
         self.let_go()
 
 
+def identity(file: Path | int) -> tuple[int, int] | None:
+    """Return what tells a file, by path or descriptor, from every other; None: there is none."""
+    try:
+        found = os.stat(file)
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino
+
+
 def connected(file: Path, limit: int, *, alone: bool = False) -> sqlite3.Connection:
     """
     Return a connection with a write-ahead log, or with what works in its place.
@@ -330,10 +340,10 @@ class OtherVersion(ValueError):
 
 def is_empty(database: sqlite3.Connection, version: int) -> bool:
     """Return True if a database has no table; raises ValueError for what nobody has left."""
-    ((found,),) = database.execute('PRAGMA user_version')
+    ((version_on_file,),) = database.execute('PRAGMA user_version')
     ((tables,),) = database.execute('SELECT count(*) FROM sqlite_master')
-    if found != version and (found or tables):
-        raise OtherVersion(f'{OTHER_VERSION} ({found}, known is {version})')
+    if version_on_file != version and (version_on_file or tables):
+        raise OtherVersion(f'{OTHER_VERSION} ({version_on_file}, known is {version})')
     ((fault,),) = database.execute('PRAGMA quick_check(1)')
     if fault != 'ok':
         raise ValueError(fault.splitlines()[-1])
@@ -352,23 +362,23 @@ def check_tables(database: sqlite3.Connection, tables: Iterable[Table]) -> None:
 
 def readable(table: Table, rows: Iterable[Any]) -> list[tuple[Any, Any]]:
     """Return rows with their records, those that have one."""
-    found = []
+    pairs = []
     for row in rows:
         with contextlib.suppress(ValueError, KeyError, TypeError):
-            found.append((row, table.read(row)))
-    return found
+            pairs.append((row, table.read(row)))
+    return pairs
 
 
 def set_file_aside(file: Path, why: Exception) -> str:
     """Rename a database with the journal that belongs to it; return a sentence that says so."""
     for part in PARTS:
-        one = file.with_name(file.name + part)
+        source = file.with_name(file.name + part)
         aside = file.with_name(f'{file.name}.aside{part}')
         aside.unlink(missing_ok=True)
-        if one.exists():
-            one.replace(aside)
-    what = str(why) if isinstance(why, OtherVersion) else f'{DAMAGED} ({why})'
-    return f'{file} {what}, moved to {file.name}.aside'
+        if source.exists():
+            source.replace(aside)
+    reason = str(why) if isinstance(why, OtherVersion) else f'{DAMAGED} ({why})'
+    return f'{file} {reason}, moved to {file.name}.aside'
 
 
 @contextlib.contextmanager
@@ -387,9 +397,9 @@ def opened_to_read(
     try:
         place = f'{file.absolute().as_uri()}?mode=ro'
         with contextlib.closing(sqlite3.connect(place, uri=True, timeout=BUSY)) as database:
-            (found,) = database.execute('PRAGMA user_version').fetchone()
-            if found != version:
-                raise InputError(f'{file} {OTHER_VERSION} ({found}, known is {version})')
+            (version_on_file,) = database.execute('PRAGMA user_version').fetchone()
+            if version_on_file != version:
+                raise InputError(f'{file} {OTHER_VERSION} ({version_on_file}, known is {version})')
             try:
                 check_tables(database, tables)
             except ValueError as error:

@@ -6,6 +6,7 @@ import ast
 import functools
 from functools import cache
 from importlib.metadata import requires
+import json
 from pathlib import Path
 import re
 import runpy
@@ -342,6 +343,7 @@ def test_version_is_the_same_everywhere():
                 version_in('msg_defs/package.xml', r'<version>(.*)</version>'),
                 version_in('setup.py', r"version='(.*)'"),
                 version_in('CHANGELOG.rst', r'^(\d+\.\d+\.\d+) \('),
+                version_in('CITATION.cff', r'^version: (.*)'),
             }
         )
         == 1
@@ -356,6 +358,23 @@ def test_pins_meet_all_requirements():
     for requirement in map(Requirement, requires('ballscrew-monitor') or []):
         version = pinned[canonicalize_name(requirement.name)]
         assert requirement.specifier.contains(version), f'{requirement}: {version} is pinned'
+
+
+def test_bill_of_materials_is_that_of_the_pins():
+    """After a change of either: `python scripts/sbom.py`."""
+    bill = runpy.run_path(str(TREE / 'scripts' / 'sbom.py'))['bill']()
+    assert json.loads((TREE / 'sbom.cdx.json').read_text()) == bill
+    lines = (TREE / 'constraints.txt').read_text().splitlines()
+    pins = {line for line in lines if not line.startswith('#')}
+    assert {f'{one["name"]}=={one["version"]}' for one in bill['components']} == pins
+
+
+def test_image_installs_what_setup_asks_for():
+    asked = re.findall(r"'([\w-]+>=[\d.]+)'", (TREE / 'Dockerfile').read_text())
+    known = [Requirement(text) for text in requires('ballscrew-monitor') or []]
+    allowed = {f'{one.name}{one.specifier}' for one in known}
+    assert asked
+    assert set(asked) <= allowed
 
 
 def test_manifest_names_what_is_imported():
@@ -387,6 +406,7 @@ def test_every_file_of_tests_is_collected():
     """All but what makes the golden outputs, and records them."""
     golden = TREE / 'test' / 'golden'
     makers = {golden / 'record.py', *golden.glob('golden/*.py')}
+    makers.add(TREE / 'test' / 'surrogate' / 'screw' / 'coulomb.py')
     report(offenders(hidden_tests, TESTS))
     files = [path for path in TESTS if path.name != 'conftest.py' and path not in makers]
     assert not [name_of(path) for path in files if not path.name.startswith('test_')]

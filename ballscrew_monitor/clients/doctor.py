@@ -18,7 +18,7 @@ import threading
 import time
 from typing import Any
 
-from ballscrew_monitor.core.conversions import nanoseconds, seconds
+from ballscrew_monitor.core.conversions import nanoseconds, Scaling, seconds
 from ballscrew_monitor.core.fields import message_class, number_fields
 from ballscrew_monitor.core.inputs import Input, InputSample, OpenInput, Source
 from ballscrew_monitor.core.interrupts import interrupts, SIGNALLED
@@ -34,9 +34,11 @@ from ballscrew_monitor.messages.doctor import (
     known_range,
     Surroundings,
 )
+from ballscrew_monitor.recordings.positions import MOVED, position_beside
 from ballscrew_monitor.settings import axis as axis_settings
 from ballscrew_monitor.settings import parameters, qos
 from ballscrew_monitor.settings.parameters import absolute
+import numpy as np
 from rclpy.clock import Clock
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -95,9 +97,18 @@ class Hearing:
     """The messages of one input: their status, their numbers, and the time between them."""
 
     def __init__(
-        self, source: Input, clock: Clock, *, timeout: int, max_future: int, max_lag: int
+        self,
+        source: Input,
+        clock: Clock,
+        *,
+        timeout: int,
+        max_future: int,
+        max_lag: int,
+        position: Input | None = None,
     ) -> None:
-        """Begin to listen on a clock; times [ns]."""
+        """Begin to listen on a clock; times [ns]. A `position` may stand beside a velocity."""
+        self._position = position
+        self._positions: list[float] = []
         self._source, self._clock, self._max_future = source, clock, max_future
         self._memory, self._settings, self._joints = Memory(), Settings(), JointNames()
         self._settings.configured[source.source] = 1
@@ -115,6 +126,9 @@ class Hearing:
         now = self._clock.now().nanoseconds
         event = self._source.read(message, now=now, max_future=self._max_future)
         fill(self._record, event)
+        if self._position is not None:
+            place = self._position.read(message, now=now, max_future=self._max_future)
+            self._positions += [place.value] if isinstance(place, InputSample) else []
         if isinstance(event, InputSample):
             accept(self._memory, self._settings, self._record, event.value)
             scaling = self._source.scaling
@@ -140,6 +154,7 @@ class Hearing:
             low=min(self._numbers, default=math.nan),
             high=max(self._numbers, default=math.nan),
             longest_gap=seconds(max(self._longest_gap, self._silence(now))),
+            moved=bool(self._positions) and np.ptp(self._positions) > MOVED,
         )
 
 
@@ -262,11 +277,25 @@ class Examination:
             timeout=nanoseconds(self._value(axis, source, 'timeout')),
             max_future=nanoseconds(self._values[f'{axis}.max_future']),
             max_lag=nanoseconds(self._values[f'{axis}.max_lag']),
+            position=self._position(axis, source, type_name, opened.scaling),
         )
         self._node.create_subscription(
             opened.message_type, link.topic, hearing.take, qos.input_qos()
         )
         return hearing
+
+    def _position(
+        self, axis: str, source: Source, type_name: str, scaling: Scaling
+    ) -> Input | None:
+        """Return what reads the position beside the velocity of an axis, if there is one."""
+        beside = position_beside(self._values, axis, type_name) if source is Source.SPEED else None
+        if beside is None:
+            return None
+        line = Scaling(factor=scaling.factor, shift=0.0)
+        topic = self._topic(axis, source)
+        return OpenInput(source=source, topic=topic, field=beside[0], scaling=line).close(
+            type_name
+        )
 
     def _facts(self, axis: str, source: Source, hearing: Hearing | None) -> InputFacts:
         surface, unit = self._surfaces[axis], self._value(axis, source, 'unit')
@@ -289,6 +318,9 @@ class Examination:
             heard=hearing.heard() if hearing else None,
             problem=opened if isinstance(opened, str) else '',
             numbers=numbers,
+            beside=(position_beside(self._values, axis, type_name) or ('', ''))
+            if source is Source.SPEED
+            else ('', ''),
         )
 
 

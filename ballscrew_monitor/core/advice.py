@@ -28,29 +28,13 @@ SCAN_POINTS = 64
 HALVINGS = 20
 NAN = math.nan
 VALID = int(Validity.VALID)
-CARRY = '', 'perhaps', 'surely'
-"""How sure it is that asperities carry, by the numbers of OutOfZone.CARRY_."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Advice:
-    """
-    Nearest good speed [rad/s], machine frame, NaN if none is advised.
-
-    Whether asperities `carry` surely or perhaps at the point, empty where they do not or that is
-    not known.
-
-    """
-
-    target_speed: float = NAN
-    carry: str = ''
-
-    @property
-    def text(self) -> str:
-        """Return the advice as a sentence with the amount of the speed, empty if there is none."""
-        if not math.isfinite(self.target_speed):
-            return ''
-        return f'at this load run at {rounded(abs(self.target_speed) / RPM)} rev/min'
+def speed_advice(target_speed: float) -> str:
+    """Return in words to run at a speed [rad/s], by its amount; empty if it is NaN."""
+    if not math.isfinite(target_speed):
+        return ''
+    return f'at this load run at {rounded(abs(target_speed) / RPM)} rev/min'
 
 
 class Criterion(NamedTuple):
@@ -81,7 +65,7 @@ def interpreted(surface: Surface, criterion: Criterion, here: float, speeds: lis
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Advisor:
     """
-    What an event was raised by, and the advice on it, worked out when first asked for.
+    The point by which an event was raised, and the speed that would clear it, found once.
 
     Speed [rad/s], axial load [N], temperature [K], machine frame. There is advice only where the
     process leaves the axis free in its speed: `speed_allowed`.
@@ -98,61 +82,40 @@ class Advisor:
     nearest: Nearest = dataclasses.field(default=interpreted, compare=False, repr=False)
 
     @functools.cached_property
-    def advice(self) -> Advice:
-        """Return the nearest speed that clears at the point, its direction kept."""
-        if not self.speed_allowed:
-            return Advice()
-        return Advice(target_speed=self._speed(), carry=self._carry())
-
-    @property
-    def _load(self) -> float:
-        """Load [N] that opposes the motion."""
-        return opposing_load(self.axial_load, self.direction)
-
-    def _carry(self) -> str:
-        """Say whether RCS passes its limit wherever in both bands of the surface that may lie."""
-        surface, place = self.surface, (self._load, self.temperature)
-        least = min(*surface.limit_band, *surface.numerical_band)
-        here = surface.lookup(abs(self.speed), *place).rcs
-        if math.isnan(least) or not here >= self.limits.rcs:
-            return ''
-        sure = surface.lookup(abs(self.speed) / least, *place).rcs >= self.limits.rcs
-        return CARRY[2 if sure else 1]
-
-    def _speed(self) -> float:
-        """Return the nearest screw speed [rad/s] that clears at this load; NaN for none."""
+    def target_speed(self) -> float:
+        """Return the nearest speed [rad/s] that clears at the point, NaN if none is advised."""
         slowest, fastest = self.surface.speed_range
         slowest = max(slowest, self.limits.standstill_speed)
-        if not slowest < fastest:
+        if not (self.speed_allowed and slowest < fastest):
             return NAN
         ratio = fastest / slowest
         grid = (slowest * ratio ** (i / (SCAN_POINTS - 1)) for i in range(SCAN_POINTS))
         speeds = [min(speed, fastest) for speed in grid]
         criterion = Criterion(
-            load=float(self._load),
+            load=float(opposing_load(self.axial_load, self.direction)),
             temperature=float(self.temperature),
             rcs=float(rcs_to_clear(self.limits)),
             efficiency=float(efficiency_to_clear(self.limits)),
             light_load=float(self.limits.light_load),
         )
-        found = self.nearest(self.surface, criterion, abs(self.speed), speeds)
-        return signed(found, self.direction)
+        speed = self.nearest(self.surface, criterion, abs(self.speed), speeds)
+        return signed(speed, self.direction)
 
 
 def nearest(tables: Any, criterion: Criterion, here: float, speeds: Any, room: Any) -> float:
     """Return what `Nearest` does, on `tables`; `room` holds one record of `Found`."""
-    found = room[0]
-    if _is_good(tables, criterion, here, found):
+    answer = room[0]
+    if _is_good(tables, criterion, here, answer):
         return here
-    below = _first(tables, criterion, here, speeds, -1, found)
-    above = _first(tables, criterion, here, speeds, 1, found)
+    below = _first(tables, criterion, here, speeds, -1, answer)
+    above = _first(tables, criterion, here, speeds, 1, answer)
     if math.isnan(below) or abs(above - here) < abs(below - here):
         return above
     return below
 
 
 def _first(
-    tables: Any, criterion: Criterion, here: float, speeds: Any, step: int, found: Any
+    tables: Any, criterion: Criterion, here: float, speeds: Any, step: int, answer: Any
 ) -> float:
     """Return the good end of the first border beyond `here`, which is not good; NaN for none."""
     bad = here
@@ -160,10 +123,10 @@ def _first(
         good = speeds[count] if step > 0 else speeds[len(speeds) - 1 - count]
         if not (good - here) * step > 0.0:
             continue
-        if _is_good(tables, criterion, good, found):
+        if _is_good(tables, criterion, good, answer):
             for _ in range(HALVINGS):
                 middle = 0.5 * (bad + good)
-                if _is_good(tables, criterion, middle, found):
+                if _is_good(tables, criterion, middle, answer):
                     good = middle
                 else:
                     bad = middle
@@ -172,12 +135,12 @@ def _first(
     return NAN
 
 
-def _is_good(tables: Any, criterion: Criterion, speed: float, found: Any) -> bool:
+def _is_good(tables: Any, criterion: Criterion, speed: float, answer: Any) -> bool:
     """Return True if the warning clears at a speed."""
-    if look_up(tables, speed, criterion.load, criterion.temperature, found) != VALID:
+    if look_up(tables, speed, criterion.load, criterion.temperature, answer) != VALID:
         return False
-    if math.isnan(found.rcs + found.efficiency):
+    if math.isnan(answer.rcs + answer.efficiency):
         return False
     light = abs(criterion.load) < criterion.light_load
-    fit = light or found.efficiency >= criterion.efficiency
-    return bool(found.rcs < criterion.rcs and fit)
+    fit = light or answer.efficiency >= criterion.efficiency
+    return bool(answer.rcs < criterion.rcs and fit)

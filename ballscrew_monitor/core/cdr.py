@@ -51,7 +51,7 @@ def _message_encoder(message_type: Any) -> Encoder:
 
 
 def _is_plain(kind: Any) -> bool:
-    """Tell whether a field is a number as it stands; an octet is a `bytes` of length one."""
+    """Return True if a field is a number as it stands; an octet is a `bytes` of length one."""
     return getattr(kind, 'typename', 'octet') in FORMATS.keys() - {'octet'}
 
 
@@ -69,8 +69,8 @@ def _row(fields: Sequence[tuple[str, Any]]) -> Encoder:
         packs.append(struct.Struct(layout).pack)
 
     def encode(data: bytearray, message: Any) -> None:
-        pack, found = packs[len(data) % LARGEST], values(message)
-        data += pack(*found) if len(names) > 1 else pack(found)
+        pack, numbers = packs[len(data) % LARGEST], values(message)
+        data += pack(*numbers) if len(names) > 1 else pack(numbers)
 
     return encode
 
@@ -120,8 +120,8 @@ def _numbers(kind: Any) -> Encoder:
 
     def encode(data: bytearray, values: Sequence[Any]) -> None:
         _align(data, size)
-        found = map(ord, values) if name == 'octet' else values
-        data += struct.pack(f'<{len(values)}{code}', *found)
+        numbers = map(ord, values) if name == 'octet' else values
+        data += struct.pack(f'<{len(values)}{code}', *numbers)
 
     return encode
 

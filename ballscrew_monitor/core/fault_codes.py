@@ -24,21 +24,28 @@ class Fault(Worded):
     What is wrong, its number and in words, and what to do; NONE where nothing is wrong.
 
     Of an input, `said` follows its name or stands for it, before the cure. `detail` says of one
-    refused message why, by the numbers of its refusal.
+    refused message why, by the numbers of its refusal, `counted` follows how many were.
 
     """
 
     cure: str
     said: str
     detail: str
+    counted: str
 
     def __new__(
-        cls, number: int, text: str, cure: str = '', said: str = '', detail: str = ''
+        cls,
+        number: int,
+        text: str,
+        cure: str = '',
+        said: str = '',
+        detail: str = '',
+        counted: str = '',
     ) -> Self:
         """Return the member of a number and its texts."""
         member = int.__new__(cls, number)
         member._value_, member.text, member.cure = number, text, cure
-        member.said, member.detail = said, detail
+        member.said, member.detail, member.counted = said, detail, counted
         return member
 
     @property
@@ -133,6 +140,9 @@ class Fault(Worded):
         202,
         'the messages name other joints',
         'name a joint in field that the messages hold',
+        '',
+        '',
+        'of other joints',
     )
     INPUT_STALE = (
         203,
@@ -146,6 +156,7 @@ class Fault(Worded):
         'mend its source or read another field',
         'it is not a finite number',
         'the field holds {first}, it must be a finite number: mend the source',
+        'not a number',
     )
     INPUT_FUTURE = (
         212,
@@ -154,6 +165,7 @@ class Fault(Worded):
         'its stamps lie ahead of the clock',
         'the stamp is {first:.3g} s ahead of the clock, allowed is max_future, {second:.3g} s: '
         'set the clocks of both machines alike, or raise max_future',
+        'stamped in the future',
     )
     INPUT_OTHER_CLOCK = (
         213,
@@ -162,12 +174,15 @@ class Fault(Worded):
         'its stamps are of the wall clock and the node runs on simulated time',
         'the stamps are of the wall clock and the node runs on simulated time: set use_sim_time '
         'to false, or stamp with /clock',
+        'stamped by another clock',
     )
     INPUT_TOO_SHORT = (
         214,
         'the array of an input ends before the element',
         'let the source fill it',
         'its array ends before the element',
+        '',
+        'too short an array',
     )
     INPUT_IMPLAUSIBLE = (
         215,
@@ -177,6 +192,7 @@ class Fault(Worded):
         'it is beyond the plausible range',
         '{name} {first:.4g} {unit} is beyond the plausible {most:.4g} {unit}: mend the source, '
         'its unit or scale, or raise limits.plausible_{name}',
+        'beyond what is plausible',
     )
     INPUT_NOT_DECODED = (
         216,
@@ -184,6 +200,7 @@ class Fault(Worded):
         'record them with the type of their publisher',
         'its messages do not decode',
         'the message does not decode: it is truncated, or of another definition of its type',
+        'that do not decode',
     )
     INPUT_HOLE = (
         217,
@@ -191,6 +208,7 @@ class Fault(Worded):
         'raise speed.timeout',
         'its positions come less often than its timeout allows',
         'no position for {first:.3g} s, so no speed follows: send more, or raise speed.timeout',
+        'too long after the position before',
     )
     INPUT_NEGATIVE = (
         218,
@@ -198,6 +216,7 @@ class Fault(Worded):
         'mend the clock of its source',
         'its stamps are negative',
         'the stamp is negative: mend the clock of the source',
+        'stamped before zero',
     )
     INPUT_SEVERAL = (
         219,
@@ -206,6 +225,7 @@ class Fault(Worded):
         'several publishers send it',
         'several publishers send this input, and one is allowed: stop all but one, or set '
         'one_source to false',
+        'sent by several publishers',
     )
     REFUSED = (
         231,
@@ -297,6 +317,17 @@ class Fault(Worded):
         701,
         'the node uses up one processor',
         'lower the rate of the inputs, raise publish_period, or give some axes a second node',
+    )
+    CLOCK_SET = (
+        702,
+        'the clock of the node was set, forward or back',
+        'nothing if somebody meant it: no duration holds the step; otherwise let NTP or PTP hold '
+        'the clock',
+    )
+    TWO_NODES = (
+        703,
+        'another node of this name publishes on the same topics',
+        'give one of both another name or namespace, or another ROS_DOMAIN_ID',
     )
 
 

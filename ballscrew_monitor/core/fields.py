@@ -80,10 +80,10 @@ def message_class(type_name: str) -> MessageClass:
     if len(parts) != 3 or parts[1] != 'msg' or not all(parts):
         raise InputError(f'message type {type_name!r} is not of the form package/msg/Name')
     try:
-        found: MessageClass = getattr(importlib.import_module(f'{parts[0]}.msg'), parts[2])
+        kind: MessageClass = getattr(importlib.import_module(f'{parts[0]}.msg'), parts[2])
     except (ImportError, AttributeError):
         raise InputError(f'message type {type_name!r} is not installed') from None
-    return found
+    return kind
 
 
 def type_name_of(message: Any) -> str:
@@ -137,18 +137,18 @@ def compile_field(path: str, message_type: MessageClass) -> FieldReader:
 
 def number_fields(message_type: MessageClass) -> tuple[str, ...]:
     """Return paths of the numbers of a message, of an array the first, none of its header."""
-    found: list[str] = []
+    paths: list[str] = []
     for name, field_type in message_type.get_fields_and_field_types().items():
         array = _ARRAY.fullmatch(field_type)
         if field_type in _NUMBERS:
-            found.append(name)
+            paths.append(name)
         elif array and (array['sequence'] or array['array']) in _NUMBERS:
-            found.append(f'{name}[0]')
+            paths.append(f'{name}[0]')
         elif '/' in field_type and field_type != 'std_msgs/Header':
             nested = _resolve(field_type)
             if not isinstance(nested, str):
-                found += [f'{name}.{path}' for path in number_fields(nested)]
-    return tuple(found)
+                paths += [f'{name}.{path}' for path in number_fields(nested)]
+    return tuple(paths)
 
 
 def _name_and_key(path: str, segment: str) -> tuple[str, str | None]:

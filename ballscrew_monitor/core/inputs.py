@@ -59,6 +59,11 @@ class Why(enum.IntEnum):
     NEGATIVE = 8  # a stamp below zero, which no clock shows
     SEVERAL = 9  # several publishers send the input, and one is allowed
 
+    @property
+    def fault(self) -> Fault:
+        """Return what is wrong with the input."""
+        return Fault[f'INPUT_{self.name}']
+
 
 class InputState(enum.IntEnum):
     """State of an input; the numbers of InputHealth.STATE_."""
@@ -153,7 +158,7 @@ class InputStatus:
 
     @property
     def glitching(self) -> bool:
-        """Tell whether implausible samples were refused not long ago."""
+        """Return True if implausible samples were refused not long ago."""
         return Why.IMPLAUSIBLE in self.refusing
 
 
@@ -266,8 +271,7 @@ def refusal_text(
         return short_text(TooShort(*arrays[int(second)], int(first))) if known else ''
     if why is Why.IMPLAUSIBLE and not unit:
         return ''
-    detail = Fault[f'INPUT_{why.name}'].detail
-    return detail.format(first=first, second=second, most=most, name=name, unit=unit)
+    return why.fault.detail.format(first=first, second=second, most=most, name=name, unit=unit)
 
 
 def short_text(found: TooShort) -> str:

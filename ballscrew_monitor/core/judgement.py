@@ -89,6 +89,7 @@ class EventEnd(enum.IntEnum):
     ACKNOWLEDGED = 2
     STOPPED = 3
     RESTARTED = 4
+    RUN_ENDED = 5
 
 
 class WarningPolicy(enum.StrEnum):
@@ -100,12 +101,12 @@ class WarningPolicy(enum.StrEnum):
 
     @property
     def of_zone(self) -> bool:
-        """Tell whether they warn of a point outside the optimal zone."""
+        """Return True if they warn of a point outside the optimal zone."""
         return self is not WarningPolicy.CHANGE
 
     @property
     def of_change(self) -> bool:
-        """Tell whether they warn of an axis that is worse than its baseline."""
+        """Return True if they warn of an axis that is worse than its baseline."""
         return self is not WarningPolicy.ZONE
 
 
@@ -116,9 +117,9 @@ class Worded(enum.IntEnum):
 
     def __new__(cls, number: int, text: str) -> Self:
         """Return the member of a number and a text."""
-        made = int.__new__(cls, number)
-        made._value_, made.text = number, text
-        return made
+        member = int.__new__(cls, number)
+        member._value_, member.text = number, text
+        return member
 
 
 class Reason(Worded):

@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Data into and out of a monitor: settings, events and sums over time.
+Data into and out of a monitor: settings, the ending of an event, shelving.
 
 A warning that is known can be shelved for a time, so that nobody is called for it again and again.
 Shelving changes what is said of a warning, never the judgement. Time is an argument [ns], the
@@ -13,12 +13,10 @@ from collections.abc import Mapping
 import dataclasses
 import math
 
-from ballscrew_monitor.core.advice import Advice, Advisor
 from ballscrew_monitor.core.conversions import nanoseconds, SECOND, seconds
 from ballscrew_monitor.core.inputs import Source, YEAR
-from ballscrew_monitor.core.judgement import Code, EventEnd, Limits
+from ballscrew_monitor.core.judgement import EventEnd, Limits
 from surrogate.files import InputError
-from surrogate.units import TURN
 
 NAN = math.nan
 LONGEST_SHELVING = 86400 * SECOND
@@ -87,7 +85,7 @@ class MonitorSettings:
     positions: PositionSettings | None = None
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+@dataclasses.dataclass(frozen=True, slots=True)
 class Ending:
     """How an event ended; the `name` of who acknowledged it, and the `reason`, where stated."""
 
@@ -97,7 +95,7 @@ class Ending:
 
     @property
     def text(self) -> str:
-        """Return why the node ended the event, empty if the axis came back."""
+        """Return why the event ended, empty if the axis came back."""
         match self.kind:
             case EventEnd.ACKNOWLEDGED:
                 by = f' by {self.name}' if self.name else ''
@@ -109,85 +107,27 @@ class Ending:
                 )
             case EventEnd.RESTARTED:
                 return 'ended by a restart of the node'
+            case EventEnd.RUN_ENDED:
+                return 'the run ended'
         return ''
 
 
-NOT_ENDED, CLEARED = Ending(), Ending(kind=EventEnd.CLEARED)
-NAMELESS = Ending(kind=EventEnd.ACKNOWLEDGED)
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Event:
-    """
-    One stay outside the optimal zone; stamps [ns], event 0: there was no event yet.
-
-    `worst_value` and the `limit` that it breaks [-], by the criterion of the `code`; the
-    efficiency may rest on a `derived` load. The first reading of `advice` takes milliseconds.
-
-    """
-
-    number: int = 0
-    active: bool = False
-    stamp: int = 0
-    start: int = 0
-    code: Code = Code.UNKNOWN
-    worst_value: float = NAN
-    limit: float = NAN
-    derived: bool = False
-    advisor: Advisor | None = None
-    ending: Ending = NOT_ENDED
-
-    @property
-    def advice(self) -> Advice:
-        """Return where the warning would clear."""
-        return Advice() if self.advisor is None else self.advisor.advice
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Extremes:
-    """Smallest, mean and largest value, NaN when there was none."""
-
-    low: float = NAN
-    mean: float = NAN
-    high: float = NAN
+NOT_ENDED, CLEARED = Ending(), Ending(EventEnd.CLEARED)
+RESTARTED, NAMELESS = Ending(EventEnd.RESTARTED), Ending(EventEnd.ACKNOWLEDGED)
+RUN_ENDED = Ending(EventEnd.RUN_ENDED)
 
 
 WINDOW = ('speed', 'axial_load', 'efficiency', 'rcs', 'film_ratio')
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Totals:
-    """
-    Sums since they were reset.
-
-    Times [ns] so that they add up exactly, angle [rad] of both directions counted up, energy_lost
-    [J]; `since` is the stamp [ns] of their first sample, 0 before it.
-
-    """
-
-    running_time: int = 0
-    unjudged_time: int = 0
-    boundary_time: int = 0
-    mixed_time: int = 0
-    hydrodynamic_time: int = 0
-    optimal_time: int = 0
-    outside_time: int = 0
-    angle: float = 0.0
-    energy_lost: float = 0.0
-    since: int = 0
-
-    @property
-    def revolutions(self) -> float:
-        """Return the revolutions of the screw [-]."""
-        return self.angle / TURN
-
-
-TIMES = tuple(name for name in Totals.__dataclass_fields__ if name.endswith('_time'))
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Shelving:
-    """Until when [ns] a warning is shelved, and why; `until` 0: it is not."""
+    """
+    Until when [ns] a warning is shelved, and why; `until` 0: it is not.
+
+    Below 0 it is the time that is left, with its sign changed, while the clock stands at zero.
+
+    """
 
     until: int = 0
     reason: str = ''
@@ -196,8 +136,16 @@ class Shelving:
         """Return what of it holds at `now` [ns]: nothing if it is over or ends too far ahead."""
         return self if 0 < self.until - now <= LONGEST_SHELVING else NOT_SHELVED
 
+    def left(self, now: int) -> int:
+        """Return for how long [ns] it still holds at `now` [ns]."""
+        return max(self.until - now, 0) if self.until > 0 else -self.until
+
+    def started(self, now: int) -> 'Shelving':
+        """Return it with its end on a clock that shows `now` [ns], if that has not begun yet."""
+        return dataclasses.replace(self, until=now - self.until) if self.until < 0 < now else self
+
     def is_over(self, now: int) -> bool:
-        """Tell whether it has ended at `now` [ns]; not by a clock that is behind or at zero."""
+        """Return True if it has ended at `now` [ns]; not by a clock that is behind or at zero."""
         return 0 < self.until <= now
 
 

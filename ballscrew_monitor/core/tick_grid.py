@@ -43,7 +43,6 @@ class ClockSteps:
     """Finds by how much a clock was set, by the steady one; a machine that slept set it too."""
 
     def __init__(self) -> None:
-        """Begin with nothing known."""
         self._ahead: tuple[int, int] | None = None  # of the steady clock, at least and at most
 
     def take(self, now: int, before: int, after: int) -> int:

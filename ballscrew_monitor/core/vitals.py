@@ -29,7 +29,7 @@ class VitalSigns:
 
     @property
     def is_busy(self) -> bool:
-        """Tell whether the process uses up a processor; not while that is unknown."""
+        """Return True if the process uses up a processor; not while that is unknown."""
         return self.processor_share >= BUSY
 
 
@@ -37,7 +37,6 @@ class Vitals:
     """Collects what the node does, from one look to the next."""
 
     def __init__(self) -> None:
-        """Begin with nothing done."""
         self._loop_time, self._queue_depth = 0.0, 0
         self._looks: deque[tuple[float, float]] = deque()
 

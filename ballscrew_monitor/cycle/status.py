@@ -71,7 +71,6 @@ class StatusLine:
     """Writes the status to a stream, as often as the kind of the stream can bear."""
 
     def __init__(self, stream: TextIO) -> None:
-        """Begin on a fresh line of `stream`."""
         self._stream = stream
         self._terminal = stream.isatty()
         self._next = -math.inf

@@ -20,16 +20,9 @@ from ballscrew_monitor.health.baseline import changed_screw, in_force, motion_by
 from ballscrew_monitor.health.causes import causes_of
 from ballscrew_monitor.health.change import changes_of, Marks, marks_of
 from ballscrew_monitor.health.damage import rated_of
-from ballscrew_monitor.health.detection import (
-    BASELINE_DAYS,
-    Latched,
-    latched,
-    Look,
-    look,
-    onset_of,
-)
+from ballscrew_monitor.health.detection import BASELINE_DAYS, Latched, latched, Look, look
 from ballscrew_monitor.health.energy import energy_quantities
-from ballscrew_monitor.health.history import effects_of, History, history_of
+from ballscrew_monitor.health.history import History, history_of
 from ballscrew_monitor.health.life import life_quantities, shaft_notes, unknown
 from ballscrew_monitor.health.lubrication import (
     boundary_note,
@@ -38,6 +31,7 @@ from ballscrew_monitor.health.lubrication import (
     severity_quantities,
     usual_boundary,
 )
+from ballscrew_monitor.health.mixed import Prior, USUAL
 from ballscrew_monitor.health.records import (
     Baseline,
     Cause,
@@ -52,7 +46,7 @@ from ballscrew_monitor.health.records import (
 from ballscrew_monitor.health.remedies import remedies_of
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.summary import cells_of
-from ballscrew_monitor.health.where import where_on_screw
+from ballscrew_monitor.health.where import lost_motion_grew, where_on_screw
 from ballscrew_monitor.health.words import advice_of, input_notes, missing_reason, verdict_of
 import numpy as np
 from numpy.typing import NDArray
@@ -65,7 +59,7 @@ DRAG, SMALLEST = 'drag change', 'smallest loss shown'
 CHANGED = (Condition.WORSE, Condition.SLIGHTLY_CHANGED)
 NEW_PROGRAMME = 0.5
 """Share of the motion at places that the baseline lacks, from which the programme changed [-]."""
-ALARM_RATE = 'about two clean years of a hundred end in a false alarm'
+ALARM_RATE = 'at most one clean year of a hundred ends in a false alarm'
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -74,13 +68,14 @@ class HealthSettings:
     Settings of an assessment: limits of the zone, and what the machine allows.
 
     `speed_allowed`: advice may name another speed, which a process may not allow. The baseline has
-    the logs of the first `baseline_days`.
+    the logs of the first `baseline_days`. The `prior` is that of its peers, where it has any.
 
     """
 
     limits: Limits
     speed_allowed: bool = False
     baseline_days: float = BASELINE_DAYS
+    prior: Prior = USUAL
 
 
 class Kept(NamedTuple):
@@ -92,12 +87,18 @@ class Kept(NamedTuple):
 
 
 class Course(NamedTuple):
-    """Looks at a history with the condition that is latched after each."""
+    """
+    Looks at a history with the condition that is latched after each.
+
+    `reversals` are the cells of lost motion since the baseline began, an array of CELL.
+
+    """
 
     history: History | None
     looks: Sequence[Look]
     states: Sequence[Latched]
     baseline: Baseline
+    reversals: NDArray[Any]
 
 
 def course(
@@ -161,23 +162,21 @@ def course_of(kept: Kept, lead: float, settings: HealthSettings) -> Course:
     """Return the looks at all logs since the baseline in force; `lead` [m] of the screw."""
     baseline = in_force(kept.baselines, motion_by_day(kept.spectrum), settings.baseline_days)
     cells = kept.cells[kept.cells['start'] >= baseline.begin]
+    reversals = cells[cells['kind'] == CellKind.REVERSAL]
     history = history_of(cells, lead)
     if history is None:
-        return Course(None, (), (), baseline)
+        return Course(None, (), (), baseline, reversals)
     learned = not kept.baselines or not kept.baselines[-1].end
     begin = int(history.start[0]) if learned else baseline.begin
     days = settings.baseline_days if learned else (baseline.end - int(history.start[0])) / DAY
     end = begin + round(days * DAY) if learned else baseline.end
     count = len(history.start)
-    looks = [look(history.until(at), baseline_days=days) for at in range(1, count + 1)]
-    onsets = [_onset(history, one) if one.raised or one.shifted else -1 for one in looks]
+    looks = [
+        look(history.until(at), baseline_days=days, prior=settings.prior)
+        for at in range(1, count + 1)
+    ]
     baseline = dataclasses.replace(baseline, begin=begin, end=end)
-    return Course(history, looks, latched(looks, onsets), baseline)
-
-
-def _onset(history: History, seen: Look) -> int:
-    effects = effects_of(history.until(seen.log + 1))
-    return onset_of(effects, seen.baseline, seen.log, seen.slope if history.warm else 0.0)
+    return Course(history, looks, latched(looks), baseline, reversals)
 
 
 def _earlier(axis: str, seen: Course, at: int, surface: Surface) -> Health:
@@ -195,6 +194,7 @@ def _earlier(axis: str, seen: Course, at: int, surface: Surface) -> Health:
         quantities=[drag],
         causes=causes,
         baseline=seen.baseline,
+        doubt=here.doubt,
     )
 
 
@@ -256,6 +256,7 @@ def _latest(
         baseline=known,
         notes=[note for note in notes if note],
         usual=usual is not None,
+        doubt=here.doubt if here is not None else 1.0,
     )
 
 
@@ -318,6 +319,9 @@ def _explained(seen: Course, at: int, surface: Surface) -> tuple[list[Cause], Ma
     marks = marks_of(history, here) if latest or proven else None
     if marks is None or not proven:
         return [], marks
+    until = int(history.start[-1])
+    grew = lost_motion_grew(seen.reversals, _since(seen, at), until)
+    marks = marks._replace(lost_motion=grew)
     preload = float(surface.header.get('service', {}).get('preload', math.nan))
     groups = changes_of(history, here)
     return causes_of(groups, marks, math.log1p(here.change), preload), marks

@@ -31,7 +31,7 @@ TOO_FAR = 9.0
 """Chi squared over the number of groups above which no cause fits."""
 FEWEST_GROUPS = 2
 LEAST_CARRIED, MOST_CARRIED = 0.5, 2.0
-"""Mean change that a cause has alone over the one that is reported, at least and at most [-]."""
+"""Mean change that a cause fits alone over the one that is reported, at least and at most [-]."""
 PRELOAD_EXPONENT = 1.2
 """Exponent of the drag of a nut over its preload, at most."""
 NUT_SHARES = (0.33, 0.66)
@@ -43,13 +43,19 @@ LOW_SPEED = 0.7
 
 
 class Candidate(NamedTuple):
-    """A cause: the sign of its size, 0 for both, and its pattern."""
+    """
+    A cause: the sign of its size, 0 for both, its pattern, and what is said of it.
+
+    `with_play` is said of it where the lost motion has grown as well, '' if it has no part in it.
+
+    """
 
     code: CauseCode
     sign: int
     pattern: Callable[[GroupChange, float], Array]
     text: str
     otherwise: str
+    with_play: str = ''
 
 
 def alike(groups: GroupChange, preload: float) -> Array:
@@ -83,13 +89,15 @@ def of_viscosity(groups: GroupChange, preload: float) -> Array:
     return np.asarray(np.polyval(np.polyder(bend), speed))
 
 
+LESS_PRELOAD = 'preload is lost ({least:.0f} % of it or more, if the nut is the cause)'
 CANDIDATES = (
     Candidate(
         CauseCode.PRELOAD_LOST,
         -1,
         of_preload,
-        'preload is lost ({least:.0f} % of it or more, if the nut is the cause)',
+        LESS_PRELOAD,
         'less preload lowers the friction at all speeds alike',
+        LESS_PRELOAD,
     ),
     Candidate(
         CauseCode.TORQUE_CONSTANT,
@@ -125,19 +133,25 @@ CANDIDATES = (
         constant,
         'the drag of a wiper, seal, guideway or bearing has changed ({size:+.2g} N m)',
         'a wiper or a guideway has one torque at all speeds',
+        'the support bearing has play ({size:+.2g} N m of drag)',
     ),
 )
 """All causes of a change of the friction: the one table of them."""
 
 
 class Fit(NamedTuple):
-    """The size of the least chi squared with its standard deviation, and that chi squared."""
+    """
+    The size of the least chi squared with its standard deviation, and that chi squared.
+
+    `share` is the mean of the pattern, weighed as in the reported change.
+
+    """
 
     candidate: Candidate
     size: float
     deviation: float
     chi: float
-    mean: float
+    share: float
 
 
 def causes_of(groups: GroupChange, marks: Marks, reported: float, preload: float) -> list[Cause]:
@@ -163,13 +177,25 @@ def causes_of(groups: GroupChange, marks: Marks, reported: float, preload: float
     least = min(
         (fit.chi for fit, why in zip(fits, allowed, strict=True) if not why), default=math.inf
     )
+    reasons = [why or _too_far(fit, least) for fit, why in zip(fits, allowed, strict=True)]
+    stand = {fit.candidate.code for fit, why in zip(fits, reasons, strict=True) if not why}
+    played = marks.lost_motion and CauseCode.PRELOAD_LOST in stand
+    if played:
+        reasons = [why or _without_play(fit) for fit, why in zip(fits, reasons, strict=True)]
     causes = [
-        _cause(fit, why or _too_far(fit, least), groups, least)
-        for fit, why in zip(fits, allowed, strict=True)
+        _cause(fit if why else _carrying(fit, reported), why, groups, least, played=played)
+        for fit, why in zip(fits, reasons, strict=True)
     ]
     total = sum(cause.weight for cause in causes) or 1.0
     causes = [dataclasses.replace(cause, weight=cause.weight / total) for cause in causes]
-    return sorted(causes, key=lambda cause: (cause.excluded, -cause.weight))
+    return sorted(
+        causes,
+        key=lambda cause: (
+            cause.excluded,
+            played and cause.code is not CauseCode.PRELOAD_LOST,
+            -cause.weight,
+        ),
+    )
 
 
 def _fit(candidate: Candidate, groups: GroupChange, inverse: NDArray[Any], preload: float) -> Fit:
@@ -181,15 +207,15 @@ def _fit(candidate: Candidate, groups: GroupChange, inverse: NDArray[Any], prelo
     if candidate.sign and size * candidate.sign < 0.0:
         size = 0.0
     rest = groups.change - size * pattern
-    weight = groups.time / groups.time.sum()
-    mean = size * float(weight @ pattern)
-    return Fit(candidate, size, normal**-0.5, float(rest @ inverse @ rest), mean)
+    weight = groups.time * groups.friction
+    share = float(weight @ pattern / weight.sum())
+    return Fit(candidate, size, normal**-0.5, float(rest @ inverse @ rest), share)
 
 
 def _objection(fit: Fit, marks: Marks, reported: float, groups: int) -> str:
     """Return why a cause is excluded whatever the others are, or ''."""
     candidate = fit.candidate
-    if fit.size == 0.0 or not LEAST_CARRIED <= fit.mean / reported <= MOST_CARRIED:
+    if fit.size == 0.0 or not LEAST_CARRIED <= fit.size * fit.share / reported <= MOST_CARRIED:
         return f'{candidate.otherwise}, and that is not what is seen'
     if fit.chi > TOO_FAR * groups:
         return f'{candidate.otherwise}, and that is not what is seen'
@@ -210,9 +236,20 @@ def _too_far(fit: Fit, least: float) -> str:
     return f'{fit.candidate.otherwise}, and that is not what is seen' if far else ''
 
 
-def _cause(fit: Fit, why: str, groups: GroupChange, least: float) -> Cause:
+def _without_play(fit: Fit) -> str:
+    seen = 'the lost motion at reversals has grown as well, as by less preload'
+    return '' if fit.candidate.with_play else seen
+
+
+def _carrying(fit: Fit, reported: float) -> Fit:
+    """Return a fit with the size at which the cause alone makes the reported change."""
+    return fit._replace(size=reported / fit.share)
+
+
+def _cause(fit: Fit, why: str, groups: GroupChange, least: float, *, played: bool) -> Cause:
     size = _size(fit, groups)
-    text = why or fit.candidate.text.format(
+    candidate = fit.candidate
+    text = why or (candidate.with_play if played else candidate.text).format(
         least=100.0 * (1.0 - size.high), size=size.value, share=100.0 * size.value
     )
     return Cause(
@@ -231,7 +268,7 @@ def _size(fit: Fit, groups: GroupChange) -> Quantity:
         return preload_bound(-math.expm1(fit.size))
     if fit.candidate.pattern is constant:
         scale = float(groups.friction.mean())
-        value, low, high = (scale * end for end in ends)
+        value, low, high = (scale * math.expm1(end) for end in ends)
         return Quantity(name='constant drag', unit='N m', value=value, low=low, high=high)
     turn = math.exp if fit.candidate.pattern is of_viscosity else math.expm1
     value, low, high = (turn(min(max(end, -3.0), 3.0)) for end in ends)

@@ -60,7 +60,8 @@ class Marks(NamedTuple):
 
     `offset` is the half sum of the torques of both directions over the friction [-], `gain` the
     logarithm of the torque over the measured load [-], `standstill` the torque at rest over the
-    friction [-]; `new_share` [-] is that of places that the baseline lacks.
+    friction [-]; `new_share` [-] is that of places that the baseline lacks. `lost_motion` at
+    reversals has grown since the change began.
 
     """
 
@@ -68,6 +69,7 @@ class Marks(NamedTuple):
     gain: Shift
     standstill: Shift
     new_share: float
+    lost_motion: bool = False
 
 
 def changes_of(history: History, look: Look) -> GroupChange:
@@ -117,28 +119,10 @@ def marks_of(history: History, look: Look) -> Marks:
     total = float(history.weight[now].sum())
     return Marks(
         offset=shift(offset / friction, before, now),
-        gain=shift(np.log(np.maximum(gains_of(history), 1e-3)), before, now),
+        gain=shift(np.log(np.maximum(history.gain, 1e-3)), before, now),
         standstill=shift(history.standstill / friction, before, now),
         new_share=float(history.weight[now][:, ~known].sum()) / total if total else 0.0,
     )
-
-
-def gains_of(history: History) -> Array:
-    """Return the torque over the load of each log, over that of an ideal screw [-]."""
-    place = {group: at for at, group in enumerate(history.groups)}
-    columns = []
-    for group, at in place.items():
-        free = group._replace(load=0, opposes=False)
-        if group.load and group.opposes and free in place:
-            torque = history.friction[:, at] - history.friction[:, place[free]]
-            columns.append(1.0 + torque / history.ideal[:, at])
-    if not columns:
-        return np.full(len(history.start), np.nan)
-    table = np.array(columns)
-    seen = np.isfinite(table)
-    count = seen.sum(axis=0)
-    mean = np.nansum(table, axis=0) / np.maximum(count, 1)
-    return np.asarray(np.where(count > 0, mean, np.nan))
 
 
 def shift(values: Array, before: NDArray[np.bool_], now: NDArray[np.bool_]) -> Shift:

@@ -8,12 +8,21 @@ looks in their order, so that it is a function of the logs alone and nothing fla
 
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 import math
 from typing import NamedTuple
 
-from ballscrew_monitor.health.history import calmed, Effects, effects_of, History
-from ballscrew_monitor.health.mixed import Estimate, estimate, Logs, SLOPE, weights_of
+from ballscrew_monitor.health.history import effects_of, History
+from ballscrew_monitor.health.mixed import (
+    CHANGE,
+    CHANGE_RATE,
+    Estimate,
+    estimate,
+    FIRST_CHANGE,
+    Logs,
+    Prior,
+    USUAL,
+)
 from ballscrew_monitor.health.records import Condition, TOLERANCE
 import numpy as np
 from numpy.typing import NDArray
@@ -27,32 +36,28 @@ NOW = 4
 """Logs that count as now."""
 SPARSE = 20.0
 """Days between logs from which two of them count as now."""
-BLOCK_DAYS = 56.0
-"""Days over which logs between baseline and now share one change."""
+EIGHT_WEEKS = 56.0
+"""Days within which a loss is to be found, and after which older logs are merged to weeks."""
 A_DAY, MERGED, MERGED_OLD, FEW = 0.75, 2.5, 6.0, 60
 """
 Days within which logs count as one: of up to 60 logs those of a day, else those of some days, and
-of a week where they are older than a block.
+of a week where they are older than eight.
 
 """
-NO_CHANGE, WITHIN_TOLERANCE = 4e-4, 0.01
-"""
-Probabilities at which a change is worse: that there is none, and that it is within the tolerance.
-
-At these, about two clean years of a hundred end in a false alarm: 3 of 180 that were played.
-
-"""
+DOUBT = 0.05
+"""Probability at which a change is worse: that nothing lasting has come beyond the tolerance."""
 RUNNING_IN = 0.1
 """Loss that a new screw may have while it runs in, in the days of the baseline [-]."""
-SLIGHT = 0.005
-"""Probability of no change at which an axis has slightly changed."""
+SLIGHT_99 = 2.575829
 NARROW = 0.08
 """Half width of an interval that holds zero, up to which an axis is normal [-]."""
 RECOVERY = 56.0
 """Days within the tolerance after which a latched condition ends."""
 NORMAL_95 = 1.959964
-ALARM_SIGMAS, TOLERANCE_SIGMAS, MISSED_SIGMAS = 3.35, 2.33, 0.6
-"""Normal quantiles of the two probabilities, and what a loss found in nine of ten has beyond."""
+DOUBT_SIGMAS, MISSED_SIGMAS = 1.645, 1.282
+"""Normal quantiles of the doubt, and of what nine of ten cases have."""
+UNFORESEEN = 1.35
+"""What eight weeks to come have of doubt beyond the last ones [-], as measured."""
 
 
 class Look(NamedTuple):
@@ -60,10 +65,11 @@ class Look(NamedTuple):
     Comparison of the last logs until `log` with the baseline.
 
     `change` with its 95 % interval `low` to `high` is relative [-]; `raised` is the sign of a
-    change that is worse, 0 for none; `shifted` that of one that is proven at all. `smallest` is
-    the loss that nine of ten times shows within eight weeks [-]. `baseline` and `now` count logs,
-    the first up to `baseline_end`, the last from `now_begin` on [days].
-    NaN where nothing is compared, for the `reason`.
+    change that is worse, 0 for none; `shifted` that of one that is proven at all. `doubt` is the
+    probability that nothing lasting has come beyond the tolerance. `smallest` is the loss that
+    nine of ten times shows within eight weeks [-]. `baseline` and `now` count logs, the first up
+    to `baseline_end`, the last from `now_begin` on [days]; `onset` is the log with which the
+    change began. NaN where nothing is compared, for the `reason`.
 
     """
 
@@ -74,12 +80,14 @@ class Look(NamedTuple):
     high: float = math.nan
     raised: int = 0
     shifted: int = 0
+    doubt: float = 1.0
     smallest: float = math.nan
     slope: float = math.nan
     baseline: int = 0
     now: int = 0
     baseline_end: float = math.nan
     now_begin: float = math.nan
+    onset: int = -1
     reason: str = ''
 
     @property
@@ -88,164 +96,128 @@ class Look(NamedTuple):
         return math.isfinite(self.change)
 
 
-def looks(history: History, *, baseline_days: float = BASELINE_DAYS) -> Iterator[Look]:
+def looks(
+    history: History, *, baseline_days: float = BASELINE_DAYS, prior: Prior = USUAL
+) -> Iterator[Look]:
     """Yield a look after each log of a history."""
     for count in range(1, len(history.start) + 1):
-        yield look(history.until(count), baseline_days=baseline_days)
+        yield look(history.until(count), baseline_days=baseline_days, prior=prior)
 
 
-def look(history: History, *, baseline_days: float = BASELINE_DAYS) -> Look:
+def look(history: History, *, baseline_days: float = BASELINE_DAYS, prior: Prior = USUAL) -> Look:
     """Return the comparison of the last logs of a history with its first ones."""
     effects = effects_of(history)
-    index, time = len(history.start) - 1, float(history.time[-1])
+    index, time = len(history.start) - 1, history.time
     if not effects.compared[-1]:
         reason = 'the last log shares no speed and load with the logs before'
-        return Look(index, time, reason=reason)
-    logs = calmed(binned(_chosen(effects.logs, effects.compared)))
-    parts = blocks_of(logs.time, baseline_days)
-    if parts is None:
+        return Look(index, float(time[-1]), reason=reason)
+    compared = np.flatnonzero(effects.compared)
+    bins = bins_of(time[compared])
+    logs = binned(effects.logs, [compared[part] for part in bins])
+    now = np.arange(len(bins)) >= len(bins) - now_of(logs.time)
+    baseline = baseline_of(logs.time, now, baseline_days)
+    sizes = np.array([len(part) for part in bins])
+    if baseline.sum() < FEWEST_LOGS:
         known = len(logs.time)
         reason = f'{known} logs so far, a baseline needs {FEWEST_LOGS} and then two more'
-        return Look(index, time, reason=reason)
-    step = step_of(logs.effect - SLOPE * logs.warmth, int((parts == 0).sum()))
-    before, blocks = _before(logs.time, parts, baseline_days), cut_at_step(parts, step)
-    weight = weights_of(logs.until(len(before)), before, warm=history.warm)
-    found = estimate(logs, blocks, weight, warm=history.warm, step=step)
-    provisional = time - logs.time[0] <= baseline_days
-    seen = _look(index, logs.time, found, blocks, RUNNING_IN if provisional else TOLERANCE)
-    return seen if seen.now > 2 or _both_beyond(logs, blocks, seen) else seen._replace(raised=0)
+        return Look(index, float(time[-1]), reason=reason)
+    found = estimate(logs, baseline, now, warm=history.warm, prior=prior)
+    first = [int(compared[part[0]]) for part in bins]
+    seen = _look(found, provisional=float(time[-1] - time[compared[0]]) <= baseline_days)
+    seen = seen._replace(
+        log=index,
+        time=float(time[-1]),
+        smallest=smallest_loss(found, logs.time),
+        baseline=int(sizes[baseline].sum()),
+        now=int(sizes[now].sum()),
+        baseline_end=float(time[compared[bins[int(baseline.sum()) - 1][-1]]]),
+        now_begin=float(time[first[int(now.argmax())]]),
+        onset=first[found.onset] if found.onset >= 0 else first[int(now.argmax())],
+    )
+    return seen if now.sum() > 2 or _both_beyond(logs, baseline, seen) else seen._replace(raised=0)
 
 
-def _both_beyond(logs: Logs, blocks: NDArray[np.int64], seen: Look) -> bool:
+def _both_beyond(logs: Logs, baseline: NDArray[np.bool_], seen: Look) -> bool:
     """Return True if both logs that are now lie beyond the tolerance: one run may be odd."""
     values = logs.effect - seen.slope * logs.warmth
-    apart = values[-2:] - float(np.mean(values[blocks == 0]))
+    apart = values[-2:] - float(np.mean(values[baseline]))
     return bool((seen.raised * apart > TOLERANCE).all())
 
 
-def _look(
-    index: int, times: Array, found: Estimate, blocks: NDArray[np.int64], usual_loss: float
-) -> Look:
-    sign = -1 if found.value < 0.0 else 1
-    none, usual = found.beyond(0.0, sign), usual_loss if sign < 0 else TOLERANCE
-    raised = none < NO_CHANGE and found.beyond(usual, sign) < WITHIN_TOLERANCE
+def _look(found: Estimate, *, provisional: bool) -> Look:
+    sign = -1 if found.lasts.value < 0.0 else 1
+    usual = RUNNING_IN if provisional and sign < 0 else TOLERANCE
+    doubt = max(found.lasts.within(usual, sign), found.unproven)
     reach = NORMAL_95 * found.deviation
-    shifted = (
-        abs(found.value) > reach
-        and 0.5 * math.erfc(abs(found.value) / found.deviation / math.sqrt(2.0)) < SLIGHT
-    )
+    shifted = abs(found.change) > SLIGHT_99 * found.deviation
     return Look(
-        log=index,
-        time=float(times[-1]),
-        change=math.expm1(found.value),
-        low=math.expm1(found.value - reach),
-        high=math.expm1(found.value + reach),
-        raised=sign if raised else 0,
-        shifted=sign if shifted else 0,
-        smallest=smallest_loss(found),
+        log=-1,
+        time=math.nan,
+        change=math.expm1(found.change),
+        low=math.expm1(found.change - reach),
+        high=math.expm1(found.change + reach),
+        raised=sign if doubt < DOUBT else 0,
+        shifted=int(math.copysign(shifted, found.change)),
+        doubt=doubt,
         slope=found.slope,
-        baseline=int((blocks == 0).sum()),
-        now=int((blocks == blocks.max()).sum()),
-        baseline_end=float(times[blocks == 0][-1]),
-        now_begin=float(times[blocks == blocks.max()][0]) - MERGED,
     )
 
 
-def smallest_loss(found: Estimate) -> float:
-    """Return the loss [-] that would be worse within eight weeks in nine of ten cases."""
-    doubt = found.lasting_deviation
-    size = max(ALARM_SIGMAS * doubt, TOLERANCE + TOLERANCE_SIGMAS * doubt)
-    return -math.expm1(-(size + MISSED_SIGMAS * doubt))
-
-
-def _chosen(logs: Logs, which: NDArray[np.bool_]) -> Logs:
-    return Logs(*(part[which] for part in logs))
-
-
-def binned(logs: Logs) -> Logs:
-    """Return logs with those of some days as one, and of a week where they are older."""
-    age = logs.time[-1] - logs.time
-    width = np.where(age > BLOCK_DAYS, MERGED_OLD, MERGED)
-    width = np.full(len(age), A_DAY) if len(age) <= FEW else width
-    begin, bins = -math.inf, []
-    for at, (time, length) in enumerate(zip(logs.time.tolist(), width.tolist(), strict=True)):
-        if time - begin >= length:
-            bins.append([at])
-            begin = time
-        else:
-            bins[-1].append(at)
-    return Logs(*map(np.array, zip(*(_mean(logs, part) for part in bins), strict=True)))
-
-
-def _mean(logs: Logs, part: Sequence[int]) -> tuple[float, float, float, float]:
-    """Return several logs as one: what logs of some days share does not become less."""
-    share = 1.0 / logs.noise[part]
-    share = share / share.sum()
-    noise = float(np.mean(logs.noise[part])) / min(len(part), 3)
-    time, effect, warmth = (float(share @ values[part]) for values in logs[:3])
-    return time, effect, warmth, noise
-
-
-def blocks_of(time: Array, baseline_days: float) -> NDArray[np.int64] | None:
+def smallest_loss(found: Estimate, time: Array) -> float:
     """
-    Return the block of each log: 0 the baseline, the last one now; None for too few logs.
+    Return the loss [-] that would be worse within eight weeks in nine of ten cases.
 
-    `time` [days]; the baseline is that of the first days, or of three logs.
+    It has to be beyond the tolerance, and more likely than that nothing came. `time` [days] of
+    the logs.
 
     """
-    now = _now(time)
-    last = len(time) - now
+    if not len(found.recent):
+        return math.nan
+    ago = np.abs(time[-1] - time[FIRST_CHANGE:][: len(found.recent)] - EIGHT_WEEKS)
+    deviation = float(found.recent[int(ago.argmin())])
+    odds = math.log((1.0 - DOUBT) / DOUBT / (CHANGE_RATE * EIGHT_WEEKS))
+    proven = deviation * math.sqrt(2.0 * odds + 2.0 * math.log(max(CHANGE / deviation, 1.0)))
+    size = max(proven, TOLERANCE + DOUBT_SIGMAS * deviation) + MISSED_SIGMAS * deviation
+    return -math.expm1(-UNFORESEEN * size)
+
+
+def bins_of(time: Array) -> list[NDArray[np.int64]]:
+    """Return the logs of some days that count as one, of a week for old ones; `time` [days]."""
+    width = np.where(time[-1] - time > EIGHT_WEEKS, MERGED_OLD, MERGED)
+    width = np.full(len(time), A_DAY) if len(time) <= FEW else width
+    begin, first = -math.inf, []
+    for at, (here, length) in enumerate(zip(time.tolist(), width.tolist(), strict=True)):
+        if here - begin >= length:
+            first.append(at)
+            begin = here
+    return np.split(np.arange(len(time)), first[1:])
+
+
+def binned(logs: Logs, bins: Iterable[NDArray[np.int64]]) -> Logs:
+    """Return the logs of each bin as one: what logs of some days share does not become less."""
+    rows = []
+    for part in bins:
+        share = 1.0 / logs.noise[part]
+        share = share / share.sum()
+        means = (float(share @ values[part]) for values in logs[:3])
+        rows.append((*means, float(np.mean(logs.noise[part])) / min(len(part), 3)))
+    return Logs(*np.array(rows).T)
+
+
+def baseline_of(time: Array, now: NDArray[np.bool_], baseline_days: float) -> NDArray[np.bool_]:
+    """Return which logs are the baseline: those of its days [days], or the first three."""
     first = time - time[0] <= baseline_days
     first[:FEWEST_LOGS] = True
-    first[last:] = False
-    if first.sum() < FEWEST_LOGS:
-        return None
-    blocks: NDArray[np.int64] = np.zeros(len(time), dtype=np.int64)
-    middle = ~first
-    middle[last:] = False
-    if middle.any():
-        blocks[middle] = 1 + ((time[middle] - time[middle][0]) // BLOCK_DAYS).astype(np.int64)
-        blocks[middle] = 1 + np.unique(blocks[middle], return_inverse=True)[1]
-    blocks[last:] = blocks.max() + 1
-    return blocks
+    return np.asarray(first & ~now)
 
 
-def cut_at_step(blocks: NDArray[np.int64], step: int) -> NDArray[np.int64]:
-    """Return blocks cut at the log of the largest step, lest it counts as a slope."""
-    middle = (blocks > 0) & (blocks < blocks.max())
-    if not middle.any():
-        return blocks
-    later = middle & (np.arange(len(blocks)) >= step)
-    cut = 2 * blocks + later
-    return np.asarray(np.unique(cut, return_inverse=True)[1], dtype=np.int64)
-
-
-def step_of(values: Array, first: int) -> int:
-    """Return where the values have one step, by least squares; at `first` at the earliest."""
-    sums = [
-        float(np.var(values[:at]) * at + np.var(values[at:]) * (len(values) - at))
-        for at in range(first, len(values))
-    ]
-    return first + int(np.argmin(sums))
-
-
-def _now(time: Array) -> int:
-    """Return the number of logs that count as now: four, or two where they come monthly."""
+def now_of(time: Array) -> int:
+    """Return how many logs are now, four or two if monthly, by their `time` [days]."""
     if len(time) <= FEWEST_LOGS + 2:
         return 2
     spacing = float(np.median(np.diff(time[-6:])))
     wanted = 2 if spacing > SPARSE else NOW
     return min(wanted, len(time) - FEWEST_LOGS)
-
-
-def _before(time: Array, blocks: NDArray[np.int64], baseline_days: float) -> NDArray[np.int64]:
-    """Return the blocks of the logs that tell the scatter: baseline, and up to eight weeks ago."""
-    last = int((blocks < blocks.max()).sum())
-    old = int((time <= time[-1] - BLOCK_DAYS).sum())
-    count = min(max(old, int((blocks == 0).sum())), last)
-    apart = time[:count] - time[0]
-    kept = np.where(apart <= baseline_days, 0, 1 + (apart - baseline_days) // BLOCK_DAYS)
-    return np.asarray(np.unique(kept, return_inverse=True)[1], dtype=np.int64)
 
 
 class Latched(NamedTuple):
@@ -255,21 +227,21 @@ class Latched(NamedTuple):
     since: int
 
 
-def latched(seen: Iterable[Look], onsets: Sequence[int]) -> list[Latched]:
+def latched(seen: Iterable[Look]) -> list[Latched]:
     """
     Return the condition after each look.
 
     Worse and slightly changed stay until the change was eight weeks within the tolerance, or not
-    proven. `onsets` are the logs with which the change of each look began.
+    proven.
 
     """
     course, state, since, left = [], Condition.UNKNOWN, -1, math.nan
-    for here, onset in zip(seen, onsets, strict=True):
+    for here in seen:
         if not here.is_known:
             course.append(Latched(state if since >= 0 else Condition.UNKNOWN, since))
             continue
         if here.raised:
-            since = onset if state is not Condition.WORSE else since
+            since = here.onset if state is not Condition.WORSE else since
             state, left = Condition.WORSE, math.nan
         elif state is Condition.WORSE or (since >= 0 and not here.shifted):
             inside = abs(here.change) <= TOLERANCE if state is Condition.WORSE else True
@@ -277,7 +249,7 @@ def latched(seen: Iterable[Look], onsets: Sequence[int]) -> list[Latched]:
             if here.time - left >= RECOVERY:
                 state, since, left = _unlatched(here), -1, math.nan
         elif here.shifted:
-            since = onset if since < 0 else since
+            since = here.onset if since < 0 else since
             state, left = Condition.SLIGHTLY_CHANGED, math.nan
         else:
             state = _unlatched(here)
@@ -288,15 +260,3 @@ def latched(seen: Iterable[Look], onsets: Sequence[int]) -> list[Latched]:
 def _unlatched(here: Look) -> Condition:
     half = 0.5 * (here.high - here.low)
     return Condition.NORMAL if half <= NARROW else Condition.UNKNOWN
-
-
-def onset_of(effects: Effects, blocks_from: int, index: int, slope: float) -> int:
-    """
-    Return the log with which a change began, by the least squares of one step.
-
-    `blocks_from` is the first log that is not of the baseline, `index` that of the look; `slope`
-    [1/K] is that of the temperature.
-
-    """
-    values = effects.logs.effect - slope * effects.logs.warmth
-    return step_of(values[: index + 1], min(max(blocks_from, 1), index))

@@ -25,8 +25,6 @@ USUAL_TIME = 2.0
 """Time in a group and direction at which it weighs half [s]."""
 BOTH, ONE_WAY = 0, 1
 ROUNDS = 25
-PEAK = 3.0
-"""Scatter by which a log lies above its neighbours if the axis was greased [-]."""
 
 
 class Group(NamedTuple):
@@ -50,8 +48,9 @@ class History:
 
     `time` [days since 1970] and `start` [ns] of each log; `friction` and `offset` [N m], speed
     [rad/s], load [N, against the motion of the first direction], the `ideal` torque of a load that
-    opposes [N m], temperature [K]; `weight` [-]; `standstill` [N m] of each log. `load_known`:
-    the load was measured, or the motion known to be free.
+    opposes [N m], temperature [K]; `weight` [-]; `standstill` [N m] of each log, and the `gain`
+    of its torque over the load, over that of an ideal screw [-]. `load_known`: the load was
+    measured, or the motion known to be free.
 
     """
 
@@ -65,6 +64,7 @@ class History:
     temperature: Array
     weight: Array
     standstill: Array
+    gain: Array
     warm: bool
     load_known: bool
 
@@ -75,7 +75,7 @@ class History:
 
     def until(self, count: int) -> 'History':
         """Return the first `count` logs."""
-        names = ('start', *PARTS, 'standstill')
+        names = ('start', *PARTS, 'standstill', 'gain')
         return dataclasses.replace(self, **{name: getattr(self, name)[:count] for name in names})
 
 
@@ -97,7 +97,8 @@ def history_of(cells: NDArray[Any], lead: float) -> History | None:
             entries = _entries(part, lead, both=both)
             if entries:
                 rest = cells[cells['kind'] == CellKind.STANDSTILL]
-                return _history(entries, rest, load_known=load_known)
+                history = _history(entries, rest, load_known=load_known)
+                return dataclasses.replace(history, gain=gains_of(part, history, lead))
     return None
 
 
@@ -190,10 +191,37 @@ def _history(entries: list[_Entry], rest: NDArray[Any], *, load_known: bool) -> 
         start=start,
         groups=tuple(groups),
         standstill=standstill,
+        gain=np.full(len(start), np.nan),
         warm=sum(entry.warm for entry in entries) > 0.9 * len(entries),
         load_known=load_known,
         **parts,
     )
+
+
+def gains_of(motion: NDArray[Any], history: History, lead: float) -> Array:
+    """
+    Return the torque over the load of each log, over that of an ideal screw [-].
+
+    By least squares over the loaded `motion` (an array of CELL), in whatever direction, less the
+    friction that the log has without load at that speed. `lead` [m]; NaN where a log lacks either.
+
+    """
+    free = np.array([group.load == 0 and group.way == 0 for group in history.groups])
+    loaded = motion[motion['load_band'] != 0]
+    gains = np.full(len(history.start), np.nan)
+    for at, start in enumerate(history.start):
+        cells, known = loaded[loaded['start'] == start], free & (history.weight[at] > 0.0)
+        if not (len(cells) and known.any()):
+            continue
+        order = np.argsort(history.speed[at, known])
+        speed, friction = (part[at, known][order] for part in (history.speed, history.friction))
+        drag = np.interp(np.abs(cells['speed']), speed, friction) * cells['direction']
+        ideal = -cells['axial_load'] * lead / TURN
+        offset = float(np.mean(history.offset[at, known]))
+        weight = ideal * cells['duration']
+        torque = cells['motor_torque'] - drag - offset
+        gains[at] = float(weight @ torque) / float(weight @ ideal)
+    return gains
 
 
 class Effects(NamedTuple):
@@ -212,10 +240,18 @@ class Effects(NamedTuple):
 
 
 def effects_of(history: History) -> Effects:
-    """Return the effects of logs and groups by least squares of a table with two ways."""
+    """
+    Return the effects of logs and groups by least squares of a table with two ways.
+
+    A group weighs by its friction as well, since the mean friction of all motion is what changes.
+
+    """
     compared = connected(history.weight > 0.0)
-    weight = history.weight * compared[:, None]
-    seen = weight > 0.0
+    seen = (history.weight > 0.0) & compared[:, None]
+    usual_friction = np.where(seen, history.friction, 0.0).sum(axis=0) / np.maximum(
+        seen.sum(axis=0), 1
+    )
+    weight = np.where(seen, history.weight * usual_friction, 0.0)
     friction = np.where(seen, np.log(np.where(seen, history.friction, 1.0)), 0.0)
     warmth = np.where(seen, history.temperature, 0.0) if history.warm else np.zeros_like(friction)
     effect, groups = two_ways(friction, weight)
@@ -255,22 +291,3 @@ def connected(seen: NDArray[np.bool_]) -> NDArray[np.bool_]:
         if (more == rows).all():
             return rows
         rows = more
-
-
-def calmed(logs: Logs) -> Logs:
-    """
-    Return logs with more noise where the friction lies above that of both neighbours.
-
-    A regreasing raises the friction for a log or two. It neither moves the level nor widens the
-    scatter then.
-
-    """
-    effect = logs.effect - np.median(logs.effect)
-    size = len(effect)
-    if size < 5:
-        return logs
-    near = [np.median(effect[slice(max(at - 2, 0), at + 3)]) for at in range(size)]
-    above = effect - np.array(near)
-    scale = 1.4826 * float(np.median(np.abs(above)))
-    peaks = above > PEAK * max(scale, 0.008)
-    return logs._replace(noise=np.where(peaks, 25.0 * logs.noise, logs.noise))

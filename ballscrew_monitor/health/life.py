@@ -33,9 +33,7 @@ KNOWN_SHARE = 0.8
 """Least share of the motion whose load must be known [-]."""
 LOAD_UNCERTAINTY = 0.1
 """Uncertainty of the measured load unless another is stated [-]."""
-NO_RATING = (
-    'life not known: the sheet has no dynamic_rating_kN, or the surface was built without it'
-)
+NO_RATING = 'not known: the sheet has no dynamic_rating_kN, or the surface was built without it'
 SPEED_SHARE, LOAD_SHARE = 0.8, 0.5
 """Shares of critical speed and buckling load that makers allow [-]."""
 NAMES = {

@@ -8,13 +8,15 @@ against itself. Beside its peers it does not.
 
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 import dataclasses
 import math
 import statistics
-from typing import Any
+from typing import Any, NamedTuple
 
+from ballscrew_monitor.health.detection import binned, bins_of, FEWEST_LOGS, now_of
 from ballscrew_monitor.health.history import effects_of, history_of
+from ballscrew_monitor.health.mixed import estimate, grid, Logs, Prior, SLOPE, SLOPE_DOUBT, USUAL
 from ballscrew_monitor.health.records import Quantity, TOLERANCE
 from ballscrew_monitor.health.words import percent
 import numpy as np
@@ -29,6 +31,12 @@ LEAST_COMMON = 0.5
 OWN_DOUBT = 0.02
 """Standard deviation of the friction of an axis from log to log, at least [-]."""
 NAME = 'friction beside peers'
+OWN_SHARES = (0.1, 0.3, 0.5, 0.7, 0.9)
+"""Shares of the variance of a slope that axes of one kind do not have in common, all alike [-]."""
+ROUNDS = 20
+"""Steps of expectation and maximisation, after which the weights of pairs stay."""
+USUAL_PEERS = 2.0
+"""Peers for which the usual weights of scatter and wander count."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -116,3 +124,104 @@ def _peer(axis: str, levels: Mapping[str, Mapping[Any, float]]) -> Peer | None:
         range_of_peers=math.expm1(spread),
         is_apart=abs(value) - reach > max(TOLERANCE, spread),
     )
+
+
+class Spread(NamedTuple):
+    """
+    What the logs of an axis say of its temperature slope and of its scatter and wander.
+
+    The slope [1/K] with its standard deviation by the logs alone, infinite where they say nothing,
+    and the likelihood of the pairs of the grid; `groups` are the places where the axis runs.
+
+    """
+
+    slope: float
+    deviation: float
+    pairs: tuple[float, ...]
+    groups: frozenset[Any]
+
+
+def spread_of(cells: NDArray[Any], lead: float) -> Spread | None:
+    """Return the spread of an axis with a `lead` [m] by its cells; None for too few logs."""
+    history = history_of(cells, lead)
+    if history is None:
+        return None
+    effects = effects_of(history)
+    compared = np.flatnonzero(effects.compared)
+    bins = bins_of(history.time[compared])
+    logs = binned(effects.logs, [compared[part] for part in bins])
+    if len(logs.time) < FEWEST_LOGS + 2:
+        return None
+    return _spread(logs, frozenset(history.groups), warm=history.warm)
+
+
+def _spread(logs: Logs, groups: frozenset[Any], *, warm: bool) -> Spread:
+    now = np.arange(len(logs.time)) >= len(logs.time) - now_of(logs.time)
+    found = estimate(logs, ~now, now, warm=warm)
+    alone = found.pairs / np.exp(grid().prior)
+    pairs = tuple((alone / alone.sum()).tolist())
+    variance = found.slope_deviation**2
+    information = 1.0 / variance - SLOPE_DOUBT**-2.0
+    if information <= 0.0 or not warm:
+        return Spread(SLOPE, math.inf, pairs, groups)
+    return Spread(
+        slope=SLOPE + (found.slope - SLOPE) / variance / information,
+        deviation=information**-0.5,
+        pairs=pairs,
+        groups=groups,
+    )
+
+
+def priors(spreads: Mapping[str, Spread]) -> dict[str, Prior]:
+    """Return the prior of each axis by the spreads of its peers; axes of one screw by name."""
+    return {axis: prior_of(_peers_of(axis, spreads)) for axis in spreads}
+
+
+def _peers_of(axis: str, spreads: Mapping[str, Spread]) -> list[Spread]:
+    own = spreads[axis].groups
+    return [
+        spread
+        for other, spread in spreads.items()
+        if other != axis and len(own & spread.groups) >= LEAST_COMMON * len(own)
+    ]
+
+
+def prior_of(peers: Sequence[Spread]) -> Prior:
+    """
+    Return what the peers of an axis say of it, by empirical Bayes; the usual for less than two.
+
+    The slopes of axes lie about a mean of their kind. The variance of the usual prior is that of
+    both together, and its shares are weighed by their likelihood.
+
+    """
+    if len(peers) < FEWEST_PEERS:
+        return USUAL
+    slope, doubt = _slope_of([peer for peer in peers if math.isfinite(peer.deviation)])
+    usual = np.exp(grid().prior)
+    usual = weight = usual / usual.sum()
+    likelihood = np.array([peer.pairs for peer in peers])
+    for _ in range(ROUNDS):
+        own = likelihood * weight
+        total = USUAL_PEERS * usual + (own / own.sum(axis=1, keepdims=True)).sum(axis=0)
+        weight = total / total.sum()
+    return Prior(slope, doubt, tuple(weight.tolist()))
+
+
+def _slope_of(peers: Sequence[Spread]) -> tuple[float, float]:
+    """Return mean and standard deviation of the slope of an axis by those of its peers [1/K]."""
+    apart = np.array([peer.slope for peer in peers]) - SLOPE
+    noise = np.array([peer.deviation for peer in peers]) ** 2
+    means, variances, likelihoods = [], [], []
+    for share in OWN_SHARES:
+        own, common = share * SLOPE_DOUBT**2, (1.0 - share) * SLOPE_DOUBT**2
+        covariance = np.diag(noise + own) + common
+        solved = np.linalg.solve(covariance, apart)
+        gain = np.linalg.solve(covariance, np.full(len(peers), common))
+        means.append(common * float(solved.sum()))
+        variances.append(own + common - common * float(gain.sum()))
+        likelihoods.append(-0.5 * (float(apart @ solved) + np.linalg.slogdet(covariance)[1]))
+    weight = np.exp(np.array(likelihoods) - max(likelihoods))
+    weight = weight / weight.sum()
+    mean = float(weight @ means)
+    variance = float(weight @ (np.array(variances) + (np.array(means) - mean) ** 2))
+    return SLOPE + mean, math.sqrt(variance)

@@ -73,6 +73,7 @@ class Missing(enum.IntEnum):
     STEADY = 2  # motion with a measured torque, none of it steady
     MOTION = 3  # the axis did not move
     CLOCK = 4  # the clock was not set, or leapt
+    LOAD = 5  # the torque was measured, but it was taken for the load
 
 
 @dataclasses.dataclass(kw_only=True, slots=True)
@@ -267,7 +268,8 @@ class Health:
     `since` [ns] is the date of the change that is latched, 0 for none. `quantities` by name;
     causes in the order of their weight, the excluded ones last; `verdict` is one sentence,
     `advice` what to do, empty for nothing; `notes` tell what is not known, and why. `usual`: the
-    axis runs as much at the boundary as it did in its baseline, which is its normal.
+    axis runs as much at the boundary as it did in its baseline, which is its normal. `doubt` [-]
+    is the probability that nothing lasting has come.
 
     """
 
@@ -282,6 +284,16 @@ class Health:
     baseline: Baseline | None = None
     notes: Sequence[str] = ()
     usual: bool = False
+    doubt: float = 1.0
+
+    @property
+    def unknown(self) -> dict[str, list[str]]:
+        """Return the names of what is not known, by the reason."""
+        names: dict[str, list[str]] = {}
+        for quantity in self.quantities:
+            if not quantity.is_known:
+                names.setdefault(quantity.reason, []).append(quantity.name)
+        return names
 
     def quantity(self, name: str) -> Quantity:
         """Return the quantity of a name."""

@@ -208,7 +208,7 @@ def _feed(programme: Programme) -> Remedy:
         )
         for one in programme.points
     )
-    nearest = {abs(one.advice.target_speed) for one in advisors}
+    nearest = {abs(one.target_speed) for one in advisors}
     for speed in sorted(filter(math.isfinite, nearest)):
         share = programme.share(slowest=speed)
         if share >= AIMED:

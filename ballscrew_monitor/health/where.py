@@ -102,9 +102,7 @@ def lost_motion(cells: NDArray[Any], baseline: Baseline | None) -> tuple[Sequenc
     lost, time = cells['backlash'], cells['start'] / DAY
     if len(lost) < 3:
         return [_unknown(LOST, 'um', 'not known yet: it needs three logs')], ''
-    freedom = len(lost) - 1
-    scatter = math.sqrt(float(np.sum(np.diff(lost) ** 2)) / (2.0 * freedom))
-    spread = student(freedom) * scatter
+    spread = _spread(lost)
     now = lost[-NOW:]
     width = math.hypot(spread / math.sqrt(len(now)), ENCODERS)
     rests = f'{int(cells["stretches"].sum())} reversals in {len(lost)} logs'
@@ -125,6 +123,29 @@ def lost_motion(cells: NDArray[Any], baseline: Baseline | None) -> tuple[Sequenc
     quantities.insert(1, _micrometres(LOST_CHANGE, 'um', change, width, rests))
     note = lost_note(quantities[0], quantities[1])
     return quantities, note if change - SURE * width > LEAST_LOST else ''
+
+
+def lost_motion_grew(cells: NDArray[Any], since: int, until: int) -> bool:
+    """
+    Return True if lost motion has grown beyond doubt at or after a date, by cells of REVERSAL.
+
+    The last logs up to `until` [ns] are held against the last ones before `since` [ns], at least
+    two each, so that play which was there before does not count.
+
+    """
+    cells = np.sort(cells[cells['start'] <= until], order='start')
+    lost = cells['backlash']
+    before, after = lost[cells['start'] < since][-NOW:], lost[cells['start'] >= since][-NOW:]
+    if min(len(before), len(after)) < 2:
+        return False
+    width = _spread(lost) * math.sqrt(1.0 / len(before) + 1.0 / len(after))
+    return float(after.mean() - before.mean()) > math.hypot(width, ENCODERS)
+
+
+def _spread(lost: Array) -> float:
+    """Return the half width that one log has by its scatter, from successive logs [m]."""
+    freedom = len(lost) - 1
+    return student(freedom) * math.sqrt(float(np.sum(np.diff(lost) ** 2)) / (2.0 * freedom))
 
 
 def lost_note(lost: Quantity, change: Quantity) -> str:

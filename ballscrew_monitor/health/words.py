@@ -28,6 +28,9 @@ LEAST_WEIGHT = 0.05
 """Weight of a cause that is told [-]: the others carry 95 %."""
 MISSING = {
     Missing.CLOCK: 'the clock was not set, or leapt',
+    Missing.LOAD: 'the map takes the motor torque for the load, so that no friction is left: '
+    'state load: {from: motor_torque} for the axis, and always_free: true if it has no process '
+    'force',
     Missing.TORQUE: 'no torque was measured while the axis moved',
     Missing.STEADY: 'no motion was steady for a quarter of a second',
     Missing.MOTION: 'the axis did not move',

@@ -126,8 +126,8 @@ def objection(full: Found, answer: Found, surface: Surface) -> str:
 
 def corrected(surface: Surface, kept: Iterable[Solve]) -> Surface:
     """Return a surface with the corrections of another of the same content."""
-    for one in kept:
-        surface = surface.with_correction(one, types.SimpleNamespace(**one.solved))
+    for solve in kept:
+        surface = surface.with_correction(solve, types.SimpleNamespace(**solve.solved))
     return surface
 
 

@@ -113,7 +113,7 @@ def forget(memory: Any, source: int) -> None:
 
 
 def is_ahead(memory: Any, source: int, stamp: int) -> bool:
-    """Tell whether the last sample is newer than `stamp` [ns]."""
+    """Return True if the last sample is newer than `stamp` [ns]."""
     return memory.known[source] != 0 and memory.sample_stamp[source] > stamp
 
 
@@ -138,12 +138,12 @@ def least_lag(memory: Any, source: int) -> int:
 
 
 def is_lagging(memory: Any, settings: Any, source: int) -> bool:
-    """Tell whether stamps lie too far behind arrivals."""
+    """Return True if stamps lie too far behind arrivals."""
     return memory.lags_taken[source] > 0 and least_lag(memory, source) > settings.max_lag
 
 
 def is_fresh(memory: Any, settings: Any, source: int, now: int) -> bool:
-    """Tell whether the last message was good and arrived within the timeout before `now` [ns]."""
+    """Return True if the last message was good and within the timeout before `now` [ns]."""
     return (
         memory.known[source] != 0
         and memory.refusal[source] == NOT_KNOWN

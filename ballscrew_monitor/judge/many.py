@@ -60,7 +60,6 @@ class ManyJudge:
     """Judges arrays of events in the place of a monitor."""
 
     def __init__(self, monitor: Monitor) -> None:
-        """Begin with what the monitor remembers, its settings and its surface."""
         self._monitor = monitor
         monitor.nearest = compiled_nearest()
         self._rows = np.empty(AT_ONCE, dtype=ROW)
@@ -89,12 +88,12 @@ class ManyJudge:
         while at < len(events):
             end = at + AT_ONCE
             some = events[at:end]
-            taken, made, told = compiled_step()(
+            taken, count, told = compiled_step()(
                 self._tables, *self._arrays, some, self._rows, self._places, memories, states
             )
-            rows, places = self._rows[:made], self._places
+            rows, places = self._rows[:count], self._places
             which = np.flatnonzero(rows['published'] if states else rows['edge'])
-            yield Judged(rows, places[:made] + at, memories[:told], which)
+            yield Judged(rows, places[:count] + at, memories[:told], which)
             at += taken
 
 

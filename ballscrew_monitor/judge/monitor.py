@@ -9,30 +9,40 @@ step; they are kept here.
 """
 
 import dataclasses
+import math
+import operator
 from typing import Any
 
-from ballscrew_monitor.core.advice import interpreted, Nearest
+from ballscrew_monitor.core.advice import Advisor, interpreted, Nearest
+from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source, StampSource
-from ballscrew_monitor.core.judgement import Level
-from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.core.inputs import InputSample, InputStatus, Refusal, Source
+from ballscrew_monitor.core.judgement import Code, Level
 from ballscrew_monitor.core.state import (
+    CLEARED,
     Ending,
-    Event,
     MonitorSettings,
     NAMELESS,
     NOT_ENDED,
     NOT_SHELVED,
     Shelving,
-    Totals,
 )
 from ballscrew_monitor.judge import views
-from ballscrew_monitor.judge.inputs import least_lag, SPEED
+from ballscrew_monitor.judge.kept import AxisRecord, EXCURSION, SUMS
 from ballscrew_monitor.judge.point import set_answer, set_point
-from ballscrew_monitor.judge.records import Event as EventRecord
-from ballscrew_monitor.judge.records import Memory, NOT_KNOWN, REFUSAL, Row, SAMPLE, Settings, TICK
+from ballscrew_monitor.judge.records import (
+    Event,
+    Memory,
+    NOT_KNOWN,
+    REFUSAL,
+    Row,
+    SAMPLE,
+    Settings,
+    STEP,
+    TICK,
+)
 from ballscrew_monitor.judge.slopes import SlopeRing
-from ballscrew_monitor.judge.step import leave_out, NOTHING, STATE, step
+from ballscrew_monitor.judge.step import NOTHING, STATE, step
 from ballscrew_monitor.judge.zone import ACTIVE, end_excursion
 from surrogate.surface import Surface
 
@@ -44,25 +54,25 @@ MOST_OTHERS = 16
 
 def settings_record(settings: MonitorSettings) -> Settings:
     """Return settings as numbers."""
-    limits, made = settings.limits, Settings()
+    limits, numbers = settings.limits, Settings()
     for name in ('rcs', 'efficiency', 'light_load', 'standstill_speed', 'hysteresis'):
-        setattr(made, name, float(getattr(limits, name)))
-    made.raise_delay, made.clear_delay = limits.raise_delay, limits.clear_delay
-    made.default_temperature = float(settings.default_temperature)
+        setattr(numbers, name, float(getattr(limits, name)))
+    numbers.raise_delay, numbers.clear_delay = limits.raise_delay, limits.clear_delay
+    numbers.default_temperature = float(settings.default_temperature)
     for name in ('publish_period', 'max_future', 'max_lag', 'tick_period'):
-        setattr(made, name, getattr(settings, name))
+        setattr(numbers, name, getattr(settings, name))
     for source, timeout in settings.timeouts.items():
-        made.configured[source], made.timeout[source] = 1, timeout
+        numbers.configured[source], numbers.timeout[source] = 1, timeout
     for source, most in settings.plausible.items():
-        made.plausible[source] = float(most)
+        numbers.plausible[source] = float(most)
     if settings.derivation is not None:
-        made.derives, made.acceleration_window = True, settings.derivation.window
+        numbers.derives, numbers.acceleration_window = True, settings.derivation.window
         for name in ('inertia', 'torque_uncertainty', 'parts_uncertainty', 'largest_share'):
-            setattr(made, name, float(getattr(settings.derivation, name)))
+            setattr(numbers, name, float(getattr(settings.derivation, name)))
     if settings.positions is not None:
-        made.positions, made.position_window = True, settings.positions.window
-        made.wrap = float(settings.positions.wrap)
-    return made
+        numbers.positions, numbers.position_window = True, settings.positions.window
+        numbers.wrap = float(settings.positions.wrap)
+    return numbers
 
 
 def within(stamp: int) -> int:
@@ -70,7 +80,7 @@ def within(stamp: int) -> int:
     return min(max(stamp, EARLIEST), LATEST)
 
 
-def fill(record: EventRecord, event: InputSample | Refusal) -> None:
+def fill(record: Event, event: InputSample | Refusal) -> None:
     """Fill a record with a sample or a refusal."""
     record.source, record.arrival = int(event.source), within(event.arrival)
     record.lost = NOT_KNOWN if event.lost is None else event.lost
@@ -111,19 +121,18 @@ class Monitor:
     """Judges one axis; feed it events in order."""
 
     def __init__(self, surface: Surface, settings: MonitorSettings) -> None:
-        """Begin with nothing received, and the level UNKNOWN."""
         self.settings = settings
         self.use_surface(surface)
         self.memory = Memory()
         self.speeds, self.positions = SlopeRing(), SlopeRing()
         self.shelve_reason = ''
-        self.ending = NOT_ENDED
+        self._ending = NOT_ENDED
         self.joints = JointNames()
         self.nearest: Nearest = interpreted
-        self._event = EventRecord()
+        self._event = Event()
         self._row = Row()
         self.row: Row | None = None  # of the last event, until the next; None if it gave none
-        self._told = Event()
+        self._advisor: Advisor | None = None
         self.moved = 0  # by how much the last step has moved the begin of an excursion [ns]
 
     @property
@@ -153,34 +162,26 @@ class Monitor:
         self._event.kind, self._event.stamp = TICK, within(now)
         return self._step()
 
+    def set_clock(self, due: int, now: int) -> None:
+        """Take that the clock of the node was set: it shows `now` and was to show `due` [ns]."""
+        self._event.kind, self._event.stamp, self._event.arrival = STEP, within(due), within(now)
+        self._step()
+
     def _step(self) -> Row | None:
         number, start = self.memory.event_number, self.memory.event_start[ACTIVE]
-        active = self.memory.event_active
+        # Of a step of the node's clock its own event tells.
+        leaps = self.memory.event_active and self._event.kind != STEP
+        leaps = leaps and not self.memory.clock_step
         slopes = self.speeds, self.positions
-        found = step(self._tables, self.numbers, self.memory, *slopes, self._event, self._row)
+        outcome = step(self._tables, self.numbers, self.memory, *slopes, self._event, self._row)
         if self.memory.event_number != number:
             self.ending = NOT_ENDED
-        self.moved = self.memory.event_start[ACTIVE] - start if active else 0
-        self.row = None if found == NOTHING else self._row
-        if found != STATE:
+        self.moved = self.memory.event_start[ACTIVE] - start if leaps else 0
+        self.row = None if outcome == NOTHING else self._row
+        if outcome != STATE:
             return None
         row, self._row = self._row, Row()
         return row
-
-    def leave_out(self, step: int, sample: InputSample) -> bool:
-        """
-        Leave a step [ns] of the node's clock forward out of an excursion; return True if it was.
-
-        It is if the stamps follow that clock, as the first `sample` of the speed after it shows.
-
-        """
-        memory = self.memory
-        if sample.stamp_source is StampSource.HEADER and memory.lags_taken[SPEED]:
-            lag = within(sample.arrival) - within(sample.stamp)
-            if 2 * (lag - least_lag(memory, SPEED)) > step:
-                return False
-        leave_out(memory, step)
-        return True
 
     @property
     def level(self) -> Level:
@@ -188,17 +189,47 @@ class Monitor:
         return Level(int(self.memory.level))
 
     @property
-    def event(self) -> Event:
-        """Return the event that is active, or the last one."""
-        made = views.event_of(self.memory, self.surface, self._settings, self.ending, self.nearest)
-        if made != self._told:  # the advice of one event is worked out once
-            self._told = made
-        return self._told
+    def event_code(self) -> Code:
+        """Return the criterion by which the last event was raised."""
+        return Code(int(self.memory.event_code[ACTIVE]))
 
     @property
-    def totals(self) -> Totals:
-        """Return the sums."""
-        return views.totals_of(self.memory)
+    def ending(self) -> Ending:
+        """Return how the last event ended; by the axis unless the node has ended it."""
+        memory = self.memory
+        over = memory.event_number and not memory.event_active
+        return CLEARED if over and not self._ending.kind else self._ending
+
+    @ending.setter
+    def ending(self, ending: Ending) -> None:
+        self._ending = ending
+
+    @property
+    def target_speed(self) -> float:
+        """
+        Return the nearest speed [rad/s] that would clear the last event, NaN if none is advised.
+
+        The first time takes milliseconds.
+
+        """
+        memory = self.memory
+        speed, load = float(memory.event_speed[ACTIVE]), float(memory.event_load[ACTIVE])
+        temperature = float(memory.event_temperature[ACTIVE])
+        if not math.isfinite(speed + load + temperature):
+            return math.nan
+        advisor = Advisor(
+            speed=speed,
+            axial_load=load,
+            temperature=temperature,
+            direction=Direction(int(memory.event_direction[ACTIVE])),
+            surface=self.surface,
+            limits=self._settings.limits,
+            speed_allowed=self._settings.speed_allowed,
+            nearest=self.nearest,
+        )
+        if advisor != self._advisor:
+            self._advisor = advisor
+        return self._advisor.target_speed
 
     @property
     def shelving(self) -> Shelving:
@@ -211,25 +242,38 @@ class Monitor:
         self.memory.shelved_until = shelving.until
         self.shelve_reason = shelving.reason
 
-    @property
-    def kept(self) -> AxisRecord:
-        """Return what is to be kept over a restart."""
-        return views.kept_of(self.memory, self.event, self._settings.axis, self.shelve_reason)
+    def kept(self, now: int) -> AxisRecord:
+        """Return what is to be kept over a restart at `now` [ns] of the clock of the node."""
+        axis = self._settings.axis
+        return AxisRecord.of(axis, self.memory, self.ending, self.shelving, within(now))
 
-    def take_up(self, kept: AxisRecord) -> None:
-        """Go on with what was kept; what has been added up meanwhile counts too."""
-        memory = self.memory
-        views.add_totals(memory, kept)
-        if memory.event_number:
-            memory.event_number += kept.event
-        else:
-            self.ending = views.take_up_event(memory, kept)
-        if not memory.shelved_until:
-            self.shelving = Shelving(until=kept.until_ns, reason=kept.reason)
-
-    def acknowledge(self, now: int, ending: Ending = NAMELESS) -> Event | None:
+    def take_up(self, kept: AxisRecord, now: int) -> None:
         """
-        Set the level back to UNKNOWN; return the event that this ends, if any.
+        Go on with what was kept, at `now` [ns] of the clock of the node.
+
+        What has been added up meanwhile counts too. A shelving goes on with the time that was
+        left of it, and waits for a clock that stands at zero.
+
+        """
+        memory, before = self.memory, kept.read_memory()
+        for name in SUMS:
+            since, past = getattr(memory, name), getattr(before, name)
+            total = [*map(operator.add, since, past)] if isinstance(past, list) else since + past
+            setattr(memory, name, total)
+        memory.since = before.since or memory.since
+        if not memory.event_number:
+            memory.event_active, memory.event_stamp = before.event_active, before.event_stamp
+            for name in EXCURSION:
+                getattr(memory, name)[ACTIVE] = getattr(before, name)[ACTIVE]
+            self.ending = kept.read_ending()
+        memory.event_number += before.event_number
+        if not memory.shelved_until:
+            left = Shelving(until=-kept.left_ns, reason=kept.reason)
+            self.shelving = left.started(within(now))
+
+    def acknowledge(self, now: int, ending: Ending = NAMELESS) -> bool:
+        """
+        Set the level back to UNKNOWN; return True if this ends an event.
 
         Stamps may run ahead of the clock, and events follow the stamps: it ends with the last one
         at the earliest. What is still outside is raised again as a new event.
@@ -241,10 +285,10 @@ class Monitor:
             stamp = max(stamp, memory.sample_stamp[Source.SPEED])
         memory.level, memory.level_since = int(Level.UNKNOWN), stamp
         memory.raising = memory.clearing = memory.pending = False
-        if not end_excursion(memory, max(stamp, self.event.start)):
-            return None
-        self.ending = ending
-        return self.event
+        over = end_excursion(memory, max(stamp, memory.event_start[ACTIVE]))
+        if over:
+            self.ending = ending
+        return over
 
     def row_at(self, now: int) -> Row:
         """Return the operating point at `now` [ns] and what the surface says of it."""

@@ -26,14 +26,14 @@ SHOWN = 10_000_000_000
 """Time for which a loss or a refusal is shown, and over which the share of these is taken [ns]."""
 COLUMNS = 5
 """Quantities of a window: speed, axial load, efficiency, RCS, film ratio."""
-EVENTS_VERSION = 1
+EVENTS_VERSION = 2
 """Version of the events in files, and of the message that holds them."""
 MEMORY_VERSION = 3
 """Version of a memory in files: `Memory`, `SlopeRing` and what `snapshot` adds to them."""
-MEMORY_LAYOUT = 'df634f0de83e3629'
+MEMORY_LAYOUT = 'f9431ac77409a642'
 """SHA-256 of names and types of their fields; another one is another version."""
 
-SAMPLE, REFUSAL, TICK = 0, 1, 2
+SAMPLE, REFUSAL, TICK, STEP, RUN = 0, 1, 2, 3, 4
 """Kinds of an event."""
 NOT_KNOWN = -1
 """
@@ -42,7 +42,7 @@ an event without one.
 
 """
 ALL_AXES = 255
-"""Axis of a tick of every axis."""
+"""Axis of a tick and of a step of the clock, which are of every axis."""
 
 
 @dataclasses.dataclass(slots=True)
@@ -86,14 +86,16 @@ class Settings:
 @dataclasses.dataclass(slots=True)
 class Event:
     """
-    A sample, a refused message, or a tick.
+    A sample, a refused message, a tick, a step of the clock of the node, or another run of a log.
 
     `value` [SI, machine frame]; stamp and arrival [ns], of a tick its grid stamp, of a refusal its
-    arrival; `steady` [ns] is when the node took it, 0 where no node did; `stamp_source` is a
-    StampSource; `lost` messages were sent just before and never arrived. A refusal has a `why` and
-    up to two numbers for its sentence. In a recording, `axis` is the number of the axis,
-    `log_time` [ns] and `place` tell where the message lies, and `note` is the number of the joints
-    that the message names.
+    arrival, of a run a stamp in the pause before it; `steady` [ns] is when the node took it, 0
+    where no node did. Of a step, `stamp` is the time that the clock would show if it had run on as
+    steadily as before, and `arrival` the one that it shows. `stamp_source` is a StampSource;
+    `lost` messages were sent just before and never arrived. A refusal has a `why` and up to two
+    numbers for its sentence. In a recording, `axis` is the number of the axis, `log_time` [ns] and
+    `place` tell where the message lies, and `note` is the number of the joints that the message
+    names.
 
     """
 
@@ -170,6 +172,7 @@ class Memory:
     clearing_last: int = 0
     stamp: int = 0  # of the last row
     last_tick: int = 0
+    clock_step: int = 0  # of the node's clock, since the last speed sample
     published: bool = False  # a state, on this time line
     last_published: int = 0
     judged: int = 0

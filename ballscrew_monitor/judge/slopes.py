@@ -46,6 +46,12 @@ def slope_shift(ring: SlopeRing, amount: float) -> None:
         ring.values[(ring.begin + place) & WRAP] += amount
 
 
+def slope_move(ring: SlopeRing, step: int) -> None:
+    """Add a `step` [ns] to the stamp of every sample."""
+    for place in range(ring.count):
+        ring.stamps[(ring.begin + place) & WRAP] += step
+
+
 def slope_last(ring: SlopeRing) -> int:
     """Return the place of the last sample of a ring that has one."""
     return (ring.begin + ring.count - 1) & WRAP

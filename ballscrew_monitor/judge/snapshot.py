@@ -81,8 +81,8 @@ def _check(monitor: Monitor) -> None:
     """Raise ValueError for a number that is no place in a list and no code of the judgement."""
     memory = monitor.memory
     for name, kind in CODES.items():
-        found = getattr(memory, name)
-        for number in found if isinstance(found, list) else [found]:
+        codes = getattr(memory, name)
+        for number in codes if isinstance(codes, list) else [codes]:
             kind(number)
     for why in memory.refusal:
         Why(max(why, 0))

@@ -6,8 +6,9 @@ The judgement of one axis, event by event: the only place that judges.
 A speed sample is judged when it arrives, with the last sample of every other input: no delay is
 added. Ticks lie on a fixed grid of stamps and give a row only while the speed is missing or
 stale. There is no clock in here, so the same list of events gives the same list of rows, bit for
-bit, interpreted as well as compiled. The arguments are as in `point`; `positions` is the slope of
-the positions.
+bit, interpreted as well as compiled. A step of the clock of the node is an event: it moves all
+times that have begun, so it is no part of any duration. The arguments are as in `point`;
+`positions` is the slope of the positions.
 
 """
 
@@ -16,6 +17,7 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import StampSource, Why
+from ballscrew_monitor.core.judgement import Level
 from ballscrew_monitor.judge.inputs import (
     accept,
     drop,
@@ -31,9 +33,10 @@ from ballscrew_monitor.judge.inputs import (
     take_refusal,
 )
 from ballscrew_monitor.judge.point import NO_DIRECTION, opposing_load, set_answer, set_point
-from ballscrew_monitor.judge.records import INPUTS, REFUSAL, TICK
+from ballscrew_monitor.judge.records import INPUTS, RATE_SAMPLES, REFUSAL, RUN, STEP, TICK, WHYS
 from ballscrew_monitor.judge.slopes import (
     slope_last,
+    slope_move,
     slope_of,
     slope_restart,
     slope_shift,
@@ -44,9 +47,11 @@ from ballscrew_monitor.judge.zone import (
     add_to_totals,
     add_to_window,
     clear_window,
+    end_excursion,
     follow_excursion,
     hold_level,
     is_judged,
+    PENDING,
     set_reason,
     set_zone,
     shut_gates,
@@ -61,12 +66,19 @@ MOST_TURNS = 1e9
 """Jump of a position over the position at which it begins again that is no such turn [-]."""
 NOT_A_NUMBER, IMPLAUSIBLE, HOLE = int(Why.NOT_A_NUMBER), int(Why.IMPLAUSIBLE), int(Why.HOLE)
 HEADER = int(StampSource.HEADER)
+NO_LEVEL = int(Level.UNKNOWN)
 
 
 def step(
     tables: Any, settings: Any, memory: Any, speeds: Any, positions: Any, event: Any, row: Any
 ) -> int:
     """Take one event; return NOTHING, or that `row` is a ROW or the row of a STATE."""
+    if event.kind == STEP:
+        _set_clock(memory, speeds, positions, event.arrival - event.stamp)
+        return NOTHING
+    if event.kind == RUN:
+        begin_run(memory, speeds, positions, event.stamp)
+        return NOTHING
     if event.kind == TICK:
         if not _is_tick_due(settings, memory, event.stamp):
             return NOTHING
@@ -76,7 +88,7 @@ def step(
             # The time line of the stamps, which a tick must not leave.
             row.stamp -= least_lag(memory, SPEED)
     else:
-        if not _take(settings, memory, positions, event):
+        if not _take(settings, memory, speeds, positions, event):
             return NOTHING
         if settings.derives and settings.inertia != 0.0:
             window, gap = settings.acceleration_window, settings.timeout[SPEED]
@@ -105,32 +117,59 @@ def step_many(
     row of a state, or after those alone that begin or end an excursion.
 
     """
-    made = told = 0
+    count = kept = 0
     for at in range(len(events)):
-        if told == len(memories):
-            return at, made, told
-        found = step(
-            tables, settings[0], memory[0], speeds[0], positions[0], events[at], rows[made]
+        if kept == len(memories):
+            return at, count, kept
+        outcome = step(
+            tables, settings[0], memory[0], speeds[0], positions[0], events[at], rows[count]
         )
-        if found == NOTHING:
+        if outcome == NOTHING:
             continue
-        if found == STATE and (every or rows[made].edge != 0):
-            memories[told] = memory[0]
-            told += 1
-        places[made] = at
-        made += 1
-    return len(events), made, told
+        if outcome == STATE and (every or rows[count].edge != 0):
+            memories[kept] = memory[0]
+            kept += 1
+        places[count] = at
+        count += 1
+    return len(events), count, kept
 
 
-def _take(settings: Any, memory: Any, positions: Any, event: Any) -> bool:
-    """Take a sample or a refusal; tell whether it is a speed to judge."""
+def begin_run(memory: Any, speeds: Any, positions: Any, stamp: int) -> None:
+    """
+    Begin another run of a log at `stamp` [ns], which is judged apart from the one before.
+
+    An excursion ends with the last row; no sample, level, delay or window goes on. Counts and
+    totals do.
+
+    """
+    end_excursion(memory, memory.stamp)
+    memory.level, memory.level_since = NO_LEVEL, stamp
+    memory.raising = memory.clearing = memory.pending = False
+    memory.moment = memory.published = memory.light = False
+    memory.direction, memory.held_load = NO_DIRECTION, math.nan
+    memory.window_told = True
+    clear_window(memory)
+    for source in range(INPUTS):
+        forget(memory, source)
+    speeds.count = positions.count = 0
+
+
+def _take(settings: Any, memory: Any, speeds: Any, positions: Any, event: Any) -> bool:
+    """Take a sample or a refusal; return True if it is a speed to judge."""
     source = event.source
     lose(memory, source, event.lost, event.arrival)
     if event.kind == REFUSAL:
         take_refusal(memory, event)
         return False
-    if not _is_usable(settings, memory, event):
+    if not math.isfinite(event.value):
+        refuse(memory, source, NOT_A_NUMBER, 0.0, math.nan, event.arrival)
         return False
+    # Of a position: plausible or not is the speed that follows from it.
+    is_position = source == SPEED and settings.positions
+    if not is_position and not _is_plausible(settings, memory, event, event.value):
+        return False
+    if source == SPEED:
+        _follow_clock(memory, speeds, positions, event)
     if memory.known[source] != 0 and event.stamp < memory.sample_stamp[source]:
         if memory.sample_stamp[source] - event.stamp <= BACKWARD_JUMP:
             drop(memory, source)
@@ -145,6 +184,67 @@ def _take(settings: Any, memory: Any, positions: Any, event: Any) -> bool:
         return _take_position(settings, memory, positions, event)
     _accept_speed(settings, memory, event, event.value)
     return True
+
+
+def _set_clock(memory: Any, speeds: Any, positions: Any, step: int) -> None:
+    """
+    Take a step [ns] of the clock of the node: all is as old as before.
+
+    Arrivals are times of that clock. Whether the stamps follow it, the next speed sample shows.
+
+    """
+    memory.clock_step += step
+    memory.last_tick += step
+    for source in range(INPUTS):
+        memory.arrival[source] += step
+        memory.lost_last[source] += step
+        memory.span_begin[source] += step
+        if source != SPEED:
+            _move_stamps(memory, source, step)
+    for place in range(INPUTS * WHYS):
+        memory.refused_last[place] += step
+    if memory.shelved_until > 0:
+        memory.shelved_until = max(1, memory.shelved_until + step)
+    _move(memory, speeds, positions, step)
+
+
+def _follow_clock(memory: Any, speeds: Any, positions: Any, event: Any) -> None:
+    """
+    Undo a step of the node's clock that the stamps of the speed, as a sample shows, do not follow.
+
+    They lag by that step more then.
+
+    """
+    step, memory.clock_step = memory.clock_step, 0
+    if step == 0 or event.stamp_source != HEADER or memory.lags_taken[SPEED] == 0:
+        return
+    change = event.arrival - event.stamp - least_lag(memory, SPEED)
+    if abs(change - step) < abs(change):
+        _move(memory, speeds, positions, -step)
+        for place in range(SPEED * RATE_SAMPLES, (SPEED + 1) * RATE_SAMPLES):
+            memory.lags[place] += step
+
+
+def _move(memory: Any, speeds: Any, positions: Any, step: int) -> None:
+    """Move the times that have begun by a `step` [ns], so that they have lasted as long."""
+    _move_times(memory, step)
+    memory.raising_start += step
+    memory.raising_last += step
+    memory.clearing_start += step
+    memory.clearing_last += step
+    memory.event_start[PENDING] += step
+    memory.stamp += step
+    memory.last_published += step
+    memory.moment_stamp += step
+    _move_stamps(memory, SPEED, step)
+    slope_move(speeds, step)
+    slope_move(positions, step)
+
+
+def _move_stamps(memory: Any, source: int, step: int) -> None:
+    memory.sample_stamp[source] += step
+    for place in range(source * RATE_SAMPLES, (source + 1) * RATE_SAMPLES):
+        memory.stamps[place] += step
 
 
 def _leap(memory: Any, event: Any) -> int:
@@ -167,27 +267,16 @@ def _accept_speed(settings: Any, memory: Any, event: Any, speed: float) -> None:
     """Take a good speed [rad/s]; a leap of its stamp is no time that has passed."""
     leap = _leap(memory, event)
     if leap > 0:
-        leave_out(memory, leap)
+        _leave_out(memory, leap)
     accept(memory, settings, event, speed)
 
 
-def leave_out(memory: Any, step: int) -> None:
-    """Leave a `step` [ns] of the clock forward out of what has begun and still goes on."""
+def _leave_out(memory: Any, leap: int) -> None:
+    """Leave a leap forward of the stamps [ns] out of what has begun and still goes on."""
     if memory.event_active:
-        memory.event_start[ACTIVE] += step
-        memory.event_stamp += step
+        memory.event_start[ACTIVE] += leap
+        memory.event_stamp += leap
     memory.raising = memory.clearing = memory.moment = False
-
-
-def _is_usable(settings: Any, memory: Any, event: Any) -> bool:
-    """Tell whether the value of a sample can be used, and refuse it if not."""
-    if not math.isfinite(event.value):
-        refuse(memory, event.source, NOT_A_NUMBER, 0.0, math.nan, event.arrival)
-        return False
-    # Of a position: plausible or not is the speed that follows from it.
-    if event.source == SPEED and settings.positions:
-        return True
-    return _is_plausible(settings, memory, event, event.value)
 
 
 def _is_plausible(settings: Any, memory: Any, event: Any, value: float) -> bool:
@@ -244,7 +333,7 @@ def _odd_position(settings: Any, positions: Any, event: Any) -> tuple[int, float
 
 
 def _is_tick_due(settings: Any, memory: Any, now: int) -> bool:
-    """Take the grid stamp `now` [ns]; tell whether the speed is missing or stale there."""
+    """Take the grid stamp `now` [ns]; return True if the speed is missing or stale there."""
     # Both the clock and the speed: stamps may run ahead of the clock, as far as is allowed.
     if memory.last_tick - now > BACKWARD_JUMP:
         if is_ahead(memory, SPEED, now + BACKWARD_JUMP):
@@ -276,20 +365,15 @@ def _judge(tables: Any, settings: Any, memory: Any, speeds: Any, row: Any) -> in
     follow_excursion(settings, memory, row, before)
     row.level, row.level_since = memory.level, memory.level_since
     row.event_id = memory.event_number
-    row.published = row.edge != 0 or memory.level != before or _is_state_due(settings, memory)
+    period = settings.publish_period  # the first row in each is published
+    due = period == 0 or not memory.published
+    due = due or memory.stamp // period != memory.last_published // period
+    row.published = row.edge != 0 or memory.level != before or due
     if not row.published:
         return ROW
     look_up_rest(tables, opposing_load(row), row)
     memory.published, memory.last_published, memory.window_told = True, row.stamp, True
     return STATE
-
-
-def _is_state_due(settings: Any, memory: Any) -> bool:
-    """Tell whether the row is the first one in its period."""
-    period = settings.publish_period
-    if period == 0 or not memory.published:
-        return True
-    return memory.stamp // period != memory.last_published // period
 
 
 def _forget_the_future(settings: Any, memory: Any, now: int) -> None:
@@ -319,6 +403,7 @@ def _jump_back(memory: Any, stamp: int) -> None:
     """
     if memory.known[SPEED] != 0:
         _move_times(memory, stamp - memory.sample_stamp[SPEED])
+        memory.raising = memory.clearing = False
     memory.stamp = stamp
     memory.moment = memory.pending = memory.published = False
     memory.direction, memory.light = NO_DIRECTION, False
@@ -330,7 +415,6 @@ def _jump_back(memory: Any, stamp: int) -> None:
 def _move_times(memory: Any, shift: int) -> None:
     """Move the times that have begun by `shift` [ns] with the clock."""
     memory.level_since = max(0, memory.level_since + shift)
-    memory.raising = memory.clearing = False
     if memory.event_active:
         memory.event_start[ACTIVE] = max(0, memory.event_start[ACTIVE] + shift)
         memory.event_stamp = max(0, memory.event_stamp + shift)

@@ -1,137 +1,36 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Memory as the typed values that messages, reports and the state over restarts are made of."""
+"""Memory as the typed values that messages and reports are made of."""
 
 import math
 from typing import Any
 
 from ballscrew_monitor.core import inputs
-from ballscrew_monitor.core.advice import Advisor, interpreted, Nearest
-from ballscrew_monitor.core.conversions import Direction, seconds
+from ballscrew_monitor.core.conversions import seconds
 from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource, Why
-from ballscrew_monitor.core.judgement import Code, EventEnd, Zone
-from ballscrew_monitor.core.memory import AxisRecord
-from ballscrew_monitor.core.state import (
-    CLEARED,
-    Ending,
-    Event,
-    MonitorSettings,
-    NOT_ENDED,
-    TIMES,
-    Totals,
-)
+from ballscrew_monitor.core.judgement import Zone
 from ballscrew_monitor.judge.inputs import is_fresh, least_lag, SLOW_GAPS
 from ballscrew_monitor.judge.records import NOT_KNOWN, RATE_SAMPLES, SHOWN, WHYS
-from ballscrew_monitor.judge.zone import ACTIVE
-from surrogate.surface import REGIMES, Surface
+from surrogate.surface import REGIMES
 
 NAN = math.nan
 
 SOURCES = (Source.SPEED, Source.LOAD, Source.TEMPERATURE, Source.TORQUE)
 """Inputs in the order of a state."""
-_PARTS = {f'{regime.word}_time': ('regime_time', int(regime)) for regime in REGIMES} | {
+PARTS = {f'{regime.word}_time': ('regime_time', int(regime)) for regime in REGIMES} | {
     f'{zone.name.lower()}_time': ('zone_time', int(zone)) for zone in (Zone.OPTIMAL, Zone.OUTSIDE)
 }
 """Times of the totals that are parts of a list in a memory, and their places there."""
+TIMES = 'running_time', 'unjudged_time', *PARTS
+"""Times of the totals, by the names of the message."""
 
 
-def event_of(
-    memory: Any,
-    surface: Surface,
-    settings: MonitorSettings,
-    ending: Ending = NOT_ENDED,
-    nearest: Nearest = interpreted,
-) -> Event:
-    """
-    Return the excursion that is active or was the last; `ending` is how the node ended it.
-
-    Advice on it is found by `nearest`.
-
-    """
-    if not memory.event_number:
-        return Event()
-    active = bool(memory.event_active)
-    speed, load = float(memory.event_speed[ACTIVE]), float(memory.event_load[ACTIVE])
-    temperature = float(memory.event_temperature[ACTIVE])
-    advisor = Advisor(
-        speed=speed,
-        axial_load=load,
-        temperature=temperature,
-        direction=Direction(int(memory.event_direction[ACTIVE])),
-        surface=surface,
-        limits=settings.limits,
-        speed_allowed=settings.speed_allowed,
-        nearest=nearest,
-    )
-    return Event(
-        number=int(memory.event_number),
-        active=active,
-        stamp=int(memory.event_stamp),
-        start=int(memory.event_start[ACTIVE]),
-        code=Code(int(memory.event_code[ACTIVE])),
-        worst_value=float(memory.event_worst[ACTIVE]),
-        limit=float(memory.event_limit[ACTIVE]),
-        derived=bool(memory.event_derived[ACTIVE]),
-        advisor=advisor if math.isfinite(speed + load + temperature) else None,
-        ending=ending if active or ending.kind else CLEARED,
-    )
-
-
-def kept_of(memory: Any, event: Event, axis: str, shelve_reason: str) -> AxisRecord:
-    """Return what is to be kept of an axis over a restart; its `event` is that of the memory."""
-    totals = totals_of(memory)
-    return AxisRecord(
-        axis=axis,
-        **{f'{name}_ns': getattr(totals, name) for name in (*TIMES, 'since')},
-        angle_rad=totals.angle,
-        energy_lost_J=totals.energy_lost,
-        event=event.number,
-        active=event.active,
-        stamp_ns=int(memory.stamp) if event.active else event.stamp,
-        start_ns=event.start,
-        cause=event.code.name,
-        worst_value=event.worst_value,
-        limit=event.limit,
-        derived=event.derived,
-        ending=event.ending.kind.name,
-        ended_by=event.ending.name,
-        end_reason=event.ending.reason,
-        until_ns=int(memory.shelved_until),
-        reason=shelve_reason if memory.shelved_until else '',
-    )
-
-
-def take_up_event(memory: Any, kept: AxisRecord) -> Ending:
-    """Put an excursion that was kept over a restart into a memory; return how it ended."""
-    memory.event_number, memory.event_active = kept.event, kept.active
-    memory.event_stamp, memory.event_start[ACTIVE] = kept.stamp_ns, kept.start_ns
-    memory.event_code[ACTIVE] = int(Code[kept.cause])
-    memory.event_worst[ACTIVE], memory.event_limit[ACTIVE] = kept.worst_value, kept.limit
-    memory.event_derived[ACTIVE] = int(kept.derived)
-    return Ending(kind=EventEnd[kept.ending], name=kept.ended_by, reason=kept.end_reason)
-
-
-def totals_of(memory: Any) -> Totals:
-    """Return the totals."""
-    return Totals(
-        running_time=int(memory.running_time),
-        unjudged_time=int(memory.unjudged_time),
-        angle=float(memory.angle),
-        energy_lost=float(memory.energy_lost),
-        since=int(memory.since),
-        **{name: int(getattr(memory, part)[place]) for name, (part, place) in _PARTS.items()},
-    )
-
-
-def add_totals(memory: Any, kept: AxisRecord) -> None:
-    """Add totals that were kept over a restart."""
-    memory.running_time += kept.running_time_ns
-    memory.unjudged_time += kept.unjudged_time_ns
-    for name, (part, place) in _PARTS.items():
-        getattr(memory, part)[place] += getattr(kept, f'{name}_ns')
-    memory.angle += kept.angle_rad
-    memory.energy_lost += kept.energy_lost_J
-    memory.since = kept.since_ns or memory.since
+def total_times(memory: Any) -> dict[str, int]:
+    """Return the times of the totals [ns] by the names of the message."""
+    whole = {'running_time': memory.running_time, 'unjudged_time': memory.unjudged_time}
+    return whole | {
+        name: int(getattr(memory, part)[place]) for name, (part, place) in PARTS.items()
+    }
 
 
 def clear_totals(memory: Any) -> None:

@@ -122,7 +122,7 @@ def _lost_input(row: Any) -> int:
 
 
 def is_judged(row: Any) -> bool:
-    """Tell whether a verdict was possible; that nothing applies at standstill is one too."""
+    """Return True if a verdict was possible; that nothing applies at standstill is one too."""
     return row.zone != NO_ZONE or row.gates & STANDSTILL != 0
 
 
@@ -187,7 +187,7 @@ def follow_excursion(settings: Any, memory: Any, row: Any, level_before: int) ->
 
 
 def end_excursion(memory: Any, stamp: int) -> bool:
-    """End the active excursion at `stamp` [ns]; tell whether there is one."""
+    """End the active excursion at `stamp` [ns]; return True if there is one."""
     if not memory.event_active:
         return False
     memory.event_active, memory.event_stamp = False, stamp

@@ -9,10 +9,10 @@ publishing; numbers are values, with the unit in brackets.
 
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from ballscrew_monitor.core.conversions import celsius, clock_text, SECOND
+from ballscrew_monitor.core.conversions import celsius, clock_text, SECOND, seconds
 from ballscrew_monitor.core.fault_codes import cause_code, Fault
 from ballscrew_monitor.core.inputs import InputSample, InputState, InputStatus, Refusal, Source
 from ballscrew_monitor.core.judgement import (
@@ -46,6 +46,12 @@ BUSY = (
     'the node uses up one processor, messages may be lost: lower their rate, raise '
     'publish_period, or give some axes a node of their own'
 )
+CLOCK_SET = 'the clock of the node was set {}; no duration holds the step'
+TWO_NODES = (
+    'another node of this name runs on {} and publishes on the same topics: give one of both '
+    'another name or namespace'
+)
+HOST, NODE_PART = 'Host', 'Node'
 PARTS = ('Lubrication', 'Inputs', 'Surface')
 LONGEST_CODE = 10  # characters of a code; more are none
 Inputs = tuple[InputStatus, ...]
@@ -78,10 +84,10 @@ def failed(
     node: str, axis: str, reason: str, code: Fault = Fault.NOT_CONFIGURED
 ) -> list[DiagnosticStatus]:
     """Return the statuses of an axis that cannot work for a `reason`; `node` is its full name."""
-    made = [DiagnosticStatus(name=f'{node.lstrip("/")}: {axis}: {part}') for part in PARTS]
-    for status in made:
+    parts = [DiagnosticStatus(name=f'{node.lstrip("/")}: {axis}: {part}') for part in PARTS]
+    for status in parts:
         _say(status, StatusSummary(ERROR, reason, code))
-    return made
+    return parts
 
 
 def code_of(status: DiagnosticStatus) -> int:
@@ -122,14 +128,30 @@ def recording(node: str, problem: str) -> DiagnosticStatus:
     return _of_node(node, 'Recording', problem, RECORDED, Fault.NOT_RECORDED)
 
 
-def of_node(node: str, signs: VitalSigns) -> DiagnosticStatus:
-    """Return the status of the `node` itself, by full name."""
-    status = _of_node(node, 'Node', BUSY if signs.is_busy else '', IN_TIME, Fault.BUSY)
+def of_node(
+    node: str, signs: VitalSigns, step: int = 0, hosts: Sequence[str] = ()
+) -> DiagnosticStatus:
+    """
+    Return the status of the `node` itself, by full name.
+
+    `step` [ns] is by how much its clock was set not long ago, 0: it was not; `hosts` are those of
+    the nodes of this name, its own first.
+
+    """
+    problem, code = BUSY if signs.is_busy else '', Fault.BUSY
+    if step:
+        text = CLOCK_SET.format('forward' if step > 0 else 'back')
+        problem, code = f'{text}; {problem}' if problem else text, Fault.CLOCK_SET
+    status = _of_node(node, NODE_PART, problem, IN_TIME, code)
+    if others := ', '.join(hosts[1:]):
+        _say(status, StatusSummary(ERROR, TWO_NODES.format(others), Fault.TWO_NODES))
     status.values += key_values(
         [
+            *((HOST, host) for host in hosts if others),
             ('Loop time [s]', signs.loop_time),
             ('Queue depth [-]', signs.queue_depth),
             ('Processor share [-]', signs.processor_share),
+            *([('Clock step [s]', seconds(step))] if step else []),
         ]
     )
     return status
@@ -171,35 +193,35 @@ def statuses(
     While the clock stands no state tells that an input is dead, so nothing but a warning is held.
 
     """
-    made = failed(node, axis, Fault.NOT_SET.text, Fault.NOT_SET)
-    for status in made:
+    parts = failed(node, axis, Fault.NOT_SET.text, Fault.NOT_SET)
+    for status in parts:
         status.hardware_id = hardware_id(node, axis, surface.screw_name)
     changed = ' and corrected' if surface.corrections else ''
-    _say(made[2], StatusSummary(OK, f'{surface.tier} surface loaded{changed}'))
+    _say(parts[2], StatusSummary(OK, f'{surface.tier} surface loaded{changed}'))
     if refused:
         code = Fault.RELOAD_REFUSED
-        _say(made[2], StatusSummary(WARN, f'{code.text}: {refused}', code))
-    made[2].values += key_values(_surface_values(surface))
+        _say(parts[2], StatusSummary(WARN, f'{code.text}: {refused}', code))
+    parts[2].values += key_values(_surface_values(surface))
     matched = {source.name.capitalize(): link.matched for source, link in (links or {}).items()}
-    made[1].values += key_values(
+    parts[1].values += key_values(
         [(f'{name} publishers [-]', count) for name, count in matched.items()]
     )
     if state is None or links is None:
         why = Fault.CLOCK_STANDS if clock_stands else Fault.NOTHING_YET
-        for status in made[:2]:
+        for status in parts[:2]:
             _say(status, _stale(Fault.INACTIVE if links is None else why))
     else:
-        for status, said in zip(made, summaries(state, inputs, cause, links, policy)):
-            _say(status, said)
+        for status, verdict in zip(parts, summaries(state, inputs, cause, links, policy)):
+            _say(status, verdict)
         if clock_stands:
             warns = state.level == Level.WARN and policy.of_zone
-            for status in made[1:2] if warns else made[:2]:
+            for status in parts[1:2] if warns else parts[:2]:
                 _say(status, _stale(Fault.CLOCK_STANDS))
-        made[0].values += key_values(_lubrication_values(state))
-        made[1].values += key_values(_input_values(inputs))
+        parts[0].values += key_values(_lubrication_values(state))
+        parts[1].values += key_values(_input_values(inputs))
     if defect:
-        _say(made[0], StatusSummary(ERROR, defect, Fault.PROGRAM_FAILED))
-    return made
+        _say(parts[0], StatusSummary(ERROR, defect, Fault.PROGRAM_FAILED))
+    return parts
 
 
 def _stale(code: Fault) -> StatusSummary:

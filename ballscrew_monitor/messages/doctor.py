@@ -31,7 +31,7 @@ class Heard:
     What came of an input while it was listened to.
 
     Lowest and highest number as the messages hold them, NaN without any, and the longest time
-    [s] without a message.
+    [s] without a message. `moved` says whether the position beside a velocity did.
 
     """
 
@@ -39,6 +39,7 @@ class Heard:
     low: float = math.nan
     high: float = math.nan
     longest_gap: float = math.nan
+    moved: bool = False
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -48,7 +49,7 @@ class InputFacts:
 
     `scalings` hold the lines to SI units by unit, and `known` is the range of the surface [SI];
     both are empty where the surface is not known. `problem` is why the field cannot be read, and
-    `numbers` are the fields that could.
+    `numbers` are the fields that could. `beside` are field and unit of the position beside it.
 
     """
 
@@ -62,6 +63,7 @@ class InputFacts:
     heard: Heard | None = None
     problem: str = ''
     numbers: tuple[str, ...] = ()
+    beside: tuple[str, str] = ('', '')
 
     @property
     def parameter(self) -> str:
@@ -133,18 +135,30 @@ def _elsewhere(around: Surroundings) -> str:
 
 
 def _of_input(facts: InputFacts, around: Surroundings, seconds: float) -> list[str]:
-    found = []
+    problems = []
     reason = link_reason(facts.link, facts.parameter)
     if reason:
         # A topic that may be meant instead of one that nobody publishes.
         topic = '' if facts.link.publishers else near_topic(facts.link, around.topics)
         instead = f' to {topic} ({" and ".join(around.topics[topic])})' if topic else ''
-        found.append(f'{facts.parameter}: {reason}{instead}')
+        problems.append(f'{facts.parameter}: {reason}{instead}')
     if facts.problem and not (reason and facts.link.publishers):
-        found.append(f'{facts.parameter}: {facts.problem}: {_readable(facts)}')
+        problems.append(f'{facts.parameter}: {facts.problem}: {_readable(facts)}')
+    if facts.heard is not None and facts.heard.moved and not any(_ends(facts.heard)):
+        field, unit = facts.beside
+        return [
+            *problems,
+            f'{facts.parameter}: it is 0 or missing while {field} moves: set '
+            f"{facts.parameter}.field to '{field}' and {facts.parameter}.unit to '{unit}'",
+        ]
     if facts.heard is not None:
-        found += [*_of_health(facts, facts.heard, seconds), *unit_doubts(facts, facts.heard)]
-    return found
+        problems += [*_of_health(facts, facts.heard, seconds), *unit_doubts(facts, facts.heard)]
+    return problems
+
+
+def _ends(heard: Heard) -> tuple[float, float]:
+    """Return the lowest and the highest number, 0 without any."""
+    return (0.0, 0.0) if math.isnan(heard.low) else (heard.low, heard.high)
 
 
 def _readable(facts: InputFacts) -> str:
@@ -179,8 +193,8 @@ def known_range(surface: Surface | None, source: Source, unit: str) -> tuple[flo
     """Return the range of a surface [SI] in what an input measures; a position has none."""
     if surface is None or source is Source.TORQUE or unit in POSITION_UNITS:
         return None
-    found: tuple[float, float] = getattr(surface, f'{source.name.lower()}_range')
-    return found
+    limits: tuple[float, float] = getattr(surface, f'{source.name.lower()}_range')
+    return limits
 
 
 def unit_doubts(facts: InputFacts, heard: Heard) -> list[str]:
@@ -207,7 +221,7 @@ def unit_doubts(facts: InputFacts, heard: Heard) -> list[str]:
 
 
 def _suits(facts: InputFacts, heard: Heard, unit: str) -> bool:
-    """Tell whether what was heard would be near the range of the surface in a unit."""
+    """Return True if what was heard would be near the range of the surface in a unit."""
     assert facts.known is not None
     values = [facts.scalings[unit](number) for number in (heard.low, heard.high)]
     if facts.source is Source.TEMPERATURE:

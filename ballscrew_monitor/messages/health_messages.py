@@ -51,6 +51,7 @@ def health_message(health: Health, *, surface_id: str, policy: WarningPolicy) ->
     )
     message.header.frame_id = health.axis
     fill_time(message.header.stamp, health.stamp)
+    fill_time(message.since, health.since)
     if health.baseline is not None:
         fill_time(message.baseline_begin, health.baseline.begin)
         fill_time(message.baseline_end, health.baseline.end)
@@ -93,10 +94,10 @@ def _values(health: Health) -> list[tuple[str, object]]:
         ('Advice', health.advice),
         ('Baseline', health.baseline.reason if health.baseline else ''),
     ]
-    for one in health.quantities:
-        for end, value in (('', one.value), (' low', one.low), (' high', one.high)):
-            values.append((f'{one.name.capitalize()}{end} [{one.unit}]', value))
-    return values + [(f'Note {at}', said) for at, said in enumerate(health.notes, start=1)]
+    for quantity in health.quantities:
+        for end, value in (('', quantity.value), (' low', quantity.low), (' high', quantity.high)):
+            values.append((f'{quantity.name.capitalize()}{end} [{quantity.unit}]', value))
+    return values + [(f'Note {at}', note) for at, note in enumerate(health.notes, start=1)]
 
 
 def _quantity(quantity: Quantity) -> msg.HealthQuantity:

@@ -37,19 +37,19 @@ def _refused(status: InputStatus, link: Link | None, parameter: str) -> str:
 def _refusal_reason(why: Why, link: Link | None, parameter: str) -> str:
     if why is Why.SEVERAL and link is not None:
         return several_reason(link, parameter)
-    code = Fault[f'INPUT_{why.name}']
+    code = why.fault
     return f'{code.said}, {code.cure}'
-
-
-def _is_refused(status: InputStatus) -> bool:
-    """Tell whether many messages are refused; implausible ones have words of their own."""
-    others = set(status.refusing) - {Why.IMPLAUSIBLE}
-    return bool(others) and status.refused_share >= SHARE
 
 
 Happens = Callable[[InputStatus, Link | None], Any]
 _TROUBLES: dict[Fault, tuple[Happens, Cure | None]] = {
-    Fault.REFUSED: (lambda status, link: _is_refused(status), _refused),
+    # Implausible messages have words of their own.
+    Fault.REFUSED: (
+        lambda status, link: (
+            {*status.refusing} - {Why.IMPLAUSIBLE} and status.refused_share >= SHARE
+        ),
+        _refused,
+    ),
     Fault.GLITCHES: (lambda status, link: status.glitching, None),
     Fault.LOST: (lambda status, link: status.losing, None),
     Fault.SIMULATED_STAMPS: (lambda status, link: status.lag > seconds(YEAR), None),
@@ -89,11 +89,11 @@ def summary(
         ]
         return Standing.LOST, '; '.join(texts), fault_code(faulty[0])
     for code, (happens, cure) in _TROUBLES.items():
-        found = [status for status in inputs if happens(status, links.get(status.source))]
-        if found:
+        statuses = [status for status in inputs if happens(status, links.get(status.source))]
+        if statuses:
             return (
                 Standing.DEGRADED,
-                _trouble(axis, found, links, cure or f'{code.said}: {code.cure}'),
+                _trouble(axis, statuses, links, cure or f'{code.said}: {code.cure}'),
                 code,
             )
     remarks = [Standing.GOOD.value]
@@ -112,14 +112,14 @@ def _parameter(axis: str, source: Source) -> str:
 
 
 def _trouble(
-    axis: str, found: list[InputStatus], links: Mapping[Source, Link], cure: str | Cure
+    axis: str, statuses: list[InputStatus], links: Mapping[Source, Link], cure: str | Cure
 ) -> str:
-    names = [status.source.name.lower() for status in found]
+    names = [status.source.name.lower() for status in statuses]
     if isinstance(cure, str):
         return f'{" and ".join(names)} {cure}'
     return '; '.join(
         f'{name} {cure(status, links.get(status.source), _parameter(axis, status.source))}'
-        for name, status in zip(names, found, strict=True)
+        for name, status in zip(names, statuses, strict=True)
     )
 
 
@@ -148,7 +148,7 @@ def fault(status: InputStatus, link: Link | None, parameter: str) -> str:
 def fault_code(status: InputStatus) -> Fault:
     """Return the code of what is wrong with an input that is not well."""
     if status.state is InputState.BAD:
-        return Fault[f'INPUT_{status.why.name}'] if status.why else Fault.INPUT_UNUSABLE
+        return status.why.fault if status.why else Fault.INPUT_UNUSABLE
     if status.joints is not None:
         return Fault.INPUT_OTHER_JOINTS
     return Fault[f'INPUT_{status.state.name}']
@@ -158,16 +158,16 @@ def _with(what: str, why: str) -> str:
     return f'{what}: {why}' if why else what
 
 
-def joint_reason(found: OtherJoints, parameter: str) -> str:
+def joint_reason(others: OtherJoints, parameter: str) -> str:
     """Return which joints the messages name instead of the one asked for, and what to write."""
-    if not found.names:
-        return f'the messages name no joints at all, set {parameter}.field to {found.array}[0]'
-    names = ', '.join(found.names[:SHOWN_JOINTS])
-    more = ', ...' if len(found.names) > SHOWN_JOINTS else ''
-    near = difflib.get_close_matches(found.joint, found.names, n=1, cutoff=0.0)
+    if not others.names:
+        return f'the messages name no joints at all, set {parameter}.field to {others.array}[0]'
+    names = ', '.join(others.names[:SHOWN_JOINTS])
+    more = ', ...' if len(others.names) > SHOWN_JOINTS else ''
+    near = difflib.get_close_matches(others.joint, others.names, n=1, cutoff=0.0)
     return (
-        f'the messages name {names}{more} and no joint {found.joint}, '
-        f'set {parameter}.field to {found.array}[{near[0]}] or another of them'
+        f'the messages name {names}{more} and no joint {others.joint}, '
+        f'set {parameter}.field to {others.array}[{near[0]}] or another of them'
     )
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from ballscrew_monitor.core import conversions, judgement
 from ballscrew_monitor.core import state as states
-from ballscrew_monitor.core.advice import CARRY
+from ballscrew_monitor.core.advice import speed_advice
 from ballscrew_monitor.core.conversions import celsius, Direction, SECOND, seconds
 from ballscrew_monitor.core.inputs import InputStatus, Source
 from ballscrew_monitor.core.judgement import (
@@ -26,15 +26,17 @@ from ballscrew_monitor.core.judgement import (
     Severity,
     Zone,
 )
-from ballscrew_monitor.core.state import Event, MonitorSettings, TIMES, WINDOW
+from ballscrew_monitor.core.state import MonitorSettings, WINDOW
 from ballscrew_monitor.health.records import Health
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.judge.records import LIGHT_LOAD, Row, STANDSTILL
-from ballscrew_monitor.judge.views import SOURCES
+from ballscrew_monitor.judge.views import SOURCES, total_times
+from ballscrew_monitor.judge.zone import ACTIVE
 from ballscrew_monitor.messages.unjudged import reason_of
 from ballscrew_msgs import msg
 from builtin_interfaces.msg import Time
 from surrogate.surface import Regime, Surface
+from surrogate.units import TURN
 
 TIERS = {'closed_form': msg.PointResult.TIER_CLOSED_FORM, 'full': msg.PointResult.TIER_FULL}
 NAN = math.nan
@@ -173,13 +175,13 @@ def fill_input(message: msg.InputHealth, status: InputStatus) -> None:
     message.refusal = status.refusal
 
 
-def fill_totals(message: Any, totals: states.Totals) -> None:
-    """Fill in the totals."""
-    for name in TIMES:
-        setattr(message, name, seconds(getattr(totals, name)))
-    message.revolutions = float(totals.revolutions)
-    message.energy_lost = float(totals.energy_lost)
-    fill_time(message.since, totals.since)
+def fill_totals(message: msg.Totals, memory: Any) -> None:
+    """Fill in the totals that a memory holds."""
+    for name, time in total_times(memory).items():
+        setattr(message, name, seconds(time))
+    message.revolutions = float(memory.angle) / TURN
+    message.energy_lost = float(memory.energy_lost)
+    fill_time(message.since, int(memory.since))
 
 
 def empty_state(axis: str) -> msg.BallScrewState:
@@ -201,7 +203,7 @@ def fill_state(message: msg.BallScrewState, row: Any, monitor: Monitor) -> tuple
     fill_point(message.point, row)
     fill_result(message.result, row, TIERS[monitor.surface.tier], reason)
     fill_window(message.window, monitor.memory)
-    fill_totals(message.totals, monitor.totals)
+    fill_totals(message.totals, monitor.memory)
     for part, status in zip(message.inputs, inputs):
         fill_input(part, status)
     limits = monitor.settings.limits
@@ -243,49 +245,60 @@ def plain_values(state: msg.BallScrewState) -> dict[str, float | str | bool]:
     }
 
 
-def advice_text(event: Event, health: Health | None = None) -> str:
+def advice_text(target_speed: float, health: Health | None = None) -> str:
     """
     Return what to do about an event, empty where nothing is known to help.
 
     First comes what the workshop can change by itself, as the last `health` tells it, then a speed
-    where the process leaves it free. No load is ever named.
+    [rad/s] where the process leaves it free. No load is ever named.
 
     """
     workshop = '' if health is None else health.advice
-    ways = [way for way in (workshop, event.advice.text) if way]
+    ways = [way for way in (workshop, speed_advice(target_speed)) if way]
     if not ways and health is not None and health.usual:
         return USUAL
     return '; or '.join(ways)
 
 
+def event_cause(memory: Any) -> msg.Finding:
+    """Return by what the last event of a memory was raised, as the finding of its worst sample."""
+    return violation(
+        Code(int(memory.event_code[ACTIVE])),
+        float(memory.event_worst[ACTIVE]),
+        float(memory.event_limit[ACTIVE]),
+        derived=bool(memory.event_derived[ACTIVE]),
+    )
+
+
 def out_of_zone_message(
-    axis: str, event: Event, *, shelved: bool, health: Health | None = None
+    monitor: Monitor, *, shelved: bool, health: Health | None = None
 ) -> msg.OutOfZone:
     """
-    Return an event as a message; event 0 is inactive and says that there has been none.
+    Return the last event as a message; event 0 is inactive and says that there has been none.
 
     `health` is the last assessment of the axis, if there is one.
 
     """
+    axis, memory, ending = monitor.settings.axis, monitor.memory, monitor.ending
+    stamp, start = int(memory.event_stamp), int(memory.event_start[ACTIVE])
     message = msg.OutOfZone(
         axis=axis,
-        event_id=event.number,
-        active=event.active,
-        duration=seconds(event.stamp - event.start),
-        worst_value=float(event.worst_value),
-        cause=violation(event.code, event.worst_value, event.limit, derived=event.derived),
-        advice=event.ending.text or advice_text(event, health),
+        event_id=int(memory.event_number),
+        active=bool(memory.event_active),
+        duration=seconds(stamp - start),
+        worst_value=float(memory.event_worst[ACTIVE]),
+        cause=event_cause(memory),
+        advice=ending.text or advice_text(monitor.target_speed, health),
         shelved=shelved,
-        ending=int(event.ending.kind),
-        carry=CARRY.index(event.advice.carry),
+        ending=int(ending.kind),
     )
-    message.cause.target_speed = float(event.advice.target_speed)
-    if event.ending.kind is EventEnd.ACKNOWLEDGED:
-        message.acknowledged_by = event.ending.name
-        message.acknowledge_reason = event.ending.reason
+    message.cause.target_speed = float(monitor.target_speed)
+    if ending.kind is EventEnd.ACKNOWLEDGED:
+        message.acknowledged_by = ending.name
+        message.acknowledge_reason = ending.reason
     message.header.frame_id = axis
-    fill_time(message.header.stamp, event.stamp)
-    fill_time(message.start, event.start)
+    fill_time(message.header.stamp, stamp)
+    fill_time(message.start, start)
     return message
 
 
@@ -309,10 +322,10 @@ def surface_info_message(
     )
     message.limit_factor_low, message.limit_factor_high = surface.limit_band
     message.numerical_factor_low, message.numerical_factor_high = surface.numerical_band
-    for one in surface.corrections:
-        message.corrected_speed.append(float(one.speed))
-        message.corrected_load.append(float(one.opposing_load))
-        message.corrected_temperature.append(celsius(float(one.temperature)))
+    for correction in surface.corrections:
+        message.corrected_speed.append(float(correction.speed))
+        message.corrected_load.append(float(correction.opposing_load))
+        message.corrected_temperature.append(celsius(float(correction.temperature)))
     message.header.frame_id = axis
     fill_time(message.header.stamp, stamp)
     ranges = {

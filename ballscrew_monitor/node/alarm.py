@@ -11,7 +11,7 @@ from ballscrew_monitor.core.judgement import EventEnd, Level
 from ballscrew_monitor.core.state import Ending, NAMELESS, NOT_SHELVED, Shelving
 from ballscrew_monitor.health.records import Health
 from ballscrew_monitor.judge.records import Row
-from ballscrew_monitor.messages.state_messages import advice_text, out_of_zone_message, violation
+from ballscrew_monitor.messages.state_messages import advice_text, event_cause, out_of_zone_message
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts, totals_facts
 from ballscrew_monitor.settings.axis import Axis
@@ -69,36 +69,35 @@ class Alarm:
     def _speak(self, publish: Callable[[OutOfZone], None]) -> None:
         monitor = self._axis.monitor
         shelved = bool(monitor.shelving.at(self._now).until)
-        message = out_of_zone_message(
-            self._axis.name, monitor.event, shelved=shelved, health=self.health
-        )
+        message = out_of_zone_message(monitor, shelved=shelved, health=self.health)
         publish(message)
         self._record(f'~/{self._axis.name}/out_of_zone', message)
 
     def follow(self, row: Row, frame: Mapping[str, list[float]]) -> None:
         """Keep the event that a row has begun, with a freeze frame, or ended, and then speak."""
-        event, monitor = self._axis.monitor.event, self._axis.monitor
+        monitor = self._axis.monitor
+        memory = monitor.memory
+        active, number = memory.event_active, memory.event_number
         # First: who is killed meanwhile must not have said a number that is not kept.
-        kind = Kind.EVENT_BEGIN if event.active else Kind.EVENT_END
-        before = {'freeze_frame': frame} if event.active else {}
+        kind = Kind.EVENT_BEGIN if active else Kind.EVENT_END
+        before = {'freeze_frame': frame} if active else {}
         self._note_event(kind, point=point_facts(row), **before)
         self.publish()
-        if event.active:
-            cause = violation(event.code, event.worst_value, event.limit, derived=event.derived)
-            said = [cause.text, *filter(None, [advice_text(event, self.health)])]
-            self._warn(f'event {event.number}: {"; ".join(said)}')
+        if active:
+            texts = event_cause(memory).text, advice_text(monitor.target_speed, self.health)
+            self._warn(f'event {number}: {"; ".join(filter(None, texts))}')
         elif monitor.level is Level.OK:
-            self._say(f'event {event.number} is over')
+            self._say(f'event {number} is over')
 
     def end(self, reason: str) -> bool:
-        """End the event that is active, because nothing is judged any more; tell if one was."""
+        """End the active event, as nothing is judged any more; return True if there was one."""
         monitor = self._axis.monitor
-        ending = Ending(kind=EventEnd.STOPPED, reason=reason)
-        ended = monitor.acknowledge(self._now, ending) is not None
+        ending = Ending(EventEnd.STOPPED, reason=reason)
+        ended = monitor.acknowledge(self._now, ending)
         if ended:
             # Past the lifecycle: the publisher of an inactive node is mute.
             self._speak(functools.partial(Publisher.publish, self._publisher))
-            self._warn(f'event {monitor.event.number}: {ending.text}')
+            self._warn(f'event {monitor.memory.event_number}: {ending.text}')
             self._note_event(Kind.EVENT_END)
         self.remember()
         return ended
@@ -110,17 +109,17 @@ class Alarm:
     def acknowledge(self, by: Ending = NAMELESS) -> None:
         """Set the level back to UNKNOWN and end the event, because somebody has seen it."""
         ended = self._axis.monitor.acknowledge(self._now, by)
-        number = self._axis.monitor.event.number
+        number = self._axis.monitor.memory.event_number
         self._note(Kind.ACKNOWLEDGE, event=number, name=by.name, reason=by.reason)
-        if ended is not None:
+        if ended:
             self.publish()
             self._note_event(Kind.EVENT_END)
 
     def reset_totals(self) -> None:
         """Set the sums to zero; what they were is in the log."""
-        totals = self._axis.monitor.totals
+        totals = totals_facts(self._axis.monitor.memory)
         self._axis.monitor.reset_totals()
-        self._note(Kind.RESET_TOTALS, totals=totals_facts(totals))
+        self._note(Kind.RESET_TOTALS, totals=totals)
 
     def shelve(self, shelving: Shelving) -> None:
         """Shelve the warning, or no longer."""
@@ -138,15 +137,20 @@ class Alarm:
         self.remember()
 
     def end_shelving(self) -> bool:
-        """End the shelving if its time is over; tell whether it was."""
-        over = self._axis.monitor.shelving.is_over(self._now)
+        """End the shelving if its time is over, or begin it; return True if it has changed."""
+        monitor, now = self._axis.monitor, self._now
+        begun = monitor.shelving.started(now)
+        if begun != monitor.shelving:
+            monitor.shelving = begun
+            return True
+        over = begun.is_over(now)
         if over:
             self.shelve(NOT_SHELVED)
         return over
 
     def remember(self) -> None:
         """Keep the sums, the event and the shelving."""
-        self._kept.remember(self._axis.monitor.kept)
+        self._kept.remember(self._axis.monitor.kept(self._now))
 
     @property
     def _now(self) -> int:
@@ -154,11 +158,12 @@ class Alarm:
 
     def _note_event(self, kind: Kind, **facts: Any) -> None:
         monitor = self._axis.monitor
-        said = event_facts(monitor.kept, advice_text(monitor.event, self.health))
-        self._note(kind, stamp=monitor.event.stamp, **said, **facts)
+        advice = advice_text(monitor.target_speed, self.health)
+        event = event_facts(monitor.memory, monitor.ending, advice)
+        self._note(kind, stamp=monitor.memory.event_stamp, **event, **facts)
 
     def _note(self, kind: Kind, **facts: Any) -> None:
-        self._kept.note(kind, self._axis.name, record=self._axis.monitor.kept, **facts)
+        self._kept.note(kind, self._axis.name, record=self._axis.monitor.kept(self._now), **facts)
 
     # Two functions: rclpy ties one severity to one place in the code.
     def _say(self, text: str) -> None:

@@ -10,7 +10,9 @@ from typing import Any
 from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.health.assess import HealthSettings
 from ballscrew_monitor.health.keeper import HealthKeeper
+from ballscrew_monitor.health.life import HOUR
 from ballscrew_monitor.health.records import Health
+from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import HealthStore
 from ballscrew_monitor.messages.health_messages import health_status, stamp_of
 from ballscrew_monitor.node.alarm import LatchedTopics
@@ -27,6 +29,8 @@ from surrogate.files import InputError
 
 LOOK = 1.0  # [s] between two looks
 PERIOD = 30  # looks between two writes of the store
+KEPT_FOR = HOUR  # [s] that a clock must keep a time that it was set to
+CLOCK_SET = 'the clock was set by more than a day, motion counts again after an hour'
 
 
 class AxisHealths:
@@ -57,7 +61,7 @@ class AxisHealths:
         self._last: dict[str, Health] = {}
         self._due: dict[str, float] = {}  # looks until the next assessment
         self._worker: HealthWorker | None = None
-        self._looks = 0
+        self._looks, self._held = 0, 0.0  # [s] for which nothing is gathered
         node.create_timer(LOOK, self._look, clock=clock)
         for axis in values['axes']:
             serve = functools.partial(self._serve, axis)
@@ -80,8 +84,23 @@ class AxisHealths:
 
     def take(self, axis: str, row: Any) -> None:
         """Take a row of the judgement."""
-        if axis in self._gatherers:
+        if axis in self._gatherers and not self._held:
             self._gatherers[axis].take(row)
+
+    def set_clock(self, step: int, now: int) -> None:
+        """
+        Take that the clock of the node was set by a `step` to `now` [ns].
+
+        After one of more than a day nothing is gathered until the clock has kept its new time:
+        motion of days to which it only leapt belongs to no day. What was gathered before it is
+        of the time before.
+
+        """
+        if self._worker is None or abs(step) <= DAY:
+            return
+        for name in self._gatherers:
+            self._hand_over(name, assesses=False, rows_end=True, now=now - step)
+        self._held = KEPT_FOR
 
     def end(self) -> None:
         """Keep what was gathered, and gather no more."""
@@ -107,14 +126,19 @@ class AxisHealths:
             self._publishers[name].surface.screw_name,
             self._last.get(name),
             self._policy(name),
-            problem=self._gatherers[name].defect or self._worker.problem,
+            problem=self._gatherers[name].defect or self._worker.problem or self._why_held,
         )
+
+    @property
+    def _why_held(self) -> str:
+        return CLOCK_SET if self._held else ''
 
     def _look(self) -> None:
         """Hand over what is due, and publish what has been assessed."""
         if self._worker is None:
             return
         self._looks += 1
+        self._held = max(self._held - LOOK, 0.0)
         for name in self._gatherers:
             # What could not be had is tried again with the next write.
             longest = PERIOD * LOOK if self._worker.problem else math.inf
@@ -125,7 +149,9 @@ class AxisHealths:
                     self._due[name] = self._values[f'{name}.health.period']
         self._speak()
 
-    def _hand_over(self, name: str, *, assesses: bool, rows_end: bool = False) -> bool:
+    def _hand_over(
+        self, name: str, *, assesses: bool, rows_end: bool = False, now: int | None = None
+    ) -> bool:
         """Let the worker keep what was gathered of an axis; return whether it takes it."""
         publisher, values = self._publishers[name], self._values
         gatherer = self._gatherers[name]
@@ -133,7 +159,7 @@ class AxisHealths:
         job = Job(
             keeper=self._keepers[name],
             axis=name,
-            now=self._now,
+            now=self._now if now is None else now,
             found=gatherer.hand_over(publisher.surface, rows_end=rows_end),
             surface=publisher.surface,
             settings=HealthSettings(
@@ -171,7 +197,7 @@ class AxisHealths:
                     f'{axis}.health.enabled true, and state_dir not empty'
                 )
             self._worker.take_store()
-            said = self._keepers[axis].name_baseline(
+            answer = self._keepers[axis].name_baseline(
                 self._now,
                 begin=stamp_of(request.begin),
                 end=stamp_of(request.end),
@@ -180,9 +206,9 @@ class AxisHealths:
                 screw=self._publishers[axis].surface.screw_name,
             )
             self._kept.note(Kind.SET_BASELINE, axis, reason=request.reason)
-            self._node.get_logger().info(f'axis {axis}: {said}: {request.reason}')
+            self._node.get_logger().info(f'axis {axis}: {answer}: {request.reason}')
             self._due[axis] = 0.0
-            response.success, response.message = True, said
+            response.success, response.message = True, answer
         except InputError as error:
             response.message = str(error)
         except Exception as error:  # noqa: BLE001 such as a store that cannot be written

@@ -132,11 +132,11 @@ class AxisPublisher:
         self._show_shelving()
 
     def end_shelving(self) -> bool:
-        """End a shelving that is over; tell whether one was."""
-        over = self.alarm.end_shelving()
-        if over:
+        """End a shelving that is over, or begin one; return True if one has changed."""
+        changed = self.alarm.end_shelving()
+        if changed:
             self._show_shelving()
-        return over
+        return changed
 
     def _show_shelving(self) -> None:
         if self._last is not None:
@@ -290,7 +290,7 @@ class AxisPublisher:
         return result
 
     def has_news(self, now: int) -> bool:
-        """Tell whether at `now` [ns] the last state changes what was said, if not just now."""
+        """Return True if at `now` [ns] the last state changes what was said, if not just now."""
         if self._last is None or now - self._said_at < NEWS_INTERVAL:
             return False
         return self._summaries() != self._said
@@ -360,7 +360,7 @@ class AxisPublisher:
             self.axis.name,
             self._last,
             self._inputs,
-            self.axis.monitor.event.code,
+            self.axis.monitor.event_code,
             self.axis.surface,
             links=links,
             clock_stands=stood > self.settings.timeouts[Source.SPEED],
@@ -370,7 +370,7 @@ class AxisPublisher:
         )
 
     def _summaries(self) -> tuple[diagnostics.StatusSummary, ...]:
-        cause = self.axis.monitor.event.code
+        cause = self.axis.monitor.event_code
         return diagnostics.summaries(self._message, self._inputs, cause, self._links, self._policy)
 
     @property

@@ -38,6 +38,7 @@ class AxisServices:
         failed: Mapping[str, str],
         why_unknown: Callable[[str], str],
         changed: Callable[[Publishers, str], str],
+        catch_up: Callable[[], None],
     ) -> None:
         """
         Make the services.
@@ -45,12 +46,12 @@ class AxisServices:
         `publishers` are those of now, none while the node is unconfigured; `failed` says why other
         axes have none, `why_unknown` why there is none of a name. `changed` takes the publishers
         that a service has changed, and its name; it keeps them and returns why that failed, or
-        nothing.
+        nothing. `catch_up` takes what waits before each of them, a step of the clock among it.
 
         """
         self._node, self._values = node, values
         self._publishers, self._failed = publishers, failed
-        self._why_unknown, self._changed = why_unknown, changed
+        self._why_unknown, self._changed, self._catch_up = why_unknown, changed, catch_up
         acts: dict[str, Act] = {
             'reload_surface': self._reload,
             'reset_totals': self._reset,
@@ -69,7 +70,10 @@ class AxisServices:
         self._node.create_service(Trigger, name, functools.partial(self._serve, act, axes))
 
     def _serve(self, act: Act, axes: list[str], request: Any, response: Any) -> Any:
-        publishers = {name: one for name, one in self._publishers.items() if name in axes}
+        self._catch_up()
+        publishers = {
+            name: publisher for name, publisher in self._publishers.items() if name in axes
+        }
         failed = [not_built(name, why) for name, why in self._failed.items() if name in axes]
         if not publishers:
             response.message = '; '.join(failed) or 'the node is not configured'
@@ -85,7 +89,11 @@ class AxisServices:
         self, response: Any, publishers: Publishers, done: str, name: str, failed: Sequence[str]
     ) -> None:
         """Keep what the service of a name has changed, and say what is done and what is not."""
-        broken = [f'axis {name}: {one.defect}' for name, one in publishers.items() if one.failed]
+        broken = [
+            f'axis {name}: {publisher.defect}'
+            for name, publisher in publishers.items()
+            if publisher.failed
+        ]
         problem = self._changed(publishers, name)
         done += f', not kept: {problem}' if problem else ''
         response.message = '; '.join([done, *failed, *broken])
@@ -94,10 +102,12 @@ class AxisServices:
     def _reload(self, publishers: Publishers) -> str:
         """Swap the surfaces for the files as they are now, if all of them verify."""
         surfaces = {name: self._load(publisher) for name, publisher in publishers.items()}
-        said = [
+        sentences = [
             one.guarded('a reload', one.reload, surfaces[name]) for name, one in publishers.items()
         ]
-        return ', '.join(filter(None, (f'reloaded the surface of {_names(publishers)}', *said)))
+        return ', '.join(
+            filter(None, (f'reloaded the surface of {_names(publishers)}', *sentences))
+        )
 
     def _load(self, publisher: AxisPublisher) -> Surface:
         """Return the surface of the file as it is now; a refusal stays in the diagnostics."""
@@ -122,6 +132,7 @@ class AxisServices:
         self, act: Callable[[Publishers, Any, Any], None], request: Any, response: Any
     ) -> Any:
         """Act on the axis that a request names, or on all; answer an InputError by its text."""
+        self._catch_up()
         publishers = self._publishers
         axes = [request.axis] if request.axis else list(publishers)
         unknown = [axis for axis in axes if axis not in publishers]
@@ -158,4 +169,4 @@ def not_built(axis: str, reason: str) -> str:
 
 
 def _names(publishers: Publishers) -> str:
-    return ', '.join(name for name, one in publishers.items() if not one.failed)
+    return ', '.join(name for name, publisher in publishers.items() if not publisher.failed)

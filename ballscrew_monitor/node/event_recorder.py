@@ -20,7 +20,7 @@ from ballscrew_monitor.core.conversions import nanoseconds
 from ballscrew_monitor.core.fields import OtherJoints, type_name_of
 from ballscrew_monitor.core.inputs import InputSample, Refusal
 from ballscrew_monitor.judge.monitor import fill, within
-from ballscrew_monitor.judge.records import ALL_AXES, EVENT, Event, NOT_KNOWN, TICK
+from ballscrew_monitor.judge.records import ALL_AXES, EVENT, Event, NOT_KNOWN, STEP, TICK
 from ballscrew_monitor.judge.snapshot import snapshot
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
@@ -104,11 +104,18 @@ class EventRecorder:
 
     def tick(self, grid: int, now: int, steady: int) -> None:
         """Take a tick of all axes at `grid` [ns]."""
+        self._take_of_all(TICK, grid, now, steady)
+
+    def set_clock(self, due: int, now: int, steady: int) -> None:
+        """Take that the clock of the node shows `now` and was to show `due` [ns]."""
+        self._take_of_all(STEP, due, now, steady)
+
+    def _take_of_all(self, kind: int, stamp: int, now: int, steady: int) -> None:
         if self._process is None or not self._axes:
             return
-        tick = Event(kind=TICK, source=TICK_SOURCE, axis=ALL_AXES, stamp=within(grid))
-        tick.arrival, tick.steady = within(now), steady
-        self._put_events(_packed(tick), now)
+        event = Event(kind=kind, source=TICK_SOURCE, axis=ALL_AXES, stamp=within(stamp))
+        event.arrival, event.steady = within(now), steady
+        self._put_events(_packed(event), now)
 
     def flush(self) -> None:
         """Hand over what was taken so far, whatever becomes of the node with it."""
@@ -252,7 +259,6 @@ class NodeRecorder:
     def __init__(
         self, node: Node, values: Mapping[str, Any], publishers: Mapping[str, Any]
     ) -> None:
-        """Record nothing at first; `publishers` have the axes by name."""
         self.events = SILENT
         self._node, self._values, self._publishers = node, values, publishers
         self._start: Callable[[], RecordingProcess] | None = None
@@ -316,15 +322,15 @@ def axis_snapshot(
     axis: Axis, values: Mapping[str, Any], topics: Mapping[str, str]
 ) -> dict[str, Any]:
     """Return the settings of an axis, of parameters `values` and full names, and its memory."""
-    mine = {name: one for name, one in values.items() if name.startswith(f'{axis.name}.')}
+    mine = {name: value for name, value in values.items() if name.startswith(f'{axis.name}.')}
     return {
         'values': mine | {'axes': [axis.name], 'tick_period': values['tick_period']},
         'topics': dict(topics),
         'surface': {
             'base_sha256': axis.surface.base_sha256,
             'corrections': [
-                {name: getattr(one, name) for name in CORRECTION}
-                for one in axis.surface.corrections
+                {name: getattr(correction, name) for name in CORRECTION}
+                for correction in axis.surface.corrections
             ],
         },
         'memory': snapshot(axis.monitor),

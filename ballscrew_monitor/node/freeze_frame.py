@@ -26,7 +26,6 @@ class FreezeFrame:
     """Rows of the last SPAN, one a STEP, and each that begins or ends an event."""
 
     def __init__(self) -> None:
-        """Begin with nothing judged."""
         self._rows: deque[tuple[Any, ...]] = deque(maxlen=SPAN // STEP + 1)
         self._read = operator.attrgetter('stamp', *QUANTITIES.values())
 
@@ -49,10 +48,10 @@ class FreezeFrame:
 
         """
         rows = [row for row in self._rows if 0 <= stamp - row[0] <= SPAN]
-        made = {'time_s': [round(seconds(row[0] - stamp), 3) for row in rows]}
+        columns = {'time_s': [round(seconds(row[0] - stamp), 3) for row in rows]}
         for at, name in enumerate(QUANTITIES, start=1):
-            made[name] = [_short(row[at]) for row in rows]
-        return made
+            columns[name] = [_short(row[at]) for row in rows]
+        return columns
 
 
 def _short(number: float) -> float:

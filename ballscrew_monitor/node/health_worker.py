@@ -159,5 +159,5 @@ class HealthWorker:
         job.keeper.keep(today)
         if job.assesses and not self._ending:
             health = job.keeper.assess(job.now, job.surface, job.settings)
-            said = health_message(health, surface_id=surface_id(job.surface), policy=job.policy)
-            self.done.append((health, said))
+            message = health_message(health, surface_id=surface_id(job.surface), policy=job.policy)
+            self.done.append((health, message))

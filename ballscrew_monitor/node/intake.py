@@ -75,22 +75,21 @@ class Intake(Waitable):
         guard: Callable[..., Any] = _call,
         worked: Callable[[float, int], None] = _forget,
         stepped: Callable[[int, int], None] = _forget,
-        left_out: Callable[[Axis, int], None] = _forget,
+        steps: ClockSteps | None = None,
     ) -> None:
         """
         Subscribe once to each topic, however many inputs read it; `recorder` gets all.
 
         `guard` calls what reads for an axis, and returns None if the program fails in it; `worked`
         takes for how long [s] messages were at work, and how many. `stepped` takes by how much
-        [ns] the clock was set, and the time of that; `left_out` of which axis it was left out.
+        [ns] the clock was set, and the time of that; `steps` know the clock of the system from
+        before.
 
         """
         super().__init__(node.default_callback_group)
         self._node, self._take, self._recorder, self._guard = node, take, recorder, guard
         self._worked, self._apart = worked, Apart()
-        self._stepped, self._left_out = stepped, left_out
-        self._system_steps = ClockSteps()
-        self._clock_steps: dict[str, int] = {}  # [ns] by axis, since its last speed sample
+        self._stepped, self._system_steps = stepped, steps or ClockSteps()
         self._simulated = 0  # the last `/clock` [ns]
         self._steps: deque[int] = deque(maxlen=STEPS)  # of `/clock` [ns]
         self._reading = READING
@@ -105,7 +104,7 @@ class Intake(Waitable):
         for axis in self._axes:
             for source in axis.inputs:
                 self._read(axis, source)
-            self._open += [(axis, one) for one in axis.open_inputs]
+            self._open += [(axis, open_input) for open_input in axis.open_inputs]
         self._clock: Topic | None = None
         if node.get_parameter('use_sim_time').value:
             self._clock = open_topic(node, CLOCK, Clock, self._apart)
@@ -138,21 +137,21 @@ class Intake(Waitable):
 
     def discover(self) -> None:
         """Begin to read each open input whose topic has publishers of one type by now."""
-        for axis, one in list(self._open):
-            name = self._node.resolve_topic_name(one.topic)
+        for axis, open_input in list(self._open):
+            name = self._node.resolve_topic_name(open_input.topic)
             known = self.topics.get(name)
             types = {publisher.type_name for publisher in publishers_on(self._node, name)}
             if known is not None:
                 types = {known.type_name}
             if len(types) != 1:
                 continue
-            self._problems.pop((axis.name, one.source), None)
+            self._problems.pop((axis.name, open_input.source), None)
             try:
-                closed = one.close(types.pop())
+                closed = open_input.close(types.pop())
             except InputError as error:
-                self._problems[axis.name, one.source] = str(error)
+                self._problems[axis.name, open_input.source] = str(error)
                 continue
-            self._open.remove((axis, one))
+            self._open.remove((axis, open_input))
             self._read(axis, closed)
 
     def __enter__(self) -> None:
@@ -187,7 +186,7 @@ class Intake(Waitable):
             handler.add_to_wait_set(wait_set)
 
     def is_ready(self, wait_set: Any) -> bool:
-        """Tell whether anything has come."""
+        """Return True if anything has come."""
         self._changed = [handler for handler in self._matches if handler.is_ready(wait_set)]
         come = any(wait_set.is_ready('subscription', place) for place in self._places)
         return come or bool(self._changed)
@@ -230,16 +229,16 @@ class Intake(Waitable):
 
     def links(self, axis: Axis) -> dict[Source, Link]:
         """Return how each input of an axis is connected."""
-        opened = {one.source for reader, one in self._open if reader is axis}
-        found = {}
+        opened = {open_input.source for reader, open_input in self._open if reader is axis}
+        by_source = {}
         for source, topic in axis.topics.items():
             name = self._node.resolve_topic_name(topic)
             read = None if source in opened else self.topics.get(name)
             problem = self._problems.get((axis.name, source), '') if source in opened else ''
             counter = read.sources.get((axis.name, source)) if read else None
             several = counter.several if counter else False
-            found[source] = link_of(self._node, name, read, several=several, problem=problem)
-        return found
+            by_source[source] = link_of(self._node, name, read, several=several, problem=problem)
+        return by_source
 
     def _waiting(self) -> list[Arrival]:
         """
@@ -250,14 +249,14 @@ class Intake(Waitable):
         has arrived since the look began.
 
         """
-        found: list[Arrival] = []
+        arrivals: list[Arrival] = []
         for _ in range(MOST_LOOKS):
             begin = time.time_ns()
-            look = [one for topic in self._all for one in topic.waiting()]
-            found += look
-            if all(one.received <= begin for one in look):
+            look = [arrival for topic in self._all for arrival in topic.waiting()]
+            arrivals += look
+            if all(arrival.received <= begin for arrival in look):
                 break
-        return sorted(found, key=operator.attrgetter('received'))
+        return sorted(arrivals, key=operator.attrgetter('received'))
 
     def drain(self) -> bool:
         """Hand over all that waits, oldest first; return whether that was anything."""
@@ -290,19 +289,13 @@ class Intake(Waitable):
 
     def _hand_over(self, heard: list[Heard], step: int) -> None:
         """
-        Hand over what was heard as one turn, and begin the next one; note a step after it.
+        Hand over what was heard as one turn, and after it a step of the clock.
 
-        Steps of the clock are left out of what has begun, where the speed has come again.
+        The next turn begins then.
 
         """
         if heard:
             turn = ordered([event for one in heard for event in self._judged(one)])
-            for axis, event in turn if self._clock_steps else ():
-                if isinstance(event, InputSample) and event.source is Source.SPEED:
-                    leap = self._clock_steps.pop(axis.name, 0)
-                    # Back: the stamps alone tell the judgement.
-                    if leap > 0 and axis.monitor.leave_out(leap, event):
-                        self._left_out(axis, leap)
             self._recorder.hear(heard)
             self._recorder.take(turn, heard[-1][1], time.monotonic_ns())
             self._recorder.flush()  # whatever becomes of the node with these events
@@ -311,9 +304,11 @@ class Intake(Waitable):
             self._recorder.flush()
             heard.clear()
         if step:
+            now = self.now
+            self._recorder.set_clock(now - step, now, time.monotonic_ns())
             for axis in self._axes:
-                self._clock_steps[axis.name] = self._clock_steps.get(axis.name, 0) + step
-            self._stepped(step, self.now)
+                self._guard(axis, 'a step of the clock', axis.monitor.set_clock, now - step, now)
+            self._stepped(step, now)
 
     def _show(self, shown: Any) -> int:
         """Take a time of `/clock`; return by how much it leaps [ns], 0 if it goes on as before."""
@@ -340,9 +335,9 @@ class Intake(Waitable):
             wanted = min(2 * sorted(self._steps)[len(self._steps) // 2], MOST_AHEAD)
             ahead = wanted if 4 * abs(wanted - ahead) > ahead else ahead
         several = frozenset(
-            one
+            key
             for topic in self.topics.values()
-            for one, counter in topic.sources.items()
+            for key, counter in topic.sources.items()
             if counter.several
         )
         self._reading = Reading(ahead, several)
@@ -350,11 +345,11 @@ class Intake(Waitable):
     def _judged(self, heard: Heard) -> list[AxisEvent]:
         """Return what a message says of each axis, and count of which inputs it gives samples."""
         arrival, now, _ = heard
-        found = _events(*heard, self._reading, self._guard)
-        for axis, event in found:
+        events = _events(*heard, self._reading, self._guard)
+        for axis, event in events:
             if isinstance(event, InputSample) or event.why is Why.SEVERAL:
                 arrival.topic.count((axis.name, event.source), arrival.number, now)
-        return found
+        return events
 
 
 def _events(
@@ -365,7 +360,7 @@ def _events(
     guard: Callable[..., Any] = _call,
 ) -> list[AxisEvent]:
     """Return what a message that arrived at `now` [ns] of the node's clock says of each axis."""
-    found: list[AxisEvent] = []
+    events: list[AxisEvent] = []
     for axis, source in arrival.topic.readers:
         place = f'the {source.source.name.lower()} that arrived at {now} ns'
         told = {'now': now, 'max_future': axis.max_future + reading.ahead, 'lost': lost}
@@ -374,5 +369,5 @@ def _events(
         if isinstance(event, InputSample) and several:
             event = of_several(source.source, event.arrival, lost)
         if event is not None:
-            found.append((axis, event))
-    return found
+            events.append((axis, event))
+    return events

@@ -5,7 +5,7 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Protocol
 
-from ballscrew_monitor.core.memory import after_restart, AxisRecord
+from ballscrew_monitor.judge.kept import after_restart, AxisRecord
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_records import entry_of, event_facts, Kind
@@ -30,7 +30,7 @@ class KeptAxis(Protocol):
         """Take up corrections of before; return what became of them, if there are any."""
 
     def end_shelving(self) -> bool:
-        """End a shelving that is over; return True if one was."""
+        """End a shelving that is over, or begin one; return True if one has changed."""
 
 
 class KeptAxes:
@@ -44,11 +44,17 @@ class KeptAxes:
         say: Callable[[list[str]], None],
         *,
         clock: Clock,
+        catch_up: Callable[[], None],
     ) -> None:
-        """Keep it in a `state`, with a look now and then on a steady `clock`."""
+        """
+        Keep it in a `state`, with a look now and then on a steady `clock`.
+
+        `catch_up` takes what waits before that, lest a step of the clock end a shelving.
+
+        """
         self.state = state
         self._node, self._publishers, self._say = node, publishers, say
-        self._looks, self._said = 0, ''
+        self._catch_up, self._looks, self._said = catch_up, 0, ''
         node.create_timer(LOOK, self._look, clock=clock)
         self.note(Kind.NODE_START)
         state.start()
@@ -72,7 +78,7 @@ class KeptAxes:
         if self.state.folder is None:
             return
         if stamp is None:
-            stamp = self._node.get_clock().now().nanoseconds
+            stamp = self._now
         self.state.keep(record, entry_of(kind, axis, stamp, facts))
 
     def remember(self, record: AxisRecord) -> None:
@@ -85,8 +91,10 @@ class KeptAxes:
         late = axes is not None
         for name in self._publishers if axes is None else axes:
             publisher = self._publishers[name]
-            if said := publisher.guarded('what was kept of it', self._restore, publisher, late):
-                self._node.get_logger().info(f'axis {name}: {said}')
+            if sentence := publisher.guarded(
+                'what was kept of it', self._restore, publisher, late
+            ):
+                self._node.get_logger().info(f'axis {name}: {sentence}')
         # What is wrong is logged when that has changed.
         problem, before = self.state.problem, self._said
         self._said = problem
@@ -101,14 +109,15 @@ class KeptAxes:
         before = self.state.recall(AxisRecord(axis=axis.name), late=late)
         record = after_restart(before)
         if record is not before:
-            facts = event_facts(record)
-            self.note(Kind.EVENT_END, axis.name, stamp=record.stamp_ns, record=record, **facts)
-        axis.monitor.take_up(record)
+            memory = record.read_memory()
+            facts = event_facts(memory, record.read_ending())
+            self.note(Kind.EVENT_END, axis.name, stamp=memory.event_stamp, record=record, **facts)
+        axis.monitor.take_up(record, self._now)
         self._remember(axis)
         return publisher.restore(late=late)
 
     def _remember(self, axis: Axis) -> None:
-        self.remember(axis.monitor.kept)
+        self.remember(axis.monitor.kept(self._now))
 
     def remember_all(self) -> None:
         """Keep the sums, events and shelvings of all axes."""
@@ -120,7 +129,13 @@ class KeptAxes:
         self.note(Kind.NODE_STOP)
         self.state.close()
 
+    @property
+    def _now(self) -> int:
+        return self._node.get_clock().now().nanoseconds
+
     def _look(self) -> None:
+        self._catch_up()
+        self.state.look()
         publishers = self._publishers
         late = [name for name in publishers if self.state.is_late(name)]
         self.restore(late)

@@ -10,7 +10,7 @@ from typing import Any
 from ballscrew_monitor.core.conversions import nanoseconds, seconds
 from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.inputs import InputSample, Refusal
-from ballscrew_monitor.core.tick_grid import TickGrid
+from ballscrew_monitor.core.tick_grid import ClockSteps, TickGrid
 from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.alarm import LatchedTopics
@@ -74,6 +74,7 @@ class BallscrewMonitor(LifecycleNode):
         self._values = self._store.values
         self._recording = NodeRecorder(self, self._values, self._axis_publishers)
         self._grid = TickGrid(nanoseconds(self._values['tick_period']))
+        self._steps = ClockSteps()  # of the system, also while the node is inactive
         self._heartbeat = Heartbeat(self, clock=self._steady)
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', STATE_QOS)
         # On the steady clock: it speaks while a simulated one stands.
@@ -87,9 +88,19 @@ class BallscrewMonitor(LifecycleNode):
             limit=round(self._values['state_limit'] * MEGABYTE),
         )
         publishers = self._axis_publishers
-        self._kept = KeptAxes(self, state, publishers, self._on_kept, clock=self._steady)
+        self._kept = KeptAxes(
+            self, state, publishers, self._on_kept, clock=self._steady, catch_up=self._catch_up
+        )
         self._solves = SolveServer(self, self._find_publisher)
-        AxisServices(self, self._values, publishers, self._failed, self._unknown, self._on_service)
+        AxisServices(
+            self,
+            self._values,
+            publishers,
+            self._failed,
+            self._unknown,
+            self._on_service,
+            self._catch_up,
+        )
         self._healths = AxisHealths(
             self,
             self._values,
@@ -102,7 +113,7 @@ class BallscrewMonitor(LifecycleNode):
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set parameters; one that keeps its value is no change: a node takes its own dump."""
-        changed = [one for one in parameter_list if not is_kept(self, one)]
+        changed = [parameter for parameter in parameter_list if not is_kept(self, parameter)]
         if not changed:
             return SetParametersResult(successful=True)
         return super().set_parameters_atomically(changed)
@@ -195,7 +206,7 @@ class BallscrewMonitor(LifecycleNode):
             self._guard,
             self._heartbeat.vitals.work,
             self._on_step,
-            lambda axis, step: self._recording.snapshot([axis.name], 'clock'),
+            self._steps,
         )
         # A timer on the system clock stops when that is set back, for as long as it was set back.
         clock = self.get_clock() if self.get_parameter('use_sim_time').value else self._steady
@@ -247,6 +258,7 @@ class BallscrewMonitor(LifecycleNode):
 
     def _stop(self, reason: str = '') -> None:
         """Judge no longer; for a `reason` events end, while they are still recorded."""
+        self._catch_up()
         self._active = False
         self._solves.close('stopped, the node is no longer active')
         self._healths.end()
@@ -280,6 +292,14 @@ class BallscrewMonitor(LifecycleNode):
         text = f'the clock was set {step_text(step)}'
         self.get_logger().warning(text)
         self._kept.note(Kind.CLOCK_STEP, stamp=now, by_s=seconds(step), text=text)
+        self._heartbeat.set_clock(step)
+        self._healths.set_clock(step, now)
+        self._publish_diagnostics()
+
+    def _catch_up(self) -> None:
+        """Take what waits, and any step of the clock, before something else than an event."""
+        if self._intake is not None:
+            self._intake.drain()
 
     def _guard(
         self, axis: Axis, place: str, call: Callable[..., Any], *args: Any, **named: Any
@@ -351,16 +371,18 @@ class BallscrewMonitor(LifecycleNode):
         self._recording.record('/diagnostics', message)
 
     def _statuses(self, axes: Sequence[str], stood: int) -> list[DiagnosticStatus]:
-        made, node = [], self.get_fully_qualified_name()
+        statuses, node = [], self.get_fully_qualified_name()
         for name in axes:
             if name in self._axis_publishers:
                 publisher = self._axis_publishers[name]
                 links = self._intake.links(publisher.axis) if self._intake else None
-                made += publisher.statuses(links=links, stood=stood)
+                statuses += publisher.statuses(links=links, stood=stood)
             else:
                 code = Fault.NOT_BUILT if name in self._failed else Fault.NOT_CONFIGURED
-                made += diagnostics.failed(node, name, self._failed.get(name, self._reason), code)
-        return made + self._healths.statuses(axes) + self._recording.statuses()
+                statuses += diagnostics.failed(
+                    node, name, self._failed.get(name, self._reason), code
+                )
+        return statuses + self._healths.statuses(axes) + self._recording.statuses()
 
     def _on_evaluate(self, request: Any, response: Any) -> Any:
         """Answer what the surface says of the points; what arrives meanwhile is judged."""

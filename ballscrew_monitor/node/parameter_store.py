@@ -86,7 +86,7 @@ class ParameterStore:
 
 
 def is_kept(node: Node, parameter: Parameter) -> bool:
-    """Tell whether a node has the value that a parameter is to be set to."""
+    """Return True if a node has the value that a parameter is to be set to."""
     if not node.has_parameter(parameter.name):
         return False
     now = node.get_parameter(parameter.name)

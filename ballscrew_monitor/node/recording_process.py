@@ -35,7 +35,7 @@ def recording(
     `state` is where the node keeps what outlives it. Raises InputError when there is no place.
 
     """
-    if values['record'] == 'off':
+    if values['record'] == 'never':
         return None
     if values['record_total'] < 2.0 * values['record_largest']:
         raise InputError(
@@ -72,7 +72,7 @@ class RecordingProcess:
 
     @property
     def lost(self) -> bool:
-        """Tell whether there is no process, or it has ended."""
+        """Return True if there is no process, or it has ended."""
         if self._process is None:
             return True
         return self._sender.broken or self._process.poll() is not None

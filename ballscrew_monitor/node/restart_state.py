@@ -32,6 +32,7 @@ AUTO = 'auto'
 PAUSE = 0.05  # [s] shortest time between two commits
 RETRY = 1.0  # [s] after a failure
 SILENT = 'does not answer'
+GONE = 'was removed or replaced'
 PATIENCE = 2.0  # [s] that a service, a correction or a transition waits for the disk
 MOST_ENTRIES = 10_000  # waiting while nothing can be written; the oldest are dropped
 SHARE = 4  # corrections have this part of the limit
@@ -88,8 +89,14 @@ class RestartState:
 
     @property
     def is_held(self) -> bool:
-        """Tell whether the folder is that of this node alone."""
+        """Return True if the folder is that of this node alone."""
         return self._database is not None and self._database.is_open
+
+    def look(self) -> None:
+        """Have all written again soon, if the folder or what is in it is no longer there."""
+        if self._database is not None and self._database.is_lost:
+            self._problem = f'{self.folder} {GONE}'
+            self._wake.set()
 
     def forget_problems(self) -> None:
         """Say no more of what was set aside, nor of corrections that are gone."""
@@ -130,12 +137,12 @@ class RestartState:
         """
         key = (type(blank), blank.axis)
         with self._lock:
-            found = self._found.pop(key, None) if self._found else None
-            return found or (blank if late else self._latest.get(key, blank))
+            record = self._found.pop(key, None) if self._found else None
+            return record or (blank if late else self._latest.get(key, blank))
 
     def is_late(self, axis: str) -> bool:
-        """Tell whether an earlier node left something of an axis that is not recalled yet."""
-        return any(axis == one for _, one in self._found or ())
+        """Return True if an earlier node left something of an axis that is not recalled yet."""
+        return any(axis == name for _, name in self._found or ())
 
     def flush(self) -> str:
         """Write all that waits, and wait for the disk; return why that failed, or nothing."""
@@ -174,8 +181,8 @@ class RestartState:
         if asked or (self._is_waiting and now >= self._due):
             self._write()
             self._due = now + (RETRY if self._problem else PAUSE)
-        for one in asked:
-            one.set()
+        for done in asked:
+            done.set()
         return self._due if self._is_waiting else None
 
     @property
@@ -198,8 +205,8 @@ class RestartState:
             self._problem = str(error)
         except Exception as error:  # noqa: BLE001 the thread must live, and what waits must stay
             known = error if isinstance(error, sqlite3.Error) else getattr(error, 'strerror', None)
-            what = known or f'{type(error).__name__}: {error}'
-            self._problem = f'{self.folder} {UNWRITABLE}, {what}'
+            reason = known or f'{type(error).__name__}: {error}'
+            self._problem = f'{self.folder} {UNWRITABLE}, {reason}'
 
     def _write_into(self, database: StateDatabase) -> None:
         if self._stopped:
@@ -223,14 +230,14 @@ class RestartState:
                     del self._changed[key]
 
     def _open(self, database: StateDatabase) -> None:
-        found = database.load()
+        records = database.load()
         with self._lock:
-            self._found = found if self._found is None else self._found
+            self._found = records if self._found is None else self._found
             self._changed.update(self._latest)  # the file may be a new one
 
     def _waiting(self) -> tuple[list[Entry], Records]:
         """Return what is to be written; what an earlier node left is not replaced unseen."""
         with self._lock:
             held = self._found or {}
-            records = {key: one for key, one in self._changed.items() if key not in held}
+            records = {key: record for key, record in self._changed.items() if key not in held}
             return list(self._entries), records

@@ -76,15 +76,15 @@ def _end(node: BallscrewMonitor, executor: SingleThreadedExecutor) -> None:
 
 
 def wants_localhost(arguments: Sequence[str]) -> bool:
-    """Tell whether the arguments of the node set `localhost`; the last one counts."""
+    """Return True if the arguments of the node set `localhost`; the last one counts."""
     given = list(_ros_arguments(arguments))
     node = _full_name(value for kind, value in given if kind == '-r')
     wanted = False
     for kind, value in given:
-        found = _of_file(value, node) if kind == 'file' else {}
+        setting = _of_file(value, node) if kind == 'file' else {}
         if kind == '-p':
-            found = _of_rule(value, node)
-        wanted = bool(found.get(NAME, wanted))
+            setting = _of_rule(value, node)
+        wanted = bool(setting.get(NAME, wanted))
     return wanted
 
 
@@ -103,13 +103,13 @@ def _ros_arguments(arguments: Sequence[str]) -> Iterator[tuple[str, str]]:
 
 def _full_name(remaps: Iterator[str]) -> str:
     """Return the full name of the node; of two rules the first one counts."""
-    found: dict[str, str] = {}
+    names: dict[str, str] = {}
     for rule in remaps:
         place, _, value = rule.partition(':=')
-        what = place.rpartition(':')[2]
-        found.setdefault('__node' if what == '__name' else what, value)
-    namespace = found.get('__ns', '').strip('/')
-    name = found.get('__node', parameters.NODE_NAME)
+        key = place.rpartition(':')[2]
+        names.setdefault('__node' if key == '__name' else key, value)
+    namespace = names.get('__ns', '').strip('/')
+    name = names.get('__node', parameters.NODE_NAME)
     return f'/{namespace}/{name}' if namespace else f'/{name}'
 
 
@@ -129,11 +129,11 @@ def _of_file(path: str, node: str) -> dict[str, Any]:
         sections = parameters.sections(path)
     except InputError:
         return {}
-    found: dict[str, Any] = {}
+    setting: dict[str, Any] = {}
     for pattern, values in _patterns(sections):
         if NAME in values and _matches(pattern, node):
-            found = {NAME: values[NAME] is True}
-    return found
+            setting = {NAME: values[NAME] is True}
+    return setting
 
 
 def _patterns(
@@ -148,7 +148,7 @@ def _patterns(
 
 
 def _matches(pattern: str, node: str) -> bool:
-    """Tell whether a pattern means the node; `*` stands for one part of a name, `**` for any."""
+    """Return True if a pattern means the node; `*` stands for one part of a name, `**` for any."""
     parts = {'*': '/[^/]+', '**': '(?:/[^/]+)*'}
     form = ''.join(parts.get(part, f'/{re.escape(part)}') for part in pattern[1:].split('/'))
     return re.fullmatch(form, node) is not None

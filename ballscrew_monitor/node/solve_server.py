@@ -15,7 +15,7 @@ import math
 import time
 from typing import Any
 
-from ballscrew_monitor.core.conversions import machine_nut
+from ballscrew_monitor.core.conversions import celsius, kelvin, machine_nut
 from ballscrew_monitor.judge.full_point import (
     compare,
     Comparison,
@@ -36,9 +36,12 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from surrogate.limits import COLDEST, HOTTEST, LOAD, SPEED
 from surrogate.surface import FIELDS, solved_point, SurfacePoint
+from surrogate.units import RPM
 
 DEFAULT_TIMEOUT, LONGEST_TIMEOUT = 300.0, 3600.0  # [s]
+SLOWEST = 1e-3  # [rad/s], a turn in two hours
 POLL = 0.1  # [s]
 FEEDBACK_PERIOD = 0.5  # [s]
 MOST_SOLVES = 1 + MOST_WAITING
@@ -173,8 +176,10 @@ class SolveServer:
         if goal.handle is not None:
             self._answer(goal.handle, result, end)
         else:
-            said = result.correction if result.success else result.status
-            self._node.get_logger().info(f'axis {goal.axis.name}: solved where it dwells: {said}')
+            sentence = result.correction if result.success else result.status
+            self._node.get_logger().info(
+                f'axis {goal.axis.name}: solved where it dwells: {sentence}'
+            )
 
     def _answer(self, handle: ServerGoalHandle, result: Any, end: End) -> None:
         """Hand the answer of a goal to the executor."""
@@ -202,7 +207,23 @@ def requested_point(request: Any, axis: AxisPublisher) -> Row | str:
         return 'speed, axial load and temperature of the point must be finite'
     if row.speed == 0.0:
         return 'the speed of the point is 0 rad/s, a solve needs motion'
-    return row
+    return _beyond(row) or row
+
+
+def _beyond(row: Row) -> str:
+    """Return what of a point no screw has, and what is allowed; empty: nothing."""
+    if not SLOWEST <= abs(row.speed) <= SPEED * RPM:
+        allowed = f'{SLOWEST:g} to {SPEED * RPM:g} rad/s in either direction'
+        return f'the speed of the point is {row.speed:g} rad/s, allowed is {allowed}'
+    if abs(row.axial_load) > LOAD:
+        allowed = f'0 to {LOAD:g} N in either direction'
+        return f'the axial load of the point is {row.axial_load:g} N, allowed is {allowed}'
+    if not kelvin(COLDEST) <= row.temperature <= kelvin(HOTTEST):
+        given = f'{celsius(row.temperature):g} degC'
+        return (
+            f'the temperature of the point is {given}, allowed is {COLDEST:g} to {HOTTEST:g} degC'
+        )
+    return ''
 
 
 def feedback_message(step: Step, row: Row) -> Any:

@@ -36,7 +36,6 @@ class LossCounter:
     """Counts the gaps in the publication numbers of one topic, however many publishers it has."""
 
     def __init__(self) -> None:
-        """Begin before the first message."""
         self._last: list[int] = []  # numbers, of each publisher that is known the last one
         self.publishers = 1
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import sqlite3
 from typing import Any
 
-from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.judge.kept import AxisRecord
 from ballscrew_monitor.node.state_records import (
     AXES,
     by_key,
@@ -29,12 +29,13 @@ from ballscrew_monitor.node.state_records import (
     TABLES,
 )
 from surrogate.files import InputError
-from surrogate.store import opened_to_read, plain_text, SHARE, size_of, Store
+from surrogate.store import identity, opened_to_read, plain_text, SHARE, size_of, Store
 
-FILE = 'state.sqlite3'
+FILE, LOCK = 'state.sqlite3', 'lock'
 VERSION = 1
 UNWRITABLE = 'cannot be written'
 IN_USE = 'is in use by another node of this name'
+LOST = 'was removed or replaced while the node ran: sums and warnings go on, logs begin again'
 CHUNK = 500  # entries that are appended at a time
 
 
@@ -47,6 +48,20 @@ class StateDatabase(Store):
         self.folder = folder
         self._damage = damage
         self._lock = -1
+
+    @property
+    def is_open(self) -> bool:
+        """Return True if the file is open, and the directory still that of this node."""
+        return self._is_locked and super().is_open
+
+    @property
+    def is_lost(self) -> bool:
+        """Return True if the directory, or what is in it, was removed or replaced."""
+        return self._lock >= 0 and self._database is not None and not self.is_open
+
+    @property
+    def _is_locked(self) -> bool:
+        return self._lock >= 0 and identity(self._lock) == identity(self.folder / LOCK)
 
     def load(self) -> Records:
         """
@@ -86,15 +101,21 @@ class StateDatabase(Store):
     def close(self) -> None:
         """Leave one whole file, which anybody can read, and let another node have it."""
         super().close()
+        self._unlock()
+
+    def _unlock(self) -> None:
         if self._lock >= 0:
             os.close(self._lock)
         self._lock = -1
 
     def _lock_folder(self) -> None:
-        if self._lock >= 0:
+        if self._is_locked:
             return
+        if self._lock >= 0:
+            self._damage.append(f'{self.folder} {LOST}')
+            self._unlock()
         self.folder.mkdir(parents=True, exist_ok=True)
-        lock = os.open(self.folder / 'lock', os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+        lock = os.open(self.folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:

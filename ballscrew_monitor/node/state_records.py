@@ -11,15 +11,18 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import celsius, seconds
 from ballscrew_monitor.core.fault_codes import cause_code
-from ballscrew_monitor.core.judgement import Code, EventEnd, Severity
-from ballscrew_monitor.core.memory import AxisRecord, check_record
-from ballscrew_monitor.core.state import Ending, TIMES, Totals
+from ballscrew_monitor.core.judgement import Code, Severity
+from ballscrew_monitor.core.state import Ending
 from ballscrew_monitor.judge.full_point import KeptSolve, Solve
+from ballscrew_monitor.judge.kept import AxisRecord
 from ballscrew_monitor.judge.records import Row
-from ballscrew_monitor.messages.state_messages import violation
+from ballscrew_monitor.judge.views import total_times
+from ballscrew_monitor.judge.zone import ACTIVE
+from ballscrew_monitor.messages.state_messages import event_cause
 from surrogate.files import InputError, to_json
 from surrogate.limits import read_json
 from surrogate.store import Table
+from surrogate.units import TURN
 
 SOLVE = {
     'speed': 'speed_rad_s',
@@ -85,21 +88,21 @@ class Corrections:
     @classmethod
     def of(cls, axis: str, surface: str, solves: Iterable[Solve]) -> 'Corrections':
         """Return the solves that correct the `surface` of a hash, as they are kept."""
-        rows = [{key: getattr(one, name) for name, key in SOLVE.items()} for one in solves]
+        rows = [{key: getattr(solve, name) for name, key in SOLVE.items()} for solve in solves]
         return cls(axis, surface, json.dumps(rows))
 
     def read_solves(self) -> list[KeptSolve]:
         """Return the solves; ValueError, KeyError or TypeError for what no node has written."""
         return [
             KeptSolve(
-                **{name: float(one[key]) for name, key in SOLVE.items() if name != 'solved'},
-                solved={name: float(value) for name, value in one['solved'].items()},
+                **{name: float(solve[key]) for name, key in SOLVE.items() if name != 'solved'},
+                solved={name: float(value) for name, value in solve['solved'].items()},
             )
-            for one in read_json(self.solves)
+            for solve in read_json(self.solves)
         ]
 
 
-AXES = Table(name='axes', kind=AxisRecord, key='axis', check=check_record)
+AXES = Table(name='axes', kind=AxisRecord, key='axis', check=AxisRecord.check)
 CORRECTIONS = Table(
     name='corrections', kind=Corrections, key='axis', check=Corrections.read_solves
 )
@@ -118,26 +121,27 @@ def entry_of(kind: Kind, axis: str | None, stamp: int, facts: Mapping[str, Any])
 
 def by_key(records: Iterable[Record]) -> Records:
     """Return records by what they are and their axis."""
-    return {(type(one), one.axis): one for one in records}
+    return {(type(record), record.axis): record for record in records}
 
 
-def event_facts(record: AxisRecord, advice: str = '') -> dict[str, Any]:
-    """Return what an entry says of the event of an axis and the advice on it."""
-    code, kind = Code[record.cause], EventEnd[record.ending]
-    cause = violation(code, record.worst_value, record.limit, derived=record.derived)
+def event_facts(memory: Any, ending: Ending, advice: str = '') -> dict[str, Any]:
+    """Return what an entry says of the last event of a memory, its ending and the advice on it."""
+    code, cause = Code(int(memory.event_code[ACTIVE])), event_cause(memory)
+    start = int(memory.event_start[ACTIVE])
+    stamp = int(memory.stamp if memory.event_active else memory.event_stamp)
     return {
-        'event': record.event,
-        'start_ns': record.start_ns,
-        'worst_value': record.worst_value,
-        'cause': record.cause,
+        'event': int(memory.event_number),
+        'start_ns': start,
+        'worst_value': cause.value,
+        'cause': code.name,
         'severity': Severity(cause.severity).name,
         'value': cause.value,
         'limit': cause.limit,
         'unit': cause.unit,
         'text': cause.text,
-        'ending': Ending(kind=kind, name=record.ended_by, reason=record.end_reason).text,
+        'ending': ending.text,
         'code': int(cause_code(code)),
-        'duration_s': seconds(record.stamp_ns - record.start_ns),
+        'duration_s': seconds(stamp - start),
         'advice': advice,
     }
 
@@ -156,10 +160,10 @@ def point_facts(row: Row) -> dict[str, float]:
     }
 
 
-def totals_facts(totals: Totals) -> dict[str, float]:
+def totals_facts(memory: Any) -> dict[str, float]:
     """Return sums as an entry says them: times in [s]."""
-    return {f'{name}_s': seconds(getattr(totals, name)) for name in TIMES} | {
-        'revolutions': totals.revolutions,
-        'energy_lost_J': totals.energy_lost,
-        'since_ns': totals.since,
+    return {f'{name}_s': seconds(time) for name, time in total_times(memory).items()} | {
+        'revolutions': memory.angle / TURN,
+        'energy_lost_J': memory.energy_lost,
+        'since_ns': memory.since,
     }

@@ -82,20 +82,20 @@ class Topic:
         do not go together.
 
         """
-        found: list[Arrival] = []
+        arrivals: list[Arrival] = []
         subscription = self.subscription
         with subscription.handle:
-            while len(found) < MOST:
+            while len(arrivals) < MOST:
                 taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
                 if taken is None:
                     break
-                found.append(self.arrival(*taken))
-        if found:  # the event that tells of it may not have had its turn
+                arrivals.append(self.arrival(*taken))
+        if arrivals:  # the event that tells of it may not have had its turn
             count = subscription.get_publisher_count()
             if count != self.loss.publishers:
                 self.loss.match(count)
-                return [dataclasses.replace(arrival, number=NO_NUMBER) for arrival in found]
-        return found
+                return [dataclasses.replace(arrival, number=NO_NUMBER) for arrival in arrivals]
+        return arrivals
 
 
 class Apart(CallbackGroup):
@@ -150,8 +150,8 @@ def link_of(
 
     """
     if topic is None:
-        found = publishers_on(node, name)
-        return Link(topic=name, type_name='', publishers=found, problem=problem)
+        publishers = publishers_on(node, name)
+        return Link(topic=name, type_name='', publishers=publishers, problem=problem)
     matched = topic.subscription.get_publisher_count()
     qos = topic.subscription.qos_profile
     return Link(

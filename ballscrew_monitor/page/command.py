@@ -86,7 +86,6 @@ class LiveSource:
     """The nodes in the ROS graph."""
 
     def __init__(self, node: Node, hub: Hub, options: PageOptions) -> None:
-        """Follow them through a `node`."""
         post = asyncio.get_running_loop().call_soon_threadsafe
         self._ros = RosSide(node, hub, post, only=options.node)
         self.handlers = Acting(node, hub).handlers if options.acting else refusals()

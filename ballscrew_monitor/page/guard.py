@@ -127,7 +127,6 @@ class Guard:
     """An application behind the checks."""
 
     def __init__(self, app: Any, *, host: str, tokens: Tokens) -> None:
-        """Guard `app`, which is served at `host`."""
         self._app, self._tokens = app, tokens
         self._only_here = is_loopback(host)
         self._names = {'localhost', host.lower()}

@@ -6,19 +6,26 @@ import functools
 import math
 from typing import Any
 
+from ballscrew_monitor.core.conversions import clock_text
 from ballscrew_monitor.health.records import CauseCode, Condition
 from ballscrew_monitor.health.words import ADVICE, explained
+from ballscrew_monitor.messages.health_messages import stamp_of
 from ballscrew_monitor.page.phrases import free, Phrase, phrase, Said
-from ballscrew_msgs.msg import AxisHealth, HealthQuantity
+from ballscrew_msgs.msg import AxisHealth, HealthCause, HealthQuantity
 
 DRAG, PRELOAD = 'drag change', 'preload'
+DATE = len('2025-07-14')
 VERDICTS = {
     AxisHealth.CONDITION_UNKNOWN: 'verdict_unsure',
     AxisHealth.CONDITION_NORMAL: 'verdict_normal',
     AxisHealth.CONDITION_WORSE: 'verdict_worse',
     int(Condition.SLIGHTLY_CHANGED): 'verdict_slight',
 }
-CHANGED = (int(Condition.WORSE), int(Condition.SLIGHTLY_CHANGED))
+DATED = {
+    AxisHealth.CONDITION_WORSE: 'verdict_worse_since',
+    int(Condition.SLIGHTLY_CHANGED): 'verdict_slight_since',
+}
+CHANGED = tuple(DATED)
 CAUSES = {int(code): code for code in CauseCode}
 Known = dict[str, HealthQuantity]
 """Quantities with an interval, by their names."""
@@ -39,6 +46,9 @@ def verdict_phrase(health: AxisHealth) -> Said:
     values = {'axis': health.axis, **_interval(known[DRAG])}
     if health.condition in CHANGED:
         values['why'] = _why(health, known)
+        if since := stamp_of(health.since):
+            day = clock_text(since)[:DATE]  # UTC
+            return phrase(DATED[health.condition], **values, since=day)
     return phrase(VERDICTS[health.condition], **values)
 
 
@@ -60,11 +70,19 @@ def _why(health: AxisHealth, known: Known) -> Phrase:
     why = f'why_{certainty.name.lower()}'
     if not likely:
         return phrase(why)
-    cause, code = likely[0], CAUSES.get(likely[0].code)
+    causes = [_cause(cause, known) for cause in likely]
+    together = functools.reduce(
+        lambda first, second: phrase('cause_or', first=first, second=second), causes
+    )
+    return phrase(why, cause=together)
+
+
+def _cause(cause: HealthCause, known: Known) -> Phrase:
+    code = CAUSES.get(cause.code)
     if code is None:  # of another version
-        return phrase(why, cause=free(cause.text))
+        return free(cause.text)
     size = known.get(PRELOAD, cause.size) if code is CauseCode.PRELOAD_LOST else cause.size
-    return phrase(why, cause=phrase(f'change_{code.name.lower()}', **_interval(size)))
+    return phrase(f'change_{code.name.lower()}', **_interval(size))
 
 
 def _interval(quantity: HealthQuantity) -> dict[str, Any]:

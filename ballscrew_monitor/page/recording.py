@@ -18,7 +18,6 @@ from ballscrew_monitor.core.conversions import (
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import PointSource, Reason, Zone
 from ballscrew_monitor.judge.records import LIGHT_LOAD, STANDSTILL
-from ballscrew_monitor.messages.state_messages import fill_totals
 from ballscrew_monitor.page import maps
 from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.frames import frame
@@ -31,7 +30,6 @@ from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report.judging import AxisCase, judge_log, OnShare
 from ballscrew_monitor.report.parameters import LogParameters
-from ballscrew_msgs import msg
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.files import InputError
@@ -95,9 +93,7 @@ class RecordedAxis:
             **range_record(surface.speed_range, surface.load_range, (low, high)),
         }
         self.view.know(about, surface, '')
-        totals = msg.Totals()
-        fill_totals(totals, case.outcome.totals)
-        self._totals = totals_record(totals)
+        self._totals = totals_record(case.outcome.totals)
         self._assumes = PointSource.DEFAULT in case.survey.sources[Source.TEMPERATURE]
         self._limits = {
             'efficiency_limit': limits.efficiency,
@@ -171,7 +167,6 @@ class Recording:
     """A clock over the axes of a recording; it begins to play at once."""
 
     def __init__(self, hub: Hub, axes: Iterable[RecordedAxis]) -> None:
-        """Show axes, at least one, on a hub."""
         self._hub, self._axes = hub, list(axes)
         stamps = [axis.course.rows[[0, -1], 0] for axis in self._axes]
         firsts, lasts = zip(*stamps, strict=True)

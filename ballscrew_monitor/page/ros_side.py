@@ -20,7 +20,8 @@ import threading
 import time
 from typing import Any
 
-from ballscrew_monitor.messages.diagnostics import code_of
+from ballscrew_monitor.core.fault_codes import Fault
+from ballscrew_monitor.messages.diagnostics import code_of, HOST, NODE_PART
 from ballscrew_monitor.node.topic import Apart, open_topic
 from ballscrew_monitor.page import records
 from ballscrew_monitor.page.axis_view import AxisView
@@ -28,7 +29,7 @@ from ballscrew_monitor.page.hub import Hub, MOST_AXES, PERIOD
 from ballscrew_monitor.page.phrases import phrase, Said
 from ballscrew_monitor.page.surfaces import PatientClient, SurfaceLink
 from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone, SurfaceInfo
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rcl_interfaces.srv import GetParameters
 from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
@@ -38,6 +39,7 @@ from rclpy.task import Future
 LOG = logging.getLogger(__name__)
 STATE_TYPE = 'ballscrew_msgs/msg/BallScrewState'
 OUTPUTS = ('state', 'out_of_zone', 'surface_info', 'health')  # of an axis that the page reads
+LONGEST = 500  # characters of the hosts of nodes of one name
 LOOK = 1.0  # [s] between two looks at the graph
 DEPTH = 100  # messages of a topic of which few come, that wait for their turn
 DIAGNOSTICS_QOS = QoSProfile(depth=DEPTH)
@@ -59,6 +61,7 @@ class RosSide:
         self._links: dict[str, AxisLink] = {}
         self._gone: dict[str, AxisView] = {}  # that have left, the last one last
         self._refused: dict[str, set[str]] = {}  # hashes of another version
+        self._twins: dict[str, tuple[str, ...]] = {}  # hosts of nodes of one name
         self.failure: Exception | None = None
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._spin, name='ros')
@@ -168,10 +171,24 @@ class RosSide:
         for status in message.status:
             if place := records.place_of(status.name):
                 node, axis, part = place
+                if part == NODE_PART:
+                    self._hear_node(node, status)
                 views = [link.view for link in self._links.values() if link.view.node == node]
                 for view in views:
                     if axis in ('', view.axis):
                         self._later(view.hear_code, part, code_of(status))
+
+    def _hear_node(self, node: str, status: DiagnosticStatus) -> None:
+        """Show on which hosts nodes of one name run, until one of them says that it is alone."""
+        if code_of(status) != Fault.TWO_NODES or self._only not in ('', node):
+            if self._twins.pop(node, None):
+                self._later(self._hub.notice, f'{node} ', '')
+            return
+        hosts = tuple(sorted({one.value for one in status.values if one.key == HOST}))
+        if self._twins.get(node) != hosts and len(self._twins) < MOST_AXES:
+            self._twins[node] = hosts
+            words = phrase('two_nodes', node=node, hosts=', '.join(hosts)[:LONGEST])
+            self._later(self._hub.notice, f'{node} ', words)
 
 
 def _act_all(acts: Iterable[tuple[Any, ...]]) -> None:

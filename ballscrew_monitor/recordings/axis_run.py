@@ -3,15 +3,22 @@
 """One axis through a recording: rows, states and what they come to."""
 
 from collections.abc import Iterator, Mapping, Sequence
+import dataclasses
+import itertools
 import operator
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why
-from ballscrew_monitor.core.state import Event, NOT_ENDED
+from ballscrew_monitor.core.state import NOT_ENDED, RUN_ENDED
 from ballscrew_monitor.judge import records, views
 from ballscrew_monitor.judge.many import Judged, ManyJudge
 from ballscrew_monitor.judge.monitor import MOST_OTHERS
-from ballscrew_monitor.messages.state_messages import empty_state, fill_state, out_of_zone_message
+from ballscrew_monitor.messages.state_messages import (
+    empty_state,
+    fill_state,
+    fill_totals,
+    out_of_zone_message,
+)
 from ballscrew_monitor.messages.unjudged import reason_of
 from ballscrew_monitor.recordings.bulk.events import (
     Events,
@@ -20,9 +27,16 @@ from ballscrew_monitor.recordings.bulk.events import (
     some,
     TICK_SOURCE,
 )
-from ballscrew_monitor.recordings.summary import AxisOutcome, event_record, MessageCounts
+from ballscrew_monitor.recordings.summary import (
+    AxisOutcome,
+    event_record,
+    EventRecord,
+    MessageCounts,
+    run_record,
+    RunRecord,
+)
 from ballscrew_monitor.settings.axis import Axis
-from ballscrew_msgs.msg import BallScrewState, OutOfZone
+from ballscrew_msgs.msg import BallScrewState, OutOfZone, Totals
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.surface.records import from_array
@@ -48,12 +62,13 @@ class AxisRows(NamedTuple):
     The next rows of an axis, an array of ROW, at least one; those after them overwrite them.
 
     A row is a speed sample that was judged, or a tick that found no fresh speed; states are
-    published of some rows only.
+    published of some rows only. They are of the run of this number, of a log with several.
 
     """
 
     axis: str
     rows: NDArray[Any]
+    run: int = 0
 
 
 Part = AxisRows | TimedState | AxisOutcome
@@ -66,19 +81,45 @@ class AxisRun:
     """Judges the ordered events of one axis and collects what they come to."""
 
     def __init__(self, axis: Axis, notes: Notes) -> None:
-        """Begin with what the monitor of `axis` remembers; events refer to `notes`."""
         self.axis, self._notes = axis, notes
         self._judge = ManyJudge(axis.monitor)
-        self._events: dict[int, tuple[Event, int]] = {}  # and until when it is known
+        self._events: dict[int, EventRecord] = {}
         self._rows = self._states = self._first = self._last = 0
         self._last_row: Any = None
         self._heard = np.zeros(TICK_SOURCE + 1, np.int64)  # messages by source
         self._others = np.zeros(TICK_SOURCE + 1, np.int64)
         self._before = _counts(axis)  # of a node that had judged before
-        self._ended: Event | None = None  # by something else than a sample, and not told yet
+        self._runs: list[RunRecord] = []  # those that have ended
+        self._begun = axis.monitor.memory  # as the run began
+        self._span = [0, 0]  # stamps of its first and last row [ns], 0 without one
+        self._ended: OutOfZone | None = None  # by no sample, and not told yet
 
     def take(self, events: Events, *, states: bool = True) -> Iterator[AxisRows | Due]:
         """Judge events; yield their rows, and the states that are due."""
+        begins = {*np.flatnonzero(events['kind'] == records.RUN).tolist()}
+        for begin, end in itertools.pairwise([*sorted({0} | begins), len(events)]):
+            some_events = events[begin:end]
+            if begin in begins:
+                self._begin_run(some_events[:1])
+            for part in self._take(some_events, states=states):
+                yield part if isinstance(part, AxisRows) else (begin + part[0], part[1])
+
+    def _begin_run(self, events: Events) -> None:
+        """Let the run end, and with it what is outside; `events` hold the begin of the next."""
+        monitor = self.axis.monitor
+        self._runs.append(self._run())
+        active = monitor.memory.event_active
+        for _ in self._judge.judge(events):  # which gives no row
+            pass
+        self._judge.give_back()
+        self._begun, self._span = monitor.memory, [0, 0]
+        if active:
+            monitor.ending = RUN_ENDED
+            self._ended = out_of_zone_message(monitor, shelved=False)
+            self._note(int(monitor.memory.event_stamp))
+
+    def _take(self, events: Events, *, states: bool) -> Iterator[AxisRows | Due]:
+        """Judge events of one run as `take` does."""
         about = (events['kind'] == records.REFUSAL) & (events['why'] == Why.OTHER_JOINTS)
         places = np.flatnonzero(about)
         self._heard += _by_source(events)
@@ -95,7 +136,7 @@ class AxisRun:
                 yield from ((place, one) for one in self._state(log_time, row, states=states))
             if len(judged.rows):
                 self._count(judged.rows)
-                yield AxisRows(self.axis.name, judged.rows)
+                yield AxisRows(self.axis.name, judged.rows, len(self._runs))
         self._judge.give_back()
         self._hear_others(notes, len(events))
 
@@ -103,30 +144,48 @@ class AxisRun:
         """Yield the state of a row if states are wanted, and keep the event that it tells of."""
         monitor = self.axis.monitor
         if row.edge:
-            self._note(monitor.event)
+            self._note(int(monitor.memory.event_stamp))
         if not states:
             return
-        event, self._ended = (monitor.event, self._ended) if row.edge else (self._ended, None)
         state = empty_state(self.axis.name)
         inputs = fill_state(state, row, monitor)
-        message = event and out_of_zone_message(self.axis.name, event, shelved=state.shelved)
+        if row.edge:
+            message: OutOfZone | None = out_of_zone_message(monitor, shelved=state.shelved)
+        else:
+            message, self._ended = self._ended, None
+            if message is not None:
+                message.shelved = state.shelved
         yield TimedState(log_time, self.axis, state, inputs, message)
 
     def change(self, axis: Axis) -> None:
         """Go on with an axis as it is described now; an event may have been ended meanwhile."""
-        before, event = self.axis.monitor.event, axis.monitor.event
+        was_active, memory = self.axis.monitor.memory.event_active, axis.monitor.memory
         self.axis = axis
         self._judge = ManyJudge(axis.monitor)
-        if event.number in self._events:
-            self._note(event)
-        if before.active and not event.active:
-            self._ended = event
+        if memory.event_number in self._events:
+            self._note(memory.event_stamp)
+        if was_active and not memory.event_active:
+            self._ended = out_of_zone_message(axis.monitor, shelved=False)
+
+    def _run(self) -> RunRecord:
+        """Return what the run comes to so far."""
+        begun, memory = self._begun, self.axis.monitor.memory
+        totals = Totals(), Totals()
+        for message, part in zip(totals, (begun, memory), strict=True):
+            fill_totals(message, part)
+        return dataclasses.replace(
+            run_record(len(self._runs) + 1, self._span, *totals),
+            judged=int(memory.judged - begun.judged),
+            warnings=int(memory.event_number - begun.event_number),
+        )
 
     def outcome(self) -> AxisOutcome:
         """Return what the axis comes to so far."""
         monitor, row = self.axis.monitor, self._last_row
-        if monitor.event.active:
-            self._note(monitor.event, until=int(monitor.memory.stamp))
+        if monitor.memory.event_active:
+            self._note(int(monitor.memory.stamp))
+        totals = Totals()
+        fill_totals(totals, monitor.memory)
         reason = '' if row is None else reason_of(row, monitor.surface)
         return AxisOutcome(
             axis=self.axis.name,
@@ -135,16 +194,14 @@ class AxisRun:
             rows=self._rows,
             states=self._states,
             judged=int(monitor.memory.judged),
-            totals=monitor.totals,
-            events=tuple(
-                event_record(event, until=until)
-                for _, (event, until) in sorted(self._events.items())
-            ),
+            totals=totals,
+            events=tuple(event for _, event in sorted(self._events.items())),
             inputs=monitor.input_status(0 if row is None else int(row.now)),
             refused=views.refused_of(monitor.memory),
             limits=monitor.settings.limits,
             reason=reason,
             messages={source: self._messages(source) for source in Source},
+            runs=(*self._runs, self._run()) if self._runs else (),
         )
 
     def _messages(self, source: Source) -> MessageCounts:
@@ -170,13 +227,15 @@ class AxisRun:
                 monitor.ending = NOT_ENDED
             yield int(judged.places[at]), from_array(records.Row, judged.rows[at])
 
-    def _note(self, event: Event, *, until: int | None = None) -> None:
-        self._events[event.number] = event, event.stamp if until is None else until
+    def _note(self, until: int) -> None:
+        event = event_record(self.axis.monitor, until=until)
+        self._events[event.event_id] = event
 
     def _count(self, rows: NDArray[Any]) -> None:
         """Count rows, at least one."""
         published = rows['stamp'][rows['published']]
         self._rows += len(rows)
+        self._span = [self._span[0] or int(rows['stamp'][0]), int(rows['stamp'][-1])]
         if len(published):
             self._first = self._first if self._states else int(published[0])
             self._last = int(published[-1])
@@ -215,7 +274,7 @@ def _by_source(events: Events) -> NDArray[np.int64]:
 
 def judged_parts(runs: Sequence[AxisRun], events: Events, *, states: bool) -> Iterator[Part]:
     """Judge the events of several axes; yield rows, and the states in the order of events."""
-    found: list[tuple[int, int, TimedState]] = []
+    due: list[tuple[int, int, TimedState]] = []
     for number, run in enumerate(runs):
         places = places_of_axis(events, number)
         mine = events if len(places) == len(events) else some(events, places)
@@ -223,5 +282,5 @@ def judged_parts(runs: Sequence[AxisRun], events: Events, *, states: bool) -> It
             if isinstance(part, AxisRows):
                 yield part
                 continue
-            found.append((int(places[part[0]]), number, part[1]))
-    yield from (state for _, _, state in sorted(found, key=operator.itemgetter(0, 1)))
+            due.append((int(places[part[0]]), number, part[1]))
+    yield from (state for _, _, state in sorted(due, key=operator.itemgetter(0, 1)))

@@ -42,17 +42,23 @@ WRITTEN_AGAIN = (
 )
 
 
+RUN_BORDERS = 'ballscrew_monitor.run_borders'
+"""Key of the metadata with the stamps [ns] in the pauses between runs of a log."""
+
+
 class Bag:
     """
     An opened bag: its topics and its time span; the messages are read on demand.
 
     `metadata` is what it says of itself; `refused` counts by topic the messages that did not
     decode, with a sentence about the first. `promised` counts by topic the messages that its own
-    metadata state, empty without any; those that are `absent` are not in its files.
+    metadata state, empty without any; those that are `absent` are not in its files. Topics that
+    others are `worked_out` of need no reader of their own.
 
     """
 
     absent = 'counted by metadata.yaml and not in the files'
+    worked_out: frozenset[str] = frozenset()
 
     def __init__(self, path: str | Path, *, salvage: bool = False) -> None:
         """
@@ -79,8 +85,8 @@ class Bag:
                 count = info.count + (self.topics[name].count if name in self.topics else 0)
                 self.topics[name] = dataclasses.replace(info, count=count)
         if not any(info.count for info in self.topics.values()):
-            what = '; '.join(self._missing) or 'at least one is needed'
-            raise InputError(f'bag {self.path} holds no message, {what}')
+            reason = '; '.join(self._missing) or 'at least one is needed'
+            raise InputError(f'bag {self.path} holds no message, {reason}')
         self._check_encodings()
         self._compare(counts)
         self.metadata = self._own_metadata() | custom
@@ -102,9 +108,14 @@ class Bag:
         return {name: info.type_name for name, info in self.topics.items()}
 
     @property
+    def run_borders(self) -> list[int]:
+        """Return stamps [ns] in the pauses between runs of the log, each judged apart."""
+        return [int(border) for border in self.metadata.get(RUN_BORDERS, '').split()]
+
+    @property
     def notes(self) -> list[str]:
         """Return a sentence for each file and topic of which not all could be read so far."""
-        salvaged = [one.note for one in self.storages if one.note]
+        salvaged = [storage.note for storage in self.storages if storage.note]
         refused = [
             sentence + (f'; {count} such messages were refused' if count > 1 else '')
             for count, sentence in self.refused.values()
@@ -142,8 +153,8 @@ class Bag:
     def as_written(self, topics: Collection[str] | None = None) -> Iterator[Message]:
         """Yield messages of `topics` in the order of the files; raises InputError on damage."""
         wanted = set(self.topics if topics is None else topics)
-        for one in self.storages:
-            yield from map(whole, one.messages(wanted, as_written=True))
+        for storage in self.storages:
+            yield from map(whole, storage.messages(wanted, as_written=True))
 
     def messages(self, topics: Collection[str] | None = None) -> Iterator[Message]:
         """Yield messages of `topics` (None: all) by log time; raises InputError on damage."""
@@ -215,16 +226,16 @@ class Bag:
         first = self.storages[0]
         if not isinstance(first, McapStorage) or not first.is_indexed or first.note:
             return {}
-        found: dict[str, str] = {}
+        metadata: dict[str, str] = {}
         try:
             with damage_is_input(first.file), first.file.open('rb') as stream:
                 for record in read_metadata(stream):
-                    found |= record.metadata if record.name == OWN else {}
+                    metadata |= record.metadata if record.name == OWN else {}
         except InputError as error:
             if not self._salvage:
                 raise
             self._missing.append(f'{error}; what it says of itself is left out')
-        return found
+        return metadata
 
 
 def _objection(found: TopicInfo, type_name: str) -> str:

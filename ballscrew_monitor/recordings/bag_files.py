@@ -89,12 +89,13 @@ def of_ros1(file: Path) -> InputError:
 
 
 def _bag_files(path: Path) -> list[Path]:
-    return sorted((file for file in path.iterdir() if _is_part(file)), key=_by_number)
-
-
-def _is_part(file: Path) -> bool:
-    is_old = file.name.endswith('.bag') and file.is_file() and kind_of(file) == 'rosbag1'
-    return file.name.endswith(ENDINGS) or is_old
+    parts = [
+        file
+        for file in path.iterdir()
+        if file.name.endswith(ENDINGS)
+        or (file.name.endswith('.bag') and file.is_file() and kind_of(file) == 'rosbag1')
+    ]
+    return sorted(parts, key=_by_number)
 
 
 def _by_number(file: Path) -> list[str | int]:
@@ -117,22 +118,17 @@ def _read_metadata(metadata: Path) -> Manifest:
         raise InputError(f'{metadata} is not a rosbag2 metadata file: it names no list of files')
     files = [_place(bag, str(name)) for name in names]
     if not any(file.is_file() and kind_of(file) for file in files):  # the first bytes decide
-        _check_stated(bag, str(kind or ''), packing)
+        if kind and str(kind).lower() not in STORAGES:
+            raise InputError(f'bag {bag} is stored as {kind}, it must be {" or ".join(STORAGES)}')
+        if packing.lower() != 'zstd':
+            raise InputError(f'bag {bag} is compressed as {packing}, it must be zstd')
     counts = {}
     with contextlib.suppress(*NO_METADATA):  # those that count well
         counts = {
-            str(one['topic_metadata']['name']): int(one['message_count'])
-            for one in content['topics_with_message_count']
+            str(topic['topic_metadata']['name']): int(topic['message_count'])
+            for topic in content['topics_with_message_count']
         }
     return (files, {str(key): str(value) for key, value in custom.items()}, counts)
-
-
-def _check_stated(bag: Path, kind: str, packing: str) -> None:
-    """Raise InputError if a bag states a storage that is not read."""
-    if kind and kind.lower() not in STORAGES:
-        raise InputError(f'bag {bag} is stored as {kind}, it must be {" or ".join(STORAGES)}')
-    if packing.lower() != 'zstd':
-        raise InputError(f'bag {bag} is compressed as {packing}, it must be zstd')
 
 
 def _place(bag: Path, name: str) -> Path:

@@ -236,8 +236,8 @@ class BagWriter(contextlib.AbstractContextManager['BagWriter']):
     def _metadata(self) -> dict[str, Any]:
         """Return what the bag says of itself in the words of rosbag2, metadata version 9."""
         topics = [
-            {'topic_metadata': one, 'message_count': self._counts[name]}
-            for name, one in self._topics.items()
+            {'topic_metadata': topic, 'message_count': self._counts[name]}
+            for name, topic in self._topics.items()
         ]
         name = self.path.name
         return {

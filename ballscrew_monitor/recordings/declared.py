@@ -35,12 +35,12 @@ def unwritten(**more: Any) -> Any:
 
 def keys(record: Any) -> dict[str, 'dataclasses.Field[Any]']:
     """Return the fields of a record, or of a class of records, that are written, by their keys."""
-    found = {}
+    names = {}
     for spec in dataclasses.fields(record):
         if 'unwritten' not in spec.metadata:
             name, unit = spec.metadata.get('key') or spec.name, spec.metadata.get('unit')
-            found[f'{name}_{unit}' if unit else name] = spec
-    return found
+            names[f'{name}_{unit}' if unit else name] = spec
+    return names
 
 
 def plain(record: Any) -> Any:

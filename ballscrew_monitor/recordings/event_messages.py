@@ -25,6 +25,7 @@ from ballscrew_monitor.judge.records import (
     NOT_KNOWN,
     REFUSAL,
     SAMPLE,
+    STEP,
     TICK,
 )
 from ballscrew_monitor.recordings.bulk.events import blank, Events, Notes, TICK_SOURCE
@@ -48,7 +49,7 @@ ARRAYS: dict[str, np.dtype[Any]] = {
 """The arrays of the message in their order."""
 EMPTY = {kind: np.empty(0, kind) for kind in ARRAYS.values()}
 ALLOWED = {
-    'kind': (SAMPLE, TICK),
+    'kind': (SAMPLE, STEP),
     'source': (0, TICK_SOURCE),
     'stamp_source': (0, max(StampSource)),
     'why': (0, max(Why)),
@@ -191,7 +192,7 @@ def _notes(
 
 def _joints(text: str) -> tuple[str, str, tuple[str, ...]]:
     array, joint, *names = read_json(text)
-    if not all(isinstance(one, str) for one in (array, joint, *names)):
+    if not all(isinstance(name, str) for name in (array, joint, *names)):
         raise ValueError('a note names no joints')
     return array, joint, tuple(names)
 
@@ -202,10 +203,10 @@ def _check(column: Mapping[str, NDArray[Any]]) -> None:
         values = column[name]
         if values.size and not low <= int(values.min()) <= int(values.max()) <= high:
             raise ValueError(f'{name} is from {values.min()} to {values.max()}')
-    is_tick = column['kind'] == TICK
-    if ((column['source'] > max(Source)) != is_tick).any():
+    has_input = (column['kind'] == SAMPLE) | (column['kind'] == REFUSAL)
+    if ((column['source'] > max(Source)) == has_input).any():
         raise ValueError('an event that is no tick has the source of one')
-    if ((column['axis'] == ALL_AXES) & ~is_tick).any():
+    if ((column['axis'] == ALL_AXES) & has_input).any():
         raise ValueError('a sample is of all axes')
 
 
@@ -250,19 +251,19 @@ class _Reader:
 
     def arrays(self, kinds: Mapping[str, np.dtype[Any]]) -> dict[str, NDArray[Any]]:
         """Return the next arrays by their names, each of a kind."""
-        found, data, place, unpack = {}, self._data, self.place, COUNT.unpack_from
+        columns, data, place, unpack = {}, self._data, self.place, COUNT.unpack_from
         for name, kind in kinds.items():
             place += -place % COUNT.size
             (count,) = unpack(data, place)
             place += COUNT.size
             if not count:
-                found[name] = EMPTY[kind]
+                columns[name] = EMPTY[kind]
                 continue
             place += -place % kind.itemsize
-            found[name] = np.frombuffer(data, kind, count, place)
+            columns[name] = np.frombuffer(data, kind, count, place)
             place += count * kind.itemsize
         self.place = place
-        return found
+        return columns
 
     def texts(self) -> list[str]:
         found = []

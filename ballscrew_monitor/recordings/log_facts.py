@@ -8,8 +8,8 @@ from pathlib import Path
 import re
 from typing import Any
 
-from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.declared import plain
+from ballscrew_monitor.recordings.bag import Bag, RUN_BORDERS
+from ballscrew_monitor.recordings.declared import plain, unwritten
 from ballscrew_monitor.recordings.recorded_events import events_topic, recorded_values
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.parameter_row import BARE_LETTERS
@@ -46,6 +46,7 @@ class LogFacts:
     What is known of a log: its name, how it is judged and read, what was assumed and amiss.
 
     `parameters` are those of the node that differ from their defaults, by full name.
+    `run_borders` are stamps [ns] in the pauses between its runs, each of which is judged apart.
 
     """
 
@@ -54,28 +55,31 @@ class LogFacts:
     mapping: Mapping[str, Any]
     assumptions: tuple[Assumption, ...]
     notes: tuple[str, ...]
+    run_borders: tuple[int, ...] = unwritten(default=())
 
     def texts(self) -> dict[str, str]:
         """Return the facts as the metadata of a bag holds them."""
         content = plain(self) | {'parameters': _parameters_text(self.parameters)}
-        return {f'{PREFIX}{key}': _text(value) for key, value in content.items()}
+        texts = {f'{PREFIX}{key}': _text(value) for key, value in content.items()}
+        borders = {RUN_BORDERS: ' '.join(map(str, self.run_borders))}
+        return texts | (borders if self.run_borders else {})
 
     def sentences(self) -> list[str]:
         """Return what is to be said wherever the log is judged."""
         axes = self.mapping.get('axes', {}).keys()
         assumed = {  # by axis, what is about none with each of them
             axis: [
-                f'{one.key.removeprefix(f"{axis}.")} = {one.value}'
-                for one in self.assumptions
-                if one.key.partition('.')[0] not in axes - {axis}
+                f'{assumption.key.removeprefix(f"{axis}.")} = {assumption.value}'
+                for assumption in self.assumptions
+                if assumption.key.partition('.')[0] not in axes - {axis}
             ]
             for axis in axes
         }
         return [
             *self.notes,
             *(
-                f'assumed of {self.source}, {whose}: {", ".join(told)}'
-                for whose, told in grouped(assumed)
+                f'assumed of {self.source}, {whose}: {", ".join(texts)}'
+                for whose, texts in grouped(assumed)
             ),
         ]
 
@@ -105,11 +109,13 @@ def grouped(said: Mapping[str, Sequence[str]]) -> list[tuple[str, list[str]]]:
     for axis, own in said.items():
         groups.setdefault(tuple(one for one in own if one not in common), []).append(axis)
     whole = 'all axes' if len(said) > 1 else ''.join(f'axis {axis}' for axis in said)
-    told = [(whole, common)] if common else []
+    groups_of_axes = [(whole, common)] if common else []
     for rest, axes in groups.items():
         if rest:
-            told.append((f'{"axis" if len(axes) == 1 else "axes"} {", ".join(axes)}', list(rest)))
-    return told
+            groups_of_axes.append(
+                (f'{"axis" if len(axes) == 1 else "axes"} {", ".join(axes)}', list(rest))
+            )
+    return groups_of_axes
 
 
 def facts_of(bag: Bag) -> LogFacts | None:
@@ -125,8 +131,9 @@ def facts_of(bag: Bag) -> LogFacts | None:
             source=str(content['source']),
             parameters=parameters_of(bag) or {},
             mapping=content['mapping'],
-            assumptions=tuple(Assumption(**one) for one in content['assumptions']),
+            assumptions=tuple(Assumption(**assumption) for assumption in content['assumptions']),
             notes=tuple(content['notes']),
+            run_borders=tuple(bag.run_borders),
         )
     except (InputError, KeyError, TypeError, AttributeError) as error:
         reason = ' '.join(str(error).split())

@@ -36,7 +36,7 @@ def with_believed_log_times(
     Raises InputError if no message of a bag tells a time.
 
     """
-    held = [storage for storage in storages if any(one.count for one in storage.topics.values())]
+    held = [storage for storage in storages if any(info.count for info in storage.topics.values())]
     if all(storage.span[0] for storage in held):
         return storages, ''
     times = _HeldTimes(held)
@@ -94,11 +94,11 @@ class _Retimed(Storage):
     def __init__(self, storage: Storage, times: _HeldTimes) -> None:
         self._storage, self._times = storage, times
         self.file, self.topics, self.note = storage.file, storage.topics, storage.note
-        self.zeros, found = 0, list[int]()
+        self.zeros, span = 0, list[int]()
         for message, log_time in self._timed(storage.topics):
             self.zeros += not message.log_time and log_time > RIGHT
-            found = [min(*found, log_time), max(*found, log_time)] if found else [log_time] * 2
-        self.span = (found[0], found[1]) if found else storage.span
+            span = [min(*span, log_time), max(*span, log_time)] if span else [log_time] * 2
+        self.span = (span[0], span[1]) if span else storage.span
 
     def messages(self, wanted: Collection[str], *, as_written: bool = False) -> Stream:
         """Yield the messages, see `Storage`."""

@@ -256,8 +256,10 @@ class McapFile:
             channel_message_counts=dict(self._counts),
             chunk_count=len(self._chunks),
             message_count=self._counts.total(),
-            message_end_time=max((one.message_end_time for one in self._chunks), default=0),
-            message_start_time=min((one.message_start_time for one in self._chunks), default=0),
+            message_end_time=max((chunk.message_end_time for chunk in self._chunks), default=0),
+            message_start_time=min(
+                (chunk.message_start_time for chunk in self._chunks), default=0
+            ),
             metadata_count=len(self._metadata),
             schema_count=len(self._schemas),
         )

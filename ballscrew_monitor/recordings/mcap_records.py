@@ -106,11 +106,12 @@ def _leaves_out_channels(summary: Summary) -> bool:
 def _check(summary: Summary, size: int) -> None:
     """Raise McapError if a summary contradicts itself, or the `size` of its file [bytes]."""
     # Chunks within each other would be unpacked again and again.
-    if sum(one.chunk_length + one.message_index_length for one in summary.chunk_indexes) > size:
+    sizes = [chunk.chunk_length + chunk.message_index_length for chunk in summary.chunk_indexes]
+    if sum(sizes) > size:
         raise McapError('its chunks overlap')
     statistics = summary.statistics
     assert statistics is not None
-    named = {one.chunk_start_offset for one in summary.chunk_indexes}
+    named = {chunk.chunk_start_offset for chunk in summary.chunk_indexes}
     # A file may do without an index.
     if named and not statistics.chunk_count == len(summary.chunk_indexes) == len(named):
         raise McapError(
@@ -126,8 +127,8 @@ def _check(summary: Summary, size: int) -> None:
 
 def read_metadata(stream: BinaryIO) -> Iterator[Metadata]:
     """Yield what a file says of itself; raises one of `DAMAGE`."""
-    for one in read_summary(stream).metadata_indexes:
-        stream.seek(one.offset)
+    for index in read_summary(stream).metadata_indexes:
+        stream.seek(index.offset)
         code, length = RECORD.unpack(stream.read(RECORD.size))
         record = _parsed(code, _body(stream, length))
         if not isinstance(record, Metadata):
@@ -157,17 +158,17 @@ def walked(data: bytes, stored: int) -> list[tuple[int, int]]:
     bounds the work.
 
     """
-    found, at, end, unpack = [], 0, len(data) - RECORD.size, RECORD.unpack_from
+    records, at, end, unpack = [], 0, len(data) - RECORD.size, RECORD.unpack_from
     most = min(limits.RECORDS, stored)
     while at <= end:
         code, length = unpack(data, at)
-        found.append((code, at))
-        if len(found) > most:
+        records.append((code, at))
+        if len(records) > most:
             raise ValueError(f'it holds more than {most} records')
         at += RECORD.size + length
     if at != len(data):
         raise ValueError('its last record is cut off')
-    return found
+    return records
 
 
 def whole_records(file: Path) -> Iterator[Any]:

@@ -127,7 +127,7 @@ def _read(bag: Bag, channels: Sequence[OpenInput]) -> tuple[dict[Source, Series]
                 f'bag {bag.path}: no message of {one.topic} holds {channel.field}, '
                 f'at least one must{named_instead(bag, one)}'
             )
-    return {source: _series(found) for source, found in samples.items()}, refused
+    return {source: _series(pairs) for source, pairs in samples.items()}, refused
 
 
 def _input(bag: Bag, channel: OpenInput) -> Input:

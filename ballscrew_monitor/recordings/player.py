@@ -48,6 +48,10 @@ LAST = 2**31 * SECOND  # [ns] first stamp that a message cannot hold
 CLOCK_PERIOD = 0.01  # [s] of wall time
 MATCH_POLL = 0.02  # [s] between two looks at who has matched
 PAUSE = SECOND // 10  # [ns] of bag time from the last message of a pass to the first of the next
+UNTIMED = (
+    'nobody takes the time from /clock, and for the clock of the wall the stamps of the bag are '
+    'old: start the node with use_sim_time:=true'
+)
 DELIVERY = 5.0  # [s] that the last messages may take
 CLOCK_QOS = QoSProfile(depth=1, reliability=QoSReliabilityPolicy.BEST_EFFORT)
 DATA_QOS = QoSProfile(
@@ -203,8 +207,8 @@ def _times(part: Any) -> Iterator[Time]:
     if isinstance(part, Time):
         yield part
     elif isinstance(part, list):
-        for one in part:
-            yield from _times(one)
+        for message in part:
+            yield from _times(message)
     elif hasattr(part, 'get_fields_and_field_types'):
         for name in part.get_fields_and_field_types():
             yield from _times(getattr(part, name))
@@ -260,7 +264,7 @@ class Following:
         monitor knows to be lost: it cannot know that of the last messages.
 
         """
-        found = []
+        complaints = []
         for name, counts in self._last.items():
             where = name.removesuffix(PART)
             for source in (one.removesuffix(TAKEN) for one in counts if one.endswith(TAKEN)):
@@ -271,8 +275,8 @@ class Following:
                 count = sent.get(self._topics.get(key, ''), 0) or taken + self._gained(
                     name, source + LOST
                 )
-                found.append((count - taken, taken, count, where, source.lower()))
-        lost, taken, count, where, source = max(found, default=(0, 0, 0, '', ''))
+                complaints.append((count - taken, taken, count, where, source.lower()))
+        lost, taken, count, where, source = max(complaints, default=(0, 0, 0, '', ''))
         if lost <= 0:
             return ''
         return (
@@ -280,8 +284,8 @@ class Following:
             f'{source}; lower --rate'
         )
 
-    def _gained(self, name: str, one: str) -> int:
-        return self._last[name].get(one, 0) - self._first[name].get(one, 0)
+    def _gained(self, name: str, key: str) -> int:
+        return self._last[name].get(key, 0) - self._first[name].get(key, 0)
 
     def _hear(self, message: DiagnosticArray) -> None:
         late = RclTime.from_msg(message.header.stamp).nanoseconds > self._end
@@ -335,14 +339,14 @@ def playback(
     stop = threading.Event()
     with interrupts(stop) as interrupted:
         with started_node('ballscrew_player', enable_rosout=True) as node:
-            told = list(bag.notes)
-            say(*told)
+            notes = list(bag.notes)
+            say(*notes)
             player = Player(node, bag, rate=rate, topics=topics)
             # What a monitor said when the bag was recorded tells nothing of those of now.
             known = {} if every or wanted is not None else _topics_by_input(params)
             following = None if DIAGNOSTICS in topics else Following(node, known)
             code = _play(player, topics, patience, stop, loop, following)
-            say(*(note for note in bag.notes if note not in told))
+            say(*(note for note in bag.notes if note not in notes))
         return SIGNALLED + interrupted[0] if interrupted else code
 
 
@@ -418,8 +422,11 @@ def _play(
     if set(topics) <= set(missing):
         say(f'nobody subscribed to {", ".join(topics)} within {patience:g} s')
         return FAILED
-    if missing:
-        print(f'nobody listens to {", ".join(missing)}', flush=True)
+    unheard = [topic for topic in missing if topic != CLOCK]
+    if unheard:
+        print(f'nobody listens to {", ".join(unheard)}', flush=True)
+    if CLOCK in missing:
+        print(UNTIMED, flush=True)
     if following is not None:
         following.begin()
     ended = player.play(stop, loop=loop)

@@ -68,8 +68,8 @@ _FIRST: weakref.WeakKeyDictionary[Bag, tuple[EventMessage, dict[str, Snapshot]]]
 
 def events_topic(bag: Bag) -> str:
     """Return the topic of the events in a bag; empty: no node recorded it."""
-    found = [name for name, info in bag.topics.items() if info.type_name == EVENTS]
-    return found[0] if len(found) == 1 else ''
+    topics = [name for name, info in bag.topics.items() if info.type_name == EVENTS]
+    return topics[0] if len(topics) == 1 else ''
 
 
 def recorded_values(bag: Bag) -> dict[str, Any]:
@@ -94,7 +94,7 @@ def judged_by_events(bag: Bag, values: Mapping[str, Any]) -> bool:
         return False
     message, snapshots = _first(bag)
     if why := _objection(bag, message, _values_of(bag, snapshots), values):
-        missing = [one for one in parameters.input_topics(values) if one not in bag.topics]
+        missing = [topic for topic in parameters.input_topics(values) if topic not in bag.topics]
         if missing:
             raise InputError(
                 f'bag {bag.path}: {why}, and the recording holds no messages of '
@@ -152,18 +152,18 @@ def _first(bag: Bag) -> tuple[EventMessage, dict[str, Snapshot]]:
 
 def _snapshots(message: EventMessage) -> dict[str, Snapshot]:
     """Return the snapshots of a message by axis; raises InputError for any other text."""
-    found: dict[str, Snapshot] = {}
+    snapshots: dict[str, Snapshot] = {}
     for text in message.snapshots:
-        one = read_json(text)
+        snapshot = read_json(text)
         wrong = [
             name
             for name, kind in SHAPE.items()
-            if not isinstance(one, dict) or not isinstance(one.get(name), kind)
+            if not isinstance(snapshot, dict) or not isinstance(snapshot.get(name), kind)
         ]
-        if wrong or not 0 <= one['number'] < ALL_AXES:
+        if wrong or not 0 <= snapshot['number'] < ALL_AXES:
             raise InputError(f'message {message.number} of events: a snapshot has no {wrong}')
-        found[one['axis']] = one
-    return found
+        snapshots[snapshot['axis']] = snapshot
+    return snapshots
 
 
 class RecordedEvents:
@@ -197,8 +197,9 @@ class RecordedEvents:
         """
         for batch in batches(self._bag, [self._topic], as_written=True):
             parts: list[EventMessage] = []
-            found = batch.topics.get(self._topic)
-            for message in [] if found is None else [read(data) for data in found.contents()]:
+            messages = batch.topics.get(self._topic)
+            contents = [] if messages is None else messages.contents()
+            for message in map(read, contents):
                 if self._next is not None and message.number != self._next:
                     self._miss(message)
                 snapshots = _snapshots(message)
@@ -206,11 +207,13 @@ class RecordedEvents:
                     snapshots and snapshots.keys() >= self._snapshots.keys()
                 ):
                     continue
-                if changed := [one for one in snapshots.values() if self._changes(one)]:
+                if changed := [
+                    snapshot for snapshot in snapshots.values() if self._changes(snapshot)
+                ]:
                     yield self._of_runs(parts)  # judged before the axes change
                     parts = []
-                    for one in changed:
-                        self._take_up(one)
+                    for snapshot in changed:
+                        self._take_up(snapshot)
                 self._next = message.number + 1
                 parts.append(message)
             yield self._of_runs(parts)
@@ -320,6 +323,8 @@ def _surface(axis: Axis, stated: Mapping[str, Any]) -> Surface:
             'put that file back where the parameters name it'
         )
     try:
-        return corrected(axis.surface, (KeptSolve(**one) for one in stated['corrections']))
+        return corrected(
+            axis.surface, (KeptSolve(**correction) for correction in stated['corrections'])
+        )
     except (SurfaceError, TypeError) as error:
         raise InputError(f'axis {axis.name}: corrections of the recording: {error}') from None

@@ -46,7 +46,11 @@ def recover(path: Path) -> tuple[Path, int, float, str]:
     file = _unfinished(path) if path.is_dir() else path
     if not file.is_file():
         raise InputError(f'{file} does not exist, it must be an MCAP file or the folder of one')
-    _check_kind(file)
+    kind = kind_of(file)
+    if kind == 'rosbag1':
+        raise of_ros1(file)
+    if kind in OTHERS:
+        raise InputError(OTHERS[kind].format(file=file))
     target = _target(file)
     if target.exists():
         raise InputError(f'{target} is there already, it would be written over: move it away')
@@ -63,22 +67,13 @@ def recover(path: Path) -> tuple[Path, int, float, str]:
     return target, writer.total, (writer.last - writer.first) * 1e-9, lost
 
 
-def _check_kind(file: Path) -> None:
-    """Raise InputError if a file is of another kind than MCAP by its first bytes."""
-    kind = kind_of(file)
-    if kind == 'rosbag1':
-        raise of_ros1(file)
-    if kind in OTHERS:
-        raise InputError(OTHERS[kind].format(file=file))
-
-
 def _unfinished(folder: Path) -> Path:
-    found = sorted(folder.glob(f'*{SUFFIX}{ACTIVE}'))
-    if not found and (stored := sorted(folder.glob('*.db3'))):
+    files = sorted(folder.glob(f'*{SUFFIX}{ACTIVE}'))
+    if not files and (stored := sorted(folder.glob('*.db3'))):
         raise InputError(OTHERS['sqlite3'].format(file=stored[0]))
-    if len(found) != 1:
-        raise InputError(f'{folder} holds {len(found)} unfinished recordings, it must be one')
-    return found[0]
+    if len(files) != 1:
+        raise InputError(f'{folder} holds {len(files)} unfinished recordings, it must be one')
+    return files[0]
 
 
 def _target(file: Path) -> Path:
@@ -114,9 +109,9 @@ def _topics(file: Path) -> tuple[dict[int, tuple[Channel, Schema]], str]:
 
 def _copy(file: Path, topics: dict[int, tuple[Channel, Schema]], writer: BagWriter) -> None:
     for channel, schema in topics.values():
-        said = channel.metadata
-        profiles = _profiles(said.get('offered_qos_profiles', ''))
-        kind = said.get('topic_type_hash', '')
+        metadata = channel.metadata
+        profiles = _profiles(metadata.get('offered_qos_profiles', ''))
+        kind = metadata.get('topic_type_hash', '')
         names = channel.topic, schema.name
         writer.announce(*names, schema.data, type_hash=kind, profiles=profiles)
     with contextlib.suppress(RecordDamage):
@@ -136,7 +131,7 @@ def _copy(file: Path, topics: dict[int, tuple[Channel, Schema]], writer: BagWrit
 
 def _profiles(text: str) -> list[dict[str, Any]]:
     with contextlib.suppress(InputError):
-        found = plain_values(text)
-        if isinstance(found, list) and all(isinstance(one, dict) for one in found):
-            return found
+        profiles = plain_values(text)
+        if isinstance(profiles, list) and all(isinstance(profile, dict) for profile in profiles):
+            return profiles
     return []

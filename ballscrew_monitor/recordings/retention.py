@@ -223,7 +223,7 @@ class Retention:
         segments = self._segments
         while len(segments) > 1 and (
             now - segments[1].begin >= self._settings.before
-            or sum(one.size for one in segments) > MOST_RING
+            or sum(segment.size for segment in segments) > MOST_RING
         ):
             segments.popleft()
 
@@ -234,7 +234,7 @@ class Retention:
         if self._writer is None:
             self._forget(now)
             self._open(self._segments[0].frames[0].log_time, now)
-            for kept in [one for segment in self._segments for one in segment.frames]:
+            for kept in [old for segment in self._segments for old in segment.frames]:
                 self._write(kept)
             self._size = 0  # of what is to come
 

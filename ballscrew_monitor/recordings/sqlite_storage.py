@@ -82,11 +82,11 @@ class SqliteStorage(Storage):
                 names[name] += text.upper().startswith('CREATE TABLE')
             if not all(names.values()):
                 raise sqlite3.DatabaseError(f'no table of {", ".join(names)}')
-            found = {number: rest for number, *rest in database.execute(COUNTS)}
+            counts = {number: rest for number, *rest in database.execute(COUNTS)}
             ((total,),) = database.execute('SELECT count(*) FROM messages')
         lost, times = total, list[int]()
         for number, (name, kind, form) in self._topic_rows().items():
-            count, *span = found.get(number, [0])
+            count, *span = counts.get(number, [0])
             self.topics[name] = TopicInfo(type_name=kind, encoding=form, count=count)
             lost, times = lost - count, times + span
         if times:

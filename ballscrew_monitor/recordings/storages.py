@@ -178,18 +178,18 @@ class McapStorage(Storage):
         self, stream: BinaryIO, place: ChunkIndex, channels: Mapping[int, str]
     ) -> Iterator[tuple[int, Message]]:
         """Yield the messages of a chunk that are of some channels, each with its place there."""
-        found = self.chunk(stream, place)
-        for at in range(len(found)):
-            topic = channels.get(int(found.channel[at]))
+        chunk = self.chunk(stream, place)
+        for at in range(len(chunk)):
+            topic = channels.get(int(chunk.channel[at]))
             if topic is not None:
                 yield (
                     at,
                     Message(
                         topic=topic,
-                        data=found.content(at),
-                        log_time=int(found.log_time[at]),
-                        publish_time=found.publish_time(at),
-                        sequence=int(found.sequence[at]),
+                        data=chunk.content(at),
+                        log_time=int(chunk.log_time[at]),
+                        publish_time=chunk.publish_time(at),
+                        sequence=int(chunk.sequence[at]),
                     ),
                 )
 
@@ -238,7 +238,7 @@ class McapStorage(Storage):
 
     def _whole(self, wanted: Collection[str], *, reorder: bool) -> Iterator[Message]:
         """Yield the messages of a file that is read from its begin, by log time if wanted so."""
-        messages = (one for one in self._up_to_damage() if one.topic in wanted)
+        messages = (message for message in self._up_to_damage() if message.topic in wanted)
         return by_log_time(messages) if reorder else messages
 
     def _up_to_damage(self) -> Iterator[Message]:

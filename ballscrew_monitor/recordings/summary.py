@@ -2,19 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Summary of a run or a replay: totals, events, and the words for them."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 import dataclasses
 import math
 from typing import Any
 
+from ballscrew_monitor.core.advice import speed_advice
 from ballscrew_monitor.core.conversions import rounded, SECOND, seconds
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why
-from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.core.state import Event, TIMES, Totals
-from ballscrew_monitor.recordings.declared import plain, written
-from ballscrew_monitor.recordings.words import number, share
-from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone
+from ballscrew_monitor.core.judgement import EventEnd, Limits
+from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.judge.views import TIMES
+from ballscrew_monitor.judge.zone import ACTIVE
+from ballscrew_monitor.recordings.declared import plain, unwritten, written
+from ballscrew_monitor.recordings.words import counted, number, share
+from ballscrew_msgs.msg import BallScrewState, Finding, OutOfZone, Totals
 from surrogate.surface import REGIMES
 from surrogate.units import RPM
 
@@ -22,8 +25,10 @@ RELATIONS = {
     Finding.CODE_RCS_HIGH: ('RCS', '>='),
     Finding.CODE_EFFICIENCY_LOW: ('efficiency', '<'),
 }
+OTHER = 'other', 'beyond'
 SHOWN = 'event_id start_s duration_s active cause worst_value limit advice'.split()
 """What the totals say of an event, by its keys."""
+SUMS = *TIMES, 'revolutions', 'energy_lost'
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -32,7 +37,8 @@ class EventRecord:
     One stay outside the optimal zone; start [ns], duration [s], worst value and limit [-].
 
     `speed` [rad/s] and `axial_load` [N] are those of the worst value, NaN where only the message
-    of the warning is known; `target_speed` is that of the advice, NaN if there is none.
+    of the warning is known; `target_speed` is that of the advice, NaN if there is none. It was on
+    when its run ended if `run_ended`.
 
     """
 
@@ -48,6 +54,7 @@ class EventRecord:
     axial_load: float = written('N', default=math.nan, compare=False)
     target_speed: float = written('rad_s', default=math.nan, compare=False)
     advice: str
+    run_ended: bool = unwritten(default=False)
 
     @property
     def place(self) -> str:
@@ -69,12 +76,54 @@ class EventRecord:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class RunRecord:
+    """
+    What one of several runs of a recording comes to for an axis; each is judged apart.
+
+    First and last stamp of its rows [ns], 0 without any; judged speed samples and warnings [-];
+    times [s].
+
+    """
+
+    number: int
+    first: int = written('ns', key='first_stamp')
+    last: int = written('ns', key='last_stamp')
+    running_time: float = written('s')
+    unjudged_time: float = written('s')
+    optimal_time: float = written('s')
+    outside_time: float = written('s')
+    revolutions: float
+    judged: int = 0
+    warnings: int = 0
+
+    @property
+    def duration(self) -> float:
+        """Return the time from its first to its last row [s]."""
+        return seconds(self.last - self.first)
+
+    @property
+    def words(self) -> str:
+        """Return the run in words, without its number and times."""
+        if not self.first:
+            return 'no usable sample'
+        parts = (
+            f'{name} {getattr(self, f"{name}_time"):.1f} s'
+            for name in ('optimal', 'outside', 'unjudged')
+        )
+        return (
+            f'in motion {self.running_time:.1f} s of {self.duration:.1f} s, '
+            f'{self.revolutions:.0f} revolutions; {", ".join(parts)}; '
+            f'{counted(self.warnings, "warning")}'
+        )
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Summary:
     """
     Totals of one axis.
 
     Stamps of the first and last state [ns]; number of states and of judged speed samples [-];
-    times [s]; energy [J]; events in order.
+    times [s]; energy [J]; events in order; the runs of a recording that holds several.
 
     """
 
@@ -93,6 +142,14 @@ class Summary:
     revolutions: float
     energy_lost: float = written('J')
     events: tuple[EventRecord, ...]
+    runs: tuple[RunRecord, ...] = unwritten(default=())
+
+    @property
+    def recorded(self) -> float:
+        """Return the time that was recorded [s], without the pauses between runs."""
+        if not self.runs:
+            return self.since_first(self.last)
+        return math.fsum(run.duration for run in self.runs)
 
     @property
     def says_nothing(self) -> bool:
@@ -101,7 +158,10 @@ class Summary:
 
     def record(self) -> dict[str, Any]:
         """Return plain data for JSON; times of events are relative [s]."""
-        return plain(self) | {'events': [self._event_record(event) for event in self.events]}
+        runs = {'runs': plain(self.runs)} if self.runs else {}
+        return (
+            plain(self) | {'events': [self._event_record(event) for event in self.events]} | runs
+        )
 
     def _event_record(self, event: EventRecord) -> dict[str, Any]:
         own = plain(event) | {
@@ -121,14 +181,14 @@ class Summary:
 
     def lines(self) -> list[str]:
         """Return the summary in words."""
-        span = self.since_first(self.last)
         no_events = 'none, for no motion was judged' if self.says_nothing else 'none'
         return [
-            f'in motion   {self.running_time:.1f} s of {span:.1f} s, '
+            f'in motion   {self.running_time:.1f} s of {self.recorded:.1f} s, '
             f'{self.revolutions:.0f} revolutions, '
             f'{number(self.energy_lost, 4)} J lost to friction',
             'regime      ' + self._shares(*(regime.word for regime in REGIMES)),
             'zone        ' + self._shares('optimal', 'outside', 'unjudged'),
+            *self._run_lines(),
             f'events      {len(self.events) or no_events}',
             *(self._event_line(event) for event in self.events),
         ]
@@ -139,6 +199,20 @@ class Summary:
             time = getattr(self, f'{name}_time')
             parts.append(f'{name} {time:.1f} s ({share(time, self.running_time)})')
         return ', '.join(parts)
+
+    def _run_lines(self) -> list[str]:
+        if not self.runs:
+            return []
+        return [
+            f'runs        {len(self.runs)}, each judged apart',
+            *(
+                f'  {run.number:2d}  {self.since_first(run.first):5.1f} s to '
+                f'{self.since_first(run.last):5.1f} s  {run.words}'
+                if run.first
+                else f'  {run.number:2d}  {run.words}'
+                for run in self.runs
+            ),
+        ]
 
     def _event_line(self, event: EventRecord) -> str:
         end = 'still on' if event.active else f'{self.since_first(event.end):5.1f} s'
@@ -181,7 +255,7 @@ class AxisOutcome:
     `first` and `last` are stamps of states [ns]; `events` in order, one that is still on as far
     as it is known; `inputs` as they stood at the last row, `refused` messages by input and
     why; `reason` tells why the last row has no answer, if it has none; `messages` of the recording
-    alone, where a node had heard others before it.
+    alone, where a node had heard others before it; `runs` of a recording that holds several.
 
     """
 
@@ -198,6 +272,7 @@ class AxisOutcome:
     limits: Limits
     reason: str = ''
     messages: Mapping[Source, MessageCounts] = dataclasses.field(default_factory=dict)
+    runs: tuple[RunRecord, ...] = ()
 
     def summary(self) -> Summary | None:
         """Return the summary, None without a state."""
@@ -210,21 +285,20 @@ class AxisOutcome:
             states=self.states,
             judged=self.judged,
             events=self.events,
-            revolutions=self.totals.revolutions,
-            energy_lost=self.totals.energy_lost,
-            **{name: seconds(getattr(self.totals, name)) for name in TIMES},
+            runs=self.runs,
+            **{name: getattr(self.totals, name) for name in SUMS},
         )
 
 
-def summary_of(said: Iterable[BallScrewState | OutOfZone]) -> Summary | None:
+def summary_of(messages: Iterable[BallScrewState | OutOfZone]) -> Summary | None:
     """Return what states and events of one axis come to, None without a state."""
     first, states, last = 0, 0, None
     events: dict[int, EventRecord] = {}
-    for one in said:
-        if isinstance(one, BallScrewState):
-            first, states, last = first if states else stamp_of(one), states + 1, one
-        elif one.event_id:
-            events[one.event_id] = _event_record(one)
+    for message in messages:
+        if isinstance(message, BallScrewState):
+            first, states, last = first if states else stamp_of(message), states + 1, message
+        elif message.event_id:
+            events[message.event_id] = _event_record(message)
     if last is None:
         return None
     return Summary(
@@ -234,37 +308,57 @@ def summary_of(said: Iterable[BallScrewState | OutOfZone]) -> Summary | None:
         states=states,
         judged=last.judged,
         events=tuple(events[key] for key in sorted(events)),
-        **{name: getattr(last.totals, name) for name in (*TIMES, 'revolutions', 'energy_lost')},
+        **{name: getattr(last.totals, name) for name in SUMS},
     )
 
 
-def event_record(event: Event, *, until: int) -> EventRecord:
-    """Return an event as it stands at the stamp `until` [ns]."""
-    point = event.advisor
+def run_record(number: int, span: Sequence[int], before: Totals, after: Totals) -> RunRecord:
+    """Return a run by its first and last stamp [ns] and the totals before and after it."""
+    return RunRecord(
+        number=number,
+        first=span[0],
+        last=span[1],
+        running_time=after.running_time - before.running_time,
+        unjudged_time=after.unjudged_time - before.unjudged_time,
+        optimal_time=after.optimal_time - before.optimal_time,
+        outside_time=after.outside_time - before.outside_time,
+        revolutions=after.revolutions - before.revolutions,
+    )
+
+
+def event_record(monitor: Monitor, *, until: int) -> EventRecord:
+    """Return the last event of a monitor as it stands at the stamp `until` [ns]."""
+    memory, target_speed = monitor.memory, monitor.target_speed
+    quantity, relation = RELATIONS.get(monitor.event_code, OTHER)
+    start = int(memory.event_start[ACTIVE])
     return EventRecord(
-        event_id=event.number,
-        start=event.start,
-        duration=seconds(until - event.start),
-        advice=event.advice.text,
-        speed=math.nan if point is None else point.speed,
-        axial_load=math.nan if point is None else point.axial_load,
-        **_said(event, event, event.advice),
+        event_id=int(memory.event_number),
+        start=start,
+        duration=seconds(until - start),
+        active=bool(memory.event_active),
+        quantity=quantity,
+        relation=relation,
+        limit=float(memory.event_limit[ACTIVE]),
+        worst_value=float(memory.event_worst[ACTIVE]),
+        speed=float(memory.event_speed[ACTIVE]),
+        axial_load=float(memory.event_load[ACTIVE]),
+        target_speed=target_speed,
+        advice=speed_advice(target_speed),
+        run_ended=monitor.ending.kind is EventEnd.RUN_ENDED,
     )
 
 
 def _event_record(message: OutOfZone) -> EventRecord:
+    quantity, relation = RELATIONS.get(message.cause.code, OTHER)
     return EventRecord(
         event_id=message.event_id,
         start=message.start.sec * SECOND + message.start.nanosec,
         duration=message.duration,
+        active=message.active,
+        quantity=quantity,
+        relation=relation,
+        limit=message.cause.limit,
+        worst_value=message.worst_value,
+        target_speed=message.cause.target_speed,
         advice=message.advice,
-        **_said(message, message.cause, message.cause),
     )
-
-
-def _said(event: Any, cause: Any, advice: Any) -> dict[str, Any]:
-    """Return what an event and the message of one name alike."""
-    quantity, relation = RELATIONS.get(cause.code, ('other', 'beyond'))
-    said = {'quantity': quantity, 'relation': relation, 'limit': cause.limit}
-    said['target_speed'] = advice.target_speed
-    return said | {'active': event.active, 'worst_value': event.worst_value}

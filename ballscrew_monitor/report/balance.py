@@ -116,9 +116,9 @@ def add_products(sums: Any, rows: Any, lead: float, standstill: float) -> None:
 
 def _add(products: Any, load: float, motion: float, torque: float) -> None:
     terms = (load, motion, 1.0, torque)
-    for one in range(TERMS):
+    for term in range(TERMS):
         for other in range(TERMS):
-            products[TERMS * one + other] += terms[one] * terms[other]
+            products[TERMS * term + other] += terms[term] * terms[other]
 
 
 @functools.cache

@@ -88,8 +88,8 @@ def coarse_record(rows: pl.DataFrame) -> dict[str, Any]:
     """Return rows as a page carries them."""
     return {
         'time': page.doubles(rows['time']),
-        'columns': {one.name: page.floats(one) for one in rows.select(NUMBERS)},
-        'codes': {one.name: page.codes(one) for one in rows.select(CODES)},
+        'columns': {column.name: page.floats(column) for column in rows.select(NUMBERS)},
+        'codes': {column.name: page.codes(column) for column in rows.select(CODES)},
     }
 
 
@@ -100,7 +100,7 @@ def fine_record(rows: pl.DataFrame) -> dict[str, Any]:
         'begin': float(time[0]),
         'end': float(time[-1]),
         'count': time.size,
-        'columns': {one.name: page.packed(one) for one in rows.select(NUMBERS)},
+        'columns': {column.name: page.packed(column) for column in rows.select(NUMBERS)},
     }
     even = np.linspace(time[0], time[-1], time.size)
     step = (time[-1] - time[0]) / max(1, time.size - 1)

@@ -48,8 +48,8 @@ class SureTime:
             some = rows[asked]
             load = np.where(some['direction'] == POSITIVE, -1.0, 1.0) * some['axial_load']
             speed = np.abs(some['speed']) / self._least
-            found = look_up_many(self._surface, speed, load, some['temperature'])
-            sure[asked] = found['rcs'] >= self._limits.rcs
+            answers = look_up_many(self._surface, speed, load, some['temperature'])
+            sure[asked] = answers['rcs'] >= self._limits.rcs
         return sure
 
     @property

@@ -21,10 +21,11 @@ from ballscrew_monitor.core.interrupts import DONE, FAILED
 from ballscrew_monitor.core.prerequisites import require
 from ballscrew_monitor.recordings import log_facts
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bag_files import is_table
+from ballscrew_monitor.recordings.bag_files import is_bag
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.tables.guess import Guess, guess
 from ballscrew_monitor.recordings.tables.mapping import read_map
+from ballscrew_monitor.recordings.tables.sources import is_log
 from ballscrew_monitor.recordings.words import counted, say
 from ballscrew_monitor.report.check_page import check_parts, Checked, next_steps
 from ballscrew_monitor.report.command import check_most_unjudged, is_bad
@@ -40,6 +41,7 @@ from surrogate.surface import shipped_surface, Surface, SurfaceError
 from surrogate.units import MILLI
 
 MAPS, SURFACES, SHEETS = 'maps', 'surfaces', 'sheets'
+BESIDE = '.map.yaml'
 OIL = 'iso_vg_68'
 UNCERTAINTY = 0.1  # [N m] of a torque whose map is guessed
 
@@ -72,7 +74,7 @@ def check_command(args: argparse.Namespace, nominal: Path) -> int:
         raise InputError(f'folder {args.folder} does not exist, it must hold logs')
     check_most_unjudged(args.most_unjudged)
     require('numba')
-    paths = find_logs([args.folder], tables=True, out=args.out)
+    paths = find_logs([args.folder], tables=True, out=args.out, is_log=is_log)
     sheets = sheets_of(args.folder, args.screw, args.oil)
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
         entries, checked = _check(paths, sheets, args, nominal)
@@ -219,20 +221,28 @@ def _open(
 ) -> None:
     """Open a recording; a table by the map that is given or guessed, if that says all."""
     try:
-        if is_table(log.path) and args.map is None:
+        table = log.path.is_file() and not is_bag(log.path)
+        given = args.map or map_beside(log.path)
+        if table and given is None:
             log.guess = _with_sheets(guess(log.path), sheets)
             if log.is_free:
                 log.guess = _as_free_run(log.guess)
             if log.guess.unstated:
                 log.failure = '; '.join(log.guess.unstated)
             return
-        log.mapping = args.map if is_table(log.path) else None
+        log.mapping = given if table else None
         if log.mapping:
             read_map(log.mapping)
         log.bag = opened_log(log.path, mapping=log.mapping)
         log.values = parameters_for(log.bag, args.params, nominal).values
     except (InputError, SurfaceError) as error:
         log.failure = str(error)
+
+
+def map_beside(log: Path) -> Path | None:
+    """Return the map that lies beside a table, `feed.map.yaml` for `feed.csv`, None without."""
+    path = log.with_suffix(BESIDE)
+    return path if path.is_file() else None
 
 
 def _with_sheets(first: Guess, sheets: tuple[Screw, Lubricant] | None) -> Guess:

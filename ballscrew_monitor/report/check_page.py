@@ -69,6 +69,16 @@ def _sentence(step: str) -> str:
 def next_steps(entries: Sequence[LogEntry], checked: Checked) -> list[str]:
     """Return what to do and what to record, each once, what hinders a verdict first."""
     steps = [f'{name}: {why}' for name, whys in checked.unstated.items() for why in whys]
+    steps += [
+        f'{one.name}: {one.failure}'
+        for one in entries
+        if one.result is None and not checked.unstated.get(one.name)
+    ]
+    if steps:
+        steps.append(
+            'Lay a map beside each table that needs one, feed.map.yaml for feed.csv: maps/ beside '
+            'this page holds the first ones'
+        )
     judged = [one for one in entries if one.result and one.folder not in checked.free]
     lines = [line for one in judged if one.result for line in one.result.lines]
     steps += [f'Axis {line.axis}: {line.remedy.rstrip(".")}' for line in lines if line.remedy]

@@ -4,10 +4,13 @@
 
 from collections.abc import Mapping, Sequence
 import dataclasses
+import math
 from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.core.conversions import clock_text
+from ballscrew_monitor.health.mixed import Prior, USUAL
+from ballscrew_monitor.health.peers import FEWEST_PEERS, priors, Spread, spread_of
 from ballscrew_monitor.health.records import (
     Baseline,
     Cause,
@@ -19,10 +22,18 @@ from ballscrew_monitor.health.records import (
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.report.health_collect import run_mapped, Workers
 from ballscrew_monitor.report.health_folder import axis_folders, read_axis
-from ballscrew_monitor.report.health_history import AxisHistory, by_axis, healths, read_history
+from ballscrew_monitor.report.health_history import (
+    AxisHistory,
+    by_axis,
+    healths,
+    known_of,
+    read_history,
+)
 from ballscrew_monitor.report.machines import MachineAxis
+import numpy as np
 from surrogate.files import InputError, to_json
 from surrogate.progress import Progress
+from surrogate.surface import Surface
 from surrogate.tasks.pool import TaskOutcome
 
 Inputs = dict[str, Any]
@@ -71,8 +82,10 @@ def assess_axes(
 
     """
     names = {titles[key]: key for key in axes}
+    known = _priors({title: axes[key] for title, key in names.items()}, workers)
     inputs = {
-        title: {**axes[key], 'title': title, 'options': options} for title, key in names.items()
+        title: {**axes[key], 'title': title, 'options': {**options, **known.get(title, {})}}
+        for title, key in names.items()
     }
     courses: dict[MachineAxis, list[Health]] = {}
     bar = Progress(len(inputs), 'axes')
@@ -94,19 +107,60 @@ def assess_axes(
     return {key: courses[key] for key in axes if courses.get(key)}
 
 
+def _priors(axes: Mapping[str, Inputs], workers: Workers) -> dict[str, dict[str, Any]]:
+    """Return as an option the prior of each axis that has peers, axes of one screw by name."""
+    if len(axes) <= FEWEST_PEERS:
+        return {}
+    screws: dict[str, dict[str, Spread]] = {}
+
+    def report(outcome: TaskOutcome) -> None:
+        if outcome.result is not None:
+            plain = outcome.result['spread']
+            groups = frozenset(tuple(group) for group in plain.pop('groups'))
+            spread = Spread(groups=groups, **{'deviation': math.inf} | known_of(plain))
+            screws.setdefault(outcome.result['surface'], {})[outcome.name] = spread
+
+    run_mapped(spread_task, axes, workers, report)
+    return {
+        axis: {'prior': prior._asdict()}
+        for spreads in screws.values()
+        for axis, prior in priors(spreads).items()
+        if prior != USUAL
+    }
+
+
+def spread_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Return as plain data what the logs of one axis say of its peers: a task of a worker."""
+    histories, _ = histories_of(inputs)
+    if not histories:
+        raise InputError('no log can be read')
+    surface = max(histories, key=lambda log: log.first).surface
+    cells = np.concatenate([log.summary.cells for log in histories])
+    spread = spread_of(cells, Surface.load(Path(surface)).lead)
+    if spread is None:
+        raise InputError('its logs are too few')
+    plain = to_json({**spread._asdict(), 'groups': sorted(map(tuple, spread.groups))})
+    return {'surface': surface, 'spread': plain}
+
+
+def histories_of(inputs: Mapping[str, Any]) -> tuple[list[AxisHistory], list[str]]:
+    """Return the logs of the axis of a task, and notes on those that cannot be read."""
+    if 'folder' in inputs:
+        return read_axis(Path(inputs['folder']))
+    return [read_history(plain) for plain in inputs['histories']], []
+
+
 def assess_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Return as plain data the health of one axis after each of its logs: a task of a worker."""
-    title, notes = inputs['title'], list[str]()
-    if 'folder' in inputs:
-        histories, notes = read_axis(Path(inputs['folder']))
-        if not histories:
-            raise InputError(f'axis {title}: none of its collected logs can be read: {notes[0]}')
-    else:
-        histories = [read_history(plain) for plain in inputs['histories']]
+    title, (histories, notes) = inputs['title'], histories_of(inputs)
+    if not histories:
+        raise InputError(f'axis {title}: none of its collected logs can be read: {notes[0]}')
     notes += filter(None, [same_start_note(histories, title)])
     options = dict(inputs['options'])
     if options.get('days') is not None:
         options['days'] = tuple(options['days'])
+    if prior := options.pop('prior', None):
+        options['prior'] = Prior(**{**prior, 'pairs': tuple(prior['pairs'])})
     course = [
         to_json(dataclasses.asdict(one)) for one in healths(histories, title=title, **options)
     ]
@@ -148,4 +202,4 @@ def read_health(plain: Mapping[str, Any]) -> Health:
 
 def _quantity(plain: Mapping[str, Any]) -> Quantity:
     """Return a quantity; what is not known is NaN by default."""
-    return Quantity(**{key: value for key, value in plain.items() if value is not None})
+    return Quantity(**known_of(plain))

@@ -59,6 +59,26 @@ class Collected(NamedTuple):
     failure: str = ''
 
 
+class Failures:
+    """Logs that cannot be read: a reason is said with the first of them, then their number."""
+
+    def __init__(self) -> None:
+        self._logs: dict[str, int] = {}
+
+    def add(self, log: Path, sentence: str) -> None:
+        """Take the sentence about a log."""
+        reason = sentence.removeprefix(f'log {log}: ')
+        if reason not in self._logs:
+            say(f'{log}: {reason}')
+        self._logs[reason] = self._logs.get(reason, 0) + 1
+
+    def count(self) -> int:
+        """Say how many logs share a reason; return how many cannot be read."""
+        for reason, logs in self._logs.items():
+            say(*([f'{logs} logs in all cannot be read: {reason}'] if logs > 1 else []))
+        return sum(self._logs.values())
+
+
 FEW = 8
 """Tasks up to which it takes longer to start processes than they save."""
 OnLog = Callable[[Path, Collected], None]
@@ -79,16 +99,15 @@ def collect(logs: Sequence[Path], folder: Path, given: Given, workers: Workers) 
     new = [
         log for log, known in identities.items() if not is_complete(held.get(known.log, ()), known)
     ]
-    failures = len(missing)
-    say(*(f'{log}: it does not exist' for log in missing))
+    failures = Failures()
+    for log in missing:
+        failures.add(log, 'it does not exist')
 
     def keep_log(log: Path, collected: Collected) -> None:
-        nonlocal failures
         identity: LogIdentity = identities[log]
         say(*(f'{log}: {note}' for note in collected.notes))
         if not collected.histories:
-            failures += 1
-            say(f'{log}: {collected.failure or "nothing was judged in it"}')
+            failures.add(log, collected.failure or 'nothing was judged in it')
             return
         try:
             keep(folder, identity, collected.histories, held.get(identity.log, ()))
@@ -96,10 +115,10 @@ def collect(logs: Sequence[Path], folder: Path, given: Given, workers: Workers) 
             raise SurfaceError(f'{folder} cannot be written: {error.strerror or error}') from None
 
     map_logs(new, given, workers, keep_log, alone=len(logs) == 1)
-    known = len(identities) - len(new)
-    kept = len(new) - failures + len(missing)
+    known, failed = len(identities) - len(new), failures.count()
+    kept = len(new) - failed + len(missing)
     print(f'{counted(kept, "log")} collected in {folder}, {known} known already')
-    return failures
+    return failed
 
 
 def map_logs(

@@ -12,6 +12,7 @@ import sys
 from typing import Any
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED
+from ballscrew_monitor.health.fleet import controlled
 from ballscrew_monitor.health.records import Health, Quantity
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import FILE, read_health
@@ -24,7 +25,14 @@ from ballscrew_monitor.report.health_axes import (
     joined_axes,
     logged_axes,
 )
-from ballscrew_monitor.report.health_collect import collect, Collected, Given, map_logs, Workers
+from ballscrew_monitor.report.health_collect import (
+    collect,
+    Collected,
+    Failures,
+    Given,
+    map_logs,
+    Workers,
+)
 from ballscrew_monitor.report.health_folder import is_health_folder
 from ballscrew_monitor.report.health_history import AxisHistory, peers_among
 from ballscrew_monitor.report.health_kept import kept_healths, stored_axis
@@ -65,11 +73,14 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
         for folder, stored in stores.items():
             values = read_file(args.params or nominal)
             found |= kept_healths(folder, stored, titles, values, _options(args))
+        found, fleet = controlled(found)
         for last in (courses[-1] for courses in found.values()):
             print(printable('\n'.join(lines_of(last))))
         for peer in peers_among(histories, titles):
             print(printable(peer.text))
         say(*filter(None, [folders_note(axes)]))
+        if fleet:
+            print(f'{fleet}.')
         records = _records(found, titles)
         if args.out is not None and found:
             _write(args.out, records, {titles[axis]: one for axis, one in found.items()})
@@ -97,16 +108,18 @@ def _histories(logs: Sequence[Path], given: Given, workers: Workers) -> list[Axi
     Raises InputError when the only one cannot be read.
 
     """
-    histories: list[AxisHistory] = []
+    histories, failures = list[AxisHistory](), Failures()
 
     def take(log: Path, collected: Collected) -> None:
         if collected.failure and len(logs) == 1:
             raise InputError(collected.failure)
         say(*(f'{log}: {note}' for note in collected.notes))
-        say(*([f'{log}: {collected.failure}'] if collected.failure else []))
+        if collected.failure:
+            failures.add(log, collected.failure)
         histories.extend(collected.histories)
 
     map_logs(logs, given, workers, take, alone=len(logs) == 1)
+    failures.count()
     return histories
 
 
@@ -148,7 +161,7 @@ def days_of(first: str, last: str) -> tuple[int, int]:
 def lines_of(health: Health) -> list[str]:
     """Return what is said of an axis, line by line."""
     known = [f'  {one.name:<34} {_shown(one)}' for one in health.quantities if one.is_known]
-    silent = [f'  {one.name:<34} {one.reason}' for one in health.quantities if not one.is_known]
+    silent = [f'  {", ".join(names)}: {reason}' for reason, names in health.unknown.items()]
     causes = [
         f'  {"excluded" if one.excluded else f"{100 * one.weight:.0f} %":>8}  {one.text}'
         for one in health.causes
@@ -165,7 +178,8 @@ def lines_of(health: Health) -> list[str]:
 
 def _shown(one: Quantity) -> str:
     unit = '' if one.unit == '-' else f' {one.unit}'
-    return f'{one.value:.4g}{unit} ({one.low:.4g} to {one.high:.4g}); {one.evidence}'
+    interval = '' if one.low == one.high else f' ({one.low:.4g} to {one.high:.4g})'
+    return f'{one.value:.4g}{unit}{interval}; {one.evidence}'
 
 
 def _records(

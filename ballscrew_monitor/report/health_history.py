@@ -14,6 +14,7 @@ from ballscrew_monitor.health.baseline import named
 from ballscrew_monitor.health.collect import Collected, Collector
 from ballscrew_monitor.health.detection import BASELINE_DAYS
 from ballscrew_monitor.health.gather import GatherSettings
+from ballscrew_monitor.health.mixed import Prior, USUAL
 from ballscrew_monitor.health.peers import FEWEST_PEERS, Peer, ranked
 from ballscrew_monitor.health.records import Cell, Health, LogSummary, Missing, SpectrumBin
 from ballscrew_monitor.health.rows import has_torque_many, moves_many
@@ -95,13 +96,19 @@ class HistoryMaker:
         self._take(self._collector.take_many(rows))
 
     def history(
-        self, axis: str, surface: Path, settings: MonitorSettings, *, machine: str = ''
+        self,
+        axis: str,
+        surface: Path,
+        settings: MonitorSettings,
+        *,
+        machine: str = '',
+        torque_is_load: bool = False,
     ) -> AxisHistory:
-        """Return what came of all rows."""
+        """Return what came of all rows; `torque_is_load`: the map takes the torque for a load."""
         self._take(self._collector.finish())
         cells = list(self._cells.values())
         if all(cell.direction == 0 for cell in cells):
-            cells.append(nothing(self._first, self._missing()))
+            cells.append(nothing(self._first, self._missing(torque_is_load=torque_is_load)))
         cells += self._stroke.cells(self._first) + self._reversals.cells(self._first)
         return AxisHistory(
             axis=axis,
@@ -116,10 +123,12 @@ class HistoryMaker:
             log=self._log,
         )
 
-    def _missing(self) -> Missing:
+    def _missing(self, *, torque_is_load: bool) -> Missing:
         if not self._moved:
             return Missing.MOTION
-        return Missing.STEADY if self._measured else Missing.TORQUE
+        if self._measured:
+            return Missing.STEADY
+        return Missing.LOAD if torque_is_load else Missing.TORQUE
 
     def _take(self, found: Collected) -> None:
         for stretch in found.stretches:
@@ -131,19 +140,19 @@ class HistoryMaker:
 def read_history(record: Mapping[str, Any]) -> AxisHistory:
     """Return a history of plain data, as `dataclasses.asdict` and JSON leave it."""
     kept = dict(record)
-    cells = [Cell(**one) for one in map(_known, kept.pop('cells'))]
+    cells = [Cell(**one) for one in map(known_of, kept.pop('cells'))]
     bins = [
         SpectrumBin(
             wear_time=tuple(one.pop('wear_time')),
             axial_load=one.pop('axial_load', float('nan')),
             **one,
         )
-        for one in map(_known, kept.pop('bins'))
+        for one in map(known_of, kept.pop('bins'))
     ]
     return AxisHistory(cells=cells, bins=bins, limits=Limits(**kept.pop('limits')), **kept)
 
 
-def _known(record: Mapping[str, Any]) -> dict[str, Any]:
+def known_of(record: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields that are known; for the others the defaults stand."""
     return {key: value for key, value in record.items() if value is not None}
 
@@ -155,11 +164,13 @@ def healths(
     days: tuple[int, int] | None = None,
     speed_allowed: bool = False,
     title: str = '',
+    prior: Prior = USUAL,
 ) -> list[Health]:
     """
     Return the health of one axis after each of its recordings, in the order of their stamps.
 
-    `title` names the axis in sentences if its own name does not tell it apart from others.
+    `title` names the axis in sentences if its own name does not tell it apart from others; the
+    `prior` is that of its peers.
     The baseline is that of `days`, begin and end [ns], or of the first `baseline_days`. Life and
     causes are those of the surface of the last recording. Its parameters let the advice name
     another speed, or `speed_allowed` does. Recordings that begin at one instant have no order and
@@ -175,6 +186,7 @@ def healths(
         limits=last.limits,
         speed_allowed=speed_allowed or last.speed_allowed,
         baseline_days=baseline_days,
+        prior=prior,
     )
     kept = Kept(
         np.concatenate([one.summary.cells for one in ordered]),

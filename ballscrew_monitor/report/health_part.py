@@ -36,13 +36,15 @@ def verdict_box(health: Health) -> Markup:
 def health_chapter(health: Health) -> Markup:
     """Return the health of an axis: the verdict, what is known and what is not, and causes."""
     known = [one for one in health.quantities if one.is_known]
-    silent = [one for one in health.quantities if not one.is_known]
     return joined(
         element('h3', 'Health: normal or worse'),
         verdict_box(health),
         *_known(known),
         *_causes(health),
-        *(element('p', f'{one.name}: {one.reason}.', class_='muted') for one in silent),
+        *(
+            element('p', f'{", ".join(names)}: {reason}.', class_='muted')
+            for reason, names in health.unknown.items()
+        ),
         *(element('p', f'Note: {note}.', class_='hint') for note in health.notes),
     )
 

@@ -16,14 +16,13 @@ from ballscrew_monitor.core.conversions import celsius, seconds
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why, YEAR
 from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.core.links import Link
-from ballscrew_monitor.core.state import Extremes
 from ballscrew_monitor.messages.doctor import Heard, InputFacts, known_range, unit_doubts
 from ballscrew_monitor.messages.reasons import slow_reason
 from ballscrew_monitor.recordings.declared import unwritten, written
 from ballscrew_monitor.recordings.words import duration, number
 from ballscrew_monitor.report.judging import AxisCase, InputSetting
-from ballscrew_monitor.report.ledger import Ledger, ledger_of, REFUSALS
-from ballscrew_monitor.report.survey import Gaps
+from ballscrew_monitor.report.ledger import Ledger, ledger_of
+from ballscrew_monitor.report.survey import Extremes, Gaps
 from surrogate.units import MILLI, RPM, TURN
 
 MEASURED = 'measured'
@@ -128,14 +127,14 @@ class InputSeen:
         lost = 'not known' if self.lost is None else str(self.lost)
         gaps = f'{self.gaps.count}, in all {duration(self.gaps.time)}'
         left_out = f'{self.left_out} out of order or of other joints'
-        found = (
+        amounts = (
             (Trouble.GAPS, self.gaps.count > 0, gaps),
             (Trouble.SLOW, self.slow, 'yes'),
             (Trouble.LAG, abs(self.lag) >= LAG_TOLD, f'{number(self.lag)} s'),
             (Trouble.LOST, self.numbered and self.lost != 0, lost),
             (Trouble.LEFT_OUT, self.left_out > 0, left_out),
         )
-        return {trouble: text for trouble, there, text in found if there}
+        return {trouble: text for trouble, there, text in amounts if there}
 
     @property
     def known(self) -> str:
@@ -188,8 +187,8 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
 
 def _rate(case: AxisCase, source: Source) -> float:
     """Return how many messages came in a second [Hz] outside of gaps, NaN where none can tell."""
-    received = {one.source: one.received for one in case.outcome.inputs}
-    steps, span = received[source] - 1, case.survey.span
+    received = {status.source: status.received for status in case.outcome.inputs}
+    steps, span = received[source] - case.survey.runs, case.survey.span
     if steps < 1 or not span:
         return math.nan
     # What came as often as the speed came with it; a long timeout does not see all gaps.
@@ -217,8 +216,8 @@ def _origin(case: AxisCase, source: Source) -> str:
     elif source is Source.TORQUE and facts.torque_from_current:
         name, origin = 'current', 'worked out from the current'
     doubtful = [part for part in ('column', 'unit') if f'{name}.{part}' in facts.assumed]
-    for key, what in OF_MOTOR.get(name, {}).items():
-        doubtful += [what] if key in facts.assumed else []
+    for key, words in OF_MOTOR.get(name, {}).items():
+        doubtful += [words] if key in facts.assumed else []
     return f'{origin}, {" and ".join(doubtful)} assumed' if doubtful else origin
 
 
@@ -245,7 +244,7 @@ def _heard(setting: InputSetting, span: Extremes, status: InputStatus) -> Heard:
 
 def _refused(case: AxisCase, source: Source) -> str:
     refused = case.outcome.refused.get(source, {})
-    return ', '.join(f'{count} {REFUSALS[why]}' for why, count in refused.items() if count)
+    return ', '.join(f'{count} {why.fault.counted}' for why, count in refused.items() if count)
 
 
 def _hints(case: AxisCase, source: Source, setting: InputSetting, heard: Heard) -> Sequence[str]:
@@ -301,17 +300,17 @@ def _of_speed(
         ]
     if fastest >= limit:
         return []
-    said = (
+    doubt = (
         f'{parameter}: the axis never moves, up to {fastest / RPM:.2g} rev/min: '
         f'numbers go from {heard.low:.3g} to {heard.high:.3g} {setting.unit}'
     )
     top = case.surface.speed_range[1]
     others = [unit for unit in setting.scalings if limit <= _amount(unit, setting, heard) <= top]
     if not others:
-        return [said]
+        return [doubt]
     if case.facts.is_mapped:
-        return [f'{said}: {cure}']
-    return [f'{said}, which may be {" or ".join(others)}: then set {parameter}.unit']
+        return [f'{doubt}: {cure}']
+    return [f'{doubt}, which may be {" or ".join(others)}: then set {parameter}.unit']
 
 
 def _amount(unit: str, setting: InputSetting, heard: Heard) -> float:
@@ -323,15 +322,15 @@ def contradictions(case: AxisCase, source: Source, parameter: str) -> Sequence[s
     """Return that sign or size of an input contradicts the others, and what may mend it."""
     factor = case.balance.factor
     if source is case.balance.turned:
-        said = f'{parameter}: its sign looks turned ({TURNED[source]})'
-        return [f'{said}: {_write(case, source, "scale: -1")}, or 1 if it is -1']
+        doubt = f'{parameter}: its sign looks turned ({TURNED[source]})'
+        return [f'{doubt}: {_write(case, source, "scale: -1")}, or 1 if it is -1']
     if source is not Source.LOAD or math.isnan(factor):
         return []
-    said = (
+    doubt = (
         f'{parameter}: the motor torque changes {number(factor)} times as much as this load '
         f'needs at a lead of {case.surface.lead * MILLI:g} mm'
     )
-    return [f'{said}: {_mend_of_size(case)}']
+    return [f'{doubt}: {_mend_of_size(case)}']
 
 
 def _mend_of_size(case: AxisCase) -> str:

@@ -126,8 +126,8 @@ class AxisCase:
         """Return where contact begins, in the unit in which the log speaks."""
         if self.onset is None:
             return ''
-        said = self.onset.sentence(as_feed=self.speaks_feed)
-        return f'{said.replace(" degC", " °C")}.'
+        sentence = self.onset.sentence(as_feed=self.speaks_feed)
+        return f'{sentence.replace(" degC", " °C")}.'
 
     @property
     def speaks_feed(self) -> bool:
@@ -210,7 +210,7 @@ class LogCase:
     @property
     def unjudged(self) -> list[str]:
         """Return the axes on which nothing was judged."""
-        return [*self.empty, *(one.axis for one in self.axes if one.is_silent)]
+        return [*self.empty, *(case.axis for case in self.axes if case.is_silent)]
 
     @property
     def judged(self) -> bool:
@@ -264,17 +264,19 @@ class CaseMaker:
         )
         self._history = None if make is None else make(self._surface, gathering_of(axis, values))
 
-    def add(self, rows: NDArray[Any]) -> None:
-        """Take the next rows, an array of ROW."""
-        self._surveyor.add(rows)
+    def add(self, rows: NDArray[Any], run: int = 0) -> None:
+        """Take the next rows, an array of ROW, of the run of a number."""
+        self._surveyor.add(rows, run)
         self._balancer.add(rows)
         self._sure.add(rows)
         if self._history is not None:
             self._history.add(rows)
 
-    def case(self, outcome: AxisOutcome, bag: Bag | None = None, **known: Any) -> AxisCase:
+    def case(
+        self, outcome: AxisOutcome, bag: Bag | None = None, *, facts: AxisFacts, **known: Any
+    ) -> AxisCase:
         """
-        Return the axis as it is after at least one row; `known` are more of its fields.
+        Return the axis as it is after at least one row; `facts` and `known` are more of it.
 
         `bag` holds the messages of its inputs, None if they were recorded as events.
 
@@ -298,10 +300,12 @@ class CaseMaker:
                 surface_file(self._axis, self._values),
                 self._settings,
                 machine=self._machine,
+                torque_is_load=facts.torque_is_load,
             ),
             onset=self._onset(survey.oil.mean),
             balance=self._balancer.result(),
             surely_outside=self._sure.seconds,
+            facts=facts,
             **known,
         )
 
@@ -363,7 +367,7 @@ def judge_log(
                     positions = positions_of(bag, part.axis, parameters.values)
                     make = functools.partial(health, log=str(bag.path), positions=positions)
                 makers[part.axis] = CaseMaker(part.axis, parameters.values, make, machine)
-            makers[part.axis].add(part.rows)
+            makers[part.axis].add(part.rows, part.run)
             if rows is not None:
                 rows.add(part.axis, part.rows)
     numbered = judged_by_events(bag, parameters.values)
@@ -371,25 +375,25 @@ def judge_log(
         name=bag.path.name,
         parameters=parameters.short_origin,
         axes=[
-            makers[one.axis].case(
-                one,
+            makers[outcome.axis].case(
+                outcome,
                 None if numbered else bag,
-                rows=None if rows is None else rows.table(one.axis),
-                facts=parameters.axes.get(one.axis, AxisFacts()),
+                rows=None if rows is None else rows.table(outcome.axis),
+                facts=parameters.axes.get(outcome.axis, AxisFacts()),
                 nominal=parameters.nominal,
                 numbered=numbered,
             )
-            for one in outcomes
-            if one.axis in makers
+            for outcome in outcomes
+            if outcome.axis in makers
         ],
-        empty=[one.axis for one in outcomes if one.axis not in makers],
+        empty=[outcome.axis for outcome in outcomes if outcome.axis not in makers],
         assumptions=parameters.assumptions,
         notes=[*parameters.notes, *bag.notes],
         machine=machine,
         unread={
             topic: info.count
             for topic, info in bag.topics.items()
-            if not numbered and topic not in input_topics(parameters.values)
+            if not numbered and topic not in {*input_topics(parameters.values), *bag.worked_out}
         },
     )
 

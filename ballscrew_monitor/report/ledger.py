@@ -12,18 +12,6 @@ from ballscrew_monitor.recordings.declared import unwritten, written
 from ballscrew_monitor.recordings.summary import MessageCounts
 from ballscrew_monitor.report.judging import AxisCase, LogCase
 
-REFUSALS = {
-    Why.OTHER_JOINTS: 'of other joints',
-    Why.NOT_A_NUMBER: 'not a number',
-    Why.FUTURE: 'stamped in the future',
-    Why.OTHER_CLOCK: 'stamped by another clock',
-    Why.NEGATIVE: 'stamped before zero',
-    Why.SEVERAL: 'sent by several publishers',
-    Why.TOO_SHORT: 'too short an array',
-    Why.IMPLAUSIBLE: 'beyond what is plausible',
-    Why.NOT_DECODED: 'that do not decode',
-    Why.HOLE: 'too long after the position before',
-}
 UNREAD = 'not read from the files'
 LOST = 'lost on the way to the node'
 OUT_OF_ORDER = 'out of order'
@@ -86,8 +74,8 @@ def ledger_of(case: AxisCase, source: Source) -> Ledger:
         setting.absent: absent,
         LOST: lost,
         UNREAD: present - heard,
-        REFUSALS[Why.OTHER_JOINTS]: others,
-        **{REFUSALS[why]: count for why, count in messages.refused.items()},
+        Why.OTHER_JOINTS.fault.counted: others,
+        **{why.fault.counted: count for why, count in messages.refused.items()},
         NO_SLOPE if setting.from_position else OUT_OF_ORDER: messages.left_out,
     }
     judged = messages.good

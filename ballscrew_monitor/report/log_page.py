@@ -57,7 +57,11 @@ def verdict_part(verdict: AxisVerdict) -> Markup:
 
 def tiles(case: AxisCase, summary: Summary) -> Markup:
     """Return the numbers that a reader asks for first."""
-    running = summary.running_time
+    running, turns = summary.running_time, number(summary.revolutions, 4)
+    travel = turns, 'revolutions'
+    if case.speaks_feed:
+        way = number(summary.revolutions * case.surface.lead, 4)
+        travel = f'{way} m', f'travelled, {turns} revolutions'
     facts = (
         (duration(case.survey.span), 'recorded'),
         (duration(running), f'in motion ({share(running, case.survey.span)})'),
@@ -67,21 +71,13 @@ def tiles(case: AxisCase, summary: Summary) -> Markup:
         ),
         (str(len(summary.events)), 'warning' if len(summary.events) == 1 else 'warnings'),
         (f'{number(summary.energy_lost, 4)} J', 'lost to friction in the screw'),
-        _travel(case, summary),
+        travel,
     )
-    made = (
+    parts = (
         element('div', element('b', value), element('span', text), class_='tile')
         for value, text in facts
     )
-    return element('div', *made, class_='tiles')
-
-
-def _travel(case: AxisCase, summary: Summary) -> tuple[str, str]:
-    turns = number(summary.revolutions, 4)
-    if not case.speaks_feed:
-        return turns, 'revolutions'
-    way = number(summary.revolutions * case.surface.lead, 4)
-    return f'{way} m', f'travelled, {turns} revolutions'
+    return element('div', *parts, class_='tiles')
 
 
 def shares(case: AxisCase, summary: Summary) -> Markup:
@@ -166,7 +162,8 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool, advised: bool) -
     begin, shown = case.since_first(event.start), case.shown(event)
     metal = event.quantity == RCS
     cause = 'oil film too thin (RCS)' if metal else f'too much friction ({event.quantity})'
-    lasts = number(event.duration, 4) + (' and still on' if event.active else '')
+    lasts = number(event.duration, 4)
+    lasts += ' and still on' if event.active else ', the run ended' if event.run_ended else ''
     return TableRow(
         (
             TableCell(str(event.event_id), kind='number', value=event.event_id),
@@ -185,6 +182,28 @@ def _event_row(case: AxisCase, event: EventRecord, worst: bool, advised: bool) -
         end=shown[1],
         kind='bad' if worst else '',
     )
+
+
+def runs_part(case: AxisCase, summary: Summary) -> Iterable[Markup]:
+    """Return the runs of a recording that holds several, a row each."""
+    if not summary.runs:
+        return
+    begins = [case.since_first(run.first) if run.first else math.nan for run in summary.runs]
+    rows = [
+        TableRow(
+            (
+                TableCell(str(run.number), kind='number', value=run.number),
+                TableCell(f'{begin:.2f}' if run.first else NONE, kind='number', value=begin),
+                run.words,
+            ),
+            begin=begin if run.first else None,
+            end=begin + run.duration if run.first else None,
+        )
+        for run, begin in zip(summary.runs, begins, strict=True)
+    ]
+    yield element('h3', f'Runs: {len(summary.runs)}')
+    yield element('p', 'Time begins again with each run, and each is judged apart.')
+    yield table(('No.', 'Begins at [s]', 'What it comes to'), rows, kind='leading')
 
 
 def maps_of(log: LogCase) -> list[OperatingMap]:
@@ -218,12 +237,12 @@ def _courses(log: LogCase, budgets: Sequence[AxisBudget], spare: float) -> list[
     shares = buckets.shares_of_worst(
         spare, log.axes, [time_series.event_bytes(*axis) for axis in axes]
     )
-    made: list[dict[str, Any]] = []
+    courses: list[dict[str, Any]] = []
     left = 0.0  # what an axis did not take is for the next one
     for (case, budget), own in zip(axes, shares, strict=True):
-        made.append(time_series.series_record(case, own + left, budget))
-        left += own - len(script_json(made[-1]['fine']))
-    return made
+        courses.append(time_series.series_record(case, own + left, budget))
+        left += own - len(script_json(courses[-1]['fine']))
+    return courses
 
 
 def _body(log: LogCase, maps: Sequence[OperatingMap], budgets: Sequence[AxisBudget]) -> Markup:
@@ -250,10 +269,11 @@ def _id(number: int) -> str:
 def _when(log: LogCase) -> str:
     if not log.axes:
         return 'No axis could be judged.'
+    if any(math.isnan(case.begins) for case in log.axes):
+        recorded = max(case.survey.span for case in log.axes)
+        return f'Recorded over {recorded:.1f} s, without a date.'
     first = min(case.survey.first for case in log.axes)
     last = max(case.survey.last for case in log.axes)
-    if any(math.isnan(case.begins) for case in log.axes):
-        return f'Recorded over {(last - first) * 1e-9:.1f} s, without a date.'
     return f'Recorded from {clock_text(first).removesuffix(" UTC")} to {clock_text(last)}.'
 
 
@@ -269,7 +289,7 @@ def _axis_part(
         element('h3', f'Operating map at {chart.temperature:g} °C oil'),
         element('div', class_='map'),
         _legend(map_legend(case, chart)),
-        *([] if summary is None else [shares(case, summary)]),
+        *([] if summary is None else [shares(case, summary), *runs_part(case, summary)]),
         events_part(case, budget.events),
         element('h3', 'Course over time'),
         element(

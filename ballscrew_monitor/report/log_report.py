@@ -211,19 +211,19 @@ def _result(log: LogCase) -> LogResult:
 def _axis_line(key: MachineAxis, verdict: AxisVerdict, case: AxisCase | None) -> AxisLine:
     machine, axis = key
     standing = verdict.standing.value
-    said = AxisLine(
+    line = AxisLine(
         axis=axis, standing=standing, verdict=verdict.whole, machine=machine, remedy=verdict.remedy
     )
     if case is None:
-        return said
+        return line
     summary, worst = case.outcome.summary(), next(iter(case.worst_first), None)
     ledger = speed_ledger(case)
     return dataclasses.replace(
-        said,
+        line,
         expected=ledger.expected if ledger else 0,
         judged=ledger.judged if ledger else 0,
         losses=ledger.words if ledger else '',
-        unmeasured=[NAMES[one.source] for one in inputs_seen(case) if not one.measured],
+        unmeasured=[NAMES[seen.source] for seen in inputs_seen(case) if not seen.measured],
         begins=case.begins,
         recorded=case.survey.span,
         running_time=math.nan if summary is None else summary.running_time,

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings that are meant, bags, files, and folders that hold some; and folders of reports."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 import contextlib
 from pathlib import Path
 import re
@@ -15,24 +15,31 @@ PAGE, STATES, EVENTS, JUDGED = 'report.html', 'states.parquet', 'events.csv', 'j
 SUMMARY, PICTURE = 'summary.json', 'cycle.png'
 PRODUCTS = (JUDGED, STATES, EVENTS)
 """How a folder with a report is known, and what is no recording in it."""
+NO_LOGS = ('.yaml', '.yml', '.md', '.html', '.py', '.pdf', '.png', '.npz', '.toml', '.active')
+"""Endings of what may lie beside recordings."""
 MOST_NAMED = 5  # tables that are left out
 _UNSAFE = re.compile(r'[^\w.-]+')
 
 
 def find_logs(
-    paths: Iterable[Path], *, tables: bool = False, out: Path | None = None
+    paths: Iterable[Path],
+    *,
+    tables: bool = False,
+    out: Path | None = None,
+    is_log: Callable[[Path], bool] | None = None,
 ) -> list[Path]:
     """
     Return the recordings that paths name, those in a folder in the order of their names.
 
     A path that is a bag or a file stands for itself, whatever is in it; `tables` tells whether
-    those in a folder count too. Products of reports do not, nor does the folder `out` of reports
-    to come. Raises InputError for a folder without any recording.
+    those in a folder count too, and `is_log` which files of other endings are among them. Products
+    of reports do not, nor does the folder `out` of reports to come. Raises InputError for a folder
+    without any recording.
 
     """
-    found: list[Path] = []
+    logs: list[Path] = []
     for path in paths:
-        held = _recordings(path, tables, out)
+        held = _recordings(path, tables, out, is_log)
         if not held:
             endings, there = (*ENDINGS, *TABLES) if tables else ENDINGS, _files(path, TABLES)
             hint = '--guess > map.yaml, then --map map.yaml'
@@ -41,16 +48,33 @@ def find_logs(
                 f'{" or ".join(endings)}'
                 + (f'; for its tables: ballscrew import {there[0]} {hint}' if there else '')
             )
-        found += held
-    return list(dict.fromkeys(found))
+        logs += held
+    return list(dict.fromkeys(logs))
 
 
-def _recordings(path: Path, tables: bool, out: Path | None) -> list[Path]:
+def _recordings(
+    path: Path, tables: bool, out: Path | None, is_log: Callable[[Path], bool] | None
+) -> list[Path]:
     """Return a path that is one recording, else those in a folder and in the ones below it."""
     if not path.is_dir() or is_one_bag(path, tables=tables, out=out):
         return [path]
-    below = [one for child in _folders(path, out) for one in _recordings(child, tables, out)]
-    return _files(path, (*ENDINGS, *TABLES) if tables else ENDINGS) + below
+    below = [
+        recording
+        for child in _folders(path, out)
+        for recording in _recordings(child, tables, out, is_log)
+    ]
+    held = _files(path, (*ENDINGS, *TABLES) if tables else ENDINGS)
+    if is_log is not None:
+        held += [
+            file
+            for file in _held(path)
+            if file.is_file()
+            and file not in held
+            and not file.name.startswith('.')
+            and file.suffix.lower() not in NO_LOGS
+            and is_log(file)
+        ]
+    return sorted(held) + below
 
 
 def left_out(paths: Sequence[Path], logs: Sequence[Path], out: Path | None = None) -> list[str]:
@@ -81,7 +105,11 @@ def is_one_bag(folder: Path, *, tables: bool = False, out: Path | None = None) -
     if any(is_one_bag(child, tables=tables, out=out) for child in _folders(folder, out)):
         return False
     files = _files(folder, (*ENDINGS, ACTIVE))
-    return len(files) == 1 or _are_parts(files)
+    parts = [_PART.fullmatch(_stem(file.name)) for file in files]
+    known = [(part[1], int(part[2])) for part in parts if part is not None]
+    numbers = sorted(number for _, number in known)
+    are_parts = len({stem for stem, _ in known}) == 1 and numbers == list(range(len(files)))
+    return len(files) == 1 or are_parts
 
 
 def bears_name_of_bag(folder: Path) -> bool:
@@ -89,13 +117,6 @@ def bears_name_of_bag(folder: Path) -> bool:
     stems = [_stem(file.name) for file in _files(folder, (*ENDINGS, ACTIVE))]
     parts = [part[1] for part in map(_PART.fullmatch, stems) if part is not None]
     return folder.name in (*stems, *parts) and is_one_bag(folder, tables=True)
-
-
-def _are_parts(files: Sequence[Path]) -> bool:
-    parts = [_PART.fullmatch(_stem(file.name)) for file in files]
-    found = [(part[1], int(part[2])) for part in parts if part is not None]
-    numbers = sorted(number for _, number in found)
-    return len({stem for stem, _ in found}) == 1 and numbers == list(range(len(files)))
 
 
 def _stem(name: str) -> str:

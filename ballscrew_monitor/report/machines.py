@@ -41,8 +41,8 @@ def folder_of(log: Path) -> Path:
 
 def machine_names(axes: Iterable[MachineAxis]) -> dict[str, str]:
     """Return a short name of each machine: of a folder, as much of its path as tells it apart."""
-    machines = list(dict.fromkeys(one.machine for one in axes))
-    return {one: _short_name(one, {*machines} - {one}) for one in machines}
+    machines = list(dict.fromkeys(machine.machine for machine in axes))
+    return {machine: _short_name(machine, {*machines} - {machine}) for machine in machines}
 
 
 def _short_name(machine: str, others: set[str]) -> str:
@@ -50,7 +50,9 @@ def _short_name(machine: str, others: set[str]) -> str:
         return machine
     parts = Path(machine).parts
     endings = (str(Path(*parts[-depth:])) for depth in range(1, len(parts)))
-    alone = (one for one in endings if not any(_ends_with(other, one) for other in others))
+    alone = (
+        ending for ending in endings if not any(_ends_with(other, ending) for other in others)
+    )
     return next(alone, machine)
 
 
@@ -68,18 +70,18 @@ def _is_folder(machine: str) -> bool:
 def axis_titles(axes: Iterable[MachineAxis]) -> dict[MachineAxis, str]:
     """Return the name of each axis, with its machine where machines share that name."""
     known = list(dict.fromkeys(axes))
-    names, count = machine_names(known), Counter(one.axis for one in known)
+    names, count = machine_names(known), Counter(axis.axis for axis in known)
     return {
-        one: one.axis if count[one.axis] == 1 else f'{one.axis} of {names[one.machine]}'
-        for one in known
+        axis: axis.axis if count[axis.axis] == 1 else f'{axis.axis} of {names[axis.machine]}'
+        for axis in known
     }
 
 
 def folders_note(axes: Iterable[MachineAxis]) -> str:
     """Return in a sentence that folders with axes of one name count as machines, or ''."""
     known = set(axes)
-    count = Counter(one.axis for one in known)
-    folders = {one.machine for one in known if count[one.axis] > 1 and _is_folder(one.machine)}
+    count = Counter(axis.axis for axis in known)
+    folders = {axis.machine for axis in known if count[axis.axis] > 1 and _is_folder(axis.machine)}
     if len(folders) < 2:
         return ''
     return (

@@ -127,17 +127,17 @@ def report_each(
 ) -> list[LogEntry]:
     """Write a report of each of several recordings; return their entries."""
     inputs = {
-        one.folder: {
-            'log': os.path.abspath(one.log),  # a link belongs to the machine where it lies
-            'out': str((out / one.folder).resolve()),
-            'params': _text(one.params),
-            'map': _text(one.mapping),
+        log.folder: {
+            'log': os.path.abspath(log.log),  # a link belongs to the machine where it lies
+            'out': str((out / log.folder).resolve()),
+            'params': _text(log.params),
+            'map': _text(log.mapping),
             'nominal': str(nominal),
         }
-        for one in logs
+        for log in logs
     }
     outcomes = _outcomes(inputs, workers, dask)
-    return [entry_of(one.log.name, one.folder, outcomes[one.folder]) for one in logs]
+    return [entry_of(log.log.name, log.folder, outcomes[log.folder]) for log in logs]
 
 
 def _outcomes(

@@ -180,9 +180,9 @@ def map_line(
     factor: float = 1.0,
 ) -> MapLine:
     """Return where values are at a level, as points with breaks; speeds times a factor."""
-    found: Any = contour_generator(factor * field.speed, field.load, values).lines(level)
+    lines: Any = contour_generator(factor * field.speed, field.load, values).lines(level)
     gap = np.full((1, 2), np.nan)
-    parts: list[Array] = [part for line in found for part in (line, gap)]
+    parts: list[Array] = [part for line in lines for part in (line, gap)]
     points = np.concatenate(parts[:-1]) if parts else np.empty((0, 2))
     return MapLine(kind=kind, label=label, height=height, points=points)
 
@@ -191,8 +191,11 @@ def _dwell(case: AxisCase, speeds: tuple[float, float], loads: tuple[float, floa
     """Return the time spent in each cell [s]; before a gap it is not counted."""
     longest, limits = case.settings.timeouts[Source.SPEED], case.settings.limits
     step, speed = pl.col('stamp').shift(-1) - pl.col('stamp'), pl.col('speed').abs()
+    load, direction = pl.col('axial_load'), pl.col('direction')
+    forward, backward = direction == Direction.POSITIVE, direction == Direction.NEGATIVE
+    opposing = pl.when(forward).then(0.0 - load).when(backward).then(load)  # else null
     cells = (
-        _cell(_opposing(), np.linspace(*loads, ROWS + 1)).alias('row'),
+        _cell(opposing, np.linspace(*loads, ROWS + 1)).alias('row'),
         _cell(speed, np.geomspace(*speeds, COLUMNS + 1)).alias('column'),
     )
 
@@ -202,18 +205,11 @@ def _dwell(case: AxisCase, speeds: tuple[float, float], loads: tuple[float, floa
         lasting = lasting.filter(pl.col('step').is_between(1, longest))
         return lasting.group_by(*cells).agg(pl.sum('step'))
 
-    found = case.row_table.collect(query, ahead=1).drop_nulls()
-    row, column, time = (found[name].to_numpy() for name in ('row', 'column', 'step'))
+    sums = case.row_table.collect(query, ahead=1).drop_nulls()
+    row, column, time = (sums[name].to_numpy() for name in ('row', 'column', 'step'))
     dwell = np.zeros((ROWS, COLUMNS), np.int64)
     np.add.at(dwell, (row, column), time)
     return dwell / SECOND
-
-
-def _opposing() -> pl.Expr:
-    """Return the load that opposes the motion [N], null where its direction is not known."""
-    load, direction = pl.col('axial_load'), pl.col('direction')
-    forward, backward = direction == Direction.POSITIVE, direction == Direction.NEGATIVE
-    return pl.when(forward).then(0.0 - load).when(backward).then(load)
 
 
 def _cell(value: pl.Expr, edges: Array) -> pl.Expr:

@@ -84,8 +84,8 @@ def sample(
     speed, load = np.geomspace(*speeds, SPEEDS), np.linspace(*loads, LOADS)
     across, along = (each.ravel() for each in np.meshgrid(speed, load))
     heats = np.full(across.size, kelvin(temperature))
-    found = look_up_many(surface, across, along, heats)
-    shaped = {name: found[name].reshape(LOADS, SPEEDS) for name in NAMES}
+    answers = look_up_many(surface, across, along, heats)
+    shaped = {name: answers[name].reshape(LOADS, SPEEDS) for name in NAMES}
     return Field(speed=speed / RPM, load=load, band=surface.limit_band, **shaped)
 
 

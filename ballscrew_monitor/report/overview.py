@@ -54,12 +54,12 @@ def overview_page(
     `parts` come below the verdict; the page bears a `title` of its own, if any.
 
     """
-    listed = [(one, line) for one in entries if one.result for line in one.result.lines]
+    listed = [(entry, line) for entry in entries if entry.result for line in entry.result.lines]
     listed.sort(key=lambda pair: -math.inf if math.isnan(pair[1].begins) else pair[1].begins)
     axes = [line.key for _, line in listed]
     titles = axis_titles(axes)
-    bad = [one for one in entries if one.result is None]
-    failures = (element('li', element('b', one.name), f': {one.failure}') for one in bad)
+    bad = [entry for entry in entries if entry.result is None]
+    failures = (element('li', element('b', entry.name), f': {entry.failure}') for entry in bad)
     first, trends = _health(entries, titles)
     notes = [*notes, *filter(None, [folders_note(axes)])]
     body = element(
@@ -88,7 +88,7 @@ def overview_page(
                 'Warnings',
                 'Worst warning',
             ),
-            (_row(one, line, titles[line.key]) for one, line in listed),
+            (_row(entry, line, titles[line.key]) for entry, line in listed),
             kind='sortable verdicts',
         ),
     )
@@ -113,7 +113,7 @@ def _verdict(entries: Sequence[LogEntry], listed: Sequence[Listed]) -> Markup:
     counts = dict.fromkeys(MARKS, 0)
     for _, line in listed:
         counts[line.standing] += 1
-    lost = sum(one.result is None for one in entries)
+    lost = sum(entry.result is None for entry in entries)
     sentence = (
         f'{counts["bad"]} of {len(listed)} axis recordings ran outside the optimal zone, '
         f'{counts["good"]} were good, {counts["unknown"]} could not be judged'
@@ -123,9 +123,9 @@ def _verdict(entries: Sequence[LogEntry], listed: Sequence[Listed]) -> Markup:
     return element('div', element('p', sentence, class_='sentence'), class_=f'verdict {kind}')
 
 
-def _row(one: LogEntry, line: AxisLine, title: str) -> TableRow:
+def _row(entry: LogEntry, line: AxisLine, title: str) -> TableRow:
     part = line.outside_time / line.running_time if line.running_time else math.nan
-    link = element('a', one.name, href=f'{quote(one.folder)}/{PAGE}')
+    link = element('a', entry.name, href=f'{quote(entry.folder)}/{PAGE}')
     return TableRow(
         (
             TableCell(
@@ -180,12 +180,12 @@ def _trends(listed: Sequence[Listed], titles: Titles) -> Iterable[Markup]:
         yield from pictures
 
 
-def _mark(one: LogEntry, line: AxisLine) -> Mark:
+def _mark(entry: LogEntry, line: AxisLine) -> Mark:
     part = line.outside_time / line.running_time
     return Mark(
         at=line.begins,
         value=part,
         kind=MARKS[line.standing],
-        title=f'{one.name}, {_date(line.begins)}: {percent(part)} outside',
-        link=f'{quote(one.folder)}/{PAGE}',
+        title=f'{entry.name}, {_date(line.begins)}: {percent(part)} outside',
+        link=f'{quote(entry.folder)}/{PAGE}',
     )

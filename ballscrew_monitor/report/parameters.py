@@ -12,6 +12,8 @@ from typing import Any
 from ballscrew_monitor.recordings import log_facts
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import ChosenValues, LogFacts, PREFIX
+from ballscrew_monitor.recordings.positions import by_position, still_speed
+from ballscrew_monitor.recordings.recorded_events import judged_by_events
 from ballscrew_monitor.settings.parameters import flatten
 from surrogate.units import MILLI
 
@@ -50,6 +52,11 @@ class AxisFacts:
     def is_mapped(self) -> bool:
         """Return True if its inputs are columns of a table, as a map says."""
         return 'lead_mm' in self.stated or 'lead_mm' in self.assumed  # no map is without it
+
+    @property
+    def torque_is_load(self) -> bool:
+        """Return True if the map takes the motor torque, or its current, for the load."""
+        return self.load_from in ('torque', 'current')
 
     @property
     def torque_from_current(self) -> bool:
@@ -108,17 +115,19 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
     """
     chosen = log_facts.values_for(bag, given, nominal)
     facts, assumptions = log_facts.facts_of(bag), {}
+    chosen, still = _by_position(bag, chosen) if facts is None else (chosen, ())
     if facts is not None:
         facts = dataclasses.replace(facts, assumptions=tuple(_still_assumed(facts, chosen)))
         assumptions = {
-            one.key: {'value': one.value, 'reason': one.reason} for one in facts.assumptions
+            assumption.key: {'value': assumption.value, 'reason': assumption.reason}
+            for assumption in facts.assumptions
         }
     return LogParameters(
         values=chosen.values,
         origin=chosen.origin,
         assumptions=assumptions,
-        notes=() if facts is None else facts.notes,
-        sentences=() if facts is None else facts.sentences(),
+        notes=still if facts is None else facts.notes,
+        sentences=still if facts is None else facts.sentences(),
         axes={
             axis: _axis_facts(axis, facts, assumptions, chosen) for axis in chosen.values['axes']
         },
@@ -128,6 +137,17 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
     )
 
 
+def _by_position(bag: Bag, chosen: ChosenValues) -> tuple[ChosenValues, tuple[str, ...]]:
+    """Return values that read no speed which is 0 while the axis moves; a sentence of each."""
+    if judged_by_events(bag, chosen.values):
+        return chosen, ()
+    values, notes = dict(chosen.values), []
+    for axis, (field, unit) in by_position(bag, values).items():
+        notes.append(still_speed(axis, values[f'{axis}.speed.field'], field, unit))
+        values |= {f'{axis}.speed.field': field, f'{axis}.speed.unit': unit}
+    return dataclasses.replace(chosen, values=values), tuple(notes)
+
+
 def _machine(facts: LogFacts | None, chosen: ChosenValues) -> str:
     mapped = '' if facts is None else str(facts.mapping.get('machine', '')).strip()
     return mapped or chosen.values['machine'].strip()
@@ -135,11 +155,11 @@ def _machine(facts: LogFacts | None, chosen: ChosenValues) -> str:
 
 def _still_assumed(facts: LogFacts, chosen: ChosenValues) -> Iterator[log_facts.Assumption]:
     """Yield the assumptions of a log without those that other parameters take the place of."""
-    said = flatten(facts.mapping.get('parameters') or {})
-    for one in facts.assumptions:
-        axis, _, place = one.key.partition('.')
-        if place not in OF_NODE or not (chosen.is_given or f'{axis}.{OF_NODE[place]}' in said):
-            yield one
+    given = flatten(facts.mapping.get('parameters') or {})
+    for assumption in facts.assumptions:
+        axis, _, place = assumption.key.partition('.')
+        if place not in OF_NODE or not (chosen.is_given or f'{axis}.{OF_NODE[place]}' in given):
+            yield assumption
 
 
 def _axis_facts(
@@ -148,7 +168,7 @@ def _axis_facts(
     """Return what is stated and assumed of an axis; the temperature as judged with."""
     assumed = assumed_of(assumptions, axis, chosen.values['axes'])
     mapped = {} if facts is None else facts.mapping.get('axes', {}).get(axis, {})
-    known = flatten(mapped) | {key: one['value'] for key, one in assumed.items()}
+    known = flatten(mapped) | {key: assumption['value'] for key, assumption in assumed.items()}
     stated = set(known) - {*assumed, TEMPERATURE}
     if f'{axis}.{OF_NODE[TEMPERATURE]}' in chosen.said and TEMPERATURE not in assumed:
         stated.add(TEMPERATURE)
@@ -166,12 +186,12 @@ def _axis_facts(
 def assumed_of(assumptions: Assumed, axis: str, axes: Sequence[str]) -> Assumed:
     """Return the assumptions about an axis, without its name, and those about all axes."""
     own, general = {}, {}
-    for key, one in assumptions.items():
+    for key, assumption in assumptions.items():
         whose, _, place = key.partition('.')
         if whose == axis:
-            own[place] = one
+            own[place] = assumption
         elif whose not in axes:
-            general[key] = one
+            general[key] = assumption
     return own | general
 
 
@@ -179,9 +199,9 @@ def _defaulted(axis: str, facts: LogFacts, chosen: ChosenValues) -> Iterator[str
     """Yield of an axis of a log what is judged with as nobody said it: model, limits, and all."""
     if chosen.is_given:
         return
-    said = chosen.said - {one.key for one in facts.assumptions}
-    model = not {f'{axis}.surface', f'{axis}.screw'} & said
-    limits = not any(name.startswith(f'{axis}.limits.') for name in said)
+    given = chosen.said - {assumption.key for assumption in facts.assumptions}
+    model = not {f'{axis}.surface', f'{axis}.screw'} & given
+    limits = not any(name.startswith(f'{axis}.limits.') for name in given)
     if model:
         yield 'surface'
     if limits:

@@ -81,7 +81,7 @@ def _draw_axis(part: SubFigure, case: AxisCase, chart: OperatingMap) -> None:
             strip.axvspan(
                 *case.span(event), color=COLOURS['outside'], alpha=0.14, linewidth=0.0, zorder=0
             )
-    strips[-1].set_xlim(0.0, case.survey.span or 1.0)
+    strips[-1].set_xlim(0.0, case.survey.length or 1.0)
     strips[-1].set_xlabel('time [s]')
 
 

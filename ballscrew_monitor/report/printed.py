@@ -45,10 +45,12 @@ def axis_lines(case: AxisCase) -> Iterator[str]:
         yield _line('what to do', verdict.remedy)
     yield _line('contact', verdict.contact)
     seen = inputs_seen(case)
-    yield from (_line('check', hint) for one in seen for hint in one.hints)
+    yield from (_line('check', hint) for input_seen in seen for hint in input_seen.hints)
     yield from [] if summary is None else map(case.in_its_unit, summary.lines())
-    yield from (_line('input', _input_text(one)) for one in seen)
-    yield from (_line('ledger', _ledger_text(one)) for one in seen if one.ledger)
+    yield from (_line('input', _input_text(input_seen)) for input_seen in seen)
+    yield from (
+        _line('ledger', _ledger_text(input_seen)) for input_seen in seen if input_seen.ledger
+    )
     yield from (
         _line('not judged', f'{number(time, 4)} s: {reason.text}')
         for reason, time in sorted(case.survey.reasons.items(), key=lambda item: -item[1])
@@ -110,7 +112,7 @@ def summary_record(log: LogCase) -> dict[str, Any]:
         'unjudged_axes': log.unjudged,
         'unread_topics': dict(log.unread),
         'axes': records,
-        'assumptions': {key: dict(one) for key, one in log.assumptions.items()},
+        'assumptions': {key: dict(assumption) for key, assumption in log.assumptions.items()},
         'notes': list(log.notes),
     }
 

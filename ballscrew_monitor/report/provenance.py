@@ -75,18 +75,18 @@ def _assumed_names(case: AxisCase) -> Iterable[str]:
         yield f'axial load, {case.load_origin}'
     if Source.TEMPERATURE not in case.inputs and case.facts.default_temperature_known == 'assumed':
         yield f'oil temperature of {celsius(case.settings.default_temperature):g} °C'
-    for key, one in case.facts.assumed.items():
+    for key, assumption in case.facts.assumed.items():
         if key not in ('load.from', 'load', 'temperature_degC'):
-            yield _assumed_name(key, one.get('value'))
+            yield _assumed_name(key, assumption.get('value'))
 
 
 def _assumed_name(key: str, value: object) -> str:
     shown = f'{value:g}' if isinstance(value, float) else str(value)
     if key == 'efficiency' and isinstance(value, float):
         shown = f'{100.0 * value:g} %'
-    what, dot, part = key.rpartition('.')
+    quantity, dot, part = key.rpartition('.')
     if dot and part == 'unit':
-        return f'{what} in {shown_unit(shown)}'
+        return f'{quantity} in {shown_unit(shown)}'
     words = KEYS.get(key)
     return words.format(shown) if words else key.replace('.', ' ').replace('_', ' ')
 
@@ -111,8 +111,12 @@ def assumptions_part(case: AxisCase, parameters: str) -> Markup:
     ]
     rows = [_fact_row(*fact) for fact in facts]
     rows += [
-        _fact_row(f'Assumed: {key}', f'{one.get("value")}: {one.get("reason", "")}', 'assumed')
-        for key, one in case.facts.assumed.items()
+        _fact_row(
+            f'Assumed: {key}',
+            f'{assumption.get("value")}: {assumption.get("reason", "")}',
+            'assumed',
+        )
+        for key, assumption in case.facts.assumed.items()
     ]
     return joined(
         element('h3', 'What this rests on'),
@@ -202,13 +206,17 @@ def inputs_part(case: AxisCase) -> Markup:
         element('h3', 'Inputs'),
         table(
             ('Input', 'Source', 'Lowest', 'Highest', 'Unit', 'Rate [Hz]', 'Read from', 'Refused'),
-            (_input_row(one) for one in seen),
+            (_input_row(input_seen) for input_seen in seen),
         ),
         *_trouble_table(seen),
         element('h3', 'What became of each message'),
         table(
             ('Input', 'Promised', 'Present', 'Read', 'Judged', 'Reasons of the differences'),
-            (_ledger_row(one, one.ledger) for one in seen if one.ledger),
+            (
+                _ledger_row(input_seen, input_seen.ledger)
+                for input_seen in seen
+                if input_seen.ledger
+            ),
         ),
         element(
             'p', 'Only these columns of the recording were read for this page.', class_='muted'
@@ -242,12 +250,17 @@ def _ledger_row(seen: InputSeen, ledger: Ledger) -> TableRow:
 
 def _trouble_table(seen: Sequence[InputSeen]) -> Iterable[Markup]:
     """Yield what is wrong with the messages of the inputs; what went well has no column."""
-    heads = [head for head in Trouble if any(head in one.troubles for one in seen)]
+    heads = [head for head in Trouble if any(head in input_seen.troubles for input_seen in seen)]
     if heads:
         rows = (
-            TableRow((NAMES[one.source], *(one.troubles.get(head, NONE) for head in heads)))
-            for one in seen
-            if one.place
+            TableRow(
+                (
+                    NAMES[input_seen.source],
+                    *(input_seen.troubles.get(head, NONE) for head in heads),
+                )
+            )
+            for input_seen in seen
+            if input_seen.place
         )
         yield table(('Input', *(head.value for head in heads)), rows)
 

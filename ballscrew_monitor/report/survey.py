@@ -19,7 +19,6 @@ from typing import Any
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import PointSource, Reason, Zone
-from ballscrew_monitor.core.state import Extremes
 from ballscrew_monitor.judge.inputs import (
     DERIVED,
     HELD,
@@ -66,6 +65,15 @@ class TorqueFit:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Extremes:
+    """Smallest, mean and largest value, NaN when there was none."""
+
+    low: float = math.nan
+    mean: float = math.nan
+    high: float = math.nan
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Gaps:
     """How often an input was interrupted, and how long in all [s]."""
 
@@ -84,7 +92,8 @@ class Survey:
     alone, `samples` the number of all that are no ticks; `uncounted` [s] before the next row where
     that came after the timeout of the speed. `gaps` of all inputs, that of the speed between two
     samples, that of any other from its timeout on; `speed_gaps`, the longest of them first, as
-    start and length [ns]. `energy` [J] by zone.
+    start and length [ns]. `energy` [J] by zone. A log may hold several `runs`; the `pauses` [s]
+    between these are on the time line alone.
 
     """
 
@@ -106,6 +115,8 @@ class Survey:
     speed_gaps: tuple[tuple[int, int], ...]
     energy: dict[Zone, float]
     torque: TorqueFit
+    runs: int = 1
+    pauses: float = 0.0
 
     @property
     def rest(self) -> float:
@@ -120,6 +131,11 @@ class Survey:
 
     @property
     def span(self) -> float:
+        """Return the time that was recorded [s]."""
+        return self.length - self.pauses
+
+    @property
+    def length(self) -> float:
         """Return the length of the time line [s]."""
         return (self.last - self.first) / SECOND
 
@@ -144,6 +160,8 @@ class RowSums:
     reason_time: list[int] = many(len(Reason), 0)
     moving_time: list[int] = many(len(Reason), 0)
     uncounted: int = 0
+    pauses: int = 0
+    parted: bool = False  # the next row is the first of another run
     energy: list[float] = many(len(Zone), 0.0)
     samples: list[int] = many(len(Reason), 0)
     # the last row
@@ -175,7 +193,9 @@ def _add_time(sums: Any, row: Any, max_gap: int) -> None:
         sums.first_log, sums.last_log = row.now, row.now
     else:
         step = row.stamp - sums.stamp
-        if step > max_gap:
+        if sums.parted:
+            sums.pauses += step
+        elif step > max_gap:
             sums.uncounted += step
         elif step > 0:
             sums.reason_time[sums.reason] += step
@@ -186,6 +206,7 @@ def _add_time(sums: Any, row: Any, max_gap: int) -> None:
                 if sums.held[source] != 0:
                     sums.gap_time[source] += step
     sums.rows += 1
+    sums.parted = False
     sums.first, sums.last = min(sums.first, row.stamp), max(sums.last, row.stamp)
     sums.first_log, sums.last_log = min(sums.first_log, row.now), max(sums.last_log, row.now)
 
@@ -252,9 +273,14 @@ class Surveyor:
         self._gaps: list[tuple[int, int]] = []
         self._gap_count = self._gap_time = 0
         self._last_sample = np.empty(0, np.int64)
+        self._run, self._runs = 0, 1
 
-    def add(self, rows: NDArray[Any]) -> None:
-        """Take the next rows, an array of ROW."""
+    def add(self, rows: NDArray[Any], run: int = 0) -> None:
+        """Take the next rows, an array of ROW, of the run of a number."""
+        if run != self._run:
+            self._run, self._runs = run, self._runs + 1
+            self._sums['parted'] = True
+            self._last_sample = self._last_sample[:0]
         compiled_sums()(self._sums, rows, self._standstill, self._max_gap)
         samples = np.concatenate([self._last_sample, rows['stamp'][~rows['tick']]])
         self._last_sample = samples[-1:]
@@ -292,6 +318,8 @@ class Surveyor:
             moving=_by_reason(sums.moving_time),
             samples={reason: count for reason, count in zip(Reason, sums.samples) if count},
             uncounted=sums.uncounted / SECOND,
+            runs=self._runs,
+            pauses=sums.pauses / SECOND if by_stamp else 0.0,
             gaps={source: Gaps(count=count, time=time / SECOND) for source, (count, time) in gaps}
             | {Source.SPEED: Gaps(count=self._gap_count, time=self._gap_time / SECOND)},
             speed_gaps=tuple((at, length) for length, at in longest_first),

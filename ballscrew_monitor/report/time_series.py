@@ -71,7 +71,7 @@ def series_record(
     if bucket:  # the times follow from it
         record.pop('time')
     return record | {
-        'span': case.survey.span,
+        'span': case.survey.length,
         'bucket': bucket,
         'shown': shown,
         'worst': min(buckets.WORST, len(case.outcome.events)),
@@ -131,7 +131,7 @@ def _columns(
         rows = table.collect(lambda part: part.select(*columns))
         rows = rows.sort('time', maintain_order=True)
         return buckets.with_breaks(rows, _longest_step(case)), None, 0.0
-    coarse, width = buckets.bucketed(table, columns, case.survey.span, count)
+    coarse, width = buckets.bucketed(table, columns, case.survey.length, count)
     _, stretches = _worst_stretches(case, fine_bytes / _bytes_per_second(case))
     if not stretches:
         return coarse, coarse.clear(), width
@@ -239,13 +239,13 @@ def _length(stretches: Iterable[tuple[float, float]]) -> float:
 
 def _merged(stretches: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
     """Return stretches in order, those that touch as one."""
-    made: list[tuple[float, float]] = []
+    spans: list[tuple[float, float]] = []
     for begin, end in sorted(stretches):
-        if made and begin <= made[-1][1]:
-            made[-1] = made[-1][0], max(made[-1][1], end)
+        if spans and begin <= spans[-1][1]:
+            spans[-1] = spans[-1][0], max(spans[-1][1], end)
         else:
-            made.append((begin, end))
-    return made
+            spans.append((begin, end))
+    return spans
 
 
 def panels(case: AxisCase) -> list[dict[str, Any]]:

@@ -75,14 +75,14 @@ def trend(marks: Sequence[Mark], *, normal: float = 0.0, tolerance: float = 0.0)
                 class_='fill-zone',
             )
         )
-    places = ' '.join(f'{frame.across(one.at):.1f},{frame.up(one.value):.1f}' for one in marks)
+    places = ' '.join(f'{frame.across(mark.at):.1f},{frame.up(mark.value):.1f}' for mark in marks)
     return element(
         'svg',
         *band,
         *_axes(frame),
-        *(_interval(frame, one) for one in marks if math.isfinite(one.low + one.high)),
+        *(_interval(frame, mark) for mark in marks if math.isfinite(mark.low + mark.high)),
         element('polyline', points=places, class_='line-trend'),
-        *(_mark(frame, one) for one in marks),
+        *(_mark(frame, mark) for mark in marks),
         class_='trend',
         viewBox=f'0 0 {WIDTH:g} {HEIGHT:g}',
         role='img',
@@ -107,19 +107,19 @@ def _text(x: float, y: float, text: str, anchor: str) -> Markup:
     )
 
 
-def _interval(frame: Frame, one: Mark) -> Markup:
-    x = f'{frame.across(one.at):.1f}'
-    low, high = f'{frame.up(one.low):.1f}', f'{frame.up(one.high):.1f}'
+def _interval(frame: Frame, mark: Mark) -> Markup:
+    x = f'{frame.across(mark.at):.1f}'
+    low, high = f'{frame.up(mark.low):.1f}', f'{frame.up(mark.high):.1f}'
     return element('line', x1=x, x2=x, y1=low, y2=high, class_='line-interval')
 
 
-def _mark(frame: Frame, one: Mark) -> Markup:
+def _mark(frame: Frame, mark: Mark) -> Markup:
     dot = element(
         'circle',
-        element('title', one.title),
-        cx=f'{frame.across(one.at):.1f}',
-        cy=f'{frame.up(one.value):.1f}',
+        element('title', mark.title),
+        cx=f'{frame.across(mark.at):.1f}',
+        cy=f'{frame.up(mark.value):.1f}',
         r='4',
-        class_=f'fill-{one.kind}',
+        class_=f'fill-{mark.kind}',
     )
-    return joined(dot) if one.link is None else element('a', dot, href=one.link)
+    return joined(dot) if mark.link is None else element('a', dot, href=mark.link)

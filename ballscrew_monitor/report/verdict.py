@@ -89,9 +89,9 @@ def _no_rows(axis: str) -> AxisVerdict:
 
 def verdict_of(case: AxisCase) -> AxisVerdict:
     """Return the verdict on an axis that has rows, in the unit in which its log speaks."""
-    found = _verdict(case)
-    remedy = case.in_its_unit(found.remedy)
-    return dataclasses.replace(found, remedy=remedy, contact=case.contact)
+    verdict = _verdict(case)
+    remedy = case.in_its_unit(verdict.remedy)
+    return dataclasses.replace(verdict, remedy=remedy, contact=case.contact)
 
 
 def _verdict(case: AxisCase) -> AxisVerdict:

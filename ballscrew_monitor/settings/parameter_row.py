@@ -18,7 +18,7 @@ _TYPE_NAMES = {
     str: 'a text',
     list: 'a list of texts',
 }
-BARE_LETTERS = {'y': True, 'Y': True, 'n': False, 'N': False, 'off': False}
+BARE_LETTERS = {'y': True, 'Y': True, 'n': False, 'N': False}
 BARE_WORDS = "ROS reads a bare y, n, yes, no, on or off as true or false: quote it, such as 'y'"
 
 

@@ -44,7 +44,7 @@ NODE_ROWS = (
     ParameterRow('diagnostics_period', 1.0, 's', 0.1, 60.0, NEVER).says(
         'Period of /diagnostics; a change is published at once.'
     ),
-    ParameterRow('record', 'off', choices=('off', 'around_events', 'always')).says(
+    ParameterRow('record', 'never', choices=('never', 'around_events', 'always')).says(
         'What the node records of itself: the events that it judges, states and warnings.'
     ),
     ParameterRow('record_inputs', True).says(

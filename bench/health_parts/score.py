@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Health of axis-years against their truth: alarms, delays, coverage, causes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 import math
 from typing import Any, NamedTuple
@@ -17,6 +17,8 @@ from health_parts.axis_year import AxisYear
 from health_parts.summaries import cells_of_year
 import numpy as np
 
+Judge = Callable[[History], Iterable[Look]]
+"""What yields a look after each log of a history."""
 EIGHT_WEEKS = 56.0  # [d]
 QUARTER = 91.0  # [d]
 CAUSES = {
@@ -62,8 +64,10 @@ class Course:
     right: bool
 
 
-def score_of(year: AxisYear, *, always_free: bool = False) -> Course:
-    """Return how a year was judged."""
+def score_of(
+    year: AxisYear, *, always_free: bool = False, judge: Judge = looks, causes: bool = True
+) -> Course:
+    """Return how a year was judged; another `judge` than the product has no `causes`."""
     cells = cells_of_year(year, always_free=always_free)
     history = history_of(cells, year.machine.size.lead)
     if history is None:
@@ -79,16 +83,16 @@ def score_of(year: AxisYear, *, always_free: bool = False) -> Course:
             told=False,
             right=False,
         )
-    seen = list(looks(history))
+    seen = list(judge(history))
     day = year.day[np.searchsorted([log.start for log in year.logs], history.start)]
     first = day - day[0] <= QUARTER
     indicated = (1.0 + year.truth.change(first)) / constant_of(year)
     truth = indicated[np.searchsorted(year.day, day)] - 1.0
-    pairs = [(one, _now(truth, one)) for one in seen if one.is_known]
+    pairs = [(one, _now(truth, one)) for one in seen if math.isfinite(one.low)]
     raised = [one for one in seen if one.raised]
     start = year.fault.start if year.fault.part else math.inf
     after = [one for one in raised if day[one.log] >= start]
-    told, right = _cause(history, after[-1], year) if after else (False, False)
+    told, right = _cause(history, after[-1], year) if after and causes else (False, False)
     quarter = [one for one in seen if one.is_known and day[one.log] - day[0] >= QUARTER - 3.0]
     return Course(
         lost=float(np.mean(truth[-4:])),

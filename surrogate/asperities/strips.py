@@ -61,7 +61,7 @@ class RacewayStrip:
 
     @property
     def settings(self) -> MarchSettings:
-        """Settings of a march."""
+        """Return the settings of a march."""
         rows = math.ceil(0.5 * ALONG * DOMAIN * self.strip.semi_axis / self.shortest)
         return MarchSettings(nx=2 * rows + 1, places=1, film_floor=self.film_floor)
 

@@ -35,9 +35,9 @@ def onset_of_sheets(screw: Screw, lubricant: Lubricant, temperature: float) -> C
     speeds, loads = grid_of((slowest, fastest), settings.load_range)
 
     def has(heat: float, limits: ZoneLimits) -> bool:
-        found = closed_form.solve(opened, lubricant, speeds, loads, heat)
-        shares = EFFICIENCY(found.friction_torque, loads, screw.lead)
-        return limits.has_zone(found.rcs, shares, loads)
+        points = closed_form.solve(opened, lubricant, speeds, loads, heat)
+        shares = EFFICIENCY(points.friction_torque, loads, screw.lead)
+        return limits.has_zone(points.rcs, shares, loads)
 
     limits = usual_limits(screw.preload)
     return contact_onset(

@@ -110,7 +110,11 @@ def load_catalogue(path: Path) -> list[Item]:
 
 def _names(path: Path, content: Mapping[str, Any], key: str) -> list[str]:
     names = content.get(key)
-    if not isinstance(names, list) or not names or not all(isinstance(one, str) for one in names):
+    if (
+        not isinstance(names, list)
+        or not names
+        or not all(isinstance(name, str) for name in names)
+    ):
         raise InputError(f'{path}: {key} must be a list of names or files, got {names!r}')
     return names
 
@@ -127,7 +131,7 @@ def _variants(path: Path, content: Any, screw: Screw) -> list[tuple[str, Screw]]
         return [('', screw)]
     if not isinstance(content, list) or not content:
         raise InputError(f'{path}: roughness must be a list of mappings, each with a name')
-    found = []
+    variants = []
     for entry in content:
         if not isinstance(entry, dict) or not isinstance(entry.get('name'), str):
             raise InputError(f'{path}: roughness: {entry!r} must be a mapping with a name')
@@ -139,12 +143,12 @@ def _variants(path: Path, content: Any, screw: Screw) -> list[tuple[str, Screw]]
             roughness = changed_sheet(screw.roughness, changes, where)
             check_waves(roughness, where)
             variant = replace(screw, name=f'{screw.name}-{name}', roughness=roughness)
-        found.append((name, variant))
-    return found
+        variants.append((name, variant))
+    return variants
 
 
 def _ranges(path: Path, content: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
-    found = {}
+    ranges = {}
     for key, (name, factor, shift) in RANGES.items():
         if key not in content:
             continue
@@ -155,8 +159,8 @@ def _ranges(path: Path, content: Mapping[str, Any]) -> dict[str, tuple[float, fl
         low, high = ((end + shift) * factor for end in ends)
         if not (math.isfinite(low) and math.isfinite(high) and low < high):
             raise InputError(f'{path}: {key} is {ends}, allowed is the low end first')
-        found[name] = (low, high)
-    return found
+        ranges[name] = (low, high)
+    return ranges
 
 
 def sweep(
@@ -168,10 +172,10 @@ def sweep(
     A failed item is a sentence and never stops the rest. `report` receives each as it comes.
 
     """
-    found: dict[str, Built] = {}
+    surfaces: dict[str, Built] = {}
 
     def take(built: Built) -> None:
-        found[built.item.name] = built
+        surfaces[built.item.name] = built
         report(built)
 
     named = {item.name: item for item in items}
@@ -185,7 +189,7 @@ def sweep(
     for item in items:
         if spreads(item.tier):
             take(_build_here(item, out, pool))
-    return [found[item.name] for item in items]
+    return [surfaces[item.name] for item in items]
 
 
 def _inputs(item: Item) -> dict[str, Any]:

@@ -18,7 +18,6 @@ class SweepReport:
     """What has become of every item so far; both files are rewritten after each."""
 
     def __init__(self, catalogue: Path, items: list[Item], out: Path) -> None:
-        """Begin with all items waiting."""
         self._catalogue, self._out = catalogue, out
         self._items = {item.name: _waiting(item) for item in items}
 
@@ -37,8 +36,8 @@ class SweepReport:
                     item['name']
                 )
             if item['status'] == 'built':
-                made = workers.setdefault(item['worker'], {'done': [], 'lost_at': []})
-                made['done'].append(item['name'])
+                worker = workers.setdefault(item['worker'], {'done': [], 'lost_at': []})
+                worker['done'].append(item['name'])
         return {
             'catalogue': str(self._catalogue),
             'counts': {

@@ -118,9 +118,9 @@ def equal_halves(given: CatalogueScrew) -> Iterator[str]:
     """Yield in a sentence that an offset nut that need not have equal halves is given them."""
     whole = given.turns if given.balls is None else given.balls
     if given.nut == 'offset' and whole is not None and whole % 2:
-        what = 'turns' if given.balls is None else 'balls'
+        unit = 'turns' if given.balls is None else 'balls'
         yield (
-            f'nut: {whole:g} {what} of an offset nut are taken as two equal halves, and unequal '
+            f'nut: {whole:g} {unit} of an offset nut are taken as two equal halves, and unequal '
             'halves are not modelled'
         )
 

@@ -56,7 +56,7 @@ def _figures(args: argparse.Namespace) -> int:
     from surrogate.studies.solve import run_study
     from surrogate.tasks.workers import open_pool
 
-    measured = _measured(args.measured) if args.measured else None
+    measured = read_measured(args.measured) if args.measured else None
     with open_pool(args.workers, args.dask) as pool:
         study = run_study(args.out, wanted, pool, Progress(len(wanted), 'solves').show)
     failed = [row for row in study.rows.values() if row.status != 'CONVERGED']
@@ -72,12 +72,23 @@ def _figures(args: argparse.Namespace) -> int:
     return 1 if failed else 0
 
 
-def _measured(path: Path) -> Any:
-    """Read measured torques; one sentence when they cannot be read."""
-    from surrogate.studies.screw_figures import read_measured
+def read_measured(path: Path) -> Any:
+    """
+    Return measured speeds [rev/min], torques and their standard deviations [N m] of a CSV.
 
+    Columns speed_rev_min, torque_Nm and, if known, deviation_Nm. Raises InputError.
+
+    """
+    import numpy as np
+
+    names = ('speed_rev_min', 'torque_Nm', 'deviation_Nm')
     try:
         with path.open(newline='', encoding='utf-8') as file:
-            return read_measured(list(csv.DictReader(file)))
+            lines = list(csv.DictReader(file))
+        columns = [[float(line.get(name) or 'nan') for line in lines] for name in names]
+        rpm, torque, deviation = np.array(columns)
+        if not lines or not (np.isfinite([rpm, torque]).all() and (rpm > 0).all()):
+            raise ValueError('needs numbers in speed_rev_min, above 0, and torque_Nm')
     except (OSError, UnicodeDecodeError, ValueError, csv.Error) as error:
         raise InputError(f'--measured: {path} cannot be read, {error}') from None
+    return rpm, torque, np.nan_to_num(deviation)

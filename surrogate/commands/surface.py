@@ -166,7 +166,6 @@ def _workers(args: argparse.Namespace) -> Iterator[Any]:
 def _range(
     name: str, unit: str, ends: list[float], lowest: float = -math.inf
 ) -> tuple[float, float]:
-    """Return a checked range in the unit in which it was typed."""
     low, high = ends
     if not (math.isfinite(low) and math.isfinite(high) and lowest < low < high):
         above = f'above {lowest:g}, ' if math.isfinite(lowest) else ''

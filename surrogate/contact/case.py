@@ -172,7 +172,6 @@ class CaseRoughness(Checked):
     )
 
     def __post_init__(self) -> None:
-        """Check ranges, and that the keys of one kind of surface do not mix with another's."""
         Checked.__post_init__(self)
         other = NOT_STANDARD if self.patch == 'standard' else STANDARD
         mixed = [name for name in other if getattr(self, name) is not None]
@@ -200,7 +199,6 @@ class CaseGrid(Checked):
     ny: int = count(17, LARGEST_GRID, means='nodes across it, odd')
 
     def __post_init__(self) -> None:
-        """Check that both are odd, so that a node lies on the centre line."""
         Checked.__post_init__(self)
         for name in ('nx', 'ny'):
             if getattr(self, name) % 2 == 0:
@@ -330,7 +328,6 @@ class ContactCase(Checked):
     )
 
     def __post_init__(self) -> None:
-        """Check ranges, and that what rolls can roll."""
         Checked.__post_init__(self)
         stated = [name for name in ROLLING if getattr(self, name) is not None]
         if self.kinematics == 'standing' and stated:

@@ -207,7 +207,6 @@ def _film_top(solution: ContactSolution) -> float:
 
 
 def _view(solution: ContactSolution) -> tuple[slice, slice]:
-    """Return the rows and columns that maps show."""
     return (
         _within(solution.x, VIEW * solution.semi_axis_x),
         _within(solution.y, VIEW * solution.semi_axis_y),
@@ -215,8 +214,8 @@ def _view(solution: ContactSolution) -> tuple[slice, slice]:
 
 
 def _within(axis: Array, limit: float) -> slice:
-    found = np.flatnonzero(np.abs(axis) <= limit)
-    return slice(int(found[0]), int(found[-1]) + 1)
+    inside = np.flatnonzero(np.abs(axis) <= limit)
+    return slice(int(inside[0]), int(inside[-1]) + 1)
 
 
 def _mesh(axes: Axes, solution: ContactSolution, field: Array, **options: Any) -> QuadMesh:

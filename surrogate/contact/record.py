@@ -49,8 +49,8 @@ def friction_coefficient(
         return math.nan
     if slide_roll_ratio == 0.0:
         return 0.0
-    found = slide_roll_friction(solution, slide_roll_ratio, asperity_friction=asperity_friction)
-    return found.coefficient
+    friction = slide_roll_friction(solution, slide_roll_ratio, asperity_friction=asperity_friction)
+    return friction.coefficient
 
 
 def contact_record(case: ContactCase, solution: ContactSolution) -> dict[str, Any]:

@@ -125,5 +125,5 @@ def _draw_centre(axes: Axes, solution: MovingSolution) -> None:
 
 
 def _within(axis: Array, limit: float) -> slice:
-    found = np.flatnonzero(np.abs(axis) <= limit)
-    return slice(int(found[0]), int(found[-1]) + 1)
+    inside = np.flatnonzero(np.abs(axis) <= limit)
+    return slice(int(inside[0]), int(inside[-1]) + 1)

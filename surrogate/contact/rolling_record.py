@@ -134,7 +134,6 @@ def rolling_page(record: Mapping[str, Any], case: ContactCase, solution: MovingS
 def _rows(
     record: Mapping[str, Any], case: ContactCase, solution: MovingSolution
 ) -> Iterator[tuple[str, str]]:
-    """Yield names and words of the lines of a page."""
     for part in record['roughness']['sentence'].split('; '):
         yield 'roughness', part
     if case.strip is not None:

@@ -9,15 +9,14 @@ estimated error of a smooth film.
 """
 
 from dataclasses import replace
-from functools import cache
 import logging
 
 from surrogate.contact.case import ContactCase
 from surrogate.contact.surface import case_surface
-from surrogate.ehl import Condition, ContactLubricant, ContactSolution, Settings, solve_contact
+from surrogate.ehl import ContactSolution, Settings, solve_contact
 from surrogate.ehl.case import make_case
 from surrogate.ehl.domain import nodes_on_waves
-from surrogate.formulas.geometry import Contact, ellipticity
+from surrogate.formulas.geometry import ellipticity
 from surrogate.raceway.fractal import FractalSurface
 from surrogate.raceway.patch import Raceway
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
@@ -43,7 +42,6 @@ def solve_case(case: ContactCase) -> tuple[ContactSolution, Raceway | None]:
 
     """
     surface = case_surface(case)
-    _compile_kernels()
     surface, raised = _on_grid(case, surface)
     settings = case_settings(replace(case, film_floor=case.film_floor + raised), surface)
     solution = _solve(case, surface, settings)
@@ -65,17 +63,6 @@ def _on_grid(case: ContactCase, surface: Raceway | None) -> tuple[Raceway | None
     raised = subgrid_floor(surface, shortest)
     LOG.info('waves below %.3g um raise the film floor by %.3g nm', 1e6 * shortest, 1e9 * raised)
     return without_short_waves(surface, shortest), raised
-
-
-@cache
-def _compile_kernels() -> None:
-    """Solve a tiny contact, so that compiling at first use counts against no time cap."""
-    solve_contact(
-        Contact(radius_x=0.01, radius_y=0.01, reduced_modulus=2e11),
-        ContactLubricant(viscosity=0.04, pressure_viscosity=2e-8),
-        Condition(load=1.0, entrainment_speed=1.0),
-        settings=Settings(nx=17, ny=17, domain=(-2.0, 1.5, 1.5), time_cap=1e6),
-    )
 
 
 def _solve(case: ContactCase, surface: Raceway | None, settings: Settings) -> ContactSolution:
@@ -118,7 +105,6 @@ def case_settings(case: ContactCase, surface: Raceway | None) -> Settings:
 
 
 def _sides(case: ContactCase, settings: Settings) -> tuple[float, float]:
-    """Return the sides of the domain [m]."""
     scaled = make_case(case.contact, case.lubricant, case.condition, settings, None)
     inlet, outlet, side = scaled.domain
     return (outlet - inlet) * scaled.semi_axis_x, 2 * side * scaled.semi_axis_x

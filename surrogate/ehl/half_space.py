@@ -289,7 +289,6 @@ def _rows_to_spectrum_even(space: HalfSpace, values: Array) -> None:
 
 @njit(cache=True, error_model='numpy')
 def _spectrum_to_rows_even(space: HalfSpace, values: Array) -> None:
-    """Undo `_rows_to_spectrum_even`."""
     tile, re, im = space.tile, space.columns[0], space.columns[1]
     half, place, lanes = re.shape[1], space.y.place, tile.shape[2]
     size, nx = place.size, values.shape[0]
@@ -337,7 +336,6 @@ def _rows_to_spectrum(space: HalfSpace, values: Array) -> None:
 
 @njit(cache=True, error_model='numpy')
 def _spectrum_to_rows(space: HalfSpace, values: Array) -> None:
-    """Undo `_rows_to_spectrum`."""
     tile, re, im = space.tile, space.columns[0], space.columns[1]
     place, lanes = space.y.place, tile.shape[2]
     size, nx = place.size, values.shape[0]

@@ -124,7 +124,6 @@ def film_and_share(case: ScaledCase, grid: Grid, outcome: NewtonResult) -> Half:
 
 
 def _full(grid: Grid, field: NDArray[Kind]) -> NDArray[Kind]:
-    """Return a field on the full width."""
     if not grid.symmetric:
         return field.copy()
     return np.concatenate([field[:, :1:-1], field[:, 1:]], axis=1)

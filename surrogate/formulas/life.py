@@ -57,21 +57,6 @@ def life_iso_3408_2006(rating: float, load: float) -> float:
     return RATED_LIFE / worn if worn else math.inf
 
 
-def equivalent_load_iso_3408_2006(spectrum: Iterable[tuple[float, float]]) -> float:
-    """
-    Return the constant load that wears a nut out as fast as a spectrum does [N].
-
-    F = (sum F_i^3 N_i / sum N_i)^(1/3): ISO 3408-5:2006, 7.1. `spectrum` has loads of the nut [N]
-    with their turns [rev]; NaN without a turn.
-
-    """
-    pairs = list(spectrum)
-    turns = sum(count for _, count in pairs)
-    if not turns:
-        return math.nan
-    return float((sum(abs(load) ** 3 * count for load, count in pairs) / turns) ** (1 / 3))
-
-
 def damage_palmgren_1924(spectrum: Iterable[tuple[float, float]], rating: float) -> float:
     """
     Return the share of the nominal life of a nut that a spectrum uses up [-].
@@ -87,8 +72,8 @@ def combined_damage(first: float, second: float) -> float:
     """
     Return the share of the life of a screw that is used up [-] by those of its two nuts [-].
 
-    (D1^(10/9) + D2^(10/9))^(9/10), which is the rule of `combined_life_iso_3408_2006` for D = N /
-    L.
+    D = N / L and L = (L1^(-10/9) + L2^(-10/9))^(-9/10): ISO 3408-5:2006, 7.2.3, a screw fails
+    when one of its nuts does. So D = (D1^(10/9) + D2^(10/9))^(9/10).
 
     """
     if not 0.0 < first + second < math.inf:
@@ -96,18 +81,6 @@ def combined_damage(first: float, second: float) -> float:
     larger, smaller = max(first, second), min(first, second)
     # By the ratio, since powers of a small damage underflow.
     return float(larger * (1.0 + (smaller / larger) ** SLOPE) ** (1 / SLOPE))
-
-
-def combined_life_iso_3408_2006(first: float, second: float) -> float:
-    """
-    Return the life of a screw [rev] by those of its two nuts [rev].
-
-    L = (L1^(-10/9) + L2^(-10/9))^(-9/10): ISO 3408-5:2006, 7.2.3, a screw fails when one of its
-    nuts does.
-
-    """
-    worn = combined_damage(1 / first, 1 / second)
-    return 1 / worn if worn else math.inf
 
 
 def fatigue_limit_iso_281_2007(static_rating: float, pitch_diameter: float) -> float:

@@ -42,7 +42,7 @@ class NoLoadRun:
 
     @property
     def both_directions(self) -> bool:
-        """Tell whether there is a point in either direction."""
+        """Return True if there is a point in either direction."""
         return bool((self.speed > 0).any() and (self.speed < 0).any())
 
     @property

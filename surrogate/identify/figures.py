@@ -25,39 +25,42 @@ HEADROOM = 1.35
 def draw_identification(
     folder: Path,
     run: NoLoadRun,
-    found: Identification,
+    fit: Identification,
     title: str,
     onset: Mapping[str, Any] | None = None,
 ) -> Path:
     """Write `identify.png` to a folder and return its path."""
     return draw_picture(
-        folder / 'identify.png', lambda: figure_identification(run, found, title, onset)
+        folder / 'identify.png', lambda: figure_identification(run, fit, title, onset)
     )
 
 
 def figure_identification(
-    run: NoLoadRun, found: Identification, title: str, onset: Mapping[str, Any] | None = None
+    run: NoLoadRun, fit: Identification, title: str, onset: Mapping[str, Any] | None = None
 ) -> Figure:
     """Return torque over speed above with the onset of the record, the residual below."""
     figure = new_figure(7.0, 6.2)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[1.6, 1.0])
     if onset is not None:
-        _draw_onset(upper, onset)
-    _draw_torque(upper, run, found)
+        speed, low, high = (onset[f'speed{end}_rad_s'] / RPM for end in ('', '_low', '_high'))
+        label = 'onset taken, not fitted' if onset['reason'] else 'onset, extrapolated'
+        if not onset['reason']:
+            upper.axvspan(low, high, color=ORANGE, alpha=0.2, linewidth=0)
+        upper.axvline(speed, color=ORANGE, linestyle='--', label=label)
+    _draw_torque(upper, run, fit)
     order = np.argsort(np.abs(run.speed))
-    rpm, band = np.abs(run.speed)[order] / RPM, MILLI * found.band[order]
+    rpm, band = np.abs(run.speed)[order] / RPM, MILLI * fit.band[order]
     lower.fill_between(
         rpm, -band, band, color=BLUE, alpha=0.15, linewidth=0, label='95 % of the points'
     )
     lower.axhline(0, color=BLUE, linewidth=1.0)
-    _draw_points(lower, run, run.torque - found.after, '')
+    _draw_points(lower, run, run.torque - fit.after, '')
     lower.set_ylim(top=HEADROOM * lower.get_ylim()[1])
     lower.set_ylabel('measured - model [mN m]')
     lower.set_xlabel('screw speed [rev/min]')
     lower.legend(frameon=False, loc='upper right')
     upper.set_title(title)
-    speed = np.abs(run.speed)
-    if speed.max() > LOG_SPAN * speed.min():
+    if rpm[-1] > LOG_SPAN * rpm[0]:
         lower.set_xscale('log')
         lower.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         lower.xaxis.set_major_formatter('{x:g}')
@@ -67,18 +70,18 @@ def figure_identification(
     return figure
 
 
-def _draw_torque(axes: Axes, run: NoLoadRun, found: Identification) -> None:
+def _draw_torque(axes: Axes, run: NoLoadRun, fit: Identification) -> None:
     """Draw torques in the direction of the motion, so that both directions share an axis."""
     order = np.argsort(np.abs(run.speed))
     rpm = np.abs(run.speed)[order] / RPM
     axes.fill_between(
-        rpm, MILLI * found.contacts[order], color=VERMILION, alpha=0.2, lw=0, label='contacts'
+        rpm, MILLI * fit.contacts[order], color=VERMILION, alpha=0.2, lw=0, label='contacts'
     )
     for sign, _, name in _directions(run):
         chosen = order[run.direction[order] == sign]
         axes.plot(
             np.abs(run.speed[chosen]) / RPM,
-            MILLI * sign * found.before[chosen],
+            MILLI * sign * fit.before[chosen],
             color=GREY,
             linewidth=1.2,
             linestyle='-.' if sign > 0 else ':',
@@ -86,7 +89,7 @@ def _draw_torque(axes: Axes, run: NoLoadRun, found: Identification) -> None:
         )
         axes.plot(
             np.abs(run.speed[chosen]) / RPM,
-            MILLI * sign * found.after[chosen],
+            MILLI * sign * fit.after[chosen],
             color=BLUE,
             linewidth=1.3,
             linestyle='-' if sign > 0 else (0, (5, 1.5)),
@@ -96,18 +99,6 @@ def _draw_torque(axes: Axes, run: NoLoadRun, found: Identification) -> None:
     axes.set_ylim(0 if (run.direction * run.torque > 0).all() else None)
     axes.set_ylabel('torque along the motion [mN m]')
     axes.legend(frameon=False)
-
-
-def _draw_onset(axes: Axes, onset: Mapping[str, Any]) -> None:
-    """Mark the onset with its interval, or with its bound alone."""
-    names = ('speed_rad_s', 'speed_low_rad_s', 'speed_high_rad_s')
-    speed, low, high = (onset[name] / RPM for name in names)
-    if onset['reason']:
-        label = 'onset taken, not fitted'
-    else:
-        axes.axvspan(low, high, color=ORANGE, alpha=0.2, linewidth=0)
-        label = 'onset, extrapolated'
-    axes.axvline(speed, color=ORANGE, linestyle='--', label=label)
 
 
 def _draw_points(axes: Axes, run: NoLoadRun, torque: Array, label: str) -> None:

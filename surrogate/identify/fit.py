@@ -80,12 +80,12 @@ class Identification:
 
     def value(self, name: str) -> float:
         """Return the value of a parameter in SI units, NaN when it was not identified."""
-        one = self.estimate(name)
-        return math.nan if one is None else one.value
+        estimate = self.estimate(name)
+        return math.nan if estimate is None else estimate.value
 
     def estimate(self, name: str) -> ParameterEstimate | None:
         """Return the estimate of a parameter, None when it was not identified."""
-        return next((one for one in self.estimates if one.name == name), None)
+        return next((estimate for estimate in self.estimates if estimate.name == name), None)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -154,34 +154,36 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
 
     freedom, stated = len(sigma) - len(problem.names), float(problem.start[place])
     scan = scan_onset(cost, freedom)
-    found = along(scan)
-    if scan.closed and not _turns_up(problem.run, found):
+    identified = along(scan)
+    if scan.closed and not _turns_up(problem.run, identified):
         # The curvature of the rolling loss alone is no sign of contact.
         scan = replace(scan, low=0.0)
-        found = along(scan)
-    refusal = refusal_of(problem, scan, np.array([one.value for one in found.estimates]))
+        identified = along(scan)
+    refusal = refusal_of(
+        problem, scan, np.array([estimate.value for estimate in identified.estimates])
+    )
     if refusal:
         return replace(without_onset(stated, refusal), onset_refused=True)
     estimates = tuple(
-        _profiled(one, scan, freedom) if one.name == 'onset_factor' else one
-        for one in found.estimates
+        _profiled(estimate, scan, freedom) if estimate.name == 'onset_factor' else estimate
+        for estimate in identified.estimates
     )
-    return replace(found, estimates=estimates)
+    return replace(identified, estimates=estimates)
 
 
-def _turns_up(run: NoLoadRun, found: Identification) -> bool:
-    """Tell whether the contacts rise towards low speed by more than the scatter of a point."""
+def _turns_up(run: NoLoadRun, fit: Identification) -> bool:
+    """Return True if the contacts rise towards low speed by more than the scatter of a point."""
     slowest = int(np.abs(run.speed).argmin())
-    return bool(found.contacts[slowest] - found.contacts.min() > found.band[slowest])
+    return bool(fit.contacts[slowest] - fit.contacts.min() > fit.band[slowest])
 
 
-def _profiled(one: ParameterEstimate, scan: OnsetScan, freedom: int) -> ParameterEstimate:
+def _profiled(estimate: ParameterEstimate, scan: OnsetScan, freedom: int) -> ParameterEstimate:
     """Return the onset factor with the interval of its profile, where it has one."""
     if not scan.closed:
-        return one
-    low, high = scan.interval(one.value, freedom)
-    error = one.value * math.log(high / low) / (2 * student_factor(freedom))
-    return replace(one, low=low, high=high, standard_error=error, reason='')
+        return estimate
+    low, high = scan.interval(estimate.value, freedom)
+    error = estimate.value * math.log(high / low) / (2 * student_factor(freedom))
+    return replace(estimate, low=low, high=high, standard_error=error, reason='')
 
 
 def _fit(
@@ -196,7 +198,7 @@ def _fit(
         full[free] = np.clip(reduced * scale, problem.low[free], problem.high[free])
         return full
 
-    found: Any = least_squares(
+    minimum: Any = least_squares(
         lambda reduced: problem.residual(values(reduced)) / sigma,
         start[free] / scale,
         jac=lambda reduced: -problem.jacobian(values(reduced))[:, free] * scale / sigma[:, None],
@@ -209,7 +211,7 @@ def _fit(
         ftol=TOLERANCE,
         gtol=TOLERANCE,
     )
-    return _Fit(values=values(found.x), converged=bool(found.success), spread=spread)
+    return _Fit(values=values(minimum.x), converged=bool(minimum.success), spread=spread)
 
 
 def _scatter(

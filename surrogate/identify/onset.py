@@ -71,7 +71,7 @@ class OnsetScan:
 
     @property
     def closed(self) -> bool:
-        """Tell whether the data set both ends."""
+        """Return True if the data set both ends."""
         return self.low > 0 and math.isfinite(self.high)
 
 

@@ -125,14 +125,14 @@ class DragProblem:
 
     def at_bounds(self, values: Array) -> dict[str, str]:
         """Return the parameters at an end of their range, with the reason."""
-        found = {}
+        reasons = {}
         for place, name in enumerate(self.names):
             near = AT_BOUND * self.scale[place]
             if values[place] <= self.low[place] + near:
-                found[name] = f'at its lower bound {self.low[place]:g}, the data ask for less'
+                reasons[name] = f'at its lower bound {self.low[place]:g}, the data ask for less'
             elif values[place] >= self.high[place] - near:
-                found[name] = f'at its upper bound {self.high[place]:g}, the data ask for more'
-        return found
+                reasons[name] = f'at its upper bound {self.high[place]:g}, the data ask for more'
+        return reasons
 
 
 def drag_problem(
@@ -188,7 +188,6 @@ def _rows(
 
 
 def _check(problem: DragProblem) -> None:
-    """Refuse a run from which the parameters cannot follow."""
     run, wanted = problem.run, len(problem.names) + SPARE_POINTS
     speed = np.abs(run.speed) / RPM
     if len(speed) < wanted:

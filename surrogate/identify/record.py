@@ -42,15 +42,15 @@ SUFFIX = '_identified'
 
 
 def identification_record(
-    screw: Screw, run: NoLoadRun, contacts: ContactModel, found: Identification
+    screw: Screw, run: NoLoadRun, contacts: ContactModel, fit: Identification
 ) -> dict[str, Any]:
     """Return an identification as plain numbers, SI units, NaN with a reason where unknown."""
-    speed, share = np.abs(run.speed), _contact_share(run, found)
+    speed, share = np.abs(run.speed), _contact_share(run, fit)
     return {
         'tier': contacts.tier,
-        'status': _status(found),
-        'converged': found.converged,
-        'warnings': [*_warnings(screw, run, contacts, found)],
+        'status': _status(fit),
+        'converged': fit.converged,
+        'warnings': [*_warnings(screw, run, contacts, fit)],
         'screw': screw.name,
         'oil': contacts.lubricant.name,
         'data': run.source,
@@ -60,23 +60,23 @@ def identification_record(
         'temperature_K': run.mean_temperature,
         'parameters': [
             {
-                'name': one.name,
-                'unit': UNITS[one.name],
-                'value': one.value,
-                'low': one.low,
-                'high': one.high,
-                'standard_error': one.standard_error,
-                'reason': one.reason,
+                'name': estimate.name,
+                'unit': UNITS[estimate.name],
+                'value': estimate.value,
+                'low': estimate.low,
+                'high': estimate.high,
+                'standard_error': estimate.standard_error,
+                'reason': estimate.reason,
             }
-            for one in found.estimates
+            for estimate in fit.estimates
         ],
-        'correlation': {'of': list(found.correlated), 'matrix': found.correlation.tolist()},
-        'onset': _onset_record(run, contacts, found),
-        'offset_force_N': found.value('torque_offset') * 2 * math.pi / screw.lead,
-        'residual_rms_Nm': found.rms,
-        'residual_rms_before_Nm': found.rms_before,
-        'degrees_of_freedom': found.degrees_of_freedom,
-        'reduced_chi_square': found.reduced_chi_square,
+        'correlation': {'of': list(fit.correlated), 'matrix': fit.correlation.tolist()},
+        'onset': _onset_record(run, contacts, fit),
+        'offset_force_N': fit.value('torque_offset') * 2 * math.pi / screw.lead,
+        'residual_rms_Nm': fit.rms,
+        'residual_rms_before_Nm': fit.rms_before,
+        'degrees_of_freedom': fit.degrees_of_freedom,
+        'reduced_chi_square': fit.reduced_chi_square,
         'contact_share_range': list(share),
         'catalogue_drag_torque_Nm': drag_torque_catalogue(
             screw.preload, screw.lead, helix_angle(screw)
@@ -84,21 +84,21 @@ def identification_record(
     }
 
 
-def _status(found: Identification) -> str:
-    if not found.converged:
+def _status(fit: Identification) -> str:
+    if not fit.converged:
         return 'the fit ended before it converged'
-    return 'the onset is refused, and no sheet is written' if found.onset_refused else 'fitted'
+    return 'the onset is refused, and no sheet is written' if fit.onset_refused else 'fitted'
 
 
 def _onset_record(
-    run: NoLoadRun, contacts: ContactModel, found: Identification
+    run: NoLoadRun, contacts: ContactModel, fit: Identification
 ) -> dict[str, Any] | None:
     """Return the onset of the raceway under the load of the run, None where it was not asked."""
-    onset = found.estimate('onset_factor')
+    onset = fit.estimate('onset_factor')
     if onset is None:
         return None
     speed, low, high = onset_speeds(contacts, run, (onset.value, onset.low, onset.high))
-    torque = run.direction * found.after
+    torque = run.direction * fit.after
     return {
         'speed_rad_s': speed,
         'speed_low_rad_s': low,
@@ -106,43 +106,45 @@ def _onset_record(
         'turns_up_rad_s': abs(float(run.speed[np.argmin(torque)])),
         'band': calibrated_band(onset.low, onset.high),
         'reason': onset.reason,
-        'refused': found.onset_refused,
+        'refused': fit.onset_refused,
     }
 
 
-def _contact_share(run: NoLoadRun, found: Identification) -> tuple[float, float]:
+def _contact_share(run: NoLoadRun, fit: Identification) -> tuple[float, float]:
     """Return the least and largest share of the contacts in the friction torque modelled [-]."""
-    parasitic = found.value('parasitic_torque') + found.value('parasitic_torque_rate') * np.abs(
+    parasitic = fit.value('parasitic_torque') + fit.value('parasitic_torque_rate') * np.abs(
         run.speed
     )
-    total = found.contacts + parasitic
-    share = np.divide(found.contacts, total, out=np.ones_like(total), where=total > 0)
+    total = fit.contacts + parasitic
+    share = np.divide(fit.contacts, total, out=np.ones_like(total), where=total > 0)
     return float(share.min()), float(share.max())
 
 
 def _warnings(
-    screw: Screw, run: NoLoadRun, contacts: ContactModel, found: Identification
+    screw: Screw, run: NoLoadRun, contacts: ContactModel, fit: Identification
 ) -> Iterator[str]:
     """Yield a sentence for each thing that makes the numbers say less than they seem to."""
-    yield from (f'{one.name}: {one.reason}' for one in found.estimates if one.reason)
+    yield from (
+        f'{estimate.name}: {estimate.reason}' for estimate in fit.estimates if estimate.reason
+    )
     if not run.both_directions:
         yield (
             'one direction only: a weight on the axis or a wrong zero of the torque counts as '
             'parasitic torque'
         )
     hint = f'check oil, temperature, preload and the sign of the torque, tier {contacts.tier}'
-    if found.value('parasitic_torque') == 0:
+    if fit.value('parasitic_torque') == 0:
         yield f'the contacts of the model take more torque than was measured: {hint}'
-    elif found.value('parasitic_torque_rate') == 0:
+    elif fit.value('parasitic_torque_rate') == 0:
         yield f'the torque measured rises less with speed than that of the contacts: {hint}'
     touching = int((contacts.asperity_share > CLOSED_FORM_SHARE).sum())
-    calibrated = found.estimate('onset_factor') is not None
+    calibrated = fit.estimate('onset_factor') is not None
     if touching and contacts.tier == closed_form.TIER and not calibrated:
         yield (
             f'{touching} of {len(run.speed)} points have an asperity share above '
             f'{CLOSED_FORM_SHARE:g}, which the closed-form tier misjudges'
         )
-    scatter = math.sqrt(found.reduced_chi_square) if found.reduced_chi_square >= 0 else 1.0
+    scatter = math.sqrt(fit.reduced_chi_square) if fit.reduced_chi_square >= 0 else 1.0
     if not EXPECTED_SCATTER[0] <= scatter <= EXPECTED_SCATTER[1]:
         misses = ', the model misses something' if scatter > 1 else ''
         yield f'the residual is {scatter:.2g} times the standard deviation given{misses}'
@@ -157,8 +159,8 @@ def _warnings(
             'the onset factor holds what sheet, running in, film floor and law are off by '
             'together: it tells neither the hardness nor any other key of the sheet'
         )
-    for (row, first), (column, second) in combinations(enumerate(found.correlated), 2):
-        correlated = found.correlation[row, column]
+    for (row, first), (column, second) in combinations(enumerate(fit.correlated), 2):
+        correlated = fit.correlation[row, column]
         if abs(correlated) > STRONG:
             yield (
                 f'{first} and {second} are correlated by {correlated:.3f}: the data '
@@ -167,7 +169,7 @@ def _warnings(
 
 
 def identified_screw(
-    screw: Screw, run: NoLoadRun, contacts: ContactModel, found: Identification, day: str = ''
+    screw: Screw, run: NoLoadRun, contacts: ContactModel, fit: Identification, day: str = ''
 ) -> Screw:
     """
     Return the datasheet with what was found, and in its source from where.
@@ -175,7 +177,7 @@ def identified_screw(
     An onset that has an interval is calibrated on the `day`; another one is no calibration.
 
     """
-    friction, onset = found.value('asperity_friction'), found.estimate('onset_factor')
+    friction, onset = fit.value('asperity_friction'), fit.estimate('onset_factor')
     rough = screw.roughness
     if not math.isnan(friction):
         rough = replace(rough, asperity_friction=friction)
@@ -187,42 +189,41 @@ def identified_screw(
     return replace(
         screw,
         name=screw.name.removesuffix(SUFFIX) + SUFFIX,
-        source=f'{screw.source.split(PROVENANCE)[0].rstrip()} {_provenance(run, contacts, found)}',
-        parasitic_torque=found.value('parasitic_torque'),
-        parasitic_torque_rate=found.value('parasitic_torque_rate'),
+        source=f'{screw.source.split(PROVENANCE)[0].rstrip()} {_provenance(run, contacts, fit)}',
+        parasitic_torque=fit.value('parasitic_torque'),
+        parasitic_torque_rate=fit.value('parasitic_torque_rate'),
         roughness=rough,
     )
 
 
 def identified_oil(
-    lubricant: Lubricant, run: NoLoadRun, contacts: ContactModel, found: Identification
+    lubricant: Lubricant, run: NoLoadRun, contacts: ContactModel, fit: Identification
 ) -> Lubricant:
     """Return the oil as it was in the run, anchored at its temperature."""
     return replace(
-        thickened(contacts.lubricant, found.value('viscosity_factor')),
+        thickened(contacts.lubricant, fit.value('viscosity_factor')),
         name=lubricant.name.removesuffix(SUFFIX) + SUFFIX,
         source=f'{lubricant.source.split(PROVENANCE)[0].rstrip()} '
-        f'{_provenance(run, contacts, found)}',
+        f'{_provenance(run, contacts, fit)}',
     )
 
 
-def _provenance(run: NoLoadRun, contacts: ContactModel, found: Identification) -> str:
+def _provenance(run: NoLoadRun, contacts: ContactModel, fit: Identification) -> str:
     speed = np.abs(run.speed) / RPM
     return (
         f'{PROVENANCE} {run.source}: {len(speed)} points from '
         f'{digits(speed.min(), 4)} to {digits(speed.max(), 4)} rev/min, tier {contacts.tier}, '
         f'oil {contacts.lubricant.name} at '
-        f'{run.mean_temperature - ZERO_CELSIUS:.4g} degC, residual {found.rms:.3g} N m rms. '
-        + '; '.join(_sentence(one) for one in found.estimates)
+        f'{run.mean_temperature - ZERO_CELSIUS:.4g} degC, residual {fit.rms:.3g} N m rms. '
+        + '; '.join(_sentence(estimate) for estimate in fit.estimates)
         + '.'
     )
 
 
-def _sentence(one: ParameterEstimate) -> str:
-    unit = f' {UNITS[one.name]}' if UNITS[one.name] != '-' else ''
-    if one.reason:
-        return f'{one.name} {one.value:.5g}{unit} ({one.reason})'
-    return f'{one.name} {one.value:.5g}{unit} (95 % {one.low:.5g} to {one.high:.5g})'
+def _sentence(estimate: ParameterEstimate) -> str:
+    unit = f' {UNITS[estimate.name]}' if UNITS[estimate.name] != '-' else ''
+    interval = f'95 % {estimate.low:.5g} to {estimate.high:.5g}'
+    return f'{estimate.name} {estimate.value:.5g}{unit} ({estimate.reason or interval})'
 
 
 def page(record: Mapping[str, Any]) -> str:
@@ -236,7 +237,7 @@ def page(record: Mapping[str, Any]) -> str:
             f'{record["points"]} points of {record["data"]}, {digits(low, 4)} to '
             f'{digits(high, 4)} rev/min, '
             f'{record["temperature_K"] - ZERO_CELSIUS:.4g} degC',
-            *(f'  {_row(one)}' for one in record['parameters']),
+            *(f'  {_row(parameter)}' for parameter in record['parameters']),
             *_onset_rows(record['onset']),
             *([] if math.isnan(force) else [f'  {"offset as a load":22} {force:.3g} N, {weight}']),
             f'  {"residual, rms":22} {record["residual_rms_Nm"]:.4g} N m, '
@@ -269,7 +270,8 @@ def _onset_rows(onset: Mapping[str, Any] | None) -> list[str]:
     ]
 
 
-def _row(one: Mapping[str, Any]) -> str:
-    unit = '' if one['unit'] == '-' else f' {one["unit"]}'
-    interval = f'95 %: {one["low"]:.4g} to {one["high"]:.4g}'
-    return f'{one["name"]:22} {one["value"]:.4g}{unit:10} {one["reason"] or interval}'
+def _row(parameter: Mapping[str, Any]) -> str:
+    unit = '' if parameter['unit'] == '-' else f' {parameter["unit"]}'
+    interval = f'95 %: {parameter["low"]:.4g} to {parameter["high"]:.4g}'
+    value = f'{parameter["value"]:.4g}{unit:10}'
+    return f'{parameter["name"]:22} {value} {parameter["reason"] or interval}'

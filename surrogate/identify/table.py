@@ -80,8 +80,11 @@ class _Axes:
     def screws(self) -> list[list[Screw]]:
         """Return the screw of every friction coefficient and onset factor."""
         return [
-            [bare(self.screw, asperity_friction=one, onset_factor=onset) for onset in self.onsets]
-            for one in self.frictions
+            [
+                bare(self.screw, asperity_friction=friction, onset_factor=onset)
+                for onset in self.onsets
+            ]
+            for friction in self.frictions
         ]
 
     def at(self, torque: Array, speed: Array, thickness: Array, onset: float) -> Array:
@@ -122,7 +125,17 @@ def solved_model(
 
     """
     axes = _axes(screw, lubricant, run, fitted, FRICTIONS)
-    return _model(axes, run, TIER, *_solve_table(axes, settings, progress))
+    opened, load = Contacts.of(bare(axes.screw)), axes.load
+    torque, shares = [], np.empty(len(axes.nodes))
+    progress(0, len(axes.nodes))
+    solution: ScrewSolution | None = None
+    for number, node in enumerate(axes.nodes.tolist()):  # each from its neighbour
+        point = _point(axes.oil, node, load)
+        solution = solve_screw(opened, axes.oil, point, settings=settings, start=solution)
+        shares[number] = _converged(solution, node).asperity_share
+        torque.append(_rebalanced(axes, node, solution, settings))
+        progress(number + 1, len(axes.nodes))
+    return _model(axes, run, TIER, np.array(torque), shares)
 
 
 def formula_model(
@@ -157,10 +170,23 @@ def _axes(
         _load(screw, run),
         screw.roughness,
     )
-    factors = _factors(_thickness(oil, run), 'viscosity_factor' in fitted)
+    thick, speeds = _thickness(oil, run), np.unique(np.abs(run.speed))
+    low, high = float(thick.min()), float(thick.max())
+    varies = 'viscosity_factor' in fitted
+    if varies:
+        low, high = VISCOSITY_BOUNDS[0] * low, VISCOSITY_BOUNDS[1] * high
+    factors = np.ones(1)
+    if high / low - 1 >= SAME_VISCOSITY:
+        factors = np.geomspace(low, high, FACTORS if varies else FEW_FACTORS)
+    apart = bool((speeds[1:] / speeds[:-1] >= APART).all())
+    if len(factors) > 1 or len(speeds) > MOST_SPEEDS or not apart:
+        # The products of speed and viscosity span those of the run.
+        slow, fast = speeds[0] * factors[0], speeds[-1] * factors[-1]
+        number = math.ceil(NODES_PER_DECADE * math.log10(fast / slow)) + 1
+        speeds = np.geomspace(slow, fast, max(number, FEWEST_NODES))
     stated = np.array([sheet.asperity_friction])
     return _Axes(
-        nodes=_nodes(np.abs(run.speed), factors),
+        nodes=speeds,
         factors=factors,
         frictions=np.unique((*frictions, *stated)) if 'asperity_friction' in fitted else stated,
         onsets=ONSETS if 'onset_factor' in fitted else np.array([sheet.onset_factor]),
@@ -187,21 +213,6 @@ def _model(axes: _Axes, run: NoLoadRun, tier: str, torque: Array, shares: Array)
     )
 
 
-def _solve_table(
-    axes: _Axes, settings: ScrewSettings | None, progress: OnProgress
-) -> tuple[Array, Array]:
-    """Return torque [N m] and shares [-] of solved contacts."""
-    torque, shares = [], np.empty(len(axes.nodes))
-    progress(0, len(axes.nodes))
-    found: ScrewSolution | None = None
-    for number, node in enumerate(axes.nodes.tolist()):
-        found = _solve(bare(axes.screw), axes.oil, node, axes.load, settings, found)
-        shares[number] = found.asperity_share
-        torque.append(_rebalanced(axes, node, found, settings))
-        progress(number + 1, len(axes.nodes))
-    return np.array(torque), shares
-
-
 def _load(screw: Screw, run: NoLoadRun) -> float:
     """Return the one load [N] of a run."""
     load = float(run.load.mean())
@@ -226,49 +237,14 @@ def _thickness(oil: Lubricant, run: NoLoadRun) -> Array:
     return lubricant_state(oil, run.temperature).viscosity / oil.viscosity
 
 
-def _factors(thick: Array, fitted: bool) -> Array:
-    """Return the viscosities of the table over that at the mean temperature [-]."""
-    low, high = float(thick.min()), float(thick.max())
-    if fitted:
-        low, high = VISCOSITY_BOUNDS[0] * low, VISCOSITY_BOUNDS[1] * high
-    if high / low - 1 < SAME_VISCOSITY:
-        return np.ones(1)
-    return np.geomspace(low, high, FACTORS if fitted else FEW_FACTORS)
-
-
-def _nodes(speed: Array, factors: Array) -> Array:
-    """Return speeds [rad/s] at the mean viscosity whose products span those of the run."""
-    distinct = np.unique(speed)
-    apart = bool((distinct[1:] / distinct[:-1] >= APART).all())
-    if len(factors) == 1 and len(distinct) <= MOST_SPEEDS and apart:
-        return distinct
-    low, high = distinct[0] * factors[0], distinct[-1] * factors[-1]
-    number = math.ceil(NODES_PER_DECADE * math.log10(high / low)) + 1
-    return np.geomspace(low, high, max(number, FEWEST_NODES))
-
-
-def _solve(
-    screw: Screw,
-    oil: Lubricant,
-    speed: float,
-    load: float,
-    settings: ScrewSettings | None,
-    start: ScrewSolution | None,
-) -> ScrewSolution:
-    """Solve a node at the mean viscosity, from its neighbour."""
-    point = _point(oil, speed, load)
-    found = solve_screw(Contacts.of(screw), oil, point, settings=settings, start=start)
-    return _converged(found, speed)
-
-
 def _rebalanced(
-    axes: _Axes, node: float, found: ScrewSolution, settings: ScrewSettings | None
+    axes: _Axes, node: float, solution: ScrewSolution, settings: ScrewSettings | None
 ) -> list[list[list[float]]]:
     """Return the friction torque [N m] for every viscosity, friction coefficient and onset."""
 
     def torque(rough: Screw, factor: float) -> float:
         thick, point = thickened(axes.oil, factor), _point(axes.oil, node / factor, axes.load)
-        balanced = rebalance_screw(Contacts.of(rough), thick, point, found, settings=settings)
+        balanced = rebalance_screw(Contacts.of(rough), thick, point, solution, settings=settings)
         return _converged(balanced, node).friction_torque
 
     return [
@@ -281,13 +257,13 @@ def _point(oil: Lubricant, speed: float, load: float) -> OperatingPoint:
     return OperatingPoint(speed=float(speed), load=load, temperature=oil.reference_temperature)
 
 
-def _converged(found: ScrewSolution, speed: float) -> ScrewSolution:
-    if not found.converged:
+def _converged(solution: ScrewSolution, speed: float) -> ScrewSolution:
+    if not solution.converged:
         raise InputError(
-            f'the screw at {digits(speed / RPM, 4)} rev/min was not solved: {found.status} '
+            f'the screw at {digits(speed / RPM, 4)} rev/min was not solved: {solution.status} '
             'Leave such speeds out or use --tier closed_form'
         )
-    return found
+    return solution
 
 
 def _weights(nodes: Array, places: Array) -> Array:

@@ -106,14 +106,14 @@ def balance_ball(
     if problem.force_unit == 0:
         return unloaded_balance(problem)
     settings = settings or BalanceSettings()
-    found = _solve(problem, settings)
-    status = found.status
+    iterate = _solve(problem, settings)
+    status = iterate.status
     if status is BalanceStatus.CONVERGED:
-        balance = converged_balance(problem, found.unknowns, found.steps)
+        balance = converged_balance(problem, iterate.unknowns, iterate.steps)
         if balance.imbalance <= settings.balance_tolerance:
             return balance
         status = BalanceStatus.STALLED
-    return BallBalance(status=status, speed=problem.speed, flank=flank, iterations=found.steps)
+    return BallBalance(status=status, speed=problem.speed, flank=flank, iterations=iterate.steps)
 
 
 def _solve(problem: BallProblem, settings: BalanceSettings) -> _Iterate:
@@ -121,17 +121,17 @@ def _solve(problem: BallProblem, settings: BalanceSettings) -> _Iterate:
     screw, nut = problem.tractions
     rough = replace(problem, tractions=(screw.sample(), nut.sample()))
     for ratio in STAGE_RATIOS:
-        found = _Iterate(unknowns=no_slip_unknowns(problem))
+        iterate = _Iterate(unknowns=no_slip_unknowns(problem))
         stages = [replace(rough, slip_floor=floor) for floor in _floors(problem, ratio)]
         for stage in (*stages, problem):
             sharp = stage.slip_floor == problem.slip_floor
             tolerance = settings.step_tolerance if sharp else STAGE_TOLERANCE
-            found = _newton(stage, found, tolerance, settings.newton_limit)
-            if found.status is not BalanceStatus.CONVERGED:
+            iterate = _newton(stage, iterate, tolerance, settings.newton_limit)
+            if iterate.status is not BalanceStatus.CONVERGED:
                 break
         else:
-            return found
-    return found
+            return iterate
+    return iterate
 
 
 def _floors(problem: BallProblem, ratio: float) -> list[float]:
@@ -156,9 +156,9 @@ def _newton(problem: BallProblem, start: _Iterate, tolerance: float, limit: int)
     Methods for Nonlinear Problems (2004), section 3.3.
 
     """
-    unknowns, found = start.unknowns, wrenches(problem, start.unknowns)
+    unknowns, friction = start.unknowns, wrenches(problem, start.unknowns)
     for steps in range(start.steps + 1, start.steps + 1 + limit):
-        imbalance, jacobian = linearise(problem, unknowns, found)
+        imbalance, jacobian = linearise(problem, unknowns, friction)
         if not _regular(jacobian):
             return _Iterate(unknowns, BalanceStatus.UNDETERMINED, steps)
         step = np.asarray(np.linalg.solve(jacobian, -imbalance), dtype=np.float64)
@@ -171,7 +171,7 @@ def _newton(problem: BallProblem, start: _Iterate, tolerance: float, limit: int)
             legal = _legal(problem, unknowns + SMALLEST_DAMPING * step)
             status = BalanceStatus.STALLED if legal else BalanceStatus.OUT_OF_RANGE
             return _Iterate(unknowns, status, steps)
-        unknowns, found = trial
+        unknowns, friction = trial
     return _Iterate(unknowns, BalanceStatus.STALLED, steps)
 
 
@@ -183,18 +183,18 @@ def _search(
     while damping >= SMALLEST_DAMPING:
         trial = unknowns + damping * step
         if _legal(problem, trial):
-            found = wrenches(problem, trial)
+            friction = wrenches(problem, trial)
             left = np.linalg.solve(
-                jacobian, residual(problem, trial, (found[0].values, found[1].values))
+                jacobian, residual(problem, trial, (friction[0].values, friction[1].values))
             )
             if np.linalg.norm(left) <= (1 - 0.5 * damping) * np.linalg.norm(step):
-                return trial, found
+                return trial, friction
         damping *= 0.5
     return None
 
 
 def _legal(problem: BallProblem, unknowns: Array) -> bool:
-    """Tell whether both contacts press and lie on the loaded flank."""
+    """Return True if both contacts press and lie on the loaded flank."""
     values = problem.scales * unknowns
     angles = values[[SCREW_ANGLE, NUT_ANGLE]]
     pressed = min(normal_forces(problem, values)) > 0
@@ -202,7 +202,7 @@ def _legal(problem: BallProblem, unknowns: Array) -> bool:
 
 
 def _regular(jacobian: Array) -> bool:
-    """Tell whether the equations decide every unknown, whatever the size of their rows."""
+    """Return True if the equations decide every unknown, whatever the size of their rows."""
     rows = np.abs(jacobian).max(axis=1, keepdims=True)
     if not (np.isfinite(jacobian).all() and rows.min() > 0):
         return False

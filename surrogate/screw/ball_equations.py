@@ -203,7 +203,7 @@ def residual(problem: BallProblem, unknowns: Vector, friction: tuple[Vector, Vec
 
 
 def linearise(
-    problem: BallProblem, unknowns: Array, found: tuple[Wrench, Wrench]
+    problem: BallProblem, unknowns: Array, both: tuple[Wrench, Wrench]
 ) -> tuple[Array, Array]:
     """
     Return the residual and its exact Jacobian [-] at scaled unknowns and the friction there.
@@ -217,10 +217,10 @@ def linearise(
     friction = [
         wrench.values[:, None]
         + 1j * (wrench.by_motion @ motion.imag + np.outer(wrench.by_load, np.imag(load)))
-        for wrench, motion, load in zip(found, moved, loads)
+        for wrench, motion, load in zip(both, moved, loads)
     ]
     jacobian = residual(problem, steps, (friction[0], friction[1])).imag / COMPLEX_STEP
-    return residual(problem, unknowns, (found[0].values, found[1].values)), jacobian
+    return residual(problem, unknowns, (both[0].values, both[1].values)), jacobian
 
 
 def screw_torque(problem: BallProblem, values: Vector, friction: Vector) -> tuple[float, float]:

@@ -115,14 +115,14 @@ def converged_balance(problem: BallProblem, unknowns: Array, iterations: int) ->
     the lost power over the speed.
 
     """
-    found, values = wrenches(problem, unknowns), problem.scales * unknowns
-    contacts = [_contact(problem, which, values, found[which]) for which in (0, 1)]
-    torque, pushed = screw_torque(problem, values, found[0].values)
+    friction, values = wrenches(problem, unknowns), problem.scales * unknowns
+    contacts = [_contact(problem, which, values, friction[which]) for which in (0, 1)]
+    torque, pushed = screw_torque(problem, values, friction[0].values)
     sense = math.copysign(1.0, problem.speed)
     axial_force = -problem.flank * pushed
     power = contacts[0].power + contacts[1].power
     ideal = problem.flank * axial_force * problem.screw.lead / (2 * math.pi)
-    imbalance = residual(problem, unknowns, (found[0].values, found[1].values))
+    imbalance = residual(problem, unknowns, (friction[0].values, friction[1].values))
     return BallBalance(
         status=BalanceStatus.CONVERGED,
         speed=problem.speed,

@@ -140,8 +140,8 @@ def asperities_at(
         here = (force == load) & (temperature == heat)
         if load > 0:
             place = side, contact, float(load), oil_at(lubricant, float(heat))
-            found = law.touching(*place, lubricant.film_floor, speed[here])
-            rcs[here], share[here], loss[here] = found
+            shares = law.touching(*place, lubricant.film_floor, speed[here])
+            rcs[here], share[here], loss[here] = shares
     return rcs, share, loss
 
 

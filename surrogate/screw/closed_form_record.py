@@ -37,28 +37,28 @@ def closed_form_record(
     """
     started, opened = time.perf_counter(), Contacts.of(screw)
     place = abs(point.speed), point.opposing_load, point.temperature
-    found = closed_form.solve(opened, lubricant, *place, inlet_heating=inlet_heating)
-    told = float(found.friction_torque), point.opposing_load, screw.lead
+    result = closed_form.solve(opened, lubricant, *place, inlet_heating=inlet_heating)
+    loaded = float(result.friction_torque), point.opposing_load, screw.lead
     record = point_record(
         opened,
         lubricant,
         point,
-        found,
-        found,
+        result,
+        result,
         tier=closed_form.TIER,
-        reasons=['' if one.normal_force > 0 else IDLE for one in found.contacts],
+        reasons=['' if contact.normal_force > 0 else IDLE for contact in result.contacts],
         sliding=[
-            mean_sliding_speed(screw, one.side, float(one.normal_force), point.speed)
-            for one in found.contacts
+            mean_sliding_speed(screw, contact.side, float(contact.normal_force), point.speed)
+            for contact in result.contacts
         ],
         angles=(screw.contact_angle, screw.contact_angle),
-        warnings=formula_warnings(found) if point.speed else (),
+        warnings=formula_warnings(result) if point.speed else (),
         inlet_heating=inlet_heating,
     )
     return record | {
-        'efficiency': torque.efficiency(*told),
-        'driving_torque_Nm': float(torque.driving_torque(*told)),
-        'back_driving': torque.is_back_driving(*told),
+        'efficiency': torque.efficiency(*loaded),
+        'driving_torque_Nm': float(torque.driving_torque(*loaded)),
+        'back_driving': torque.is_back_driving(*loaded),
         'wall_s': time.perf_counter() - started,
     }
 
@@ -73,10 +73,10 @@ def formula_warnings(result: ScrewPoint[Array]) -> list[str]:
         material=np.stack([g.material for g in every]),
         radius_ratio=max(g.radius_ratio for g in every),
     )
-    found = ((formula, outside_range(formula, g)) for formula in FORMULAS)
+    ranges = ((formula, outside_range(formula, g)) for formula in FORMULAS)
     return [
         f'{formula} outside its range: {", ".join(phrases)}'
-        for formula, phrases in found
+        for formula, phrases in ranges
         if phrases
     ]
 

@@ -188,11 +188,14 @@ def _solve_side(contact: RollingContact, load: float, start: Start) -> SolvedCon
 def _rolling(contact: RollingContact, smooth: ContactSolution) -> SolvedContact:
     """Return a smooth contact with what asperities do on a raceway that rolls through it."""
     if contact.law is None:
-        found = AsperityContact(smooth.rcs, smooth.asperity_share, 1.0)
-        return SolvedContact(smooth=smooth, pressed=smooth, asperities=found)
-    found = _asperities(contact, contact.law, smooth.condition)
+        asperities = AsperityContact(smooth.rcs, smooth.asperity_share, 1.0)
+        return SolvedContact(smooth=smooth, pressed=smooth, asperities=asperities)
+    asperities = _asperities(contact, contact.law, smooth.condition)
     return SolvedContact(
-        smooth=smooth, pressed=smooth, asperities=found, friction_share=found.asperity_share
+        smooth=smooth,
+        pressed=smooth,
+        asperities=asperities,
+        friction_share=asperities.asperity_share,
     )
 
 
@@ -203,8 +206,10 @@ def with_oil_of(contact: RollingContact, solved: SolvedContact) -> SolvedContact
         return replace(solved, pressed=pressed)
     load = solved.smooth.condition.load
     condition = Condition(load=load, entrainment_speed=contact.entrainment(load))
-    found = _asperities(contact, contact.law, condition)
-    return replace(solved, pressed=pressed, asperities=found, friction_share=found.asperity_share)
+    asperities = _asperities(contact, contact.law, condition)
+    return replace(
+        solved, pressed=pressed, asperities=asperities, friction_share=asperities.asperity_share
+    )
 
 
 def _asperities(
@@ -229,8 +234,8 @@ def _standing(
         settings=replace(rough, film_floor=contact.film_floor + contact.raised),
         start=start,
     )
-    found = AsperityContact(pressed.rcs, pressed.asperity_share, 1.0)
-    return SolvedContact(smooth=smooth, pressed=pressed, asperities=found)
+    asperities = AsperityContact(pressed.rcs, pressed.asperity_share, 1.0)
+    return SolvedContact(smooth=smooth, pressed=pressed, asperities=asperities)
 
 
 def standing_raceway(screw: Screw, settings: ScrewSettings) -> tuple[FractalSurface | None, float]:

@@ -63,16 +63,20 @@ COLOURS = {'low': BLUE, 'high': ORANGE}
 """Colours of the ends of an input."""
 
 
-def draw_point(folder: Path, screw: Screw, found: ScrewSolution, record: dict[str, Any]) -> Path:
+def draw_point(
+    folder: Path, screw: Screw, solution: ScrewSolution, record: dict[str, Any]
+) -> Path:
     """Write the picture of a point to `folder` as PNG and return its path."""
-    return draw_picture(folder / 'point_contacts.png', lambda: figure_point(screw, found, record))
+    return draw_picture(
+        folder / 'point_contacts.png', lambda: figure_point(screw, solution, record)
+    )
 
 
-def figure_point(screw: Screw, found: ScrewSolution, record: dict[str, Any]) -> Figure:
+def figure_point(screw: Screw, solution: ScrewSolution, record: dict[str, Any]) -> Figure:
     """Return one column per solved contact: pressure above, film and slip below."""
     pressed = [
         contact
-        for contact in found.contacts
+        for contact in solution.contacts
         if contact.solved is not None and contact.solved.converged
     ]
     figure = new_figure(2.3 * max(len(pressed), 2) + 1.2, 7.4)
@@ -194,8 +198,8 @@ def figure_onset(screw: Screw, lubricant: Lubricant, record: Mapping[str, Any]) 
         title=f'{record["screw"]}, {record["oil"]}, {record["load_N"]:g} N, '
         f'{record["temperature_K"] - ZERO_CELSIUS:g} °C',
     )
-    ticks = [one for one in (1, 1.5, 2, 3, 5, 7, 10) if giga[0] <= one <= giga[-1]]
-    axes.set_xticks(ticks, [f'{one:g}' for one in ticks])
+    ticks = [tick for tick in (1, 1.5, 2, 3, 5, 7, 10) if giga[0] <= tick <= giga[-1]]
+    axes.set_xticks(ticks, [f'{tick:g}' for tick in ticks])
     axes.minorticks_off()
     axes.legend(loc='lower right')
     return figure
@@ -220,7 +224,7 @@ def figure_sensitivity(record: Mapping[str, Any]) -> Figure:
         for place, row in enumerate(rows):
             ends = [(row[f'at_{end}'][name] / unit - stated, end) for end in COLOURS]
             # The longer bar first, so that it does not hide another on its side.
-            for reached, end in sorted(ends, key=lambda one: -abs(one[0])):
+            for reached, end in sorted(ends, key=lambda reach: -abs(reach[0])):
                 axes.barh(place, reached, left=stated, color=COLOURS[end], height=0.7)
         axes.axvline(stated, color='black', linewidth=0.8)
         axes.grid(axis='x')

@@ -47,16 +47,16 @@ def full_record(
     """Solve one point in the full tier; return it with its record."""
     started = time.perf_counter()
     opened = Contacts.of(screw)
-    found = solve_screw(opened, lubricant, point, settings=settings)
-    record = solution_record(opened, lubricant, point, found, settings)
-    return found, record | {'wall_s': time.perf_counter() - started}
+    solution = solve_screw(opened, lubricant, point, settings=settings)
+    record = solution_record(opened, lubricant, point, solution, settings)
+    return solution, record | {'wall_s': time.perf_counter() - started}
 
 
 def solution_record(
     opened: Contacts,
     lubricant: Lubricant,
     point: OperatingPoint,
-    found: ScrewSolution,
+    solution: ScrewSolution,
     settings: ScrewSettings,
 ) -> dict[str, Any]:
     """
@@ -68,32 +68,32 @@ def solution_record(
     """
     screw, heated = opened.sheet, settings.inlet_heating
     place = abs(point.speed), point.opposing_load, point.temperature
-    screw_side, nut_side = found.contacts[:2]
+    screw_side, nut_side = solution.contacts[:2]
     record = point_record(
         opened,
         lubricant,
         point,
-        found,
+        solution,
         closed_form.solve(opened, lubricant, *place, inlet_heating=heated),
         tier=TIER,
-        reasons=[_reason(found, contact) for contact in found.contacts],
-        sliding=[_sliding_speed(screw, contact) for contact in found.contacts],
+        reasons=[_reason(solution, contact) for contact in solution.contacts],
+        sliding=[_sliding_speed(screw, contact) for contact in solution.contacts],
         angles=(screw_side.contact_angle, nut_side.contact_angle),
-        warnings=[*_warnings(screw, found, shortest_on_grid(screw, settings))],
+        warnings=[*_warnings(screw, solution, shortest_on_grid(screw, settings))],
         inlet_heating=heated,
     )
     return record | {
-        'converged': found.converged,
-        'rcs_deviation': found.rcs_deviation,
+        'converged': solution.converged,
+        'rcs_deviation': solution.rcs_deviation,
         'asperity_law': law_sentence(screw, settings),
     }
 
 
-def _reason(found: ScrewSolution, contact: ScrewContact) -> str:
+def _reason(solution: ScrewSolution, contact: ScrewContact) -> str:
     """Return why a contact has no numbers, empty if it has."""
     if contact.solved is None:
         return 'no load on this nut, so no contact'
-    return '' if found.converged else found.status
+    return '' if solution.converged else solution.status
 
 
 def _sliding_speed(screw: Screw, contact: ScrewContact) -> float:
@@ -105,21 +105,21 @@ def _sliding_speed(screw: Screw, contact: ScrewContact) -> float:
     return float(np.average(slip, weights=pressed.pressure))
 
 
-def _warnings(screw: Screw, found: ScrewSolution, wave: float) -> Iterator[str]:
+def _warnings(screw: Screw, solution: ScrewSolution, wave: float) -> Iterator[str]:
     """Yield what is doubtful of a solution; `wave`, the shortest one that was solved [m]."""
-    if found.load_change > LOAD_CHANGE:
+    if solution.load_change > LOAD_CHANGE:
         yield (
-            f'balls: friction and inertia change a normal force by {100 * found.load_change:.2g} '
-            '%, the contacts were solved before that'
+            'balls: friction and inertia change a normal force by '
+            f'{100 * solution.load_change:.2g} %, the contacts were solved before that'
         )
-    grids = (contact.pressed.y for contact in found.loaded_contacts)
+    grids = (contact.pressed.y for contact in solution.loaded_contacts)
     nodes = min((wave / float(y[1] - y[0]) for y in grids), default=math.inf)
     if nodes < FEWEST_NODES:
         yield (
             f'roughness: {nodes:.2g} nodes per shortest wave across the track, asperity contact '
             f'is resolved from {FEWEST_NODES:g}'
         )
-    for contact in found.contacts:
+    for contact in solution.contacts:
         approach, clearance = contact.opposite_flank_approach, screw.flank_clearance
         if clearance is not None and approach > clearance:
             yield (
@@ -127,7 +127,7 @@ def _warnings(screw: Screw, found: ScrewSolution, wave: float) -> Iterator[str]:
                 f'towards the other flank, its clearance is {1e6 * clearance:g} um: a third '
                 'contact, which is not solved'
             )
-    for contact in found.contacts:
+    for contact in solution.contacts:
         if contact.film_error > FILM_ERROR:
             yield (
                 f'{contact.nut} nut, {contact.side}: the film is known to '

@@ -133,17 +133,18 @@ def make_nut(
         ball = balance_nut(screw, point, force, carried.flank, solved)
         failure = '' if ball.converged else f'{name} nut, ball: {ball.status.value}'
     contacts = tuple(
-        _contact(screw, name, side, one, ball) for side, one in zip(SIDES, solved, strict=True)
+        _contact(screw, name, side, contact, ball)
+        for side, contact in zip(SIDES, solved, strict=True)
     )
     return SolvedNut(force=force, contacts=contacts, ball=ball, failure=failure)
 
 
 def _failure(name: NutName, solved: tuple[SolvedContact, ...]) -> str:
     """Return the sentence of the first contact that did not converge, or nothing."""
-    for side, one in zip(SIDES, solved, strict=True):
-        for kind, found in (('smooth', one.smooth), ('rough', one.pressed)):
-            if not found.converged:
-                return f'{name} nut, {side}, {kind} contact: {found.status.value}'
+    for side, contact in zip(SIDES, solved, strict=True):
+        for kind, solution in (('smooth', contact.smooth), ('rough', contact.pressed)):
+            if not solution.converged:
+                return f'{name} nut, {side}, {kind} contact: {solution.status.value}'
     return ''
 
 
@@ -198,15 +199,15 @@ def balance_nut(
     friction = screw.roughness.asperity_friction
     tractions = [
         solved_traction(
-            one.pressed,
+            contact.pressed,
             asperity_friction=friction,
-            asperity_share=one.friction_share,
+            asperity_share=contact.friction_share,
             slip_floor=floor,
             neglected=NEGLECTED_FRICTION,
         )
-        for one in solved
+        for contact in solved
     ]
-    rolling = [rolling_force(screw, one) for one in solved]
+    rolling = [rolling_force(screw, contact) for contact in solved]
     return balance_ball(
         screw,
         speed,
@@ -221,11 +222,14 @@ def balance_nut(
 
 def rolling_force(screw: Screw, solved: SolvedContact) -> float:
     """Return the force that resists rolling on each surface [N]: oil, inlet tail, hysteresis."""
-    found = solved.pressed
+    pressed = solved.pressed
     elastic = hysteresis_force(
-        screw.hysteresis_loss, found.condition.load, found.semi_axis_x, found.contact.radius_x
+        screw.hysteresis_loss,
+        pressed.condition.load,
+        pressed.semi_axis_x,
+        pressed.contact.radius_x,
     )
-    return solved.asperities.loss_factor * found.whole_rolling_force + elastic
+    return solved.asperities.loss_factor * pressed.whole_rolling_force + elastic
 
 
 def friction_coefficient(
@@ -244,9 +248,9 @@ def friction_coefficient(
 
 
 def contact_slip(
-    screw: Screw, found: ContactSolution, side: Side, motion: BallMotion
+    screw: Screw, solution: ContactSolution, side: Side, motion: BallMotion
 ) -> tuple[Array, Array]:
     """Return the slip along and across the track [m/s] on the nodes of a contact."""
-    x, y = np.meshgrid(found.x, found.y, indexing='ij')
+    x, y = np.meshgrid(solution.x, solution.y, indexing='ij')
     turn = 1 if side == 'screw' else -1  # the nut's entrainment runs against t
     return slip_field(screw, side, motion, turn * x, turn * y)

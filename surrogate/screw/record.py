@@ -102,7 +102,7 @@ def point_record(
     opened: Contacts,
     lubricant: Lubricant,
     point: OperatingPoint,
-    found: ScrewPoint[Any],
+    result: ScrewPoint[Any],
     formulas: ScrewPoint[Array],
     *,
     tier: str,
@@ -122,13 +122,15 @@ def point_record(
     """
     screw = opened.sheet
     contacts = [
-        with_wear({'nut': one.nut, 'side': one.side, 'reason': reason} | declared(one), speed)
-        for one, reason, speed in zip(found.contacts, reasons, sliding, strict=True)
+        with_wear(
+            {'nut': contact.nut, 'side': contact.side, 'reason': reason} | declared(contact), speed
+        )
+        for contact, reason, speed in zip(result.contacts, reasons, sliding, strict=True)
     ]
-    worst, (loaded, relieved) = contacts[int(found.worst_contact)], found.normal_forces
+    worst, (loaded, relieved) = contacts[int(result.worst_contact)], result.normal_forces
     return {
         'tier': tier,
-        'status': found.status,
+        'status': result.status,
         'warnings': [*rating_warnings(screw, lubricant, point), *warnings],
         'screw': screw.name,
         'oil': lubricant.name,
@@ -139,9 +141,9 @@ def point_record(
         'load_N': point.load,
         'opposing_load_N': point.opposing_load,
         'temperature_K': point.temperature,
-        **declared(found),
+        **declared(result),
         **most_wear(contacts),
-        'regime': regime_of(float(found.film_ratio)).word,
+        'regime': regime_of(float(result.film_ratio)).word,
         'inlet_heating': inlet_heating,
         'inlet_heating_factor': _heating_factor(screw, lubricant, point, formulas),
         'worst_contact': {key: worst[key] for key in ('nut', 'side')},
@@ -162,10 +164,12 @@ def _heating_factor(
     speed = starved_speed(lubricant, result.entrainment_speed)
     factors = [
         float(
-            heating_factor(screw, lubricant, one.side, one.normal_force, speed, point.temperature)
+            heating_factor(
+                screw, lubricant, contact.side, contact.normal_force, speed, point.temperature
+            )
         )
-        for one in result.contacts
-        if one.normal_force > 0
+        for contact in result.contacts
+        if contact.normal_force > 0
     ]
     return min(factors, default=math.nan)
 

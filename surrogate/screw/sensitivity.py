@@ -75,11 +75,11 @@ def sensitivity_record(
     if not screw.composite_rms:
         raise InputError('screw: raceway and ball are smooth, allowed is a rough one')
     case = ScrewCase(screw=screw, lubricant=lubricant, point=point)
-    used = [one for one in inputs if one.bounds(case)]
+    used = [varied for varied in inputs if varied.bounds(case)]
     progress(0, len(used))
     stated, rows = _outcome(case), []
-    for done, one in enumerate(used):
-        rows.append(_row(one, case, stated))
+    for done, varied in enumerate(used):
+        rows.append(_row(varied, case, stated))
         progress(done + 1, len(used))
     rows.sort(key=lambda row: _spread(row['onset_factors']), reverse=True)
     return {
@@ -99,29 +99,31 @@ def sensitivity_record(
     }
 
 
-def _row(one: Varied, case: ScrewCase, stated: Mapping[str, float]) -> dict[str, Any]:
+def _row(varied: Varied, case: ScrewCase, stated: Mapping[str, float]) -> dict[str, Any]:
     """Return what one input changes, NaN at an end that the model refuses, with its sentence."""
-    rules, ends, found, refused = one.rules(case), one.bounds(case), [], ''
+    rules, ends, outcomes, refused = varied.rules(case), varied.bounds(case), [], ''
     assert ends is not None  # those without were left out
     for value in ends:
         try:
-            found.append(_outcome(one.at(case, value)) if value != one.stated(case) else stated)
+            outcomes.append(
+                _outcome(varied.at(case, value)) if value != varied.stated(case) else stated
+            )
         except InputError as error:
-            found.append(dict.fromkeys(stated, math.nan))
+            outcomes.append(dict.fromkeys(stated, math.nan))
             refused = str(error)
     shown = (
         None if value is None else value / rules['factor'] - rules['shift']
-        for value in (ends[0], one.stated(case), ends[1])
+        for value in (ends[0], varied.stated(case), ends[1])
     )
     return {
-        'key': f'{one.name}_{rules["unit"]}'.rstrip('_'),
+        'key': f'{varied.name}_{rules["unit"]}'.rstrip('_'),
         **dict(zip(ENDS, shown, strict=True)),
-        'reason': one.reason,
-        'measured': one.measured,
+        'reason': varied.reason,
+        'measured': varied.measured,
         'refused': refused,
-        'onset_factors': [end[ONSET] / stated[ONSET] for end in found],
-        'at_low': found[0],
-        'at_high': found[1],
+        'onset_factors': [end[ONSET] / stated[ONSET] for end in outcomes],
+        'at_low': outcomes[0],
+        'at_high': outcomes[1],
     }
 
 
@@ -134,8 +136,8 @@ def _outcome(case: ScrewCase) -> dict[str, float]:
     speed = np.concatenate([[abs(point.speed)], near, wide])
     load = point.opposing_load
     place = case.lubricant, speed, load, point.temperature
-    found = closed_form.solve(Contacts.of(case.screw), *place)
-    slow, fast = found.rcs[1:-SPEEDS], found.friction_torque[-SPEEDS:]
+    points = closed_form.solve(Contacts.of(case.screw), *place)
+    slow, fast = points.rcs[1:-SPEEDS], points.friction_torque[-SPEEDS:]
     with np.errstate(divide='ignore'):
         contact = np.log(slow / RCS_LIMIT)
     lead = case.screw.lead
@@ -143,7 +145,7 @@ def _outcome(case: ScrewCase) -> dict[str, float]:
     light = abs(load) < LIGHT_LOAD * case.screw.preload
     return {
         ONSET: onset,
-        TORQUE: float(found.friction_torque[0]),
+        TORQUE: float(points.friction_torque[0]),
         RCS_SPEED: _fastest(near, contact),
         EFFICIENCY_SPEED: math.nan if light else _fastest(wide, efficiency - EFFICIENCY_LIMIT),
     }
@@ -191,7 +193,7 @@ def _narrowed(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Return the measurement that narrows the band most, then the next, with what is left."""
     done: list[dict[str, Any]] = []
     for _ in range(2):
-        names = [one['measurement'] for one in done]
+        names = [step['measurement'] for step in done]
         left = {row['measured']: _without(rows, *names, row['measured']) for row in rows}
         best = min(left, key=lambda name: _spread(left[name]))
         done.append({'measurement': best, 'unknown_band': left[best]})
@@ -228,9 +230,13 @@ def surface_bands(screw: Screw, lubricant: Lubricant) -> dict[str, list[float]]:
     calibrated = screw.roughness.onset_band
     if calibrated:
         return {'limit_band': [1 / calibrated, calibrated], 'numerical_band': numerics}
-    ends = [(one, one.bounds(case) or ()) for one in INPUTS if one.name not in LEFT_OUT]
+    ends = [
+        (varied, varied.bounds(case) or ()) for varied in INPUTS if varied.name not in LEFT_OUT
+    ]
     factors = [
-        [one.at(case, value).onset / case.onset for value in pair] for one, pair in ends if pair
+        [varied.at(case, value).onset / case.onset for value in pair]
+        for varied, pair in ends
+        if pair
     ]
     return {'limit_band': unknown_band(factors), 'numerical_band': numerics}
 
@@ -251,8 +257,8 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
     yield _line('as stated', ('',) * 3, _cells(record['stated']))
     for row in record['inputs']:
         values = ['-' if row[end] is None else shown(row[end]) for end in ENDS]
-        found = _cells(row['at_low'], row['at_high'])
-        yield _line(row['key'], values, found) + f'  {row["refused"] or row["reason"]}'
+        cells = _cells(row['at_low'], row['at_high'])
+        yield _line(row['key'], values, cells) + f'  {row["refused"] or row["reason"]}'
     for words, name in (('not known', 'unknown_band'), ('numerics', 'numerical_band')):
         low, high = record[name]
         yield (
@@ -261,9 +267,9 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
         )
     if record['law_doubt']:
         yield f'  {"law":10} {record["law_doubt"]}'
-    for word, one in zip(('measure', 'then'), record['measure'], strict=True):
-        low, high = one['unknown_band']
-        yield f'  {word:10} {one["measurement"]}: {low:.2g} to {high:.2g} times is left'
+    for word, step in zip(('measure', 'then'), record['measure'], strict=True):
+        low, high = step['unknown_band']
+        yield f'  {word:10} {step["measurement"]}: {low:.2g} to {high:.2g} times is left'
 
 
 def shown(value: float) -> str:
@@ -271,8 +277,8 @@ def shown(value: float) -> str:
     return digits(value, 4)
 
 
-def _line(key: str, values: Sequence[str], found: Sequence[str]) -> str:
-    columns = [f'{value:>7}' for value in values] + [f'{text:>15}' for text in found]
+def _line(key: str, values: Sequence[str], cells: Sequence[str]) -> str:
+    columns = [f'{value:>7}' for value in values] + [f'{text:>15}' for text in cells]
     return ' '.join([f'  {key:21}', *columns])
 
 

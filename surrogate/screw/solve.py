@@ -69,7 +69,7 @@ class ScrewSolution(ScrewPoint[float]):
     @property
     def loaded_contacts(self) -> tuple[SolvedContact, ...]:
         """Solved contacts, those that carry load."""
-        return tuple(one.solved for one in self.contacts if one.solved is not None)
+        return tuple(contact.solved for contact in self.contacts if contact.solved is not None)
 
 
 def solve_screw(
@@ -91,7 +91,7 @@ def solve_screw(
     """
     settings, screw = settings or ScrewSettings(), opened.sheet
     nuts = _nut_loads(screw, point)
-    near = [(found.smooth, found.pressed) for found in start.contacts] if start else []
+    near = [(contact.smooth, contact.pressed) for contact in start.contacts] if start else []
     contacts: tuple[RollingContact, ...] = ()
     if any(nut.force for nut in nuts):
         contacts = make_contacts(opened, lubricant, point, settings)
@@ -113,7 +113,7 @@ def rebalance_screw(
     opened: Contacts,
     lubricant: Lubricant,
     point: OperatingPoint,
-    found: ScrewSolution,
+    solution: ScrewSolution,
     *,
     settings: ScrewSettings | None = None,
 ) -> ScrewSolution:
@@ -127,7 +127,7 @@ def rebalance_screw(
 
     """
     screw = opened.sheet
-    _check_same_load(screw, point, found)
+    _check_same_load(screw, point, solution)
     sides = make_contacts(opened, lubricant, point, settings or ScrewSettings())
     loaded, relieved = (
         tuple(
@@ -135,7 +135,7 @@ def rebalance_screw(
             for side, contact in zip(sides, contacts, strict=True)
             if contact.solved is not None
         )
-        for contacts in (found.contacts[:2], found.contacts[2:])
+        for contacts in (solution.contacts[:2], solution.contacts[2:])
     )
     nuts = _nut_loads(screw, point)
     pairs = zip(nuts, (loaded, relieved), strict=True)
@@ -153,20 +153,20 @@ def _without_floating(
     return list(solved)
 
 
-def _check_same_load(screw: Screw, point: OperatingPoint, found: ScrewSolution) -> None:
+def _check_same_load(screw: Screw, point: OperatingPoint, solution: ScrewSolution) -> None:
     """Raise InputError when the contacts of a solution belong to other normal forces."""
     wanted = [float(normal_force(screw, nut.force)) for nut in _nut_loads(screw, point)]
     unsolved = any(
         force > 0 and contact.solved is None
-        for place, contact in enumerate(found.contacts)
+        for place, contact in enumerate(solution.contacts)
         for force in [wanted[place // len(SIDES)]]
     )
-    apart = max(abs(new - old) for new, old in zip(wanted, found.normal_forces, strict=True))
+    apart = max(abs(new - old) for new, old in zip(wanted, solution.normal_forces, strict=True))
     if unsolved or apart > SAME_FORCE * max(wanted):
         raise InputError(
             f'load is {point.load:g} N, with {wanted[0]:.4g} and {wanted[1]:.4g} N a ball, '
-            f'allowed is that solved, with {found.normal_forces[0]:.4g} and '
-            f'{found.normal_forces[1]:.4g} N'
+            f'allowed is that solved, with {solution.normal_forces[0]:.4g} and '
+            f'{solution.normal_forces[1]:.4g} N'
         )
 
 
@@ -189,7 +189,7 @@ def _combine(opened: Contacts, point: OperatingPoint, nuts: Sequence[SolvedNut])
     contacts = nuts[0].contacts + nuts[1].contacts
     worst = worst_contact(contacts)
     worn = contacts[worst].solved if contacts else None
-    found = ScrewSolution(
+    solution = ScrewSolution(
         status=next(
             (nut.failure for nut in nuts if nut.failure),
             SOLVED[sum(nut.force > 0 for nut in nuts)],
@@ -204,8 +204,8 @@ def _combine(opened: Contacts, point: OperatingPoint, nuts: Sequence[SolvedNut])
             float(normal_force(screw, nuts[1].force)),
         ),
     )
-    if not found.converged:
-        return found
+    if not solution.converged:
+        return solution
     carrying = [contact for contact in contacts if contact.solved is not None]
     film = min((contact.central_film for contact in carrying), default=math.nan)
     parasitic = screw.parasitic_torque + screw.parasitic_torque_rate * speed
@@ -216,7 +216,7 @@ def _combine(opened: Contacts, point: OperatingPoint, nuts: Sequence[SolvedNut])
     driving = screw.loaded_balls_per_nut * sum(ball.torque for ball in balls) + parasitic
     missed = driving - driving_torque(friction, load, screw.lead)
     return replace(
-        found,
+        solution,
         friction_torque=friction,
         driving_torque=driving,
         energy_error=abs(missed) / friction if friction else 0.0,

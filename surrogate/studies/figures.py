@@ -16,8 +16,8 @@ from surrogate.plotting.style import BLUE, draw_picture, GREY, VERMILION
 from surrogate.raceway.short_waves import without_short_waves
 from surrogate.screw.opened import Contacts
 from surrogate.studies import screw_figures as screws
-from surrogate.studies.drawing import DECLARED, declared_figure, finish, shades, STYLES
-from surrogate.studies.rows import Array, curve, StudyRow
+from surrogate.studies.curves import Array, curve, StudyRow
+from surrogate.studies.screw_figures import DECLARED, declared_figure, finish, shades, STYLES
 from surrogate.studies.solve import published_patch, SHORTEST_ON_GRID, Study
 from surrogate.studies.tasks import LOADS, MARK_RPM, OURS, RELIEVED, REPORTED_FILM, SCREW, solves
 from surrogate.units import GIGA, MICRO, NANO
@@ -71,27 +71,20 @@ def drawn(study: Study, figure: str) -> list[Drawn]:
 
 def _scaled(fields: dict[str, Any]) -> SimpleNamespace:
     arrays = {name: np.array(values) for name, values in fields.items()}
-    x, y, a = (MICRO * arrays[name] for name in ('x', 'y', 'semi_axis_x'))
+    x, y, a, b = (MICRO * arrays[name] for name in ('x', 'y', 'semi_axis_x', 'semi_axis_y'))
     oil, asperities = (GIGA * arrays[f'{name}_pressure'] for name in ('film', 'asperity'))
+    hertz = GIGA * arrays['hertz_pressure'] * np.sqrt(np.maximum(1 - (x / a) ** 2, 0))
+    heights, film = MICRO * arrays['heights'], NANO * arrays['film']
     middle = int(np.argmin(np.abs(y)))
-    return SimpleNamespace(
-        x=x,
-        y=y,
-        a=a,
-        b=MICRO * arrays['semi_axis_y'],
-        oil=oil,
-        asperities=asperities,
-        heights=MICRO * arrays['heights'],
-        hertz=GIGA * arrays['hertz_pressure'] * np.sqrt(np.maximum(1 - (x / a) ** 2, 0)),
-        oil_line=oil[:, middle],
-        asperity_line=asperities[:, middle],
-        film=NANO * arrays['film'][:, middle],
-    )
+    oil_line, asperity_line, film = (field[:, middle] for field in (oil, asperities, film))
+    ends = {'x': x, 'y': y, 'a': a, 'b': b, 'hertz': hertz, 'heights': heights}
+    lines = {'oil_line': oil_line, 'asperity_line': asperity_line, 'film': film}
+    return SimpleNamespace(oil=oil, asperities=asperities, **ends, **lines)
 
 
 def figure_fractal(study: Study, opened: Contacts) -> Figure:
     """Return surface, film and asperity pressure of a mixed contact, and a cut along it (4)."""
-    row, found = drawn(study, '4')[0]
+    row, contact = drawn(study, '4')[0]
     figure = declared_figure('4', row=row)
     upper, lower = np.asarray(figure.subfigures(2, 1, height_ratios=(1.65, 1)))
     panels = upper.subplots(1, 4, width_ratios=(2.1, 1, 1, 1))
@@ -99,29 +92,29 @@ def figure_fractal(study: Study, opened: Contacts) -> Figure:
     place = np.linspace(-WIDE, WIDE, 401)
     heights, side = MICRO * raceway.heights(place, place), MICRO * place
     label = 'height of the raceway [µm]'
-    _draw_map(panels[0], found, (side, side, heights), {'cmap': 'PuOr_r'}, label)
+    _draw_map(panels[0], contact, (side, side, heights), {'cmap': 'PuOr_r'}, label)
     panels[0].set(xlabel='x [µm]', ylabel='y [µm]', aspect='equal')
     panels[0].set_title('(a) 1 mm x 1 mm of one draw', loc='left')
     for axes, letter, label, values, style in (
-        (panels[1], 'b', 'height [µm]', found.heights, {'cmap': 'PuOr_r'}),
-        (panels[2], 'c', 'film [GPa]', found.oil, {'cmap': 'Blues', 'vmin': 0}),
-        (panels[3], 'd', 'asperities [GPa]', found.asperities, {'cmap': 'Reds', 'vmin': 0}),
+        (panels[1], 'b', 'height [µm]', contact.heights, {'cmap': 'PuOr_r'}),
+        (panels[2], 'c', 'film [GPa]', contact.oil, {'cmap': 'Blues', 'vmin': 0}),
+        (panels[3], 'd', 'asperities [GPa]', contact.asperities, {'cmap': 'Reds', 'vmin': 0}),
     ):
-        bar = _draw_map(axes, found, (found.x, found.y, values), style, '')
+        bar = _draw_map(axes, contact, (contact.x, contact.y, values), style, '')
         bar.set_label(label, fontsize=8)
-        spans = {'xlim': VIEW * found.a, 'ylim': VIEW * found.b}
+        spans = {'xlim': VIEW * contact.a, 'ylim': VIEW * contact.b}
         axes.set(xlabel='x [µm]', **{name: (-end, end) for name, end in spans.items()})
         axes.set_title(f'({letter})', loc='left')
     panels[1].set_ylabel('y across the track [µm]')
     axes = lower.subplots()
-    _draw_split(axes, found)
+    _draw_split(axes, contact)
     axes.set(xlabel='x along the track [µm], oil enters at the left', ylabel='pressure [GPa]')
     finish(axes, 'e', 'who carries on the centre line')
     return figure
 
 
 def _draw_map(
-    axes: Any, found: SimpleNamespace, field: tuple[Array, Array, Array], style: Any, label: str
+    axes: Any, contact: SimpleNamespace, field: tuple[Array, Array, Array], style: Any, label: str
 ) -> Any:
     """Draw a field over x and y with its bar and the ellipse of Hertz."""
     x, y, values = field
@@ -129,19 +122,21 @@ def _draw_map(
     bar = axes.get_figure().colorbar(mesh, ax=axes, location='bottom', label=label)
     bar.ax.tick_params(labelsize=7)
     ellipse: dict[str, Any] = {'fill': False, 'linestyle': '--', 'linewidth': 0.9}
-    axes.add_patch(Ellipse((0, 0), 2 * found.a, 2 * found.b, **ellipse))
+    axes.add_patch(Ellipse((0, 0), 2 * contact.a, 2 * contact.b, **ellipse))
     return bar
 
 
-def _draw_split(axes: Axes, found: SimpleNamespace) -> None:
+def _draw_split(axes: Axes, contact: SimpleNamespace) -> None:
     """Draw film and asperity pressure and Hertz's on the centre line."""
-    axes.plot(found.x, found.oil_line, color=BLUE, linewidth=1.2, label='film')
-    if found.asperity_line.any():
-        axes.fill_between(found.x, found.asperity_line, color=VERMILION, alpha=0.35, linewidth=0)
+    axes.plot(contact.x, contact.oil_line, color=BLUE, linewidth=1.2, label='film')
+    if contact.asperity_line.any():
+        axes.fill_between(
+            contact.x, contact.asperity_line, color=VERMILION, alpha=0.35, linewidth=0
+        )
         line: dict[str, Any] = {'color': VERMILION, 'linewidth': 1.0}
-        axes.plot(found.x, found.asperity_line, label='asperities', **line)
-    axes.plot(found.x, found.hertz, color=GREY, linestyle='--', linewidth=1.0, label='Hertz')
-    axes.set(ylim=(0, None), xlim=(-1.9 * found.a, 1.4 * found.a))
+        axes.plot(contact.x, contact.asperity_line, label='asperities', **line)
+    axes.plot(contact.x, contact.hertz, color=GREY, linestyle='--', linewidth=1.0, label='Hertz')
+    axes.set(ylim=(0, None), xlim=(-1.9 * contact.a, 1.4 * contact.a))
 
 
 def figure_smooth_speed(study: Study) -> Figure:
@@ -160,7 +155,7 @@ def figure_smooth_speed(study: Study) -> Figure:
 def figure_smooth_load(study: Study) -> Figure:
     """Return pressure and film of the smooth contact at several loads (8)."""
     figure = declared_figure('8')
-    series = [(row, found) for row, found in drawn(study, '8') if row.load in SHOWN_LOADS]
+    series = [(row, contact) for row, contact in drawn(study, '8') if row.load in SHOWN_LOADS]
     labels = [f'{row.load:g} N ({row.normal_force:.0f} N per ball)' for row, _ in series]
     *_, right = _draw_series(figure, series, labels, 3)
     wanted: dict[str, Any] = {'kind': 'contact', 'rpm': MARK_RPM, 'rough': False}
@@ -179,15 +174,15 @@ def _draw_series(
     """Draw pressure and film of a series on the centre line into the first panels."""
     panels = list(figure.subplots(1, columns))
     colours = shades(len(series))
-    for (_, found), label, colour, style in zip(series, labels, colours, STYLES, strict=False):
+    for (_, contact), label, colour, style in zip(series, labels, colours, STYLES, strict=False):
         line = {'color': colour, 'linestyle': style, 'linewidth': 1.3}
-        panels[0].plot(found.x, found.oil_line, label=label, **line)
-        panels[1].plot(found.x, found.film, label=label, **line)
+        panels[0].plot(contact.x, contact.oil_line, label=label, **line)
+        panels[1].plot(contact.x, contact.film, label=label, **line)
     last = series[-1][1]
     if len({row.normal_force for row, _ in series}) == 1:
         hertz = {'color': GREY, 'linestyle': (0, (1, 1)), 'linewidth': 1.0, 'label': 'Hertz'}
         panels[0].plot(last.x, last.hertz, **hertz)
-    films = [float(found.film[np.argmin(np.abs(found.x))]) for _, found in series]
+    films = [float(contact.film[np.argmin(np.abs(contact.x))]) for _, contact in series]
     panels[0].set(ylabel='pressure [GPa]', ylim=(0, None))
     panels[1].set(ylabel='film [nm]', ylim=(0, 2.2 * max(films)))
     for axes, letter in zip(panels[:2], 'ab', strict=True):
@@ -202,22 +197,22 @@ def figure_rough(study: Study, name: str) -> Figure:
     series = drawn(study, name)
     figure = declared_figure(name, draw=series[0][0].draw)
     panels = figure.subplots(2, len(series), sharex='col', squeeze=False)
-    top = 1.1 * max(float((found.oil + found.asperities).max()) for _, found in series)
-    for column, (row, found) in enumerate(series):
+    top = 1.1 * max(float((contact.oil + contact.asperities).max()) for _, contact in series)
+    for column, (row, contact) in enumerate(series):
         upper, lower = panels[:, column]
-        _draw_split(upper, found)
+        _draw_split(upper, contact)
         upper.set_ylim(0, top)
         title = (
             f'{row.rpm:g} rev/min, {row.load:g} N on the screw\n'
             f'{row.normal_force:.0f} N per ball, RCS {row.rcs:.2g}'
         )
         finish(upper, title=title, legend='upper left' if column == 0 else None)
-        lower.plot(found.x, found.film, color=BLUE, linewidth=1.2)
+        lower.plot(contact.x, contact.film, color=BLUE, linewidth=1.2)
         if row.rcs:
             floor = {'color': VERMILION, 'linestyle': ':', 'linewidth': 1.2}
             lower.axhline(NANO * row.minimum_film, **floor)
-        inside = np.abs(found.x) < found.a
-        lower.set(xlabel='x [µm]', ylim=(0, 2.0 * np.percentile(found.film[inside], 90)))
+        inside = np.abs(contact.x) < contact.a
+        lower.set(xlabel='x [µm]', ylim=(0, 2.0 * np.percentile(contact.film[inside], 90)))
         finish(lower)
     panels[0, 0].set_ylabel('pressure [GPa]')
     panels[1, 0].set_ylabel('film [nm]')

@@ -8,7 +8,7 @@ rolls. Ours agrees where it takes the reported course, in part where it takes th
 
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 import math
 from typing import Any, Literal, NamedTuple
 
@@ -17,38 +17,8 @@ from surrogate.asperities.law import AsperityLaw
 from surrogate.parameters import Screw
 from surrogate.screw.contacts import ScrewSettings
 from surrogate.screw.full_record import law_sentence
-from surrogate.studies.rows import (
-    Along,
-    apparent_friction,
-    Array,
-    constant_friction_efficiency,
-    contact_speeds,
-    crossing,
-    Curve,
-    curve,
-    efficiencies,
-    mapped,
-    markdown_table,
-    nut_rows,
-    paired_change,
-    pick,
-    screw_speeds,
-    StudyRow,
-)
-from surrogate.studies.tasks import (
-    EFFICIENCY_LOAD,
-    LOADS,
-    MARK_RPM,
-    ONSET,
-    OURS,
-    PRELOAD,
-    REPORTED_FILM,
-    ROLLING_RPM,
-    ROUGH_LOADS,
-    SHORT,
-    SLOW,
-    STANDING,
-)
+from surrogate.studies import curves, tasks
+from surrogate.studies.curves import Array, Curve, mean_of, screw_speeds, StudyRow
 from surrogate.surface.aims import EFFICIENCY_TOLERANCE, RCS_LIMIT
 from surrogate.units import MILLI, NANO
 
@@ -64,9 +34,9 @@ ETA_RISES, WITH_LOAD = 'trend: rises with speed', 'trend: rises with load'
 
 
 class Reading(NamedTuple):
-    """What one model says of a trend, and whether the study says so too."""
+    """A trend by one model, in words, and whether the study reports the same."""
 
-    said: str
+    text: str
     agrees: Agreement
 
 
@@ -103,7 +73,6 @@ class Mark(NamedTuple):
 def report(screw: Screw, law: AsperityLaw, rows: Mapping[str, StudyRow]) -> str:
     """Return the page: where its numbers are from, the trends side by side, other numbers."""
     seconds = sum(row.seconds for row in rows.values() if row.status == 'CONVERGED')
-    every = trends(screw, law, rows.values())
     parts = (
         '# Numbers beside the published study',
         'Written by `ballscrew figures`; docs/theory/validation.md says what they mean. '
@@ -115,8 +84,7 @@ def report(screw: Screw, law: AsperityLaw, rows: Mapping[str, StudyRow]) -> str:
         'of its own Rq by the standard. Agrees: the course over all places is the reported one; '
         f'in part: a part of it is. Changes below {100 * SAME:g} %, of efficiencies below '
         f'{EFFICIENCY_TOLERANCE:g}, of means below {ERRORS:g} standard errors, count as none.',
-        trend_table(every),
-        summary(every),
+        trend_table(trends(screw, law, rows.values())),
         '## Other numbers',
         table(marks(screw, rows)),
     )
@@ -126,46 +94,30 @@ def report(screw: Screw, law: AsperityLaw, rows: Mapping[str, StudyRow]) -> str:
 def trend_table(every: Iterable[Trend]) -> str:
     """Return trends as a table in Markdown; a column for each model, and what agrees."""
     heads = 'trend', 'published', 'standing roughness', 'agrees', 'rolling roughness', 'agrees'
-    return markdown_table(
-        heads,
-        (
-            [name, published, *(cell for reading in readings for cell in reading or ('', ''))]
-            for name, published, *readings in every
-        ),
+    rows = (
+        [name, published, *(cell for reading in readings for cell in reading or ('', ''))]
+        for name, published, *readings in every
     )
-
-
-def summary(every: Sequence[Trend]) -> str:
-    """Return as a list which trends agree where the roughness rolls."""
-    lines = []
-    for agrees, head in (('yes', 'agree'), ('in part', 'agree in part'), ('no', 'differ')):
-        names = [one.name for one in every if one.rolling and one.rolling.agrees == agrees]
-        lines.append(f'* Rolling roughness, {head}: {"; ".join(names) or "none"}.')
-    changed = [
-        one.name
-        for one in every
-        if one.standing and one.rolling and one.standing.agrees != one.rolling.agrees
-    ]
-    return '\n'.join([*lines, f'* Unlike standing roughness: {"; ".join(changed) or "none"}.'])
+    return curves.markdown_table(heads, rows)
 
 
 def table(every: Iterable[Mark]) -> str:
     """Return marks as a table in Markdown."""
-    return markdown_table(
-        ('number', 'ours', 'reported'), ((mark.name, mark.shown, mark.reported) for mark in every)
-    )
+    rows = ((mark.name, mark.shown, mark.reported) for mark in every)
+    return curves.markdown_table(('number', 'ours', 'reported'), rows)
 
 
-def trends(screw: Screw, law: AsperityLaw, found: Iterable[StudyRow]) -> list[Trend]:
+def trends(screw: Screw, law: AsperityLaw, rows: Iterable[StudyRow]) -> list[Trend]:
     """Return every trend that the rows tell something of."""
-    rows = list(found)
+    known = list(rows)
+    speed, load = f'speed, {tasks.EFFICIENCY_LOAD:g} N', f'load, {tasks.MARK_RPM:g} rev/min'
     every = [
-        _contact_ends(screw, law, rows),
-        *_over_speed(rows),
-        _efficiency(screw, rows, f'speed, {EFFICIENCY_LOAD:g} N', 'rpm', load=EFFICIENCY_LOAD),
-        _efficiency(screw, rows, f'load, {MARK_RPM:g} rev/min', 'load', rpm=MARK_RPM),
-        *_over_load(rows),
-        _film(rows),
+        _contact_ends(screw, law, known),
+        *_over_speed(known),
+        _efficiency(screw, known, speed, 'rpm', load=tasks.EFFICIENCY_LOAD),
+        _efficiency(screw, known, load, 'load', rpm=tasks.MARK_RPM),
+        *_over_load(known),
+        _film(known),
     ]
     return [trend for trend in every if trend.standing or trend.rolling]
 
@@ -177,19 +129,19 @@ def course(values: Array, same: Array) -> list[tuple[str, int]]:
     A change by less than `same`, in the unit of the values, counts as none.
 
     """
-    found: list[tuple[str, int]] = []
+    turns: list[tuple[str, int]] = []
     low = high = 0
     for i, value in enumerate(values):
-        word = found[-1][0] if found else ''
+        word = turns[-1][0] if turns else ''
         low = i if value < values[low] else low
         high = i if value > values[high] else high
         if word != 'rises' and value > values[low] + same[i]:
-            found, high = [*found, ('rises', i)], i
+            turns, high = [*turns, ('rises', i)], i
         elif word != 'falls' and value < values[high] - same[i]:
-            found, low = [*found, ('falls', i)], i
+            turns, low = [*turns, ('falls', i)], i
         elif word and i == (high if word == 'rises' else low):
-            found[-1] = (word, i)
-    return found
+            turns[-1] = (word, i)
+    return turns
 
 
 def read_course(
@@ -207,8 +159,8 @@ def read_course(
     words = tuple(word for word, _ in turns)
     path = [f'{word} to {values[i]:.3g} at {at[i]:g}' for word, i in turns] or ['stays']
     part: Agreement = 'in part' if set(words) & set(reported) else 'no'
-    said = f'{values[0]:.3g} at {at[0]:g} {unit}, {", ".join(path)}{note}'
-    return Reading(said, 'yes' if words == reported else part)
+    text = f'{values[0]:.3g} at {at[0]:g} {unit}, {", ".join(path)}{note}'
+    return Reading(text, 'yes' if words == reported else part)
 
 
 def counted(draws: int) -> str:
@@ -217,21 +169,20 @@ def counted(draws: int) -> str:
 
 
 def _contact_ends(screw: Screw, law: AsperityLaw, rows: list[StudyRow]) -> Trend:
-    """Return the speeds at which contact ends, and the film ratios there."""
     film = screw_speeds(rows, 'central_film')
 
     def end(rcs: Curve, note: str) -> Reading | None:
-        speed = crossing(rcs, RCS_LIMIT)
+        speed = curves.crossing(rcs, RCS_LIMIT)
         if math.isnan(speed) or not len(film.at):
             return None
         ratio = float(np.interp(speed, film.at, film.mean)) / screw.roughness.rms
         inside = DETERMINISTIC[0] <= ratio <= DETERMINISTIC[1]
-        said = f'{speed:.3g} rev/min, film ratio {ratio:.3g}{note}'
-        return Reading(said, 'yes' if inside else 'no')
+        text = f'{speed:.3g} rev/min, film ratio {ratio:.3g}{note}'
+        return Reading(text, 'yes' if inside else 'no')
 
     both = (
-        end(contact_speeds(rows), ' (one contact, roughness of the study)'),
-        end(screw_speeds(rows, 'rcs', STANDING), ' (screw, Rq by the standard)'),
+        end(curves.contact_speeds(rows), ' (one contact, roughness of the study)'),
+        end(screw_speeds(rows, 'rcs', tasks.STANDING), ' (screw, Rq by the standard)'),
     )
     stands = [reading for reading in both if reading]
     agrees: Agreement = 'yes' if all(reading.agrees == 'yes' for reading in stands) else 'no'
@@ -239,7 +190,7 @@ def _contact_ends(screw: Screw, law: AsperityLaw, rows: list[StudyRow]) -> Trend
         f'contact at higher speeds: RCS passes {RCS_LIMIT:g}, preload only',
         'higher; deterministic solutions begin at film ratios of '
         f'{DETERMINISTIC[0]:g} to {DETERMINISTIC[1]:g}',
-        Reading('; '.join(reading.said for reading in stands), agrees) if stands else None,
+        Reading('; '.join(reading.text for reading in stands), agrees) if stands else None,
         end(
             screw_speeds(rows, 'rcs'), f', standard deviation {100 * law.deviation:.0f} % in film'
         ),
@@ -248,7 +199,7 @@ def _contact_ends(screw: Screw, law: AsperityLaw, rows: list[StudyRow]) -> Trend
 
 def _over_speed(rows: list[StudyRow]) -> Iterator[Trend]:
     """Return the courses under preload over speed."""
-    contact, rolling = contact_speeds(rows), screw_speeds(rows, 'rcs')
+    contact, rolling = curves.contact_speeds(rows), screw_speeds(rows, 'rcs')
     note = f' (one contact, {counted(contact.draws)})'
     yield Trend(
         'RCS, preload only',
@@ -256,32 +207,32 @@ def _over_speed(rows: list[StudyRow]) -> Iterator[Trend]:
         read_course(contact.at, contact.mean, FALLS, 'rev/min', note=note),
         read_course(rolling.at, rolling.mean, FALLS, 'rev/min'),
     )
-    cases = STANDING, OURS
+    cases = tasks.STANDING, tasks.OURS
     torque, friction = (
         [screw_speeds(rows, name, case) for case in cases]
         for name in ('friction_torque', 'friction_coefficient')
     )
-    apparent = [apparent_friction(rows, case) for case in cases]
-    for name, factor, curves in (
+    apparent = [curves.apparent_friction(rows, case) for case in cases]
+    for name, factor, lines in (
         ('friction torque [mN m], preload only', MILLI, torque),
         ('friction coefficient of the sliding, preload only', 1.0, friction),
         ('friction coefficient, all losses taken as sliding', 1.0, apparent),
     ):
-        both = [read_course(line.at, factor * line.mean, TURNS, 'rev/min') for line in curves]
+        both = [read_course(line.at, factor * line.mean, TURNS, 'rev/min') for line in lines]
         yield Trend(name, 'falls, then rises', *both)
 
 
 def _efficiency(
-    screw: Screw, rows: list[StudyRow], name: str, along: Along, **wanted: float
+    screw: Screw, rows: list[StudyRow], name: str, along: curves.Along, **wanted: float
 ) -> Trend:
     """Return the course of the efficiency over speed or load."""
     readings = []
-    for case in (STANDING, OURS):
-        points = mapped(rows, case=case, **wanted)
+    for case in (tasks.STANDING, tasks.OURS):
+        points = curves.mapped(rows, case=case, **wanted)
         at = np.array([getattr(row, along) for row in points])
         same = np.full(len(at), EFFICIENCY_TOLERANCE)
-        unit = 'rev/min' if along == 'rpm' else 'N'
-        readings.append(read_course(at, efficiencies(screw, points), RISES, unit, same))
+        unit, eta = 'rev/min' if along == 'rpm' else 'N', curves.efficiencies(screw, points)
+        readings.append(read_course(at, eta, RISES, unit, same))
     return Trend(f'efficiency over {name}', 'rises', *readings)
 
 
@@ -293,158 +244,117 @@ def _over_load(rows: list[StudyRow]) -> list[Trend]:
 
     """
 
-    def ensemble(some: list[StudyRow], name: str, rpm: float, factor: float) -> Reading | None:
+    def ensemble(contacts: list[StudyRow], name: str, rpm: float, factor: float) -> Reading | None:
         wanted: dict[str, Any] = {'rpm': rpm, 'rough': True}
-        line = curve(some, 'load', name, **wanted)
+        line = curves.curve(contacts, 'load', name, **wanted)
         errors = [
-            paired_change(some, name, 'load', PRELOAD, load, **wanted)[1] for load in line.at
+            curves.paired_change(contacts, name, 'load', tasks.PRELOAD, load, **wanted)[1]
+            for load in line.at
         ]
         same = factor * np.maximum(SAME * np.abs(line.mean), ERRORS * np.nan_to_num(errors))
         note = f' ({rpm:g} rev/min, one contact, {counted(line.draws)})'
         return read_course(line.at, factor * line.mean, RISES, 'N', same, note)
 
-    points, note = mapped(rows, case=OURS, rpm=ROLLING_RPM), f' ({ROLLING_RPM:g} rev/min)'
+    points, note = curves.mapped(rows, rpm=tasks.ROLLING_RPM), f' ({tasks.ROLLING_RPM:g} rev/min)'
     at = np.array([row.load for row in points])
     shares, films = [], []
     for nut in ('loaded', 'relieved'):
-        some = nut_rows(rows, nut)
+        contacts = curves.nut_rows(rows, nut)
         rcs = np.array([getattr(row, f'rcs_{nut}') for row in points])
-        rolling = read_course(at, rcs, RISES, 'N', note=note)
-        standing = ensemble(some, 'rcs', SLOW, 1.0)
-        shares.append(Trend(f'RCS over load, {nut} nut', 'rises', standing, rolling))
-        smooth = curve(some, 'load', 'central_film', rpm=MARK_RPM, rough=False)
+        both = (
+            ensemble(contacts, 'rcs', tasks.SLOW, 1.0),
+            read_course(at, rcs, RISES, 'N', note=note),
+        )
+        shares.append(Trend(f'RCS over load, {nut} nut', 'rises', *both))
+        smooth = curves.curve(contacts, 'load', 'central_film', rpm=tasks.MARK_RPM, rough=False)
         rolling = read_course(smooth.at, NANO * smooth.mean, RISES, 'N')
-        standing = ensemble(some, 'mean_film', MARK_RPM, NANO)
-        title = f'film over load [nm], {nut} nut, 502.65 mm/s'
-        films.append(Trend(title, 'rises', standing, rolling))
+        both = ensemble(contacts, 'mean_film', tasks.MARK_RPM, NANO), rolling
+        films.append(Trend(f'film over load [nm], {nut} nut, 502.65 mm/s', 'rises', *both))
     return [*shares, *films]
 
 
 def _film(rows: list[StudyRow]) -> Trend:
     """Return the central film at the one point that is published, agreeing within `SAME`."""
-    readings: list[Reading | None] = []
-    for column, rough in (('mean_film', True), ('central_film', False)):
-        wanted: dict[str, Any] = {'kind': 'contact', 'rpm': MARK_RPM, 'load': PRELOAD}
-        line = curve(rows, 'load', column, rough=rough, **wanted)
-        if not len(line.at):
-            readings.append(None)
-            continue
-        film, error = NANO * line.mean[0], np.nan_to_num(NANO * line.error[0])
-        near = abs(film - REPORTED_FILM) <= max(SAME * REPORTED_FILM, ERRORS * error)
-        said = f'{film:.1f}{f" ± {error:.1f}" if error else ""} nm'
-        readings.append(Reading(said, 'yes' if near else 'no'))
+    readings: list[Reading | None] = [None, None]
+    for i, (column, rough) in enumerate((('mean_film', True), ('central_film', False))):
+        wanted: dict[str, Any] = {'kind': 'contact', 'rpm': tasks.MARK_RPM, 'load': tasks.PRELOAD}
+        line = curves.curve(rows, 'load', column, rough=rough, **wanted)
+        if len(line.at):
+            film, error = NANO * line.mean[0], np.nan_to_num(NANO * line.error[0])
+            near = abs(film - tasks.REPORTED_FILM) <= max(
+                SAME * tasks.REPORTED_FILM, ERRORS * error
+            )
+            text = f'{film:.1f}{f" ± {error:.1f}" if error else ""} nm'
+            readings[i] = Reading(text, 'yes' if near else 'no')
     name = 'central film, 502.65 mm/s, preload only'
-    return Trend(name, f'{REPORTED_FILM:.0f} nm', *readings)
+    return Trend(name, f'{tasks.REPORTED_FILM:.0f} nm', *readings)
 
 
 def marks(screw: Screw, rows: Mapping[str, StudyRow]) -> list[Mark]:
     """Return every number that the rows allow: contacts first, then the screw."""
-    every = list(rows.values())
-    found = [
-        *_contacts(every),
-        *_torques(every),
-        *_efficiencies(screw, every),
-        *_statistical(screw, every),
-    ]
-    return [mark for mark in found if math.isfinite(mark.value)]
+    known = list(rows.values())
+    every = [*_contacts(known), *_torques(known), *_statistical(screw, known)]
+    return [mark for mark in every if math.isfinite(mark.value)]
 
 
 def _contacts(rows: list[StudyRow]) -> Iterator[Mark]:
     """Return films of smooth contacts, and what the load changes of rough ones, draw by draw."""
-    wanted: dict[str, Any] = {'kind': 'contact', 'rpm': MARK_RPM, 'rough': False}
-    smooth = NANO * _mean(rows, 'central_film', load=PRELOAD, **wanted)
+    wanted: dict[str, Any] = {'kind': 'contact', 'rpm': tasks.MARK_RPM, 'rough': False}
+    smooth = NANO * mean_of(rows, 'central_film', load=tasks.PRELOAD, **wanted)
     short, loaded = (
-        NANO * _mean(rows, 'central_film', load=load, case=SHORT, **wanted)
-        for load in (PRELOAD, LOADS[-1])
+        NANO * mean_of(rows, 'central_film', load=load, case=tasks.SHORT, **wanted)
+        for load in (tasks.PRELOAD, tasks.LOADS[-1])
     )
-    name, said = (
-        'central film, inlet of 1.5 half-widths and 0.113 Pa s',
-        f'{REPORTED_FILM:.0f} nm, rough',
-    )
-    yield Mark('central film, smooth, 502.65 mm/s, preload only', smooth, 'nm', said)
-    yield Mark(f'{name}, preload only', short, 'nm', said)
-    yield Mark(f'{name}, {LOADS[-1]:g} N over preload only', loaded / short, '', WITH_LOAD)
-    centre, load = 'distance of the asperity load from the centre', ROUGH_LOADS[-1]
-    for name, column, rpm, said in (
-        ('RCS', 'rcs', ONSET, WITH_LOAD),
-        (centre, 'asperity_distance', SLOW, 'trend: moves to the centre'),
+    name = 'central film, inlet of 1.5 half-widths and 0.113 Pa s'
+    rough = f'{tasks.REPORTED_FILM:.0f} nm, rough'
+    yield Mark('central film, smooth, 502.65 mm/s, preload only', smooth, 'nm', rough)
+    yield Mark(f'{name}, preload only', short, 'nm', rough)
+    yield Mark(f'{name}, {tasks.LOADS[-1]:g} N over preload only', loaded / short, '', WITH_LOAD)
+    centre, load = 'distance of the asperity load from the centre', tasks.ROUGH_LOADS[-1]
+    for name, column, rpm, reported in (
+        ('RCS', 'rcs', tasks.ONSET, WITH_LOAD),
+        (centre, 'asperity_distance', tasks.SLOW, 'trend: moves to the centre'),
     ):
         wanted = {'kind': 'contact', 'rough': True, 'rpm': rpm}
-        mean, error, draws = paired_change(rows, column, 'load', PRELOAD, load, **wanted)
+        mean, error, draws = curves.paired_change(
+            rows, column, 'load', tasks.PRELOAD, load, **wanted
+        )
         words = f'{name}, one contact, standing, {rpm:g} rev/min, {load:g} N less preload only'
-        yield Mark(f'{words}, {counted(draws)}', mean, '', said, error)
+        yield Mark(f'{words}, {counted(draws)}', mean, '', reported, error)
 
 
 def _torques(rows: list[StudyRow]) -> Iterator[Mark]:
     """Return the rolling share of the torque, and other rules of friction beside ours."""
-    wanted: dict[str, Any] = {'kind': 'screw', 'load': PRELOAD, 'rpm': MARK_RPM}
-    for name, above, below, case in (
-        ('rolling share of the torque, rolling roughness', 'rolling', 'friction', OURS),
-        ('rolling share of the torque, standing roughness', 'rolling', 'friction', STANDING),
+    central = "sliding torque with the central film in Eyring's law over ours, 600 rev/min"
+    wanted: dict[str, Any] = {'kind': 'screw', 'load': tasks.PRELOAD, 'rpm': tasks.MARK_RPM}
+    share = 'rolling share of the torque, {} roughness, 600 rev/min, preload only'
+    for name, part, whole, case in (
+        (share.format('rolling'), 'rolling', 'friction', tasks.OURS),
+        (share.format('standing'), 'rolling', 'friction', tasks.STANDING),
+        (central, 'central_film', 'sliding', tasks.OURS),
         (
-            "sliding torque with the central film in Eyring's law over ours",
-            *('central_film', 'sliding', OURS),
+            'torque of friction along the track over ours, 600 rev/min',
+            'track',
+            'friction',
+            tasks.OURS,
         ),
-        ('torque of friction along the track over ours', 'track', 'friction', OURS),
     ):
-        part, whole = (
-            _mean(rows, f'{torque}_torque', case=case, **wanted) for torque in (above, below)
+        above, below = (
+            mean_of(rows, f'{torque}_torque', case=case, **wanted) for torque in (part, whole)
         )
-        only = ', preload only' if above == 'rolling' else ''
-        yield Mark(f'{name}, 600 rev/min{only}', part / whole)
+        yield Mark(name, above / below)
 
 
-def _efficiencies(screw: Screw, rows: list[StudyRow]) -> list[Mark]:
-    """Return efficiencies where the roughness rolls, with and without the rolling losses."""
-    points = mapped(rows, case=OURS)
-    at_load = [row for row in points if row.load == EFFICIENCY_LOAD]
-    if len(at_load) < 2:
-        return []
-    eta, free = (
-        efficiencies(screw, at_load, f'{name}_torque') for name in ('friction', 'sliding')
-    )
-    best = int(np.argmax(eta))
-    constant = [constant_friction_efficiency(screw, row.load) for row in points]
-    gains = efficiencies(screw, points) - constant
-    least = points[int(np.argmin(gains))]
-    places = [f'{row.rpm:g} rev/min, {EFFICIENCY_LOAD:g} N' for row in at_load]
-    name = (
-        f'efficiency less that of constant friction 0.005, least of {len(points)} points, '
-        f'at {least.rpm:g} rev/min, {least.load:g} N'
-    )
-    return [
-        Mark(f'best efficiency, {places[best]}', eta[best]),
-        *(
-            Mark(f'efficiency without rolling losses, {places[i]}', free[i], '', ETA_RISES)
-            for i in sorted({0, best, len(free) - 1})
-        ),
-        Mark(name, float(gains.min()), '', 'trend: mixed EHL is above'),
-    ]
-
-
-def _statistical(screw: Screw, rows: list[StudyRow]) -> list[Mark]:
+def _statistical(screw: Screw, rows: list[StudyRow]) -> Iterator[Mark]:
     """Return what published formulas with a statistical asperity share say."""
-    speeds = sorted(pick(rows, kind='formulas', load=EFFICIENCY_LOAD), key=lambda row: row.rpm)
-    if len(speeds) < 2:
-        return []
-    shares = [
-        _mean(rows, 'rcs_loaded', kind='formulas', rpm=MARK_RPM, load=load)
-        for load in (PRELOAD, LOADS[-1])
-    ]
-    eta = efficiencies(screw, speeds, 'sliding_torque')
-    touching = sum(row.rcs >= RCS_LIMIT for row in speeds)  # the slowest: the share falls
-    share = f'statistical share, loaded nut, 600 rev/min, {LOADS[-1]:g} N over preload only'
-    name = f'efficiency, statistical share, without rolling losses, {EFFICIENCY_LOAD:g} N'
-    return [
-        Mark(share, shares[1] / shares[0], '', WITH_LOAD),
-        *(Mark(f'{name}, {speeds[i].rpm:g} rev/min', eta[i], '', ETA_RISES) for i in (0, -1)),
-        Mark(
-            f'{name}, least step between speeds with a share of {RCS_LIMIT:g} or more',
-            float(np.diff(eta[:touching]).min(initial=math.inf)),
-        ),
-    ]
-
-
-def _mean(rows: Iterable[StudyRow], name: str, **wanted: Any) -> float:
-    values = [getattr(row, name) for row in pick(rows, **wanted)]
-    return float(np.mean(values)) if values else math.nan
+    alone, loaded = (
+        mean_of(rows, 'rcs_loaded', kind='formulas', rpm=tasks.MARK_RPM, load=load)
+        for load in (tasks.PRELOAD, tasks.LOADS[-1])
+    )
+    share = f'statistical share, loaded nut, 600 rev/min, {tasks.LOADS[-1]:g} N over preload only'
+    yield Mark(share, loaded / alone, '', WITH_LOAD)
+    speeds = curves.mapped(rows, kind='formulas', load=tasks.EFFICIENCY_LOAD)
+    eta = curves.efficiencies(screw, speeds, 'sliding_torque')
+    name = f'efficiency, statistical share, without rolling losses, {tasks.EFFICIENCY_LOAD:g} N'
+    for i in (0, -1) if len(speeds) > 1 else ():
+        yield Mark(f'{name}, {speeds[i].rpm:g} rev/min', eta[i], '', ETA_RISES)

@@ -31,11 +31,11 @@ from surrogate.raceway.patch import take_patch, Window
 from surrogate.raceway.short_waves import subgrid_floor, without_short_waves
 from surrogate.screw import closed_form
 from surrogate.screw.ball_motion import slip_floor
-from surrogate.screw.contacts import ACROSS, ScrewSettings
+from surrogate.screw.contacts import ACROSS, Kinematics, ScrewSettings
 from surrogate.screw.nut import contact_slip, ScrewContact
 from surrogate.screw.opened import Contacts
-from surrogate.screw.solve import ScrewSolution, solve_screw
-from surrogate.studies.rows import inputs_hash, row_of, StudyRow
+from surrogate.screw.solve import solve_screw
+from surrogate.studies.curves import inputs_hash, StudyRow
 from surrogate.studies.tasks import CASES, OIL, SCREW, SMOOTH, STANDING, StudyTask
 from surrogate.tasks.pool import Pool, run_tasks, TaskOutcome
 from surrogate.tasks.store import TaskStore
@@ -97,16 +97,16 @@ def run_study(
     with TaskStore(folder / TABLE, WORK) as store:
         outcomes = run_tasks(pool, solve_plain, inputs, store=store, report=count)
     rows = [
-        row_of(task, known[task.rolls], outcomes[task.key].sentence)
-        if (result := outcomes[task.key].result) is None
-        else StudyRow(**result['row'])
+        StudyRow(**result['row'])
+        if (result := outcomes[task.key].result)
+        else StudyRow(**inputs[task.key], status=outcomes[task.key].sentence)
         for task in wanted
     ]
     write_table(folder / TABLE, StudyRow, rows, digits=6)
     return Study(
         # As they stand in the table, so that a report is the same from either.
         rows={row.key: row for row in read_table(folder / TABLE, StudyRow)},
-        fields={key: one.result['fields'] for key, one in outcomes.items() if one.result},
+        fields={key: kept.result['fields'] for key, kept in outcomes.items() if kept.result},
     )
 
 
@@ -133,19 +133,21 @@ def solve_task(
     """Solve one task; return its row and, for a contact that keeps them, its fields."""
     began = time.process_time()
     speed = float(entrainment_speed_paper(opened.sheet, task.rpm * RPM))
+    status = 'CONVERGED'
     fields: Fields = {}
     if task.kind == 'contact':
         status, numbers, fields = _contact(opened, lubricant, task, speed)
     elif task.kind == 'screw':
         status, numbers = _screw(opened, lubricant, task)
     else:
-        status, numbers = 'CONVERGED', _formulas(opened, lubricant, task)
-    numbers |= {'entrainment_speed': speed, 'seconds': time.process_time() - began}
-    return row_of(task, inputs, status, **numbers), fields
+        numbers = _formulas(opened, lubricant, task)
+    seconds = time.process_time() - began
+    whole = asdict(task) | numbers | {'entrainment_speed': speed, 'seconds': seconds}
+    return StudyRow(**whole, inputs=inputs, status=status), fields
 
 
-def _taken(found: Any, names: str) -> Numbers:
-    return {name: float(getattr(found, name)) for name in names.split()}
+def _taken(result: Any, names: str) -> Numbers:
+    return {name: float(getattr(result, name)) for name in names.split()}
 
 
 def _contact(
@@ -162,7 +164,10 @@ def _contact(
     if task.draw == SMOOTH and not math.isnan(solution.extrapolated_film):
         numbers['central_film'] = solution.extrapolated_film
     numbers['mean_film'] = float(np.mean(solution.film[solution.distance < INNER]))
-    numbers['asperity_distance'] = asperity_distance(solution)
+    carried = solution.asperity_pressure
+    if carried.any():
+        distance = np.sum(carried * solution.distance) / np.sum(carried)
+        numbers['asperity_distance'] = float(distance)
     return solution.status.name, numbers, _fields(solution, surface, task.fields)
 
 
@@ -177,9 +182,8 @@ def published_patch(opened: Contacts, draw: int) -> FractalSurface:
     screw = opened.sheet
     force = max(UNLOADING_RATIO * screw.preload, WINDOW_SHARE * screw.static_rating)
     ellipse = hertz(opened.geometry['screw'], float(normal_force(screw, force)))
-    window = Window(
-        length_x=2 * float(ellipse.semi_axis_x), length_y=2 * float(ellipse.semi_axis_y)
-    )
+    x, y = (2 * float(axis) for axis in (ellipse.semi_axis_x, ellipse.semi_axis_y))
+    window = Window(length_x=x, length_y=y)
     return take_patch(fractal_surface(PUBLISHED, draw), 'rescaled', window, PUBLISHED.rms)
 
 
@@ -201,8 +205,7 @@ def solve_patch(
     )
     settings = Settings(film_floor=lubricant.film_floor)
     if case.inlet is not None:
-        domain = (-case.inlet, OUTLET, SIDE)
-        settings = replace(settings, domain=domain, open_inlet=False)
+        settings = replace(settings, domain=(-case.inlet, OUTLET, SIDE), open_inlet=False)
     condition = Condition(load=force, entrainment_speed=speed)
     if task.draw == SMOOTH:
         return solve_contact(contact, oil, condition, settings=settings), None
@@ -216,21 +219,8 @@ def solve_patch(
         film_floor=settings.film_floor + subgrid_floor(whole, SHORTEST_ON_GRID),
         error_estimate=False,
     )
-    found = solve_contact(contact, oil, condition, roughness=surface.heights, settings=settings)
-    return found, surface
-
-
-def asperity_distance(solution: ContactSolution) -> float:
-    """
-    Return the mean distance of the asperity load from the centre over the semi-axes [-].
-
-    NaN without asperity load; 2/3 for an even load over the ellipse, 0.589 for Hertz's.
-
-    """
-    carried = solution.asperity_pressure
-    if not carried.any():
-        return math.nan
-    return float(np.sum(carried * solution.distance) / np.sum(carried))
+    rough = solve_contact(contact, oil, condition, roughness=surface.heights, settings=settings)
+    return rough, surface
 
 
 def _fields(solution: ContactSolution, surface: FractalSurface | None, kind: str) -> Fields:
@@ -253,44 +243,46 @@ def _screw(opened: Contacts, lubricant: Lubricant, task: StudyTask) -> tuple[str
     """Solve the whole screw in the full tier; the published study is isothermal."""
     temperature = lubricant.reference_temperature
     point = OperatingPoint(speed=task.rpm * RPM, load=task.load, temperature=temperature)
-    settings = ScrewSettings(
-        kinematics='standing' if task.case == STANDING else 'rolling', inlet_heating=False
+    kinematics: Kinematics = 'standing' if task.case == STANDING else 'rolling'
+    settings = ScrewSettings(kinematics=kinematics, inlet_heating=False)
+    solution = solve_screw(opened, lubricant, point, settings=settings)
+    if not solution.converged:
+        return solution.status, {}
+    pressed = [contact for contact in solution.contacts if contact.motion is not None]
+    loaded, relieved = (
+        max((contact.rcs for contact in pressed if contact.nut == nut), default=0.0)
+        for nut in ('loaded', 'relieved')
     )
-    found = solve_screw(opened, lubricant, point, settings=settings)
-    if not found.converged:
-        return found.status, {}
-    touching: dict[str, list[float]] = {'loaded': [], 'relieved': []}
-    for contact in found.contacts:
-        if contact.solved is not None:
-            touching[contact.nut].append(contact.solved.asperities.rcs)
     names = 'central_film minimum_film rcs asperity_share rcs_deviation friction_torque'
-    return 'CONVERGED', _taken(found, names) | _frictions(opened.sheet, found, point.speed) | {
-        'normal_force': found.normal_forces[0],
-        'rcs_loaded': max(touching['loaded']),
-        'rcs_relieved': max(touching['relieved'], default=0.0),
+    return 'CONVERGED', {
+        **_taken(solution, names),
+        **_frictions(opened.sheet, pressed, point.speed),
+        'normal_force': solution.normal_forces[0],
+        'rcs_loaded': loaded,
+        'rcs_relieved': relieved,
     }
 
 
-def _frictions(screw: Screw, found: ScrewSolution, speed: float) -> Numbers:
+def _frictions(screw: Screw, pressed: Sequence[ScrewContact], speed: float) -> Numbers:
     """Return the parts of torque and friction coefficient, and both other ways to a torque."""
-    pressed = [contact for contact in found.contacts if contact.motion is not None]
-    local = [_friction(screw, contact, 'local') for contact in pressed]
-    central = [_friction(screw, contact, 'central') for contact in pressed]
+    local, central = (
+        [_friction(screw, contact, film) for contact in pressed] for film in ('local', 'central')
+    )
     forces = np.array([contact.ball.normal_force for contact in pressed])
-    balls = screw.loaded_balls_per_nut
     film, asperity, mean = (
-        float(np.sum(forces * [getattr(one, name) for one in local]) / forces.sum())
+        float(np.sum(forces * [getattr(friction, name) for friction in local]) / forces.sum())
         for name in ('film_coefficient', 'asperity_coefficient', 'coefficient')
     )
     on_screw = [
-        force * one.coefficient
-        for force, one, contact in zip(forces, local, pressed, strict=True)
+        force * friction.coefficient
+        for force, friction, contact in zip(forces, local, pressed, strict=True)
         if contact.side == 'screw'
     ]
+    balls = screw.loaded_balls_per_nut
     return {
-        'sliding_torque': balls * sum(one.ball.slip_power for one in pressed) / speed,
-        'rolling_torque': balls * sum(one.ball.rolling_power for one in pressed) / speed,
-        'central_film_torque': balls * sum(one.power for one in central) / speed,
+        'sliding_torque': balls * sum(contact.ball.slip_power for contact in pressed) / speed,
+        'rolling_torque': balls * sum(contact.ball.rolling_power for contact in pressed) / speed,
+        'central_film_torque': balls * sum(friction.power for friction in central) / speed,
         'track_torque': balls * screw.pitch_radius * float(sum(on_screw)),
         'friction_coefficient': mean,
         'film_coefficient': film,
@@ -302,10 +294,9 @@ def _friction(screw: Screw, contact: ScrewContact, film: Any) -> ContactFriction
     """Return the friction of a balanced contact, Eyring's law with the local or central film."""
     assert contact.solved is not None
     assert contact.motion is not None
-    pressed = contact.solved.pressed
-    slip_x, slip_y = contact_slip(screw, pressed, contact.side, contact.motion)
+    slip_x, slip_y = contact_slip(screw, contact.solved.pressed, contact.side, contact.motion)
     return contact_friction(
-        pressed,
+        contact.solved.pressed,
         slip_x=slip_x,
         slip_y=slip_y,
         asperity_friction=screw.roughness.asperity_friction,
@@ -318,30 +309,21 @@ def _friction(screw: Screw, contact: ScrewContact, film: Any) -> ContactFriction
 def _formulas(opened: Contacts, lubricant: Lubricant, task: StudyTask) -> Numbers:
     """Take the screw by published formulas, asperities by a statistical share."""
     screw = opened.sheet
-    found = closed_form.solve(
-        opened,
-        lubricant,
-        task.rpm * RPM,
-        task.load,
-        lubricant.reference_temperature,
-        share_of=asperity_share_aihara_1987,
-        inlet_heating=False,
+    place = task.rpm * RPM, task.load, lubricant.reference_temperature
+    point = closed_form.solve(
+        opened, lubricant, *place, share_of=asperity_share_aihara_1987, inlet_heating=False
     )
-    loaded = found.contacts[0]
     drag = sum(
-        float(one.friction_coefficient * one.normal_force)
-        for one in found.contacts
-        if one.side == 'screw'
+        float(contact.friction_coefficient * contact.normal_force)
+        for contact in point.contacts
+        if contact.side == 'screw'
     )
-    numbers = _taken(found, 'rcs asperity_share friction_torque friction_coefficient')
-    return (
-        numbers
-        | _taken(loaded, 'normal_force central_film minimum_film')
-        | {
-            'rcs_loaded': float(loaded.asperity_share),
-            'rcs_relieved': float(found.contacts[2].asperity_share),
-            'sliding_torque': sum(float(one.sliding_torque) for one in found.contacts),
-            'rolling_torque': sum(float(one.rolling_torque) for one in found.contacts),
-            'track_torque': screw.loaded_balls_per_nut * screw.pitch_radius * drag,
-        }
-    )
+    return {
+        **_taken(point, 'rcs asperity_share friction_torque friction_coefficient'),
+        **_taken(point.contacts[0], 'normal_force central_film minimum_film'),
+        'rcs_loaded': float(point.contacts[0].asperity_share),
+        'rcs_relieved': float(point.contacts[2].asperity_share),
+        'sliding_torque': sum(float(contact.sliding_torque) for contact in point.contacts),
+        'rolling_torque': sum(float(contact.rolling_torque) for contact in point.contacts),
+        'track_torque': screw.loaded_balls_per_nut * screw.pitch_radius * drag,
+    }

@@ -10,9 +10,10 @@ entrainment, w r_m / 2.
 
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from itertools import product
+from typing import NamedTuple
 
 from surrogate.files import InputError
 
@@ -45,16 +46,17 @@ class StudyTask:
     """
     One solve: kind, screw speed [rev/min], axial load [N], draw of the roughness, case.
 
-    `fields` keeps what a picture of the contact needs: nothing, the centre line, or all nodes.
+    The kind is `contact`, `screw` or `formulas`. `fields` keeps what a picture of the contact
+    needs: nothing, the centre `line`, or all nodes, `map`.
 
     """
 
-    kind: Literal['contact', 'screw', 'formulas']
+    kind: str
     rpm: float
     load: float
     draw: int = SMOOTH
     case: str = OURS
-    fields: Literal['', 'line', 'map'] = ''
+    fields: str = ''
 
     @property
     def key(self) -> str:
@@ -93,19 +95,16 @@ ROLLING_RPM = 200.0
 
 
 def points(
-    kind: Any,
+    kind: str,
     speeds: Iterable[float],
-    loads: Iterable[float],
-    draws: Iterable[int] = (SMOOTH,),
-    **more: Any,
+    loads: Sequence[float],
+    draws: Sequence[int] = (SMOOTH,),
+    **more: str,
 ) -> list[StudyTask]:
     """Return the tasks of a grid of speeds [rev/min], axial loads [N] and draws."""
-    loads, draws = list(loads), list(draws)
     return [
         StudyTask(kind=kind, rpm=rpm, load=load, draw=draw, **more)
-        for rpm in speeds
-        for load in loads
-        for draw in draws
+        for rpm, load, draw in product(speeds, loads, draws)
     ]
 
 

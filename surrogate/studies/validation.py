@@ -40,7 +40,7 @@ from surrogate.screw.screw_onset import (
     with_raceway,
 )
 from surrogate.screw.solve import rebalance_screw, ScrewSolution, solve_screw
-from surrogate.studies.rows import Array, markdown_table
+from surrogate.studies.curves import Array, markdown_table
 from surrogate.studies.tasks import OIL, SCREW
 from surrogate.units import RPM
 

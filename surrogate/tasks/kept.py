@@ -38,5 +38,5 @@ def run_kept(
             print(f'{outcome.name}: {outcome.sentence}', file=sys.stderr)
 
     with TaskStore(out, work) as store, open_pool(workers) as pool:
-        found = run_tasks(pool, task, inputs, store=store, report=report)
-    return {name: one.result for name, one in found.items() if one.result is not None}
+        outcomes = run_tasks(pool, task, inputs, store=store, report=report)
+    return {name: done.result for name, done in outcomes.items() if done.result is not None}

@@ -117,5 +117,5 @@ def _outcome(name: str, frame: Frame, begun: list[str]) -> TaskOutcome:
         worker = workers[-1] if workers else ''
         return TaskOutcome(name=name, result=None, sentence=sentence, lost=workers, worker=worker)
     worker = frame['worker'] or (workers[-1] if workers else '')
-    lost = tuple(one for one in workers if one != frame['worker'])
+    lost = tuple(begun_by for begun_by in workers if begun_by != frame['worker'])
     return TaskOutcome(**{'name': name, **frame, 'worker': worker, 'lost': lost})

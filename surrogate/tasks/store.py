@@ -119,25 +119,21 @@ class TaskStore:
             raise
 
     def __enter__(self) -> Self:
-        """Return the open store."""
         return self
 
     def __exit__(self, *error: object) -> None:
-        """Close the file; every result is in it already."""
         self._store.close()
 
     def __contains__(self, key: str) -> bool:
-        """Return True if the result of a task is kept."""
         return self.get(key) is not None
 
     def __len__(self) -> int:
-        """Return the number of kept results."""
         return int(self._store.database.execute('SELECT count(*) FROM results').fetchone()[0])
 
     def get(self, key: str) -> dict[str, Any] | None:
         """Return the result of a task, or None."""
-        found = readable(RESULTS, self._store.rows(RESULTS, 'WHERE key = ?', [key]))
-        return json.loads(found[0][1].text) if found else None
+        pairs = readable(RESULTS, self._store.rows(RESULTS, 'WHERE key = ?', [key]))
+        return json.loads(pairs[0][1].text) if pairs else None
 
     def put(self, key: str, result: Mapping[str, Any]) -> None:
         """
@@ -185,12 +181,12 @@ class TaskStore:
 
     def _rescue(self, error: Exception) -> None:
         """Set a damaged file aside, and go on with those results that can be read."""
-        found: list[KeptResult] = []
+        sound: list[KeptResult] = []
         with contextlib.suppress(sqlite3.Error):
             for row in self._store.database.execute('SELECT * FROM results'):
-                found += [kept for _, kept in readable(RESULTS, [row]) if kept.work == self.work]
+                sound += [kept for _, kept in readable(RESULTS, [row]) if kept.work == self.work]
         self._store.let_go()
         print(set_file_aside(self.path, error), file=sys.stderr)
         self._store.connect()
         with self._store.transaction():
-            self._store.put(RESULTS, found)
+            self._store.put(RESULTS, sound)

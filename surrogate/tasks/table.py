@@ -22,7 +22,7 @@ def read_table(path: Path, kind: type[Row]) -> list[Row]:
     Columns that are missing keep their defaults. Raises InputError for anything else.
 
     """
-    kinds = {name: KINDS.get(one, one) for name, one in get_type_hints(kind).items()}
+    kinds = {name: KINDS.get(column, column) for name, column in get_type_hints(kind).items()}
     try:
         with path.open(newline='', encoding='utf-8') as file:
             return [
@@ -38,7 +38,7 @@ def read_table(path: Path, kind: type[Row]) -> list[Row]:
 def write_table(path: Path, kind: Any, rows: Iterable[Any], digits: int | None = None) -> None:
     """Write rows of a `kind`, floats to some digits or all; what was there stays until then."""
     with new_file(path) as partial, partial.open('w', newline='', encoding='utf-8') as file:
-        names = [one.name for one in fields(kind)]
+        names = [column.name for column in fields(kind)]
         writer = csv.DictWriter(file, names, lineterminator='\n')
         writer.writeheader()
         writer.writerows(_shown(row, digits) for row in rows)

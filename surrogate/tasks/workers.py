@@ -71,7 +71,6 @@ class ProcessPool(Workers):
     """Processes of this machine, which find the modules that this process finds."""
 
     def __init__(self, workers: int, on_share: OnShare) -> None:
-        """Prepare for `workers` processes."""
         environment = one_thread_environment(wheels=True) | {
             'PYTHONPATH': path_to_this_code(sys.path)
         }
@@ -91,7 +90,6 @@ class DaskPool:
     """The workers of a Dask cluster, which itself gives the tasks of lost workers to others."""
 
     def __init__(self, address: str, workers: int, on_share: OnShare) -> None:
-        """Connect to a scheduler, or start `workers` processes of this machine."""
         import distributed
 
         # A scheduler that is lost is told in a sentence, not in tracebacks of its client.
@@ -99,18 +97,23 @@ class DaskPool:
         self._on_share = on_share
         self._heard: queue.SimpleQueue[tuple[str, Frame | Future[Frame]]] = queue.SimpleQueue()
         with _deaf_to_ctrl_c():
-            self._cluster = _local_cluster(distributed, workers) if address == LOCAL else None
+            self._cluster: Any = None
+            if address == LOCAL:
+                self._cluster = distributed.LocalCluster(
+                    n_workers=workers,
+                    threads_per_worker=1,
+                    dashboard_address='127.0.0.1:0',
+                    silence_logs='ERROR',
+                )
             self._client = _client(distributed, self._cluster or address)
         self._topic = f'{TOPIC}-{uuid.uuid4()}'
         self._client.subscribe_topic(self._topic, lambda event: self._heard.put(event[1]))
         self._executor = self._client.get_executor()
 
     def __enter__(self) -> Self:
-        """Return the pool."""
         return self
 
     def __exit__(self, *error: object) -> None:
-        """Take back what is not done; end the workers that were started here."""
         self._executor.shutdown(wait=False)  # cancels what is not done
         self._client.close()
         if self._cluster is not None:
@@ -176,15 +179,6 @@ def _deaf_to_ctrl_c() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
-def _local_cluster(distributed: Any, workers: int) -> Any:
-    return distributed.LocalCluster(
-        n_workers=workers,
-        threads_per_worker=1,
-        dashboard_address='127.0.0.1:0',
-        silence_logs='ERROR',
-    )
-
-
 def _client(distributed: Any, cluster: Any) -> Any:
     """Return a client of a cluster that has a worker; raises InputError for any other."""
     if isinstance(cluster, str):
@@ -206,14 +200,14 @@ def _check_scheduler(distributed: Any, address: str) -> None:
             return await there.identity()
 
     try:
-        found = asyncio.run(asyncio.wait_for(ask(), PATIENCE)).get('type')
+        answer = asyncio.run(asyncio.wait_for(ask(), PATIENCE)).get('type')
     except ValueError as error:
-        found = str(error)
+        answer = str(error)
     except (OSError, TimeoutError):
-        found = f'nothing answers within {PATIENCE:g} s'
+        answer = f'nothing answers within {PATIENCE:g} s'
     except Exception:  # what answers at a wrong port may say anything
-        found = 'something else answers there'
-    if found != 'Scheduler':
+        answer = 'something else answers there'
+    if answer != 'Scheduler':
         raise InputError(
-            f'--dask: no scheduler at {address} ({found}), allowed is tcp://HOST:PORT or {LOCAL}'
+            f'--dask: no scheduler at {address} ({answer}), allowed is tcp://HOST:PORT or {LOCAL}'
         )

@@ -3,12 +3,16 @@
 """The monthly logs hold the torque of the closed form at their preload and in their oil."""
 
 import dataclasses
+import datetime as dt
+import json
 import math
 
+from ballscrew_monitor.cli import main
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.log_facts import parameters_of
 from ballscrew_monitor.recordings.replay import replay
 from ballscrew_monitor.recordings.summary import summary_of
+from ballscrew_monitor.report import health_collect
 import monthly_logs
 import numpy as np
 import pytest
@@ -18,6 +22,16 @@ from surrogate.screw.opened import Contacts
 from surrogate.units import RPM, ZERO_CELSIUS
 
 LAST = monthly_logs.months('preload')[-1]
+TOLD = {'preload': 'preload is lost (', 'oil': 'the oil is thinner, or warmer than measured: '}
+BEGUN = {'preload': slice(1, 8), 'oil': slice(monthly_logs.CHANGED - 1, monthly_logs.CHANGED + 2)}
+"""
+Logs with which the change may be said to begin.
+
+The preload falls from the second log on; the oil changes with one log, which may be dated by the
+log before or after it.
+
+"""
+SMALL = monthly_logs.Plan(cuts=(600.0, 1500.0), period=0.1)
 STEADY = {'rapid': 2000.0, 'rough cut': 50.0, 'idle': -50.0, 'probe': -20.0, 'medium': 300.0}
 
 
@@ -98,3 +112,50 @@ def test_a_log_is_judged_with_its_own_parameters_and_nothing_is_refused(tmp_path
 
 def test_the_same_source_gives_the_same_messages():
     assert monthly_logs.records_of(LAST) == monthly_logs.records_of(LAST)
+
+
+@pytest.mark.parametrize('cause', ['preload', 'oil'])
+def test_twelve_months_end_in_the_right_sentence(cause, tmp_path, capsys, monkeypatch, says):
+    """The size is held against the friction that was written into the logs."""
+    monkeypatch.setattr(health_collect, 'FEW', SMALL.logs)  # in this process
+    for _ in monthly_logs.generate(tmp_path, cause, SMALL):
+        pass
+    assert main(['health', str(tmp_path), '--json']) == 0
+    record = json.loads(capsys.readouterr().out)['x']
+    drag = record['quantities']['drag change']
+    assert drag['low'] < change_of(cause) < drag['high']
+    days = [month.begin // monthly_logs.DAY for month in monthly_logs.months(cause, SMALL)]
+    assert record['since_ns'] // monthly_logs.DAY in days[BEGUN[cause]]
+    low, high = sorted(abs(drag[end]) for end in ('low', 'high'))
+    date = dt.datetime.fromtimestamp(record['since_ns'] / 1e9, dt.UTC)
+    percents = {'value': -drag['value'], 'low': low, 'high': high}
+    head = says(
+        'worse',
+        date=f'{date.day} {date:%B %Y}',
+        **{name: f'{100.0 * share:.0f}' for name, share in percents.items()},
+    )
+    assert record['verdict'].startswith(head)
+    assert TOLD[cause] in record['verdict']
+    assert len(record['course']) == 12
+
+
+def change_of(cause):
+    """
+    Return the change of the mean friction of the last two logs over the first four [-].
+
+    At the speeds that run forth and back under one load, and at the mean oil of these six logs.
+
+    """
+    speed = np.array([20.0, 180.0, 300.0, 600.0, 1500.0, 2000.0]) * RPM
+    logs = monthly_logs.months(cause, SMALL)
+    first, last = logs[:4], logs[-2:]
+    oil = np.mean([monthly_logs.motion_of(log).oil.mean() for log in (*first, *last)])
+    load, oils = np.full(len(speed), 100.0), np.full(len(speed), oil)
+    seal = monthly_logs.SEAL * np.exp(-speed / monthly_logs.SEAL_SPEED)
+    before, now = (
+        np.mean([monthly_logs.friction(log, speed, load, oils) for log in part], axis=0)
+        + monthly_logs.WIPER
+        + seal
+        for part in (first, last)
+    )
+    return now.mean() / before.mean() - 1.0

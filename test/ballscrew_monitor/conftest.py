@@ -3,6 +3,7 @@
 """A surface of constants for exact tests of the core, and the node in a process of its own."""
 
 import contextlib
+import copy
 import dataclasses
 import ipaddress
 import itertools
@@ -28,6 +29,7 @@ from ballscrew_monitor.health.records import SpectrumBin
 from ballscrew_monitor.judge import derived_load, full_point, point, step
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.judge.records import Row
+from ballscrew_monitor.judge.views import total_times
 from ballscrew_monitor.messages.state_messages import empty_state, fill_state
 from ballscrew_monitor.settings.qos import started_node
 from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone, SurfaceInfo
@@ -45,6 +47,7 @@ from sensor_msgs.msg import JointState
 from surrogate.child import path_to_this_code, WORKER
 from surrogate.surface import file as surface_file
 from surrogate.surface import Found, shipped_surface
+from surrogate.units import TURN
 import yaml
 
 with warnings.catch_warnings():
@@ -190,16 +193,22 @@ def motion(value, *, start=START, count=1, force=-1000.0, step=STEP):
     ]
 
 
+def totals_of(memory):
+    """Return the totals in a memory, times [ns]."""
+    rest = {name: getattr(memory, name) for name in ('angle', 'energy_lost', 'since')}
+    return types.SimpleNamespace(**total_times(memory), **rest, revolutions=memory.angle / TURN)
+
+
 class Published:
-    """A row of which a state is published, the message, and what the monitor says right then."""
+    """A row of which a state is published, the message, its totals, and the memory of an edge."""
 
     def __init__(self, monitor, row):
-        self.row, self.totals, self.event = row, monitor.totals, None
+        self.row, self.totals, self.event = row, totals_of(monitor.memory), None
         self.message = empty_state(monitor.settings.axis)
         self.inputs = fill_state(self.message, row, monitor)
         self.judged, self.window = self.message.judged, self.message.window
         if row.edge:
-            self.event = monitor.event
+            self.event = copy.deepcopy(monitor.memory)
 
     def __getattr__(self, name):
         return getattr(self.row, name)
@@ -277,6 +286,7 @@ def core():
             sample=sample,
             motion=motion,
             feed=feed,
+            totals=totals_of,
         )
 
 

@@ -264,6 +264,19 @@ def test_one_that_is_opened_alone_is_for_nobody_else(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ['a.sqlite3']
 
 
+def test_a_file_that_another_one_has_replaced_is_not_open(tmp_path):
+    store = opened(tmp_path)
+    assert store.is_open
+    store.file.rename(tmp_path / 'before')
+    assert not store.is_open
+    store.file.touch()
+    assert not store.is_open
+    store.connect()
+    assert store.is_open
+    store.close()
+    assert not store.is_open
+
+
 @pytest.mark.parametrize('alone', [False, True])
 def test_the_journal_takes_a_sixteenth_of_the_limit(tmp_path, alone):
     with contextlib.closing(connected(tmp_path / 'a.sqlite3', 2**20, alone=alone)) as database:

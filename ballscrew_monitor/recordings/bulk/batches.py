@@ -42,11 +42,11 @@ class Batch:
 
     def order(self) -> Integers:
         """Return the places of the messages, topic by topic, in the order of their log times."""
-        found = list(self.topics.values())
-        if not found:
+        messages = list(self.topics.values())
+        if not messages:
             return np.arange(0)
         return np.lexsort(
-            [np.concatenate([getattr(each, name) for each in found]) for name in ORDER]
+            [np.concatenate([getattr(each, name) for each in messages]) for name in ORDER]
         )
 
     def messages(self) -> Iterator[Message]:
@@ -98,7 +98,7 @@ def batches(bag: Bag, topics: Collection[str], *, as_written: bool = False) -> I
 
 def _chunks(stack: contextlib.ExitStack, bag: Bag, topics: Collection[str]) -> list[_Chunk] | None:
     """Return the chunks of all files by their first times, None if one is not read by chunks."""
-    found: list[_Chunk] = []
+    chunks: list[_Chunk] = []
     for storage in bag.storages:
         if not isinstance(storage, McapStorage) or not storage.is_indexed:
             return None
@@ -111,20 +111,20 @@ def _chunks(stack: contextlib.ExitStack, bag: Bag, topics: Collection[str]) -> l
         numbers, names = np.full(65536, -1), list(topics)
         for channel, name in channels.items():
             numbers[channel] = names.index(name)
-        found += [
+        chunks += [
             _Chunk(place=place, rank=rank, storage=storage, stream=stream, topics=numbers)
-            for rank, place in enumerate(places, len(found))
+            for rank, place in enumerate(places, len(chunks))
         ]
-    return sorted(found, key=lambda each: (each.place.message_start_time, each.rank))
+    return sorted(chunks, key=lambda each: (each.place.message_start_time, each.rank))
 
 
 def _is_packed(stream: BinaryIO, place: ChunkIndex) -> bool:
     """Return True if the messages of a chunk are compressed each by itself."""
     try:
-        found = read_chunk(stream, place)
+        chunk = read_chunk(stream, place)
     except ChunkDamage:
         return False
-    return any(found.data.startswith(ZSTD, begin) for begin in found.begin.tolist())
+    return any(chunk.data.startswith(ZSTD, begin) for begin in chunk.begin.tolist())
 
 
 def _by_chunk(chunks: Sequence[_Chunk], names: Sequence[str]) -> Iterator[Batch]:

@@ -90,10 +90,10 @@ def _raw(events: Events) -> NDArray[Any]:
     return events.view(np.dtype((np.void, EVENT.itemsize)))
 
 
-def ticks(stamps: Any, *, place: int, axis: Any = ALL_AXES) -> Events:
-    """Return ticks at some stamps [ns]."""
+def ticks(stamps: Any, *, place: int, axis: Any = ALL_AXES, kind: int = TICK) -> Events:
+    """Return ticks at some stamps [ns], or begins of runs, which are of all axes alike."""
     times = {'log_time': stamps, 'stamp': stamps, 'arrival': stamps}
-    return blank(len(stamps), kind=TICK, source=TICK_SOURCE, axis=axis, place=place, **times)
+    return blank(len(stamps), kind=kind, source=TICK_SOURCE, axis=axis, place=place, **times)
 
 
 def places_of_axis(events: Events, number: int) -> NDArray[np.intp]:

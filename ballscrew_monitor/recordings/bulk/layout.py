@@ -99,7 +99,9 @@ class Layout:
         """Return what is found in the messages in `data`, as WALKED."""
         walked = np.zeros(len(begin), dtype=WALKED)
         view = np.frombuffer(data, np.uint8)
-        compiled_walk()(view, begin, size, self.steps, self.joint, walked)
+        # Fields are attributes of its records, compiled or not.
+        records = walked.view(np.recarray)
+        compiled_walk()(view, begin, size, self.steps, self.joint, records)
         return walked
 
     def numbers(self, walked: NDArray[Any]) -> NDArray[np.float64]:

@@ -9,13 +9,13 @@ time, after the samples of equal stamp.
 
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 import functools
 import heapq
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.conversions import nanoseconds
-from ballscrew_monitor.judge.records import SAMPLE
+from ballscrew_monitor.judge.records import RUN, SAMPLE
 from ballscrew_monitor.judge.step import BACKWARD_JUMP
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk.batches import batches
@@ -23,6 +23,7 @@ from ballscrew_monitor.recordings.bulk.chunks import Integers
 from ballscrew_monitor.recordings.bulk.decode import readers_by_topic, TopicDecoder
 from ballscrew_monitor.recordings.bulk.events import (
     Events,
+    inserted,
     joined,
     Notes,
     some,
@@ -54,9 +55,9 @@ def ordered_events(
     """
     readers = readers_by_topic(axes)
     decoders = {topic: TopicDecoder(bag, wanted, notes) for topic, wanted in readers.items()}
-    order = EventOrder(period)
+    order = EventOrder(period, bag.run_borders)
     for batch in batches(bag, decoders.keys()):
-        decoded = [decoders[topic].events(found) for topic, found in batch.topics.items()]
+        decoded = [decoders[topic].events(messages) for topic, messages in batch.topics.items()]
         yield order.push(joined(decoded), batch.until)
         on_done(batch.done)
     yield order.finish()
@@ -85,13 +86,15 @@ class EventOrder:
     """
     Puts events into the order of judging, with the ticks between them.
 
-    They arrive in the order of their log times, and leave in that of their stamps.
+    They arrive in the order of their log times, and leave in that of their stamps. In the pause
+    between two runs of a log there is no tick, but the begin of the next run.
 
     """
 
-    def __init__(self, period: int) -> None:
+    def __init__(self, period: int, borders: Sequence[int] = ()) -> None:
         """Begin with nothing; a tick is due at every multiple of `period` [ns]."""
         self._period = period
+        self._borders = np.array(borders, np.int64)  # [ns] in the pauses between runs
         self._later = self._waiting = joined([])  # not arrived yet; arrived
         self._passed: int | None = None  # the last log time
         self._past = LOWEST, 0  # largest stamp that has been handed on, and its source
@@ -174,18 +177,25 @@ class EventOrder:
         return bool((later & ((gone == 0) | (stamp > largest[gone - 1]))).all())
 
     def ticks(self, times: Integers) -> Events:
-        """Return the ticks up to the last of some log times, but few in a long hole."""
+        """Return ticks and runs up to the last of some log times, but few in a long hole."""
         first = int(times[0]) if self._passed is None else self._passed
         self._passed = int(times[-1])
         times = np.concatenate([[first], times])
-        holes = np.flatnonzero(np.diff(times) > LONGEST_HOLE)
+        runs = np.searchsorted(self._borders, times)
+        pauses = np.diff(runs) > 0
+        holes = np.flatnonzero((np.diff(times) > LONGEST_HOLE) | pauses)
         begins = [first, *times[holes + 1].tolist()]
         ends = [*times[holes].tolist(), int(times[-1])]
         grids = [self._grid(begin, end) for begin, end in zip(begins, ends)]
-        for hole in holes:
+        for hole in holes[~pauses[holes]]:
             begin, end = int(times[hole]), int(times[hole + 1])
             grids.append(self._grid(begin, min(end, self._ceiling(begin) + LONGEST_HOLE)))
-        return ticks(np.sort(np.concatenate(grids)), place=LAST)
+        due = ticks(np.sort(np.concatenate(grids)), place=LAST)
+        if not pauses.any():
+            return due
+        first, last = runs[0], runs[-1]
+        borders = ticks(self._borders[first:last], place=LAST, kind=RUN)
+        return inserted(due, np.searchsorted(due['stamp'], borders['stamp']), borders)
 
     def _grid(self, begin: int, end: int) -> Integers:
         return np.arange(self._ceiling(begin), end, self._period, dtype=np.int64)

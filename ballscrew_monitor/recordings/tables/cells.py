@@ -41,7 +41,8 @@ class Reading:
     How the cells of a column are numbers, the least and the most of them, and what is not.
 
     Empty cells are no samples: `holes` are their number and a checksum of their rows. What else is
-    no number is unknown, and the note counts it.
+    no number is unknown, and the note counts it. Texts that are all plain numbers have a type, by
+    which they are read at once, `plain`.
 
     """
 
@@ -49,6 +50,7 @@ class Reading:
     extremes: Array
     holes: tuple[int, int]
     note: str
+    plain: Any = None
 
     @property
     def is_time(self) -> bool:
@@ -62,7 +64,7 @@ class Reading:
 
     def numbers(self, cells: pl.Series) -> Array:
         """Return cells as numbers, NaN where one is not a number."""
-        return _finite(self.form, cells)
+        return _finite(_plain if cells.dtype.is_numeric() else self.form, cells)
 
 
 @dataclasses.dataclass(kw_only=True, slots=True)
@@ -91,12 +93,9 @@ class _Count:
         self._miss(cells, bad, row)
         return not bad.any()
 
-    def pass_over(self, cells: pl.Series, row: int) -> None:
-        """Count cells from `row` on as no numbers, without a look at them."""
-        if not self.bad:
-            self._miss(cells, ~empties(cells), row)
-        else:
-            self.bad += int((~empties(cells)).sum())
+    def pass_over(self, cells: pl.Series, row: int, *, filled: bool = False) -> None:
+        """Count cells from `row` on as no numbers, without a look at them; none is empty."""
+        self._miss(cells, np.full(len(cells), True) if filled else ~empties(cells), row)
 
     def _good(self, numbers: Array) -> None:
         self.good += len(numbers)
@@ -139,10 +138,35 @@ class Cells:
         with readable(f'{self.where} of {self._type} cannot be read as numbers'):
             if not self._kinds:
                 self._kinds = [[_Count(form=form) for form in kind] for kind in self._forms(cells)]
-            self._count(cells)
-            self._count_holes(cells)
+            if cells.dtype == self._type:
+                self._count(cells)
+                self._count_holes(cells)
+            else:
+                self._count_typed(cells)
         self._row += len(cells)
         self.count += len(cells)
+
+    def _count_typed(self, cells: pl.Series) -> None:
+        """Count cells that were read by the type that is `plain`."""
+        points, commas = self._kinds[0]
+        numbers = _finite(_plain, cells)
+        points.take(numbers, cells, self._row)
+        if cells.dtype == pl.Float64:
+            commas.pass_over(cells, self._row, filled=True)
+        else:
+            commas.take(numbers, cells, self._row)
+
+    @property
+    def plain(self) -> Any:
+        """Return the type of texts that all are plain numbers, None where some are not."""
+        if self._type != pl.String or len(self._kinds) != 1:
+            return None
+        points, commas = self._kinds[0]
+        if points.good != self.count or self.signs.shows(','):
+            return None
+        if self.signs.shows('.'):
+            return pl.Float64
+        return pl.Int64 if commas.good == self.count and not self.signs.doubtful else None
 
     def _count_holes(self, cells: pl.Series) -> None:
         if cells.null_count() or (cells.dtype == pl.String and (cells.head(SAMPLE) == '').any()):
@@ -173,6 +197,7 @@ class Cells:
             extremes=extremes if chosen.least <= chosen.most else np.full(2, math.nan),
             holes=self._holes,
             note=note if chosen.bad else '',
+            plain=self.plain,
         )
 
     @property
@@ -261,7 +286,7 @@ class Cells:
             if not self.signs.shows('.'):
                 self._look(cells, pointed)
             if self.signs.shows('.') and not self.signs.shows(','):
-                commas.pass_over(cells, self._row)
+                commas.pass_over(cells, self._row, filled=True)
             else:
                 commas.add(cells, self._row)
             return read
@@ -341,6 +366,11 @@ def _grouped(sign: str) -> Form:
     between = rf'{signs.MARKS}|{re.escape(other)}'
 
     def form(texts: pl.Series) -> pl.Series:
+        if sign == '.' or not _holds(texts, '.').any():  # few cells hold more than plain numbers
+            pointed = texts if sign == '.' else texts.str.replace(',', '.', literal=True)
+            numbers = pointed.cast(pl.Float64, strict=False)
+            if numbers.null_count() == texts.null_count():
+                return numbers
         texts = texts.str.strip_chars()
         if _holds(texts, other).any() or texts.str.contains(rf'\d{signs.MARKS}\d').any():
             parted = pl.Series(signs.are(texts, pattern))

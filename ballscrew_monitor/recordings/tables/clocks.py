@@ -71,6 +71,8 @@ STEPS = (
     (r'[,\s_]+', ' '),
 )
 """What is replaced in a text before its form is looked for, each only where it occurs."""
+LONGEST_TIME = 64
+"""Letters of the longest text that is taken for a time."""
 SAMPLE = 60  # cells by which the forms of a column are found
 
 
@@ -123,8 +125,9 @@ def time_forms(texts: pl.Series) -> Iterator[tuple[TimeForm, ...]]:
     months = not english.equals(sample)
     by_hours: dict[str, list[TimeForm]] = {}
     signs = {letter for letter in ''.join(sample) if not letter.isalnum()}
-    for form, needed in _all_forms().items():
-        if not needed <= signs:
+    written = [text for text in english.to_list() if len(text) <= LONGEST_TIME]
+    for form, (needed, shape) in _all_forms().items():
+        if not needed <= signs or not any(map(shape.fullmatch, written)):
             continue
         made = dataclasses.replace(form, steps=(*steps, *([_GERMAN] if months else [])))
         if made._seconds(english).null_count() < len(sample):
@@ -145,9 +148,13 @@ def _replaced(texts: pl.Series, steps: object) -> pl.Series:
     return texts
 
 
+PARTS = {'%B': r'\w+\.?', '%p': '[AaPp][Mm]', '%z': r'[-+]\d+:?\d*', '%.f': r'(?:\.\d*)?'}
+"""Patterns of the parts of a form that are no whole numbers."""
+
+
 @functools.cache
-def _all_forms() -> dict[TimeForm, set[str]]:
-    """Return all forms, and the signs that each needs."""
+def _all_forms() -> dict[TimeForm, tuple[set[str], re.Pattern[str]]]:
+    """Return all forms, the signs that each needs, and what its texts look like."""
     moments = (
         TimeForm(pattern=f'{date} {hours}', kind='moment', order=order, zoned='%z' in hours)
         for order, date in DATES
@@ -155,7 +162,20 @@ def _all_forms() -> dict[TimeForm, set[str]]:
     )
     of_day = (TimeForm(pattern=hours, kind='hours') for hours in HOURS[:-1] if '%z' not in hours)
     days = (TimeForm(pattern=date, kind='day', order=order) for order, date in DATES)
-    return {form: set(re.sub(r'%\.?\w', '', form.pattern)) for form in (*moments, *of_day, *days)}
+    return {
+        form: (set(re.sub(r'%\.?\w', '', form.pattern)), _shape(form.pattern))
+        for form in (*moments, *of_day, *days)
+    }
+
+
+def _shape(pattern: str) -> re.Pattern[str]:
+    """Return the pattern of what texts of a form look like, whatever their numbers."""
+    parts = re.split(r'(%\.?\w)', pattern)
+    return re.compile(
+        ''.join(
+            PARTS.get(part, r' *\d+') if part[:1] == '%' else re.escape(part) for part in parts
+        )
+    )
 
 
 def moments_of(text: str) -> list[tuple[float, TimeForm]]:

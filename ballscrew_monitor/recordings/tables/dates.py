@@ -8,14 +8,21 @@ states its zone there.
 
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 import dataclasses
 import datetime
 from pathlib import Path
 import re
+from typing import NamedTuple
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.recordings.tables.clocks import moments_of
+from ballscrew_monitor.recordings.tables.estimates import is_universal
+from ballscrew_monitor.recordings.tables.heads import Head
 from ballscrew_monitor.recordings.tables.mapping import DATES, TableMap
+from ballscrew_monitor.recordings.tables.quantities import SCALES
+from ballscrew_monitor.recordings.tables.sources import source_of
+import numpy as np
 from surrogate.files import InputError
 
 NAME, HEADER, MODIFIED = DATES
@@ -48,7 +55,7 @@ def dated(path: Path, mapping: TableMap) -> TableMap:
     if mapping.date_from == MODIFIED:
         moment = datetime.datetime.fromtimestamp(int(path.stat().st_mtime), datetime.UTC)
     elif mapping.date_from == HEADER:
-        moment = _known(date_in_head(_head(path)), path, 'the lines above its table state none')
+        moment = _known(_by_head(path, mapping), path, 'the lines above its table state none')
     else:
         name = next((moment for moment, _ in dates_by_name(path) if moment is not None), None)
         moment = _known(name, path, 'neither its name nor that of its folder holds one')
@@ -57,7 +64,55 @@ def dated(path: Path, mapping: TableMap) -> TableMap:
             f'log {path}: date_from {mapping.date_from} says {moment:%Y}, allowed is {FIRST_YEAR} '
             'or later'
         )
-    return dataclasses.replace(mapping, epoch=int(moment.timestamp()) * SECOND)
+    return dataclasses.replace(mapping, epoch=round(moment.timestamp() * 1e6) * SECOND // 10**6)
+
+
+class Start(NamedTuple):
+    """
+    When a log begins by its head, and the `text` and row that say so.
+
+    `moments` [s since 1970] are by the order of day and month, of which both may be possible.
+
+    """
+
+    text: str = ''
+    row: int = 0
+    moments: Mapping[str, float] = {}
+
+    @property
+    def known(self) -> float | None:
+        """Return the only moment, None for none or two."""
+        return next(iter(self.moments.values())) if len({*self.moments.values()}) == 1 else None
+
+
+def start_in_head(head: Head) -> Start:
+    """Return the start that the head of a log states."""
+    if 'start' not in head.properties:
+        return Start()
+    text, row = head.properties['start'].text, head.properties['start'].row
+    clock = f' {head.properties["clock"].text}' if 'clock' in head.properties else ''
+    if text.isdigit() and is_universal(np.array([float(text)]), 'filetime'):
+        scale, offset = SCALES['filetime']
+        return Start(text, row, {'': float(text) * scale + offset})
+    for each in (text + clock, text):
+        found = [(form.order, moment) for moment, form in moments_of(each) if form.kind != 'hours']
+        if found:
+            return Start(each, row, dict(found))
+    return Start()
+
+
+def _by_head(path: Path, mapping: TableMap) -> datetime.datetime | None:
+    """Return when a log begins by the start that its head states, else by a date in it."""
+    start = start_in_head(source_of(path, mapping.layout).head)
+    moment = start.moments.get(mapping.order, start.known)
+    if moment is not None:
+        return datetime.datetime.fromtimestamp(moment, datetime.UTC)
+    if start.moments:
+        raise InputError(
+            f'log {path}: the start in line {start.row} may be of either order of '
+            'day and month: state time: {order: dmy} or mdy in the map'
+        )
+    return date_in_head(_head(path))
 
 
 def _known(moment: datetime.datetime | None, path: Path, reason: str) -> datetime.datetime:

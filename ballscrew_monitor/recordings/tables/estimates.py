@@ -19,6 +19,7 @@ UNIVERSAL = (946_684_800.0, 2_147_483_648.0)  # [s] of the universal clock: 2000
 DAY = 86400.0  # [s]
 SLOWEST = 0.5  # [Hz] of a plausible log
 RARE, SHORTEST = 0.01, 0.95e-5  # [Hz] of the slowest, and [s] between rows of the fastest
+FINEST = 1e-5  # of seconds that are written; of days it would be 0.9 s
 ALIKE = 0.8  # squared correlation of a motion and its speed
 LONGEST_AXIS = 20.0  # [m]
 MANY = 8  # rows that tell whether torques are amounts
@@ -79,12 +80,21 @@ def position_unit(position: Array) -> tuple[str, str]:
 
 
 def epoch_units(values: Array) -> list[str]:
-    """Return the units in which times [-] may begin between 2000 and 2038, at a rate of a log."""
+    """
+    Return the units in which times [-] may begin between 2000 and 2038, at a rate of a log.
+
+    Days have more digits than seconds of a day, such as 45852.001.
+
+    """
     step = float(np.median(np.diff(values)))
+    digits = values / FINEST
+    are_seconds = bool(np.allclose(digits, np.round(digits), rtol=0.0, atol=1e-3))
     return [
         unit
         for unit in ('s', 'ms', 'us', 'ns', *EPOCHS)
-        if is_universal(values, unit) and SHORTEST <= step * SCALES[unit][0] <= 1.0 / RARE
+        if is_universal(values, unit)
+        and SHORTEST <= step * SCALES[unit][0] <= 1.0 / RARE
+        and not (are_seconds and SCALES[unit][0] == DAY)
     ]
 
 
@@ -176,6 +186,15 @@ def is_magnitude(torque: Array, speed: Array) -> bool | None:
     return amounts < signed
 
 
+def slopes(positions: Array) -> Array:
+    """Return the changes of positions from row to row [-], of those that hold one."""
+    known = np.flatnonzero(np.isfinite(positions))
+    found = np.full(len(positions), math.nan)
+    if len(known) > 1:
+        found[known] = np.gradient(positions[known])
+    return found
+
+
 def is_of_days(extremes: Array) -> bool:
     """Tell whether the least and the most of times [s] are begins of days by the calendar."""
     return bool((extremes > UNIVERSAL[0]).all() and not (extremes % DAY).any())
@@ -210,12 +229,6 @@ class Midnights:
         made = times.copy()
         made[known] += DAY * days
         return made
-
-
-def is_rising(values: Array) -> bool:
-    """Tell whether values can be times: they rise, but for a few."""
-    steps = np.diff(values[np.isfinite(values)])
-    return bool(len(steps) and np.mean(steps >= 0.0) > 0.9 and steps.sum() > 0.0)
 
 
 def oddities(name: str, speed: Array, unit: str, factors: Mapping[str, float]) -> list[str]:

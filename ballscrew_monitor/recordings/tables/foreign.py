@@ -18,37 +18,44 @@ import re
 from typing import Any
 from xml.etree import ElementTree
 
+from ballscrew_monitor.recordings.tables import line_messages, long_form
 from ballscrew_monitor.recordings.tables.cells import readable
 from ballscrew_monitor.recordings.tables.heads import Head, Property, unlike
-from ballscrew_monitor.recordings.tables.names import read_name
+from ballscrew_monitor.recordings.tables.layouts import ADAPTER, Format
 from ballscrew_monitor.recordings.tables.quantities import RATED
 import numpy as np
 import polars as pl
 from surrogate import limits
 from surrogate.files import InputError
 
-SHDR = re.compile(rb'^\d{4}-\d\d-\d\dT[\d:.]+Z?\|[^|\r\n\d.,+-][^|\r\n]*\|', re.M)
-STAMP = '%Y-%m-%dT%H:%M:%S%.f'
-HELD = 1.5  # times the usual time between changes, after which a value is repeated
-MOST_HELD = 100_000  # repeated values of a signal
+OF_RECORDER = {'LOAD': RATED, 'TORQUE': 'N m', 'CURRENT': 'A'}
+"""Units of signals of a data recorder, which its file does not state."""
 DOCUMENT = re.compile('<!(?:DOCTYPE|ENTITY)', re.I)
 SIGNATURES = ((b'TDSm', 'tdms'), (b'MDF     ', 'mdf'), (b'MATLAB 5.0', 'mat'), (b'\x89HDF', 'hdf'))
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Signals:
-    """Signals of a file as a frame, and what the file says besides them; a period in [s]."""
+    """
+    Signals of a file as a frame, and what the file says besides them; a period in [s].
+
+    Cells that are texts were parted by a `separator`.
+
+    """
 
     frame: pl.DataFrame
     period: float = math.nan
     start: str = ''
+    separator: str = ''
+    program: Format | None = None
 
     def head(self) -> Head:
         """Return what the head of a text would say."""
         properties = {'start': Property(text=self.start, row=1)} if self.start else {}
         return Head(
             names=unlike(self.frame.columns),
-            separator='',
+            separator=self.separator,
+            program=self.program,
             begin=0,
             first=1,
             properties=properties,
@@ -68,8 +75,13 @@ def kind_of(head: bytes) -> str:
         return 'json'
     if text.startswith((b'<?xml', b'<')):
         return 'xml'
-    lines = max(text[: len(text) // 2].count(b'\n'), 1)
-    return 'shdr' if 2 * len(SHDR.findall(text)) > lines else ''
+    lines = long_form.first_lines(head)
+    form = long_form.long_form(lines)
+    if line_messages.is_shdr(text) and not (form and form.has_names):
+        return 'shdr'
+    if line_messages.is_echo(lines):
+        return 'echo'
+    return 'long' if form else ''
 
 
 def read_signals(path: Path, kind: str) -> Signals:
@@ -108,7 +120,7 @@ def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
     for signal in header['SignalListHFData']:
         name, axis = str(signal['Name']), str(signal.get('Axis', ''))
         plain, letter = name.split('|')[0], axis if re.fullmatch(r'[A-Za-z]\d?', axis) else ''
-        plain = f'{plain} [{RATED}]' if plain == 'LOAD' else plain
+        plain = f'{plain} [{OF_RECORDER[plain]}]' if plain in OF_RECORDER else plain
         names.append(f'{letter} {plain}' if letter else plain)
     rows = [row for part in content['Payload'] for row in part.get('HFData', ())]
     columns = list(zip(*rows, strict=True))
@@ -142,55 +154,16 @@ def _xml(path: Path) -> Signals:
 
 
 def _shdr(path: Path) -> Signals:
-    """Return the signals of lines of an adapter; a value that stays is repeated."""
-    found: dict[str, tuple[list[str], list[float]]] = {}
-    with path.open(encoding='utf-8', errors='replace') as stream:
-        for line in stream:
-            stamp, *rest = line.rstrip('\r\n').split('|')
-            for key, value in zip(rest[::2], rest[1::2], strict=False):
-                name = key.rpartition(':')[2]
-                if stamp[:1].isdigit() and read_name(name).kind:
-                    stamps, values = found.setdefault(name, ([], []))
-                    stamps.append(stamp.rstrip('Z'))
-                    values.append(_number(value))
-    frames = []
-    for name, (stamps, values) in found.items():
-        times = pl.Series(stamps).str.to_datetime(STAMP, time_unit='ns', strict=False)
-        frame = pl.DataFrame({'time': times, name: values}).drop_nulls('time').sort('time')
-        if frame[name].is_finite().sum() > 1:
-            frames.append(_held(frame.filter(pl.col(name).is_finite()), name))
-    return Signals(frame=_on_own_rows(frames))
+    return Signals(frame=line_messages.read_shdr(path), program=ADAPTER)
 
 
-def _held(frame: pl.DataFrame, name: str) -> pl.DataFrame:
-    """Return changes of a value and, where it stays for long, its repetitions."""
-    times = frame['time'].cast(pl.Int64).to_numpy()
-    steps = np.diff(times)
-    usual = float(np.median(steps[steps > 0])) if (steps > 0).any() else math.inf
-    counts = np.where(steps > HELD * usual, np.ceil(steps / usual).astype(np.int64) - 1, 0)
-    if not math.isfinite(usual) or counts.sum() > MOST_HELD:
-        return frame
-    places = np.concatenate([np.arange(count) for count in counts.tolist()] or [np.zeros(0)])
-    later = np.repeat(times[1:], counts) - (np.repeat(counts, counts) - places) * usual
-    more = pl.DataFrame(
-        {
-            'time': pl.Series(later.astype(np.int64)).cast(pl.Datetime('ns')),
-            name: np.repeat(frame[name].to_numpy()[:-1], counts),
-        }
-    )
-    return pl.concat([frame, more]).sort('time').unique('time', keep='last', maintain_order=True)
+def _echo(path: Path) -> Signals:
+    return Signals(frame=line_messages.read_echo(path))
 
 
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
-
-
-def _on_own_rows(frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
-    """Return signals with a time each as rows of one frame, empty where one has no sample."""
-    return pl.concat(frames, how='diagonal').sort('time') if frames else pl.DataFrame()
+def _long(path: Path) -> Signals:
+    frame, separator = long_form.read_long(path)
+    return Signals(frame=frame, separator=separator)
 
 
 def _mat(path: Path) -> Signals:
@@ -304,6 +277,8 @@ READERS: dict[str, Callable[[Path], Signals]] = {
     'json': _json,
     'xml': _xml,
     'shdr': _shdr,
+    'echo': _echo,
+    'long': _long,
     'mat': _mat,
     'hdf': _hdf,
     'tdms': _tdms,

@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterator, Mapping
 import contextlib
 import dataclasses
 import datetime as dt
+import functools
+import itertools
 import math
 from pathlib import Path
 import re
@@ -21,13 +23,18 @@ from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
-from ballscrew_monitor.recordings.tables.clocks import moments_of
-from ballscrew_monitor.recordings.tables.dates import dates_by_name, FIRST_YEAR, NAME
+from ballscrew_monitor.recordings.tables.dates import (
+    dates_by_name,
+    FIRST_YEAR,
+    HEADER,
+    NAME,
+    start_in_head,
+)
 from ballscrew_monitor.recordings.tables.mapping import MOTOR
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, RATED, SCALES, UNITS
 from ballscrew_monitor.recordings.tables.read import look_through
-from ballscrew_monitor.recordings.tables.series import of_amounts, unclear_sign
+from ballscrew_monitor.recordings.tables.series import are_apart, of_amounts, unclear_sign
 from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.time_gate import RATE, TimeGate
 from ballscrew_monitor.recordings.words import listed, short, Shown, shown_progress
@@ -45,6 +52,8 @@ NUMBERS = 4_000_000  # of the first rows that are in memory
 EPOCH = '2000-01-01T00:00:00Z'
 LATE = 2_147_483_648.0  # [s] since 1970: no stamp is later
 HARDEST = 1000.0  # amount of a force that no axis is driven with in kN
+APART = 0.05  # of the rows that hold neither of two signals of joined tables
+MANY = 10  # rows of which one is not known, of a signal in the rows of another
 TURNS = 6.3  # range of a joint from which its unit is no metre
 SEPARATED_BY = {';': 'semicolons', ',': 'commas', '\t': 'tabs', '|': 'bars', ' ': 'blanks'}
 ORDER_OR_SIGN = ('.', ',', 'order')
@@ -121,6 +130,7 @@ class _Guesser:
         self.notes: list[str] = []
         self.used: dict[str, dict[str, Any]] = {}
         self.step, self.epoch, self.date_from = math.nan, '', ''
+        self.order = ''  # of day and month in the head
         self.groups: dict[str, str] = {}
         self.members: dict[tuple[str, tuple[int, int]], str] = {}
         self.times = [one for one in self.named if self._may_be_time(one)]
@@ -168,13 +178,17 @@ class _Guesser:
     def _unnamed(self) -> str:
         """Return in a sentence how a map names the columns of a table without names."""
         head = self.head
+        count = len(head.names)
         between = SEPARATED_BY.get(head.separator, repr(head.separator))
+        held = f'{count}, separated by {between}' if count > 1 else 'one'
         period = head.period if math.isfinite(head.period) else 0.001
+        epoch = f"epoch: '{EPOCH}'"
+        by_column = f' or `time: {{column: column 1, unit: s, {epoch}}}`' if count > 1 else ''
         return (
-            f'log {self.path}: no line names its columns, of which it has {len(head.names)}, '
-            f'separated by {between}: a map calls them by their numbers, such as '
-            '`axes: {x: {position: {column: column 2, unit: mm}, lead_mm: 10.0}}`, with '
-            f'`time: {{rate_Hz: {1.0 / period:g}}}` or `time: {{column: column 1, unit: s}}`'
+            f'log {self.path}: no line names its columns, of which it has {held}: a map calls '
+            f'them by their numbers, such as `axes: {{x: {{position: {{column: column '
+            f'{min(count, 2)}, unit: mm}}, lead_mm: 10.0}}}}`, with `time: {{rate_Hz: '
+            f'{1.0 / period:g}, {epoch}}}`{by_column}'
         )
 
     def _texts(self) -> dict[str, str]:
@@ -227,10 +241,12 @@ class _Guesser:
             self._fill(name, str(time.get('column', '')))
         if not time:
             time = self._time_without_column()
+        self._say_what_is_joined()
         self._say_what_is_left_out(time)
         content: dict[str, Any] = {'log': self.path.name}
         content |= {'date_from': self.date_from} if self.date_from else {}
         content |= {'decimal': None} if '.' in self.doubts or ',' in self.doubts else {}
+        time |= {'order': self.order} if self.order else {}
         time |= {'order': None} if 'order' in self.doubts else {}
         content |= {'time': time, 'axes': self.used, 'assumed': self.assumed}
         return Guess(
@@ -256,7 +272,7 @@ class _Guesser:
             if not {'speed', 'position'} & set(left):
                 self.axes.pop(name)
         if not self.axes:
-            raise InputError(f'log {self.path}: {"; ".join(self.notes)}')
+            raise InputError('; '.join(self.notes))
 
     def _time_column(self) -> dict[str, Any]:
         """Return what the map says of the time; take the step between rows if it is known."""
@@ -313,7 +329,8 @@ class _Guesser:
         first, rising = values[:1], np.diff(np.unique(values[:NUMBERS]))
         step = float(np.median(rising)) if len(rising) else math.nan
         epochs = estimates.epoch_units(values) if len(values) > 1 else []
-        if stated and not (stated == 's' and epochs == ['labview_s'] and first > LATE):
+        of_days = stated == 'd' and bool(epochs)
+        if stated and not (stated == 's' and epochs == ['labview_s'] and first > LATE or of_days):
             return stated, ''
         if len(epochs) == 1:
             return epochs[0], ''
@@ -383,10 +400,16 @@ class _Guesser:
 
     def _set_epoch(self, why: str, *, since: float | None = None) -> None:
         """State the time of the first row by the head or the name of the file, or assume one."""
-        begin, where = self._start_in_head()
-        by_name = begin is None
-        if by_name:
+        start = start_in_head(self.head)
+        begin, where, place = start.known, f'from line {start.row}', HEADER
+        if begin is None:
             begin, where = self._start_in_name()
+            place = NAME
+        if begin is None and start.moments:
+            why = (
+                f'{why}, and its start {start.text} in line {start.row} may be of either order of '
+                'day and month: date_from: header with time: {order: dmy} or mdy dates it'
+            )
         if since is not None and begin is not None:
             begin = begin - begin % estimates.DAY + since
         if begin is None:
@@ -395,29 +418,12 @@ class _Guesser:
         moment = dt.datetime.fromtimestamp(begin, dt.UTC)
         text = moment.isoformat(timespec='microseconds' if begin % 1 else 'seconds')
         self.epoch = f'start {moment:%Y-%m-%d %H:%M:%S} {where}'
-        if since is None and by_name:
-            self.date_from = NAME
+        if since is None:
+            self.date_from = place
+            if place == HEADER and len(start.moments) == 1:
+                self.order = next(iter(start.moments))
             return
         self._assume('time.epoch', text.replace('+00:00', 'Z'), f'{where}, taken as UTC')
-
-    def _start_in_head(self) -> tuple[float | None, str]:
-        """Return when the log begins [s] by its head, and where that stands."""
-        properties = self.head.properties
-        if 'start' in properties:
-            text, row = properties['start'].text, properties['start'].row
-            if 'clock' in properties:
-                text = f'{text} {properties["clock"].text}'
-            for each in (text, properties['start'].text):
-                found = {
-                    seconds: form for seconds, form in moments_of(each) if form.kind != 'hours'
-                }
-                if each.isdigit() and estimates.is_universal(np.array([float(each)]), 'filetime'):
-                    return float(each) * SCALES['filetime'][0] + SCALES['filetime'][
-                        1
-                    ], f'from line {row}'
-                if len(found) == 1:
-                    return next(iter(found)), f'from line {row}'
-        return None, ''
 
     def _start_in_name(self) -> tuple[float | None, str]:
         """Return when the log begins [s] by its name or that of its folder, and which it is."""
@@ -464,9 +470,8 @@ class _Guesser:
         if math.isfinite(self.head.period) and not self.not_times:
             self.step = self.head.period
             self._set_epoch('the log has no time that is read')
-            self.notes.append(
-                f'the head states a period of {self.step:g} s in line {self.head.period_row}'
-            )
+            row = f' in line {self.head.period_row}' if self.head.period_row else ''
+            self.notes.append(f'the head states a period of {self.step:g} s{row}')
             return {'rate_Hz': float(f'{1.0 / self.step:.9g}')}
         motions = {
             name: self._motion(name)
@@ -525,16 +530,16 @@ class _Guesser:
             for kind in INPUTS
             if kind in chosen and self._is_used(chosen[kind])
         }
+        self._forget_unitless(name)
         for kind in used:
             self._set_unit(name, kind)
             self._set_magnitude(name, kind)
             group = self.groups.get(used[kind]['column'], time)
             used[kind] |= {'time': group} if group != time else {}
-        lead = Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead * MILLI
         for key, value in (('screw', SCREW), ('oil', OIL)):
             self._assume(f'{name}.{key}', value, 'the log does not say it; the shipped one')
         why = f'the log does not say it; that of {SCREW}'
-        self._assume(f'{name}.lead_mm', float(f'{lead:.6g}'), why)
+        self._assume(f'{name}.lead_mm', float(f'{_usual_lead() * MILLI:.6g}'), why)
         self._set_load(name)
         if 'torque' in used and self._unit(name, 'torque') == RATED:
             self._state_motor(name, 'torque')
@@ -555,6 +560,23 @@ class _Guesser:
         """Tell whether a column says something: a force or current of nothing but 0 is unknown."""
         silent = estimates.is_silent(self.extremes[one.column])
         return one.kind in ('speed', 'position') or not silent
+
+    def _forget_unitless(self, name: str) -> None:
+        """Leave out torques and currents of an unknown unit but for that which tells the load."""
+        used, chosen = self.used[name], self.axes[name]
+        source = next((kind for kind in ('load', *MOTOR) if kind in used), '')
+        for kind in MOTOR:
+            if kind not in used or kind == source or chosen[kind].unit:
+                continue
+            column, values = chosen[kind].column, self.extremes[chosen[kind].column]
+            if column in self.joints and self._unit_of_joint(name, kind, values):
+                continue
+            used.pop(kind)
+            self.notes.append(
+                f'axis {name}: {column} states no unit that is known, and {chosen[source].column} '
+                f'tells the load: it is left out; state `{kind}: {{column: {column}, unit: '
+                f'{next(iter(UNITS[kind]))}}}` in the map to read it'
+            )
 
     def _set_unit(self, name: str, kind: str) -> None:
         place, stated = self.used[name][kind], self.axes[name][kind].unit
@@ -577,6 +599,13 @@ class _Guesser:
             return
         elif kind == 'load':
             unit, why = 'N', f'a force of {largest:.3g} is more than axes are driven with in kN'
+        elif kind in MOTOR:
+            place['unit'] = None
+            self.unstated.append(
+                f'state axes.{name}.{kind}.unit in the map, {" or ".join(UNITS[kind])}: '
+                f'{place["column"]} states none that is known, and the load is worked out from it'
+            )
+            return
         elif kind == 'temperature' and np.nanmin(values) > TEMPERATURE * 5:
             unit, why = 'K', f'its least is {np.nanmin(values):.3g}'
         else:
@@ -592,11 +621,15 @@ class _Guesser:
             return
         motion = chosen.get('speed') or chosen['position']
         speed = self.data[motion.column]
-        speed = speed if 'speed' in chosen or len(speed) < 2 else np.gradient(speed)
-        magnitude = estimates.is_magnitude(self.data[place['column']], speed)
+        speed = speed if 'speed' in chosen else estimates.slopes(speed)
+        torque = self.data[place['column']]
+        magnitude = estimates.is_magnitude(torque, speed)
+        if magnitude is None and self.head.program and self.head.program.are_amounts:
+            magnitude = True
         if magnitude is None:
             place['magnitude'] = None
-            self.unstated.append(unclear_sign(name, kind, place['column']))
+            apart = are_apart(self.table, place['column'], motion.column)
+            self.unstated.append(unclear_sign(name, kind, place['column'], apart=apart))
         elif magnitude:
             place['magnitude'] = True
             self.notes.append(of_amounts(name, kind, place['column']))
@@ -605,13 +638,13 @@ class _Guesser:
         """Let the map ask for the unit of a force, and offer what the load may be of instead."""
         place, chosen = self.used[name]['load'], self.axes[name]
         place['unit'] = None
-        kind = next((one for one in ('torque', 'current') if one in self.used[name]), '')
-        instead = (
-            f'; or write `load: {{from: {kind}}}` there, so that {chosen[kind].column} tells the '
-            'load'
-            if kind
-            else ''
-        )
+        instead = ''
+        for kind in [one for one in MOTOR if one in chosen and self._is_used(chosen[one])][:1]:
+            column, unit = chosen[kind].column, chosen[kind].unit or next(iter(UNITS[kind]))
+            instead = (
+                f'; or write `load: {{from: {kind}}}` and `{kind}: {{column: {column}, unit: '
+                f'{unit}}}` there, so that {column} tells the load'
+            )
         self.unstated.append(
             f'state axes.{name}.load.unit in the map, {" or ".join(UNITS["load"])}: '
             f'{place["column"]} states none that is known, and forces of up to {largest:.3g} may '
@@ -678,6 +711,23 @@ class _Guesser:
             f'{self.axes[name][kind].column} is in % of it, and it is on the plate of the motor'
         )
 
+    def _say_what_is_joined(self) -> None:
+        """Say of signals that hold words such as NaN in the rows of each other what to write."""
+        unknown = {
+            one.column: np.isnan(self.data[one.column])
+            for chosen in self.axes.values()
+            for one in chosen.values()
+            if self.table.readings[one.column].note
+        }
+        for (name, rows), (other, others) in itertools.combinations(unknown.items(), 2):
+            if min(rows.mean(), others.mean()) > 1.0 / MANY and (rows & others).mean() < APART:
+                self.notes.append(
+                    f'{short(name)} and {short(other)} hold no number in the rows of each other, '
+                    'as joined tables do: leave those cells empty, for a word there is a number '
+                    'that is not known'
+                )
+                return
+
     def _say_what_is_left_out(self, time: Mapping[str, Any]) -> None:
         used = {
             axis[kind].get('column')
@@ -687,6 +737,12 @@ class _Guesser:
         }
         used |= {entry['value'] for entry in self.assumed.values()} | set(time.values())
         self.notes += names.left_out([one for one in self.named if one.column not in used])
+
+
+@functools.cache
+def _usual_lead() -> float:
+    """Return the lead [m] of the screw that is assumed."""
+    return Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead
 
 
 def _period(times: Array) -> float:

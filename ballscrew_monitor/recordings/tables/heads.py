@@ -113,6 +113,11 @@ def find_head(lines: Sequence[Line], layout: Layout | None = None) -> Head:
     return _Above(lines[: block.begin], block).head(lines[block.begin].row)
 
 
+def holds_numbers(lines: Sequence[Line], fewest: int) -> bool:
+    """Return True if some of the lines, at least so many, are rows of numbers."""
+    return any(_Block(lines, sign).score >= fewest / 2 for sign in _separators(lines))
+
+
 def unlike(names: Iterable[str]) -> tuple[str, ...]:
     """Return names of columns in one line each, of which no two are equal."""
     counts: dict[str, int] = {}

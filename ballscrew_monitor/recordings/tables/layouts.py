@@ -60,7 +60,8 @@ class Format:
     A program that writes tables: how its heads are recognised, and what it leaves unsaid.
 
     `mark` is found in the head; `times` are units of columns of the time by their names, and
-    `labelled` is that of a column of which the head says no more than the word for a name.
+    `labelled` is that of a column of which the head says no more than the word for a name; loads
+    without a sign `are_amounts` by the standard that the program follows.
 
     """
 
@@ -68,6 +69,7 @@ class Format:
     mark: re.Pattern[str]
     times: tuple[tuple[str, str], ...] = ()
     labelled: str = ''
+    are_amounts: bool = False
 
 
 FORMATS = (
@@ -87,6 +89,8 @@ FORMATS = (
     ),
 )
 """Programs that are recognised by their heads."""
+ADAPTER = Format(program='an MTConnect adapter', mark=re.compile('(?!)'), are_amounts=True)
+"""What writes SHDR: MTConnect states a load as a part of the rated one, without a sign."""
 
 
 def property_of(label: str) -> str:

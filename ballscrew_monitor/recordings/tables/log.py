@@ -36,7 +36,7 @@ from ballscrew_monitor.recordings.log_facts import Assumption, LogFacts
 from ballscrew_monitor.recordings.positions import positions_of
 from ballscrew_monitor.recordings.storages import Message, TopicInfo
 from ballscrew_monitor.recordings.tables import times
-from ballscrew_monitor.recordings.tables.mapping import AxisMap, TableMap
+from ballscrew_monitor.recordings.tables.mapping import AxisMap, MOTOR, TableMap
 from ballscrew_monitor.recordings.tables.messages import (
     column_of,
     joints_topic,
@@ -45,7 +45,7 @@ from ballscrew_monitor.recordings.tables.messages import (
     serialised,
     STAMP,
 )
-from ballscrew_monitor.recordings.tables.series import fits_of, read_series, Series
+from ballscrew_monitor.recordings.tables.series import fits_of, quantities_of, read_series, Series
 from ballscrew_monitor.recordings.tables.times import Rows
 from ballscrew_monitor.recordings.words import Shown, shown_progress
 from ballscrew_monitor.settings import parameters
@@ -91,6 +91,11 @@ class TableLog(Bag):
             )
             for name, pattern in self._patterns.items()
         }
+        self.worked_out = frozenset(
+            absolute(joints_topic(self._series.of(axis, 'torque')))
+            for axis in self._series.mapping.axes
+            if axis.load_from in MOTOR and 'torque' in quantities_of(axis)
+        )
         self.start_time, self.end_time = self._series.begin, self._series.end
         self.storages, self.refused, self.remarks, self._missing = [], {}, [], []
 
@@ -153,7 +158,7 @@ class TableLog(Bag):
             for group in range(len(self._series.counts))
             for held in [[each for each in inputs if self._pattern(each[1]).group == group]]
         ]
-        order, done = EventOrder(period), 0
+        order, done = EventOrder(period, self.run_borders), 0
         most = max(AT_ONCE // max(len(inputs), 1), 1)
         for groups in _together(self._blocks(), most=most):
             every = [self._events(rows, part) for rows, part in zip(groups, parts, strict=True)]
@@ -278,6 +283,7 @@ def _facts_of(path: Path, stated: TableMap, series: Series) -> LogFacts:
         mapping=mapping.content,
         assumptions=(*mapping.assumptions, *_derived(mapping)),
         notes=tuple(notes),
+        run_borders=series.run_borders,
     )
 
 

@@ -33,7 +33,7 @@ KINDS = {
     'temperature': frozenset('temperature temp temperatur'.split()),
     'time': frozenset(
         'time timestamp stamp t datetime date seconds elapsed clock ticks epoch '
-        'zeit zeitstempel messzeit laufzeit uhrzeit datum'.split()
+        'zeit zeitstempel messzeit laufzeit uhrzeit datum mjd'.split()
     ),
 }
 # Words that make a column something else, whatever else its name says.

@@ -14,14 +14,18 @@ EPOCHS = {
     'spreadsheet_days': (DAY, -25_569 * DAY),
     'labview_s': (1.0, -2_082_844_800.0),
     'datenum': (DAY, -719_529 * DAY),
+    'mjd': (DAY, -40_587 * DAY),
 }
 """
 Counts of times since other epochs: a unit of each [s], and their zero [s] since 1970.
 
-They are ticks of 100 ns since 1601, days since 1900, seconds since 1904, and days of MATLAB.
+They are ticks of 100 ns since 1601, days since 1900, seconds since 1904, days of MATLAB, and
+modified Julian days.
 
 """
-SCALES = {unit: (factor, 0.0) for unit, factor in conversions.TIME_UNITS.items()} | EPOCHS
+SCALES = {
+    unit: (factor, 0.0) for unit, factor in (conversions.TIME_UNITS | {'d': DAY}).items()
+} | EPOCHS
 """Units of a time that a map states, each with its factor and shift [s]."""
 ORDERS = {'dmy': 'day, month', 'mdy': 'month, day'}
 """Orders of a date in numbers that a map states, in words."""

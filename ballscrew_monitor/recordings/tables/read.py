@@ -13,6 +13,7 @@ import contextlib
 import dataclasses
 import difflib
 from pathlib import Path
+from typing import Any
 
 from ballscrew_monitor.recordings.tables.cells import Array, Cells, empties, Reading
 from ballscrew_monitor.recordings.tables.clocks import moments_of
@@ -57,7 +58,7 @@ class Table:
     def blocks(self, names: Collection[str] | None = None) -> Iterator[dict[str, Array]]:
         """Yield columns (None: all) in blocks of rows, NaN where there is no number, times [s]."""
         chosen = list(self.readings if names is None else names)
-        for block in self.source.blocks(chosen):
+        for block in self.source.blocks(chosen, self._types(chosen)):
             yield {name: self.readings[name].numbers(block[name]) for name in chosen}
 
     def blocks_with_holes(
@@ -65,9 +66,13 @@ class Table:
     ) -> Iterator[tuple[dict[str, Array], NDArray[np.bool_] | None]]:
         """Yield blocks as `blocks` does, and in which rows the column `hollow` has no sample."""
         read = list(dict.fromkeys([*names, *filter(None, [hollow])]))
-        for block in self.source.blocks(read):
+        for block in self.source.blocks(read, self._types(read)):
             numbers = {name: self.readings[name].numbers(block[name]) for name in names}
             yield numbers, empties(block[hollow]) if hollow else None
+
+    def _types(self, names: Collection[str]) -> dict[str, Any]:
+        """Return the types of those columns whose cells are all plain numbers."""
+        return {name: kind for name in names if (kind := self.readings[name].plain) is not None}
 
     def head(self, most: int) -> dict[str, Array]:
         """Return all columns, `most` of their rows."""
@@ -129,14 +134,17 @@ def look_through(
     found = {
         name: Cells(source.path, name, first_row=source.head.first, order=order) for name in names
     }
-    rows = 0
+    rows, types = 0, dict[str, Any]()
     with shown(source.rows, 'rows looked through') as show:
-        for block in source.blocks(list(found)):
+        for block in source.blocks(list(found), types):
             for name, cells in found.items():
                 if name in left_out:
                     continue
                 with _left_out(name, left_out, optional):
                     cells.add(block[name])
+                    types[name] = cells.plain
+                if name in left_out or types[name] is None:
+                    types.pop(name, None)
             rows += block.height
             show(rows / source.rows)
     if not rows:

@@ -17,15 +17,22 @@ from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.dates import dated
-from ballscrew_monitor.recordings.tables.estimates import FACTOR, is_magnitude, is_one_sided, NEAR
+from ballscrew_monitor.recordings.tables.estimates import (
+    FACTOR,
+    is_magnitude,
+    is_one_sided,
+    NEAR,
+    slopes,
+)
 from ballscrew_monitor.recordings.tables.mapping import AxisMap, MOTOR, TableMap
 from ballscrew_monitor.recordings.tables.quantities import MOTION
 from ballscrew_monitor.recordings.tables.read import open_table, Table
-from ballscrew_monitor.recordings.tables.time_gate import INSTEAD
+from ballscrew_monitor.recordings.tables.time_gate import INSTEAD, run_offsets
 from ballscrew_monitor.recordings.tables.times import groups_of, in_step, joined, line, Rows, Times
 from ballscrew_monitor.recordings.words import short, Shown, shown_progress
 from ballscrew_monitor.settings.parameters import MOTOR_TORQUE
 import numpy as np
+from numpy.typing import NDArray
 from surrogate.files import InputError
 from surrogate.units import TURN
 
@@ -46,8 +53,9 @@ class Series:
     `usual_period` the time between them [s].
 
     `mapping` is that by which it is read, without the columns that hold nothing; `begin` and `end`
-    are the first and the last stamp [ns]. Columns of one time are a group, of which `places` names
-    that of each quantity. The rows themselves are read when they are asked for.
+    are the first and the last stamp [ns], `run_begins` the first of each run and `run_borders`
+    those in the pauses between them. Columns of one time are a group, of which `places` names that
+    of each quantity. The rows themselves are read when they are asked for.
 
     """
 
@@ -56,6 +64,8 @@ class Series:
     usual_period: float
     begin: int
     end: int
+    run_begins: tuple[int, ...]
+    run_borders: tuple[int, ...]
     notes: tuple[str, ...]
     mapping: TableMap
     places: Mapping[str, int]
@@ -93,7 +103,7 @@ class Series:
         for rows, part in blocks:
             columns: dict[str, Array] = {}
             for axis, kinds in held:
-                quantities = _axis(axis, kinds, rows, part, self.begin)
+                quantities = _axis(axis, kinds, rows, part, self)
                 columns |= {f'{axis.name}.{kind}': one for kind, one in quantities.items()}
             yield Rows(stamps=rows.stamps[part], columns=columns)
 
@@ -151,7 +161,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     held = dataclasses.replace(mapping, axes=tuple(axis for axis, _ in signed))
     times = [Times(table, held, group, shown) for group in groups_of(table, held)]
     _check_magnitudes(path, held, [one.group.columns for one in times])
-    _place(path, times)
+    run_begins, run_borders = _place(path, times)
     notes = [note for one in times for note in one.notes()]
     return Series(
         count=sum(one.count for one in times),
@@ -159,6 +169,8 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
         usual_period=max(one.usual_period for one in times if one.count > 1),
         begin=times[0].begin,
         end=max(one.end for one in times),
+        run_begins=(times[0].begin, *run_begins),
+        run_borders=tuple(run_borders),
         notes=(
             *_losses(mapping, table.left_out),
             *filter(None, (note for _, note in [*still, *signed])),
@@ -198,21 +210,35 @@ def _with_sign(path: Path, axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
         motion = axis.columns.get('speed') or axis.columns['position']
         data = table.head(SHOWING)
         speed = line(data[motion.name], motion, 1.0)
-        speed = speed if 'speed' in axis.columns else np.gradient(speed)
+        speed = speed if 'speed' in axis.columns else slopes(speed)
         magnitude = is_magnitude(line(data[column.name], column, 1.0), speed)
         if magnitude is None:
-            raise InputError(f'log {path}: {unclear_sign(axis.name, kind, column.name)}')
+            apart = are_apart(table, column.name, motion.name)
+            raise InputError(
+                f'log {path}: {unclear_sign(axis.name, kind, column.name, apart=apart)}'
+            )
         column = dataclasses.replace(column, magnitude=magnitude)
         axis = dataclasses.replace(axis, columns={**axis.columns, kind: column})
     return axis, of_amounts(axis.name, kind, column.name) if column.magnitude else ''
 
 
-def unclear_sign(axis: str, kind: str, column: str) -> str:
-    """Return what decides whether a column of one sign holds amounts."""
-    return (
-        f'state axes.{axis}.{kind}.magnitude in the map, true or false: {short(column)} never '
-        'changes its sign while the axis reverses, as amounts do, and a torque that holds a weight'
+def unclear_sign(axis: str, kind: str, column: str, *, apart: bool) -> str:
+    """Return what decides whether a column of one sign holds amounts, at times of its own."""
+    why = (
+        f'{short(column)} never changes its sign while the axis reverses, as amounts do, and a '
+        'torque that holds a weight'
     )
+    if apart:
+        return (
+            f'state `axes.{axis}.{kind}.magnitude: false` in the map if it has a sign, else take '
+            f'the column out of the map: {why}, and amounts need the times of the motion'
+        )
+    return f'state axes.{axis}.{kind}.magnitude in the map, true or false: {why}'
+
+
+def are_apart(table: Table, one: str, other: str) -> bool:
+    """Return True if two columns of one time have their samples in different rows."""
+    return table.readings[one].holes != table.readings[other].holes
 
 
 def of_amounts(axis: str, kind: str, column: str) -> str:
@@ -240,25 +266,31 @@ def _check_magnitudes(path: Path, mapping: TableMap, groups: Sequence[Collection
                 )
 
 
-def _place(path: Path, times: Sequence[Times]) -> None:
-    """Let the runs of all groups follow each other, and all stamps count from the first time."""
+def _place(path: Path, times: Sequence[Times]) -> tuple[list[int], list[int]]:
+    """
+    Let the runs of all groups follow each other, and all stamps count from the first time.
+
+    Return the first stamps [ns] of all runs but the first, and stamps in the pauses before them.
+
+    """
     motion = [one for one in times if one.group.is_motion]
     runs = len(motion[0].gate.runs)
     for one in times:
-        if len(one.gate.runs) != runs > 1 or (one in motion and len(one.gate.runs) != runs):
+        if len(one.gate.runs) > runs > 1 or (one in motion and len(one.gate.runs) != runs):
             raise InputError(
                 f'log {path}: time begins again {runs - 1} times for '
                 f'{short(motion[0].group.columns[0])} and {len(one.gate.runs) - 1} times for '
                 f'{short(one.group.columns[0])}: split the log there'
             )
     gap = max(BETWEEN, *(LONG_GAP * one.gate.step for one in motion))
-    alike = [one.gate.ends(gap) for one in times if len(one.gate.runs) == runs]
-    ends = [max(parts) for parts in zip(*alike, strict=True)]
+    alike = [one.gate for one in times if len(one.gate.runs) == runs]
+    offsets, begins = run_offsets(alike, gap)
     for one in times:
-        one.place(gap, ends if len(times) > 1 else None)
+        one.place(offsets, [run.row for run in motion[0].gate.runs])
     begin = min(one.first for one in times)
     for one in times:
         one.since(begin)
+    return times[0].stamps(begins), times[0].stamps([begin - gap / 2 for begin in begins])
 
 
 def _check_positions(path: Path, mapping: TableMap, table: Table) -> None:
@@ -315,9 +347,9 @@ def _with_neighbours(blocks: Iterable[Rows]) -> Iterator[tuple[Rows, slice]]:
 
 
 def _axis(
-    axis: AxisMap, known: Collection[str], rows: Rows, part: slice, begin: int
+    axis: AxisMap, known: Collection[str], rows: Rows, part: slice, log: Series
 ) -> dict[str, Array]:
-    """Return known quantities of an axis in a part of the rows, by a log that begins at [ns]."""
+    """Return known quantities of an axis in a part of the rows of a log."""
 
     def column(kind: str, factor: float, part: slice = part) -> Array:
         found = axis.columns[kind]
@@ -344,7 +376,7 @@ def _axis(
         found['speed'] = column('speed', speed_factor(unit('speed'), axis.lead))
     elif 'speed' in known:
         position = column('position', turned, slice(None))
-        found['speed'] = _slope(position, (rows.stamps - begin) / SECOND)[part]
+        found['speed'] = _slope(position, rows.stamps, log)[part]
     kind = 'torque' if 'torque' in held else 'current'
     if 'torque' in known:
         found['torque'] = motor(kind)
@@ -385,10 +417,25 @@ def _turned(
     return linear[unit] * per_metre if unit in linear else rotary.get(unit, 1.0)
 
 
-def _slope(position: Array, seconds: Array) -> Array:
-    """Return the speed of positions at times [s]; rows of one time give none of their own."""
+def _slope(position: Array, stamps: NDArray[np.int64], log: Series) -> Array:
+    """
+    Return the speed of positions at stamps [ns], of each run of a log by itself.
+
+    Rows of one time give none of their own.
+
+    """
+    runs = np.searchsorted(log.run_borders, stamps)
+    seconds = (stamps - np.array(log.run_begins)[runs]) / SECOND
+    places = np.flatnonzero(np.diff(runs)) + 1
     with np.errstate(divide='ignore', invalid='ignore'):
-        slope = np.asarray(np.gradient(position, seconds))
+        slope = np.concatenate(
+            [
+                np.gradient(values, times) if len(times) > 1 else np.full(len(times), math.nan)
+                for values, times in zip(
+                    np.split(position, places), np.split(seconds, places), strict=True
+                )
+            ]
+        )
     return np.where(np.isfinite(slope), slope, math.nan)
 
 

@@ -27,12 +27,14 @@ from ballscrew_monitor.recordings.words import short
 import numpy as np
 from numpy.typing import NDArray
 import polars as pl
+from polars.exceptions import PolarsError
 from surrogate import limits
 from surrogate.child import result_apart
 from surrogate.files import InputError
 
 HEAD = 65536  # [bytes] of a file that tell what it is
 LINES = 2000  # of a table that tell where its numbers begin
+FEWEST = 20  # rows of numbers of a log whose ending says nothing
 SHORT = 4096  # [bytes] of a block, in which a line usually ends
 BLOCK = 32768  # rows that are read at a time
 PART = 4 * limits.MEGA  # [bytes] of a text that are read at a time
@@ -44,6 +46,11 @@ WIDE_MARKS = (b'\xff\xfe', b'\xfe\xff')
 NARROW_MARK = b'\xef\xbb\xbf'
 CODINGS = ('utf-8', 'cp1252', 'latin-1')
 """Codings of a line, the first that fits; the last fits always."""
+TRIES = (
+    3  # parts of a text with cells that are not of their column's type, after which none has it
+)
+Types = Mapping[str, Any]
+"""Types of columns of a text whose cells are known to be plain numbers."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -53,14 +60,14 @@ class Source:
 
     The columns that are read may come to `most` [bytes]: those at rest take next to no room in a
     file of Parquet, so that all of them together tell nothing. `read` reads some columns part by
-    part.
+    part, those of a text by their types where all cells of the part are of these.
 
     """
 
     path: Path
     head: Head
     rows: int
-    read: Callable[[list[str]], Iterator[pl.DataFrame]]
+    read: Callable[[list[str], Types], Iterator[pl.DataFrame]]
     most: float = math.inf
 
     def names(self) -> list[str]:
@@ -70,11 +77,16 @@ class Source:
     def first_rows(self) -> pl.DataFrame:
         """Return the first rows of all columns; raises InputError."""
         with readable(f'log {self.path} cannot be read'):
-            part = next(iter(self.read(self.names())), None)
+            part = next(iter(self.read(self.names(), {})), None)
             return pl.DataFrame(schema=self.names()) if part is None else part.head(LINES)
 
-    def blocks(self, names: Collection[str]) -> Iterator[pl.DataFrame]:
-        """Yield the columns `names` in blocks of rows; none is empty. Raises InputError."""
+    def blocks(self, names: Collection[str], types: Types | None = None) -> Iterator[pl.DataFrame]:
+        """
+        Yield the columns `names` in blocks of rows; none is empty. Raises InputError.
+
+        Cells of a text are texts, or numbers of the `types`, which may change between two blocks.
+
+        """
         come_to = limits.PARQUET_CELL * self.rows * len(names)
         if come_to > self.most:
             raise InputError(
@@ -83,7 +95,7 @@ class Source:
                 'the file'
             )
         with readable(f'log {self.path} cannot be read'):
-            for batch in self.read(list(names)):
+            for batch in self.read(list(names), {} if types is None else types):
                 yield from batch.iter_slices(BLOCK) if batch.height else ()
 
 
@@ -102,11 +114,23 @@ def source_of(path: Path, layout: Layout | None = None) -> Source:
     return _text(path, layout, _Text.of(path, head))
 
 
+def is_log(path: Path) -> bool:
+    """Return True if a file holds rows of numbers or signals, whatever its ending."""
+    with contextlib.suppress(InputError):
+        head = _head_of(path)
+        if head.startswith((PARQUET, ZIP)):
+            return head.startswith(PARQUET)
+        if kind := foreign.kind_of(head):
+            return bool(foreign.read_signals(path, kind).frame.width)
+        return heads.holds_numbers(_first_lines(_Text.of(path, head))[0], FEWEST)
+    return False
+
+
 def of_frame(path: Path, frame: pl.LazyFrame, head: Head, rows: int, most: float) -> Source:
     """Return a table whose cells are in a frame that has a column for each name."""
     named = frame.rename(dict(zip(frame.collect_schema().names(), head.names)))
 
-    def read(names: list[str]) -> Iterator[pl.DataFrame]:
+    def read(names: list[str], types: Types) -> Iterator[pl.DataFrame]:
         yield from named.select(names).collect_batches(chunk_size=BLOCK, lazy=True)
 
     return Source(path=path, head=head, rows=max(rows, 1), read=read, most=most)
@@ -282,7 +306,8 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     # Names for as many columns stand before each part.
     line = head.separator.join(map(str, range(len(head.names)))) + text.line_end
 
-    def read(names: list[str]) -> Iterator[pl.DataFrame]:
+    def read(names: list[str], types: Types) -> Iterator[pl.DataFrame]:
+        tries = TRIES
         chosen = sorted(set(names), key=places.__getitem__)
         options['columns'] = [places[name] for name in chosen]
         called = {str(places[name]): name for name in chosen}
@@ -290,10 +315,24 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
             stream.seek(begins[head.begin])
             for part in _parts(stream, text.line_end.encode()):
                 content = SPACES.sub(b' ', EDGES.sub(b'', part)) if blanks else part
-                cells = pl.read_csv(b''.join([line.encode(), content]), **options)
+                content = b''.join([line.encode(), content])
+                known = {str(places[name]): kind for name, kind in types.items() if tries}
+                cells = _typed(content, known, options)
+                tries -= cells is None
+                cells = pl.read_csv(content, **options) if cells is None else cells
                 yield cells.rename(called).select(names)
 
     return Source(path=path, head=head, rows=text.lines_about, read=read)
+
+
+def _typed(content: bytes, types: Types, options: Mapping[str, Any]) -> pl.DataFrame | None:
+    """Return the cells of a text by types of columns, None if some cell is of another."""
+    with contextlib.suppress(PolarsError):
+        cells = pl.read_csv(content, schema_overrides=types, **options)
+        columns = [cells[place] for place in types]
+        if all(not one.null_count() and math.isfinite(one.sum()) for one in columns):
+            return cells
+    return None
 
 
 def _first_lines(text: _Text) -> tuple[list[Line], list[int]]:

@@ -14,6 +14,7 @@ import dataclasses
 import math
 
 from ballscrew_monitor.recordings.tables.estimates import Array, DAY, RARE, SHORTEST
+from ballscrew_monitor.recordings.words import counted
 import numpy as np
 from numpy.typing import NDArray
 
@@ -75,8 +76,9 @@ class TimeGate:
         self._add_steps(times, rows)
         self.count += len(times)
         if not self._unordered and len(self.runs) <= RUNS:
-            for begin in range(0, len(times), WINDOW):
-                end = begin + WINDOW
+            width = len(times) if self._goes_on(times) else WINDOW
+            for begin in range(0, len(times), width):
+                end = begin + width
                 self._follow(times[begin:end], rows[begin:end])
 
     def _add_steps(self, times: Array, rows: RowNumbers) -> None:
@@ -110,6 +112,12 @@ class TimeGate:
         else:
             self._share += len(times)
         self._last = times[-1:]
+
+    def _goes_on(self, times: Array) -> bool:
+        """Return True if all times rise after those before them."""
+        run = self.runs[-1] if self.runs and not self._pending else None
+        rises = bool((times[1:] >= times[:-1]).all())
+        return run is not None and rises and bool(times[0] + run.shift >= run.end)
 
     def _follow(self, times: Array, rows: RowNumbers) -> None:
         """Follow the runs through a few rows."""
@@ -186,29 +194,16 @@ class TimeGate:
         """Return the least and the most time [s]."""
         return self._least[0], self._most[0]
 
-    def shifts(self, gap: float, ends: Sequence[float] | None = None) -> dict[int, float]:
-        """Return what is added to the times from some rows on [s], so that no runs meet."""
+    def shifts(self, offsets: Sequence[float]) -> dict[int, float]:
+        """Return what is added to the times from some rows on [s], by the offset of each run."""
         found: dict[int, float] = {}
-        shift, end = 0.0, -math.inf
-        for number, run in enumerate(self.runs):
-            if number:
-                end = end if ends is None else max(end, ends[number - 1])
-                shift = end + gap - run.begin
+        for run, shift in zip(self.runs, offsets, strict=True):
+            if shift:
                 found[run.row] = shift
             for row, back in self.clocks:
                 if run.row < row <= run.last:
                     found[row] = shift = shift + back
-            end = run.end + (found.get(run.row, 0.0) if number else 0.0)
         return found
-
-    def ends(self, gap: float) -> list[float]:
-        """Return where each run ends if they lie a `gap` [s] apart [s]."""
-        ends: list[float] = []
-        end = -math.inf
-        for run in self.runs:
-            end = run.end if not ends else end + gap + run.end - run.begin
-            ends.append(end)
-        return ends
 
     def words(self) -> list[str]:
         """Return in a sentence each the runs, and where a clock was set back."""
@@ -222,8 +217,8 @@ class TimeGate:
             ]
             shown = listed if len(listed) <= AGAIN else [*listed[:AGAIN], '...']
             found.append(
-                f'time begins again {len(self.runs) - 1} times: {len(self.runs)} runs are judged '
-                f'one after the other, and a warning may go on into the next, {", ".join(shown)}'
+                f'time begins again {counted(len(self.runs) - 1, "time")}: {len(self.runs)} runs '
+                f'are each judged apart, {", ".join(shown)}'
             )
         return found
 
@@ -302,6 +297,25 @@ class TimeGate:
                 'correct time.unit in the map, or leave such rows out',
             )
         return '', ''
+
+
+def run_offsets(gates: Sequence[TimeGate], gap: float) -> tuple[list[float], list[float]]:
+    """
+    Return the offset of each run [s], and the begins that these give all runs but the first.
+
+    Runs lie a `gap` [s] apart, or a little more. The gates are those of columns that have the same
+    runs, each with its own times. Offsets are whole seconds: in each run, ticks and states are due
+    as if it were alone.
+
+    """
+    offsets, begins, end = [0.0], list[float](), -math.inf
+    for number, parts in enumerate(zip(*(gate.runs for gate in gates), strict=True)):
+        if number:
+            begin = min(run.begin for run in parts)
+            offsets.append(float(math.ceil(end + gap - begin)))
+            begins.append(begin + offsets[-1])
+        end = max(run.end for run in parts) + offsets[-1]
+    return offsets, begins
 
 
 def _run(time: float, row: int) -> Run:

@@ -240,12 +240,13 @@ class Times:
     def __init__(self, table: Table, mapping: TableMap, group: Group, shown: Shown) -> None:
         """Look through the times; raises InputError when they give no stamps."""
         self.group, self._table, self._mapping = group, table, mapping
-        self.gate = TimeGate(wall=self._is_wall())
+        self.gate, self._course = TimeGate(wall=self._is_wall()), Course()
         self._spread: Spread | None = None
         with shown(table.rows, 'times looked through') as show:
             for row, times, _ in self._told(group.time_columns or list(group.columns)[:1]):
                 known = np.isfinite(times)
                 self.gate.add(times[known], row + np.flatnonzero(known))
+                self._course.add(times[known])
                 show((row + len(times) - table.first_row) / table.rows)
         self.gate.finish()
         self.count, self._shown = self.gate.count, shown
@@ -258,30 +259,31 @@ class Times:
         if mapping.time:
             self._check_gate()
         self._shifts = dict[int, float]()
-        self._steps, self._begin, self._end = Steps(), math.inf, -math.inf
 
-    def place(self, gap: float, ends: Sequence[float] | None = None) -> None:
+    def place(self, offsets: Sequence[float], rows: Sequence[int]) -> None:
         """
-        Place the runs `gap` [s] behind each other, after `ends` [s] where these are later.
+        Place the runs by their offsets [s]; those of the motion begin in some rows of the file.
 
-        Without as many ends as there are runs, the times stay as they are.
+        Few slow samples do not show where runs begin: these follow the motion. Slow samples with
+        more runs than a motion that has one stay as they are.
 
         Then the steps between rows are known, and how late the latest row comes.
 
         """
-        if ends is None or len(ends) == len(self.gate.runs):
-            self._shifts = self.gate.shifts(gap, ends)
+        if len(offsets) == len(self.gate.runs):
+            self._shifts = self.gate.shifts(offsets)
+        elif len(self.gate.runs) < len(offsets):
+            self._shifts, self.gate.late = dict(zip(rows[1:], offsets[1:], strict=True)), 0
         else:
             self.gate.runs = self.gate.runs[:1]
-        self._late, self._steps = 0.0, Steps()
-        for _, times, _ in self._placed(self.group.time_columns or list(self.group.columns)[:1]):
-            latest = np.maximum.accumulate(np.maximum(times, self._end))
-            self._begin = min(self._begin, float(times.min()))
-            with np.errstate(over='ignore'):  # what gives no stamp is refused afterwards
-                self._late = max(self._late, float((latest - times).max()))
-                self._end = float(latest[-1])
-                self._steps.add(np.clip((times - self._begin) * SECOND, -LARGEST, LARGEST))
-        self.first, self.last = self._begin, self._end
+        if self._shifts or self._spread:  # else they stay as they were looked through
+            self._course = Course()
+            columns = self.group.time_columns or list(self.group.columns)[:1]
+            for _, times, _ in self._placed(columns):
+                self._course.add(times)
+        self._late, self._steps = self._course.late, self._course.steps
+        self._begin = self.first = self._course.begin
+        self.last = self._course.end
 
     def since(self, begin: float) -> None:
         """Let stamps count from the first time of the log [s]; raises InputError for others."""
@@ -296,12 +298,16 @@ class Times:
     @property
     def begin(self) -> int:
         """Return the stamp of the first row of the log [ns]."""
-        return int(self._stamps(np.array([self._begin]))[0])
+        return self.stamps([self._begin])[0]
 
     @property
     def end(self) -> int:
         """Return the stamp of the last row [ns]."""
-        return int(self._stamps(np.array([self.last]))[0])
+        return self.stamps([self.last])[0]
+
+    def stamps(self, times: Sequence[float]) -> list[int]:
+        """Return times [s] as stamps [ns]."""
+        return [int(stamp) for stamp in self._stamps(np.array(times))]
 
     @property
     def usual_period(self) -> float:
@@ -425,6 +431,27 @@ class Times:
                 f'log {self._table.path}: its times are {begin:g} to {end:g} s, which give no '
                 'stamps after 1970 and before 2038: correct time.unit, or state a time.epoch'
             )
+
+
+class Course:
+    """Times [s] in the order of their rows: extent, steps between rows, and the latest row."""
+
+    def __init__(self) -> None:
+        """Begin with no row."""
+        self.begin, self.end = math.inf, -math.inf
+        self.late = 0.0  # by which a row comes after a later one
+        self.steps = Steps()
+
+    def add(self, times: Array) -> None:
+        """Take further times."""
+        if not len(times):
+            return
+        latest = np.maximum.accumulate(np.maximum(times, self.end))
+        self.begin = min(self.begin, float(times.min()))
+        with np.errstate(over='ignore'):  # what gives no stamp is refused afterwards
+            self.late = max(self.late, float((latest - times).max()))
+            self.end = float(latest[-1])
+            self.steps.add(np.clip((times - self.begin) * SECOND, -LARGEST, LARGEST))
 
 
 def line(values: Array, column: Column, factor: float) -> Array:

@@ -37,6 +37,7 @@ _ALIASES = {
     'ms': ('msec', 'millis', 'milliseconds'),
     'us': ('usec', 'µs', 'μs', 'microseconds'),
     'ns': ('nanoseconds',),
+    'd': ('day', 'days', 'tage'),
 }
 
 

@@ -43,9 +43,9 @@ def build_full(
     nodes = surface_nodes(opened, lubricant, settings)
     with ThreadPoolExecutor(max_workers=1) as beside:
         # While workers solve; a raceway may not bear the lowest pressure of its range.
-        found = beside.submit(surface_bands, screw, lubricant)
+        waiting = beside.submit(surface_bands, screw, lubricant)
         data = _surface(opened, lubricant, settings, nodes, run)
-        bands = found.result()
+        bands = waiting.result()
     points = held_out_points(Surface(data), screw, settings)
     chains = {
         f'held out {place}': point_inputs(screw, lubricant, load, heat, speed)
@@ -53,12 +53,12 @@ def build_full(
     }
     results = run(chains)
     pairs = zip(points, results.values(), strict=True)
-    solved = ((point, solved_chain(one)[0][0]) for point, one in pairs if one)
+    solved = ((point, solved_chain(result)[0][0]) for point, result in pairs if result)
     surface = Surface(data)
-    compared = (judged(data, surface, screw, point, found) for point, found in solved)
-    held_out = [one for one in compared if one is not None]
+    compared = (judged(data, surface, screw, point, exact) for point, exact in solved)
+    held_out = [place for place in compared if place is not None]
     errors = cell_errors(data, held_out, screw, settings)
-    reached = max((one.miss for one in held_out), default=None)
+    reached = max((place.miss for place in held_out), default=None)
     header = {**data.header, **bands, 'reached': reached}
     return replace(data, errors=errors, header=header)
 
@@ -71,10 +71,15 @@ def _surface(
     grid = solved_grid(screw, lubricant, settings)
     logs = solve_ratios(opened, lubricant, grid, run)
     ratios, failed = ratios_at(logs, grid, nodes, lubricant)
-    axes = nodes.s, nodes.load, nodes.temperature
-    found = solve_grid(opened, lubricant, *axes, nodes.log_onset)
-    deviation = _rcs_deviation(opened, lubricant, nodes)
-    formulas = with_floor({name: found[name] for name in FIELDS}, screw, lubricant)
+    axes, onset = (nodes.s, nodes.load, nodes.temperature), nodes.log_onset
+    formula_values = solve_grid(opened, lubricant, *axes, onset)
+    # RCS from an onset that is half of its deviation later to one that is as much sooner.
+    later, sooner = (
+        solve_grid(opened.with_law(opened.law.shifted(half)), lubricant, *axes, onset)
+        for half in (0.5, -0.5)
+    )
+    deviation = np.asarray(later['rcs'] - sooner['rcs'])
+    formulas = with_floor({name: formula_values[name] for name in FIELDS}, screw, lubricant)
     solved = {name: values * ratios.get(name, 1.0) for name, values in formulas.items()}
     # Between two solved points a ratio may take a film that lies on the floor below it.
     fields = with_floor(solved, screw, lubricant)
@@ -90,18 +95,8 @@ def _surface(
         log_onset=nodes.log_onset,
         fields=fields,
         errors=dict.fromkeys(FIELDS, np.full(np.subtract(mask.shape, 1), np.nan)),
-        worst_contact=found['worst_contact'].astype(np.uint8),
+        worst_contact=formula_values['worst_contact'].astype(np.uint8),
         mask=mask,
         deviations={'rcs': deviation},
         standard_errors={'rcs': deviation},
     )
-
-
-def _rcs_deviation(opened: Contacts, lubricant: Lubricant, nodes: Nodes) -> Array:
-    """Return the change of RCS [-] from an onset half of its deviation later to as much sooner."""
-    axes = nodes.s, nodes.load, nodes.temperature, nodes.log_onset
-    later, sooner = (
-        solve_grid(opened.with_law(opened.law.shifted(half)), lubricant, *axes)['rcs']
-        for half in (0.5, -0.5)
-    )
-    return np.asarray(later - sooner)

@@ -96,15 +96,15 @@ def _turned(
     lubricant: Lubricant,
     settings: ScrewSettings,
     point: OperatingPoint,
-    found: ScrewSolution,
+    solution: ScrewSolution,
 ) -> ScrewSolution:
     """Return the solution with the load turned round: of the same contacts, if friction lets."""
-    if not all(one.converged for one in found.loaded_contacts):
-        return found
+    if not all(contact.converged for contact in solution.loaded_contacts):
+        return solution
     against = replace(point, load=-point.load)
     # Balls that float on one side may hold on the other: an idle nut is solved again.
-    if all(found.normal_forces) and found.load_change <= settings.coupling_tolerance:
-        balanced = rebalance_screw(opened, lubricant, against, found, settings=settings)
+    if all(solution.normal_forces) and solution.load_change <= settings.coupling_tolerance:
+        balanced = rebalance_screw(opened, lubricant, against, solution, settings=settings)
         if balanced.load_change <= settings.coupling_tolerance:
             return balanced
-    return solve_screw(opened, lubricant, against, settings=settings, start=found)
+    return solve_screw(opened, lubricant, against, settings=settings, start=solution)

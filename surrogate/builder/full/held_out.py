@@ -43,7 +43,7 @@ class HeldOut:
     point: HeldOutPlace
     speed_coordinate: float
     cell: tuple[int, int, int]
-    found: SurfacePoint
+    answer: SurfacePoint
     solved: SolvedPoint
     miss: float
 
@@ -52,23 +52,23 @@ def judged(
     data: SurfaceData, surface: Surface, screw: Screw, point: HeldOutPlace, solved: SolvedPoint
 ) -> HeldOut | None:
     """Return a solved point beside its lookup; None where either has no answer."""
-    found = surface.lookup(*point)
-    if not (solved.converged and found.validity is Validity.VALID):
+    answer = surface.lookup(*point)
+    if not (solved.converged and answer.validity is Validity.VALID):
         return None
     s = math.log(point[0] / surface.onset_speed(*point[1:]))
     return HeldOut(
-        point, s, _cell(data, (s, *point[1:])), found, solved, _miss(screw, point, found, solved)
+        point, s, _cell(data, (s, *point[1:])), answer, solved, _miss(screw, point, answer, solved)
     )
 
 
-def _miss(screw: Screw, point: HeldOutPlace, found: SurfacePoint, solved: SolvedPoint) -> float:
+def _miss(screw: Screw, point: HeldOutPlace, answer: SurfacePoint, solved: SolvedPoint) -> float:
     """Return the larger error of efficiency and RCS over the allowed one [-]."""
     least = LIGHT_LOAD * working_preload(screw)
     ideal = max(abs(point[1]), least) * screw.lead / (2 * math.pi)
-    torque, exact = ideal + found.friction_torque, ideal + solved.friction_torque
+    torque, exact = ideal + answer.friction_torque, ideal + solved.friction_torque
     return max(
         ideal * abs(1 / torque - 1 / exact) / EFFICIENCY_TOLERANCE,
-        abs(found.rcs - solved.rcs) / rcs_tolerance(solved.rcs),
+        abs(answer.rcs - solved.rcs) / rcs_tolerance(solved.rcs),
     )
 
 
@@ -144,26 +144,26 @@ def _errors(
     """Return the errors of a field per cell, with unmeasured cells filled from their stratum."""
     axes = (data.speed_coordinate, data.load, data.temperature)
     error = np.full([len(axis) - 1 for axis in axes], np.nan)
-    for one in solved:
-        error[one.cell] = np.fmax(error[one.cell], _wrong(one, name))
+    for held_out in solved:
+        error[held_out.cell] = np.fmax(error[held_out.cell], _wrong(held_out, name))
     s, load, _ = (0.5 * (axis[1:] + axis[:-1]) for axis in axes)
     filled = error.copy()
     for speeds in SPEEDS:
         for loads in bands:
             part = np.ix_(_within(s, speeds), _within(np.abs(load), loads))
             alike = [
-                _wrong(one, name)
-                for one in solved
-                if _within(np.array(one.speed_coordinate), speeds)
-                and _within(np.array(abs(one.point[1])), loads)
+                _wrong(held_out, name)
+                for held_out in solved
+                if _within(np.array(held_out.speed_coordinate), speeds)
+                and _within(np.array(abs(held_out.point[1])), loads)
             ]
             if alike:
                 filled[part] = np.where(np.isfinite(error[part]), error[part], max(alike))
     return filled
 
 
-def _wrong(one: HeldOut, name: str) -> float:
-    return abs(float(getattr(one.found, name)) - float(getattr(one.solved, name)))
+def _wrong(held_out: HeldOut, name: str) -> float:
+    return abs(float(getattr(held_out.answer, name)) - float(getattr(held_out.solved, name)))
 
 
 def _within(places: Array, ends: Ends) -> NDArray[np.bool_]:

@@ -105,11 +105,11 @@ def solve_ratios(
     NaN where a point did not converge. Raises InputError if none did.
 
     """
-    found = closed_form.solve(
+    by_formulas = closed_form.solve(
         opened, lubricant, grid.speeds[:, None, None], grid.loads[:, None], grid.temperature
     )
     formulas = with_floor(
-        {name: getattr(found, name) for name in CORRECTED}, opened.sheet, lubricant
+        {name: getattr(by_formulas, name) for name in CORRECTED}, opened.sheet, lubricant
     )
     shape = (len(SENSES), len(grid.speeds), len(grid.loads), len(grid.temperature))
     logs = {name: np.full(shape, np.nan) for name in CORRECTED}
@@ -152,28 +152,23 @@ def ratios_at(
     failed = np.isnan(logs['friction_torque'])
     nearest = distance_transform_edt(failed, return_distances=False, return_indices=True)
     stacked = np.stack([*(values[tuple(nearest)] for values in logs.values()), failed])
-    loaded = _along_load(_along_temperature(stacked, grid, nodes, lubricant), grid, nodes)
-    known = np.log(grid.speeds)
-    wanted = np.clip(nodes.log_speed, known[0], known[-1])
-    found = np.empty((len(loaded), *wanted.shape))
-    for j, k in np.ndindex(nodes.log_onset.shape):
-        along = PchipInterpolator(known, loaded[:, :, j, k], axis=1)
-        found[:, :, j, k] = along(wanted[:, j, k])
-    ratios = {name: np.exp(values) for name, values in zip(logs, found)}
-    return ratios, found[-1] > NEXT_TO_A_FAILURE
-
-
-def _along_temperature(
-    values: Array, grid: SolvedGrid, nodes: Nodes, lubricant: Lubricant
-) -> Array:
-    """Return [field, sense, speed, load, temperature] at the temperatures of the nodes."""
-    known, wanted = (
+    solved, hot = (
         -np.log(lubricant_state(lubricant, heat).viscosity)
         for heat in (grid.temperature, nodes.temperature)
     )
-    if len(known) == 1:
-        return np.repeat(values, len(wanted), axis=4)
-    return np.asarray(PchipInterpolator(known, values, axis=4)(wanted))
+    if len(solved) == 1:
+        heated = np.repeat(stacked, len(hot), axis=4)
+    else:
+        heated = np.asarray(PchipInterpolator(solved, stacked, axis=4)(hot))
+    loaded = _along_load(heated, grid, nodes)
+    known = np.log(grid.speeds)
+    wanted = np.clip(nodes.log_speed, known[0], known[-1])
+    stacked_at_nodes = np.empty((len(loaded), *wanted.shape))
+    for j, k in np.ndindex(nodes.log_onset.shape):
+        along = PchipInterpolator(known, loaded[:, :, j, k], axis=1)
+        stacked_at_nodes[:, :, j, k] = along(wanted[:, j, k])
+    ratios = {name: np.exp(values) for name, values in zip(logs, stacked_at_nodes)}
+    return ratios, stacked_at_nodes[-1] > NEXT_TO_A_FAILURE
 
 
 def _along_load(values: Array, grid: SolvedGrid, nodes: Nodes) -> Array:
@@ -181,11 +176,11 @@ def _along_load(values: Array, grid: SolvedGrid, nodes: Nodes) -> Array:
     sizes, opposing = np.abs(nodes.load), nodes.load >= 0
     gaps = [0.5 * (low[-1] + high[0]) for low, high in zip(grid.pieces, grid.pieces[1:])]
     owner, firsts = np.searchsorted(gaps, sizes), np.cumsum([0, *map(len, grid.pieces)])
-    found = np.empty((len(values), len(grid.speeds), len(sizes), len(nodes.temperature)))
+    at_loads = np.empty((len(values), len(grid.speeds), len(sizes), len(nodes.temperature)))
     for place, piece in enumerate(grid.pieces):
         first, last = firsts[place], firsts[place + 1]
         for sense, signed in enumerate((opposing, ~opposing)):
             here = (owner == place) & signed
             along = PchipInterpolator(piece, values[:, sense, :, first:last], axis=2)
-            found[:, :, here] = along(np.clip(sizes[here], piece[0], piece[-1]))
-    return found
+            at_loads[:, :, here] = along(np.clip(sizes[here], piece[0], piece[-1]))
+    return at_loads

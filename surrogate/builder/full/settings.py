@@ -47,7 +47,6 @@ class FullSettings(SurfaceSettings):
         return 0.0 if low <= 0 <= high else min(sizes), max(sizes)
 
     def __post_init__(self) -> None:
-        """Check the numbers that are not ranges."""
         for name, least in (
             ('held_out', 1),
             ('speed_nodes', 4),

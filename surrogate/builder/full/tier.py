@@ -92,8 +92,8 @@ def build_full_surface(
         data = build_full(screw, lubricant, settings, run)
         marched = run.solve(march_task, strips, 'strip') if march else {}
     if march:
-        found = {name: result for name, result in marched.items() if result}
-        data = replace(data, header={**data.header, 'march': found})
+        strips_marched = {name: result for name, result in marched.items() if result}
+        data = replace(data, header={**data.header, 'march': strips_marched})
     for sentence in shortfalls(data, settings):
         print(sentence, file=sys.stderr)
     work = {
@@ -120,7 +120,6 @@ def shortfalls(data: SurfaceData, settings: FullSettings) -> Iterator[str]:
 
 
 def _missing(data: SurfaceData) -> Iterator[str]:
-    """Yield a sentence if nodes have no number."""
     place = np.nonzero(data.mask)
     if place[0].size:
         speed = np.exp(data.speed_coordinate[place[0]] + data.log_onset[place[1:]])

@@ -36,14 +36,14 @@ def mark_thick_film(
     nx, ny = thick.shape
     stiffness, limit = near[0], near.dtype.type(THICK)
     zero, one = thick.dtype.type(0), thick.dtype.type(1)
-    found = False
+    any_thick = False
     for i in range(1, nx - 1):
         for j in range(1, ny - 1):
             flow, lift = abs(by_pressure[0, i, j]), abs(by_gap[0, i, j]) * stiffness
             is_thick = sizes[i, j] > 0 and not contact[i, j] and lift < limit * flow
             thick[i, j] = one if is_thick else zero
-            found = found or is_thick
-    return found
+            any_thick = any_thick or is_thick
+    return any_thick
 
 
 @njit(cache=True, error_model='numpy')
@@ -142,6 +142,6 @@ def solve_bands(
     for i in range(1, nx - 1):
         for band in range(count):
             first, last = 1 + band * BAND, min(1 + (band + 1) * BAND, ny - 1)
-            found = bands[i * count + band]
+            lift = bands[i * count + band]
             for j in range(first, last):
-                value[i, j] = thick[i, j] * found
+                value[i, j] = thick[i, j] * lift

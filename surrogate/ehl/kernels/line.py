@@ -125,39 +125,39 @@ def solve_lines(
     From `value` if started or else zero; `work` is six planes of a kind that once were zero.
 
     """
-    known, found = work[:2], work[2:4]
+    known, total = work[:2], work[2:4]
     part(rhs, known)
     if started:
-        part(value, found)
+        part(value, total)
         if periodic:
-            _repeat_lines(found, 0)
-            _repeat_lines(found, 1)
+            _repeat_lines(total, 0)
+            _repeat_lines(total, 1)
     else:
-        found[:] = 0
+        total[:] = 0
     for step in range(steps):
         kind = 1 - step % 2
         count = (rhs.shape[1] - kind) // 2
         coupled = started or step > 0
         if coupled:
-            _gather(found[1 - kind], kind, count, work[4], work[5])
+            _gather(total[1 - kind], kind, count, work[4], work[5])
         _solve_kind(
-            bands[kind], sides[kind], known[kind], count, coupled, work[4], work[5], found[kind]
+            bands[kind], sides[kind], known[kind], count, coupled, work[4], work[5], total[kind]
         )
         if symmetric and kind == 0:
             for i in range(rhs.shape[0]):
-                found[0, i, 0] = found[0, i, 1]
+                total[0, i, 0] = total[0, i, 1]
         if periodic:
-            _repeat_lines(found, kind)
-    join(found, value)
+            _repeat_lines(total, kind)
+    join(total, value)
 
 
 @njit(cache=True, error_model='numpy')
-def _repeat_lines(found: Array, kind: int) -> None:
+def _repeat_lines(total: Array, kind: int) -> None:
     """Fill the copy beside a period: the first even line, or the last odd one."""
-    last = found.shape[2] - 1
+    last = total.shape[2] - 1
     copy, own = (last, 0) if kind == 1 else (0, last)
-    for i in range(found.shape[1]):
-        found[kind, i, copy] = found[kind, i, own]
+    for i in range(total.shape[1]):
+        total[kind, i, copy] = total[kind, i, own]
 
 
 @njit(cache=True, error_model='numpy')

@@ -45,7 +45,6 @@ class Feed:
     _first: int = field(init=False)  # number of the first row that is kept
 
     def __post_init__(self) -> None:
-        """Evaluate the rows that lie on the grid at the start."""
         self._first = 0
         self._rows = self._heights(0, self.grid.shape[0])
 

@@ -65,7 +65,6 @@ class MarchSettings:
     side_slip: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the numbers; those of `Settings` are checked there."""
         self.steady()
         for name, low, high in (('stride', 1, 16), ('places', 1, 1000)):
             value = getattr(self, name)

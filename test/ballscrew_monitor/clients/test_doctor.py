@@ -45,6 +45,7 @@ WRONG = {
     'timeout': {'load': "{topic: 'slow_load', timeout: 0.1}"},
     'qos': {},
     'position_only': {'speed': "{topic: 'positions', timeout: 30.0}"},
+    'still': {'speed': "{topic: 'idle', timeout: 30.0}"},
     'clock_ahead': {'load': "{topic: 'future_load', timeout: 30.0}"},
     'simulated': {},
     'override': {},
@@ -66,6 +67,7 @@ class Machine:
         make = self.node.create_publisher
         self.joints = make(JointState, 'joint_states', BEST_EFFORT)
         self.positions = make(JointState, 'positions', 10)
+        self.idle = make(JointState, 'idle', 10)
         self.spindle = make(Float64, 'spindle', 10)
         self.oil = make(Temperature, 'oil_temperature', 10)
         self.loads = {
@@ -75,12 +77,15 @@ class Machine:
         self.thread.start()
 
     def run(self):
-        due = time.monotonic()
+        due, turned = time.monotonic(), 0.0
         while not self.stopped.wait(0.01):
             self.joints.publish(
                 self.stamped(JointState(name=['arm', 'x_axis'], velocity=[0.0, 100.0]))
             )
             self.positions.publish(self.stamped(JointState(name=['x_axis'], position=[1.0])))
+            turned += 0.05
+            idle = JointState(name=['x_axis'], velocity=[0.0], position=[turned])
+            self.idle.publish(self.stamped(idle))
             self.spindle.publish(Float64(data=1500.0))
             self.oil.publish(self.stamped(Temperature(temperature=40.0)))
             self.loads['axial'].publish(self.load())

@@ -6,10 +6,9 @@ import dataclasses
 import math
 import re
 
-from ballscrew_monitor.core.advice import Advice, Advisor
+from ballscrew_monitor.core.advice import Advisor, speed_advice
 from ballscrew_monitor.core.conversions import Direction, opposing_load
 from ballscrew_monitor.core.judgement import efficiency_to_clear, rcs_to_clear
-from ballscrew_monitor.core.state import Event
 from ballscrew_monitor.health.records import Cell, Condition, Health
 from ballscrew_monitor.health.remedies import remedies_of
 from ballscrew_monitor.health.rows import DAY
@@ -37,7 +36,7 @@ def advisor_of(point, surface, limits, *, speed_allowed=True):
 
 
 def advise(point, surface, limits):
-    return advisor_of(point, surface, limits).advice
+    return advisor_of(point, surface, limits).target_speed
 
 
 def faster_is_better(speed, load):
@@ -47,16 +46,16 @@ def faster_is_better(speed, load):
 @pytest.mark.parametrize('sign', [1.0, -1.0])
 def test_a_border_is_found_from_its_optimal_side_and_the_direction_is_kept(core, sign):
     point = core.point(speed=sign * 5.0, axial_load=-sign * 1000.0)
-    found = advise(point, core.surface(rcs=faster_is_better), core.limits()).target_speed
+    found = advise(point, core.surface(rcs=faster_is_better), core.limits())
     assert sign * found == pytest.approx(30.0, rel=1e-5)
     assert sign * found >= 30.0
 
 
 def test_the_nearer_of_two_borders_wins(core):
     surface = core.surface(rcs=lambda speed, load: 0.0 if speed < 8.0 or speed > 50.0 else 1.0)
-    found = advise(core.point(speed=10.0), surface, core.limits()).target_speed
+    found = advise(core.point(speed=10.0), surface, core.limits())
     assert found == pytest.approx(8.0)
-    made = advise(core.point(speed=45.0), surface, core.limits()).target_speed
+    made = advise(core.point(speed=45.0), surface, core.limits())
     assert made == pytest.approx(50.0)
 
 
@@ -70,30 +69,30 @@ def test_the_nearer_of_two_borders_wins(core):
 )
 def test_a_speed_that_is_no_advice(core, speed, rcs):
     found = advise(core.point(speed=speed), core.surface(rcs=rcs), core.limits())
-    assert math.isnan(found.target_speed)
+    assert math.isnan(found)
 
 
 def test_under_a_light_load_the_efficiency_counts_for_nothing(core):
     surface, limits = core.surface(rcs=faster_is_better, efficiency=0.5), core.limits()
     heavy, light = (advise(core.point(5.0, -load), surface, limits) for load in (300.0, 200.0))
-    assert math.isnan(heavy.target_speed)
-    assert light.target_speed == pytest.approx(30.0, rel=1e-5)
+    assert math.isnan(heavy)
+    assert light == pytest.approx(30.0, rel=1e-5)
 
 
 def test_advice_is_a_sentence_without_a_sign(core, says):
-    assert Advice().text == ''
+    assert speed_advice(math.nan) == ''
     surface = core.surface(rcs=faster_is_better)
     for speed in (5.0, -5.0):
         advice = advise(core.point(speed=speed), surface, core.limits())
-        assert math.copysign(1.0, advice.target_speed) == math.copysign(1.0, speed)
-        assert advice.text == says('run_at')
+        assert math.copysign(1.0, advice) == math.copysign(1.0, speed)
+        assert speed_advice(advice) == says('run_at')
 
 
 def test_no_speed_is_advised_unless_the_process_leaves_it_free(core):
     surface = core.surface(rcs=faster_is_better)
     point, limits = core.point(speed=5.0), core.limits()
     advisor = advisor_of(point, surface, limits, speed_allowed=False)
-    assert repr(advisor.advice) == repr(Advice())
+    assert math.isnan(advisor.target_speed)
     assert surface.asked == []  # nor is one looked for
 
 
@@ -133,16 +132,18 @@ def test_no_advice_names_a_load_or_a_sign(
     """Neither in words nor in the message, anywhere on each surface and beyond it."""
     point = core.point(speed=speed, axial_load=load, temperature=temperature)
     limits = core.limits(rcs=rcs, efficiency=efficiency)
-    event = Event(
-        number=1, active=True, advisor=advisor_of(point, surface, limits, speed_allowed=free)
-    )
+    monitor = core.monitor(surface, limits, speed_allowed=free)
+    memory = monitor.memory
+    memory.event_number, memory.event_active, memory.event_direction[0] = 1, True, point.direction
+    memory.event_speed[0], memory.event_load[0] = speed, load
+    memory.event_temperature[0] = temperature
     health = usual is not None and health_of(point, surface, limits, free=free, usual=usual)
-    message = out_of_zone_message('x', event, shelved=False, health=health or None)
+    message = out_of_zone_message(monitor, shelved=False, health=health or None)
     assert math.isnan(message.cause.target_load)
     assert not LOAD_OR_SIGN.search(message.advice)
     named = math.isfinite(message.cause.target_speed)
     assert free or not SPEED.search(message.advice) and not named
-    workshop, run_at = health.advice if health else '', event.advice.text
+    workshop, run_at = health.advice if health else '', speed_advice(monitor.target_speed)
     assert bool(run_at) is named
     assert not run_at or re.fullmatch(r'at this load run at [\d.]+ rev/min', run_at)
     helpful = '; or '.join(filter(None, [workshop, run_at]))
@@ -155,29 +156,9 @@ def test_a_sign_a_load_and_a_speed_are_found_by_the_property():
     assert SPEED.search('feeds of 1.5 m/min and more')
 
 
-@pytest.mark.parametrize(
-    ('speed', 'limits', 'numerics', 'carry'),
-    [
-        (20.0, (0.6, 1.5), (0.8, 1.25), 'perhaps'),  # 20 is between 0.6 and 0.8 of 30
-        (20.0, (0.8, 1.5), (0.6, 1.25), 'perhaps'),
-        (17.9, (0.8, 1.5), (0.6, 1.25), 'surely'),
-        (29.0, (0.99, 1.5), (0.99, 1.25), 'surely'),
-        (20.0, (0.6, 1.5), (math.nan, math.nan), 'perhaps'),
-        (20.0, (math.nan, math.nan), (math.nan, math.nan), ''),
-        (30.0, (0.6, 1.5), (0.8, 1.25), ''),  # too little efficiency is another warning
-    ],
-)
-def test_contact_is_sure_slower_than_both_bands(core, speed, limits, numerics, carry):
-    """And perhaps between them; not said of a surface that does not know."""
-    surface = core.surface(rcs=faster_is_better)
-    surface.limit_band, surface.numerical_band = limits, numerics
-    advice = advise(core.point(speed=speed), surface, core.limits())
-    assert advice.carry == carry
-
-
 def test_an_optimal_point_is_its_own_advice(core):
     point = core.point(speed=7.0, axial_load=-600.0)
-    assert advise(point, core.surface(), core.limits()) == Advice(target_speed=7.0)
+    assert advise(point, core.surface(), core.limits()) == 7.0
 
 
 @pytest.mark.parametrize('sign', [1.0, -1.0])
@@ -193,7 +174,7 @@ def test_who_follows_the_advice_clears_the_warning(core, sign, name, sensitive):
     load = sign * (2000.0 if name == 'rcs' else 1000.0)
     point = core.point(speed=sign * 1.5, axial_load=load)
     advice = advise(point, surface, limits)
-    there = dataclasses.replace(point, speed=advice.target_speed)
+    there = dataclasses.replace(point, speed=advice)
     numbers = surface.lookup(
         abs(there.speed), opposing_load(load, Direction(there.direction)), there.temperature
     )

@@ -34,7 +34,9 @@ def test_each_fault_has_its_cure():
 @pytest.mark.parametrize('why', Why)
 def test_each_reason_of_a_refusal_is_one_row_of_the_table(why):
     """The live sentence and that of one message; messages about other joints are no fault."""
-    fault = Fault[f'INPUT_{why.name}']
+    fault = why.fault
+    assert fault is Fault[f'INPUT_{why.name}']
+    assert fault.counted
     told = why is not Why.OTHER_JOINTS
     assert (bool(fault.said), bool(fault.detail or why is Why.TOO_SHORT)) == (told, told)
     said = refusal_text(Source.SPEED, why, 2.0, math.nan, most=3.0, field='speed')

@@ -138,7 +138,12 @@ def test_a_programme_without_a_common_speed_is_not_compared(axis):
 
 @pytest.mark.parametrize(
     ('why', 'key'),
-    [(Missing.TORQUE, 'no_torque'), (Missing.STEADY, 'not_steady'), (Missing.MOTION, 'no_motion')],
+    [
+        (Missing.LOAD, 'torque_is_load'),
+        (Missing.TORQUE, 'no_torque'),
+        (Missing.STEADY, 'not_steady'),
+        (Missing.MOTION, 'no_motion'),
+    ],
 )
 def test_logs_without_motion_that_counts_say_why(axis, says, why, key):
     (found,) = axis.course([nothing(FIRST * DAY, why)])

@@ -4,8 +4,7 @@
 
 import math
 
-from ballscrew_monitor.health.history import calmed, connected, effects_of, history_of, two_ways
-from ballscrew_monitor.health.mixed import Logs
+from ballscrew_monitor.health.history import connected, effects_of, history_of, two_ways
 from ballscrew_monitor.health.records import LoadSource
 from ballscrew_monitor.health.summary import array_of
 import numpy as np
@@ -95,12 +94,25 @@ def test_screws_of_every_size_have_the_same_effects(motion):
     assert effects[0].effect - effects[0].effect[0] == pytest.approx(wanted)
 
 
-def test_a_log_after_regreasing_counts_for_little(motion):
-    effect = np.random.default_rng(2).normal(0.0, 0.01, 20)
-    effect[7] += 0.12
-    effect[13] -= 0.12
-    logs = Logs(7.0 * np.arange(20.0), effect, np.zeros(20), np.ones(20))
-    noise = calmed(logs).noise
-    assert noise[7] > 10.0
-    assert noise[13] == 1.0
-    assert noise.sum() < 20.0 + 3 * 24.0
+@pytest.mark.parametrize('constant', [1.0, 0.9])
+def test_the_gain_is_that_of_the_load_though_only_one_way_is_loaded(motion, constant):
+    """Free both ways at two speeds, and a cut one way between them."""
+    cells = []
+    for speed, friction in ((20.0, 0.6), (60.0, 1.0)):
+        for way in (1, -1):
+            place = {'direction': way, 'speed': way * speed, 'speed_band': round(speed)}
+            torque = (way * friction + 0.05) / constant
+            cells.append(motion.cell(motor_torque=torque, axial_load=0.0, load_band=0, **place))
+    torque = (0.8 + 0.05 + 900.0 * LEAD / (2.0 * math.pi)) / constant
+    cells.append(
+        motion.cell(
+            direction=1,
+            speed=40.0,
+            speed_band=40,
+            axial_load=-900.0,
+            load_band=-8,
+            motor_torque=torque,
+        )
+    )
+    history = history_of(array_of(cells), LEAD)
+    assert history.gain == pytest.approx([1.0 / constant])

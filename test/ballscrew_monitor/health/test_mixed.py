@@ -1,20 +1,24 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""The mixed model against textbook forms: regression, Kalman filter, and its own coverage."""
+"""The mixed model against textbook forms: normal densities, Kalman filter, and its coverage."""
 
 import math
 
 from ballscrew_monitor.health import mixed
 from ballscrew_monitor.health.mixed import (
     CORRELATION_TIME,
-    covariance,
     estimate,
-    fit,
+    functional,
     Grid,
     grid,
     Logs,
+    posterior_of,
+    scatter_of,
+    shapes_of,
     SLOPE,
-    weights_of,
+    wander_of,
+    weighed,
+    with_shape,
 )
 import numpy as np
 import pytest
@@ -28,8 +32,16 @@ def logs_of(effect, warmth=None, step=WEEK):
     return Logs(step * np.arange(count), np.asarray(effect), warm, np.ones(count))
 
 
-def two_blocks(count, now):
-    return np.array([0] * (count - now) + [1] * now)
+def parts(count, baseline=13, now=4):
+    at = np.arange(count)
+    return at < baseline, at >= count - now
+
+
+def density(values, covariance):
+    """Return the logarithm of the density of the normal distribution about zero."""
+    sign, determinant = np.linalg.slogdet(2.0 * math.pi * covariance)
+    assert sign == 1.0
+    return -0.5 * (determinant + values @ np.linalg.solve(covariance, values))
 
 
 def wandering(random, count, deviation):
@@ -53,32 +65,59 @@ def only_pair(monkeypatch):
     return choose
 
 
-def test_without_wander_the_change_is_the_difference_of_two_means(only, monkeypatch):
-    monkeypatch.setattr(mixed, 'RUNNING_IN', 1e-6)
-    monkeypatch.setattr(mixed, 'FREE', 1e3)
-    only(0.02, 1e-9)
-    effect = np.random.default_rng(1).normal(0.0, 0.02, 14)
-    found = estimate(logs_of(effect), two_blocks(14, 4), np.ones(1))
-    assert found.value == pytest.approx(effect[10:].mean() - effect[:10].mean(), abs=1e-5)
-    wanted = 0.02 * math.sqrt(1 / 4 + 1 / 10)
-    assert found.deviation == pytest.approx(wanted, rel=1e-3)
-    assert found.lasting_deviation == pytest.approx(wanted, rel=1e-3)
+def test_a_shape_is_as_probable_as_its_density_says(only):
+    """Twice: the second shape beside a first one that is held for true."""
+    only(0.015, 0.01)
+    logs = logs_of(np.random.default_rng(1).normal(0.0, 0.02, 20))
+    shapes, posterior = shapes_of(logs.time), posterior_of(logs, warm=True)
+    for first in (5, len(shapes.mean) - 3):
+        seen = weighed(posterior, shapes)
+        covariance = np.linalg.inv(posterior.inverse[0])
+        plain = density(posterior.rest, covariance)
+        for which in (0, 20, 40, len(shapes.mean) - 1):
+            column = shapes.column[:, which]
+            rest = posterior.rest - shapes.mean[which] * column
+            more = covariance + shapes.deviation[which] ** 2 * np.outer(column, column)
+            wanted = density(rest, more) - plain + shapes.prior[which]
+            ratio = math.log(seen.shapes[which] / seen.none)
+            assert ratio == pytest.approx(wanted, abs=1e-6)
+        posterior = with_shape(posterior, shapes, first)
+
+
+def test_a_number_is_what_it_is_by_conditional_normal_distributions(only):
+    """The mean and the deviation of the level of now, without a shape and with one."""
+    pair = only(0.015, 0.02)
+    logs = logs_of(wandering(np.random.default_rng(2), 20, 0.02))
+    shapes, posterior = shapes_of(logs.time), posterior_of(logs, warm=True)
+    seen = weighed(posterior, shapes)
+    share = np.where(np.arange(20) >= 16, 0.25, 0.0)
+    pull = posterior.signal @ share
+    found = functional(posterior, shapes, seen, pull, pull @ share, share @ shapes.column)
+    signal, noise = posterior.signal[0], np.linalg.inv(posterior.inverse[0]) - posterior.signal[0]
+    for which, column in ((0, np.zeros(20)), (30, shapes.column[:, 29])):
+        with_it = signal + shapes.deviation[29] ** 2 * np.outer(column, column)
+        gain = share @ with_it @ np.linalg.inv(with_it + noise)
+        left = share @ with_it @ share - gain @ with_it @ share
+        assert found.mean[0, which] == pytest.approx(gain @ posterior.rest, abs=1e-6)
+        assert found.deviation[0, which] == pytest.approx(math.sqrt(left), rel=1e-4)
+    assert pair.prior.size == 1
 
 
 def test_the_slope_is_that_of_a_regression_with_a_prior(only, monkeypatch):
     """Two normal estimates, that of the data and that of the oil, weighed by their precision."""
-    monkeypatch.setattr(mixed, 'RUNNING_IN', 1e-6)
+    for rate in ('CHANGE_RATE', 'GREASE_RATE', 'RUNNING_IN'):
+        monkeypatch.setattr(mixed, rate, 1e-9)
     only(0.01, 1e-9)
     random = np.random.default_rng(3)
     warmth = random.normal(0.0, 2.0, 20)
     effect = -0.02 * warmth + random.normal(0.0, 0.01, 20)
-    found = fit(logs_of(effect, warmth), np.zeros(20, dtype=int))
+    found = estimate(logs_of(effect, warmth), *parts(20))
     centred = warmth - warmth.mean()
     precision = (centred @ centred) / 0.01**2
     own = (centred @ effect) / (centred @ centred)
     prior = mixed.SLOPE_DOUBT**-2.0
     wanted = (precision * own + prior * SLOPE) / (precision + prior)
-    assert SLOPE + found.mean[0, 1] == pytest.approx(wanted, abs=1e-5)
+    assert found.slope == pytest.approx(wanted, abs=1e-5)
 
 
 def kalman_likelihood(effect, scatter, wander):
@@ -97,21 +136,23 @@ def kalman_likelihood(effect, scatter, wander):
 def test_the_covariance_is_that_of_a_state_that_a_kalman_filter_follows():
     effect = np.random.default_rng(5).normal(0.0, 0.02, 30)
     pairs = Grid(np.array([0.02, 0.01]), np.array([0.015, 0.03]), np.zeros(2))
-    for matrix, scatter, wander in zip(
-        covariance(logs_of(effect), pairs), pairs.scatter, pairs.wander, strict=True
-    ):
-        sign, determinant = np.linalg.slogdet(matrix)
-        chi = effect @ np.linalg.solve(matrix, effect)
-        dense = -0.5 * (determinant + chi + 30 * math.log(2.0 * math.pi))
-        assert sign == 1.0
-        assert dense == pytest.approx(kalman_likelihood(effect, scatter, wander), abs=1e-9)
+    logs = logs_of(effect)
+    matrices = wander_of(logs.time, pairs) + scatter_of(logs, pairs)
+    for matrix, scatter, wander in zip(matrices, pairs.scatter, pairs.wander, strict=True):
+        wanted = kalman_likelihood(effect, scatter, wander)
+        assert density(effect, matrix) == pytest.approx(wanted, abs=1e-9)
+
+
+def pairs_of(effect):
+    logs = logs_of(effect)
+    seen = weighed(posterior_of(logs, warm=True), shapes_of(logs.time))
+    return seen.probability.sum(axis=1)
 
 
 def test_the_grid_is_weighed_towards_the_scatter_and_wander_that_are_there():
     random, pairs = np.random.default_rng(7), grid()
-    blocks = np.zeros(60, dtype=int)
-    quiet = weights_of(logs_of(random.normal(0.0, 0.01, 60)), blocks)
-    loud = weights_of(logs_of(wandering(random, 60, 0.05) + random.normal(0.0, 0.02, 60)), blocks)
+    quiet = pairs_of(random.normal(0.0, 0.01, 60))
+    loud = pairs_of(wandering(random, 60, 0.05) + random.normal(0.0, 0.02, 60))
     assert quiet.sum() == pytest.approx(1.0)
     assert quiet @ pairs.scatter < 0.013
     assert loud @ pairs.scatter > 0.015
@@ -128,18 +169,26 @@ def test_the_interval_holds_the_change_with_its_wander(scatter, wander):
         warmth = random.normal(0.0, 2.0, 30) + 5.0 * np.sin(np.arange(30) / 8.0)
         slope = random.normal(SLOPE, 0.004)
         effect = 0.7 + drift + slope * warmth + random.normal(0.0, scatter, 30)
-        blocks = np.array([0] * 13 + [1] * 8 + [2] * 5 + [3] * 4)
-        weight = weights_of(logs_of(effect, warmth).until(22), blocks[:22])
-        found = estimate(logs_of(effect, warmth), blocks, weight)
-        held += abs(found.value - drift[26:].mean()) < 1.96 * found.deviation
+        found = estimate(logs_of(effect, warmth), *parts(30))
+        truth = drift[26:].mean() - drift[:13].mean()
+        held += abs(found.change - truth) < 1.96 * found.deviation
     assert held >= 108
+
+
+def test_what_lasts_is_told_from_what_wanders():
+    """The same loss at once and over 40 weeks: the step is the surer one."""
+    random = np.random.default_rng(17)
+    noise = random.normal(0.0, 0.012, 48)
+    slow = np.clip((np.arange(48) - 8) / 40.0, 0.0, 1.0)
+    fast = np.where(np.arange(48) >= 40, 1.0, 0.0)
+    doubts = [
+        estimate(logs_of(noise - 0.07 * shape), *parts(48)).lasts.within(0.03, -1)
+        for shape in (slow, fast)
+    ]
+    assert doubts[1] < 0.01 < doubts[0]
 
 
 def test_a_season_without_a_thermometer_widens_the_interval():
     effect = np.random.default_rng(13).normal(0.0, 0.01, 30)
-    blocks = np.array([0] * 13 + [1] * 13 + [2] * 4)
-    weight = np.ones(len(grid().prior)) / len(grid().prior)
-    known, unknown = (
-        estimate(logs_of(effect), blocks, weight, warm=warm) for warm in (True, False)
-    )
-    assert unknown.deviation > 1.5 * known.deviation
+    known, unknown = (estimate(logs_of(effect), *parts(30), warm=warm) for warm in (True, False))
+    assert unknown.deviation > 1.3 * known.deviation

@@ -9,12 +9,14 @@ follows the motor by a play operator, with pitch errors, growth, skew and noise.
 """
 
 from collections import namedtuple
+from dataclasses import replace
 import math
 from pathlib import Path
 import sys
 
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.health.records import Baseline, Cell, CellKind, Stretch
+from ballscrew_monitor.health.assess import assess, HealthSettings, Kept
+from ballscrew_monitor.health.records import Baseline, CauseCode, Cell, CellKind, Stretch
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.stroke import ReversalSums, StrokeSums
 from ballscrew_monitor.health.summary import array_of
@@ -22,6 +24,7 @@ from ballscrew_monitor.health.where import (
     LOST,
     LOST_CHANGE,
     lost_motion,
+    lost_motion_grew,
     LOST_TREND,
     where_on_screw,
 )
@@ -31,7 +34,8 @@ import pytest
 sys.path.append(str(Path(__file__).resolve().parents[3] / 'bench'))
 from health_parts.along import WORN_AT  # noqa: E402, I100
 from health_parts.axis_year import axis_year  # noqa: E402
-from health_parts.faults import CLEAN, FAULTS  # noqa: E402
+from health_parts.faults import CLEAN, Fault, FAULTS, joined  # noqa: E402
+from health_parts.summaries import cells_of_year  # noqa: E402
 
 Steady = namedtuple('Steady', 'begin end speed')
 
@@ -124,6 +128,73 @@ def test_play_that_grows_is_told_with_its_size(seed):
         assert found[name].value == pytest.approx(20.0, abs=2.0)
     assert found[LOST_TREND].low > 0.0
     assert sum('the lost motion at reversals has grown by' in note for note in where.notes) == 1
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_play_that_grows_counts_from_its_date_on(seed):
+    """Begun at a day of the year; of a date long after it, the play was there before."""
+    year = axis_year(seed, replace(FAULTS['play 20 um'], ramp=0.0), scale=True)
+    lead = year.machine.size.lead
+    cells = array_of(cell for log in year.logs for cell in cells_of_log(log, lead))
+    cells = cells[cells['kind'] == CellKind.REVERSAL]
+    first, end = year.logs[0].start, year.logs[-1].start
+    begun = first + round(year.fault.start) * DAY
+    assert lost_motion_grew(cells, begun, end)
+    assert lost_motion_grew(cells, begun - 28 * DAY, end)
+    assert not lost_motion_grew(cells, begun + 56 * DAY, end)
+    assert not lost_motion_grew(cells, begun - 56 * DAY, begun - 7 * DAY)
+    assert not lost_motion_grew(cells, begun, begun + 5 * DAY)  # one log after it
+
+
+class Loosened(Fault):
+    """A part that is nearly lost, and has play when three quarters of it are gone."""
+
+    def condition(self, day):
+        late = self.start + 0.75 * self.ramp
+        play = replace(FAULTS['play 20 um'], start=late, ramp=0.0)
+        return joined(Fault.condition(self, day), play.condition(day))
+
+
+NUT = Loosened(name='lost nut', part='preload', size=0.1)
+BEARING = Loosened(name='loose bearing', part='bearing', size=0.1)
+
+
+def causes_in(seed, fault, limits, surface, *, with_table=True):
+    """Return the likely causes at the end of a year, the best first, and all of them by code."""
+    year = axis_year(seed, fault, scale=True)
+    lead, cells = year.machine.size.lead, cells_of_year(year)
+    if with_table:
+        reversals = array_of(cell for log in year.logs for cell in cells_of_log(log, lead))
+        reversals = reversals[reversals['kind'] == CellKind.REVERSAL]
+        cells = np.concatenate([cells, reversals])
+    settings = HealthSettings(limits=limits)
+    health = assess('x', Kept(cells), surface, settings, now=year.logs[-1].start + SECOND)
+    return [one.code for one in health.causes if not one.excluded], health
+
+
+@pytest.mark.parametrize('fault', [NUT, BEARING], ids=['nut', 'bearing'])
+@pytest.mark.parametrize('seed', [0, 2])
+def test_play_that_comes_with_a_loss_of_friction_tells_nut_or_support_bearing(
+    seed, fault, usual_limits, surface, says
+):
+    codes, health = causes_in(seed, fault, usual_limits, surface)
+    assert codes[0] is CauseCode.PRELOAD_LOST
+    assert set(codes) <= {CauseCode.PRELOAD_LOST, CauseCode.WIPER}
+    assert CauseCode.WIPER in codes or fault is NUT
+    assert health.since
+    if (seed, fault) == (2, NUT):
+        assert health.verdict == says('lost_motion_as_well')
+
+
+@pytest.mark.parametrize('fault', ['preload -40 %', 'wiper torn'])
+def test_lost_motion_that_has_not_grown_proves_nothing(fault, usual_limits, surface):
+    """A nut with less preload has none, so the causes are those without a second position."""
+    with_table, without = (
+        causes_in(1, FAULTS[fault], usual_limits, surface, with_table=measured)[1].causes
+        for measured in (True, False)
+    )
+    assert with_table == without
+    assert sum(not one.excluded for one in without) >= 2
 
 
 def test_an_axis_that_keeps_its_play_has_no_note():

@@ -2,20 +2,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """The golden events and rows on file, see `test_golden`."""
 
+import dataclasses
 import json
 from pathlib import Path
 import types
 
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
 from ballscrew_monitor.core.judgement import Limits
-from ballscrew_monitor.core.memory import AxisRecord
 from ballscrew_monitor.core.state import (
     LoadDerivation,
     MonitorSettings,
+    NOT_ENDED,
+    NOT_SHELVED,
     PositionSettings,
     Shelving,
 )
+from ballscrew_monitor.judge.kept import AxisRecord
 from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.judge.records import Memory
+from ballscrew_monitor.judge.views import PARTS
+from ballscrew_monitor.judge.zone import ACTIVE
 import numpy as np
 import pytest
 from surrogate.surface import FIELDS, Surface
@@ -59,7 +65,8 @@ class Golden:
     def monitor(self, run):
         settings = settings_of(self.arrays['run_settings'][run])
         made = Monitor(self.surface, settings)
-        made.take_up(kept_of(self.arrays['run_memory'][run]))
+        # The end of a shelving, not what is left of it, is on file: on a clock of 1 ns.
+        made.take_up(kept_of(self.arrays['run_memory'][run]), 1)
         return made
 
     def event(self, stored):
@@ -108,15 +115,17 @@ def settings_of(text):
 
 def kept_of(text):
     known = json.loads(text)
-    places = {'angle': 'angle_rad', 'energy_lost': 'energy_lost_J'}
-    totals = {places.get(name, f'{name}_ns'): value for name, value in known['totals'].items()}
-    event = known['event']
-    return AxisRecord(
-        axis='x',
-        event=event.pop('number'),
-        active=event.pop('active', False),
-        **{f'{name}_ns': stamp for name, stamp in event.items()},
-        **totals,
-        until_ns=known['shelved_until'],
-        reason='kept',
+    event, totals = known['event'], known['totals']
+    memory = Memory(
+        event_number=event['number'],
+        event_active=event.get('active', False),
+        event_stamp=event.get('stamp', 0),
+        **{name: totals.get(name, 0) for name in ('running_time', 'unjudged_time', 'since')},
+        **{name: totals.get(name, 0.0) for name in ('angle', 'energy_lost')},
     )
+    memory.event_start[ACTIVE] = event.get('start', 0)
+    for name, (part, place) in PARTS.items():
+        getattr(memory, part)[place] = totals.get(name, 0)
+    left = max(known['shelved_until'] - 1, 0)
+    record = AxisRecord.of('x', memory, NOT_ENDED, NOT_SHELVED, 0)
+    return dataclasses.replace(record, left_ns=left, reason='kept')

@@ -85,7 +85,7 @@ def test_each_edge_of_each_input_is_judged_or_refused(make_monitor, way, source)
 def test_no_course_of_floats_ends_the_judgement(make_monitor, way, readings, plausible):
     monitor = make_monitor(way, plausible)
     feed(monitor, *readings)
-    assert not math.isnan(monitor.totals.angle)
+    assert not math.isnan(monitor.memory.angle)
 
 
 @pytest.mark.parametrize('way', ['position', 'angle'])

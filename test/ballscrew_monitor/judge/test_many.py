@@ -14,7 +14,8 @@ from ballscrew_monitor.core.state import LoadDerivation, MonitorSettings, Positi
 from ballscrew_monitor.judge import many
 from ballscrew_monitor.judge.many import compiled_nearest, EVENT, ManyJudge, MEMORY, ROW
 from ballscrew_monitor.judge.monitor import fill, Monitor
-from ballscrew_monitor.judge.records import Event, Memory, REFUSAL, Row, SAMPLE, TICK
+from ballscrew_monitor.judge.records import Event, Memory, REFUSAL, Row, RUN, SAMPLE, TICK
+from ballscrew_monitor.judge.records import STEP as CLOCK_STEP
 from ballscrew_monitor.judge.step import NOTHING, STATE, step
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -160,7 +161,7 @@ READINGS = st.sampled_from([Source.SPEED, *Source]).flatmap(
 )
 HAPPENINGS = st.lists(
     st.tuples(
-        st.sampled_from([SAMPLE] * 12 + [REFUSAL, TICK, TICK]),
+        st.sampled_from([SAMPLE] * 12 + [REFUSAL, TICK, TICK, CLOCK_STEP, RUN]),
         READINGS,
         st.sampled_from(
             [0, 1, *[STEP] * 9, TIMEOUT, TIMEOUT + 1, 3 * SECOND]
@@ -258,4 +259,4 @@ def test_advice_comes_out_the_same(speed, load, temperature, efficiency):
         speed_allowed=True,
     )
     compiled = dataclasses.replace(asked, nearest=compiled_nearest())
-    assert repr(compiled.advice) == repr(asked.advice)
+    assert repr(compiled.target_speed) == repr(asked.target_speed)

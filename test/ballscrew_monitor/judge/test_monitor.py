@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A monitor's words on an excursion, and what it is told beside samples."""
 
+import copy
 import dataclasses
 import math
 
@@ -10,11 +11,12 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
 from ballscrew_monitor.core.inputs import InputSample, Refusal, Source, StampSource, Why
 from ballscrew_monitor.core.judgement import Code, EventEnd, Level, Zone
-from ballscrew_monitor.core.memory import AxisRecord
-from ballscrew_monitor.core.state import Ending, Event, NAMELESS, NOT_ENDED, Shelving
+from ballscrew_monitor.core.state import Ending, NAMELESS, NOT_ENDED, shelve, Shelving
 from ballscrew_monitor.judge import records
+from ballscrew_monitor.judge.kept import AxisRecord, SUMS
 from ballscrew_monitor.judge.monitor import EARLIEST, fill, LATEST, MOST_OTHERS, within
 from ballscrew_monitor.judge.views import SOURCES
+from ballscrew_monitor.judge.zone import ACTIVE
 from ballscrew_monitor.messages.unjudged import point_or_reason
 from hypothesis import given
 from hypothesis import strategies as st
@@ -22,26 +24,21 @@ import pytest
 
 STEP = SECOND // 100
 START = 1000 * SECOND
-KEPT = AxisRecord(
-    axis='x',
-    running_time_ns=5 * SECOND,
-    optimal_time_ns=5 * SECOND,
-    angle_rad=7.5,
-    since_ns=SECOND,
-    event=7,
-    stamp_ns=20,
-    start_ns=10,
-    cause=Code.EFFICIENCY_LOW.name,
-    worst_value=0.5,
-    limit=0.75,
-    derived=True,
-    ending=EventEnd.ACKNOWLEDGED.name,
-    ended_by='Ada',
-    end_reason='why',
-    until_ns=START + 10 * SECOND,
-    reason='nut is ordered',
+REMEMBERED = records.Memory(
+    running_time=5 * SECOND,
+    zone_time=[0, 5 * SECOND, 0],
+    angle=7.5,
+    since=SECOND,
+    event_number=7,
+    event_stamp=20,
+    event_start=[10, 0],
+    event_code=[Code.EFFICIENCY_LOW, 0],
+    event_worst=[0.5, math.nan],
+    event_limit=[0.75, math.nan],
+    event_derived=[1, 0],
 )
-SHELVED = Shelving(until=KEPT.until_ns, reason=KEPT.reason)
+SHELVED = Shelving(until=START + 10 * SECOND, reason='nut is ordered')
+KEPT = AxisRecord.of('x', REMEMBERED, Ending(EventEnd.ACKNOWLEDGED, 'Ada', 'why'), SHELVED, START)
 
 
 def slow_is_bad(core, memory=None, **limits):
@@ -49,7 +46,7 @@ def slow_is_bad(core, memory=None, **limits):
     surface = core.surface(rcs=lambda speed, load: 1.0 if speed < 30.0 else 0.0)
     made = core.monitor(surface, core.limits(**limits), speed_allowed=True)
     if memory is not None:
-        made.take_up(memory)
+        made.take_up(memory, START)
     return made
 
 
@@ -78,16 +75,16 @@ def test_an_event_begins_and_ends_with_its_facts(core):
     states = core.feed(monitor, core.motion(10.0, start=begin, count=80))
     (edge,) = [state for state in states if state.event is not None]
     event = edge.event
-    assert (event.number, event.active, event.start) == (1, True, begin)
-    assert event.stamp == edge.stamp == begin + SECOND // 2
-    assert (event.code, event.worst_value) == (Code.RCS_HIGH, 1.0)
-    assert event.advice.target_speed == pytest.approx(30.0, rel=1e-5)
-    assert event.advice.text.startswith('at this load run at 286 rev/min')
+    assert (event.event_number, event.event_active, event.event_start[0]) == (1, True, begin)
+    assert event.event_stamp == edge.stamp == begin + SECOND // 2
+    assert (monitor.event_code, event.event_worst[0]) == (Code.RCS_HIGH, 1.0)
+    assert monitor.target_speed == pytest.approx(30.0, rel=1e-5)
+    assert monitor.ending.kind == EventEnd.UNKNOWN
     states = core.feed(monitor, core.motion(40.0, start=begin + SECOND, count=120))
     (over,) = [state.event for state in states if state.event is not None]
-    assert (over.number, over.active, over.start) == (1, False, begin)
-    assert (event.ending.kind, over.ending.kind) == (EventEnd.UNKNOWN, EventEnd.CLEARED)
-    assert over.stamp == begin + 2 * SECOND
+    assert (over.event_number, over.event_active, over.event_start[0]) == (1, False, begin)
+    assert monitor.ending.kind == EventEnd.CLEARED
+    assert over.event_stamp == begin + 2 * SECOND
     assert {state.event_id for state in states} == {1}
 
 
@@ -96,12 +93,12 @@ def test_the_state_that_raises_does_not_wait_for_the_advice(core):
     surface, limits = core.surface(rcs=1.0), core.limits(raise_delay=0)
     monitor = core.monitor(surface, limits, speed_allowed=True)
     (state,) = core.feed(monitor, core.motion(10.0))
-    assert state.event.active
+    assert state.event.event_active
     assert len(monitor.surface.asked) == 1
-    assert math.isnan(state.event.advice.target_speed)  # bad everywhere
+    assert math.isnan(monitor.target_speed)  # bad everywhere
     asked = len(monitor.surface.asked)
     assert asked > SCAN_POINTS
-    assert monitor.event.advice is state.event.advice
+    assert math.isnan(monitor.target_speed)
     assert len(monitor.surface.asked) == asked
 
 
@@ -109,14 +106,13 @@ def test_advice_comes_and_goes_with_the_parameter(core):
     """On the event that stands, too: its place and cause stay."""
     monitor = slow_is_bad(core, raise_delay=0)
     core.feed(monitor, core.motion(10.0))
-    before = monitor.event
-    assert before.advice.target_speed == pytest.approx(30.0, rel=1e-5)
+    before = copy.deepcopy(monitor.memory)
+    assert monitor.target_speed == pytest.approx(30.0, rel=1e-5)
     monitor.settings = dataclasses.replace(monitor.settings, speed_allowed=False)
-    assert monitor.event.advice.text == ''
-    assert math.isnan(monitor.event.advice.target_speed)
-    assert (monitor.event.code, monitor.event.start) == (before.code, before.start)
+    assert math.isnan(monitor.target_speed)
     monitor.settings = dataclasses.replace(monitor.settings, speed_allowed=True)
-    assert monitor.event == before
+    assert monitor.target_speed == pytest.approx(30.0, rel=1e-5)
+    assert repr(monitor.memory) == repr(before)
 
 
 @pytest.mark.parametrize(
@@ -139,12 +135,13 @@ def test_worst_value_limit_and_place_are_of_one_sample(core, course, raise_delay
     monitor = core.monitor(surface, core.limits(raise_delay=raise_delay * STEP, hysteresis=0.0))
     for i, (speed, force, _, _) in enumerate(course):
         core.feed(monitor, core.motion(speed, start=START + i * STEP, force=-force))
-    event, (speed, force, rcs, efficiency) = monitor.event, course[worst]
+    event, (speed, force, rcs, efficiency) = monitor.memory, course[worst]
     value, limit = (rcs, 0.25) if code == Code.RCS_HIGH else (efficiency, 0.75)
-    assert (event.active, event.start) == (True, START)
-    assert (event.code, event.worst_value, event.limit) == (code, value, limit)
-    point = event.advisor
-    assert (point.speed, point.axial_load, point.temperature) == (speed, -force, 313.15)
+    assert (event.event_active, event.event_start[ACTIVE]) == (True, START)
+    assert (event.event_code[ACTIVE], event.event_limit[ACTIVE]) == (code, limit)
+    assert event.event_worst[ACTIVE] == value
+    assert (event.event_speed[ACTIVE], event.event_load[ACTIVE]) == (speed, -force)
+    assert event.event_temperature[ACTIVE] == 313.15
 
 
 def test_the_limit_of_the_worst_sample_stays_with_it(core):
@@ -153,11 +150,19 @@ def test_the_limit_of_the_worst_sample_stays_with_it(core):
     limits = core.limits(rcs=0.375, raise_delay=0)
     monitor.settings = dataclasses.replace(monitor.settings, limits=limits)
     core.feed(monitor, core.motion(11.0, start=START + STEP))
-    assert (monitor.event.worst_value, monitor.event.limit) == (0.5, 0.25)
+    memory = monitor.memory
+    assert (memory.event_worst[ACTIVE], memory.event_limit[ACTIVE]) == (0.5, 0.25)
     monitor.surface.numbers = {'rcs': 0.75}
     core.feed(monitor, core.motion(12.0, start=START + 2 * STEP))
-    assert (monitor.event.worst_value, monitor.event.limit) == (0.75, 0.375)
-    assert monitor.event.advisor.speed == 12.0
+    assert (monitor.memory.event_worst[ACTIVE], monitor.memory.event_limit[ACTIVE]) == (
+        0.75,
+        0.375,
+    )
+    assert monitor.memory.event_speed[ACTIVE] == 12.0
+
+
+def length_of_event(monitor):
+    return monitor.memory.event_stamp - monitor.memory.event_start[ACTIVE]
 
 
 def stamped(event, lag=0, header=True):
@@ -168,43 +173,108 @@ def stamped(event, lag=0, header=True):
     )
 
 
-@pytest.mark.parametrize(
-    ('header', 'before', 'after', 'follows'),
-    [
-        (True, 0, 0, True),
-        (True, 50 * SECOND, 50 * SECOND, True),
-        (True, 0, 3600 * SECOND, False),
-        (False, 0, 0, True),
-    ],
-    ids=['same machine', 'lags as before', 'another machine', 'no header'],
-)
-def test_a_step_of_the_nodes_clock_is_left_out_if_the_stamps_follow_it(
-    core, header, before, after, follows
-):
-    monitor, step = slow_is_bad(core, clear_delay=SECOND), 3600 * SECOND
-    core.feed(monitor, [stamped(one, before, header) for one in core.motion(10.0, count=100)])
-    begin, length = monitor.event.start, monitor.event.stamp - monitor.event.start
-    next_ones = core.motion(10.0, start=START + SECOND + step, count=50)
-    first = stamped(next_ones[1], after, header)
-    assert monitor.leave_out(step, first) is follows
-    assert monitor.event.start == begin + follows * step
-    assert monitor.event.stamp - monitor.event.start == length
-    for one in next_ones:
-        assert monitor.update(stamped(one, after, header)) is None or not monitor.moved
-    good = core.motion(40.0, start=START + 3 * SECOND // 2 + step, count=101)
-    core.feed(monitor, [stamped(one, after, header) for one in good])
-    assert not monitor.event.active
-    assert monitor.event.stamp - monitor.event.start == 5 * SECOND // 2
+HOUR, YEAR = 3600 * SECOND, 365 * 86_400 * SECOND
+
+
+def course_of(core, *, step=0, at=70, lag=0, header=True, follows=True):
+    """Return how a course ends that is slow, fast and slow again; the clock is set before `at`."""
+    monitor = slow_is_bad(core, raise_delay=SECOND // 2, clear_delay=SECOND)
+    speeds = [10.0] * 100 + [40.0] * 150 + [10.0] * 80
+    found = []
+    for number, one in enumerate(core.motion(10.0, start=10 * YEAR, count=len(speeds))):
+        if number == at and step:
+            now = one.stamp + step
+            monitor.set_clock(one.stamp, now)
+        arrival = one.stamp + (step if number >= at else 0)
+        stamp = (arrival if follows else one.stamp) - lag
+        kind = StampSource.HEADER if header else StampSource.RECEIVE
+        sample = {'stamp': stamp, 'arrival': arrival, 'stamp_source': kind}
+        monitor.update(dataclasses.replace(one, value=speeds[number // 2], **sample))
+        memory = monitor.memory
+        lasted = memory.event_stamp - memory.event_start[ACTIVE] if memory.event_number else 0
+        found.append((monitor.level, memory.event_number, memory.event_active, lasted))
+        assert not monitor.moved
+    sums = {name: getattr(monitor.memory, name) for name in SUMS}
+    return found, sums
+
+
+@pytest.mark.parametrize('step', [YEAR, HOUR, -HOUR, -YEAR // 400])
+@pytest.mark.parametrize('at', [1, 30, 99, 120, 301, 420])
+def test_a_step_of_the_nodes_clock_changes_no_duration(core, step, at):
+    """It comes while a warning is raised, stands, is cleared and is over."""
+    for stamps in ({}, {'header': False}, {'lag': 50 * SECOND}, {'lag': -SECOND // 20}):
+        assert course_of(core, step=step, at=at, **stamps) == course_of(core, **stamps)
+
+
+@pytest.mark.parametrize('step', [YEAR, HOUR])
+def test_a_step_that_the_stamps_do_not_follow_changes_no_duration(core, step):
+    for at in (1, 30, 120, 301, 420):
+        assert course_of(core, step=step, at=at, follows=False) == course_of(core)
+
+
+@pytest.mark.parametrize('after', [0, HOUR])
+def test_what_ends_before_the_next_sample_lasts_as_long_as_without_a_step(core, after):
+    monitor = slow_is_bad(core)
+    core.feed(monitor, core.motion(10.0, count=100))
+    end = START + 100 * STEP
+    monitor.set_clock(end, end + HOUR)
+    for number in range(3):
+        monitor.tick(end + HOUR + number * SECOND)
+    assert monitor.acknowledge(end + HOUR + 2 * SECOND)
+    assert length_of_event(monitor) == 3 * SECOND
+
+
+def test_inputs_are_as_old_after_a_step_as_before(core):
+    monitor = slow_is_bad(core)
+    core.feed(monitor, core.motion(10.0, count=30))
+    now = START + 30 * STEP
+    before = monitor.input_status(now)
+    for step in (YEAR, -HOUR, HOUR):
+        monitor.set_clock(now, now + step)
+        now += step
+        monitor.tick(now)
+        assert monitor.input_status(now) == before
+    core.feed(monitor, core.motion(10.0, start=now, count=1))
+    for one, other in zip(monitor.input_status(now), before, strict=True):
+        assert (one.state, one.slow) == (other.state, False)
+        assert one.rate == pytest.approx(other.rate, nan_ok=True)
+
+
+@pytest.mark.parametrize('step', [YEAR, HOUR, -HOUR])
+def test_a_shelving_lasts_as_long_however_the_clock_is_set(core, step):
+    monitor, begin = slow_is_bad(core), 10 * YEAR
+    monitor.shelving = shelve(begin, 60.0, 'nut is ordered')
+    monitor.set_clock(begin + 20 * SECOND, begin + 20 * SECOND + step)
+    now = begin + step
+    assert monitor.shelving.at(now + 59 * SECOND).until == now + 60 * SECOND
+    assert monitor.shelving.is_over(now + 60 * SECOND)
+    assert monitor.kept(now + 25 * SECOND).left_ns == 35 * SECOND
+
+
+def test_a_shelving_goes_on_with_what_is_left_whatever_the_clock_says_then(core):
+    kept = dataclasses.replace(KEPT, left_ns=35 * SECOND)
+    for now in (START, START + YEAR, 5):
+        monitor = slow_is_bad(core)
+        monitor.take_up(kept, now)
+        assert monitor.shelving.until == now + 35 * SECOND
+    monitor = slow_is_bad(core)
+    monitor.take_up(kept, 0)  # /clock has not begun
+    assert monitor.kept(0).left_ns == 35 * SECOND
+    assert not monitor.shelving.at(0).until
+    assert not monitor.shelving.is_over(START)
+    assert monitor.shelving.started(START) == Shelving(
+        until=START + 35 * SECOND, reason=KEPT.reason
+    )
 
 
 @pytest.mark.parametrize('step', [-600 * SECOND, -20 * SECOND])
 def test_a_clock_that_is_set_back_changes_no_length_of_an_excursion(core, step):
     monitor = slow_is_bad(core)
     core.feed(monitor, core.motion(10.0, count=100))
-    length = monitor.event.stamp - monitor.event.start
+    length = length_of_event(monitor)
     core.feed(monitor, core.motion(10.0, start=START + SECOND + step, count=3))
-    assert monitor.event.active
-    assert monitor.event.stamp - monitor.event.start == length
+    assert monitor.memory.event_active
+    assert length_of_event(monitor) == length
 
 
 def test_what_moves_the_begin_of_an_excursion_is_told_with_the_sample(core):
@@ -228,27 +298,31 @@ def test_a_stay_too_short_is_no_event(core):
     core.feed(monitor, core.motion(10.0, count=50))
     core.feed(monitor, core.motion(40.0, start=START + SECOND // 2, count=3))
     core.feed(monitor, core.motion(10.0, start=START + SECOND, count=50))
-    assert monitor.event == Event()
+    assert (monitor.memory.event_number, monitor.memory.event_active) == (0, False)
+    assert monitor.ending == NOT_ENDED
     core.feed(monitor, core.motion(10.0, start=START + SECOND + SECOND // 2))
-    assert (monitor.event.number, monitor.event.start) == (1, START + SECOND)
+    assert (monitor.memory.event_number, monitor.memory.event_start[ACTIVE]) == (1, START + SECOND)
 
 
 def test_an_acknowledged_warning_comes_back_as_a_new_event(core):
     monitor = slow_is_bad(core)
     core.feed(monitor, core.motion(10.0, count=51))
     seen = Ending(kind=EventEnd.ACKNOWLEDGED, name='Ada')
-    ended = monitor.acknowledge(START + SECOND, seen)
-    assert (ended.number, ended.active, ended.stamp) == (1, False, START + SECOND)
-    assert (ended.ending, monitor.level) == (seen, Level.UNKNOWN)
-    assert monitor.acknowledge(START + SECOND) is None
+    assert monitor.acknowledge(START + SECOND, seen)
+    memory = monitor.memory
+    assert (memory.event_number, memory.event_active) == (1, False)
+    assert memory.event_stamp == START + SECOND
+    assert (monitor.ending, monitor.level) == (seen, Level.UNKNOWN)
+    assert not monitor.acknowledge(START + SECOND)
     core.feed(monitor, core.motion(10.0, start=START + SECOND, count=51))
-    event = monitor.event
-    assert (event.number, event.active, event.ending) == (2, True, NOT_ENDED)
+    assert (memory.event_number, memory.event_active) == (2, True)
+    assert monitor.ending == NOT_ENDED
     monitor, samples = slow_is_bad(core), core.motion(10.0, count=51)
     core.feed(monitor, samples)
-    ended = monitor.acknowledge(START - 10 * SECOND)
-    assert ended.ending == NAMELESS
-    assert (ended.start, ended.stamp) == (START, samples[-1].stamp)
+    assert monitor.acknowledge(START - 10 * SECOND)
+    assert monitor.ending == NAMELESS
+    assert monitor.memory.event_start[ACTIVE] == START
+    assert monitor.memory.event_stamp == samples[-1].stamp
     (state,) = core.feed(monitor, core.motion(40.0, start=samples[-1].stamp + STEP))
     assert state.level_since <= state.stamp
 
@@ -300,24 +374,25 @@ def test_the_point_of_now_is_known_or_said_to_be_missing(core, events, now, answ
 
 def test_a_monitor_goes_on_where_another_one_ended(core):
     monitor = slow_is_bad(core, KEPT, raise_delay=0)
-    assert monitor.kept == KEPT
+    assert monitor.kept(START) == KEPT
     states = core.feed(monitor, core.motion(10.0, count=2))
-    assert states[0].event.number == 8
+    assert states[0].event.event_number == 8
     assert states[-1].totals.running_time == 5 * SECOND + STEP
     assert states[-1].totals.since == SECOND
     assert monitor.shelving == SHELVED
     assert states[-1].level == Level.WARN
-    kept = monitor.kept
-    assert (kept.event, kept.active, kept.stamp_ns) == (8, True, START + STEP)
-    assert (kept.ending, kept.ended_by) == (EventEnd.UNKNOWN.name, '')
+    kept = monitor.kept(START).read_memory()
+    assert (kept.event_number, kept.event_active) == (8, True)
+    assert kept.event_stamp == START + STEP
+    assert monitor.kept(START).read_ending() == NOT_ENDED
 
 
 def test_what_was_added_up_before_a_late_memory_counts_too(core):
     monitor = slow_is_bad(core, raise_delay=0)
     core.feed(monitor, core.motion(10.0, count=3))
-    monitor.take_up(KEPT)
-    assert (monitor.event.number, monitor.event.active) == (8, True)
-    assert monitor.kept.running_time_ns == 5 * SECOND + 2 * STEP
+    monitor.take_up(KEPT, START)
+    assert (monitor.memory.event_number, monitor.memory.event_active) == (8, True)
+    assert monitor.memory.running_time == 5 * SECOND + 2 * STEP
     assert monitor.shelving == SHELVED
 
 

@@ -6,11 +6,13 @@ import math
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.judgement import Code, Gate, Level, Zone
-from ballscrew_monitor.core.state import Event, Totals
+from ballscrew_monitor.core.state import NOT_ENDED, NOT_SHELVED
 from ballscrew_monitor.judge import records
+from ballscrew_monitor.judge.kept import AxisRecord
 from ballscrew_monitor.judge.records import LIGHT_LOAD, Memory, Row, STANDSTILL
-from ballscrew_monitor.judge.views import add_totals, clear_totals, event_of, kept_of, totals_of
+from ballscrew_monitor.judge.views import clear_totals, total_times
 from ballscrew_monitor.judge.zone import (
+    ACTIVE,
     add_to_totals,
     add_to_window,
     clear_window,
@@ -221,7 +223,7 @@ rows = st.builds(
 def test_an_excursion_keeps_one_sample_as_its_worst(core, rows, raise_delay, clear_delay):
     """Value, limit and place are of one row outside between begin and end, and none is worse."""
     settings, memory = numbers(core, raise_delay=raise_delay, clear_delay=clear_delay), Memory()
-    asked, surface, begun = core.monitor().settings, core.surface(), []
+    asked, begun = core.monitor().settings, []
     for stamp, row in enumerate(rows, 1):
         row.stamp, before = stamp, memory.level
         shut_gates(settings, memory, row)
@@ -231,16 +233,16 @@ def test_an_excursion_keeps_one_sample_as_its_worst(core, rows, raise_delay, cle
         changed = memory.level != before
         assert (row.edge == records.EVENT_BEGINS) == (changed and memory.level == Level.WARN)
         assert (row.edge == records.EVENT_ENDS) == (changed and before == Level.WARN)
-        event = event_of(memory, surface, asked)
-        assert event.active == (memory.level == Level.WARN)
+        assert memory.event_active == (memory.level == Level.WARN)
         if row.edge == records.EVENT_BEGINS:
-            assert event.start == memory.raising_start
-            begun = [one for one in rows[:stamp] if one.stamp >= event.start]
-        elif event.active:
+            start = memory.event_start[ACTIVE]
+            assert start == memory.raising_start
+            begun = [one for one in rows[:stamp] if one.stamp >= start]
+        elif memory.event_active:
             begun.append(row)
-        if not event.active:
+        if not memory.event_active:
             continue
-        high = event.code is Code.RCS_HIGH
+        high = memory.event_code[ACTIVE] == Code.RCS_HIGH
         outside = [
             one
             for one in begun
@@ -249,12 +251,13 @@ def test_an_excursion_keeps_one_sample_as_its_worst(core, rows, raise_delay, cle
         ]
         value = (lambda one: one.rcs) if high else (lambda one: one.efficiency)
         worst = (max if high else min)(outside, key=value)
-        assert event.worst_value == value(worst)
-        assert event.limit == (asked.limits.rcs if high else asked.limits.efficiency)
-        assert event.derived == bool(worst.derived)
-        point = event.advisor
-        for name in ('speed', 'axial_load', 'temperature', 'direction'):
-            assert getattr(point, name) == getattr(worst, name)
+        assert memory.event_worst[ACTIVE] == value(worst)
+        limit = asked.limits.rcs if high else asked.limits.efficiency
+        assert memory.event_limit[ACTIVE] == limit
+        assert memory.event_derived[ACTIVE] == bool(worst.derived)
+        names = {'load': 'axial_load', 'speed': 'speed', 'temperature': 'temperature'}
+        for name, column in (names | {'direction': 'direction'}).items():
+            assert getattr(memory, f'event_{name}')[ACTIVE] == getattr(worst, column)
 
 
 def test_gates_are_the_bits_of_a_row():
@@ -268,6 +271,17 @@ def row(stamp=0, **changes):
     values = {'speed': 10.0, 'axial_load': -1000.0, 'rcs': 0.0, 'efficiency': 0.9, 'zone': 1}
     values |= {'validity': 1, 'film_ratio': 3.0, 'friction_torque': 0.125, 'regime': 3}
     return Row(**(values | {'stamp': BEGIN + stamp} | changes))
+
+
+def totals(since=0, **known):
+    """Return totals, zero unless known."""
+    sums = {'angle': 0.0, 'energy_lost': 0.0, 'since': since}
+    return total_times(Memory()) | sums | known
+
+
+def totals_of(memory):
+    sums = {name: getattr(memory, name) for name in ('angle', 'energy_lost', 'since')}
+    return total_times(memory) | sums
 
 
 def add_up(*rows, memory=None):
@@ -313,10 +327,10 @@ def test_efficiency_counts_only_where_it_was_judged():
 
 
 def test_each_sample_lasts_until_the_next():
-    totals = add_up(
+    added = add_up(
         row(speed=TURN, zone=2, regime=1), row(GAP, speed=-2.0 * TURN, regime=2), row(2 * GAP)
     )
-    assert totals == Totals(
+    assert added == totals(
         running_time=2 * GAP,
         boundary_time=GAP,
         outside_time=GAP,
@@ -326,23 +340,22 @@ def test_each_sample_lasts_until_the_next():
         energy_lost=pytest.approx(1.5 * TURN * 0.125),
         since=BEGIN,
     )
-    assert totals.revolutions == 1.5
 
 
 def test_what_adds_nothing_is_not_judged_or_is_reset():
-    nothing = Totals(since=BEGIN)
+    nothing = totals(since=BEGIN)
     assert add_up(row(), row(GAP + 1)) == nothing
     assert add_up(row(speed=0.2, gates=STANDSTILL), row(GAP)) == nothing
     assert add_up(row(), row(-1)) == nothing
-    totals = add_up(row(speed=150.0, validity=3, zone=0, regime=0), row(GAP))
-    assert (totals.running_time, totals.unjudged_time) == (GAP, GAP)
-    assert (totals.revolutions, totals.energy_lost) == (75.0 / TURN, 0.0)
+    unjudged = {'running_time': GAP, 'unjudged_time': GAP, 'angle': 75.0}
+    added = add_up(row(speed=150.0, validity=3, zone=0, regime=0), row(GAP))
+    assert added == nothing | unjudged
     memory = Memory()
     add_up(row(), row(GAP), memory=memory)
     clear_totals(memory)
-    assert totals_of(memory) == Totals()
-    totals = add_up(row(2 * GAP), memory=memory)
-    assert (totals.running_time, totals.since) == (GAP, BEGIN + 2 * GAP)
+    assert totals_of(memory) == totals()
+    added = add_up(row(2 * GAP), memory=memory)
+    assert (added['running_time'], added['since']) == (GAP, BEGIN + 2 * GAP)
 
 
 streams = st.lists(
@@ -373,14 +386,12 @@ def test_parts_add_up_exactly_and_are_kept_bit_for_bit(stream, data):
         for one in (memory, other):
             add_to_totals(one, row(stamp, **changes), GAP)
         if number == cut:
-            before, kept = totals_of(other), kept_of(other, Event(), 'x', '')
-            other = Memory()
-            add_totals(other, kept)
+            before = totals_of(other)
+            other = AxisRecord.of('x', other, NOT_ENDED, NOT_SHELVED, 0).read_memory()
             assert totals_of(other) == before
             memory.moment = False  # as a restart does
-    totals = totals_of(memory)
-    assert totals_of(other) == totals
-    judged = totals.running_time - totals.unjudged_time
-    assert judged == totals.optimal_time + totals.outside_time
-    assert judged == totals.boundary_time + totals.mixed_time + totals.hydrodynamic_time
-    assert 0 <= totals.running_time <= stamp
+    assert totals_of(other) == totals_of(memory)
+    judged = memory.running_time - memory.unjudged_time
+    assert judged == sum(memory.zone_time) == sum(memory.regime_time)
+    assert memory.zone_time[0] == memory.regime_time[0] == 0
+    assert 0 <= memory.running_time <= stamp

@@ -49,7 +49,7 @@ def after(
         'x',
         last.message,
         last.inputs,
-        monitor.event.code,
+        monitor.event_code,
         monitor.surface,
         links=links or LINKS,
         clock_stands=clock_stands,
@@ -292,7 +292,7 @@ def test_a_shelved_warning_is_no_warning_and_hides_no_other(core, events, shown)
     monitor.shelving = shelve(START, 60.0, 'nut is ordered')
     last = core.feed(monitor, events)[-1]
     assert last.level == Level.WARN
-    cause = monitor.event.code
+    cause = monitor.event_code
     assert diagnostics.summaries(last.message, last.inputs, cause, LINKS)[0][:2] == shown
     assert not plain_values(last.message)['out_of_zone']
 
@@ -320,7 +320,7 @@ def test_a_defect_says_where_it_came_up_and_what_to_do(core, event, place, says)
     sentence = diagnostics.defect_text(ZeroDivisionError('by 0'), event)
     assert sentence == says('program_failed', place=place)
     made = diagnostics.statuses(
-        'node', 'x', None, (), monitor.event.code, monitor.surface, links=LINKS, defect=sentence
+        'node', 'x', None, (), monitor.event_code, monitor.surface, links=LINKS, defect=sentence
     )
     assert said(made[0]) == (ERROR, sentence)
     assert all(status.message != sentence for status in made[1:])
@@ -390,6 +390,28 @@ def test_the_node_itself(share, code, says):
     assert said(status) == ((WARN, says('busy')) if code else (OK, 'the node keeps up'))
     assert values_of(status)['Loop time [s]'] == '0.25'
     assert (values_of(status)['Queue depth [-]'], status.values[0].key) == ('3', 'Code')
+
+
+@pytest.mark.parametrize('share', [0.1, 0.9])
+@pytest.mark.parametrize(('step', 'word'), [(3600 * SECOND, 'forward'), (-SECOND, 'back')])
+def test_the_node_says_that_its_clock_was_set(share, step, word, says):
+    signs = VitalSigns(loop_time=0.25, queue_depth=3, processor_share=share)
+    status = diagnostics.of_node('node', signs, step)
+    busy = f'; {says("busy")}' if share > 0.5 else ''
+    assert said(status) == (WARN, says('clock_was_set', way=word) + busy)
+    assert codes_of([status]) == [Fault.CLOCK_SET]
+    assert values_of(status)['Clock step [s]'] == f'{step / SECOND:.6g}'
+
+
+@pytest.mark.parametrize('step', [0, SECOND])
+def test_the_node_says_that_another_one_has_its_name(step, says):
+    status = diagnostics.of_node('node', VitalSigns(), step, ['here', 'there', 'beyond'])
+    assert said(status) == (ERROR, says('two_nodes'))
+    assert codes_of([status]) == [Fault.TWO_NODES]
+    hosts = [one.value for one in status.values if one.key == diagnostics.HOST]
+    assert hosts == ['here', 'there', 'beyond']
+    alone = diagnostics.of_node('node', VitalSigns(), step, ['here'])
+    assert alone == diagnostics.of_node('node', VitalSigns(), step)
 
 
 def test_messages_hold_no_measured_numbers(core):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Facts in, findings out."""
 
+import dataclasses
 import math
 
 from ballscrew_monitor.core import conversions
@@ -159,3 +160,12 @@ def test_gaps_silence_and_more_messages_than_one_core_takes_are_findings(says):
     axes.append(facts(heard=heard(rate=1.0)))
     (said,) = findings(around(), axes, 3.0)
     assert said.startswith(says('speed_load_come'))
+
+
+@pytest.mark.parametrize('numbers', [(0.0, 0.0), (math.nan, math.nan)])
+def test_a_velocity_of_0_beside_a_position_that_moves_is_told(numbers, says):
+    beside = ('position[x_axis]', 'rad')
+    moving = facts(heard=dataclasses.replace(heard(*numbers), moved=True), beside=beside)
+    assert findings(around(), [moving], 3.0) == [says('moves')]
+    good = facts(heard=dataclasses.replace(heard(0.0, 2.0), moved=True), beside=beside)
+    assert findings(around(), [good], 3.0) == []

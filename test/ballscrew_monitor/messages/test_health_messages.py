@@ -48,6 +48,7 @@ def health(condition=Condition.WORSE, **changes):
     values = {
         'axis': 'x',
         'stamp': 20 * SECOND + 9,
+        'since': 11 * SECOND + 12,
         'verdict': 'Axis x is worse.',
         'advice': 'look at wipers',
         'quantities': (KNOWN, SILENT),
@@ -62,6 +63,7 @@ def test_every_field_is_filled_in_and_survives_the_wire():
     made = health_message(health(), surface_id='0123', policy=WarningPolicy.BOTH)
     found = deserialize_message(serialize_message(made), msg.AxisHealth)
     assert (found.header.frame_id, stamp_of(found.header.stamp)) == ('x', 20 * SECOND + 9)
+    assert stamp_of(found.since) == 11 * SECOND + 12
     assert (found.axis, found.condition, found.warning) == ('x', 2, True)
     assert (found.verdict, found.advice) == ('Axis x is worse.', 'look at wipers')
     known, silent = found.quantities

@@ -7,7 +7,7 @@ import math
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
 from ballscrew_monitor.core.judgement import EventEnd
-from ballscrew_monitor.core.state import Ending, Event
+from ballscrew_monitor.core.state import Ending
 from ballscrew_monitor.messages import state_messages
 from ballscrew_monitor.messages.state_messages import empty_state, fill_state
 from ballscrew_msgs import msg
@@ -89,17 +89,17 @@ def test_a_used_message_keeps_nothing_of_the_state_before(core):
 
 def test_an_event_as_a_message_and_that_there_was_none(core, says):
     _, monitor = one_row(core, surface=core.surface(rcs=0.5), limits=core.limits(raise_delay=0))
-    message = over_the_wire(state_messages.out_of_zone_message('x', monitor.event, shelved=True))
+    message = over_the_wire(state_messages.out_of_zone_message(monitor, shelved=True))
     assert (message.axis, message.event_id, message.active) == ('x', 1, True)
     assert (message.start.sec, message.duration, message.worst_value) == (1_000_000_000, 0.0, 0.5)
     assert message.cause.code == msg.Finding.CODE_RCS_HIGH
     assert message.cause.text == says('asperities')
     assert message.ending == msg.OutOfZone.ENDING_UNKNOWN
-    ended = monitor.acknowledge(STAMP, Ending(kind=EventEnd.ACKNOWLEDGED, name='A', reason='b'))
-    message = over_the_wire(state_messages.out_of_zone_message('x', ended, shelved=False))
+    assert monitor.acknowledge(STAMP, Ending(EventEnd.ACKNOWLEDGED, 'A', 'b'))
+    message = over_the_wire(state_messages.out_of_zone_message(monitor, shelved=False))
     assert message.ending == msg.OutOfZone.ENDING_ACKNOWLEDGED
     assert (message.acknowledged_by, message.acknowledge_reason) == ('A', 'b')
-    message = over_the_wire(state_messages.out_of_zone_message('x', Event(), shelved=False))
+    message = over_the_wire(state_messages.out_of_zone_message(core.monitor(), shelved=False))
     assert (message.event_id, message.active, message.duration) == (0, False, 0.0)
     assert math.isnan(message.worst_value)
     assert (message.cause.code, message.advice) == (msg.Finding.CODE_UNKNOWN, '')

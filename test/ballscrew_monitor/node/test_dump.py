@@ -4,8 +4,8 @@
 
 from ballscrew_monitor.settings import parameters
 import pytest
-from rcl_interfaces.srv import GetParameters, ListParameters
-from rclpy.parameter import parameter_value_to_python
+from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters
+from rclpy.parameter import parameter_dict_from_yaml_file, parameter_value_to_python
 import yaml
 
 GIVEN = {
@@ -32,17 +32,23 @@ def nested(flat):
 
 @pytest.fixture
 def dumped(node, tmp_path):
-    """Return the file that the command writes, which is not in the wheels."""
+    """Return the file of a node that has ended."""
     node.start(**GIVEN)
+    path = dump(node, tmp_path)
+    node.stop()
+    return path
+
+
+def dump(node, folder):
+    """Return the file that the command writes, which is not in the wheels."""
     node.until(lambda: node.lifecycle() == 'active')
     names = node.call(ListParameters, 'list_parameters').result.names
     values = node.call(GetParameters, 'get_parameters', names=names).values
     flat = {
         name: parameter_value_to_python(value) for name, value in zip(names, values, strict=True)
     }
-    path = tmp_path / 'dump.yaml'
+    path = folder / 'dump.yaml'
     path.write_text(yaml.dump({node.name: {'ros__parameters': nested(flat)}}))
-    node.stop()
     return path
 
 
@@ -58,3 +64,14 @@ def test_a_dump_is_read_again_by_commands_and_node(node, dumped):
     depth = 'qos_overrides./joint_states.subscription.depth'
     (found,) = node.call(GetParameters, 'get_parameters', names=[depth]).values
     assert parameter_value_to_python(found) == 500
+
+
+def test_a_node_takes_its_own_dump_while_it_runs(node, tmp_path):
+    """As `ros2 param load` reads it, which takes each text for what YAML takes it for."""
+    node.start()
+    loaded = parameter_dict_from_yaml_file(str(dump(node, tmp_path)))
+    assert {'record', 'x.load.unit', 'use_sim_time'} <= loaded.keys()
+    answer = node.call(SetParameters, 'set_parameters', parameters=list(loaded.values()))
+    reasons = {name: one.reason for name, one in zip(loaded, answer.results, strict=True)}
+    assert not {name: why for name, why in reasons.items() if why}
+    assert all(one.successful for one in answer.results)

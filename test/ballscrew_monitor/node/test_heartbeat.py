@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The heartbeat over the middleware, from a node that works and from one that hangs."""
 
+import contextlib
 import signal
+import socket
 
+from ballscrew_monitor.messages.diagnostics import HOST
 from ballscrew_monitor.node.heartbeat import BEAT_QOS, PROMISE
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -29,7 +32,7 @@ def listen(node):
 def vitals(node):
     """Return what was last said of the node itself, with its values."""
     found = [
-        (status, {pair.key: float(pair.value) for pair in status.values})
+        (status, {pair.key: float(pair.value) for pair in status.values if pair.key != HOST})
         for message in node.told
         for status in message.status
         if status.name == 'ballscrew_monitor: Node'
@@ -69,3 +72,30 @@ def test_the_status_of_the_node_says_what_it_works(node, says):
     said = {says('keeps_up'): DiagnosticStatus.OK, says('busy'): DiagnosticStatus.WARN}
     assert said[status.message] == status.level
     assert (values['Processor share [-]'] >= 0.9) == (status.level == DiagnosticStatus.WARN)
+
+
+def test_two_nodes_of_one_name_hear_of_each_other(node, tmp_path, says):
+    """Each says that of the other, and what is left says that it is alone again."""
+    node.start()
+    node.until(lambda: vitals(node), 'the status of the node')
+    folder = tmp_path / 'other'
+    folder.mkdir()
+    second = type(node)(node.domain, node.node, folder, node.wait_for)
+    with contextlib.closing(second):
+        second.start()
+        hosts = [f'{socket.gethostname()} (process {one.process.pid})' for one in (node, second)]
+        texts = {says('two_nodes', host=host) for host in hosts}
+
+        def told():
+            return {
+                status.message
+                for message in node.told
+                for status in message.status
+                if status.level == DiagnosticStatus.ERROR and status.name.endswith(': Node')
+            }
+
+        node.until(lambda: told() == texts, 'the word of both')
+        assert says('two_nodes', host=hosts[1]) in node.output.read_text()
+        assert says('two_nodes', host=hosts[0]) in second.output.read_text()
+    node.until(lambda: vitals(node)[0].level != DiagnosticStatus.ERROR, 'the node alone')
+    assert node.output.read_text().count('another node of this name runs') == 1

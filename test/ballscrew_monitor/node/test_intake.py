@@ -47,7 +47,7 @@ class Watch:
             self.now += pause
 
 
-def nothing():
+def nothing(*_):
     """Do nothing between two looks at a condition."""
 
 
@@ -170,42 +170,34 @@ def test_what_a_full_queue_drops_is_counted(bench):
     assert lost > 0
 
 
-class SteppedMonitor:
-    """Takes the steps that are to be left out, each with the value of the sample after it."""
-
-    def __init__(self):
-        self.steps = []
-
-    def leave_out(self, step, sample):
-        self.steps.append((step // SECOND, sample.value))
-        return True
-
-
 @pytest.mark.parametrize('hours', [1, -1])
-def test_a_step_of_the_system_clock_is_told_and_left_out_before_the_next_speed(
-    bench, monkeypatch, hours
-):
+def test_a_step_of_the_system_clock_is_one_event_between_two_turns(bench, monkeypatch, hours):
     """It is one of the steady clock the other way round."""
-    said, left_out, steady = [], [], intake_module.time.monotonic_ns
-    bench.axis.monitor = SteppedMonitor()
+    happened, said, steady = [], [], intake_module.time.monotonic_ns
+    bench.axis.monitor = types.SimpleNamespace(
+        set_clock=lambda due, now: happened.append(round((now - due) / SECOND))
+    )
+    monkeypatch.setattr(bench.intake, '_take', lambda axis, event: happened.append(event.value))
     monkeypatch.setattr(bench.intake, '_stepped', lambda step, now: said.append(step))
-    monkeypatch.setattr(bench.intake, '_left_out', lambda axis, step: left_out.append(axis))
+    recorded = []
+    recorder = types.SimpleNamespace(
+        raw=False,
+        hear=nothing,
+        take=lambda turn, *_: recorded.extend(event.value for _, event in turn),
+        set_clock=lambda due, now, _: recorded.append(round((now - due) / SECOND)),
+        flush=nothing,
+    )
+    monkeypatch.setattr(bench.intake, '_recorder', recorder)
     bench.publish('speed', 1)
-    bench.until(lambda: bench.taken, meanwhile=bench.intake.drain)
+    bench.until(lambda: happened, meanwhile=bench.intake.drain)
     step = hours * 3600 * SECOND
     monkeypatch.setattr(intake_module.time, 'monotonic_ns', lambda: steady() - step)
     bench.intake.drain()
     bench.intake.drain()
+    bench.publish('speed', 2)
+    bench.until(lambda: len(happened) == 3, meanwhile=bench.intake.drain)
+    assert happened == recorded == [1.0, hours * 3600, 2.0]
     assert [round(one / SECOND) for one in said] == [hours * 3600]
-    bench.publish('load', 2)
-    bench.until(lambda: len(bench.taken) == 2, meanwhile=bench.intake.drain)
-    assert not bench.axis.monitor.steps
-    for value in (3, 4):
-        bench.publish('speed', value)
-        bench.until(lambda value=value: len(bench.taken) == value, meanwhile=bench.intake.drain)
-    told = [(round(seconds, -1), value) for seconds, value in bench.axis.monitor.steps]
-    assert told == ([(3600, 3.0)] if hours > 0 else [])
-    assert left_out == [bench.axis] * len(told)
 
 
 def held(bench, count):
@@ -234,8 +226,8 @@ def test_what_comes_with_a_time_of_the_clock_is_one_turn(bench, monkeypatch):
 
 
 def test_messages_before_and_after_a_step_are_two_turns(bench, monkeypatch):
-    steady = intake_module.time.monotonic_ns
-    bench.axis.monitor = SteppedMonitor()
+    steady, steps = intake_module.time.monotonic_ns, []
+    bench.axis.monitor = types.SimpleNamespace(set_clock=lambda due, now: steps.append(now - due))
     bench.intake.drain()
     bench.publish('speed', 1)
     bench.publish('speed', 2)
@@ -249,7 +241,7 @@ def test_messages_before_and_after_a_step_are_two_turns(bench, monkeypatch):
     bench.intake.drain()
     assert [event.value for event in bench.taken] == [1.0, 2.0]
     assert turns == [1, 1]
-    assert [value for _, value in bench.axis.monitor.steps] == [2.0]
+    assert [round(one / SECOND) for one in steps] == [3600]
 
 
 def test_with_a_second_publisher_loss_is_not_known(bench):

@@ -21,10 +21,10 @@ import types
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import InputSample, Source
-from ballscrew_monitor.core.judgement import EventEnd
-from ballscrew_monitor.core.memory import AxisRecord
-from ballscrew_monitor.core.state import Ending
+from ballscrew_monitor.core.state import NOT_ENDED, NOT_SHELVED, RESTARTED
+from ballscrew_monitor.judge.kept import AxisRecord
 from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.judge.records import Memory
 from ballscrew_monitor.node.alarm import Alarm
 from ballscrew_monitor.node.kept_axes import KeptAxes, PERIOD
 from ballscrew_monitor.node.restart_state import RestartState
@@ -67,7 +67,7 @@ class Machine:
         self.state = RestartState(self.folder, limit=200_000)
         self.state.start = nothing
         self.retention = KeptAxes(
-            self.node, self.state, self.stations, self.said.append, clock=None
+            self.node, self.state, self.stations, self.said.append, clock=None, catch_up=nothing
         )
         surface = self.core.surface(rcs=lambda speed, load: 0.5 if speed < 20.0 else 0.0)
         limits = self.core.limits(raise_delay=0, clear_delay=0)
@@ -99,7 +99,7 @@ class Machine:
 
     @property
     def running_time(self):
-        return self.monitor.kept.running_time_ns
+        return self.monitor.memory.running_time
 
 
 def live(machine, pipe):
@@ -111,7 +111,7 @@ def live(machine, pipe):
     for speed in itertools.cycle([FAST] * 7 + [SLOW] * 6):
         machine.move(speed)
         record = machine.state._latest[AxisRecord, 'x']
-        written = 0 if machine.state._changed else record.running_time_ns
+        written = 0 if machine.state._changed else record.read_memory().running_time
         os.write(pipe, b'%d %d %d\n' % (machine.stamp, machine.running_time, written))
 
 
@@ -138,11 +138,7 @@ def ended_by_a_restart(folder):
     """Return the events in the log that a kill has hit; it keeps the newest entries alone."""
     with contextlib.suppress(InputError):  # killed before there was a file
         entries = [entry.record() for entry in read_entries(Path(folder))]
-        return [
-            one['event']
-            for one in entries
-            if one.get('ending') == Ending(kind=EventEnd.RESTARTED).text
-        ]
+        return [one['event'] for one in entries if one.get('ending') == RESTARTED.text]
     return []
 
 
@@ -211,8 +207,8 @@ def test_the_sums_are_written_in_time(machine):
     known = 0
     for _ in range(200):
         machine.move(FAST)
-        rows = machine.state._database._database.execute('SELECT running_time_ns FROM axes')
-        known = rows.fetchone()[0]
+        rows = machine.state._database._database.execute('SELECT memory FROM axes')
+        known = json.loads(rows.fetchone()[0])['running_time']
         assert machine.running_time - known <= MOST_LOST
     assert known > (20 - 2 * PERIOD) * SECOND
 
@@ -224,7 +220,11 @@ def test_an_event_and_its_number_are_one_commit(machine, monkeypatch):
     machine.move(FAST)
     machine.alarm.acknowledge()
     machine.alarm.reset_totals()
-    told = [(entry.kind, record.event, record.active) for record, entry in taken]
+    memories = [record.read_memory() for record, _ in taken]
+    told = [
+        (entry.kind, memory.event_number, memory.event_active)
+        for memory, (_, entry) in zip(memories, taken, strict=True)
+    ]
     assert told == [
         ('event_begin', 1, True),
         ('event_end', 1, False),
@@ -234,18 +234,19 @@ def test_an_event_and_its_number_are_one_commit(machine, monkeypatch):
 
 
 def test_what_an_earlier_node_left_is_taken_up_late(machine):
-    before = AxisRecord(axis='x', running_time_ns=7 * SECOND, event=41, active=True)
+    memory = Memory(running_time=7 * SECOND, event_number=41, event_active=True)
+    before = AxisRecord.of('x', memory, NOT_ENDED, NOT_SHELVED, 0)
     machine.move(SLOW)
     machine.move(SLOW)
-    assert machine.monitor.event.number == 1
+    assert machine.monitor.memory.event_number == 1
     machine.state._found = by_key([Corrections('x', 'abc')])
     machine.look()
-    assert machine.monitor.event.number == 1
+    assert machine.monitor.memory.event_number == 1
     assert machine.running_time == STEP
     assert 'axis x: abc late' in machine.said
     machine.state._found = by_key([before])
     machine.look()
-    assert machine.monitor.event.number == 42
+    assert machine.monitor.memory.event_number == 42
     assert machine.running_time == 7 * SECOND + STEP
     assert machine.said[-1] == ['x']
 

@@ -14,7 +14,7 @@ from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.fields import stamp_of
 from ballscrew_monitor.core.inputs import Input, InputSample, Source
 from ballscrew_monitor.cycle.domain import free_domain
-from ballscrew_monitor.judge import views
+from ballscrew_monitor.judge.kept import AxisRecord
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node import event_recorder
@@ -464,9 +464,14 @@ DEFECTS = {
     'a sample': (Monitor, 'update', speeds, f'the speed {FAST} (SI) that arrived at '),
     'a tick': (Monitor, 'tick', BallscrewMonitor._on_tick, 'a tick at '),
     'a message': (Input, 'read', hears, 'the speed that arrived at '),
-    'its news': (views, 'event_of', speeds, f'the speed {FAST} (SI) that arrived at '),
-    'all statuses': (views, 'event_of', BallscrewMonitor._publish_diagnostics, 'its diagnostics'),
-    'sums': (views, 'totals_of', looks, 'what is kept of it'),
+    'its news': (AxisPublisher, '_summaries', speeds, f'the speed {FAST} (SI) that arrived at '),
+    'all statuses': (
+        AxisPublisher,
+        '_statuses',
+        BallscrewMonitor._publish_diagnostics,
+        'its diagnostics',
+    ),
+    'sums': (AxisRecord, 'of', looks, 'what is kept of it'),
     'shelving': (Alarm, 'end_shelving', looks, 'its shelving'),
     'late': (Monitor, 'take_up', lambda node: node._kept.restore(['x', 'y']), 'what was kept of '),
     'a snapshot': (
@@ -498,8 +503,8 @@ DEFECTS = {
     ),
 } | {
     name: (
-        views,
-        'event_of',
+        AxisRecord,
+        'of',
         functools.partial(serves, path=f'~/{name}', kind=kind, **request),
         place,
     )

@@ -3,14 +3,20 @@
 """Simulated time in one process: ticks and messages go by the same clock, however fast it is."""
 
 import contextlib
+import types
 
 from ballscrew_monitor.core.conversions import SECOND
+from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.cycle.domain import free_domain
+from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.judge.monitor import Monitor
+from ballscrew_monitor.messages.diagnostics import code_of
+from ballscrew_monitor.node.axis_healths import CLOCK_SET, KEPT_FOR, LOOK
 from ballscrew_monitor.node.node import BallscrewMonitor
 from ballscrew_monitor.node.state_database import read_entries
 from ballscrew_monitor.settings.qos import started_node
+from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import WrenchStamped
 import pytest
 import rclpy
@@ -18,7 +24,7 @@ from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 
-BEGIN = 1000 * SECOND
+BEGIN = 1_000_000 * SECOND
 DISPLAY = 40.0  # [Hz] of /clock on the wall, as `ros2 bag play --clock` does
 RATE = 100.0  # [Hz] of the samples in time of the bag
 
@@ -117,10 +123,10 @@ def test_on_a_slow_clock_again_a_lead_is_refused_again(bench):
 def test_a_leap_of_the_clock_in_a_warning_is_logged_and_left_out_of_it(bench, tmp_path, leap):
     """Slow motion is outside, for 1 s before the leap and for 1 s after it."""
     now = play(bench, 1.0, BEGIN, 1.0, speed=0.8)
-    assert bench.monitor.event.active
+    assert bench.monitor.memory.event_active
     now = play(bench, 1.0, now + round(leap * SECOND), 1.0, speed=0.8)
     play(bench, 1.0, now, 1.0)
-    assert not bench.monitor.event.active
+    assert not bench.monitor.memory.event_active
     assert not bench.node._kept.state.flush()
     entries = [entry.record() for entry in read_entries(tmp_path)]
     (end,) = [one for one in entries if one['kind'] == 'event_end']
@@ -128,9 +134,34 @@ def test_a_leap_of_the_clock_in_a_warning_is_logged_and_left_out_of_it(bench, tm
     steps = [one for one in entries if one['kind'] == 'clock_step' and one['axis'] is None]
     (step,) = steps
     assert step['by_s'] == pytest.approx(leap, abs=0.1)
+    assert not [one for one in entries if one['kind'] == 'clock_step' and one['axis'] is not None]
     word = 'forward' if leap > 0 else 'back'
+    (status,) = bench.node._heartbeat.statuses()
+    assert (status.level, code_of(status)) == (DiagnosticStatus.WARN, Fault.CLOCK_SET)
     assert step['text'].startswith(f'the clock was set {word} by ')
     assert abs(step['stamp_ns'] - now) < 2 * SECOND
+
+
+@pytest.mark.parametrize('days', [3, -3, 0.5])
+def test_health_gathers_nothing_until_the_clock_has_kept_a_new_day(bench, days):
+    """What was gathered before it is kept under its own day; a step within a day is as before."""
+    healths, now = bench.node._healths, play(bench, 1.0, BEGIN, 1.0)
+    rows, jobs = [], []
+    gatherer = healths._gatherers['x']
+    healths._gatherers['x'] = types.SimpleNamespace(
+        take=rows.append, hand_over=gatherer.hand_over, defect='', give_back=gatherer.give_back
+    )
+    healths._worker.put = lambda job: not jobs.append(job)
+    now = play(bench, 1.0, now + round(days * DAY), 1.0)
+    assert bool(rows) == (days < 1 and days > -1)
+    status = next(iter(healths.statuses(['x'])))
+    assert (CLOCK_SET in status.message) == (not rows)
+    if not rows:
+        assert [job.now // DAY for job in jobs] == [BEGIN // DAY]
+        for _ in range(round(KEPT_FOR / LOOK)):
+            healths._look()
+        play(bench, 1.0, now, 1.0)
+        assert rows
 
 
 def test_a_tick_is_by_the_clock_by_which_messages_arrive(bench, monkeypatch):

@@ -29,7 +29,7 @@ def values(**changes):
 
 
 def test_a_recording_is_made_where_it_is_wished_has_a_place_and_leaves_room(tmp_path, refused):
-    assert recording(values(record='off'), None) is None
+    assert recording(values(record='never'), None) is None
     refused('there_state_dir_set', recording, values(), None)
     assert recording(values(), tmp_path).args[0] == tmp_path / 'recordings'
     assert recording(values(record_dir='/there'), None).args[0] == Path('/there')

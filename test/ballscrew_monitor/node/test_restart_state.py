@@ -3,9 +3,10 @@
 """Writes of the state: at once, but never in a flood, and again until they work."""
 
 from pathlib import Path
+import shutil
 import threading
 
-from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.judge.kept import AxisRecord
 from ballscrew_monitor.node import restart_state
 from ballscrew_monitor.node.restart_state import PAUSE, RestartState, RETRY, state_directory
 from ballscrew_monitor.node.state_database import FILE, read_entries, StateDatabase
@@ -216,6 +217,43 @@ def test_a_file_that_is_gone_or_damaged_is_written_once_more(state, content):
     assert bool(state.damage) is bool(content)
     state.forget_problems()
     assert state.problem == ''
+
+
+@pytest.mark.parametrize('makes_anew', [True, False])
+def test_a_folder_that_is_gone_is_taken_again(state, says, makes_anew):
+    """Without anything to write, and for this node alone: the lock went with the folder."""
+    state.keep(record(7), entry(1))
+    state.work(0.0)
+    state.look()
+    assert state.work(1.0) is None
+    shutil.rmtree(state.folder)
+    if makes_anew:
+        state.folder.mkdir()
+        (state.folder / FILE).touch()
+    assert not state.is_held
+    state.look()
+    assert state.problem == says('gone', folder=state.folder)
+    assert state.work(2.0) is None
+    assert state.is_held
+    assert kept(state) == ([], [7])
+    assert state.problem == says('lost', folder=state.folder)
+    second = RestartState(state.folder)
+    assert second.problem == says('use_by_another', folder=state.folder)
+    second.close()
+
+
+def test_a_folder_that_another_node_has_made_anew_is_its_own(state, says):
+    state.keep(record(7))
+    state.work(0.0)
+    shutil.rmtree(state.folder)
+    second = RestartState(state.folder)
+    second.keep(record(1))
+    second.flush()
+    state.keep(record(8))
+    assert state.flush() == says('use_by_another', folder=state.folder)
+    assert not state.is_held
+    assert kept(second) == ([], [1])
+    second.close()
 
 
 def test_corrections_leave_room_for_the_sums(state):

@@ -8,11 +8,12 @@ import math
 import os
 import signal
 import time
+import types
 
 from action_msgs.msg import GoalStatus
 from ballscrew_monitor.judge.full_point import request_of
 from ballscrew_monitor.messages.state_messages import read_point
-from ballscrew_monitor.node.solve_server import LONGEST_TIMEOUT, SERVICE_QOS
+from ballscrew_monitor.node.solve_server import LONGEST_TIMEOUT, requested_point, SERVICE_QOS
 from ballscrew_msgs.action import SolveOperatingPoint
 from ballscrew_msgs.msg import OperatingPoint, PointResult
 from ballscrew_msgs.srv import EvaluateOperatingPoint
@@ -122,6 +123,31 @@ def test_a_solve_is_told_beside_the_surface(node):
     assert result.wall_time > 0.0
 
 
+@pytest.mark.parametrize(
+    ('key', 'place'),
+    [
+        ('point_cold', {'temperature': -274.0}),
+        ('point_hot', {'temperature': 1e300}),
+        ('point_fast', {'speed': -1e9}),
+        ('point_slow', {'speed': 5e-324}),
+        ('point_loaded', {'axial_load': -1e300}),
+    ],
+)
+def test_a_point_that_no_screw_has_is_no_goal(says, key, place):
+    point = OperatingPoint(**({'speed': 60.0, 'axial_load': 500.0, 'temperature': 40.0} | place))
+    axis = types.SimpleNamespace(settings=types.SimpleNamespace(default_temperature=313.15))
+    assert requested_point(SolveOperatingPoint.Goal(point=point), axis) == says(key)
+
+
+@pytest.mark.parametrize('place', [(1e-3, 1e7, -60.0), (-10471.9, -1e7, 250.0)])
+def test_a_point_at_its_limits_is_a_goal(place):
+    speed, load, temperature = place
+    point = OperatingPoint(speed=speed, axial_load=load, temperature=temperature)
+    axis = types.SimpleNamespace(settings=types.SimpleNamespace(default_temperature=313.15))
+    row = requested_point(SolveOperatingPoint.Goal(point=point), axis)
+    assert (row.speed, row.axial_load) == (speed, load)
+
+
 def test_what_cannot_be_solved_is_one_sentence_and_a_slow_solve_tells_how_far_it_is(node):
     node.start()
     solves = Solves(node)
@@ -132,6 +158,10 @@ def test_what_cannot_be_solved_is_one_sentence_and_a_slow_solve_tells_how_far_it
         (
             {'place': OperatingPoint(speed=0.0, temperature=40.0)},
             'the speed of the point is 0 rad',
+        ),
+        (
+            {'place': OperatingPoint(speed=60.0, temperature=-274.0)},
+            'the temperature of the point',
         ),
         ({'timeout': -1.0}, 'timeout is -1 s, allowed is 0 to 3600 s'),
         ({'timeout': math.nan}, 'timeout is nan s, allowed is 0 to 3600 s'),

@@ -7,7 +7,9 @@ import random
 import shutil
 import sqlite3
 
-from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.core.state import NOT_ENDED, NOT_SHELVED
+from ballscrew_monitor.judge.kept import AxisRecord
+from ballscrew_monitor.judge.records import Memory
 from ballscrew_monitor.node.state_database import FILE, read_entries, StateDatabase
 from ballscrew_monitor.node.state_records import by_key, Corrections, entry_of, Kind
 import pytest
@@ -15,6 +17,7 @@ from surrogate import store
 from surrogate.files import InputError
 
 LIMIT = 400_000  # [B]
+LESS_THAN_NOTHING = """UPDATE axes SET memory = '{"running_time": -1}'"""
 
 
 class Opened(StateDatabase):
@@ -62,7 +65,9 @@ def stamps(folder):
 
 
 def test_what_is_written_is_found_again(make, tmp_path):
-    records = by_key([AxisRecord(axis='x', event=7, angle_rad=0.1 + 0.2), Corrections('x', 'abc')])
+    memory = Memory(event_number=7, angle=0.1 + 0.2)
+    axis = AxisRecord.of('x', memory, NOT_ENDED, NOT_SHELVED, 0)
+    records = by_key([axis, Corrections('x', 'abc')])
     database = make()
     assert database.found == {}
     assert (database.setting('journal_mode'), database.setting('synchronous')) == ('wal', 2)
@@ -137,9 +142,9 @@ def spoil(folder, *statements):
         (['PRAGMA user_version = 7'], 'is of another version (7, known is 1)', 3),
         (['DROP TABLE axes'], 'is damaged (no such table: axes)', 0),
         (['ALTER TABLE axes DROP COLUMN reason'], 'is damaged (table axes has other columns)', 3),
-        (["UPDATE axes SET cause = 'LUCK'"], "is damaged ('LUCK')", 3),
-        (['UPDATE axes SET running_time_ns = -1'], 'is damaged (running_time_ns is -1)', 3),
-        (['UPDATE axes SET event = 1 << 32'], 'is damaged (event 4294967296 is above', 0),
+        (["UPDATE axes SET ending = 'LUCK'"], "is damaged ('LUCK')", 3),
+        ([LESS_THAN_NOTHING], 'is damaged (running_time is -1)', 3),
+        (['UPDATE axes SET event = 1 << 32'], 'is damaged (event is 4294967296, allowed', 0),
         (
             ["INSERT INTO corrections VALUES ('x', '', '[1')"],
             'is damaged (it is no JSON (Expecting',

@@ -10,8 +10,9 @@ import types
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fault_codes import Fault
-from ballscrew_monitor.core.judgement import Code, EventEnd
-from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.core.judgement import EventEnd
+from ballscrew_monitor.core.state import NOT_ENDED
+from ballscrew_monitor.judge.records import Memory
 from ballscrew_monitor.node.state_records import (
     CORRECTIONS,
     Corrections,
@@ -32,8 +33,9 @@ SOLVE = types.SimpleNamespace(
 
 
 def test_an_entry_says_what_when_where_and_why():
-    kept = AxisRecord(axis='x', event=4, stamp_ns=3 * SECOND, start_ns=SECOND)
-    record = entry_of(Kind.EVENT_END, 'x', kept.stamp_ns, event_facts(kept)).record()
+    memory = Memory(event_number=4, event_stamp=3 * SECOND, event_start=[SECOND, 0])
+    facts = event_facts(memory, NOT_ENDED)
+    record = entry_of(Kind.EVENT_END, 'x', memory.event_stamp, facts).record()
     assert list(record)[:5] == ['time', 'stamp_ns', 'axis', 'kind', 'event']
     assert record['time'].endswith('+00:00')
     assert (record['stamp_ns'], record['axis']) == (3 * SECOND, 'x')
@@ -78,7 +80,7 @@ def test_every_record_of_the_state_comes_back_from_its_row(data):
     }
     named = {
         'event': st.integers(0, 2**32 - 1),
-        'cause': st.sampled_from([code.name for code in Code]),
+        'memory': st.builds('{{"running_time": {}}}'.format, numbers),
         'ending': st.sampled_from([end.name for end in EventEnd]),
         'solves': st.just(Corrections.of('x', 'abc', [SOLVE]).solves),
     }

@@ -24,12 +24,13 @@ def cause(code, excluded, weight=0.5):
     return Cause(code=code, size=SIZE, weight=weight, excluded=excluded, text='T')
 
 
-def message_of(condition, causes, drag, preload):
+def message_of(condition, causes, drag, preload, since=0):
     """Return the message of a health, and its sentences."""
-    said = verdict_of('x', condition, drag, causes, 0), advice_of(condition, causes)
+    said = verdict_of('x', condition, drag, causes, since), advice_of(condition, causes)
     health = Health(
         axis='x',
         stamp=1,
+        since=since,
         condition=condition,
         verdict=said[0],
         advice=said[1],
@@ -67,11 +68,31 @@ def test_phrases_say_what_the_sentences_say(condition, codes, unfit, change, kno
         assert f'; {begin}' in message.verdict
         _, likely = explained(causes)
         assert ('cause' in why['values']) is bool(likely)
-        if likely:
-            code, told = likely[0].code, why['values']['cause']
-            assert told['key'] == f'change_{code.name.lower()}'
-            of_preload = code is CauseCode.PRELOAD_LOST and known
-            assert told['values']['value']['value'] == (0.6 if of_preload else SIZE.value)
+        told = joined(why['values']['cause']) if likely else []
+        assert [one['key'] for one in told] == [
+            f'change_{one.code.name.lower()}' for one in likely
+        ]
+        for one, phrase in zip(likely, told, strict=True):
+            of_preload = one.code is CauseCode.PRELOAD_LOST and known
+            assert phrase['values']['value']['value'] == (0.6 if of_preload else SIZE.value)
+
+
+def joined(phrase):
+    """Return the phrases that are said together."""
+    if phrase['key'] != 'cause_or':
+        return [phrase]
+    return [*joined(phrase['values']['first']), phrase['values']['second']]
+
+
+def test_a_change_has_its_day():
+    drag = quantity('drag change', -0.2)
+    day = 1_752_451_200 * 10**9  # 14 July 2025
+    dated = message_of(Condition.WORSE, (), drag, Quantity(name='preload'), day + 1)
+    assert dated.since.sec == 1_752_451_200
+    verdict = verdict_phrase(dated)
+    assert (verdict['key'], verdict['values']['since']) == ('verdict_worse_since', '2025-07-14')
+    undated = verdict_phrase(message_of(Condition.WORSE, (), drag, Quantity(name='preload')))
+    assert (undated['key'], 'since' in undated['values']) == ('verdict_worse', False)
 
 
 def test_what_is_not_known_has_the_reason_of_the_node():

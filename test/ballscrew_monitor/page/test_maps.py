@@ -179,7 +179,7 @@ def test_the_advice_on_a_standing_warning_lies_just_beyond_the_limit(
     view = page_parts.axis()
     view.know({}, surface, '')
     view.hear(records.row_of(message), {}, records.limits_record(message), 0.0)
-    event = out_of_zone_message('x', state.event, shelved=False)
+    event = out_of_zone_message(monitor, shelved=False)
     assume(math.isfinite(event.cause.target_speed))
     assert view.limit['speed_rpm'] == pytest.approx(limit / RPM)
     assert view.limit['speed_rpm'] < float(TURNS.search(event.advice)[1])

@@ -5,7 +5,6 @@
 import json
 import math
 
-from ballscrew_monitor.core.advice import Advice
 from ballscrew_monitor.core.conversions import Direction
 from ballscrew_monitor.core.judgement import PointSource, PointValidity
 from ballscrew_monitor.messages.diagnostics import code_of
@@ -21,13 +20,13 @@ import pytest
 from surrogate.files import to_json
 from surrogate.units import RPM
 
-TARGET = Advice(target_speed=-600.0 * RPM)
+TARGET = -600.0 * RPM
 
 
 def event_of(target, **more):
     """Return the last word on an event, with the codes and numbers of an advice."""
     event = msg.OutOfZone(event_id=3, **more)
-    event.cause.target_speed, event.cause.target_load = target.target_speed, math.nan
+    event.cause.target_speed, event.cause.target_load = target, math.nan
     return event
 
 
@@ -174,7 +173,7 @@ def test_a_code_that_is_no_number_of_a_fault_is_none(value):
     assert code_of(DiagnosticStatus(values=[KeyValue(key='Code', value=value)])) == 0
 
 
-@given(name=st.text(min_size=1), reason=st.text(), advice=st.sampled_from([Advice(), TARGET]))
+@given(name=st.text(min_size=1), reason=st.text(), advice=st.sampled_from([math.nan, TARGET]))
 def test_an_event_says_by_whom_it_was_acknowledged_and_keeps_its_advice(name, reason, advice):
     """Whoever did it, on this page or elsewhere; one that ended by itself was not."""
     seen = msg.OutOfZone.ENDING_ACKNOWLEDGED
@@ -182,7 +181,7 @@ def test_an_event_says_by_whom_it_was_acknowledged_and_keeps_its_advice(name, re
     record = records.event_record(event)
     assert record['acknowledged']
     assert record['acknowledged_by'] == (f'{name}: {reason}' if reason else name)
-    assert record['advice'] == advised(advice.target_speed)
+    assert record['advice'] == advised(advice)
     event.acknowledged_by = event.acknowledge_reason = ''
     record = records.event_record(event)
     assert (record['acknowledged'], record['acknowledged_by']) == (True, '')
@@ -200,7 +199,7 @@ def test_how_an_event_ended_is_read_from_its_code_alone(text, ending):
     assert (record['advice'] == {'free': text}) == by_node
 
 
-SPEED = advised(TARGET.target_speed)
+SPEED = advised(TARGET)
 OIL = records.health_record(msg.AxisHealth(advice='Fill in ISO VG 220.'))
 
 
@@ -223,7 +222,7 @@ def test_advice_is_that_of_the_moment_and_begins_with_the_workshop(
     view.hear([0.0] * 10, {'level': 'warn', 'zone': zone}, {'rcs_limit': None}, 0.0)
     if health:
         view.hear_health(health)
-    event = event_of(TARGET if speed else Advice(), advice='usual', active=True)
+    event = event_of(TARGET if speed else math.nan, advice='usual', active=True)
     view.hear_event(records.event_record(event))
     assert page_parts.read(view.news(0.0, 0.0)[-1])[0]['advice'] == advice
 

@@ -8,8 +8,9 @@ from types import SimpleNamespace
 import xml.etree.ElementTree as ElementTree
 
 from ballscrew_monitor.core.conversions import kelvin
+from ballscrew_monitor.core.vitals import VitalSigns
 from ballscrew_monitor.judge.full_point import SolvedAt
-from ballscrew_monitor.messages.diagnostics import recording
+from ballscrew_monitor.messages.diagnostics import of_node, recording
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_records import Corrections
 from ballscrew_monitor.page import hub as hubs
@@ -328,6 +329,20 @@ def test_a_node_of_another_version_is_named_and_not_heard(node, heard, monkeypat
     heard.until(lambda view: view.surface, 'the surface')
     # It has been mended meanwhile: the notice is gone.
     assert heard.hub.hello()['notices'] == []
+
+
+def test_two_nodes_of_one_name_are_both_named(node, turned, says):
+    """As long as one of them says so; the statuses of both name the same hosts."""
+    signs, hosts = VitalSigns(), ['left (process 1)', 'right (process 2)']
+    both = [of_node('/old', signs, 0, one) for one in (hosts, hosts[::-1])]
+    for status in both:
+        turned.ros._on_diagnostics(DiagnosticArray(status=[status]))
+    turned.turn()
+    (notice,) = turned.hub.hello()['notices']
+    assert english(notice) == says('two_nodes')
+    turned.ros._on_diagnostics(DiagnosticArray(status=[of_node('/old', signs, 0, hosts[:1])]))
+    turned.turn()
+    assert turned.hub.hello()['notices'] == []
 
 
 def test_the_notice_of_a_node_leaves_with_it(node, turned, monkeypatch):

@@ -13,7 +13,7 @@ from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import message_class, stamp_of
 from ballscrew_monitor.cycle.node_process import child_environment
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.player import chosen, PAUSE, playable, Player
+from ballscrew_monitor.recordings.player import _play, chosen, PAUSE, playable, Player
 from ballscrew_monitor.settings.parameters import input_topics, read_file
 from mcap.writer import Writer
 import pytest
@@ -281,6 +281,19 @@ def test_a_bag_of_any_machine_is_played(domain, listener, foreign_bag):
     assert out.startswith('not played: /drive, ')
 
 
+@pytest.mark.parametrize('missing', [['/clock'], ['/axial_load', '/clock'], ['/axial_load'], []])
+def test_who_does_not_take_the_time_from_it_is_told_so_once(
+    short_bag, missing, monkeypatch, capsys, says
+):
+    player = Player(Publishers(), Bag(short_bag), rate=1000.0)
+    monkeypatch.setattr(player, 'unmatched', lambda: missing)
+    code = _play(player, list(Bag(short_bag).topics), 0.0, threading.Event(), False, None)
+    out = capsys.readouterr().out
+    assert code == 0
+    assert out.count(says('untimed')) == out.count('/clock') == missing.count('/clock')
+    assert out.count('nobody listens to /axial_load\n') == missing.count('/axial_load')
+
+
 @pytest.mark.parametrize(
     'durability', [QoSDurabilityPolicy.VOLATILE, QoSDurabilityPolicy.TRANSIENT_LOCAL]
 )
@@ -331,8 +344,9 @@ def test_a_rate_that_the_node_follows_is_none(node, short_bag, wait_for):
     node.start('--params-file', PARAMS, use_sim_time='true')
     options = ('--rate', 0.5, '--params', PARAMS)
     with play(node.domain, short_bag, *options, command=('-c', GATED)) as player:
-        _, err = player.communicate('play\n', timeout=DEADLINE)
+        out, err = player.communicate('play\n', timeout=DEADLINE)
     assert (player.returncode, err) == (0, '')
+    assert 'use_sim_time' not in out
 
 
 def test_a_loop_goes_on_until_it_is_interrupted(domain, listener, short_bag):

@@ -13,12 +13,13 @@ import types
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.inputs import InputSample, ordered, Source
-from ballscrew_monitor.core.judgement import Level
-from ballscrew_monitor.core.memory import AxisRecord
+from ballscrew_monitor.core.inputs import ordered, Source
+from ballscrew_monitor.core.judgement import EventEnd, Level
+from ballscrew_monitor.core.state import Ending, Shelving
 from ballscrew_monitor.judge.full_point import SolvedAt
-from ballscrew_monitor.judge.records import EVENT, EVENTS_VERSION, MEMORY_VERSION
-from ballscrew_monitor.messages.state_messages import empty_state, fill_state
+from ballscrew_monitor.judge.kept import AxisRecord
+from ballscrew_monitor.judge.records import EVENT, EVENTS_VERSION, Memory, MEMORY_VERSION
+from ballscrew_monitor.messages.state_messages import empty_state, fill_state, fill_totals
 from ballscrew_monitor.node.event_recorder import axis_snapshot, EventRecorder
 from ballscrew_monitor.node.intake import _events
 from ballscrew_monitor.node.sources import Reading
@@ -46,6 +47,7 @@ from ballscrew_monitor.report.log_report import report_log
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import build_axis
+from ballscrew_msgs.msg import Totals
 from geometry_msgs.msg import WrenchStamped
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
@@ -103,7 +105,19 @@ class SmallNode:
         self.said, self.edges = [], 0
         self.snapshots = []  # how much was said before each
         self.now, self.reading = now, Reading()
+        self.stepped = 0  # by how much the clock was set [ns]
         self.snapshot('begin')
+
+    @property
+    def steady(self):
+        return self.now - self.stepped - BEGIN
+
+    def set_clock(self, step):
+        due, self.now = self.now, self.now + step
+        self.stepped += step
+        self.recorder.set_clock(due, self.now, self.steady)
+        for axis in self.axes.values():
+            axis.monitor.set_clock(due, self.now)
 
     def snapshot(self, because, names=('x', 'z')):
         found = {name: axis_snapshot(self.axes[name], self.values, TOPICS) for name in names}
@@ -128,17 +142,17 @@ class SmallNode:
             batch.append((Arrival(self.now + 5, message, 0, topic, data), self.now, lost))
         turn = ordered([event for one in batch for event in _events(*one, self.reading)])
         self.recorder.hear(batch)
-        self.recorder.take(turn, self.now, self.now - BEGIN)
+        self.recorder.take(turn, self.now, self.steady)
         for axis, event in turn:
             self.publish(axis, axis.monitor.update(event))
 
     def tick(self):
         grid = self.now - self.now % (SECOND // 10)
-        self.recorder.tick(grid, self.now, self.now - BEGIN)
+        self.recorder.tick(grid, self.now, self.steady)
         for axis in self.axes.values():
             self.publish(axis, axis.monitor.tick(grid))
-        self.process.now = (self.now - BEGIN) / SECOND
-        if because := self.recorder.due(self.now - BEGIN, self.now):
+        self.process.now = self.steady / SECOND
+        if because := self.recorder.due(self.steady, self.now):
             self.snapshot(because)
 
     def publish(self, axis, row):
@@ -207,23 +221,32 @@ def assert_given_again(node, folder):
     assert bag.remarks == []
 
 
-def test_a_step_of_the_clock_comes_again(tmp_path):
-    """It is left out of an event before the next messages are heard."""
-    node, step = SmallNode(tmp_path), 3600 * SECOND
-    live(node, seconds=12, seed=3)
-    for number in range(100):
-        node.now = BEGIN + 12 * SECOND + number * SECOND // 50
-        node.hear(force(node.now, 900), joints(node.now, 3.0, 3.0))
-    events = {name: axis.monitor.event for name, axis in node.axes.items()}
-    assert all(event.active for event in events.values())
-    for name, axis in node.axes.items():
-        first = InputSample(source=Source.SPEED, value=0.0, stamp=node.now + step)
-        assert axis.monitor.leave_out(step, first)
-        node.snapshot('clock', [name])
-    live(node, seconds=12, seed=4, begin=node.now + step + SECOND // 50)
-    for name, axis in node.axes.items():
-        assert axis.monitor.event.number >= events[name].number
+def run_at(node, speed, *, seconds, begin):
+    """Let a node hear a machine that runs at a speed [rad/s]: 3 is too slow, 90 is not."""
+    for number in range(50 * seconds):
+        node.now = begin + number * SECOND // 50
+        node.hear(force(node.now, 900), joints(node.now, speed, speed))
+
+
+@pytest.mark.parametrize('hours', [1, -1, 8760])
+def test_a_step_of_the_clock_comes_again(tmp_path, hours):
+    """It is an event: no snapshot tells of it, and a fresh memory leaves it out as well."""
+    node = SmallNode(tmp_path)
+    live(node, seconds=2, seed=3)
+    run_at(node, 3.0, seconds=2, begin=BEGIN + 2 * SECOND)
+    assert all(axis.monitor.memory.event_active for axis in node.axes.values())
+    node.set_clock(hours * 3600 * SECOND)
+    run_at(node, 3.0, seconds=2, begin=node.now + SECOND // 50)
+    assert all(axis.monitor.memory.event_active for axis in node.axes.values())
+    run_at(node, 90.0, seconds=4, begin=node.now + SECOND // 50)
+    assert node.edges == 4
+    assert len(node.snapshots) == 1
     assert_given_again(node, tmp_path)
+    bag = bag_in(tmp_path)
+    values = recorded_values(bag) | {'x.limits.hysteresis': 0.03}
+    lengths = [event.duration for _, event in replay(bag, values) if event and not event.active]
+    assert 4.0 < max(lengths) < 10.0
+    assert min(lengths) > 0.0
 
 
 @pytest.mark.parametrize('raw', [True, False])
@@ -340,21 +363,12 @@ def test_recordings_of_limited_length_follow_each_other_without_a_gap(tmp_path):
 def test_what_is_kept_late_is_followed(tmp_path):
     node = SmallNode(tmp_path)
     live(node, seconds=3)
-    node.axes['z'].monitor.take_up(
-        AxisRecord(
-            axis='z',
-            running_time_ns=7 * SECOND,
-            angle_rad=3.0,
-            since_ns=5,
-            event=41,
-            stamp_ns=3,
-            start_ns=2,
-            ending='STOPPED',
-            end_reason='long ago',
-            until_ns=BEGIN + 600 * SECOND,
-            reason='known',
-        )
-    )
+    memory = Memory(running_time=7 * SECOND, angle=3.0, since=5, event_number=41, event_stamp=3)
+    memory.event_start[0] = 2
+    known = Shelving(until=BEGIN + 600 * SECOND, reason='known')
+    stopped = Ending(EventEnd.STOPPED, reason='long ago')
+    record = AxisRecord.of('z', memory, stopped, known, BEGIN)
+    node.axes['z'].monitor.take_up(record, node.now)
     node.snapshot('kept', ['z'])
     live(node, seconds=12, begin=BEGIN + 3 * SECOND, seed=2)
     assert_given_again(node, tmp_path)
@@ -441,8 +455,10 @@ def test_a_replay_takes_the_parameters_of_the_recording_and_follows_it(tmp_path)
     for name, outcome in (('x', x), ('z', z)):
         monitor = node.axes[name].monitor
         assert (outcome.axis, outcome.judged) == (name, monitor.memory.judged)
-        assert outcome.totals == monitor.totals
-        assert len(outcome.events) == monitor.event.number
+        said = Totals()
+        fill_totals(said, monitor.memory)
+        assert outcome.totals == said
+        assert len(outcome.events) == monitor.memory.event_number
         assert sum(len(one.rows) for one in blocks if one.axis == name) == outcome.rows
     assert not any(one.active for one in x.events[:-1])
     assert bag.notes == []

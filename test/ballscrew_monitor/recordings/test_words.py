@@ -4,7 +4,7 @@
 
 import io
 
-from ballscrew_monitor.core.advice import Advice
+from ballscrew_monitor.core.advice import speed_advice
 from ballscrew_monitor.recordings import words
 from ballscrew_monitor.recordings.words import shown_progress
 import pytest
@@ -71,8 +71,8 @@ def test_short_work_is_silent_and_long_work_tells_rate_and_time_left(says):
 @pytest.mark.parametrize(
     ('text', 'shown'),
     [
-        (Advice(target_speed=60 * RPM).text, 'at this load run at 0.6 m/min, 60 rev/min'),
-        (Advice(target_speed=-250 * RPM).text, 'at this load run at 2.5 m/min, 250 rev/min'),
+        (speed_advice(60 * RPM), 'at this load run at 0.6 m/min, 60 rev/min'),
+        (speed_advice(-250 * RPM), 'at this load run at 2.5 m/min, 250 rev/min'),
         ('at 430 rev/min and -1200 N', 'at 4.3 m/min, 430 rev/min and -1200 N'),
         ('at -7.32 rev/min: faster', 'at -0.0732 m/min, -7.32 rev/min: faster'),
         ('check the oil', 'check the oil'),

@@ -11,7 +11,6 @@ import types
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.inputs import InputState, InputStatus, Source, StampSource
 from ballscrew_monitor.core.judgement import Level, PointSource, PointValidity, Reason, Zone
-from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.judge.many import ROW
 from ballscrew_monitor.recordings.axis_run import AxisRows
 from ballscrew_monitor.recordings.summary import AxisOutcome, EventRecord
@@ -20,9 +19,11 @@ from ballscrew_monitor.report.parameters import AxisFacts
 from ballscrew_monitor.report.row_table import RowTable
 from ballscrew_monitor.settings.axis import build_axis
 from ballscrew_monitor.settings.parameters import defaults
+from ballscrew_msgs.msg import Totals
 import numpy as np
 import pytest
 from surrogate.surface import Regime
+from surrogate.units import TURN
 
 BEGIN = 1_767_600_000 * SECOND
 """First stamp of what is made here [ns]."""
@@ -147,11 +148,11 @@ def make_case(
     outside = sum(round(event.duration * SECOND) for event in events)
     if totals is None:
         totals = Totals(
-            running_time=span,
-            optimal_time=span - outside,
-            outside_time=outside,
-            mixed_time=span,
-            angle=628.0,
+            running_time=span / SECOND,
+            optimal_time=(span - outside) / SECOND,
+            outside_time=outside / SECOND,
+            mixed_time=span / SECOND,
+            revolutions=628.0 / TURN,
             energy_lost=1000.0,
         )
     facts = {

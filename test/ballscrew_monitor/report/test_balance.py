@@ -156,7 +156,7 @@ def test_the_currents_of_a_real_machine_tell_their_sign(scale, turned, tmp_path)
     content = guess(log).content
     content['time']['rate_Hz'] = 10.0
     for axis in 'xy':
-        content['axes'][axis]['current']['scale'] = scale
+        content['axes'][axis]['current'] |= {'scale': scale, 'unit': 'A'}
     convert(log, make_map(content), tmp_path / 'bag')
     bag = Bag(tmp_path / 'bag')
     found = judge_log(bag, parameters_for(bag, None, log)).axes

@@ -23,7 +23,7 @@ SHEETS = ['--screw', 'nominal', '--oil', 'iso_vg_68']
 
 def write(path, speeds, *, load=-1500.0, drag=0.3, time='time_s', loads=True):
     """Write 4 s at each speed [mm/s] at 100 Hz, with a load [N] and the motor torque [N m]."""
-    path.parent.mkdir(exist_ok=True)
+    path.parent.mkdir(exist_ok=True, parents=True)
     lines = [f'{time},x_velocity_mm_s' + (',x_force_N' if loads else '') + ',x_torque_Nm,oil_C']
     for row in range(400 * len(speeds)):
         speed = speeds[row // 400]
@@ -69,18 +69,45 @@ def test_a_bag_is_judged_by_the_sheet_that_lies_in_the_folder(short_bag, tmp_pat
     assert [one for one in record['what_to_do'] if one.startswith('State the oil')]
 
 
+def test_logs_of_any_ending_are_found_and_other_files_are_not(tmp_path, capsys):
+    folder = tmp_path / 'logs'
+    write(folder / 'cut.rec', SPEEDS)
+    write(folder / 'below' / 'cut', SPEEDS)
+    rows = [[row, 0.5 * row, 1.0] for row in range(100)]
+    names = [{'Name': 'ENC_POS|1', 'Axis': 'X'}, {'Name': 'TORQUE|1', 'Axis': 'X'}]
+    head = {'CycleTimeMs': 2, 'SignalListHFData': [{'Name': 'CYCLE'}, *names]}
+    trace = {'Header': head, 'Payload': [{'HFData': rows}]}
+    (folder / 'trace.json').write_text(json.dumps(trace))
+    (folder / 'readme').write_text('Logs of a mill.\nOf 2026-07-22 and later.\n' * 30)
+    (folder / 'settings.json').write_text('{"rate": 100}')
+    (folder / 'numbers').write_text(''.join(f'{row} {row / 2}\n' for row in range(100)))
+    check(folder, tmp_path, *SHEETS, '--json')
+    record = json.loads(capsys.readouterr().out)
+    assert set(record['recordings']) == {'cut.rec', 'trace.json', 'cut', 'numbers'}
+    failure = record['recordings']['numbers']['failure']
+    assert 'no line names its columns' in failure
+    assert f'numbers: {failure}' in record['what_to_do']
+    assert record['recordings']['cut.rec']['axes']['x']['judged'] == 2000
+
+
 def test_without_a_sheet_the_page_asks_for_one(tmp_path, capsys, says):
     write(tmp_path / 'logs' / 'cut.csv', SPEEDS)
     assert check(tmp_path / 'logs', tmp_path, '--json') == 0
     assert says('no_sheet') in json.loads(capsys.readouterr().out)['what_to_do']
 
 
-def test_a_time_that_is_not_stated_is_asked_for_and_the_map_waits(tmp_path, capsys):
+def test_a_time_that_is_not_stated_is_asked_for_and_the_map_waits(tmp_path, capsys, says):
     write(tmp_path / 'logs' / 'cut.csv', SPEEDS, time='t')
     assert check(tmp_path / 'logs', tmp_path, *SHEETS, '--json') == 1
     record = json.loads(capsys.readouterr().out)
     assert 'time.unit' in record['recordings']['cut.csv']['failure']
-    assert 'unit: null' in (tmp_path / 'out' / 'maps' / 'cut.yaml').read_text()
+    text = (tmp_path / 'out' / 'maps' / 'cut.yaml').read_text()
+    assert 'unit: null' in text
+    assert says('lay_beside') in record['what_to_do']
+    (tmp_path / 'logs' / 'cut.map.yaml').write_text(text.replace('unit: null', 'unit: s'))
+    assert check(tmp_path / 'logs', tmp_path, *SHEETS, '--json') == 0
+    record = json.loads(capsys.readouterr().out)
+    assert record['recordings']['cut.csv']['axes']['x']['judged'] == 2000
 
 
 @pytest.mark.parametrize(('text', 'key'), [('a,b\n1,2\n', 'no_column'), (None, 'no_recording')])

@@ -154,10 +154,10 @@ def test_the_real_log_ends_in_a_page_that_says_what_was_assumed(tmp_path, capsys
     log = Path(os.environ['BALLSCREW_RECORDINGS']) / 'cnc_mill' / 'experiment_01.csv'
     assert cli.main(['import', str(log), '--guess']) == 0
     stated = capsys.readouterr().out.replace('rate_Hz: null', 'rate_Hz: 10')
-    (tmp_path / 'map.yaml').write_text(stated)
+    (tmp_path / 'map.yaml').write_text(stated.replace('unit: null', 'unit: A'))
     out = tmp_path / 'out'
     arguments = ['replay', str(log), '--map', str(tmp_path / 'map.yaml'), '--out', str(out)]
-    assert cli.main(arguments) == 0
+    assert cli.main(arguments) == 1, 'axis z has no load'
     assert 'nothing was judged on axis z' in capsys.readouterr().err
     page = (out / 'report.html').read_text()
     assert 'Assumed, neither measured nor stated:' in page

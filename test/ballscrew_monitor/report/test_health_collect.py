@@ -190,7 +190,7 @@ def test_a_log_that_cannot_be_read_stops_no_other_one(tmp_path, capsys):
     folder = tmp_path / 'kept'
     assert collect([bad, log], folder, Given(None, mapping, NOMINAL), Workers()) == 1
     captured = capsys.readouterr()
-    assert f'{bad}: log {bad}' in captured.err
+    assert f'{bad}: column' in captured.err
     assert '1 log collected' in captured.out
     assert len(held_logs(folder)) == 1
 

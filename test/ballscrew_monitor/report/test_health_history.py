@@ -9,6 +9,8 @@ import math
 from ballscrew_monitor.cli import main
 from ballscrew_monitor.health.records import Cell, Condition, Health, Quantity, SpectrumBin
 from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.report.health_axes import assess_axes, logged_axes
+from ballscrew_monitor.report.health_collect import Workers
 from ballscrew_monitor.report.health_command import days_of
 from ballscrew_monitor.report.health_history import (
     AxisHistory,
@@ -169,6 +171,18 @@ def test_axes_of_one_name_on_three_machines_are_peers(months):
     titles = axis_titles(by_axis([*worn, *made]))
     apart = [one.axis for one in peers_among([*worn, *made], titles) if one.is_apart]
     assert apart == ['x of a']
+
+
+def test_three_machines_of_one_screw_share_what_they_know(months):
+    histories = [dataclasses.replace(one, machine=name) for name in 'abc' for one in months[:8]]
+    options = {'baseline_days': 91.0, 'days': None, 'speed_allowed': False}
+    widths = []
+    for some in (histories[:8], histories):
+        axes = logged_axes(some)
+        found = assess_axes(axes, axis_titles(axes), options, Workers())
+        drag = found[histories[0].key][-1].quantity('drag change')
+        widths.append(drag.high - drag.low)
+    assert widths[1] < 0.98 * widths[0]
 
 
 def entry(one):

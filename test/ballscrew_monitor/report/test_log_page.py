@@ -5,7 +5,9 @@
 import html
 import re
 
+from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import Source
+from ballscrew_monitor.recordings.summary import RunRecord
 from ballscrew_monitor.report.log_page import report_page
 from ballscrew_monitor.report.page import CHARTS
 import pytest
@@ -155,3 +157,29 @@ def test_columns_of_inputs_are_those_that_say_something(judged):
     assert 'Stamps behind arrival' in late
     assert '0.3 s' in late
     assert 'Lost on the way' not in late
+
+
+def test_each_run_has_a_row_and_a_warning_that_ended_with_one_says_so(judged):
+    runs = [
+        RunRecord(
+            number=number,
+            first=judged.begin + number * SECOND if number < 3 else 0,
+            last=judged.begin + (number + 1) * SECOND if number < 3 else 0,
+            running_time=0.9,
+            unjudged_time=0.0,
+            optimal_time=0.7,
+            outside_time=0.2,
+            revolutions=12.0,
+            warnings=1,
+        )
+        for number in (1, 2, 3)
+    ]
+    events = [judged.event(1, 0.5, 0.3, run_ended=True)]
+    case = judged.case([judged.rows(count=301)], events, runs=tuple(runs))
+    text = report_page(judged.log(case))
+    assert '0.3, the run ended' in text
+    table = text.partition('Runs: 3')[2].partition('</table>')[0]
+    assert table.count('<tr data-begin') == 2
+    assert table.count('12 revolutions; optimal 0.7 s, outside 0.2 s, unjudged 0.0 s') == 2
+    assert 'no usable sample' in table
+    assert 'Runs: ' not in report_page(judged.log(judged.case([judged.rows()])))

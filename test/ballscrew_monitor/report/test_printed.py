@@ -7,8 +7,8 @@ import math
 
 from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.judgement import Reason, Zone
-from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.report.printed import axis_lines, log_lines, printed_records, summary_record
+from ballscrew_msgs.msg import Totals
 import numpy as np
 from surrogate.files import json_text
 
@@ -40,7 +40,7 @@ def test_an_axis_of_which_only_standstill_was_judged_says_so(judged, says):
     zeros = {'zone': Zone.UNKNOWN, 'axial_load': np.nan, 'axial_load_source': 0}
     speeds, reasons = [9.0] * 20 + [0.0] * 80, [Reason.NO_LOAD] * 20 + [Reason.STANDSTILL] * 80
     block = judged.rows(speed=speeds, reason=reasons, **zeros)
-    moved = Totals(running_time=200_000_000, unjudged_time=200_000_000)
+    moved = Totals(running_time=0.2, unjudged_time=0.2)
     case = judged.case([block], totals=moved, judged=80)
     assert math.isnan(case.outside_time)  # 0 would read as well done
     first, verdict, *_ = log_lines(judged.log(case))

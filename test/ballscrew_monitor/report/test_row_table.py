@@ -49,7 +49,7 @@ def test_parquet_holds_all_rows_by_axis_or_none_with_the_same_columns(
 ):
     store = RowStore(tmp_path)
     for block in (judged.rows(0, 60), judged.rows(0, 40, axis='y'), judged.rows(60, 40)):
-        store.add(*block)
+        store.add(block.axis, block.rows)
     store.write(tmp_path / 'states.parquet')
     found = pl.read_parquet(tmp_path / 'states.parquet')
     assert found.columns == ['axis', *COLUMNS]

@@ -53,6 +53,17 @@ def test_gaps_are_listed_longest_first_and_are_no_time_of_a_reason(judged):
     assert sum(found.reasons.values()) + found.uncounted == pytest.approx(found.span)
 
 
+def test_pauses_between_runs_are_no_time_and_no_gap(judged):
+    surveyor = Surveyor('x', standstill=0.5, max_gap=GAP)
+    for run, begin in enumerate([0, 110, 420]):
+        for block in (judged.rows(begin, 4), judged.rows(begin + 4, 6)):
+            surveyor.add(block.rows, run)
+    found = surveyor.result()
+    assert (found.runs, found.rest, found.speed_gaps) == (3, 0.0, ())
+    assert (found.span, found.pauses) == (pytest.approx(0.27), pytest.approx(4.02))
+    assert found.reasons == {Reason.JUDGED: pytest.approx(0.27)}
+
+
 def test_gaps_of_another_input_are_stretches_without_a_valid_sample(judged):
     sources = np.ones(100)
     sources[40:50] = sources[90:] = 3

@@ -4,12 +4,11 @@
 
 import math
 
-from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.judgement import PointSource, Reason, Zone
-from ballscrew_monitor.core.state import Totals
 from ballscrew_monitor.report.log_page import verdict_part
 from ballscrew_monitor.report.printed import axis_lines, axis_record
 from ballscrew_monitor.report.verdict import REMEDIES, verdict_of, VerdictKind
+from ballscrew_msgs.msg import Totals
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import pytest
@@ -18,7 +17,6 @@ from surrogate.surface import onset_of_surface, ZoneLimits
 
 def totals(running, optimal, outside=0.0):
     """Return totals of times in motion [s]; the rest could not be judged."""
-    running, optimal, outside = (round(time * SECOND) for time in (running, optimal, outside))
     return Totals(
         running_time=running,
         optimal_time=optimal,

@@ -5,7 +5,16 @@
 import math
 
 from health_parts.machine import catalogue_drag, size_of
-from health_parts.public_data import read_ageing, read_milling, recordings
+from health_parts.public_data import (
+    ageing_looks,
+    Milling,
+    public_lines,
+    read_ageing,
+    read_milling,
+    recordings,
+    steady_share,
+)
+import numpy as np
 import pytest
 
 FOLDER = recordings()
@@ -44,6 +53,46 @@ def test_no_folder_is_none(monkeypatch, tmp_path):
     assert recordings() is None
     monkeypatch.setenv('BALLSCREW_RECORDINGS', str(tmp_path))
     assert recordings() == tmp_path
+
+
+def test_an_ageing_that_loses_a_fifth_at_once_is_found_with_its_size():
+    hours, odd = 35.0 * np.arange(30), 1.0 + 0.005 * (-1.0) ** np.arange(30)
+    torque = 0.4 * odd * np.where(hours < 500.0, 1.0, 0.8)
+    seen = ageing_looks(hours, torque)
+    assert not any(look.raised for look in seen[:14])
+    assert 15 <= next(look.log for look in seen if look.raised) <= 18
+    assert seen[-1].low <= -0.2 <= seen[-1].high
+    assert not any(look.raised for look in ageing_looks(hours, 0.4 * odd))
+
+
+def test_constant_motion_at_ten_samples_a_second_counts_as_steady():
+    """Ten passes of 6 s at 20 mm/s and a second of rest after each, with a ripple of 1 %."""
+    ripple = 1.0 + 0.01 * np.sin(np.arange(700))
+    way = np.repeat(np.where(np.arange(10) % 2, -1.0, 1.0), 70)
+    moving = np.tile(np.arange(70) < 60, 10)
+    speed = 0.02 * ripple * way * moving
+    run = Milling(
+        time=np.arange(700) / 10.0,
+        position=np.cumsum(speed) / 10.0,
+        speed=speed,
+        current=3.0 * way,
+    )
+    motion, steady, speeds = steady_share(run)
+    assert motion == pytest.approx(60.0)
+    assert 50.0 <= steady <= 60.0
+    assert speeds == 1
+
+
+@RECORDED
+def test_public_measurements_have_a_line_each():
+    lines = list(public_lines(FOLDER))
+    assert [line.split(' | ')[0] for line in lines[2:4] + lines[7:]] == [
+        '| first',
+        '| second',
+        '| X',
+        '| Y',
+    ]
+    assert ' h | -1' in lines[2]  # the first screw is found after it has lost some ten per cent
 
 
 @RECORDED

@@ -3,6 +3,7 @@
 """The subcommand `figures` as a user types it."""
 
 import pytest
+from surrogate.commands.figures import read_measured
 from surrogate.files import InputError
 
 COMMAND = ('figures',)
@@ -36,3 +37,16 @@ def test_bad_input_is_one_sentence(run, tmp_path, words, sentence):
     with pytest.raises(InputError, match=sentence):
         run('--out', tmp_path / 'out', *words)
     assert not (tmp_path / 'out').exists()
+
+
+def test_measurements_are_read_and_refused(tmp_path):
+    path = tmp_path / 'torque.csv'
+    path.write_text('speed_rev_min,torque_Nm\n60,0.2\n', encoding='utf-8')
+    assert [values.tolist() for values in read_measured(path)] == [[60.0], [0.2], [0.0]]
+    for text in (
+        *('speed,torque_Nm\n60,0.2\n', 'speed_rev_min,torque_Nm\nx,1\n'),
+        *('speed_rev_min,torque_Nm\n0,1\n', 'speed_rev_min,torque_Nm\n'),
+    ):
+        path.write_text(text, encoding='utf-8')
+        with pytest.raises(InputError, match=r'needs numbers|could not convert'):
+            read_measured(path)

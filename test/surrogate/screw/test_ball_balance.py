@@ -5,6 +5,7 @@
 from dataclasses import fields, replace
 import math
 
+from coulomb import coulomb_traction
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
@@ -20,7 +21,7 @@ from surrogate.screw.ball_balance import _floors, balance_ball, BalanceSettings,
 from surrogate.screw.ball_equations import BallProblem
 from surrogate.screw.ball_motion import axis_vector, contact_frame, slip_field, slip_floor
 from surrogate.screw.ball_result import BalanceStatus, BallContact
-from surrogate.screw.ball_traction import coulomb_traction, SolvedTraction
+from surrogate.screw.ball_traction import SolvedTraction
 
 SCREW = load_screw('nominal')
 SPEED = 600 * math.pi / 30

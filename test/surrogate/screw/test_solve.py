@@ -6,6 +6,7 @@ from dataclasses import replace
 import math
 from types import SimpleNamespace
 
+from coulomb import coulomb_traction
 import numpy as np
 import pytest
 from surrogate.asperities import law as asperity_law
@@ -20,7 +21,6 @@ from surrogate.raceway.ball import draw_stated
 from surrogate.screw import closed_form, nut
 from surrogate.screw.ball_balance import balance_ball
 from surrogate.screw.ball_motion import slip_floor
-from surrogate.screw.ball_traction import coulomb_traction
 from surrogate.screw.contacts import (
     GRID_WAVELENGTH,
     make_contacts,

@@ -13,8 +13,8 @@ from surrogate.commands.figures import DRAWS
 from surrogate.parameters import load_lubricant, load_screw
 from surrogate.screw.opened import Contacts
 from surrogate.studies import report as judged
+from surrogate.studies.curves import nut_rows, StudyRow
 from surrogate.studies.report import marks, report, trends
-from surrogate.studies.rows import nut_rows, StudyRow
 from surrogate.studies.solve import known_inputs, solve_task
 from surrogate.studies.tasks import FIGURES, RELIEVED, SMOOTH, STANDING, StudyTask, tasks
 from surrogate.tasks.table import read_table
@@ -63,7 +63,7 @@ def test_page_of_numbers_is_the_report_of_the_rows_of_the_default_run():
     'words',
     [
         f'{100 * mark("rolling share", "standing").value:.0f} % of it at 600 rev/min',
-        trend('contact at higher').rolling.said.split(', standard')[0],
+        trend('contact at higher').rolling.text.split(', standard')[0],
         f'Central film {mark("central film, smooth").shown} smooth',
         f'{mark("central film, inlet", "Pa s, preload").shown} at preload',
         f'by {100 * mark("central film, inlet", "2400 N").value - 100:.1f} % to 2400 N',
@@ -118,7 +118,6 @@ def test_asperities_move_to_the_centre():
 
 def test_statistical_contact_and_other_rules_of_friction():
     """Efficiency rises without rolling losses; the central film changes sliding a little."""
-    assert mark('efficiency, statistical share', 'least step').value > 1e-4
     first, last = (
         mark('efficiency, statistical share', f', {rpm} rev/min').value for rpm in ('2', '1000')
     )
@@ -189,7 +188,7 @@ def test_a_change_as_large_as_the_tolerance_is_none_and_words_of_a_course():
     at = np.array([2.0, 20.0, 1000.0])
     found = judged.read_course(at, np.array([90.0, 50.0, 205.0]), ('falls', 'rises'), 'rev/min')
     assert found == judged.Reading(
-        said='90 at 2 rev/min, falls to 50 at 20, rises to 205 at 1000', agrees='yes'
+        text='90 at 2 rev/min, falls to 50 at 20, rises to 205 at 1000', agrees='yes'
     )
     assert judged.read_course(at[:1], at[:1], ('falls',), 'N') is None
 
@@ -224,9 +223,9 @@ def test_onsets_are_judged_by_the_film_ratio():
     first = trends(SCREW, LAW, rows)[0]
     assert first.rolling is not None
     assert first.standing is not None
-    assert first.rolling.said.startswith('500 rev/min')
+    assert first.rolling.text.startswith('500 rev/min')
     assert first.rolling.agrees == 'yes'
-    assert first.standing.said.startswith('50 rev/min')
+    assert first.standing.text.startswith('50 rev/min')
     assert first.standing.agrees == 'no'
 
 
@@ -239,18 +238,12 @@ def test_nuts_share_the_contacts_under_preload():
     assert [len(nut_rows(rows, nut)) for nut in ('loaded', 'relieved')] == [2, 2]
 
 
-def test_table_and_summary():
-    """A row for each trend, empty where a model says nothing; the list names what changed."""
-    yes, no = judged.Reading(said='a', agrees='yes'), judged.Reading(said='b', agrees='no')
-    found = [
+def test_table_of_trends():
+    """A row for each trend, empty where a model says nothing."""
+    yes, no = judged.Reading(text='a', agrees='yes'), judged.Reading(text='b', agrees='no')
+    every = [
         judged.Trend(name='one', published='falls', standing=no, rolling=yes),
         judged.Trend(name='two', published='rises', standing=None, rolling=no),
     ]
     expected = ['| one | falls | b | no | a | yes |', '| two | rises |  |  | b | no |']
-    assert judged.trend_table(found).splitlines()[2:] == expected
-    assert judged.summary(found).splitlines() == [
-        '* Rolling roughness, agree: one.',
-        '* Rolling roughness, agree in part: none.',
-        '* Rolling roughness, differ: two.',
-        '* Unlike standing roughness: one.',
-    ]
+    assert judged.trend_table(every).splitlines()[2:] == expected

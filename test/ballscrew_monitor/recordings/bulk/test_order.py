@@ -6,7 +6,7 @@ import heapq
 import itertools
 
 from ballscrew_monitor.core.inputs import InputSample
-from ballscrew_monitor.judge.records import TICK
+from ballscrew_monitor.judge.records import RUN, TICK
 from ballscrew_monitor.judge.step import BACKWARD_JUMP
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bulk import batches as batches_module
@@ -333,3 +333,12 @@ def test_stamps_decades_apart_are_ordered_and_arrivals_wait():
     parts = [order.push(found, BEGIN + 3 * MS), order.push(joined([]), BEGIN + 4 * MS)]
     everything = joined([*parts, order.finish()])
     assert everything['value'][everything['kind'] != TICK].tolist() == [1.0, 2.0, 0.0]
+
+
+@pytest.mark.parametrize('cut', range(1, 6))
+def test_between_runs_there_is_no_tick_but_the_begin_of_the_next(cut):
+    times = BEGIN + MS * np.array([0, 150, 250, 3050, 3150, 3250])
+    order = EventOrder(PERIOD, [BEGIN + 1600 * MS])
+    due = joined([order.ticks(times[:cut]), order.ticks(times[cut:])])
+    assert ((due['stamp'] - BEGIN) // MS).tolist() == [0, 100, 200, 1600, 3100, 3200]
+    assert due['kind'].tolist() == [TICK] * 3 + [RUN] + [TICK] * 2

@@ -54,8 +54,11 @@ TYPES = {
 
 
 def content_of(log, rate=10.0):
-    """Return the first map of a log, whose rate [Hz] is stated if it has no time."""
+    """Return the first map of a log, with what it asks for: the rate [Hz], units of currents."""
     content = guess(log).content
+    for axis in content['axes'].values():
+        if 'unit' in axis.get('current', {}):
+            axis['current']['unit'] = 'A'
     if 'rate_Hz' in content['time']:
         content['time']['rate_Hz'] = rate
     return content
@@ -415,7 +418,8 @@ def test_a_guess_is_a_map_that_works_once_the_rate_is_stated(mill_log, tmp_path,
     ):
         assert cli.main(command) == 2, command
         assert says('blank_rate') in capsys.readouterr().err
-    mapping.write_text(captured.out.replace('rate_Hz: null', 'rate_Hz: 10'))
+    stated = captured.out.replace('rate_Hz: null', 'rate_Hz: 10').replace('unit: null', 'unit: A')
+    mapping.write_text(stated)
     assert cli.main(['import', str(mill_log), '--config', str(mapping), '--out', str(bag)]) == 0
     assert '  assumed x.lead_mm = 10.0: ' in capsys.readouterr().out
     assert cli.main(['replay', str(bag), '--json']) == 1, 'axis z has no load'

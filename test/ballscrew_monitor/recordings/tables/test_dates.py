@@ -11,6 +11,7 @@ from ballscrew_monitor.recordings.tables.log import TableLog
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from hypothesis import given
 from hypothesis import strategies as st
+import polars as pl
 import pytest
 from surrogate.files import InputError
 
@@ -80,6 +81,28 @@ def test_a_head_dates_a_log(head):
     assert date_in_head(head) == MOMENT
 
 
+@pytest.mark.parametrize(
+    ('start', 'order', 'moment'),
+    [
+        ('22-7-2026 09:14:03', '', (2026, 7, 22, 9, 14, 3)),
+        ('5-2-2025 06:59:42', 'dmy', (2025, 2, 5, 6, 59, 42)),
+        ('5-2-2025 06:59:42', 'mdy', (2025, 5, 2, 6, 59, 42)),
+        ('7-7-2025 06:59:42', '', (2025, 7, 7, 6, 59, 42)),
+    ],
+)
+def test_the_start_of_a_head_dates_a_log(tmp_path, start, order, moment):
+    log = write(tmp_path / 'a.csv', f'Scope Export\nStartTime,{start}\n\n')
+    mapping = content(date_from='header')
+    mapping['time'] |= {'order': order} if order else {}
+    assert begin_of(log, mapping) == datetime.datetime(*moment, tzinfo=datetime.UTC)
+
+
+def test_a_start_of_either_order_is_refused(tmp_path, refused):
+    log = write(tmp_path / 'a.csv', 'Scope Export\nStartTime,5-2-2025 06:59:42\n\n')
+    with refused('either_order', log=log):
+        TableLog(log, make_map(content(date_from='header')))
+
+
 def test_a_log_begins_at_its_date(tmp_path):
     folder = tmp_path / '2025-07-13'
     folder.mkdir()
@@ -127,5 +150,7 @@ def test_a_log_without_a_date_is_refused(tmp_path, refused):
 
 
 def test_the_head_of_a_binary_table_has_no_date(tmp_path):
+    log = tmp_path / 'a.parquet'
+    pl.DataFrame({'t': [0.0, 0.1], 'v': [1.0, 2.0]}).write_parquet(log)
     with pytest.raises(InputError, match='date_from header is for texts such as CSV'):
-        TableLog(tmp_path / 'a.parquet', make_map(content(date_from='header')))
+        TableLog(log, make_map(content(date_from='header')))

@@ -5,7 +5,6 @@
 from ballscrew_monitor.recordings.tables.estimates import (
     DAY,
     is_magnitude,
-    is_rising,
     Midnights,
     period,
     position_unit,
@@ -39,15 +38,6 @@ def test_the_largest_speed_tells_the_unit_where_nothing_else_does(largest, unit)
 def test_the_largest_place_tells_the_unit():
     assert position_unit(np.array([0.0, 2.0]))[0] == 'm'
     assert position_unit(np.array([0.0, -2.1]))[0] == 'mm'
-
-
-def test_times_rise_but_for_a_few():
-    rising = np.arange(50.0)
-    assert is_rising(rising)
-    rising[20] = 3.0
-    assert is_rising(rising)
-    assert not is_rising(np.zeros(50))
-    assert not is_rising(np.sin(np.arange(50.0)))
 
 
 @given(

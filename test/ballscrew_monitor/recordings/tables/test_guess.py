@@ -31,12 +31,12 @@ def test_a_mill_log_is_understood(mill_log, says, refused):
     assert axes['x'] == {
         'speed': {'column': 'X1_ActualVelocity'},
         'position': {'column': 'X1_ActualPosition'},
-        'current': {'column': 'X1_CurrentFeedback'},
+        'current': {'column': 'X1_CurrentFeedback', 'unit': None},
     }
     assert axes['z']['load'] == {'unknown': 'Z1_CurrentFeedback is always 0'}
     assert 'current' not in axes['z']
     assert made.content['time'] == {'rate_Hz': None}
-    assert made.unstated == (says('state_rate'),)
+    assert made.unstated == (*map(says, ('current_x', 'current_y', 'state_rate')),)
     assert f'#   {made.unstated[0]}\n' in made.text
     assert assumed['x.speed.unit']['value'] == 'mm/s'
     assert assumed['x.load.from']['value'] == 'current'
@@ -46,6 +46,8 @@ def test_a_mill_log_is_understood(mill_log, says, refused):
     assert any('axis z: the load is not known' in note for note in made.notes)
     assert yaml.safe_load(made.text) == made.content
     refused('blank_rate', make_map, made.content)
+    for name in ('x', 'y'):
+        axes[name]['current']['unit'] = 'A'
     assert make_map(made.content | {'time': {'rate_Hz': 10.0}}).rate == 10.0
 
 
@@ -105,18 +107,20 @@ def test_a_force_is_in_newtons_if_no_axis_holds_as_many_kilonewtons(
 ):
     force = amount * np.cos(TIME)
     made = guessed({'t_s': TIME, 'v_x': SPEED, 'f_x': force, 'curr_x': SPEED / 50})
+    assert says('current_left_out') in made.notes
     if unit:
         assert made.content['assumed']['x.load.unit']['value'] == unit
         assert not made.unstated
         return
     assert made.content['axes']['x']['load'] == {'column': 'f_x', 'unit': None}
     assert 'x.load.unit' not in made.content['assumed']
-    assert made.content['axes']['x']['current'] == {'column': 'curr_x'}
+    assert 'current' not in made.content['axes']['x']
     refused('force_unit_missing', make_map, made.content)
     if amount == 0.9:
         assert made.unstated == (says('force_of_any_unit'),)
         assert f'#   {made.unstated[0]}\n' in made.text
     made.content['axes']['x']['load'] = {'from': 'current'}
+    made.content['axes']['x']['current'] = {'column': 'curr_x', 'unit': 'A'}
     refused('constant_missing', make_map, made.content)
 
 
@@ -340,8 +344,58 @@ def test_a_relative_time_is_dated_by_the_name(name, moment, tmp_path, write_csv)
     assert f'start {moment} from the name of the' in made.text
 
 
+@pytest.mark.parametrize(('start', 'order'), [('22-7-2026', 'dmy'), ('7-22-2026', 'mdy')])
+def test_a_relative_time_is_dated_by_the_head_in_the_order_that_it_shows(start, order, tmp_path):
+    log = tmp_path / '2025-01-01.csv'
+    rows = ''.join(f'{0.1 * at:.1f},{at % 7}\n' for at in range(100))
+    log.write_text(f'Scope Export\nStartTime,{start} 09:14:03\n\nt_s,x_vel\n{rows}')
+    made = guess(log)
+    assert made.content['date_from'] == 'header'
+    assert made.content['time']['order'] == order
+    assert 'time.epoch' not in made.content['assumed']
+    assert 'start 2026-07-22 09:14:03 from line 2' in made.text
+
+
+def test_a_head_of_either_order_dates_nothing_and_says_how(tmp_path):
+    log = tmp_path / 'a.csv'
+    rows = ''.join(f'{0.1 * at:.1f},{at % 7}\n' for at in range(100))
+    log.write_text(f'Scope Export\nStartTime,5-2-2025 09:14:03\n\nt_s,x_vel\n{rows}')
+    made = guess(log)
+    assert 'date_from' not in made.content
+    assert 'time: {order: dmy} or mdy' in made.content['assumed']['time.epoch']['reason']
+
+
 def test_a_name_dates_no_time_that_has_a_date(tmp_path, write_csv):
     columns = {'Timestamp': 1.7e9 + TIME, 'x_vel': SPEED}
     made = guess(write_csv(tmp_path / '2025-07-14.csv', columns, form='{:.12g}'))
     assert 'date_from' not in made.content
     assert 'date_from' not in guess(write_csv(tmp_path / 'a.csv', columns)).content
+
+
+@pytest.mark.parametrize(
+    ('name', 'zero', 'unit'),
+    [
+        ('MJD', 60870.4999, 'mjd'),
+        ('Time [d]', 45852.4999, 'spreadsheet_days'),
+        ('t [d]', 0.0, 'd'),
+    ],
+)
+def test_days_are_those_of_their_epoch(name, zero, unit, guessed):
+    made = guessed({name: zero + TIME / 86400.0, 'v_x [mm/s]': SPEED}, form='{:.12g}')
+    assert made.content['time'] == {'column': name, 'unit': unit}
+
+
+def test_seconds_of_a_day_are_no_days(guessed):
+    seconds = 45852.0 + 1e-3 * np.arange(len(TIME))
+    made = guessed({'time': seconds, 'v_x [mm/s]': SPEED}, form='{:.12g}')
+    assert made.content['time'] == {'column': 'time', 'unit': None}
+
+
+def test_words_in_the_rows_of_another_signal_are_to_be_left_empty(guessed, says):
+    rows = np.arange(len(TIME))
+    speed, force = (np.where(rows % 2 == own, SPEED, np.nan) for own in (0, 1))
+    made = guessed({'t_s': TIME, 'v_x [mm/s]': speed, 'f_x [N]': force})
+    assert says('joined') in made.notes
+    holed = np.where(rows % 7 == 0, np.nan, SPEED)
+    made = guessed({'t_s': TIME, 'v_x [mm/s]': holed, 'f_x [N]': holed})
+    assert says('joined') not in made.notes

@@ -18,6 +18,7 @@ from ballscrew_monitor.recordings.tables import sources
 from ballscrew_monitor.recordings.tables.convert import convert
 from ballscrew_monitor.recordings.tables.log import TableLog
 from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_msgs.msg import OutOfZone
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 import numpy as np
@@ -204,6 +205,87 @@ def test_what_the_rows_say_of_the_map_is_known_once_they_are_read(tmp_path):
         assert note.startswith('axis x: its position moves 0.1667 times as far')
 
 
+def appended(columns, runs):
+    """Return the columns of a log to which a logger appended runs, each with the same times."""
+    return {name: list(cells) * runs for name, cells in columns.items()}
+
+
+def by_run(log, values):
+    """Return the rows of each run and axis, but for stamps and numbers of events."""
+    found = {}
+    for part in replay_parts(log, values, states=False):
+        if not isinstance(part, AxisOutcome):
+            found.setdefault((part.run, part.axis), []).append(part.rows.copy())
+    ends = ('stamp', 'now', 'level_since', 'event_id')
+    return {
+        key: {
+            name: column
+            for name, column in compared(np.concatenate(parts)).items()
+            if name not in ends
+        }
+        for key, parts in found.items()
+    }
+
+
+@given(
+    axes=st.sampled_from(MAPS),
+    rows=st.lists(ROW.filter(lambda row: 0 < row[0] < 1000), min_size=12, max_size=24),
+    runs=st.integers(2, 3),
+    block=st.sampled_from([7, 1000]),
+)
+@settings(max_examples=12, deadline=None)
+def test_each_run_is_judged_as_if_it_were_alone(axes, rows, runs, block):
+    """Its rows are bit for bit those of a log of this run, as a table and as the bag of it."""
+    rows = [WHOLE, MOVED, *rows, *[MOVED] * len(rows)]
+    steps, speed, load, torque, position, warmth = zip(*rows)
+    columns = {'t': np.cumsum(steps), 'v': speed, 'F': load, 'M': torque}
+    columns |= {'p': position, 'T': warmth}
+    with tempfile.TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sources, 'BLOCK', block)
+        alone = TableLog(write(folder, columns), map_of(axes))
+        values = parameters_of(alone)
+        wanted = by_run(alone, values)
+        path = write(folder, appended(columns, runs))
+        log, bag = TableLog(path, map_of(axes)), Path(folder) / 'bag'
+        convert(path, map_of(axes), bag)
+        assert parameters_of(log) == values
+        found = by_run(log, values)
+        assert found == {
+            (run, axis): rows for run in range(runs) for (_, axis), rows in wanted.items()
+        }
+        assert by_run(Bag(bag), values) == found
+        assert len(Bag(bag).run_borders) == runs - 1
+
+
+def test_a_warning_ends_with_its_run_and_pauses_count_for_nothing(tmp_path):
+    """Three runs of 3 s: 80, -40 and 10 mm/s on a lead of 10 mm are 39 revolutions."""
+    count = np.arange(300)
+    columns = {
+        't': np.tile(10 * count, 3),
+        'v': np.repeat([80.0, -40.0, 10.0], 300),
+        'F': np.repeat([-300.0, 300.0, -300.0], 300),
+    }
+    log = TableLog(write(tmp_path, columns), map_of(MAPS[0]))
+    rows, outcome = rows_and_outcome(log)
+    summary = outcome.summary()
+    assert [run.duration for run in summary.runs] == pytest.approx([2.99] * 3)
+    assert summary.recorded == summary.running_time == pytest.approx(8.97)
+    assert summary.revolutions == pytest.approx(8.97 / 3 * 13.0)
+    assert [run.revolutions for run in summary.runs] == pytest.approx([23.92, 11.96, 2.99])
+    assert [run.warnings for run in summary.runs] == [1, 1, 1]
+    assert [event.run_ended for event in outcome.events] == [True, True, False]
+    ends = [(event.start, event.end) for event in outcome.events]
+    assert ends == [(run.first, run.last) for run in summary.runs]
+    assert len(rows) == 900  # no tick lies in a pause
+    messages = [event for _, event in replay(log, parameters_of(log)) if event is not None]
+    over = [(event.event_id, event.advice) for event in messages if not event.active]
+    assert over == [(1, 'the run ended'), (2, 'the run ended')]
+    assert {event.ending for event in messages if not event.active} == {OutOfZone.ENDING_RUN_ENDED}
+    said = '\n'.join(summary.lines())
+    assert 'in motion   9.0 s of 9.0 s, 39 revolutions' in said
+    assert 'runs        3, each judged apart' in said
+
+
 def test_memory_does_not_grow_with_the_rows(tmp_path, monkeypatch):
     monkeypatch.setattr(sources, 'BLOCK', 1000)
     monkeypatch.setattr(table_log, 'AT_ONCE', 2000)
@@ -220,3 +302,13 @@ def test_memory_does_not_grow_with_the_rows(tmp_path, monkeypatch):
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     assert peaks[2] - peaks[1] < 500_000  # 35 000 rows are 840 000 bytes, their events 5 million
+
+
+def test_a_topic_of_which_a_load_was_worked_out_is_not_unread(tmp_path):
+    path = tmp_path / 'log.csv'
+    path.write_text('t,v,M\n' + ''.join(f'{n},5.0,\n{n + 5},,0.4\n' for n in range(0, 900, 10)))
+    axis = {'speed': SPEED, 'torque': TORQUE, 'load': {'from': 'torque'}, 'lead_mm': 10.0}
+    log = TableLog(path, make_map({'time': TIME, 'axes': {'x': axis}}))
+    assert log.worked_out == {'/joint_states_2'} <= set(log.topics)
+    read = axis | {'load': {'unknown': 'no sensor'}}
+    assert not TableLog(path, make_map({'time': TIME, 'axes': {'x': read}})).worked_out

@@ -3,10 +3,14 @@
 """Tables that are not as they should be: one sentence, or the good part and how much it is."""
 
 import datetime as dt
+from pathlib import Path
+import tempfile
 
 from ballscrew_monitor.recordings.tables import cells, sources
 from ballscrew_monitor.recordings.tables.quantities import Layout
-from ballscrew_monitor.recordings.tables.read import column_names, open_table
+from ballscrew_monitor.recordings.tables.read import column_names, look_through, open_table
+from hypothesis import given
+from hypothesis import strategies as st
 import numpy as np
 import polars as pl
 import pytest
@@ -214,3 +218,50 @@ def test_rows_are_the_lines_of_the_file(text, layout, tmp_path):
     lines = text.splitlines()
     assert lines[unknown[-1] - 1].endswith('oops')
     assert f'in row {unknown[-1]};' in table.notes[0]
+
+
+PLAIN = ['1', '20', '-3', '0.5', '2.5', '1e5', '7.25']
+ODD = [*PLAIN, '', ' ', 'x', 'nan', 'inf', '1.234', '1,5', '1,234.5', '1 234', '12:30:00', '"8"']
+
+
+def looked_through(path, tries):
+    """Return all that is known of a table and its cells, where parts may have types or none."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sources, 'PART', 24)
+        patch.setattr(sources, 'TRIES', tries)
+        try:
+            table = look_through(sources.source_of(path), ['a', 'b'], optional=['a', 'b'])
+        except InputError as error:
+            return str(error)
+        columns = {name: [repr(one) for one in cells] for name, cells in table.head(999).items()}
+        readings = {
+            name: (one.note, one.holes, one.extremes.tolist())
+            for name, one in table.readings.items()
+        }
+        return columns, readings, table.notes, table.doubts, table.left_out, table.decision
+
+
+@given(
+    first=st.lists(st.tuples(st.sampled_from(PLAIN), st.sampled_from(PLAIN)), min_size=3),
+    rest=st.lists(st.tuples(st.sampled_from(PLAIN), st.sampled_from(ODD)), max_size=12),
+    last=st.lists(st.tuples(st.sampled_from(ODD), st.sampled_from(PLAIN)), max_size=6),
+)
+def test_a_text_read_by_types_is_the_text_read_as_text(first, rest, last):
+    """Columns of plain numbers may go on with anything else."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / 'log.csv'
+        rows = [f'{a};{b}' for a, b in [*first, *rest, *last]]
+        path.write_text('\n'.join(['a;b', *rows]) + '\n')
+        assert looked_through(path, 3) == looked_through(path, 0)
+
+
+def test_cells_of_plain_numbers_are_read_by_type(tmp_path):
+    """Once a decimal point or none at all is shown, no text is made of them."""
+    path = tmp_path / 'log.csv'
+    path.write_text('a,b\n' + ''.join(f'{row},{row + 0.25}\n' for row in range(200_000)))
+    table = open_table(path, ['a', 'b'])
+    types = {name: one.plain for name, one in table.readings.items()}
+    assert types == {'a': pl.Int64, 'b': pl.Float64}
+    blocks = list(table.source.blocks(['a', 'b'], types))
+    assert {tuple(block.dtypes) for block in blocks} == {(pl.Int64, pl.Float64)}
+    assert table.readings['b'].extremes.tolist() == [0.25, 199_999.25]

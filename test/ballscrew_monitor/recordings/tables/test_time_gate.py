@@ -206,7 +206,7 @@ def test_a_time_that_begins_again_is_that_of_another_run(read, ending):
     assert (stamps[1:, 0] - stamps[:-1, -1] >= 1e9).all()
     first = {'parquet': 1}.get(ending, 2)
     assert f'rows {first + 300} to {first + 599} (2.99 s)' in series.notes[-1]
-    assert 'a warning may go on into the next' in series.notes[-1]
+    assert '3 runs are each judged apart' in series.notes[-1]
 
 
 def test_a_clock_that_is_set_back_for_winter_goes_on(read):

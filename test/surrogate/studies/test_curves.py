@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from surrogate.asperities.law import VERSION
 from surrogate.parameters import load_lubricant, load_screw
-from surrogate.studies import rows as curves
-from surrogate.studies.rows import inputs_hash, StudyRow
+from surrogate.studies import curves
+from surrogate.studies.curves import inputs_hash, StudyRow
 from surrogate.studies.solve import known_inputs, run_study
 from surrogate.studies.tasks import FIGURES, SHORT, SMOOTH, STANDING, StudyTask, tasks
 from surrogate.tasks.table import read_table, write_table

@@ -26,7 +26,6 @@ from surrogate.studies.tasks import OURS, PRELOAD, RELIEVED, ROUGH_SPEEDS, SMOOT
 
 Array = NDArray[np.float64]
 Along = Literal['rpm', 'load']
-TASK = ('kind', 'case', 'rpm', 'load', 'draw')
 VERSION = '2'
 """Of what a row means; other versions are not read."""
 NO_CONTACT = 1e-6
@@ -34,14 +33,13 @@ NO_CONTACT = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class StudyRow:
+class StudyRow(StudyTask):
     """
-    One solve; numbers that its kind does not have, or that did not converge, are NaN.
+    One solved task; numbers that its kind does not have, or that did not converge, are NaN.
 
-    Task: kind, case, screw speed [rev/min], axial load [N], draw. Contact or worst contact: normal
-    force [N], entrainment speed [m/s], films at the centre, over the inner half of the ellipse and
-    the least [m], largest pressure [Pa], RCS and asperity share [-], mean distance of
-    the asperity load from the centre over the semi-axes [-].
+    Contact or worst contact: normal force [N], entrainment speed [m/s], films at the centre, over
+    the inner half of the ellipse and the least [m], largest pressure [Pa], RCS and asperity share
+    [-], mean distance of the asperity load from the centre over the semi-axes [-].
     Screw: standard deviation of RCS by that of the law, RCS of loaded and relieved nut [-],
     friction torque and its sliding and rolling part, the sliding part with the central film in
     Eyring's law, the torque of friction along the track [N m], friction coefficient and its parts
@@ -50,11 +48,6 @@ class StudyRow:
     """
 
     inputs: str
-    kind: str
-    case: str = OURS
-    rpm: float
-    load: float
-    draw: int = SMOOTH
     status: str = ''
     normal_force: float = math.nan
     entrainment_speed: float = math.nan
@@ -78,24 +71,12 @@ class StudyRow:
     asperity_coefficient: float = math.nan
     seconds: float = math.nan
 
-    @property
-    def key(self) -> str:
-        """Name of the task that the row answers."""
-        task: Any = {name: getattr(self, name) for name in TASK}
-        return StudyTask(**task).key
-
 
 def markdown_table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     """Return rows below their heads as a table in Markdown."""
     names = list(heads)
     lines = [f'| {" | ".join(names)} |', f'|{len(names) * "---|"}']
     return '\n'.join(lines + [f'| {" | ".join(cells)} |' for cells in rows])
-
-
-def row_of(task: StudyTask, inputs: str, status: str, **numbers: Any) -> StudyRow:
-    """Return the row of a task."""
-    words: Any = {name: getattr(task, name) for name in TASK}
-    return StudyRow(inputs=inputs, status=status, **words, **numbers)
 
 
 def inputs_hash(screw: Screw, lubricant: Lubricant, law: str = '') -> str:
@@ -141,23 +122,29 @@ def pick(rows: Iterable[StudyRow], **wanted: Any) -> list[StudyRow]:
 
 def curve(rows: Iterable[StudyRow], along: Along, name: str, **wanted: Any) -> Curve:
     """Return the mean of a column over draws, along speed or load."""
-    groups: dict[float, list[float]] = {}
+    draws: dict[float, list[float]] = {}
     for row in pick(rows, **wanted):
-        groups.setdefault(getattr(row, along), []).append(getattr(row, name))
-    places = sorted(groups)
-    counts = np.array([len(groups[place]) for place in places])
-    spreads = np.array([_deviation(groups[place]) for place in places])
+        draws.setdefault(getattr(row, along), []).append(getattr(row, name))
+    groups = [draws[place] for place in sorted(draws)]
+    counts = np.array([len(group) for group in groups])
+    deviation = np.array([_deviation(group) for group in groups])
     return Curve(
-        at=np.array(places, dtype=float),
-        mean=np.array([np.mean(groups[place]) for place in places], dtype=float),
-        deviation=spreads,
-        error=spreads / np.sqrt(counts),
-        draws=int(counts.min(initial=10**6)) if places else 0,
+        at=np.array(sorted(draws), dtype=float),
+        mean=np.array([np.mean(group) for group in groups], dtype=float),
+        deviation=deviation,
+        error=deviation / np.sqrt(counts),
+        draws=int(counts.min()) if groups else 0,
     )
 
 
 def _deviation(values: list[float]) -> float:
     return float(np.std(values, ddof=1)) if len(values) > 1 else math.nan
+
+
+def mean_of(rows: Iterable[StudyRow], name: str, **wanted: Any) -> float:
+    """Return the mean of a column over the wanted rows, in its unit; NaN without one."""
+    values = [getattr(row, name) for row in pick(rows, **wanted)]
+    return float(np.mean(values)) if values else math.nan
 
 
 def screw_speeds(rows: Iterable[StudyRow], name: str, case: str = OURS) -> Curve:
@@ -211,20 +198,20 @@ def paired_change(
     return float(np.mean(changes)), _deviation(changes) / math.sqrt(len(changes)), len(changes)
 
 
-def crossing(found: Curve, limit: float) -> float:
+def crossing(falling: Curve, limit: float) -> float:
     """
     Return the fastest place at which a falling mean passes `limit`, by logarithms; NaN if never.
 
     `limit` in the unit of the column.
 
     """
-    above = np.flatnonzero(found.mean >= limit)
-    if not above.size or above[-1] + 1 == len(found.mean):
+    above = np.flatnonzero(falling.mean >= limit)
+    if not above.size or above[-1] + 1 == len(falling.mean):
         return math.nan
     i = int(above[-1])
-    high, low = np.log(np.maximum(found.mean[[i, i + 1]], NO_CONTACT))
+    high, low = np.log(np.maximum(falling.mean[[i, i + 1]], NO_CONTACT))
     part = (high - math.log(limit)) / (high - low)
-    return float(found.at[i] * (found.at[i + 1] / found.at[i]) ** part)
+    return float(falling.at[i] * (falling.at[i + 1] / falling.at[i]) ** part)
 
 
 def efficiencies(screw: Screw, rows: Iterable[StudyRow], column: str = 'friction_torque') -> Array:
@@ -242,14 +229,14 @@ def constant_friction_efficiency(screw: Screw, load: float) -> float:
 
 
 def mapped(rows: Iterable[StudyRow], **wanted: Any) -> list[StudyRow]:
-    """Return the rows of the whole screw under load, by load and speed."""
-    found = [row for row in pick(rows, kind='screw', **wanted) if row.load > 0]
-    return sorted(found, key=lambda row: (row.load, row.rpm))
+    """Return the rows of the screw under load, by load and speed, in the full tier by default."""
+    loaded = [row for row in pick(rows, **({'kind': 'screw'} | wanted)) if row.load > 0]
+    return sorted(loaded, key=lambda row: (row.load, row.rpm))
 
 
 def grid(rows: Iterable[StudyRow], name: str) -> tuple[Array, Array, Array]:
     """Return speeds [rev/min], loads [N] and a column of the map; NaN where none was solved."""
-    found = {(row.load, row.rpm): getattr(row, name) for row in mapped(rows)}
-    loads, speeds = (sorted({key[i] for key in found}) for i in (0, 1))
-    values = [[found.get((load, rpm), math.nan) for rpm in speeds] for load in loads]
+    solved = {(row.load, row.rpm): getattr(row, name) for row in mapped(rows)}
+    loads, speeds = (sorted({place[i] for place in solved}) for i in (0, 1))
+    values = [[solved.get((load, rpm), math.nan) for rpm in speeds] for load in loads]
     return np.array(speeds), np.array(loads), np.array(values, dtype=float)

@@ -1,0 +1,162 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Alarms of a fleet: control of the share of false ones among the axes that are told worse.
+
+Each axis has an e-value against "no change" that only grows within a year, so that it is valid at
+any time. Axes are told by the rule of Benjamini and Hochberg for e-values, with shares of the
+level in the order of their first logs: neither a later log nor a further axis withdraws an alarm.
+
+"""
+
+from collections.abc import Mapping, Sequence
+import dataclasses
+import itertools
+import math
+from typing import TypeVar
+
+from ballscrew_monitor.health.mixed import CHANGE_RATE
+from ballscrew_monitor.health.records import Condition, Health
+from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.health.words import verdict_of
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Key = TypeVar('Key')
+LEVEL = 0.1
+"""Share of false alarms among the axes that are told worse in a year, at most in the mean [-]."""
+ALARM = 0.02
+"""Probability that an axis without a change alarms by itself within a year, at most [-]."""
+YEAR, WEEK = 365 * DAY, 7 * DAY
+SHARES = 2.10974
+"""Sum of 1/(n ln(n)^2) over all n from 2 on."""
+DRAG = 'drag change'
+
+
+def bayes_factor(stamps: NDArray[np.int64], doubt: Array) -> Array:
+    """
+    Return the Bayes factor of a lasting change against none after each look [-].
+
+    The odds after the data over those before, which grow with the time since the first look.
+    `stamps` [ns] of all looks of an axis; `doubt` [-] that nothing lasting has come.
+
+    """
+    before = CHANGE_RATE * (stamps - stamps[0]) / DAY
+    after = (1.0 - doubt) / np.maximum(doubt, 1e-12)
+    return np.divide(after, before, out=np.zeros_like(doubt), where=before > 0.0)
+
+
+def evidence(stamps: NDArray[np.int64], factor: Array, begins: NDArray[np.bool_]) -> Array:
+    """
+    Return the e-value of an axis after each of its looks within one year.
+
+    `stamps` [ns] of the looks; `factor` [-] is the Bayes factor of each, `begins` where an alarm
+    of the axis alone begins. The first look has no time before it, and so no weight.
+
+    """
+    share = np.diff(stamps, prepend=stamps[:1]) / YEAR
+    alarm = np.logical_or.accumulate(begins) / ALARM
+    return np.asarray(0.5 * alarm + 0.5 * np.cumsum(share * factor))
+
+
+def shares(count: int) -> Array:
+    """Return the shares of the level of axes in order [-]; the sum stays below 1 for any count."""
+    number = np.arange(2.0, count + 2.0)
+    return np.asarray(1.0 / (number * np.log(number) ** 2 * SHARES))
+
+
+def told(values: Array, share: Array) -> NDArray[np.bool_]:
+    """Return which axes are told worse by their e-values and their shares of the level [-]."""
+    score = values * share
+    ordered = np.sort(score)[::-1]
+    enough = np.flatnonzero(ordered * LEVEL * np.arange(1, len(score) + 1) >= 1.0)
+    return np.asarray(score >= (ordered[enough[-1]] if len(enough) else math.inf))
+
+
+def confirmed(
+    stamps: Sequence[NDArray[np.int64]],
+    factor: Sequence[Array],
+    begins: Sequence[NDArray[np.bool_]],
+) -> NDArray[np.int64]:
+    """
+    Return from which stamp [ns] on each axis is told worse, the largest number for never.
+
+    Looks of axes as for `evidence`, axes in the order of their first looks. Years begin with the
+    first look of all, and axes are told week by week.
+
+    """
+    never = np.iinfo(np.int64).max
+    since = np.full(len(stamps), never)
+    first, last = (int(part) for part in (stamps[0][0], max(part[-1] for part in stamps)))
+    share = shares(len(stamps))
+    for year in range(first, last + 1, YEAR):
+        parts = [_within(*axis, year) for axis in zip(stamps, factor, begins, strict=True)]
+        for week in range(year, min(year + YEAR, last + 1), WEEK):
+            known = [np.searchsorted(times, week + WEEK) for times, _ in parts]
+            values = [part[at - 1] if at else 0.0 for at, (_, part) in zip(known, parts)]
+            alarms = told(np.array(values), share)
+            since = np.where(alarms, np.minimum(since, week), since)
+    return np.asarray(since)
+
+
+def _within(
+    stamps: NDArray[np.int64], factor: Array, begins: NDArray[np.bool_], year: int
+) -> tuple[NDArray[np.int64], Array]:
+    """Return the looks within the year that begins at a stamp [ns], with their e-values."""
+    own = (stamps >= year) & (stamps < year + YEAR)
+    return stamps[own], evidence(stamps[own], factor[own], begins[own])
+
+
+def controlled(courses: Mapping[Key, Sequence[Health]]) -> tuple[dict[Key, list[Health]], str]:
+    """
+    Return the courses of axes with their alarms controlled, and a sentence, '' for one axis.
+
+    A worse axis that is not told yet has slightly changed.
+
+    """
+    known = {key: course for key, course in courses.items() if course}
+    order = sorted(known, key=lambda key: (known[key][0].stamp, str(key)))
+    if len(order) < 2:
+        return {key: list(course) for key, course in courses.items()}, ''
+    stamps = [np.array([health.stamp for health in known[key]]) for key in order]
+    doubts = [np.array([health.doubt for health in known[key]]) for key in order]
+    factors = [bayes_factor(*axis) for axis in zip(stamps, doubts, strict=True)]
+    since = confirmed(stamps, factors, [np.array(_begins(known[key])) for key in order])
+    dates = dict(zip(order, since.tolist(), strict=True))
+    lowered = {
+        key: [_lowered(health) if health.stamp < dates[key] else health for health in course]
+        for key, course in known.items()
+    }
+    return lowered, _text(known, lowered)
+
+
+def _begins(course: Sequence[Health]) -> list[bool]:
+    worse = [False, *(health.condition is Condition.WORSE for health in course)]
+    return [now and not before for before, now in itertools.pairwise(worse)]
+
+
+def _lowered(health: Health) -> Health:
+    """Return what is said of an axis that is worse by itself, but not told in the fleet."""
+    if health.condition is not Condition.WORSE:
+        return health
+    condition, drag = Condition.SLIGHTLY_CHANGED, health.quantity(DRAG)
+    note = 'worse by its own logs; beside the other axes it needs more of them to be told so'
+    return dataclasses.replace(
+        health,
+        condition=condition,
+        verdict=verdict_of(health.axis, condition, drag, health.causes, health.since),
+        notes=[*health.notes, note],
+    )
+
+
+def _text(own: Mapping[Key, Sequence[Health]], fleet: Mapping[Key, Sequence[Health]]) -> str:
+    alone, worse = (
+        sum(course[-1].condition is Condition.WORSE for course in courses.values())
+        for courses in (own, fleet)
+    )
+    return (
+        f'{len(own)} axes, {worse} of them worse: in the mean at most {100 * LEVEL:.0f} % of such '
+        f'are so by chance; by its own logs alone each, {alone} would be worse, with '
+        f'at most {ALARM * len(own):.2g} false alarms a year'
+    )

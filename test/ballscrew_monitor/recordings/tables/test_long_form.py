@@ -1,0 +1,149 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Tables with a value a line: every order of columns, quoted or not, with names or none above."""
+
+import itertools
+import math
+
+from ballscrew_monitor.recordings.tables.guess import guess
+from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.series import read_series
+from ballscrew_monitor.recordings.tables.sources import source_of
+from ballscrew_monitor.recordings.tables.times import joined
+import numpy as np
+import pytest
+
+STEP, COUNT = 0.01, 500
+TIME = np.arange(COUNT) * STEP
+SPEED = 90.0 * np.sin(math.tau * TIME)  # [mm/s]
+PLACE = 150.0 + 90.0 / math.tau * (1.0 - np.cos(math.tau * TIME))  # [mm]
+FORCE = np.where(SPEED >= 0.0, -900.0, 900.0)  # [N]
+SIGNALS = {'X position [mm]': (PLACE, 3), 'X speed [mm/s]': (SPEED, 3), 'X force [N]': (FORCE, 1)}
+HEADS = {'time': 'Timestamp', 'name': 'TagName', 'value': 'Value', 'unit': 'Unit'}
+
+
+def clock(seconds):
+    return f'2025-07-14 11:59:{50 + seconds:06.3f}'
+
+
+def lines_of(order, *, separator=';', quoted=False, head=True, sign='.', time=clock):
+    """Return a line for each value of each signal, those of one time behind each other."""
+    rows = [[HEADS[role] for role in order]] if head else []
+    for at, (name, (values, digits)) in itertools.product(range(COUNT), SIGNALS.items()):
+        plain, unit = name.rstrip(']').split(' [')
+        named = plain if 'unit' in order else name
+        value = f'{values[at]:.{digits}f}'.replace('.', sign)
+        cells = {'time': time(TIME[at]), 'name': named, 'value': value, 'unit': unit}
+        rows.append([cells[role] for role in order])
+    mark = '"' if quoted else ''
+    return [separator.join(f'{mark}{cell}{mark}' for cell in row) for row in rows]
+
+
+def read(path, lines):
+    """Return the rows of a log by its first map."""
+    path.write_text('\n'.join(lines) + '\n', encoding='utf-8')
+    mapping = make_map(guess(path).content)
+    return joined([rows for (rows,) in read_series(path, mapping).blocks()])
+
+
+def check(rows):
+    np.testing.assert_allclose((rows.stamps - rows.stamps[0]) / 1e9, TIME, atol=1e-4)
+    turn = math.tau / 10.0  # [rad/mm]
+    for name, values, atol in (
+        ('x.position', PLACE * turn, 1e-3),
+        ('x.speed', SPEED * turn, 1e-3),
+        ('x.load', FORCE, 1e-9),
+    ):
+        np.testing.assert_allclose(rows.columns[name], values, atol=atol)
+
+
+@pytest.mark.parametrize('order', [*itertools.permutations(HEADS)])
+def test_columns_in_any_order_are_told_by_their_names(order, tmp_path):
+    check(read(tmp_path / 'log.csv', lines_of(order)))
+
+
+@pytest.mark.parametrize('order', [*itertools.permutations(['time', 'name', 'value'])])
+@pytest.mark.parametrize('quoted', [False, True])
+def test_columns_without_names_are_told_by_their_cells(order, quoted, tmp_path):
+    lines = lines_of(order, quoted=quoted, head=False, separator=',')
+    check(read(tmp_path / 'log.csv', lines))
+
+
+@pytest.mark.parametrize(
+    'layout',
+    [
+        {'sign': ',', 'separator': ';'},
+        {'sign': ',', 'separator': ',', 'quoted': True},
+        {'sign': ',', 'separator': '\t', 'head': False},
+        {'separator': '|', 'quoted': True},
+    ],
+    ids=str,
+)
+def test_a_decimal_comma_and_quotes_are_those_of_any_table(layout, tmp_path):
+    check(read(tmp_path / 'log.csv', lines_of(['name', 'time', 'value'], **layout)))
+
+
+def test_signals_one_below_the_other_are_joined_by_their_times(tmp_path):
+    lines = lines_of(['time', 'name', 'value'])
+    sorted_lines = [lines[0], *sorted(lines[1:], key=lambda line: line.split(';')[1])]
+    check(read(tmp_path / 'log.csv', sorted_lines))
+
+
+def test_a_time_in_seconds_is_told_by_its_motion(tmp_path):
+    lines = lines_of(['name', 'value', 'time'], time='{:.2f}'.format)
+    check(read(tmp_path / 'log.csv', lines))
+
+
+def test_whole_seconds_are_spread_for_each_signal(tmp_path):
+    lines = lines_of(['time', 'name', 'value'], time=lambda seconds: clock(seconds)[:19])
+    check(read(tmp_path / 'log.csv', lines))
+
+
+def test_an_axis_of_its_own_column_tells_signals_of_one_name_apart(tmp_path):
+    lines = ['Time;Axis;Signal;Value;Unit']
+    for at in range(COUNT):
+        lines += [
+            f'{clock(TIME[at])};{axis};position;{factor * PLACE[at]:.4f};mm'
+            for axis, factor in (('X', 1.0), ('Z', 2.0))
+        ]
+    rows = read(tmp_path / 'log.csv', lines)
+    for axis, factor in (('x', 1.0), ('z', 2.0)):
+        np.testing.assert_allclose(
+            rows.columns[f'{axis}.position'], factor * PLACE * math.tau / 10.0, atol=1e-3
+        )
+
+
+def test_an_export_of_parts_repeats_its_names_above_each(tmp_path):
+    lines = lines_of(['time', 'name', 'value'])
+    parts = [[line for line in lines if name in line] for name in SIGNALS]
+    check(read(tmp_path / 'log.csv', sum(([lines[0], *part, ''] for part in parts), [])))
+
+
+def test_a_value_of_bad_quality_is_not_known(tmp_path):
+    lines = [f'{lines};Good' for lines in lines_of(['time', 'name', 'value'])]
+    lines[0] = lines[0].replace('Good', 'Quality')
+    lines[4] = lines[4].replace('Good', 'Bad')  # the first cell after the first time
+    rows = read(tmp_path / 'log.csv', lines)
+    assert np.flatnonzero(np.isnan(rows.columns['x.position'])).tolist() == [1]
+
+
+def test_a_signal_in_two_units_is_refused(tmp_path, refused):
+    lines = lines_of(['time', 'name', 'value', 'unit'])
+    path = tmp_path / 'log.csv'
+    path.write_text('\n'.join([*lines[:-3], lines[-3].replace(';mm', ';m'), *lines[-2:]]))
+    refused('two_units', guess, path)
+
+
+@pytest.mark.parametrize(
+    'head',
+    ['Time;X position [mm];Mode;X speed [mm/s]', 'Time;Name;X position [mm];X speed [mm/s]'],
+)
+def test_a_table_with_a_column_of_texts_is_none(head, tmp_path):
+    path = tmp_path / 'log.csv'
+    middle = ('{1:.3f};AUTO', 'AUTO;{1:.3f}')['Name' in head]
+    rows = [
+        ('{0};' + middle + ';{2:.3f}').format(clock(TIME[at]), PLACE[at], SPEED[at])
+        for at in range(COUNT)
+    ]
+    path.write_text('\n'.join([head, *rows]))
+    assert source_of(path).names() == head.split(';')
