@@ -29,7 +29,7 @@ TEMPERATURES, HALVINGS = 12, 8
 """Colder temperatures that are tried, and halvings of the step that finds a zone."""
 WORST = 1.2
 """Speed at which the worst contact begins over that of the loaded nut, at most [-]."""
-RMS_POWER = 0.6
+RMS_POWER = 0.7
 """Exponent of the speed of the onset in the Rq that has it [-]."""
 MARCHED_RMS = 0.05e-6, 0.4e-6
 """Rq of the raceways that were marched [m]."""
