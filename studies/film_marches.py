@@ -18,16 +18,18 @@ from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
-from surrogate.asperities.strips import BIASED, raceway_strips, RacewayStrip
+from surrogate.asperities.law import FILM_BANDS, FILM_POWER
+from surrogate.asperities.strips import raceway_strips, RacewayStrip
 from surrogate.asperities.topography import (
-    LAY_GAIN,
     lay_of,
     left_by_rolling,
     LOAD_SHARE,
+    RIDGE_POWER,
     TOLERANCE,
+    UNCUT,
     WAVE_POWER,
 )
-from surrogate.asperities.topography_onset import film_at_onset, STEEPNESS
+from surrogate.asperities.topography_onset import COARSE_FILM, film_at_onset, FLOORS
 from surrogate.ehl import ContactLubricant
 from surrogate.ehl.moving import SpeedRamp
 from surrogate.formulas.geometry import Side
@@ -272,10 +274,17 @@ def course(name: str, ramp: SpeedRamp) -> list[Part]:
 
 def told_over_marched(row: Marched) -> float:
     """Return the film at the onset by the law, on the nodes of marches, over that marched [-]."""
+    cut = row.gap_nm / (UNCUT * row.left_nm)
     height = 1e-9 * row.gap_nm * (1e-6 * row.wave_um) ** WAVE_POWER
-    height *= math.exp(LAY_GAIN * abs(row.slopes))
+    height *= cut ** (RIDGE_POWER * row.slopes)
     film = film_at_onset(height, 1e-9 * row.floor_nm, 1e9 * row.pressure_GPa)
-    return float(film) / BIASED**STEEPNESS / (1e-9 * row.film_nm)
+    return float(film) / COARSE_FILM / (1e-9 * row.film_nm)
+
+
+def slope_of(row: Marched) -> float:
+    """Return the slope of film over that of the law in speed [-]; its floors do not fall."""
+    floors = FLOORS * row.floor_nm / (told_over_marched(row) * row.film_nm)
+    return row.slope * (1 - floors) + FILM_POWER * floors
 
 
 def report(rows: Sequence[Marched]) -> Iterator[str]:
@@ -285,14 +294,16 @@ def report(rows: Sequence[Marched]) -> Iterator[str]:
         log = logs[row.march]
         yield (
             f'{row.march:60} {row.role:9} film {row.film_nm:6.1f} nm, told/marched '
-            f'{math.exp(log):.2f} in film, {math.exp(log / row.slope):.2f} in speed'
+            f'{math.exp(log):.2f} in film, {math.exp(log / slope_of(row)):.2f} in speed'
         )
-    for lay in (ISO, LON, TRA):
-        off = np.array([logs[row.march] for row in rows if row.lay == lay])
-        yield (
-            f'{lay}: {off.size}, mean {math.exp(off.mean()):.2f}, rms '
-            f'{100 * math.sqrt(np.mean(off**2)):.0f} % in film'
-        )
+    for role in ('fit', 'choice', 'held out'):
+        for lay, band in FILM_BANDS.items():
+            off = np.array([logs[row.march] for row in rows if (row.role, row.lay) == (role, lay)])
+            yield (
+                f'{role}, {lay}: {off.size}, mean {math.exp(off.mean()):.2f}, rms '
+                f'{100 * math.sqrt(np.mean(off**2)):.0f} %, '
+                f'{int((np.abs(off) < math.log(band)).sum())} within {band:g}'
+            )
 
 
 def main() -> None:

@@ -52,8 +52,9 @@ class MachineLaw(laws.AsperityLaw):
 
     def touching(self, side, contact, load, oil, floor, speeds):
         """Return RCS, asperity share and loss factor [-] at many speeds [m/s]."""
-        share, _, onset = self._strips(side, contact, load, oil, floor)
-        over = np.log(speeds) - onset[:, None]
+        share, strips, onset = self._strips(side, contact, load, oil, floor)
+        at_onset = laws.film_of(strips, onset[:, None], oil)
+        over = np.log(laws.film_of(strips, speeds, oil) / at_onset)
         rcs = self._rcs(over)
         values = rcs, laws.share_at(rcs), self._loss(over)
         return tuple((share[:, None] * one).sum(axis=0) for one in values)
@@ -61,7 +62,7 @@ class MachineLaw(laws.AsperityLaw):
     def _rcs(self, over):
         """Return RCS [-]: in the logit the law, shifted as the march is at half and quarter."""
         met = [
-            (math.log(part), self.march[name])
+            (laws.FILM_POWER * math.log(part), self.march[name])
             for part, name in ((0.25, 'rcs_quarter'), (0.5, 'rcs_half'))
             if self.march[name]
         ]
@@ -74,7 +75,8 @@ class MachineLaw(laws.AsperityLaw):
     def _loss(self, over):
         """Return the loss factor [-]: the line of the march, smooth far above the onset."""
         onset = float(self.march['loss_onset'])
-        rise = (float(self.march['loss_half'] or onset) - onset) / math.log(0.5)
+        half = laws.FILM_POWER * math.log(0.5)
+        rise = (float(self.march['loss_half'] or onset) - onset) / half
         return laws.loss_along(onset, rise, over)
 
 

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from surrogate.asperities.topography import acting_roughness
-from surrogate.asperities.topography_onset import LAG_FACTOR, NODE_FACTOR, TopographyOnset
+from surrogate.asperities.topography_onset import COARSE_FILM, TopographyOnset
 from surrogate.ehl import ContactLubricant
 from surrogate.ehl.kernels.fft import good_length
 from surrogate.ehl.moving import MarchSettings, ramp_strip, StripContact
@@ -43,8 +43,6 @@ PICTURE = Path('docs/pictures/topography_onset.png')
 BENCHMARK = Path('studies/benchmark')
 HEIGHT_UNIT = 2e-11
 """Unit of the heights of a benchmark, whole numbers of 16 bits [m]."""
-BIASED = NODE_FACTOR * LAG_FACTOR
-"""Onset that the law tells over that of marches on 5 x 4 nodes under a falling speed [-]."""
 ALONG, ACROSS, TRANSITS, TURN = 5.0, 4.0, 12.0, 2.0
 """Nodes of a march along and across in the shortest wave, transits, those of a turn [-]."""
 
@@ -64,9 +62,13 @@ class Strip:
     @property
     def told(self) -> float:
         """Onset speed that the topography of this very tile tells, biased as marches are [m/s]."""
+        return self.told_at(1.0)
+
+    def told_at(self, film: float) -> float:
+        """Return it where the film is `film` times that of the law [-]."""
         acting = acting_roughness([self.tile], 0.5 * self.strip.reduced_modulus, self.shortest)
-        found = TopographyOnset(acting=acting).speeds(self.strip.line, self.oil, self.film_floor)
-        return float(found) / BIASED
+        law = TopographyOnset(acting=acting, film_factor=film / COARSE_FILM)
+        return float(law.speeds(self.strip.line, self.oil, self.film_floor))
 
 
 def screw_of(row: dict[str, str]) -> Screw:

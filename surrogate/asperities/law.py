@@ -3,9 +3,10 @@
 """
 Law of asperity contact: where it begins on the raceways of a screw, and how it grows below.
 
-The onset follows from the topography of each raceway. Over the speed by that of the onset, marched
-strips of all spectra share one curve of RCS and, by pressure and lay, one line of rolling loss;
-`studies/results/asperity_marches.csv` holds the onsets.
+The onset follows from the topography of each raceway. Below it contact grows over the smooth
+central film by that at the onset: how fast depends on how flat the summits were cut, the rolling
+loss on pressure and lay. The onsets are those of `studies/results/asperity_marches.csv` and
+`film_marches.csv`.
 
 """
 
@@ -17,45 +18,49 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import expit, logit
 from surrogate.asperities.running_in import RunningContact
-from surrogate.asperities.topography_onset import onset_of, PRESSURE, TopographyOnset
+from surrogate.asperities.topography import ActingRoughness
+from surrogate.asperities.topography_onset import LOG_SPEEDS, onset_of, PRESSURE, TopographyOnset
 from surrogate.ehl import Condition, ContactLubricant
 from surrogate.formulas.geometry import Contact, Side
-from surrogate.formulas.line import Line, line_at
+from surrogate.formulas.line import central_film_line, Line, line_at
 from surrogate.raceway.stated import Roughness
 
 Array = NDArray[np.float64]
 ONSET_RCS = 0.01
 """RCS at the onset [-]."""
-VERSION = 'topography 2'
+VERSION = 'topography 3'
 """Of the law, among what results that it decides are kept by."""
 PLACES = 8
 """Places across a contact at which it is looked up [-]."""
 NOTHING = 1e-7
 """RCS that counts as none [-]."""
-SLOPE, BEND = -4.69, -1.09
-"""Of the logit of RCS over the logarithm of the speed by that of the onset [-]."""
-SLOWEST = -(1 + SLOPE) / (2 * BEND)
-"""Logarithm of the speed by that of the onset below which what oil carries goes with the speed
-[-]: there the slope of the logit reaches -1, at 0.18 of the onset."""
+SLOPE, BEND, SLOPE_CUT = -6.5, -2.27, -1.2
+"""Of the logit of RCS over the logarithm of the film by that at the onset [-], and what `cut` of a
+raceway adds to the slope: contact grows slower on plateaus."""
+FILM_POWER = 0.7
+"""Exponent of the speed in the smooth central film, about [-]."""
 SHARE = 0.84, 0.16
 """Asperity share over RCS where RCS is small, and how it rises with RCS [-]."""
-LOSS, LOSS_SLOPE = (1.28, 0.24, -0.20), (0.03, -0.25, 0.23)
-"""Loss at the onset and its slope: usual, over the logarithm of the pressure, over the lay [-]."""
+LOSS, LOSS_SLOPE = (1.27, 0.09, -0.23), (0.04, -0.05, 0.18)
+"""Loss at the onset and its slope over the logarithm of the film: usual, over the logarithm of the
+pressure, over the lay [-]."""
+LOSS_RIDGES, RIDGE_FLOORS = -0.20, 17.0
+"""What ridges along the track add to the loss over the logarithm of the film at the onset by the
+film floor [-], and the ratio at which that is nothing [-]: high ridges guide the oil."""
 PRESSURES = 0.4e9, 1.5e9
 """Hertz pressures of the marches [Pa]."""
-LEAST_LOSS = 0.75
-"""Least rolling loss over that of a smooth contact [-]; 0.82 in the marches."""
-LOSS_SLOWEST = -1.4
-"""Logarithm of the speed by that of the onset below which the loss keeps its value [-]."""
-SMOOTH_FROM, FADING = 1.4, 0.35
-"""Logarithm of the speed by that of the onset at which half of the change of the loss is left,
-and its width [-]."""
-SOFT_SPEED, SOFT_LOSS = 0.25, 0.03
-"""Widths of the bends to the slowest speed and to the least loss [-]."""
+LEAST_LOSS = 0.4
+"""Least rolling loss over that of a smooth contact [-]; 0.39 in the marches, on high ridges."""
+LOSS_THINNEST = -1.0
+"""Logarithm of the film by that at the onset below which the loss keeps its value [-]."""
+SMOOTH_FROM, FADING = 1.0, 0.25
+"""Logarithm of the film by that at the onset at which half of the change of the loss is left, and
+its width [-]."""
+SOFT_FILM, SOFT_LOSS = 0.18, 0.03
+"""Widths of the bends to the thinnest film and to the least loss [-]."""
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(2 * PLACES)
-BANDS = {'isotropic': 1.3, 'longitudinal': 2.0, 'transverse': 2.0}
-"""Factor within which the topography tells nine of ten marched strips, by the lay [-]; seven of
-the strips had a longitudinal lay, two a transverse one."""
+FILM_BANDS = {'isotropic': 1.2, 'longitudinal': 1.2, 'transverse': 1.35}
+"""Factor in film within which the topography tells nine of ten marched strips, by the lay [-]."""
 NINE_OF_TEN = 1.645
 """Standard deviations on either side within which nine of ten lie [-]."""
 
@@ -84,12 +89,25 @@ class AsperityLaw:
     """
     Onsets of contact on the raceways of a screw by their side.
 
-    Standard `deviation` of the logarithm of the onset speed between law and marches [-].
+    Standard `deviation` of the logarithm of the film at the onset between law and marches [-]; of
+    a calibrated onset that of the logarithm of its speed, `speed_deviation`, takes its place.
 
     """
 
     onsets: Mapping[Side, TopographyOnset]
     deviation: float
+    speed_deviation: float = 0.0
+
+    def shifted(self, deviations: float) -> 'AsperityLaw':
+        """Return the law whose onsets are off by so many of its standard deviations [-]."""
+        film, speed = (
+            math.exp(deviations * one) for one in (self.deviation, self.speed_deviation)
+        )
+        onsets = {
+            side: replace(onset, factor=speed * onset.factor, film_factor=film * onset.film_factor)
+            for side, onset in self.onsets.items()
+        }
+        return replace(self, onsets=onsets)
 
     def contact(
         self,
@@ -108,12 +126,16 @@ class AsperityLaw:
         """
         if not condition.entrainment_speed:
             return AT_REST
+        speeds = np.array([condition.entrainment_speed])
         # As stated, and where the onset is off by half of its deviation either way.
-        apart = np.exp(self.deviation * np.array([0.0, -0.5, 0.5]))
-        speeds = condition.entrainment_speed * apart
-        found = self.touching(side, contact, condition.load, oil, floor, speeds)
-        (rcs, slower, faster), (share, *_), (loss, *_) = (values.tolist() for values in found)
-        return AsperityContact(rcs, share, loss, rcs_deviation=slower - faster)
+        (rcs, share, loss), (later, *_), (sooner, *_) = (
+            [
+                float(values[0])
+                for values in law.touching(side, contact, condition.load, oil, floor, speeds)
+            ]
+            for law in (self, self.shifted(0.5), self.shifted(-0.5))
+        )
+        return AsperityContact(rcs, share, loss, rcs_deviation=later - sooner)
 
     def touching(
         self,
@@ -125,10 +147,17 @@ class AsperityLaw:
         speeds: Array,
     ) -> tuple[Array, Array, Array]:
         """Return RCS, asperity share and loss factor [-] of `contact` at many speeds [m/s]."""
+        acting, factor = self.onsets[side].acting, self.onsets[side].factor
+        if acting is None:
+            none = np.zeros(np.shape(speeds))
+            return none, none, none + 1.0
         share, strips, onset = self._strips(side, contact, load, oil, floor)
-        with np.errstate(divide='ignore', invalid='ignore'):
-            over = np.where(speeds > 0, np.log(speeds) - onset[:, None], -math.inf)
-        rcs, loss = rcs_at(over), self._loss(side, over, strips.max_pressure[:, None])
+        # A factor on the onset moves all that is below it.
+        at_onset = film_of(strips, onset[:, None] / factor, oil)
+        with np.errstate(divide='ignore'):
+            over = np.log(film_of(strips, speeds / factor, oil) / at_onset)
+        rcs = rcs_at(over, growth_of(acting))
+        loss = loss_at(over, strips.max_pressure[:, None], acting.lay, at_onset / floor)
         # Summed place by place, so that a speed does not depend on those beside it. The weights
         # add up to 1 but for rounding.
         rcs, carried, loss = (
@@ -136,33 +165,43 @@ class AsperityLaw:
         )
         return np.minimum(rcs, 1.0), np.minimum(carried, 1.0), loss
 
-    def _loss(self, side: Side, log_speed: Array, pressure: Array) -> Array:
-        acting = self.onsets[side].acting
-        return loss_at(log_speed, pressure, acting.lay if acting else 0.0)
-
     def _strips(
         self, side: Side, contact: Contact, load: float, oil: ContactLubricant, floor: float
     ) -> tuple[Array, Line, Array]:
-        """Return strips across a contact: share of the load, line, logarithm of the onset."""
+        """Return strips across a contact: share of the load, line, speed of the onset [m/s]."""
         place = _POINTS[PLACES:]
         share = 1.5 * _WEIGHTS[PLACES:] * (1 - place**2)
         strips = line_at(contact, load, place)
-        # A smooth raceway has its onset at rest: as slow as a number can tell.
-        onsets = np.maximum(self.onsets[side].speeds(strips, oil, floor), np.finfo(float).tiny)
-        return share, strips, np.log(onsets)
+        onsets = self.onsets[side].speeds(strips, oil, floor)
+        return share, strips, np.maximum(onsets, math.exp(LOG_SPEEDS[0]))
 
 
-def rcs_at(log_speed: ArrayLike) -> Array:
+def film_of(strips: Line, speeds: Array, oil: ContactLubricant) -> Array:
+    """Return the smooth central film [m] of strips, one a row, at speeds [m/s]; 0 at rest."""
+    rows = replace(strips, max_pressure=strips.max_pressure[:, None])
+    moving = np.where(speeds > 0, speeds, 1.0)
+    film = central_film_line(rows, moving, oil.viscosity, oil.pressure_viscosity)
+    return np.asarray(np.where(speeds > 0, film, 0.0))
+
+
+def growth_of(acting: ActingRoughness) -> float:
+    """Return the slope of the logit of RCS over the logarithm of the film at the onset [-]."""
+    return SLOPE + SLOPE_CUT * acting.cut
+
+
+def rcs_at(log_film: ArrayLike, slope: float = SLOPE) -> Array:
     """
-    Return RCS at logarithms of the speed by that of the onset [-].
+    Return RCS at logarithms of the film by that at the onset [-].
 
-    Slower than marched the load that oil carries, over that of asperities, falls as the speed
+    Thinner than marched the load that oil carries, over that of asperities, falls as the speed
     does. RCS below `NOTHING` is 0.
 
     """
-    x = np.asarray(log_speed, dtype=float)
-    known = np.maximum(x, SLOWEST)
-    found = expit(logit(ONSET_RCS) + SLOPE * known + BEND * known**2 - np.minimum(x - SLOWEST, 0))
+    x, oil = np.asarray(log_film, dtype=float), 1 / FILM_POWER
+    thinnest = -(slope + oil) / (2 * BEND)
+    known = np.maximum(x, thinnest)
+    beyond = oil * np.minimum(x - thinnest, 0)
+    found = expit(logit(ONSET_RCS) + slope * known + BEND * known**2 - beyond)
     return np.asarray(np.where(found < NOTHING, 0.0, found))
 
 
@@ -171,12 +210,12 @@ def share_at(rcs: Array) -> Array:
     return np.asarray(rcs * (SHARE[0] + SHARE[1] * rcs))
 
 
-def loss_at(log_speed: Array, pressure: Array, lay: float) -> Array:
+def loss_at(log_film: Array, pressure: Array, lay: float, floors: ArrayLike) -> Array:
     """
     Return the rolling loss over that of a smooth contact [-].
 
-    At logarithms of the speed by that of the onset [-], Hertz pressures [Pa] and a lay as
-    `ActingRoughness` has it.
+    At logarithms of the film by that at the onset [-], Hertz pressures [Pa], a lay as
+    `ActingRoughness` has it, and the film at the onset by the film floor [-].
 
     """
     pressed = np.log(np.clip(pressure, *PRESSURES) / PRESSURE)
@@ -184,20 +223,21 @@ def loss_at(log_speed: Array, pressure: Array, lay: float) -> Array:
         usual + over_pressure * pressed + over_lay * lay
         for usual, over_pressure, over_lay in (LOSS, LOSS_SLOPE)
     )
-    return loss_along(at_onset, slope, log_speed)
+    guided = LOSS_RIDGES * max(lay, 0.0) * np.log(np.asarray(floors) / RIDGE_FLOORS)
+    return loss_along(at_onset + guided, slope, log_film)
 
 
-def loss_along(at_onset: Array | float, slope: Array | float, log_speed: Array) -> Array:
+def loss_along(at_onset: Array | float, slope: Array | float, log_film: Array) -> Array:
     """
-    Return the loss [-] of a value at the onset and a slope over the logarithm of the speed [-].
+    Return the loss [-] of a value at the onset and a slope over the logarithm of the film [-].
 
-    The line bends to the value of `LOSS_SLOWEST` and to `LEAST_LOSS`; the faster, the less of it
-    is left.
+    The line bends to the value of `LOSS_THINNEST` and to `LEAST_LOSS`; the thicker the film, the
+    less of it is left.
 
     """
-    line = at_onset + slope * _above(log_speed, LOSS_SLOWEST, SOFT_SPEED)
+    line = at_onset + slope * _above(log_film, LOSS_THINNEST, SOFT_FILM)
     change = _above(line, LEAST_LOSS, SOFT_LOSS) - 1
-    return np.asarray(1 + change * expit((SMOOTH_FROM - log_speed) / FADING))
+    return np.asarray(1 + change * expit((SMOOTH_FROM - log_film) / FADING))
 
 
 def _above(values: Array, least: float, width: float) -> Array:
@@ -213,15 +253,12 @@ def law_of(contacts: Mapping[Side, RunningContact], sheet: Roughness) -> Asperit
     `onset_of` does.
 
     """
+    calibrated = sheet.onset_band
     return AsperityLaw(
         onsets={
             side: replace(onset_of(contact), factor=sheet.onset_factor)
             for side, contact in contacts.items()
         },
-        deviation=math.log(band_of(sheet)) / NINE_OF_TEN,
+        deviation=0.0 if calibrated else math.log(FILM_BANDS[sheet.lay]) / NINE_OF_TEN,
+        speed_deviation=math.log(calibrated) / NINE_OF_TEN if calibrated else 0.0,
     )
-
-
-def band_of(sheet: Roughness) -> float:
-    """Return the factor within which nine of ten onsets lie [-], by calibration or marches."""
-    return sheet.onset_band or BANDS[sheet.lay]

@@ -32,12 +32,14 @@ from surrogate.raceway.stated import BallRoughness
 from surrogate.raceway.tile import draw_tile, Tile
 from surrogate.units import GIGA
 
-TILES = 3
-"""Tiles of a raceway, each of another draw [-]."""
+TILES, LONG_TILES = 3, 1
+"""Tiles of a raceway, each of another draw, and of one whose tiles are long [-]."""
+LONG = 48
+"""Shortest waves along a tile from which on it is long [-]."""
 LENGTH, WIDTH = 4.0, 2.0
 """Length and width of a tile over the half length of the contact under preload [-]."""
-MOST_WAVES = 32
-"""Most of the shortest waves along a tile [-]."""
+MOST_WAVES = 128
+"""Most of the shortest waves along a tile [-]; shorter ones are left out."""
 NODES = 8
 """Nodes of a tile in the shortest wave [-]."""
 
@@ -98,9 +100,9 @@ class RunningContact:
         return {field: waves for field, waves in fields.items() if waves is not None}
 
     @property
-    def shortest_wave(self) -> float:
-        """Shortest wave of raceway and ball [m]."""
-        return min(2 * math.pi / float(waves.wave_number[-1]) for waves in self.waves.values())
+    def resolved_wave(self) -> float:
+        """Shortest wave that a tile holds [m]."""
+        return self.wave_above(LENGTH * self.half_length / MOST_WAVES)
 
     def wave_above(self, least: float) -> float:
         """Return the shortest wave of raceway and ball that is not below `least` [m]."""
@@ -110,13 +112,14 @@ class RunningContact:
 
 
 def running_tiles(
-    contact: RunningContact, *, shortest: float = 0.0, draws: Sequence[int] = range(TILES)
+    contact: RunningContact, *, shortest: float = 0.0, draws: Sequence[int] = ()
 ) -> list[Tile]:
     """
-    Return tiles of a raceway with its ball in their state, one a draw; none where both are smooth.
+    Return tiles of a raceway with its ball in their state; none where both are smooth.
 
-    Waves not shorter than `shortest` [m]. Raises InputError where the largest working load presses
-    the contact by more than the cutting pressure.
+    One a draw, by default `TILES` or `LONG_TILES`, with waves not shorter than `shortest` [m].
+    Raises InputError where the largest working load presses the contact by more than the cutting
+    pressure.
 
     """
     fields = contact.waves
@@ -130,9 +133,10 @@ def running_tiles(
             f'summits are cut, {GIGA * bound:.3g} GPa: see working_load_N, run_in_pressure_GPa '
             'and hardness_GPa'
         )
+    shortest = max(contact.resolved_wave, shortest)
     size, shape = tile_size(contact, shortest=shortest)
     modulus, tiles = 0.5 * contact.reduced_modulus, []
-    for draw in draws:
+    for draw in draws or range(_tiles(shape)):
         drawn = (
             draw_tile(waves, draw, size=size, shape=shape, shortest=shortest, field=field)
             for field, waves in fields.items()
@@ -147,12 +151,17 @@ def tile_size(
     contact: RunningContact, *, shortest: float = 0.0
 ) -> tuple[tuple[float, float], tuple[int, int]]:
     """Return length and width of the tiles of a raceway [m] and their nodes [-]."""
-    shortest = max(contact.shortest_wave, shortest)
-    length = min(LENGTH * contact.half_length, MOST_WAVES * shortest)
+    shortest = max(contact.resolved_wave, shortest)
+    length = LENGTH * contact.half_length
     # An even number of nodes, so that every other one repeats too.
     rows = 2 * next_fast_len(math.ceil(0.5 * NODES * length / shortest), real=True)
     columns = 2 * next_fast_len(math.ceil(0.25 * NODES * length / shortest), real=True)
     return (length, WIDTH / LENGTH * length), (rows, columns)
+
+
+def _tiles(shape: tuple[int, int]) -> int:
+    """Return the number of tiles whose mean is taken [-]."""
+    return TILES if shape[0] < LONG * NODES else LONG_TILES
 
 
 def _cut(tile: Tile, modulus: float, pressure: float, bound: float) -> Tile:

@@ -10,12 +10,13 @@ one, while its speed falls. The tile comes round once in two transits.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 import math
 
 from surrogate.asperities.law import ONSET_RCS
 from surrogate.asperities.running_in import running_tiles, RunningContact
 from surrogate.asperities.topography import acting_roughness
-from surrogate.asperities.topography_onset import LAG_FACTOR, NODE_FACTOR, TopographyOnset
+from surrogate.asperities.topography_onset import COARSE_FILM, TopographyOnset
 from surrogate.ehl import ContactLubricant
 from surrogate.ehl.kernels.fft import good_length
 from surrogate.ehl.moving import (
@@ -46,11 +47,9 @@ MOVED, MOVES = 4.0, 3
 """Factor by which a span that does not hold the onset is moved, and how often at most [-]."""
 MARCHED = MarchStatus.CONVERGED, MarchStatus.SOME_STEPS
 """How a march ends that made all its transits."""
-BIASED = NODE_FACTOR * LAG_FACTOR
-"""Onset that the law tells over that of marches on these nodes under a falling speed [-]."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True)
 class RacewayStrip:
     """A strip, its oil, the tile that rolls through it, its shortest wave and film floor [m]."""
 
@@ -66,12 +65,21 @@ class RacewayStrip:
         rows = math.ceil(0.5 * ALONG * DOMAIN * self.strip.semi_axis / self.shortest)
         return MarchSettings(nx=2 * rows + 1, places=1, film_floor=self.film_floor)
 
+    @cached_property
+    def law(self) -> TopographyOnset:
+        """Law of this very tile, biased as marches are."""
+        acting = acting_roughness([self.tile], 0.5 * self.strip.reduced_modulus, self.shortest)
+        return TopographyOnset(acting=acting, film_factor=1 / COARSE_FILM)
+
     @property
     def told(self) -> float:
-        """Onset speed that the law tells of this very tile, biased as marches are [m/s]."""
-        acting = acting_roughness([self.tile], 0.5 * self.strip.reduced_modulus, self.shortest)
-        law = TopographyOnset(acting=acting, factor=1 / BIASED)
-        return float(law.speeds(self.strip.line, self.oil, self.film_floor))
+        """Onset speed by the law [m/s]."""
+        return float(self.law.speeds(self.strip.line, self.oil, self.film_floor))
+
+    def film_factor(self, onset: float) -> float:
+        """Return the film at a marched onset [m/s] over that of the law [-]."""
+        film = self.law.film_over_law(self.strip.line, onset, self.oil, self.film_floor)
+        return float(film)
 
     def march(self, expected: float, *, transits: float = TRANSITS) -> tuple[float, SpeedRamp]:
         """

@@ -25,10 +25,12 @@ from surrogate.raceway.tile import Tile
 Array = NDArray[np.float64]
 LOAD_SHARE = 0.015
 """Share of the Hertz load that presses what a contact leaves on the flat [-]."""
-WAVE_POWER = -0.25
+WAVE_POWER = -0.22
 """Exponent of the mean wavelength in the acting height [-]: that of the film floor reversed."""
-LAY_GAIN = 0.2
-"""Logarithm of the acting height of ridges, over that of an isotropic surface of this gap [-]."""
+UNCUT, RIDGE_POWER = 1.85, -0.72
+"""Mean gap over the rms of heights whose summits are not cut, about, and the exponent of the ratio
+to it in the acting height of ridges along the track [-]: oil leaves a plateau by grooves, so that
+it touches earlier. Ridges across have the reverse, for they hold the oil."""
 REDUCTIONS = np.geomspace(0.03, 10.0, 8)
 """Reductions of the shortest wave at which heights are tabulated [-]."""
 PRESSURES = np.geomspace(0.15e9, 3e9, 3)
@@ -47,8 +49,9 @@ class ActingRoughness:
     Table of the acting height of a raceway with its ball.
 
     Logarithms of the reduction per length [1/m] and of the Hertz pressure [Pa], and the logarithm
-    of the acting height [m^0.75] over both, the mean of several tiles; `lay`, the anisotropy of
-    the slopes from -1 across the track through 0 to 1 along it [-]; shortest wave [m].
+    of the acting height [m^0.78] over both, the mean of several tiles; `lay`, the anisotropy of
+    the slopes from -1 across the track through 0 to 1 along it [-]; `cut`, the logarithm of the
+    mean gap by the rms of what is left, over `UNCUT` [-], below 0 for plateaus; shortest wave [m].
 
     """
 
@@ -56,11 +59,12 @@ class ActingRoughness:
     log_pressure: tuple[float, ...]
     log_height: tuple[tuple[float, ...], ...]
     lay: float
+    cut: float
     shortest_wave: float
 
     def height(self, reduction: ArrayLike, pressure: ArrayLike) -> Array:
         """
-        Return the acting height [m^0.75] for reductions [1/m] and Hertz pressures [Pa].
+        Return the acting height [m^0.78] for reductions [1/m] and Hertz pressures [Pa].
 
         By a spline in the logarithms. Beyond the table it keeps its value, but for large
         reductions, where it falls with their square as the amplitudes do.
@@ -90,29 +94,42 @@ def acting_roughness(
 
     """
     coarse = [_coarser(tile, shortest_wave) for tile in tiles]
-    each = np.array([_log_heights(tile, modulus, shortest_wave) for tile in coarse])
+    gaps, waves, cuts = (
+        np.array(values)
+        for values in zip(*(_left(tile, modulus, shortest_wave) for tile in coarse), strict=True)
+    )
+    lays = np.array([lay_of(tile) for tile in coarse])
+    power = RIDGE_POWER * lays
+    each = gaps + WAVE_POWER * waves[..., None] + power[:, None, None] * cuts
     return ActingRoughness(
         log_reduction=tuple(np.log(REDUCTIONS / shortest_wave).tolist()),
         log_pressure=tuple(np.log(PRESSURES).tolist()),
         log_height=tuple(map(tuple, each.mean(axis=0).tolist())),
-        lay=float(np.mean([lay_of(tile) for tile in coarse])),
+        lay=float(lays.mean()),
+        cut=float(cuts[:, len(REDUCTIONS) // 2, len(PRESSURES) // 2].mean()),
         shortest_wave=shortest_wave,
     )
 
 
-def _log_heights(tile: Tile, modulus: float, shortest_wave: float) -> Array:
-    """Return the logarithms of the acting height [m^0.75] over reduction and pressure."""
-    gain = LAY_GAIN * abs(lay_of(tile))
-    found = np.empty((len(REDUCTIONS), len(PRESSURES)))
+def _left(tile: Tile, modulus: float, shortest_wave: float) -> tuple[Array, Array, Array]:
+    """
+    Return logarithms of what rolling leaves of a tile over reduction and pressure.
+
+    Mean gap [m]; mean wave [m], over the reduction alone; gap by rms over `UNCUT` [-].
+
+    """
+    gaps = np.empty((len(REDUCTIONS), len(PRESSURES)))
+    heights, waves = np.empty(len(REDUCTIONS)), np.empty(len(REDUCTIONS))
     for row, reduction in enumerate(REDUCTIONS / shortest_wave):
         left = left_by_rolling(tile, float(reduction))
-        wave = 2 * math.pi * math.sqrt(left.moment(0) / left.moment(1))
+        square = left.moment(0)
+        heights[row] = 0.5 * math.log(square)
+        waves[row] = math.log(2 * math.pi * math.sqrt(square / left.moment(1)))
         for column, pressure in enumerate(PRESSURES):
             load = LOAD_SHARE * 0.25 * math.pi * float(pressure)
             pressed = press(left, modulus, load, tolerance=TOLERANCE)
-            gap = max(pressed.separation, FLAT)
-            found[row, column] = math.log(gap * wave**WAVE_POWER) + gain
-    return found
+            gaps[row, column] = math.log(max(pressed.separation, FLAT))
+    return gaps, waves, gaps - heights[:, None] - math.log(UNCUT)
 
 
 def left_by_rolling(tile: Tile, reduction: float) -> Tile:

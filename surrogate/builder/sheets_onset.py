@@ -3,13 +3,12 @@
 """Onset of contact on a screw, and the zone that is left, by its sheet and that of the oil."""
 
 import numpy as np
-from surrogate.asperities.law import band_of
 from surrogate.builder.closed_form import default_settings
 from surrogate.formulas.torque import efficiency
 from surrogate.parameters import Lubricant, Screw
 from surrogate.screw import closed_form
 from surrogate.screw.opened import Contacts
-from surrogate.screw.screw_onset import onset_point
+from surrogate.screw.screw_onset import onset_band, onset_point
 from surrogate.surface.contact_onset import (
     contact_onset,
     ContactOnset,
@@ -31,7 +30,8 @@ def onset_of_sheets(screw: Screw, lubricant: Lubricant, temperature: float) -> C
 
     """
     settings, opened = default_settings(screw), Contacts.of(screw)
-    (slowest, fastest), band = settings.speed_range, band_of(screw.roughness)
+    slowest, fastest = settings.speed_range
+    low, high = onset_band(opened, lubricant, 0.0, temperature)['band']
     speeds, loads = grid_of((slowest, fastest), settings.load_range)
 
     def has(heat: float, limits: ZoneLimits) -> bool:
@@ -47,13 +47,12 @@ def onset_of_sheets(screw: Screw, lubricant: Lubricant, temperature: float) -> C
         temperature=temperature,
         coldest=min(lubricant.minimum_temperature, temperature),
         reach=fastest,
-        band=(1 / band, band),
+        band=(low, high),
         doubt=BY_THE_LAW,
         fastest=fastest,
         oil=lubricant.name,
         viscosity=lubricant.kinematic_viscosity_40,
         rms=screw.roughness.rms,
-        lay=screw.roughness.lay,
         calibrated=screw.roughness.onset_band is not None,
         lead=screw.lead,
     )

@@ -153,7 +153,7 @@ def _identify_onset(problem: DragProblem, sigma: Array) -> Identification:
         return fitted(at(scan.best), {}) if scan.closed else without_onset(*scan.bound(stated))
 
     freedom, stated = len(sigma) - len(problem.names), float(problem.start[place])
-    scan = scan_onset(cost, freedom)
+    scan = scan_onset(cost, freedom, problem.contacts.screw.roughness.lay)
     identified = along(scan)
     if scan.closed and not _turns_up(problem.run, identified):
         # The curvature of the rolling loss alone is no sign of contact.

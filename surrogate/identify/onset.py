@@ -21,6 +21,7 @@ from surrogate.identify.data import Array, NoLoadRun
 from surrogate.identify.intervals import CONFIDENCE, student_factor
 from surrogate.identify.model import ContactModel, ONSET_BOUNDS
 from surrogate.identify.problem import DragProblem
+from surrogate.raceway.fractal import Lay
 from surrogate.screw.opened import Contacts
 from surrogate.screw.screw_onset import onset_point, with_raceway
 from surrogate.units import digits, RPM
@@ -29,9 +30,10 @@ FITTED = ('asperity_friction', 'onset_factor', 'seal_torque')
 """What is fitted beside the parasitic torque where the onset is."""
 SCANNED = np.geomspace(*ONSET_BOUNDS, 49)
 """Onset factors at which the rest is fitted [-]."""
-EXTRAPOLATION = 0.17
+EXTRAPOLATION = {'isotropic': 0.16, 'longitudinal': 0.41, 'transverse': 0.41}
 """Standard deviation of the logarithm of the onset between a marched strip and the curve of the
-law laid through its RCS at a half and a quarter of that speed, 57 marches [-]."""
+law laid through its RCS at a half and a quarter of that speed, by the lay: of 58 and 17 marches
+[-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -40,7 +42,7 @@ class OnsetScan:
     Sum of squared residuals at each of `SCANNED`, and where it is least.
 
     Best factor [-] and ends of the interval by the profile [-], 0 and infinity where the data set
-    none.
+    none; standard deviation of the `extrapolation` to the onset [-].
 
     """
 
@@ -48,17 +50,18 @@ class OnsetScan:
     best: float
     low: float
     high: float
+    extrapolation: float
 
     def interval(self, value: float, freedom: int) -> tuple[float, float]:
         """Return the ends of the 95 % interval about a value [-], extrapolation and all."""
-        wide = student_factor(freedom) * EXTRAPOLATION
+        wide = student_factor(freedom) * self.extrapolation
         ends = math.log(value / self.low), math.log(self.high / value)
         below, above = (math.hypot(end, wide) for end in ends)
         return value * math.exp(-below), value * math.exp(above)
 
     def bound(self, stated: float) -> tuple[float, str]:
         """Return factor [-] and reason where one end is open; the stated factor if it may be."""
-        wide = math.exp(float(student.ppf(CONFIDENCE, math.inf)) * EXTRAPOLATION)
+        wide = math.exp(float(student.ppf(CONFIDENCE, math.inf)) * self.extrapolation)
         if not self.low and math.isinf(self.high):
             return stated, 'the torque tells nothing of it: kept as in the datasheet'
         if not self.low:
@@ -75,7 +78,7 @@ class OnsetScan:
         return self.low > 0 and math.isfinite(self.high)
 
 
-def scan_onset(cost: Callable[[float], float], freedom: int) -> OnsetScan:
+def scan_onset(cost: Callable[[float], float], freedom: int, lay: Lay) -> OnsetScan:
     """
     Return the profile of a fit over the onset factor, with `freedom` degrees of freedom.
 
@@ -92,6 +95,7 @@ def scan_onset(cost: Callable[[float], float], freedom: int) -> OnsetScan:
         best=float(SCANNED[best]),
         low=_crossing(over[best::-1], SCANNED[best::-1], 0.0),
         high=_crossing(over[best:], SCANNED[best:], math.inf),
+        extrapolation=EXTRAPOLATION[lay],
     )
 
 

@@ -8,7 +8,7 @@ import time
 from typing import Any
 
 import numpy as np
-from surrogate.asperities.law import band_of
+from surrogate.asperities.law import FILM_BANDS
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.screw import closed_form
 from surrogate.screw.contacts import ScrewSettings, shortest_on_grid
@@ -145,7 +145,10 @@ def law_sentence(screw: Screw, settings: ScrewSettings) -> str:
     if not screw.composite_rms:
         return 'no roughness'
     state = 'new' if sheet.state == 'new' else 'run in'
-    band = f'onset by the topography, within {band_of(sheet):g} of nine of ten marches'
+    band = (
+        f'film at the onset by the topography, within {FILM_BANDS[sheet.lay]:g} of nine of ten '
+        'marches'
+    )
     return (
         f'roughness that rolls, {state}, summits cut at {GIGA * sheet.cutting_pressure:g} GPa; '
         f'{sheet.calibration or band}'

@@ -3,7 +3,7 @@
 """A screw opened for its solvers: what they need of the sheet, worked out once."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 from surrogate.asperities.law import AsperityLaw, law_of
@@ -43,6 +43,12 @@ class Contacts:
     def law(self) -> AsperityLaw:
         """Law of asperity contact; raises InputError as `running_tiles` does."""
         return law_of(self.running, self.sheet.roughness)
+
+    def with_law(self, law: AsperityLaw) -> 'Contacts':
+        """Return the same contacts under another law."""
+        other = replace(self)
+        vars(other)['law'] = law
+        return other
 
     @property
     def working_load(self) -> float:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.asperities.law import band_of
+from surrogate.asperities.law import NINE_OF_TEN
 from surrogate.files import InputError
 from surrogate.formulas.inlet import speed_before_inlet, starved_speed
 from surrogate.formulas.line import central_film_line, line_at
@@ -102,6 +102,31 @@ def onset_point(
     return {'speed_rad_s': speed, 'entrainment_speed_m_s': entrainment, 'central_film_m': film}
 
 
+def onset_band(
+    opened: Contacts, lubricant: Lubricant, load: float, temperature: float
+) -> dict[str, Any]:
+    """
+    Return between which factors [-] of its speed an onset lies by the law, nine times of ten.
+
+    Two roots of the law, with a film that is off by the `film_factor` of the marches either way;
+    `slope` is that of film over height in speed there [-], NaN if all is smooth. A calibrated
+    onset has the factor of its calibration.
+
+    """
+    law = opened.law
+    later, stated, sooner = (
+        onset_point(opened.with_law(one), lubricant, load, temperature)
+        for one in (law.shifted(-NINE_OF_TEN), law, law.shifted(NINE_OF_TEN))
+    )
+    if not stated['speed_rad_s']:
+        return {'band': [1.0, 1.0], 'film_factor': 1.0, 'slope': math.nan}
+    low, high = (one['speed_rad_s'] / stated['speed_rad_s'] for one in (later, sooner))
+    reach = NINE_OF_TEN * law.deviation
+    across = math.log(sooner['entrainment_speed_m_s'] / later['entrainment_speed_m_s'])
+    slope = 2 * reach / across if reach else math.nan
+    return {'band': [low, high], 'film_factor': math.exp(reach), 'slope': slope}
+
+
 def onset_record(
     screw: Screw, lubricant: Lubricant, load: float, temperature: float
 ) -> dict[str, Any]:
@@ -114,7 +139,7 @@ def onset_record(
     """
     _check_place(lubricant, load, temperature)
     stated = screw.working_load is not None
-    opened, band, states = Contacts.of(screw), band_of(screw.roughness), {}
+    opened, states = Contacts.of(screw), {}
     if abs(load) > opened.working_load:
         screw = replace(screw, working_load=abs(load))
         opened = Contacts.of(screw)
@@ -122,9 +147,10 @@ def onset_record(
     alone = sheet.traced == 'run_in' or sheet.calibrated
     for state in [sheet.state] if alone else ['new', 'run_in']:
         raceway = with_raceway(screw, state=state)
-        states[state] = onset_point(Contacts.of(raceway), *place) | {
+        contacts = Contacts.of(raceway)
+        states[state] = onset_point(contacts, *place) | {
             'cutting_pressure_Pa': raceway.roughness.cutting_pressure,
-            'band': [1 / band, band],
+            **onset_band(contacts, *place),
         }
     if len(states) > 1:
         states['run_in']['speed_range_rad_s'] = onset_over_pressure(
@@ -164,7 +190,7 @@ def extrapolated(screw: Screw) -> list[str]:
     """Return where a screw lies outside the strips that were marched, in words."""
     sheet, (shortest, longest) = screw.roughness, MARCHED_WAVES
     calibrated = sheet.onset_band is not None
-    found = [law_doubt(rms=sheet.rms, lay=sheet.lay, calibrated=calibrated)]
+    found = [law_doubt(rms=sheet.rms, calibrated=calibrated)]
     if not shortest <= sheet.cutoff_short <= longest:
         found.append(f'short cut-off {MICRO * sheet.cutoff_short:g} um (marched: 1.3 to 9.8 um)')
     if screw.ball_roughness is not None:
@@ -184,16 +210,15 @@ def _lines(record: Mapping[str, Any]) -> Iterator[str]:
     )
     for state, found in record['states'].items():
         yield f'  {WORDS[state]:26} {_told(found)}'
+    states = record['states'].values()
     slowest = min(
-        min(one.get('speed_range_rad_s', [one['speed_rad_s']]))
-        for one in record['states'].values()
+        one['band'][0] * min(one.get('speed_range_rad_s', [one['speed_rad_s']])) for one in states
     )
-    fastest = max(one['speed_rad_s'] for one in record['states'].values())
-    low, high = next(iter(record['states'].values()))['band']
+    fastest = max(one['band'][1] * one['speed_rad_s'] for one in states)
     if fastest:
         yield (
-            f'  Contact is likely below {digits(low * slowest / RPM)} rev/min and possible below '
-            f'{digits(high * fastest / RPM)} rev/min.'
+            f'  Contact is likely below {digits(slowest / RPM)} rev/min and possible below '
+            f'{digits(fastest / RPM)} rev/min.'
         )
     assumed = '' if record['working_load_stated'] else ', assumed: it unloads the relieved nut'
     yield (

@@ -14,13 +14,14 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.asperities.law import BANDS, SLOPE
+from surrogate.asperities.law import FILM_POWER, SLOPE
 from surrogate.files import InputError
 from surrogate.formulas import torque
 from surrogate.parameters import Lubricant, OperatingPoint, Screw
 from surrogate.progress import OnProgress
 from surrogate.screw import closed_form
 from surrogate.screw.opened import Contacts
+from surrogate.screw.screw_onset import onset_band
 from surrogate.screw.uncertain_inputs import INPUTS, LEFT_OUT, ScrewCase, Varied
 from surrogate.surface.aims import EFFICIENCY_LIMIT, LIGHT_LOAD, RCS_LIMIT, RCS_RELATIVE_TOLERANCE
 from surrogate.surface.contact_onset import law_doubt
@@ -34,7 +35,7 @@ AROUND = 2.5
 """Factor about the onset within which RCS passes the limit of the zone [-]."""
 SPEEDS = 60
 """Speeds among which a limit of the zone is looked for [-]."""
-INTERPOLATION = RCS_RELATIVE_TOLERANCE / -SLOPE
+INTERPOLATION = RCS_RELATIVE_TOLERANCE / (-SLOPE * FILM_POWER)
 """Logarithm of the speed by which a surface may be off at the limit of RCS [-]."""
 KEYS = {
     'screw': 'name of the sheet',
@@ -49,7 +50,7 @@ KEYS = {
     '`at_high`',
     'unknown_band': 'least and largest onset over the stated one by what is not known',
     'numerical_band': 'the same by the law of contact',
-    'law_doubt': 'where the law is off by more; else empty',
+    'law_doubt': 'where the law is beyond the marches; else empty',
     'measure': 'the two measurements that narrow `unknown_band` most, each with the band that is '
     'left',
 }
@@ -90,11 +91,9 @@ def sensitivity_record(
         'stated': stated,
         'inputs': rows,
         'unknown_band': _without(rows),
-        'numerical_band': numerical_band(screw),
+        'numerical_band': numerical_band(case),
         'law_doubt': law_doubt(
-            rms=screw.roughness.rms,
-            lay=screw.roughness.lay,
-            calibrated=screw.roughness.onset_band is not None,
+            rms=screw.roughness.rms, calibrated=screw.roughness.onset_band is not None
         ),
         'measure': _narrowed(rows),
     }
@@ -201,7 +200,7 @@ def _narrowed(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     return done
 
 
-def numerical_band(screw: Screw, interpolation: float = 0.0) -> list[float]:
+def numerical_band(case: ScrewCase, interpolation: float = 0.0) -> list[float]:
     """
     Return the least and the largest onset speed over the stated one by law and lookup [-].
 
@@ -209,9 +208,12 @@ def numerical_band(screw: Screw, interpolation: float = 0.0) -> list[float]:
     `interpolation` of a surface is the logarithm of a speed [-].
 
     """
-    law = 1.0 if screw.roughness.onset_band else BANDS[screw.roughness.lay]
-    off = math.hypot(math.log(law), interpolation)
-    return [math.exp(-off), math.exp(off)]
+    place = case.lubricant, case.point.opposing_load, case.point.temperature
+    law = [1.0, 1.0]
+    if not case.roughness.onset_band:
+        law = onset_band(Contacts.of(case.screw), *place)['band']
+    low, high = (math.hypot(math.log(factor), interpolation) for factor in law)
+    return [math.exp(-low), math.exp(high)]
 
 
 def surface_bands(screw: Screw, lubricant: Lubricant) -> dict[str, list[float]]:
@@ -222,12 +224,12 @@ def surface_bands(screw: Screw, lubricant: Lubricant) -> dict[str, list[float]]:
     the band of its calibration.
 
     """
-    numerics = numerical_band(screw, INTERPOLATION)
+    point = OperatingPoint(speed=0.0, load=0.0, temperature=lubricant.reference_temperature)
+    case = ScrewCase(screw=screw, lubricant=lubricant, point=point)
+    numerics = numerical_band(case, INTERPOLATION)
     calibrated = screw.roughness.onset_band
     if calibrated:
         return {'limit_band': [1 / calibrated, calibrated], 'numerical_band': numerics}
-    point = OperatingPoint(speed=0.0, load=0.0, temperature=lubricant.reference_temperature)
-    case = ScrewCase(screw=screw, lubricant=lubricant, point=point)
     ends = [
         (varied, varied.bounds(case) or ()) for varied in INPUTS if varied.name not in LEFT_OUT
     ]

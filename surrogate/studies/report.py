@@ -77,7 +77,7 @@ def report(screw: Screw, law: AsperityLaw, rows: Mapping[str, StudyRow]) -> str:
         '# Numbers beside the published study',
         'Written by `ballscrew figures`; docs/theory/validation.md says what they mean. '
         f'{len(rows)} solves, {seconds:.0f} s of processor time.',
-        f'Rolling: {law_sentence(screw, ScrewSettings())}; that speed has a '
+        f'Rolling: {law_sentence(screw, ScrewSettings())}; that film has a '
         f'standard deviation of {100 * law.deviation:.0f} %.',
         '## Trends',
         'Standing roughness is, in single contacts, that of the study, and in the screw one draw '
@@ -191,7 +191,9 @@ def _contact_ends(screw: Screw, law: AsperityLaw, rows: list[StudyRow]) -> Trend
         'higher; deterministic solutions begin at film ratios of '
         f'{DETERMINISTIC[0]:g} to {DETERMINISTIC[1]:g}',
         Reading('; '.join(reading.text for reading in stands), agrees) if stands else None,
-        end(screw_speeds(rows, 'rcs'), f', standard deviation {100 * law.deviation:.0f} %'),
+        end(
+            screw_speeds(rows, 'rcs'), f', standard deviation {100 * law.deviation:.0f} % in film'
+        ),
     )
 
 

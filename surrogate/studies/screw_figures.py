@@ -34,6 +34,8 @@ from surrogate.studies.curves import Array, Curve, NO_CONTACT, screw_speeds, Stu
 from surrogate.surface.aims import EFFICIENCY_LIMIT, RCS_LIMIT
 from surrogate.units import MILLI, NANO, RPM
 
+SLOPE = 0.60
+"""Slope of film over the law of the onset in speed, of the screw of the study [-]."""
 WIDTH, CAPTION_LETTERS = 7.2, 118
 """Width [inch] and letters in a line of a caption."""
 DECLARED = plain_values(read_text(Path(__file__).parents[1] / 'data' / 'study_figures.yaml'))
@@ -173,7 +175,7 @@ def figure_stribeck(law: AsperityLaw, rows: Rows) -> Figure:
     first.set(ylabel='friction coefficient [-]', ylim=(0, 0.2))
     rolling, standing = screw_speeds(rows, 'rcs'), screw_speeds(rows, 'rcs', tasks.STANDING)
     contact = curves.contact_speeds(rows)
-    speed, spread = entrainment(rolling.at), math.exp(law.deviation)
+    speed, spread = entrainment(rolling.at), math.exp(law.deviation / SLOPE)
     share = np.maximum(rolling.mean, NO_CONTACT)
     second.fill_betweenx(share, speed / spread, speed * spread, color='0.85', linewidth=0)
     over_speed(
@@ -405,7 +407,8 @@ def figure_zone(screw: Screw, law: AsperityLaw, rows: Rows) -> Figure:
     fine.line(axes, fine.rcs, [RCS_LIMIT], linestyles=['solid'], linewidths=1.8, **red)
     fine.line(axes, fine.eta, [EFFICIENCY_LIMIT], linewidths=1.8, **blue)
     for sign in (-1, 1):
-        shifted = fine._replace(speed=math.exp(sign * law.deviation) * fine.speed)
+        apart = math.exp(sign * law.deviation / SLOPE)
+        shifted = fine._replace(speed=apart * fine.speed)
         shifted.line(axes, fine.rcs, [RCS_LIMIT], linestyles='dotted', linewidths=1, **red)
     others = fine.line(axes, fine.eta, [0.7, 0.9, 0.95, 0.98], colors=[GREY], linewidths=0.7)
     _map_axes(axes, rows)

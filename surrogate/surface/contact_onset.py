@@ -29,12 +29,10 @@ TEMPERATURES, HALVINGS = 12, 8
 """Colder temperatures that are tried, and halvings of the step that finds a zone."""
 WORST = 1.2
 """Speed at which the worst contact begins over that of the loaded nut, at most [-]."""
-RMS_POWER = 0.6
+RMS_POWER = 0.7
 """Exponent of the speed of the onset in the Rq that has it [-]."""
-MARCHED_RMS, MARCHED_LAY = (0.1e-6, 0.3e-6), 'isotropic'
-"""Rq [m] and lay of raceways on which marches bear out the law of the onset."""
-OFF_BY = 2, 3
-"""Factors by which marches of other raceways were off at most, by lay and by Rq [-]."""
+MARCHED_RMS = 0.05e-6, 0.4e-6
+"""Rq of the raceways that were marched [m]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -69,8 +67,8 @@ class ContactOnset:
     `band`: between which factors of it that lies, NaN where not known, by what `doubt` says;
     `fastest`, the speed that the screw allows, and up to which a zone is looked for, `reach`
     [rad/s]. Without a zone contact must begin `slower`, a factor [-], as it does at `colder` [K],
-    NaN if at no temperature in question. Viscosity at 40 degC [m2/s], lead [m], Rq [m] and lay of
-    the raceway, and whether its onset is `calibrated`.
+    NaN if at no temperature in question. Viscosity at 40 degC [m2/s], lead [m], Rq of the
+    raceway [m], and whether its onset is `calibrated`.
 
     """
 
@@ -86,7 +84,6 @@ class ContactOnset:
     colder: float = NAN
     viscosity: float
     rms: float
-    lay: str
     calibrated: bool = False
     lead: float
 
@@ -102,7 +99,7 @@ class ContactOnset:
                 f'Contact begins at {self._speed(self.speed, as_feed)}{between} '
                 f'at {self.temperature - ZERO_CELSIUS:.3g} degC'
             )
-            law = law_doubt(rms=self.rms, lay=self.lay, calibrated=self.calibrated)
+            law = law_doubt(rms=self.rms, calibrated=self.calibrated)
             begins += f'; {law}' * bool(law)
         limit = self._speed(self.fastest, as_feed)
         return f"{begins}; this screw's limit is {limit}; {self._zone(as_feed)}"
@@ -145,22 +142,19 @@ class ContactOnset:
         return f'{text}: contact begins slow enough {remedies}'
 
 
-def law_doubt(*, rms: float, lay: str, calibrated: bool = False) -> str:
+def law_doubt(*, rms: float, calibrated: bool = False) -> str:
     """
-    Return how far the law of the onset is off on a raceway; empty where marches bear it out.
+    Say where the law of the onset is beyond the marches; empty where it is not.
 
-    Rq [m], 0 if smooth, and lay as its sheet has them; a calibration takes the place of marches.
+    Rq [m] as the sheet has it, 0 if smooth; a calibration takes the place of marches.
 
     """
     low, high = MARCHED_RMS
-    reasons = [f'the lay is {lay}'] * (lay != MARCHED_LAY)
-    reasons += [f'Rq is {MICRO * rms:.3g} um'] * (not low <= rms <= high)
-    if calibrated or not rms or not reasons:
+    if calibrated or not rms or low <= rms <= high:
         return ''
     return (
-        f'here the law is off by up to a factor of {OFF_BY[0]} to {OFF_BY[1]}, for '
-        f'{" and ".join(reasons)} (it holds on {MARCHED_LAY} raceways with Rq '
-        f'{MICRO * low:g} to {MICRO * high:g} um)'
+        f'Rq is {MICRO * rms:.3g} um, and raceways of {MICRO * low:g} to {MICRO * high:g} um were '
+        'marched: beyond them nobody knows how far the law is off'
     )
 
 
@@ -233,7 +227,6 @@ def onset_of_surface(
         oil=surface.oil_name,
         viscosity=oil['kinematic_viscosity_40'],
         rms=screw['roughness']['rms'],
-        lay=screw['roughness']['lay'],
         calibrated=screw['roughness']['onset_band'] is not None,
         lead=surface.lead,
     )

@@ -177,7 +177,11 @@ def march_lines(march: Mapping[str, Any]) -> Iterator[str]:
         marched, by_law = strip['marched_m_s'], strip['told_m_s']
         onset = 'does not begin'
         if marched is not None:
-            onset = f'begins at {marched:.3g} m/s, told over marched {by_law / marched:.2f}'
+            films = f'{strip["film_factor"]:.2f} times the film of the law'
+            onset = (
+                f'begins at {marched:.3g} m/s, with {films}, told over marched '
+                f'{by_law / marched:.2f}'
+            )
         yield (
             f'  marched      {name}, waves down to {1e6 * strip["shortest_wave_m"]:.2g} um: '
             f'contact {onset}, told {by_law:.3g} m/s; {strip["status"]}'

@@ -2,7 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Designed marches: what they span, and that a row is the strip that its case makes."""
 
+import math
+
+import numpy as np
 import pytest
+from surrogate.asperities.law import FILM_BANDS
 from surrogate.tasks.table import read_table
 
 
@@ -43,3 +47,29 @@ def test_a_row_is_the_strip_of_its_case(marches, rows, name):
     film, gap, wave, left = marches.left_at(strip, row.onset_m_s)
     found = [1e9 * film, 1e9 * gap, 1e6 * wave, 1e9 * left]
     assert found == pytest.approx([row.film_nm, row.gap_nm, row.wave_um, row.left_nm], rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ('lay', 'rms'), [('isotropic', 0.15), ('longitudinal', 0.10), ('transverse', 0.15)]
+)
+def test_the_law_tells_the_film_of_marches_held_out_from_its_fit(marches, rows, lay, rms):
+    held = [row for row in rows.values() if (row.role, row.lay) == ('held out', lay)]
+    off = np.log([marches.told_over_marched(row) for row in held])
+    assert math.sqrt(np.mean(off**2)) < rms
+
+
+def test_nine_of_ten_held_out_marches_lie_in_the_band_that_is_stated(marches, rows):
+    inside = [
+        abs(math.log(marches.told_over_marched(row))) < math.log(FILM_BANDS[row.lay])
+        for row in rows.values()
+        if row.role == 'held out'
+    ]
+    assert sum(inside) >= 0.9 * len(inside)
+
+
+def test_the_law_of_a_strip_is_that_of_its_columns(marches, rows):
+    """Its onset by the table of the very tile, as by gap, wave and rms at the marched onset."""
+    row = next(row for row in rows.values() if row.role == 'held out' and row.state == 'new')
+    strip = marches.strip_of(next(case for case in marches.CASES if case.march == row.march))
+    by_film = math.log(marches.told_over_marched(row)) / marches.slope_of(row)
+    assert math.log(strip.told / row.onset_m_s) == pytest.approx(by_film, abs=0.05)

@@ -64,7 +64,8 @@ def small_tiles():
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(running_in, 'TILES', 1)
-        patch.setattr(running_in, 'MOST_WAVES', 16)
+        patch.setattr(running_in, 'LENGTH', 1.2)
+        patch.setattr(running_in, 'WIDTH', 0.6)
         forget()
         yield
     forget()

@@ -73,12 +73,12 @@ def _surface(
     ratios, failed = ratios_at(logs, grid, nodes, lubricant)
     axes, onset = (nodes.s, nodes.load, nodes.temperature), nodes.log_onset
     formula_values = solve_grid(opened, lubricant, *axes, onset)
-    # RCS from half of the onset's deviation slower to as much faster.
-    slower, faster = (
-        solve_grid(opened, lubricant, nodes.s + apart * opened.law.deviation, *axes[1:], onset)
-        for apart in (-0.5, 0.5)
+    # RCS from an onset that is half of its deviation later to one that is as much sooner.
+    later, sooner = (
+        solve_grid(opened.with_law(opened.law.shifted(half)), lubricant, *axes, onset)
+        for half in (0.5, -0.5)
     )
-    deviation = np.asarray(slower['rcs'] - faster['rcs'])
+    deviation = np.asarray(later['rcs'] - sooner['rcs'])
     formulas = with_floor({name: formula_values[name] for name in FIELDS}, screw, lubricant)
     solved = {name: values * ratios.get(name, 1.0) for name, values in formulas.items()}
     # Between two solved points a ratio may take a film that lies on the floor below it.

@@ -36,8 +36,9 @@ def march_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """
     March a strip on the side of the screw, at the temperature of the oil sheet.
 
-    Returns onsets, marched and told by the law for this tile and these nodes [m/s], None where RCS
-    did not pass 0.01; shortest wave [m]; how it ended.
+    Returns onsets, marched and told by the law for this tile and these nodes [m/s], and the film
+    at the marched one over that of the law [-], None where RCS did not pass 0.01; shortest wave
+    [m]; how it ended.
 
     """
     screw, lubricant = screw_and_oil(inputs)
@@ -45,10 +46,13 @@ def march_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     strip, *_ = raceway_strips(
         screw, 'screw', oil, lubricant.film_floor, draws=[inputs['draw']], waves=inputs['waves']
     )
-    told = screw.roughness.onset_factor * strip.told
+    factor = screw.roughness.onset_factor
+    told = factor * strip.told
     marched, ramp = strip.march(told, transits=inputs['transits'])
+    known = not math.isnan(marched)
     return {
-        'marched_m_s': None if math.isnan(marched) else marched,
+        'marched_m_s': marched if known else None,
+        'film_factor': strip.film_factor(marched / factor) if known else None,
         'told_m_s': told,
         'shortest_wave_m': strip.shortest,
         'status': ramp.status.value,

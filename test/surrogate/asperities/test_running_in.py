@@ -8,10 +8,10 @@ import math
 import numpy as np
 import pytest
 from surrogate.asperities.running_in import (
+    LONG_TILES,
     running_tiles,
     RunningContact,
     tile_size,
-    TILES,
     working_load,
     working_pressure,
 )
@@ -50,7 +50,7 @@ def test_a_profile_traced_after_running_in_is_cut_at_the_hardness_alone(screw):
         running_tiles(RunningContact.of(with_raceway(screw, **keys), 'screw'))
         for keys in ({'state': 'run_in', 'traced': 'run_in'}, {'state': 'new'})
     )
-    assert len(traced) == TILES
+    assert len(traced) == LONG_TILES
     for one, other in zip(traced, new, strict=True):
         assert np.array_equal(one.heights, other.heights)
 
@@ -59,7 +59,7 @@ def test_a_softer_cut_lowers_the_summits_more(screw):
     """A prototype on this spectrum lost 0.3 % of Sq at 7 GPa, and 5 % at 3 GPa."""
     size, shape = tile_size(RunningContact.of(screw, 'screw'))
     waves = scale_spectrum(screw.roughness)
-    whole = rms([draw_tile(waves, draw, size=size, shape=shape) for draw in range(TILES)])
+    whole = rms([draw_tile(waves, draw, size=size, shape=shape) for draw in range(LONG_TILES)])
     new, run = (
         rms(running_tiles(RunningContact.of(with_raceway(screw, state=state), 'screw')))
         for state in ('new', 'run_in')
@@ -80,8 +80,10 @@ def test_what_no_tile_holds_and_no_summit_bears_is_refused(screw, refused, monke
 def test_tiles_hold_the_shortest_wave_and_the_ball_and_smooth_raceways_have_none(screw):
     nut = RunningContact.of(screw, 'nut')
     (length, width), (rows, columns) = tile_size(nut)
-    assert nut.shortest_wave * rows / length >= 8
-    assert nut.shortest_wave * columns / width >= 8
+    assert nut.resolved_wave == pytest.approx(2 * math.pi / nut.waves[0].wave_number[-1])
+    assert nut.resolved_wave * rows / length >= 8
+    assert nut.resolved_wave * columns / width >= 8
+    assert (length, width) == pytest.approx((4 * nut.half_length, 2 * nut.half_length))
     assert rows % 2 == columns % 2 == 0
     rough = replace(screw, ball_roughness=BallRoughness(rms=0.05e-6))
     both, alone = (rms(running_tiles(RunningContact.of(one, 'screw'))) for one in (rough, screw))

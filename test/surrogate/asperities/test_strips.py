@@ -10,6 +10,7 @@ import pytest
 from surrogate.asperities import strips
 from surrogate.asperities.running_in import RunningContact
 from surrogate.asperities.strips import raceway_strips
+from surrogate.asperities.topography_onset import COARSE_FILM
 from surrogate.ehl import ContactLubricant
 from surrogate.ehl.moving import MarchStatus, SpeedRamp
 from surrogate.formulas.geometry import hertz, screw_contact
@@ -43,7 +44,7 @@ def test_waves_longer_than_all_take_the_longest(screw):
     contact = RunningContact.of(screw, 'screw')
     longest = 2 * math.pi / contact.waves[0].wave_number[0]
     assert contact.wave_above(1.0) == pytest.approx(longest)
-    assert contact.wave_above(0.0) == pytest.approx(contact.shortest_wave)
+    assert contact.wave_above(0.0) == pytest.approx(contact.resolved_wave)
 
 
 @pytest.fixture
@@ -102,3 +103,11 @@ def test_the_law_tells_a_strip_with_the_bias_of_marches(coarse):
     """The onset of a strip falls as one over the viscosity; marches touch some 4 % faster."""
     thin = replace(coarse[0], oil=ContactLubricant(viscosity=0.03, pressure_viscosity=2e-8))
     assert thin.told / coarse[0].told == pytest.approx(2.0, rel=0.05)
+
+
+def test_a_strip_that_touches_where_the_law_has_it_has_the_factor_one(coarse):
+    """Beyond, films of the power 0.67 of the speed over a law that hardly falls are thicker."""
+    strip = coarse[0]
+    assert strip.film_factor(strip.told) == pytest.approx(1.0, abs=2e-3)
+    assert 1.2**0.4 < strip.film_factor(1.2 * strip.told) < 1.2**0.8
+    assert strip.law.film_factor == pytest.approx(1 / COARSE_FILM)

@@ -363,6 +363,7 @@ def test_rolling_loss_is_that_of_the_smooth_film_times_its_factor(monkeypatch):
     monkeypatch.setattr(asperity_law, 'SMOOTH_FROM', 60.0)
     monkeypatch.setattr(asperity_law, 'SOFT_LOSS', 1e-3)
     monkeypatch.setattr(asperity_law, 'LOSS_SLOPE', (0.0, 0.0, 0.0))
+    monkeypatch.setattr(asperity_law, 'LOSS_RIDGES', 0.0)
     found = []
     for factor in (1.0, 2.0):
         monkeypatch.setattr(asperity_law, 'LOSS', (factor, 0.0, 0.0))

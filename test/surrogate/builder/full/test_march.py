@@ -17,8 +17,14 @@ from surrogate.surface_tools.describe import march_lines
 
 SHIPPED = read(shipped_surface(tier='full'))
 BEGINS, NEVER = (
-    {'marched_m_s': onset, 'told_m_s': 0.12, 'shortest_wave_m': 1e-5, 'status': 'well'}
-    for onset in (0.1, None)
+    {
+        'marched_m_s': onset,
+        'film_factor': factor,
+        'told_m_s': 0.12,
+        'shortest_wave_m': 1e-5,
+        'status': 'well',
+    }
+    for onset, factor in ((0.1, 0.91), (None, None))
 )
 
 
@@ -30,6 +36,7 @@ def test_a_strip_of_long_waves_begins_to_touch_near_what_the_law_tells(screw, oi
     assert json.loads(json.dumps(found)) == found
     assert found['status'].startswith('Converged')
     assert 1 / 1.6 < found['marched_m_s'] / found['told_m_s'] < 1.6
+    assert 1 / 1.3 < found['film_factor'] < 1.3
 
 
 def test_a_smooth_raceway_is_not_marched(screw, oil, refused):
@@ -56,6 +63,6 @@ def test_a_build_keeps_what_strips_gave_and_tells_it(
     assert 'strip, strip 3: ' in capsys.readouterr().err
     begins, never = march_lines(data.header['march'])
     assert 'strip 1, waves down to 10 um: contact begins at 0.1 m/s' in begins
-    assert 'told over marched 1.20' in begins
+    assert 'with 0.91 times the film of the law, told over marched 1.20' in begins
     assert 'contact does not begin, told 0.12 m/s' in never
     assert list(march_lines({})) == ['  marched      no strip: all failed']
