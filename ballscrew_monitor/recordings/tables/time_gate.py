@@ -61,6 +61,7 @@ class TimeGate:
         self.count = self.late = 0
         self._fallen = self._equal = 0
         self._unordered = False
+        self._within = 0  # runs that begin in the second in which the one before ends
         self._pending: list[tuple[float, int]] = []  # late rows at the end
         self._before = 0.0  # time of the row before them [s]
         self._last = np.zeros(0)
@@ -197,6 +198,7 @@ class TimeGate:
             run.rows += len(self._pending)
             run.end = max(run.end, max(time for time, _ in self._pending) + HOUR)
         else:
+            self._within += self._wall and math.floor(first) == math.floor(self._before)
             self.runs.append(_run(first - run.shift, row))
             self.runs[-1].rows = len(self._pending)
             self.runs[-1].end = max(time for time, _ in self._pending) - run.shift
@@ -288,6 +290,13 @@ class TimeGate:
             before, time, row = self._first_fall
             return (
                 f'it does not rise: row {row} has {time:.12g} s after {before:.12g} s',
+                INSTEAD,
+            )
+        if self._within > 1:
+            return (
+                f'it goes back within a second {self._within} times, first in row '
+                f'{self._first_fall[2]}, as milliseconds do that are written without leading '
+                'zeros',
                 INSTEAD,
             )
         runs = len(self.runs)

@@ -82,6 +82,11 @@ def test_a_counter_that_overflows_often_is_no_time(read, refused):
     assert read(np.arange(1200) * 1000 % 65536, unit='us').count == 1200
 
 
+def test_milliseconds_without_leading_zeros_are_no_time(read, refused):
+    times = [f'2026-01-02 11:59:{54 + row // 500}.{2 * row % 1000}' for row in range(1500)]
+    refused('no_zeros', read, times)
+
+
 def test_more_than_ten_years_are_refused(read, refused):
     steps = np.arange(500.0)
     steps[-1] = 10 * YEAR
