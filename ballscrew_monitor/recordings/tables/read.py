@@ -186,8 +186,8 @@ def look_through(
 
 def _check_names_within(source: Source, block: pl.DataFrame, first: int) -> None:
     """Raise InputError for a row of other names or units, below which columns hold others."""
-    if any(kind != pl.String for kind in block.dtypes):
-        return
+    if len(block.columns) < 2 or any(kind != pl.String for kind in block.dtypes):
+        return  # a word in a single column is a cell without a number
     words = block.with_row_index(ROW).filter(
         pl.all_horizontal(pl.all().exclude(ROW).str.contains(WORD))
     )
