@@ -61,7 +61,7 @@ def test_a_page_says_what_is_known(run, capsys, says):
     assert says('tier_closed_form_600') in text
     assert says('efficiency_0_9359') in text
     assert 'regime               mixed' in text
-    assert 'worst contact        relieved nut, screw' in text
+    assert 'worst contact        relieved nut, nut' in text
 
 
 @pytest.mark.parametrize(
