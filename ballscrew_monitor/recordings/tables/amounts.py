@@ -13,6 +13,11 @@ MANY = 8  # rows that tell whether torques are amounts
 CLEARLY = 2.0  # times the sum of squares of the better of two readings
 BARELY = 0.05  # of an amount is noise about zero
 BACK = 0.01  # of the way of an axis that reverses, at least, leads in either direction
+FINEST = 1e-6  # of the usual way from row to row is none
+JUMP = 10.0  # times the usual way from row to row
+ALIKE = 0.05  # part by which two ways may differ that are of one size
+COARSE = 0.1  # of the usual way from row to row: a finer step disturbs no slope
+CHANGES = 0.2  # of the rows in motion at which the way changes, though the axis runs evenly
 SAME_TURN = 0.2  # of the largest mean torque of motions that turns with none of them
 
 
@@ -148,3 +153,32 @@ def turns_by_torque(torque: Array, speed: Array) -> bool:
     ]
     least, most = min(means, default=0.0), max(means, default=0.0)
     return least < -SAME_TURN * most and most > -SAME_TURN * least
+
+
+def fault_of_slope(places: Array, runs: int) -> str:
+    """
+    Return why positions [-] in rows at equal distances have no speed as slope, empty if they may.
+
+    A position that is asked for more seldom than the rows are written stays between; a coarse one
+    goes on in few steps of one size; and a counter that is full begins again, as a run may.
+
+    """
+    ways = np.abs(np.diff(places[np.isfinite(places)]))
+    usual = float(np.quantile(ways[ways > 0.0], 0.9)) if ways.any() else 0.0
+    moves = np.flatnonzero(ways > FINEST * usual)
+    if len(moves) < MANY:
+        return ''
+    jumps = ways[ways > JUMP * usual]
+    if len(jumps) > max(runs - 1, 2) and np.ptp(jumps) <= 2.0 * usual:
+        return f'jumps by {np.median(jumps):.4g} again and again'
+    stays = float(np.median(np.diff(moves)))
+    if stays >= 2.0:
+        return f'stays for {stays:.0f} rows at a time while the axis moves'
+    finest = float(ways[moves].min())
+    parts = ways[moves] / finest
+    pairs = np.diff(ways)[np.isin(np.arange(len(ways) - 1), moves)]
+    changes = float((np.abs(pairs) > finest / 2).mean())
+    is_coarse = finest > COARSE * usual and changes > CHANGES
+    if is_coarse and (np.abs(parts - np.round(parts)) < ALIKE).all():
+        return f'moves in steps of {finest:.3g}, up to {usual:.3g} from row to row'
+    return ''

@@ -869,7 +869,7 @@ class _Guesser:
             self.used[name]['lead_mm'] = None
             self.unstated.append(
                 f'state axes.{name}.lead_mm in the map: {self.axes[name]["position"].column} and '
-                f'{self.axes[name]["speed"].column} agree at {lead * MILLI:.4g} mm; behind a gear '
+                f'{self.axes[name]["speed"].column} agree at {lead * MILLI:.3g} mm; behind a gear '
                 'a scale makes of either that of the screw'
             )
             return

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.recordings.tables.amounts import are_amounts, fault_of_speed
+from ballscrew_monitor.recordings.tables.amounts import are_amounts, fault_of_slope, fault_of_speed
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.dates import dated
 from ballscrew_monitor.recordings.tables.estimates import is_within_turn, NEAR, Turns
@@ -198,6 +198,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     held = dataclasses.replace(mapping, axes=tuple(axis for axis, _ in signed))
     times = [Times(table, held, group, shown) for group in groups_of(table, held)]
     _check_magnitudes(path, held, [one.group.columns for one in times])
+    _check_slopes(path, held, table, turns, runs=len(times[0].gate.runs))
     run_begins, run_borders = _place(path, times)
     notes = [note for one in times for note in one.notes()]
     return Series(
@@ -278,6 +279,25 @@ def _first_rows(axis: AxisMap, table: Table, turns: Mapping[str, float]) -> dict
 
 def _motion(axis: AxisMap) -> Column:
     return axis.columns.get('speed') or axis.columns['position']
+
+
+def _check_slopes(
+    path: Path, mapping: TableMap, table: Table, turns: Mapping[str, float], *, runs: int
+) -> None:
+    """Raise InputError for a position whose slope is no speed, of an axis that has no other."""
+    for axis in mapping.axes:
+        if 'speed' in axis.columns:
+            continue
+        column = axis.columns['position'].name
+        places = table.head(SHOWING)[column]
+        if column in turns:
+            places = Turns(turns[column]).counted(places)
+        if fault := fault_of_slope(places, runs):
+            raise InputError(
+                f'log {path}: {short(column)} {fault}: its slope is no speed. Name a column of '
+                f'the speed for axes.{axis.name} in the map, or record the position so that its '
+                'cells are empty where it is not new'
+            )
 
 
 def _turns_of(axes: Iterable[AxisMap], table: Table) -> Iterator[tuple[str, float]]:

@@ -27,6 +27,7 @@ AGAIN = 10  # rows that rise, all earlier than one before them: more than a few 
 WINDOW = 512  # rows that are looked at together where some come late
 SHARED = 0.05  # of the rows that may have the time of the row before
 REGULAR = 0.8  # of the usual number of rows that share a time
+UNEVEN = 0.1  # standard deviation of the rows that share a time over their mean
 MOST = 0.9  # of the times that are shared by the usual number
 HOUR = 3600.0  # [s]
 CLOSE = 10.0  # [s] by which the step of a clock may miss an hour
@@ -270,6 +271,9 @@ class TimeGate:
         if times < 2 or all_near < MOST * times or steps < MOST * sum(self._steps.values()):
             return 0, 0.0
         mean = sum(count * n for count, n in near.items()) / all_near
+        variance = sum((count - mean) ** 2 * n for count, n in near.items()) / all_near
+        if variance > (UNEVEN * mean) ** 2:  # such as stamps that were rounded
+            return 0, 0.0
         return mean, sum(one * n for one, n in even.items()) / steps
 
     @property

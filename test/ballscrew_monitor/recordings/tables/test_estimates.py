@@ -2,7 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rates and units estimated from the numbers of a log."""
 
-from ballscrew_monitor.recordings.tables.amounts import is_magnitude, is_one_sided, reverses
+from ballscrew_monitor.recordings.tables.amounts import (
+    fault_of_slope,
+    is_magnitude,
+    is_one_sided,
+    reverses,
+)
 from ballscrew_monitor.recordings.tables.estimates import (
     DAY,
     is_within_turn,
@@ -154,3 +159,27 @@ def test_noise_a_glitch_and_rest_are_no_other_sign(torque, expected):
 def test_an_axis_reverses_if_it_goes_some_way_in_both_directions(ways, expected):
     assert reverses(np.array(ways)) is expected
     assert reverses(-np.array(ways)) is expected
+
+
+SLOW = np.concatenate([np.zeros(50), 75.0 * np.arange(300) / 100.0, np.full(50, 225.0)])
+"""Places of an axis at 75 mm/s, 100 rows in a second, between two rests."""
+SWING = 100.0 * np.cos(np.arange(600) / 50.0)
+
+
+@pytest.mark.parametrize(
+    ('places', 'runs', 'fault'),
+    [
+        (SWING, 1, ''),
+        (SLOW, 1, ''),
+        (np.where(np.arange(600) % 7 == 0, SWING, np.nan), 1, ''),
+        (SWING[np.arange(600) // 7 * 7], 1, 'stays'),
+        (np.round(SWING, 0), 1, 'moves in steps'),
+        (np.round(SWING, 3), 1, ''),
+        (SWING % 40.0, 1, 'jumps'),
+        (np.tile(SLOW, 5), 5, ''),
+        (np.tile(SLOW, 5), 1, 'jumps'),
+    ],
+)
+def test_a_position_that_is_held_coarse_or_begins_again_has_no_slope(places, runs, fault):
+    assert fault_of_slope(places, runs).startswith(fault)
+    assert bool(fault_of_slope(places, runs)) is bool(fault)

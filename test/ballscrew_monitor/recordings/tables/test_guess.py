@@ -525,7 +525,7 @@ def test_a_log_of_screw_and_table_tells_the_lead(lead, asked, guessed, refused, 
         if asked:
             refused('blank_lead', make_map, made.content)
             position, speed = columns
-            lead_mm = f'{lead:.4g}'
+            lead_mm = f'{lead:.3g}'
             assert made.unstated == (says('lead', position=position, speed=speed, lead=lead_mm),)
 
 
