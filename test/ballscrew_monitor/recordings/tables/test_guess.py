@@ -514,7 +514,7 @@ def test_a_command_gives_way_to_a_position_that_does_not_follow_it(guessed, says
 
 @pytest.mark.parametrize(('lead', 'asked'), [(10.02, False), (5.0, True), (3.3333, True)])
 def test_a_log_of_screw_and_table_tells_the_lead(lead, asked, guessed, refused, says):
-    """Behind a gear the speed is that of the motor, and the lead is none of the screw."""
+    """Behind a gear the speed is that of the motor, and the lead another."""
     for columns in (
         {'x_pos_mm': lead * PLACE, 'x_speed_rpm': 60.0 * TURNING},
         {'x_pos_rev': PLACE, 'x_speed_mm_s': lead * TURNING},
