@@ -30,6 +30,7 @@ ERRORS = 2.0
 DETERMINISTIC = (0.6, 1.2)
 """Film ratios at which published deterministic solutions show contact begin [-]."""
 FALLS, RISES, TURNS = ('falls',), ('rises',), ('falls', 'rises')
+RISES_THEN_FALLS = ('rises', 'falls')
 ETA_RISES, WITH_LOAD = 'trend: rises with speed', 'trend: rises with load'
 
 
@@ -226,14 +227,15 @@ def _efficiency(
     screw: Screw, rows: list[StudyRow], name: str, along: curves.Along, **wanted: float
 ) -> Trend:
     """Return the course of the efficiency over speed or load."""
+    reported = RISES if along == 'rpm' else RISES_THEN_FALLS
     readings = []
     for case in (tasks.STANDING, tasks.OURS):
         points = curves.mapped(rows, case=case, **wanted)
         at = np.array([getattr(row, along) for row in points])
         same = np.full(len(at), EFFICIENCY_TOLERANCE)
         unit, eta = 'rev/min' if along == 'rpm' else 'N', curves.efficiencies(screw, points)
-        readings.append(read_course(at, eta, RISES, unit, same))
-    return Trend(f'efficiency over {name}', 'rises', *readings)
+        readings.append(read_course(at, eta, reported, unit, same))
+    return Trend(f'efficiency over {name}', ', then '.join(reported), *readings)
 
 
 def _over_load(rows: list[StudyRow]) -> list[Trend]:

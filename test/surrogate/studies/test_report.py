@@ -98,7 +98,7 @@ def test_film_is_that_of_the_study_and_every_trend_has_its_rolling_side():
         ('friction coefficient of the sliding', 'in part', 'yes'),
         ('friction coefficient, all losses', 'yes', 'yes'),
         ('efficiency over speed', 'in part', 'in part'),
-        ('efficiency over load', 'yes', 'yes'),
+        ('efficiency over load', 'in part', 'in part'),
         ('RCS over load, loaded nut', 'no', 'no'),
         ('RCS over load, relieved nut', 'yes', 'yes'),
         ('film over load [nm], loaded nut', 'no', 'no'),
