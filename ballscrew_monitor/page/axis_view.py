@@ -145,9 +145,8 @@ class AxisView:
         rows = self.history.since(self.history.count - 1)
         if self.surface is None or self.limits['rcs_limit'] is None or not len(rows):
             return Outside.UNKNOWN
-        return maps.outside_at(
-            self.surface, self.limits, rows[-1], self.warmth, zone=ZONE_CODES[self.state['zone']]
-        )
+        zone = ZONE_CODES[self.state.get('zone', UNKNOWN)]
+        return maps.outside_at(self.surface, self.limits, rows[-1], self.warmth, zone=zone)
 
     def hello(self) -> dict[str, Any]:
         """Return what the axis is."""

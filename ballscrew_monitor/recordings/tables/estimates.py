@@ -63,13 +63,13 @@ def way_per_speed(position: tuple[Array, Array], speed: tuple[Array, Array]) -> 
     """
     Return how far an axis moves for a unit and second of its speed, NaN if both are not alike.
 
-    Places and speeds [-] each stand behind their times [s], of which the first run counts. Least
+    Places and speeds [-] each stand behind their times [s], of which the longest run counts. Least
     squares over some thousand stretches without a gap, for which the speed is integrated by the
     trapezoidal rule.
 
     """
-    times, places = _first_run(*position)
-    seconds, speeds = _first_run(*speed)
+    times, places = _longest_run(*position)
+    seconds, speeds = _longest_run(*speed)
     if min(len(places), len(speeds)) < FEW:
         return math.nan
     every = max(len(places) // STRETCHES, 1)
@@ -80,18 +80,21 @@ def way_per_speed(position: tuple[Array, Array], speed: tuple[Array, Array]) -> 
     within = (times[:-1] >= seconds[0]) & (times[1:] <= seconds[-1])
     good = within & (steps <= LONG * np.median(steps))
     moved, expected = moved[good], expected[good]
-    across, along = float(moved @ expected), float(expected @ expected)
-    if not along > 0.0 or across**2 < ALIKE * along * float(moved @ moved):
+    with np.errstate(over='ignore', invalid='ignore'):
+        across, along = float(moved @ expected), float(expected @ expected)
+        both = math.sqrt(along) * math.sqrt(float(moved @ moved))
+    if not 0.0 < both < math.inf or abs(across) < math.sqrt(ALIKE) * both:
         return math.nan
     return abs(across) / along
 
 
-def _first_run(times: Array, values: Array) -> tuple[Array, Array]:
-    """Return known values with their times until these begin again."""
+def _longest_run(times: Array, values: Array) -> tuple[Array, Array]:
+    """Return the most known values in a row whose times do not begin again, with these."""
     known = np.isfinite(times) & np.isfinite(values)
     times, values = times[known], values[known]
-    ends = np.flatnonzero(np.diff(times) < 0.0)
-    run = slice(int(ends[0]) + 1 if len(ends) else None)
+    ends = np.array([0, *(np.flatnonzero(np.diff(times) < 0.0) + 1), len(times)])
+    longest = int(np.argmax(np.diff(ends)))
+    run = slice(ends[longest], ends[longest + 1])
     return times[run], values[run]
 
 
@@ -112,8 +115,8 @@ class Turns:
         known = np.isfinite(positions)
         every = np.unwrap(np.append(self._last, positions[known]), period=self._turn)
         counted = positions.copy()
-        counted[known] = every[len(self._last) :]
-        self._last = every[-1:]
+        before, self._last = len(self._last), every[-1:]
+        counted[known] = every[before:]
         return counted
 
 

@@ -364,7 +364,8 @@ class _Above:
 
     def _factors(self) -> str:
         """Return the first row that states a scale other than 1, or an offset other than 0."""
-        first = self.block.rows[self.block.begin : self.block.begin + FOLLOWING]
+        begin = self.block.begin
+        first = self.block.rows[begin:][:FOLLOWING]
         for row in [*(row for _, row in self.lines), *first]:
             label, *cells = row or ['']
             key, sign, value = label.partition(':')
@@ -378,7 +379,8 @@ class _Above:
         return ''
 
     def _surplus(self, first: int, names: int) -> str:
-        rows = self.block.rows[self.block.begin :]
+        begin = self.block.begin
+        rows = self.block.rows[begin:]
         at = next((at for at, row in enumerate(rows) if any(row[names:])), 0)
         return _surplus(first + at, len(rows[at]), names, self.separator)
 

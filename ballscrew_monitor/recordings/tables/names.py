@@ -42,7 +42,7 @@ KINDS = {
 # Words that make a column something else, whatever else its name says.
 OTHERS = frozenset(
     'acceleration accel acc jerk ffw diff dev cont ctrl voltage volt volts power error deviation '
-    'feedrate rate override std stddev variance max maximum peak threshold feedforward difference '
+    'feedrate rate override max maximum peak threshold feedforward difference '
     'simulated estimated clamping '
     'program sequence number line block inertia bus count index status limit percent pct '
     'beschleunigung ruck spannung leistung fehler abweichung programm satz zeile nummer'.split()

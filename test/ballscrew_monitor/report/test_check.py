@@ -213,7 +213,7 @@ def run_of(tmp_path, name, drag, load=0.0, **more):
     mapping.write_text(
         f'log: {path.name}\ntime: {{column: time_s, unit: s}}\naxes:\n  x:\n'
         '    speed: {column: x_velocity_mm_s, unit: mm/s}\n'
-        '    load: {column: x_force_N, unit: N}\n'
+        '    load: {column: x_force_N, unit: N, magnitude: false}\n'
         '    torque: {column: x_torque_Nm, unit: N m}\n    lead_mm: 10.0\n    screw: nominal\n'
         '    oil: iso_vg_68\n    temperature_degC: 38.0\nassumed:\n'
         '  time.epoch: {value: "2026-01-05T08:00:00Z", reason: test}\n'

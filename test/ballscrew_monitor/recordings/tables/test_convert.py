@@ -161,7 +161,7 @@ def test_other_programs_read_it(mill_bag):
 def test_a_log_slower_than_the_timeouts_lengthens_them(tmp_path, write_csv, says):
     speed = [100.0] * 20
     log = write_csv(
-        tmp_path / 'log.csv', {'t_s': np.arange(20.0) * 2, 'x_vel': speed, 'x_force_N': speed}
+        tmp_path / 'log.csv', {'t_s': np.arange(20.0) * 2, 'x_vel_mm_s': speed, 'x_force_N': speed}
     )
     bag = converted(log, tmp_path / 'bag')
     facts = facts_of(bag)
@@ -322,6 +322,8 @@ def test_a_bag_holds_each_row_to_the_last_bit_for_every_reader(first, others):
     both = [{'lead_mm': 10.0}, {'lead_mm': 10.0, 'speed': {'column': 'M', 'unit': 'rad/s'}}]
     for (kind, unit), name in zip(units.items(), 'vFTM'):
         both[0][kind] = {'column': name, 'unit': unit}
+    for place in (both[0]['speed'], both[0]['load'], both[0]['torque'], both[1]['speed']):
+        place['magnitude'] = False
     time = {'column': 't', 'unit': 'ms', 'epoch': '2000-01-01T00:00:00Z'}
     content = {'time': time, 'axes': dict(zip('xy', both))}
     stamps = BEGIN + table['t'] * 1_000_000
@@ -356,9 +358,9 @@ def test_an_empty_cell_is_no_sample(rows):
     filled = {'v': [float(at) for at in range(len(rows))], **dict(zip('FTM', zip(*rows)))}
     assume(all(any(one is not None for one in filled[name]) for name in 'FTM'))
     table = {'t': list(range(len(rows))), **{name: list(each) for name, each in filled.items()}}
-    axis = {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'rad/s'}}
-    for kind, unit, name in (('load', 'N', 'F'), ('temperature', 'degC', 'T')):
-        axis[kind] = {'column': name, 'unit': unit}
+    axis = {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'rad/s', 'magnitude': False}}
+    axis['load'] = {'column': 'F', 'unit': 'N', 'magnitude': False}
+    axis['temperature'] = {'column': 'T', 'unit': 'degC'}
     axis['torque'] = {'column': 'M', 'unit': 'N m', 'magnitude': False}
     time = {'column': 't', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'}
     with tempfile.TemporaryDirectory() as folder:

@@ -93,10 +93,7 @@ def test_nodes_are_what_solves_give(data, screw, oil, stand_in):
 
 
 def test_the_deviation_of_a_node_is_that_of_the_law_at_its_worst_contact(data, screw, oil):
-    """
-    An onset half of the deviation later and sooner, behind the heating of the inlet.
-
-    """
+    """An onset half of the deviation later and sooner, behind the heating of the inlet."""
     arm, law = no_slip_rates(screw).entrainment, Contacts.of(screw).law
     for i, j, k in np.argwhere(~data.mask)[::11]:
         nut, side = divmod(int(data.worst_contact[i, j, k]), len(SIDES))
