@@ -88,7 +88,7 @@ def is_magnitude(torque: Array, speed: Array, *, makes_load: bool) -> bool | Non
 
     """
     if len(speed) < MANY:
-        return False
+        return None if reverses(speed) else False
     push = np.gradient(speed)
     good = np.isfinite(torque) & np.isfinite(speed) & np.isfinite(push) & (speed != 0.0)
     known = np.isfinite(torque).sum(), (np.isfinite(speed) & (speed != 0.0)).sum()

@@ -160,6 +160,7 @@ class _Guesser:
         self.groups: dict[str, str] = {}
         self.ways: dict[str, float] = {}  # of a position for a unit and second of its speed
         self.unclear_times: set[str] = set()
+        self.idle_times: list[str] = []  # where one of several has no column behind it
         self.members: dict[tuple[str, tuple[int, int]], str] = {}
         self.times = [one for one in self.named if self._may_be_time(one)]
         self.named = [one for one in self.named if one not in self.times or one.kind == 'time']
@@ -432,6 +433,8 @@ class _Guesser:
             self.groups[one.column] = column
             if not columns[column]:
                 self.unclear_times.add(one.column)
+        own = [column for column, is_own in columns.items() if is_own]
+        self.idle_times = own if set(own) - set(self.groups.values()) else []
 
     def _own_time(self, time: Named, one: Named) -> bool | None:
         """Return whether a time is that of other columns, None for a time of none."""
@@ -648,6 +651,13 @@ class _Guesser:
         """Say of an input that it has another time than the first, and ask if it may have."""
         place = self.used[name][kind]
         column, own = place['column'], place.get('time', time)
+        if self.idle_times:
+            place['time'] = None
+            self.unstated.append(
+                f'state axes.{name}.{kind}.time in the map, {" or ".join(self.idle_times)}, the '
+                f'time of {column}: the order of columns does not tell'
+            )
+            return
         if not own or _base(own) == _base(time):
             return
         if column not in self.unclear_times:

@@ -20,10 +20,12 @@ from ballscrew_monitor.recordings.tables.layouts import (
     COLUMN,
     Format,
     format_of,
+    OTHER_PERIOD,
     period_of,
     property_of,
     REMARK,
     SEPARATED,
+    unit_of_period,
 )
 from ballscrew_monitor.recordings.tables.names import read_name
 from ballscrew_monitor.recordings.tables.quantities import column_name, Layout
@@ -474,8 +476,9 @@ class _Above:
     def _periods(self, names: Sequence[str]) -> dict[str, float]:
         if 'period' not in self.rows:
             return {}
-        stated = BRACKETS.findall(self.rows['period'][0])
-        unit = stated[0] if stated else 's'
+        label = self.rows['period'][0]
+        stated = BRACKETS.findall(label)
+        unit = stated[0] if stated else unit_of_period(label)
         periods = [period_of(cell, unit) for cell in self._row('period')]
         return {name: one for name, one in zip(names, periods) if math.isfinite(one)}
 
@@ -487,8 +490,13 @@ class _Above:
             kind = property_of(key)
             if kind and value and not (kind in found or kind in self.rows):
                 stated = BRACKETS.findall(key)
-                text = f'{value} {stated[0]}' if stated and kind in ('period', 'rate') else value
-                found[kind] = Property(text=text, row=line.row)
+                if kind in ('period', 'rate'):
+                    if OTHER_PERIOD.search(line.raw):
+                        continue
+                    usual = unit_of_period(key) if kind == 'period' else 'Hz'
+                    bare = usual if re.fullmatch(r'[\d.,e+-]+', value, re.I) else ''
+                    value = f'{value} {stated[0] if stated else bare}'
+                found[kind] = Property(text=value, row=line.row)
         return found
 
     def _period(
@@ -504,12 +512,13 @@ class _Above:
             return next(iter(of_columns)), 0
         if 'period' in properties:
             stated = properties['period']
-            return period_of(stated.text, 's'), stated.row
+            return period_of(stated.text), stated.row
         if 'rate' in properties:
             stated = properties['rate']
-            return period_of(stated.text, 'Hz'), stated.row
+            return period_of(stated.text), stated.row
         for line, _ in self.lines:
-            if match := REMARK.search(line.raw):
+            match = REMARK.search(line.raw)
+            if match and not OTHER_PERIOD.search(line.raw):
                 return period_of(match['number'], match['unit']), line.row
         return math.nan, 0
 

@@ -48,6 +48,15 @@ REMARK = re.compile(
     re.I,
 )
 """A period or rate that a remark states in a sentence."""
+OTHER_PERIOD = re.compile(
+    r'trigger|control|regel|interpol|decimat|dezim|every|jede|\b(?:of|von|der|des)\b|'
+    r'\d\s*[x*/]\s*\d',
+    re.I,
+)
+"""What makes a stated period one of something else than rows."""
+IN_SECONDS = frozenset('deltax dx dt deltat xincrement'.split())
+"""Labels of a period that need no unit."""
+THOUSANDS = re.compile(r'[1-9]\d{0,2}[.,]\d{3}')
 STATED = re.compile(r'([\d.,]+(?:e[-+]?\d+)?)\s*[\[(]?\s*([^\s\d\[\]()]*)[\])]?', re.I)
 PERIOD = re.compile('([nuµμm]?)s(?:ec(?:onds?)?|ek(?:unden?)?)?')
 RATE = re.compile('(k?)hz')
@@ -107,6 +116,12 @@ def property_of(label: str) -> str:
     return next((kind for kind, words in PROPERTIES.items() if plain in words), '')
 
 
+def unit_of_period(label: str) -> str:
+    """Return the unit of a period whose label states none, empty where it may be any."""
+    plain = re.sub(r'[\W\d_]+', '', label.lower())
+    return 's' if plain in IN_SECONDS else 'ms' if plain.endswith('timems') else ''
+
+
 def format_of(head: str) -> Format | None:
     """Return the program that wrote a head, None for one that is not known."""
     return next((one for one in FORMATS if one.mark.search(head)), None)
@@ -116,10 +131,13 @@ def period_of(text: str, unit: str = '') -> float:
     """
     Return the period [s] that a text states, in its own unit or another; NaN for none.
 
-    Nothing else may stand beside number and unit: it would make them another period.
+    Nothing else may stand beside number and unit, which would make them another period, nor a sign
+    before three digits, which may be of thousands.
 
     """
     match = STATED.fullmatch(text.strip())
+    if match and THOUSANDS.fullmatch(match[1]):
+        return math.nan  # thousands, or three decimals
     try:
         number = float(match[1].replace(',', '.')) if match else 0.0
     except ValueError:

@@ -81,6 +81,10 @@ JOINED_WORDS = {
     'frt': 'feed',
     'load': 'load percent',
 }
+AMOUNTS = frozenset('magnitude betrag diameter dia durchmesser'.split())
+BARS = re.compile(r'\|[^|]+\|')
+WITH_SIGN = ('speed', 'position', 'load')
+"""Words and bars of a column without the sign or of twice the way, and what is nothing so."""
 PERCENT = frozenset({'percent', 'pct'})
 TELLS_NOTHING = (
     MEASURED
@@ -147,6 +151,8 @@ def read_name(column: str, text: str = '') -> Named:
         if kind == 'torque' and not unit and BRACKETS.search(column):
             unit = unit_of(column, other)
             kind = other if unit else kind
+    if kind in WITH_SIGN and (AMOUNTS & set(words) or BARS.search(column)):
+        kind = ''
     # In another unit than those of the quantity it may be another quantity.
     if unknown_unit(column) and not unit:
         kind, doubtful = '', kind

@@ -677,3 +677,29 @@ def test_nothing_is_said_of_numbers_whose_sign_is_open(tmp_path):
     assert made.content['decimal'] is None
     assert made.picture[0].startswith('Group 1: an unknown period')
     assert not any('moves' in note for note in made.notes)
+
+
+@pytest.mark.parametrize('order', ['ABvm', 'vAmB'])
+def test_times_in_another_order_are_asked_for(order, tmp_path, write_csv, says):
+    """Both first, or each behind its value: as well they may be the times of what follows."""
+    columns = {
+        'A': ('Time A [s]', TIME),
+        'B': ('Time B [s]', 1.0 + 1.25 * TIME),
+        'v': ('v_x [mm/s]', SPEED),
+        'm': ('x_torque [Nm]', -SPEED),
+    }
+    made = guess(write_csv(tmp_path / 'log.csv', dict(columns[one] for one in order)))
+    assert made.unstated == (
+        says('idle', kind='speed', column='v_x [mm/s]'),
+        says('idle', kind='torque', column='x_torque [Nm]'),
+    )
+
+
+@pytest.mark.parametrize('name', ['|x velocity| [mm/s]', 'x velocity magnitude [mm/s]'])
+def test_a_name_of_an_amount_is_no_speed(name, guessed):
+    made = guessed({'t_s': TIME, name: SPEED, 'x position [mm]': PLACE})
+    assert 'speed' not in made.content['axes']['x']
+
+
+def test_the_diameter_of_a_lathe_is_no_way_of_its_axis(guessed, refused):
+    refused('column_of_diameter', guessed, {'t_s': TIME, 'X diameter position [mm]': PLACE})

@@ -15,6 +15,7 @@ import random
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
+from ballscrew_monitor.recordings.tables.sources import source_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
@@ -243,3 +244,33 @@ def test_a_value_a_line_between_bars_is_not_taken_for_lines_of_an_adapter(tmp_pa
 
 def test_most_of_drawn_layouts_are_read(tmp_path):
     assert sum(drawn(seed, tmp_path) for seed in range(DRAWN)) >= 0.7 * DRAWN
+
+
+@pytest.mark.parametrize(
+    ('line', 'period'),
+    [
+        ('# Sampling period is 1000000 ns', 1e-3),
+        ('# Sample time: 10 ms', 0.01),
+        ('# Sample period: 10 [ms]', 0.01),
+        ('# Sample time [ms]: 10', 0.01),
+        ('# Sample rate: 100', 0.01),
+        ('# dt = 0.004', 0.004),
+        ('# CycleTimeMs: 2', 0.002),
+        ('# Cycle time: 10', math.nan),
+        ('# Sample time: 10,000 us', math.nan),
+        ('# Sample rate: 1.000 Hz', math.nan),
+        ('# Sampling rate: 100 Sa/s', math.nan),
+        ('# Period: 1 ms; decimation: 10', math.nan),
+        ('# Sample time: 1 ms x 10', math.nan),
+        ('# Sampling: every 10 cycles of 1 ms', math.nan),
+        ('# Interpolator cycle 4 ms', math.nan),
+        ('# Control cycle: 2 ms', math.nan),
+        ('# Trigger sample time: 5 ms', math.nan),
+        ('# Sampling frequency of current: 20 kHz', math.nan),
+    ],
+)
+def test_a_period_is_that_of_rows_with_its_unit_or_none(line, period, tmp_path):
+    log = tmp_path / 'log.csv'
+    rows = ''.join(f'{at % 7 - 3};{at % 5 - 2}\n' for at in range(40))
+    log.write_text(f'{line}\nx velocity [mm/s];x force [N]\n{rows}')
+    assert source_of(log).head.period == pytest.approx(period, nan_ok=True)
