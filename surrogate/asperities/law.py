@@ -80,6 +80,7 @@ class AsperityContact:
     rcs_deviation: float = math.nan
 
 
+REST = 1e-12  # [m/s] slower is at rest: powers of what is next to nothing overflow
 AT_REST = AsperityContact(1.0, 1.0, 1.0, 0.0)
 """Asperities carry all of a load that does not move."""
 
@@ -179,9 +180,10 @@ class AsperityLaw:
 def film_of(strips: Line, speeds: Array, oil: ContactLubricant) -> Array:
     """Return the smooth central film [m] of strips, one a row, at speeds [m/s]; 0 at rest."""
     rows = replace(strips, max_pressure=strips.max_pressure[:, None])
-    moving = np.where(speeds > 0, speeds, 1.0)
+    moves = speeds > REST
+    moving = np.where(moves, speeds, 1.0)
     film = central_film_line(rows, moving, oil.viscosity, oil.pressure_viscosity)
-    return np.asarray(np.where(speeds > 0, film, 0.0))
+    return np.asarray(np.where(moves, film, 0.0))
 
 
 def growth_of(acting: ActingRoughness) -> float:

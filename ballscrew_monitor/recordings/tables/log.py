@@ -165,7 +165,10 @@ class TableLog(Bag):
             stamps = groups[0].stamps
             events = every[0]
             if len(groups) > 1:
-                stamps = np.unique(np.concatenate([rows.stamps for rows in groups]))
+                read = [
+                    rows.stamps for rows, part in zip(groups, parts, strict=True) if part.inputs
+                ]
+                stamps = np.unique(np.concatenate(read))
                 events = joined(every)
                 events = some(events, np.lexsort((events['source'], events['stamp'])))
             due = order.ticks(stamps)

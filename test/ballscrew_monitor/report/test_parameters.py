@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameters with which a recording is judged, and their assumptions of each axis."""
 
+import math
+
 from ballscrew_monitor.report.parameters import assumed_of, parameters_for
 import pytest
 
@@ -18,7 +20,7 @@ def test_assumptions_are_those_of_the_axis_and_of_all():
 @pytest.fixture
 def table(tmp_path):
     """Return a CSV without a time and a map that assumes what it does not say."""
-    rows = '\n'.join(f'{1000 + n % 7},{0.1 * (n % 5)}' for n in range(200))
+    rows = '\n'.join(f'{1000 + 20 * math.sin(n / 9):.3f},{0.1 * (n % 5)}' for n in range(200))
     (tmp_path / 'log.csv').write_text(f'speed,current\n{rows}\n')
     (tmp_path / 'map.yaml').write_text(
         'log: log.csv\n'

@@ -115,6 +115,7 @@ CELL = st.none() | st.floats(-2000.0, 2000.0)
 ROW = st.tuples(STEP, CELL, CELL, CELL, CELL, st.none() | st.floats(10.0, 70.0))
 WHOLE = (10, 100.0, -500.0, 0.7, 3.0, 40.0)
 MOVED = (10, 110.0, -400.0, 0.8, 4.0, None)
+HOLE_AFTER_A_PLACE = [(50, *[None] * 5), (50, None, None, None, 0.0, None), (70_000, *[None] * 5)]
 SLOWLY_WARM = [*[(1, *[None] * 5)] * 14, (1, *[None] * 4, 10.0), (400, *[None] * 4, 10.0)]
 
 
@@ -125,6 +126,7 @@ SLOWLY_WARM = [*[(1, *[None] * 5)] * 14, (1, *[None] * 4, 10.0), (400, *[None] *
     events=st.sampled_from([1, 7, 100_000]),
 )
 @example(axes=MAPS[2], rows=[(0, *MOVED[1:])] * 9, block=3, events=7)
+@example(axes=MAPS[1], rows=HOLE_AFTER_A_PLACE, block=1, events=1)
 @settings(max_examples=25, deadline=None)
 def test_a_table_and_the_bag_of_it_are_judged_to_the_same_bits(axes, rows, block, events):
     """Steps are of zero and of more than a minute, and any cell may be empty."""
