@@ -171,8 +171,10 @@ class TableLog(Bag):
                 stamps = np.unique(np.concatenate(read))
                 events = joined(every)
                 events = some(events, np.lexsort((events['source'], events['stamp'])))
-            due = order.ticks(stamps)
-            yield inserted(events, np.searchsorted(events['stamp'], due['stamp'], 'right'), due)
+            if len(stamps):
+                due = order.ticks(stamps)
+                at = np.searchsorted(events['stamp'], due['stamp'], 'right')
+                yield inserted(events, at, due)
             done += sum(len(rows.stamps) for rows in groups)
             on_done(done / self.count)
 
