@@ -50,6 +50,7 @@ LONGEST_STEP = 1.0  # [s] between two rows; more is a gap
 MOST_POINTS = 2000  # of the path of a ghost
 MOST_UNKNOWN = 0.01  # of the time of a ghost, up to which its energy is that of the rest
 SPEEDS = 120  # at which the limit of RCS is looked for
+BETWEEN = 12  # and then between those two where RCS falls below its limit, both counted
 LEAST_RCS = 1e-9  # [-] which has a logarithm
 Answer = tuple[dict[str, Any], dict[str, Any]]
 
@@ -149,8 +150,13 @@ def limit_speed(
 
     """
     speeds = np.geomspace(*judged_speeds(surface, limits.standstill_speed), SPEEDS)
-    rcs = look_up_many(surface, speeds, *_everywhere(speeds, load, kelvin(temperature)))['rcs']
-    excess = np.log(np.maximum(rcs, LEAST_RCS) / limits.rcs)
+    excess = _excess(surface, limits, speeds, load, temperature)
+    at = np.flatnonzero((excess[:-1] >= 0.0) & (excess[1:] < 0.0))
+    # A corrected cell ends steeply: what lies between two of these speeds is looked at again.
+    ends = zip(speeds[at], speeds[at + 1], strict=True)
+    between = [np.geomspace(slow, fast, BETWEEN)[1:-1] for slow, fast in ends]
+    speeds = np.sort(np.concatenate([speeds, *between]))
+    excess = _excess(surface, limits, speeds, load, temperature)
     at = np.flatnonzero((excess[:-1] >= 0.0) & (excess[1:] < 0.0))
     part = excess[at] / (excess[at] - excess[at + 1])
     borders = speeds[at] * (speeds[at + 1] / speeds[at]) ** part
@@ -159,6 +165,14 @@ def limit_speed(
     here = np.interp(math.log(max(speed, speeds[0])), np.log(speeds), excess)
     border = faster if here >= 0.0 else slower
     return float(border[0]) if border.size else math.nan
+
+
+def _excess(
+    surface: Surface, limits: Limits, speeds: Array, load: float, temperature: float
+) -> Array:
+    """Return the logarithm of RCS over its limit [-] at speeds [rad/s]."""
+    rcs = look_up_many(surface, speeds, *_everywhere(speeds, load, kelvin(temperature)))['rcs']
+    return np.log(np.maximum(rcs, LEAST_RCS) / limits.rcs)
 
 
 def limit_record(

@@ -616,18 +616,20 @@ class _Guesser:
             speeds = self.extremes[used['speed']['column']]
             unit = self._unit(name, 'speed')
             self.notes += estimates.oddities(name, speeds, unit, conversions.LINEAR_SPEED_UNITS)
-        self._say_direction(name)
+        self._assume_direction(name)
         self._ask_for_columns(name)
 
-    def _say_direction(self, name: str) -> None:
-        """Say of a speed without a position that has one sign what that is taken for."""
+    def _assume_direction(self, name: str) -> None:
+        """Assume of a speed of one sign without a position that it is of one direction."""
         speed = self.used[name].get('speed')
         if speed and 'position' not in self.used[name]:
             least, most = self.extremes[speed['column']]
             if least * most >= 0.0 and most > least and 'magnitude' not in speed:
-                self.notes.append(
-                    f'axis {name}: {short(speed["column"])} never changes its sign: all motion is '
-                    'taken to be in one direction'
+                self._assume(
+                    f'{name}.speed.magnitude',
+                    False,
+                    f'{speed["column"]} never changes its sign, and no position tells whether it '
+                    'has one: all motion is taken to be in one direction',
                 )
 
     def _ask_for_columns(self, name: str) -> None:

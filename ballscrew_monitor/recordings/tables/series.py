@@ -288,11 +288,9 @@ def _check_slopes(
     for axis in mapping.axes:
         if 'speed' in axis.columns:
             continue
-        column = axis.columns['position'].name
-        places = table.head(SHOWING)[column]
-        if column in turns:
-            places = Turns(turns[column]).counted(places)
+        places = _first_rows(axis, table, turns)['position']
         if fault := fault_of_slope(places, runs):
+            column = axis.columns['position'].name
             raise InputError(
                 f'log {path}: {short(column)} {fault}: its slope is no speed. Name a column of '
                 f'the speed for axes.{axis.name} in the map, or record the position so that its '

@@ -533,8 +533,13 @@ def test_a_speed_of_one_sign_alone_is_said_and_a_temperature_in_fahrenheit_asked
     guessed, says
 ):
     made = guessed({'t_s': TIME, 'x_vel_mm_s': abs(SPEED), 'oil_temp_F': 90.0 + TIME})
-    assert says('one_direction') in made.notes
+    assert made.content['assumed']['x.speed.magnitude'] == {
+        'value': False,
+        'reason': says('one_direction'),
+    }
     assert made.unstated == (says('fahrenheit'),)
+    made.content['axes']['x']['temperature'] |= {'unit': 'degC', 'scale': 5 / 9}
+    assert make_map(made.content).axes[0].columns['speed'].magnitude is False
 
 
 def test_a_speed_tells_the_unit_of_its_position(guessed, says):
