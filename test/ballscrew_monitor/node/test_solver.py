@@ -25,43 +25,48 @@ from hypothesis import strategies as st
 import pytest
 from surrogate.child import one_thread_environment
 
-DEADLINE = 600.0  # [s] which only ends a hang
 BAD_REQUEST = {'point': {}}
 
 
-@pytest.fixture(name='pool')
-def make_pool():
+class Asked:
+    """A worker of solves, and the frames that were heard of it and not yet taken."""
+
+    def __init__(self, pool, wait_for):
+        self.pool, self.wait_for, self.frames = pool, wait_for, []
+
+    def hear(self):
+        """Return the next frame; several may be heard at once."""
+        while not self.frames:
+            self.frames += self.wait_for(lambda: self.pool.wait(0.0), 'a frame')
+        return self.frames.pop(0)[1]
+
+    def ask(self):
+        """Ask for a solve that cannot be; return the process that is asked."""
+        self.pool.submit('a', TASK, BAD_REQUEST)
+        return int(self.hear()['begun'].partition('/')[2])
+
+
+@pytest.fixture(name='asked')
+def make_asked(wait_for):
     with start_worker() as pool:
-        yield pool
+        yield Asked(pool, wait_for)
 
 
-def ask(pool):
-    """Ask for a solve that cannot be; return the process that is asked."""
-    pool.submit('a', TASK, BAD_REQUEST)
-    ((_, frame), *_) = pool.wait(DEADLINE)
-    return int(frame['begun'].partition('/')[2])
-
-
-def end_of(pool, wait_for):
-    ((_, frame),) = wait_for(lambda: pool.wait(0.0), 'a frame')
-    return frame
-
-
-def test_a_bad_request_and_ctrl_c_do_not_end_it_and_a_kill_is_told(pool, wait_for):
-    process = ask(pool)
-    assert end_of(pool, wait_for)['sentence'] == "KeyError: 'header'"
+def test_a_bad_request_and_ctrl_c_do_not_end_it_and_a_kill_is_told(asked):
+    process = asked.ask()
+    assert asked.hear()['sentence'] == "KeyError: 'header'"
     os.kill(process, signal.SIGINT)
-    assert ask(pool) == process
-    assert end_of(pool, wait_for)['sentence'] == "KeyError: 'header'"
+    assert asked.ask() == process
+    assert asked.hear()['sentence'] == "KeyError: 'header'"
     os.kill(process, signal.SIGSTOP)
-    assert ask(pool) == process
+    assert asked.ask() == process
     os.kill(process, signal.SIGKILL)
-    assert end_of(pool, wait_for) == {'lost': 'was killed by signal 9'}
+    assert asked.hear() == {'lost': 'was killed by signal 9'}
 
 
-def test_it_holds_nothing_of_ros_and_runs_nicely_in_bounded_memory(pool, wait_for):
-    process = ask(pool)
-    end_of(pool, wait_for)
+def test_it_holds_nothing_of_ros_and_runs_nicely_in_bounded_memory(asked):
+    process = asked.ask()
+    asked.hear()
     maps = Path(f'/proc/{process}/maps').read_text()
     assert 'numba' in maps  # the solver is loaded
     assert 'rclpy' not in maps
