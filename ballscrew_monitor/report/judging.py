@@ -24,8 +24,7 @@ from ballscrew_monitor.recordings.recorded_events import judged_by_events
 from ballscrew_monitor.recordings.replay import ignore, replay_parts
 from ballscrew_monitor.recordings.summary import AxisOutcome, EventRecord
 from ballscrew_monitor.recordings.words import feed_first
-from ballscrew_monitor.report.balance import Balance, Balancer
-from ballscrew_monitor.report.certainty import SureTime
+from ballscrew_monitor.report.balance import Balance, balance_of
 from ballscrew_monitor.report.machines import folder_of
 from ballscrew_monitor.report.parameters import Assumed, AxisFacts, LogParameters
 from ballscrew_monitor.report.survey import Survey, Surveyor
@@ -256,22 +255,15 @@ class CaseMaker:
         self._settings = settings_of(axis, values, self._surface)
         self._surveyor = Surveyor(
             axis,
-            standstill=self._settings.limits.standstill_speed,
+            self._surface,
+            self._settings.limits,
             max_gap=self._settings.timeouts[Source.SPEED],
-        )
-        self._balancer = Balancer(
-            lead=self._surface.lead, standstill=self._settings.limits.standstill_speed
-        )
-        self._sure = SureTime(
-            self._surface, self._settings.limits, max_gap=self._settings.timeouts[Source.SPEED]
         )
         self._history = None if make is None else make(self._surface, gathering_of(axis, values))
 
     def add(self, rows: NDArray[Any], run: int = 0) -> None:
         """Take the next rows, an array of ROW, of the run of a number."""
         self._surveyor.add(rows, run)
-        self._balancer.add(rows)
-        self._sure.add(rows)
         if self._history is not None:
             self._history.add(rows)
 
@@ -306,8 +298,8 @@ class CaseMaker:
                 torque_is_load=facts.torque_is_load,
             ),
             onset=self._onset(survey.oil.mean),
-            balance=self._balancer.result(),
-            surely_outside=self._sure.seconds,
+            balance=balance_of(self._surveyor.sums),
+            surely_outside=self._surveyor.sure_time,
             facts=facts,
             **known,
         )

@@ -5,8 +5,9 @@ The first look at the judged rows of an axis: spans, sums, gaps, and what could 
 
 Each row is taken to last until the next one, unless that is longer than the timeout of the speed:
 then it is a gap. One compiled pass adds the rows up as they are judged, so that nothing of a
-recording need be kept, and a replay that is only printed asks for no table of them. Functions of
-the subset that numba compiles; `row` is a `judge.records.Row`.
+recording need be kept, and a replay that is only printed asks for no table of them. It gathers
+the products of load and torque for `balance.py`, too. Functions of the subset that numba
+compiles; `row` is a `judge.records.Row`.
 
 """
 
@@ -18,7 +19,8 @@ from typing import Any
 
 from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.core.judgement import PointSource, Reason, Zone
+from ballscrew_monitor.core.judgement import Limits, PointSource, Reason, Zone
+from ballscrew_monitor.judge.certainty import least_factor, surely_outside
 from ballscrew_monitor.judge.inputs import (
     DERIVED,
     HELD,
@@ -28,12 +30,14 @@ from ballscrew_monitor.judge.inputs import (
     TEMPERATURE,
     TORQUE,
 )
-from ballscrew_monitor.judge.point import NO_DIRECTION, opposing_load
+from ballscrew_monitor.judge.point import NO_DIRECTION, opposing_load, POSITIVE
 from ballscrew_monitor.recordings.declared import unwritten, written
 import numpy as np
 from numpy.typing import NDArray
+from surrogate.surface import Surface
 from surrogate.surface.compiled import compiled
 from surrogate.surface.records import as_array, from_array, many
+from surrogate.units import TURN
 
 NAN = math.nan
 REST = 'no speed was recorded'
@@ -46,6 +50,8 @@ INPUTS, ORIGINS = len(Source), len(PointSource)
 # measured and modelled torque there, and their difference by the direction of the motion.
 OPPOSING, OIL, COMPARED, RESIDUAL, BY_DIRECTION = range(INPUTS, INPUTS + 5)
 SPANS = BY_DIRECTION + len(Direction)
+TERMS = 4
+"""Terms of a balance: load torque, motion, one and motor torque."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -142,7 +148,14 @@ class Survey:
 
 @dataclasses.dataclass(slots=True)
 class RowSums:
-    """The sums over rows, and the last of them; stamps and times [ns], energy [J], the rest SI."""
+    """
+    The sums over rows, and the last of them; stamps and times [ns], energy [J], the rest SI.
+
+    Products of all terms of a balance by all are summed over the rows in motion where the load is
+    known, where the torque is, and where both are; there also the friction by the model [N m], and
+    in how many rows it is known.
+
+    """
 
     rows: int = 0
     first: int = 0
@@ -164,35 +177,49 @@ class RowSums:
     parted: bool = False  # the next row is the first of another run
     energy: list[float] = many(len(Zone), 0.0)
     samples: list[int] = many(len(Reason), 0)
+    sure_time: int = 0  # surely outside the zone
+    of_load: list[float] = many(TERMS * TERMS, 0.0)
+    of_torque: list[float] = many(TERMS * TERMS, 0.0)
+    of_both: list[float] = many(TERMS * TERMS, 0.0)
+    friction: float = 0.0
+    friction_rows: int = 0
     # the last row
     stamp: int = 0
     reason: int = 0
     zone: int = 0
     moved: bool = False
+    sure: bool = False
     power: float = 0.0
     held: list[int] = many(INPUTS, 0)
 
 
-def add_rows(sums: Any, rows: Any, standstill: float, max_gap: int) -> None:
+def add_rows(
+    sums: Any, rows: Any, sure: Any, lead: float, standstill: float, max_gap: int
+) -> None:
     """
-    Add rows to an array of one `RowSums`.
+    Add rows, and whether each is surely outside the zone, to an array of one `RowSums`.
 
-    The screw moves from a speed `standstill` [rad/s] on; a row lasts until the next one, at most
-    `max_gap` [ns].
+    The screw of a lead [m] moves from a speed `standstill` [rad/s] on; a row lasts until the next
+    one, at most `max_gap` [ns].
 
     """
     for at in range(len(rows)):
-        _add_time(sums[0], rows[at], max_gap)
-        _add_numbers(sums[0], rows[at], standstill)
+        _add_time(sums[0], rows[at], sure[at], max_gap)
+        moving = abs(rows[at].speed) >= standstill
+        _add_numbers(sums[0], rows[at], moving)
+        if moving and rows[at].direction != NO_DIRECTION:
+            _add_balance(sums[0], rows[at], lead)
 
 
-def _add_time(sums: Any, row: Any, max_gap: int) -> None:
+def _add_time(sums: Any, row: Any, sure: bool, max_gap: int) -> None:
     """Add the time from the last row to this one to what held at the last one."""
     if sums.rows == 0:
         sums.first, sums.last = row.stamp, row.stamp
         sums.first_log, sums.last_log = row.now, row.now
     else:
         step = row.stamp - sums.stamp
+        if sums.sure and 0 < step <= max_gap:
+            sums.sure_time += step
         if sums.parted:
             sums.pauses += step
         elif step > max_gap:
@@ -207,13 +234,13 @@ def _add_time(sums: Any, row: Any, max_gap: int) -> None:
                     sums.gap_time[source] += step
     sums.rows += 1
     sums.parted = False
+    sums.sure = sure
     sums.first, sums.last = min(sums.first, row.stamp), max(sums.last, row.stamp)
     sums.first_log, sums.last_log = min(sums.first_log, row.now), max(sums.last_log, row.now)
 
 
-def _add_numbers(sums: Any, row: Any, standstill: float) -> None:
+def _add_numbers(sums: Any, row: Any, moving: bool) -> None:
     """Add the numbers of a row, and keep what holds until the next one."""
-    moving = abs(row.speed) >= standstill
     _add_input(sums, SPEED, row.speed, row.speed_source)
     _add_input(sums, LOAD, row.axial_load, row.axial_load_source)
     _add_input(sums, TEMPERATURE, row.temperature, row.temperature_source)
@@ -236,6 +263,29 @@ def _add_numbers(sums: Any, row: Any, standstill: float) -> None:
             _add(sums, COMPARED, row.motor_torque)
             _add(sums, RESIDUAL, residual)
             _add(sums, BY_DIRECTION + row.direction, residual)
+
+
+def _add_balance(sums: Any, row: Any, lead: float) -> None:
+    """Add the products of a row in motion to the sums of a balance."""
+    # A load that was derived from the torque says nothing new.
+    known = row.axial_load_source != DERIVED and math.isfinite(row.axial_load)
+    load = -lead / TURN * row.axial_load if known else 0.0
+    motion = 1.0 if row.direction == POSITIVE else -1.0
+    measured = row.motor_torque_source == MEASURED and math.isfinite(row.motor_torque)
+    torque = row.motor_torque if measured else 0.0
+    terms = (load, motion, 1.0, torque)
+    for term in range(TERMS):
+        for other in range(TERMS):
+            place, product = TERMS * term + other, terms[term] * terms[other]
+            if known:
+                sums.of_load[place] += product
+            if measured:
+                sums.of_torque[place] += product
+            if known and measured:
+                sums.of_both[place] += product
+    if known and measured and math.isfinite(row.friction_torque):
+        sums.friction += row.friction_torque
+        sums.friction_rows += 1
 
 
 def _add_input(sums: Any, source: int, value: float, origin: int) -> None:
@@ -266,9 +316,9 @@ def compiled_sums() -> Any:
 class Surveyor:
     """Takes the rows of one axis in order."""
 
-    def __init__(self, axis: str, *, standstill: float, max_gap: int) -> None:
-        """Begin; the screw moves from a speed `standstill` [rad/s] on; `max_gap` [ns]."""
-        self._axis, self._standstill, self._max_gap = axis, standstill, max_gap
+    def __init__(self, axis: str, surface: Surface, limits: Limits, *, max_gap: int) -> None:
+        """Begin without rows of an axis; a row lasts `max_gap` [ns] at most."""
+        self._axis, self._surface, self._limits, self._max_gap = axis, surface, limits, max_gap
         self._sums = as_array(RowSums())
         self._gaps: list[tuple[int, int]] = []
         self._gap_count = self._gap_time = 0
@@ -281,7 +331,9 @@ class Surveyor:
             self._run, self._runs = run, self._runs + 1
             self._sums['parted'] = True
             self._last_sample = self._last_sample[:0]
-        compiled_sums()(self._sums, rows, self._standstill, self._max_gap)
+        sure = surely_outside(rows, self._surface, self._limits)
+        lead, standstill = self._surface.lead, self._limits.standstill_speed
+        compiled_sums()(self._sums, rows, sure, lead, standstill, self._max_gap)
         samples = np.concatenate([self._last_sample, rows['stamp'][~rows['tick']]])
         self._last_sample = samples[-1:]
         steps = np.diff(samples)
@@ -291,9 +343,19 @@ class Surveyor:
             keep = heapq.heappush if len(self._gaps) < MOST_GAPS else heapq.heappushpop
             keep(self._gaps, (int(steps[at]), int(samples[at])))
 
+    @property
+    def sums(self) -> RowSums:
+        """Return the sums over all rows."""
+        return from_array(RowSums, self._sums[0])
+
+    @property
+    def sure_time(self) -> float:
+        """Return the time surely outside the zone [s], NaN on a surface without its bands."""
+        return self.sums.sure_time / SECOND if math.isfinite(least_factor(self._surface)) else NAN
+
     def result(self) -> Survey:
         """Return what came of all rows; there must have been one."""
-        sums = from_array(RowSums, self._sums[0])
+        sums = self.sums
         span, log_span = sums.last - sums.first, sums.last_log - sums.first_log
         by_stamp = span <= STRAY * log_span + STRAY_MARGIN
         longest_first = sorted(self._gaps, key=lambda gap: (-gap[0], gap[1]))

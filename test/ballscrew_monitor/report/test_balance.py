@@ -5,22 +5,25 @@
 import os
 from pathlib import Path
 
-from ballscrew_monitor.core.conversions import Direction
+from ballscrew_monitor.core.conversions import Direction, SECOND
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.tables.convert import convert
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
-from ballscrew_monitor.report.balance import Balance, Balancer
+from ballscrew_monitor.report.balance import Balance, balance_of
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.parameters import parameters_for
+from ballscrew_monitor.report.survey import RowSums, Surveyor
 from hypothesis import given, strategies
 import numpy as np
 import pytest
+from surrogate.surface import shipped_surface, Surface
 from surrogate.units import TURN
 
-LEAD = 0.01  # [m]
+SURFACE = Surface.load(shipped_surface())
+LEAD = SURFACE.lead  # [m]
 COUNT = 400
 TIME = np.arange(COUNT) / 50.0  # [s]
 MOTION = np.sign(np.sin(TIME) + 1e-9)
@@ -32,15 +35,20 @@ FORCES = {
 NOISE = np.random.default_rng(1).normal(size=COUNT)
 
 
+def make_surveyor(judged):
+    limits = judged.case([judged.rows()]).settings.limits
+    return Surveyor('x', SURFACE, limits, max_gap=SECOND // 2)
+
+
 @pytest.fixture
 def balance(judged):
     """Return a function that balances rows in motion, in two blocks."""
 
     def made(force, torque, motion=MOTION, source=PointSource.MEASURED, modelled=0.2):
-        balancer = Balancer(lead=LEAD, standstill=0.1)
+        surveyor = make_surveyor(judged)
         direction = np.where(motion > 0, Direction.POSITIVE, Direction.NEGATIVE)
         for part in (slice(150), slice(150, None)):
-            balancer.add(
+            surveyor.add(
                 judged.rows(
                     count=len(TIME[part]),
                     speed=60.0 * motion[part],
@@ -52,7 +60,7 @@ def balance(judged):
                     friction_torque=np.broadcast_to(modelled, COUNT)[part],
                 ).rows
             )
-        return balancer.result()
+        return balance_of(surveyor.sums)
 
     return made
 
@@ -87,12 +95,11 @@ def test_the_sign_that_contradicts_the_others_is_known(force, signs, turned, bal
 def test_what_obeys_the_law_contradicts_nothing(size, friction, weight, loss):
     force = size * np.sin(1.3 * TIME)
     torque = -loss * LEAD / TURN * force + friction * MOTION + weight
-    assert Balancer(lead=LEAD, standstill=0.1).result() == Balance()
+    assert balance_of(RowSums()) == Balance()
     rows = np.stack([-LEAD / TURN * force, MOTION, np.ones(COUNT), torque])
-    balancer = Balancer(lead=LEAD, standstill=0.1)
-    for name in ('both', 'load', 'torque'):
-        balancer.sums[name] = (rows @ rows.T).ravel()
-    assert balancer.result() == Balance()
+    products = (rows @ rows.T).ravel().tolist()
+    sums = RowSums(of_both=products, of_load=products, of_torque=products)
+    assert balance_of(sums) == Balance()
 
 
 def test_a_load_that_follows_the_motion_is_judged_by_it(balance):
@@ -122,9 +129,9 @@ def test_a_load_or_a_torque_alone_must_not_drive_both_ways(balance):
 def test_noise_and_few_rows_tell_nothing(balance, judged):
     force = FORCES['of a process']
     assert balance(-force, 0.1 * MOTION + 20.0 * NOISE) == Balance()
-    balancer = Balancer(lead=LEAD, standstill=0.1)
-    balancer.add(judged.rows(count=49, motor_torque=np.linspace(-1, 0, 49)).rows)
-    assert balancer.result() == Balance()
+    surveyor = make_surveyor(judged)
+    surveyor.add(judged.rows(count=49, motor_torque=np.linspace(-1, 0, 49)).rows)
+    assert balance_of(surveyor.sums) == Balance()
 
 
 @pytest.mark.parametrize(('load', 'torque', 'friction'), [(1e-3, 1.0, 1.0), (1.0, 1e3, 1e3)])
