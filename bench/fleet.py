@@ -16,7 +16,7 @@ import tempfile
 import time
 
 from ballscrew_monitor.health.stroke import Positions
-from ballscrew_monitor.report.health_axes import assess_task, collected_axes
+from ballscrew_monitor.report.health_axes import assess_task, joined_axes
 from ballscrew_monitor.report.health_folder import keep, LogIdentity
 from ballscrew_monitor.report.health_history import HistoryMaker
 from ballscrew_monitor.settings.axis import settings_of
@@ -65,7 +65,7 @@ def main() -> int:
         each = size / logs / 1e3
         print(f'{logs} logs drawn, gathered and kept in {made:.1f} s, {each:.1f} kB each')
         times = []
-        for key, inputs in collected_axes(folder).items():
+        for key, inputs in joined_axes({}, folder).items():
             begin = time.perf_counter()
             assess_task({**inputs, 'title': key.machine, 'options': OPTIONS})
             times.append(time.perf_counter() - begin)

@@ -1,12 +1,16 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Records whose fields declare how a file names them: one function writes them all."""
+"""Records whose fields declare how a file names them, and records as JSON keeps them."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 import dataclasses
 import enum
+import functools
 import math
-from typing import Any
+import types
+from typing import Any, get_args, get_origin, get_type_hints, TypeVar
+
+Record = TypeVar('Record')
 
 
 def written(
@@ -70,3 +74,39 @@ def _is_known(value: Any) -> bool:
 
 def _name(key: Any) -> Any:
     return key.name.lower() if isinstance(key, enum.Enum) else key
+
+
+def record_of(kind: Callable[..., Record], content: Mapping[str, Any] | Sequence[Any]) -> Record:
+    """
+    Return a record of a `kind` out of what `dataclasses.asdict` and JSON leave of it.
+
+    A tuple with names may be a list of its fields. A null in the place of a float is NaN. Raises
+    KeyError or TypeError for what is no such record.
+
+    """
+    readers = _readers(kind)
+    fields = content if isinstance(content, Mapping) else dict(zip(readers, content, strict=True))
+    return kind(**{name: readers[name](value) for name, value in fields.items()})
+
+
+@functools.cache
+def _readers(kind: Callable[..., Any]) -> dict[str, Callable[[Any], Any]]:
+    return {name: _reader(hint) for name, hint in get_type_hints(kind).items()}
+
+
+def _reader(hint: Any) -> Callable[[Any], Any]:
+    """Return what makes a value of a declared type out of plain data."""
+    origin, parts = get_origin(hint), get_args(hint)
+    if hint is float:
+        return lambda value: math.nan if value is None else value
+    if origin is types.UnionType:  # a type or None
+        known = _reader(parts[0])
+        return lambda value: None if value is None else known(value)
+    if origin in (Sequence, tuple):
+        item, form = _reader(parts[0]), tuple if origin is tuple else list
+        return lambda values: form(map(item, values))
+    if isinstance(hint, type) and issubclass(hint, enum.Enum):
+        return hint
+    if dataclasses.is_dataclass(hint) or hasattr(hint, '_fields'):
+        return functools.partial(record_of, hint)
+    return lambda value: value

@@ -31,9 +31,10 @@ from ballscrew_monitor.recordings.words import counted, say
 from ballscrew_monitor.report.check_page import check_parts, Checked, next_steps, without_motion
 from ballscrew_monitor.report.command import check_most_unjudged, is_bad
 from ballscrew_monitor.report.free_run import FreeRun, identified
+from ballscrew_monitor.report.log_report import LogResult
 from ballscrew_monitor.report.logs import find_logs, folder_names
-from ballscrew_monitor.report.many_logs import INDEX, LogToReport, report_each
-from ballscrew_monitor.report.overview import LogEntry, overview_page
+from ballscrew_monitor.report.many_logs import Given, INDEX, report_each, Workers
+from ballscrew_monitor.report.overview import overview_page
 from ballscrew_monitor.report.parameters import parameters_for
 from surrogate.datasheet import key_of, read_yaml
 from surrogate.files import canonical_json, InputError, json_text, printable, replace_file
@@ -85,10 +86,10 @@ def check_command(args: argparse.Namespace, nominal: Path) -> int:
         entries, checked = _check(paths, sheets, args, nominal)
         steps = next_steps(entries, checked)
         for entry in entries:
-            for line in entry.result.lines if entry.result else ():
+            for line in entry.lines:
                 normal = f' Normal? {line.normal}.' if line.normal else ''
                 print(printable(f'{entry.name}:{normal} {line.verdict}'))
-            if entry.result is None:
+            if entry.failure:
                 say(f'{entry.name}: {entry.failure}')
         if checked.others:
             say(without_motion(checked.others))
@@ -151,7 +152,7 @@ def _check(
     sheets: tuple[Screw, Lubricant] | None,
     args: argparse.Namespace,
     nominal: Path,
-) -> tuple[list[LogEntry], Checked]:
+) -> tuple[list[LogResult], Checked]:
     """Do all that a check does with recordings; return their entries, and what these rest on."""
     opened = _opened(paths, sheets, args, nominal)
     logs = [log for log in opened if not log.is_other or _is_named(log, args)]
@@ -219,21 +220,19 @@ def _write_maps(logs: Sequence[_Log], out: Path) -> None:
             log.mapping = None
 
 
-def _entries(logs: Sequence[_Log], args: argparse.Namespace, nominal: Path) -> list[LogEntry]:
-    """Report what can be judged; return an entry of each recording."""
-    readable = [
-        LogToReport(log=log.path, folder=log.folder, params=log.params, mapping=log.mapping)
+def _entries(logs: Sequence[_Log], args: argparse.Namespace, nominal: Path) -> list[LogResult]:
+    """Report what can be judged; return what became of each recording."""
+    readable = {
+        log.folder: (log.path, Given(log.params, log.mapping, nominal))
         for log in logs
         if not log.failure
-    ]
-    reported = []
-    if readable:
-        pool = {'workers': args.workers, 'dask': args.dask}
-        reported = report_each(readable, args.out, nominal=nominal, **pool)
-    found = {entry.folder: entry for entry in reported}
+    }
+    workers = Workers(args.workers, args.dask)
+    reported = report_each(readable, args.out, workers) if readable else []
+    results = {result.folder: result for result in reported}
     return [
-        found.get(log.folder)
-        or LogEntry(name=log.path.name, folder=log.folder, failure=log.failure)
+        results.get(log.folder)
+        or LogResult(name=log.path.name, folder=log.folder, failure=log.failure)
         for log in logs
     ]
 
@@ -418,7 +417,9 @@ def _write(path: Path, text: str) -> None:
     replace_file(path, text.encode())
 
 
-def _record(entries: Sequence[LogEntry], checked: Checked, steps: Sequence[str]) -> dict[str, Any]:
+def _record(
+    entries: Sequence[LogResult], checked: Checked, steps: Sequence[str]
+) -> dict[str, Any]:
     """Return what the page says as plain data."""
     return {
         'recordings': {
@@ -434,7 +435,7 @@ def _record(entries: Sequence[LogEntry], checked: Checked, steps: Sequence[str])
                         'judged': line.judged,
                         'losses': line.losses,
                     }
-                    for line in (entry.result.lines if entry.result else ())
+                    for line in entry.lines
                 },
             }
             for entry in entries

@@ -7,11 +7,12 @@ import dataclasses
 from pathlib import Path
 from urllib.parse import quote
 
+from ballscrew_monitor.recordings.declared import record_of
 from ballscrew_monitor.recordings.words import listed, NONE
 from ballscrew_monitor.report.free_run import FreeRun, RECORD
-from ballscrew_monitor.report.health_history import by_axis, healths, read_history
+from ballscrew_monitor.report.health_history import AxisHistory, by_axis, healths
 from ballscrew_monitor.report.health_part import verdict_box
-from ballscrew_monitor.report.overview import LogEntry
+from ballscrew_monitor.report.log_report import LogResult
 from ballscrew_monitor.report.page import element, Markup, table, TableCell, TableRow
 from surrogate.surface import onset_of_surface, Surface
 
@@ -53,7 +54,7 @@ def without_motion(names: Sequence[str]) -> str:
     )
 
 
-def check_parts(entries: Sequence[LogEntry], checked: Checked) -> list[Markup]:
+def check_parts(entries: Sequence[LogResult], checked: Checked) -> list[Markup]:
     """Return the parts of the page beside those of an overview."""
     return [
         element('h2', 'What to do next, and what to record'),
@@ -77,13 +78,13 @@ def _sentence(step: str) -> str:
     return step if step.endswith('?') else f'{step}.'
 
 
-def next_steps(entries: Sequence[LogEntry], checked: Checked) -> list[str]:
+def next_steps(entries: Sequence[LogResult], checked: Checked) -> list[str]:
     """Return what to do and what to record, each once, what hinders a verdict first."""
     steps = [f'{name}: {why}' for name, whys in checked.unstated.items() for why in whys]
     steps += [
         f'{one.name}: {one.failure}'
         for one in entries
-        if one.result is None and not checked.unstated.get(one.name)
+        if one.failure and not checked.unstated.get(one.name)
     ]
     if steps:
         first = ': maps/ beside this page holds the first ones'
@@ -91,10 +92,10 @@ def next_steps(entries: Sequence[LogEntry], checked: Checked) -> list[str]:
             'Lay a map beside each table that needs one, feed.map.yaml for feed.csv'
             + (first if any(checked.unstated.values()) else '')
         )
-    judged = [one for one in entries if one.result and one.folder not in checked.free]
-    lines = [line for one in judged if one.result for line in one.result.lines]
+    judged = [one for one in entries if not one.failure and one.folder not in checked.free]
+    lines = [line for one in judged for line in one.lines]
     steps += [f'Axis {line.axis}: {line.remedy.rstrip(".")}' for line in lines if line.remedy]
-    steps += [hint for one in entries if one.result for hint in one.result.hints]
+    steps += [hint for one in entries for hint in one.hints]
     if checked.sheets is None:
         steps.append(
             'State the screw and the oil of the machine, --screw and --oil, or lay their sheets '
@@ -112,14 +113,14 @@ def next_steps(entries: Sequence[LogEntry], checked: Checked) -> list[str]:
     return list(dict.fromkeys(steps))
 
 
-def _rows(entries: Sequence[LogEntry], checked: Checked) -> Iterator[TableRow]:
+def _rows(entries: Sequence[LogResult], checked: Checked) -> Iterator[TableRow]:
     for entry in entries:
         used = checked.used.get(entry.folder, '')
         where = element('a', used, href=quote(used)) if used else NONE
-        if entry.result is None:
+        if entry.failure:
             yield TableRow((entry.name, NONE, NONE, NONE, entry.failure, where))
             continue
-        for line in entry.result.lines:
+        for line in entry.lines:
             numbers = (TableCell(str(one), kind='number') for one in (line.expected, line.judged))
             yield TableRow((entry.name, line.axis, *numbers, line.losses or NONE, where))
 
@@ -141,15 +142,15 @@ def _surfaces(checked: Checked) -> Iterator[Markup]:
         yield element('p', 'Each recording was judged with the surface that it names.')
 
 
-def _zone(entries: Sequence[LogEntry]) -> Iterator[Markup]:
+def _zone(entries: Sequence[LogResult]) -> Iterator[Markup]:
     for entry in entries:
-        for line in entry.result.lines if entry.result else ():
+        for line in entry.lines:
             said = [f'Normal? {line.normal}.'] if line.normal else []
             parts = [element('p', one) for one in said]
             parts.append(element('p', f'{entry.name}: {line.verdict}', class_='sentence'))
             yield element('div', *parts, class_=f'verdict {line.standing}')
     histories = [
-        read_history(one) for entry in entries if entry.result for one in entry.result.histories
+        record_of(AxisHistory, history) for entry in entries for history in entry.histories
     ]
     for own in by_axis(histories).values():
         if len(own) > 1:  # it stands first on the page

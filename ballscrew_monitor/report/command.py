@@ -31,7 +31,6 @@ from surrogate.surface import SurfaceError
 
 if TYPE_CHECKING:  # the rest asks for packages that printing does not need
     from ballscrew_monitor.report.log_report import LogResult
-    from ballscrew_monitor.report.overview import LogEntry
 
 Records = dict[str, Any]
 """What JSON holds of a recording: a record for each axis."""
@@ -139,36 +138,31 @@ def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Rec
 def _report_many(
     logs: Sequence[Path], args: argparse.Namespace, nominal: Path
 ) -> tuple[Records, int]:
-    from ballscrew_monitor.report.many_logs import INDEX, report_logs
+    from ballscrew_monitor.report.many_logs import Given, INDEX, report_logs, Workers
 
-    entries = report_logs(
-        logs,
-        args.out,
-        params=args.params,
-        mapping=args.map,
-        nominal=nominal,
-        notes=left_out(args.logs, logs, args.out),
-        workers=args.workers,
-        dask=args.dask,
-    )
+    given, workers = Given(args.params, args.map, nominal), Workers(args.workers, args.dask)
+    results = report_logs(logs, args.out, given, workers, left_out(args.logs, logs, args.out))
     records: Records = {}
-    for log, entry in zip(logs, entries, strict=True):
-        _print_entry(entry)
-        if entry.result is None:
-            records |= without(str(log), entry.failure)
-        else:
-            records[str(log)] = _reported(args.out / entry.folder, args)
-    bad = sum(is_bad(entry, log, args) for log, entry in zip(logs, entries, strict=True))
-    print(f'{counted(len(entries), "recording")}, {bad} bad, overview in {args.out / INDEX}')
+    for log, result in zip(logs, results, strict=True):
+        if result.failure:
+            say(f'{result.name}: {result.failure}')
+            records |= without(str(log), result.failure)
+            continue
+        for line in result.lines:
+            print(printable(f'{result.name}: {line.verdict}'))
+        hints = [f'check {hint}' for hint in result.hints]
+        say(*(f'{result.name}: {note}' for note in (*result.notes, *hints)))
+        if result.unjudged:
+            say(f'{result.name}: nothing was judged on axis {", ".join(result.unjudged)}')
+        records[str(log)] = _reported(args.out / result.folder, args)
+    bad = sum(is_bad(result, log, args) for log, result in zip(logs, results, strict=True))
+    print(f'{counted(len(results), "recording")}, {bad} bad, overview in {args.out / INDEX}')
     return records, FAILED if bad else DONE
 
 
-def is_bad(entry: 'LogEntry', log: Path, args: argparse.Namespace) -> bool:
+def is_bad(result: 'LogResult', log: Path, args: argparse.Namespace) -> bool:
     """Return True if a recording was not read, or not judged as far as is asked for."""
-    result = entry.result
-    if result is None or entry.is_bad:
-        return True
-    return _code(log, result, result.unjudged_share, args) == FAILED
+    return not result.judged or _code(log, result, result.unjudged_share, args) == FAILED
 
 
 def _code(log: Path, judged: 'LogCase | LogResult', share: float, args: argparse.Namespace) -> int:
@@ -207,18 +201,6 @@ def _reason(bag: Bag, fault: str, case: AxisCase | None) -> str:
         return case.outcome.reason
     more = f'; {fault}' if fault else ''
     return f'topics, fields and joints of its parameters must be those of {bag.path}{more}'
-
-
-def _print_entry(entry: 'LogEntry') -> None:
-    if entry.result is None:
-        say(f'{entry.name}: {entry.failure}')
-        return
-    for line in entry.result.lines:
-        print(printable(f'{entry.name}: {line.verdict}'))
-    hints = [f'check {hint}' for hint in entry.result.hints]
-    say(*(f'{entry.name}: {note}' for note in (*entry.result.notes, *hints)))
-    if entry.result.unjudged:
-        say(f'{entry.name}: nothing was judged on axis {", ".join(entry.result.unjudged)}')
 
 
 def _say_origin(parameters: LogParameters) -> None:

@@ -4,35 +4,24 @@
 
 from collections.abc import Mapping, Sequence
 import dataclasses
+import itertools
 import math
 from pathlib import Path
 from typing import Any
 
 from ballscrew_monitor.core.conversions import clock_text
-from ballscrew_monitor.core.judgement import Code
 from ballscrew_monitor.health.mixed import Prior, USUAL
 from ballscrew_monitor.health.peers import FEWEST_PEERS, priors, Spread, spread_of
-from ballscrew_monitor.health.records import (
-    Baseline,
-    Cause,
-    CauseCode,
-    Condition,
-    Health,
-    Quantity,
-    UsualWarning,
-)
+from ballscrew_monitor.health.records import Health, KeptHealth
 from ballscrew_monitor.health.summary import array_of
+from ballscrew_monitor.recordings.declared import record_of
 from ballscrew_monitor.recordings.words import say
-from ballscrew_monitor.report.health_collect import run_mapped, Workers
+from ballscrew_monitor.report.health_collect import FEW
 from ballscrew_monitor.report.health_folder import axis_folders, read_axis
-from ballscrew_monitor.report.health_history import (
-    AxisHistory,
-    by_axis,
-    healths,
-    known_of,
-    read_history,
-)
+from ballscrew_monitor.report.health_history import assessed, AxisHistory, by_axis, healths
 from ballscrew_monitor.report.machines import MachineAxis
+from ballscrew_monitor.report.many_logs import run_mapped, Workers
+from ballscrew_monitor.settings.axis import load_surface, settings_of
 from surrogate.files import InputError, to_json
 from surrogate.progress import Progress
 from surrogate.surface import Surface
@@ -41,30 +30,29 @@ from surrogate.tasks.pool import TaskOutcome
 Inputs = dict[str, Any]
 
 
-def collected_axes(folder: Path) -> dict[MachineAxis, Inputs]:
-    """Return for each axis of a folder of collected logs where its task finds them."""
-    return {
+def joined_axes(axes: Mapping[MachineAxis, Inputs], folder: Path) -> dict[MachineAxis, Inputs]:
+    """
+    Return all axes with those of a folder of collected logs, and where a task finds each.
+
+    Raises InputError for an axis of the folder that is named elsewhere, too.
+
+    """
+    collected = {
         MachineAxis(*key): {'folder': str(path.resolve())}
         for key, path in axis_folders(folder).items()
     }
-
-
-def joined_axes(
-    axes: Mapping[MachineAxis, Inputs], others: Mapping[MachineAxis, Inputs], folder: Path
-) -> dict[MachineAxis, Inputs]:
-    """Return all axes; raises InputError for one of a `folder` that is named elsewhere, too."""
-    for key in others.keys() & axes.keys():
+    for key in collected.keys() & axes.keys():
         raise InputError(
             f'axis {key.axis} of {key.machine} stands in {folder} and in other logs that are '
             'named: collect these, too'
         )
-    return {**axes, **others}
+    return {**axes, **collected}
 
 
 def logged_axes(histories: Sequence[AxisHistory]) -> dict[MachineAxis, Inputs]:
     """Return for each axis the logs that its task is given."""
     return {
-        key: {'histories': [to_json(dataclasses.asdict(one)) for one in own]}
+        key: {'histories': [to_json(dataclasses.asdict(history)) for history in own]}
         for key, own in by_axis(histories).items()
     }
 
@@ -100,10 +88,12 @@ def assess_axes(
             say(outcome.sentence)
             return
         say(*outcome.result['notes'])
-        courses[names[outcome.name]] = [read_health(one) for one in outcome.result['course']]
+        courses[names[outcome.name]] = [
+            record_of(Health, health) for health in outcome.result['course']
+        ]
 
     try:
-        run_mapped(assess_task, inputs, workers, report)
+        run_mapped(assess_task, inputs, workers, report, few=FEW)
     finally:
         bar.close()
     return {key: courses[key] for key in axes if courses.get(key)}
@@ -118,11 +108,15 @@ def _priors(axes: Mapping[str, Inputs], workers: Workers) -> dict[str, dict[str,
     def report(outcome: TaskOutcome) -> None:
         if outcome.result is not None:
             plain = outcome.result['spread']
-            groups = frozenset(tuple(group) for group in plain.pop('groups'))
-            spread = Spread(groups=groups, **{'deviation': math.inf} | known_of(plain))
+            spread = Spread(
+                slope=plain['slope'],
+                deviation=math.inf if plain['deviation'] is None else plain['deviation'],
+                pairs=plain['pairs'],
+                groups=frozenset(map(tuple, plain['groups'])),
+            )
             screws.setdefault(outcome.result['surface'], {})[outcome.name] = spread
 
-    run_mapped(spread_task, axes, workers, report)
+    run_mapped(spread_task, axes, workers, report, few=FEW)
     return {
         axis: {'prior': prior._asdict()}
         for spreads in screws.values()
@@ -149,7 +143,7 @@ def histories_of(inputs: Mapping[str, Any]) -> tuple[list[AxisHistory], list[str
     """Return the logs of the axis of a task, and notes on those that cannot be read."""
     if 'folder' in inputs:
         return read_axis(Path(inputs['folder']))
-    return [read_history(plain) for plain in inputs['histories']], []
+    return [record_of(AxisHistory, history) for history in inputs['histories']], []
 
 
 def assess_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
@@ -162,19 +156,17 @@ def assess_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     if options.get('days') is not None:
         options['days'] = tuple(options['days'])
     if prior := options.pop('prior', None):
-        options['prior'] = Prior(**{**prior, 'pairs': tuple(prior['pairs'])})
-    course = [
-        to_json(dataclasses.asdict(one)) for one in healths(histories, title=title, **options)
-    ]
-    return {'course': course, 'notes': notes}
+        options['prior'] = record_of(Prior, prior)
+    assessed = healths(histories, title=title, **options)
+    return {'course': [to_json(dataclasses.asdict(health)) for health in assessed], 'notes': notes}
 
 
 def same_start_note(histories: Sequence[AxisHistory], title: str) -> str:
     """Return in a sentence how to date logs of one axis that begin at the same instant, or ''."""
-    ordered = sorted(histories, key=lambda each: each.first)
-    for log, other in zip(ordered[:-1], ordered[1:], strict=True):
+    ordered = sorted(histories, key=lambda history: history.first)
+    for log, other in itertools.pairwise(ordered):
         if log.first == other.first:
-            count = sum(each.first == log.first for each in ordered)
+            count = sum(history.first == log.first for history in ordered)
             return (
                 f'axis {title}: {count} of {len(ordered)} logs begin at the same instant, '
                 f'{clock_text(log.first)}, such as {log.log} and {other.log}, which is no '
@@ -184,26 +176,42 @@ def same_start_note(histories: Sequence[AxisHistory], title: str) -> str:
     return ''
 
 
-def read_health(plain: Mapping[str, Any]) -> Health:
-    """Return the health that `dataclasses.asdict` and JSON have made plain, NaN as None."""
-    kept = dict(plain)
-    quantities = [_quantity(one) for one in kept.pop('quantities')]
-    causes = [
-        Cause(code=CauseCode(one.pop('code')), size=_quantity(one.pop('size')), **one)
-        for one in map(dict, kept.pop('causes'))
-    ]
-    baseline = kept.pop('baseline')
-    usual = kept.pop('usual_warnings')
-    return Health(
-        condition=Condition(kept.pop('condition')),
-        quantities=quantities,
-        causes=causes,
-        usual_warnings=tuple(UsualWarning(Code(code), *place) for code, *place in usual),
-        baseline=None if baseline is None else Baseline(**baseline),
-        **kept,
-    )
+def kept_healths(
+    folder: Path,
+    stored: Mapping[str, KeptHealth],
+    titles: Mapping[MachineAxis, str],
+    values: Mapping[str, Any],
+    options: Mapping[str, Any],
+) -> dict[MachineAxis, list[Health]]:
+    """
+    Return the health of each axis that a node has `stored` in a folder, after each of its days.
+
+    `titles` name the axes in sentences, `values` are the parameters of the node, `options` those
+    of `health_history.healths`. Notes on rows that are damaged are said. Raises InputError for an
+    axis without parameters.
+
+    """
+    courses = {}
+    for axis, kept in stored.items():
+        if axis not in values['axes']:
+            raise InputError(
+                f'{folder} keeps axis {axis}, the parameters are of {", ".join(values["axes"])}: '
+                'name those of the node with --params'
+            )
+        key, surface = stored_axis(folder, axis), load_surface(axis, values)
+        judged = settings_of(axis, values, surface)
+        say(*kept.notes)
+        speed_allowed = options['speed_allowed'] or judged.speed_allowed
+        courses[key] = assessed(
+            titles[key],
+            kept,
+            surface,
+            judged.limits,
+            **{**options, 'speed_allowed': speed_allowed},
+        )
+    return courses
 
 
-def _quantity(plain: Mapping[str, Any]) -> Quantity:
-    """Return a quantity; what is not known is NaN by default."""
-    return Quantity(**known_of(plain))
+def stored_axis(folder: Path, axis: str) -> MachineAxis:
+    """Return the key of an axis of the node that stores its health in a folder."""
+    return MachineAxis(str(folder.resolve()), axis)

@@ -21,23 +21,17 @@ from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.words import say
 from ballscrew_monitor.report.health_axes import (
     assess_axes,
-    collected_axes,
     joined_axes,
+    kept_healths,
     logged_axes,
+    stored_axis,
 )
-from ballscrew_monitor.report.health_collect import (
-    collect,
-    Collected,
-    Failures,
-    Given,
-    map_logs,
-    Workers,
-)
+from ballscrew_monitor.report.health_collect import collect, Failures, map_logs
 from ballscrew_monitor.report.health_folder import is_health_folder
 from ballscrew_monitor.report.health_history import AxisHistory, peers_among
-from ballscrew_monitor.report.health_kept import kept_healths, stored_axis
 from ballscrew_monitor.report.logs import find_logs
 from ballscrew_monitor.report.machines import axis_titles, folders_note, machine_names, MachineAxis
+from ballscrew_monitor.report.many_logs import Given, Workers
 from ballscrew_monitor.settings.parameters import read_file
 from surrogate.files import InputError, json_text, printable, replace_file
 
@@ -66,7 +60,7 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
         histories = _histories(logs, given, workers)
         axes = logged_axes(histories)
         for folder in collected:
-            axes = joined_axes(axes, collected_axes(folder), folder)
+            axes = joined_axes(axes, folder)
         of_nodes = [stored_axis(folder, axis) for folder in stores for axis in stores[folder]]
         titles = axis_titles([*axes, *of_nodes])
         found = assess_axes(axes, titles, _options(args), workers)
@@ -110,13 +104,12 @@ def _histories(logs: Sequence[Path], given: Given, workers: Workers) -> list[Axi
     """
     histories, failures = list[AxisHistory](), Failures()
 
-    def take(log: Path, collected: Collected) -> None:
-        if collected.failure and len(logs) == 1:
-            raise InputError(collected.failure)
-        say(*(f'{log}: {note}' for note in collected.notes))
-        if collected.failure:
-            failures.add(log, collected.failure)
-        histories.extend(collected.histories)
+    def take(log: Path, of_log: list[AxisHistory], failure: str) -> None:
+        if failure and len(logs) == 1:
+            raise InputError(failure)
+        if failure:
+            failures.add(log, failure)
+        histories.extend(of_log)
 
     map_logs(logs, given, workers, take, alone=len(logs) == 1)
     failures.count()

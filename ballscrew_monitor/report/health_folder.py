@@ -23,7 +23,8 @@ from urllib.parse import quote, unquote
 from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.records import CELL
 from ballscrew_monitor.health.summary import array_of, date_text
-from ballscrew_monitor.report.health_history import AxisHistory, read_history
+from ballscrew_monitor.recordings.declared import record_of
+from ballscrew_monitor.report.health_history import AxisHistory
 import polars as pl
 from surrogate.files import InputError, new_file, to_json
 from surrogate.limits import MEGA
@@ -199,7 +200,7 @@ def _read(path: Path) -> AxisHistory:
     facts: Mapping[str, Any] = json.loads(frame['facts'][0])
     names = {name: frame[name][0] for name in ('machine', 'axis', 'log')}
     cells = frame.select(CELL.names or ()).to_dicts()
-    return read_history({**facts, **names, 'cells': [to_json(cell) for cell in cells]})
+    return record_of(AxisHistory, {**facts, **names, 'cells': cells})
 
 
 def _damaged(path: Path, why: str) -> InputError:

@@ -4,6 +4,7 @@
 
 from collections.abc import Mapping, Sequence
 import dataclasses
+import itertools
 from pathlib import Path
 from typing import Any
 
@@ -130,69 +131,63 @@ class HistoryMaker:
         self._bins += found.bins
 
 
-def read_history(record: Mapping[str, Any]) -> AxisHistory:
-    """Return a history of plain data, as `dataclasses.asdict` and JSON leave it."""
-    kept = dict(record)
-    cells = [Cell(**one) for one in map(known_of, kept.pop('cells'))]
-    bins = [
-        SpectrumBin(
-            wear_time=tuple(one.pop('wear_time')),
-            axial_load=one.pop('axial_load', float('nan')),
-            **one,
-        )
-        for one in map(known_of, kept.pop('bins'))
-    ]
-    return AxisHistory(cells=cells, bins=bins, limits=Limits(**kept.pop('limits')), **kept)
+def assessed(
+    title: str,
+    kept: KeptHealth,
+    surface: Surface,
+    limits: Limits,
+    *,
+    speed_allowed: bool,
+    baseline_days: float = BASELINE_DAYS,
+    days: tuple[int, int] | None = None,
+    prior: Prior = USUAL,
+) -> list[Health]:
+    """
+    Return the health of an axis after each log of what is kept of it, as judged with `limits`.
 
+    The baseline is that of `days`, begin and end [ns], or of the first `baseline_days`; the
+    `prior` is that of its peers.
 
-def known_of(record: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields that are known; for the others the defaults stand."""
-    return {key: value for key, value in record.items() if value is not None}
+    """
+    settings = HealthSettings(
+        limits=limits, speed_allowed=speed_allowed, baseline_days=baseline_days, prior=prior
+    )
+    return course(title, since_days(kept, days, surface.screw_name), surface, settings)
 
 
 def healths(
     histories: Sequence[AxisHistory],
     *,
-    baseline_days: float = BASELINE_DAYS,
-    days: tuple[int, int] | None = None,
-    speed_allowed: bool = False,
     title: str = '',
-    prior: Prior = USUAL,
+    speed_allowed: bool = False,
+    **options: Any,
 ) -> list[Health]:
     """
     Return the health of one axis after each of its recordings, in the order of their stamps.
 
-    `title` names the axis in sentences if its own name does not tell it apart from others; the
-    `prior` is that of its peers.
-    The baseline is that of `days`, begin and end [ns], or of the first `baseline_days`. Life and
-    causes are those of the surface of the last recording. Its parameters let the advice name
-    another speed, or `speed_allowed` does. Recordings that begin at one instant have no order and
-    are no history.
+    `title` names the axis in sentences if its own name does not tell it apart from others;
+    `options` are those of `assessed`. Life and causes are those of the surface of the last
+    recording. Its parameters let the advice name another speed, or `speed_allowed` does.
+    Recordings that begin at one instant have no order and are no history.
 
     """
-    ordered = sorted(histories, key=lambda one: one.first)
+    ordered = sorted(histories, key=lambda history: history.first)
     last = ordered[-1]
-    if same := _same_start(ordered):
-        return [without_order(title or last.axis, same)]
-    surface = Surface.load(Path(last.surface))
-    settings = HealthSettings(
-        limits=last.limits,
-        speed_allowed=speed_allowed or last.speed_allowed,
-        baseline_days=baseline_days,
-        prior=prior,
-    )
+    for log, other in itertools.pairwise(ordered):
+        if log.first == other.first:
+            return [without_order(title or last.axis, log.first)]
     kept = KeptHealth(
         [cell for log in ordered for cell in log.cells],
-        merged_bins([each for log in ordered for each in log.bins]),
+        merged_bins([load for log in ordered for load in log.bins]),
     )
-    kept = since_days(kept, days, surface.screw_name)
-    return course(title or last.axis, kept, surface, settings)
-
-
-def _same_start(ordered: Sequence[AxisHistory]) -> int:
-    """Return the first instant [ns] at which two recordings begin, 0 for none."""
-    pairs = zip(ordered[:-1], ordered[1:], strict=True)
-    return next((log.first for log, other in pairs if log.first == other.first), 0)
+    return assessed(
+        title or last.axis,
+        kept,
+        Surface.load(Path(last.surface)),
+        last.limits,
+        speed_allowed=speed_allowed or last.speed_allowed,
+        **options,
+    )
 
 
 def health_after(history: AxisHistory) -> Health:
@@ -203,8 +198,8 @@ def health_after(history: AxisHistory) -> Health:
 def by_axis(histories: Sequence[AxisHistory]) -> dict[MachineAxis, list[AxisHistory]]:
     """Return histories by machine and axis."""
     axes: dict[MachineAxis, list[AxisHistory]] = {}
-    for one in sorted(histories, key=lambda each: each.first):
-        axes.setdefault(one.key, []).append(one)
+    for history in sorted(histories, key=lambda log: log.first):
+        axes.setdefault(history.key, []).append(history)
     return axes
 
 

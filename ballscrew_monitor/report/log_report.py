@@ -115,15 +115,18 @@ class LogResult:
     """
     What became of a recording: a line for each axis, and those on which nothing was judged.
 
-    `hints` say what contradicts itself among the inputs; `unjudged_share` is the largest share of
-    an axis that was not judged [-]; `histories` are what the health of its
-    axes rests on, as plain data.
+    Its `folder` is below that of the page over all; `failure` is why it could not be read, empty
+    if it could. `hints` say what contradicts itself among the inputs; `unjudged_share` is the
+    largest share of an axis that was not judged [-]; `histories` are what the health of its axes
+    rests on, as plain data.
 
     """
 
     name: str
-    lines: Sequence[AxisLine]
-    unjudged: Sequence[str]
+    folder: str = ''
+    failure: str = ''
+    lines: Sequence[AxisLine] = ()
+    unjudged: Sequence[str] = ()
     notes: Sequence[str] = ()
     hints: Sequence[str] = ()
     unjudged_share: float = 1.0
@@ -219,7 +222,7 @@ def _result(log: LogCase) -> LogResult:
         notes=log.notes,
         hints=hints_on(log.axes),
         unjudged_share=unjudged_share(log),
-        histories=[dataclasses.asdict(one.history) for one in log.axes if one.history],
+        histories=[dataclasses.asdict(case.history) for case in log.axes if case.history],
     )
 
 

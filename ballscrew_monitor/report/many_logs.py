@@ -8,18 +8,21 @@ import dataclasses
 import os.path
 from pathlib import Path
 import threading
-from typing import Any
+from typing import Any, NamedTuple
 
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.declared import record_of
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.tables.log import PASSES
-from ballscrew_monitor.report.log_report import AxisLine, LogResult, remove_left, report_log
+from ballscrew_monitor.report.log_report import LogResult, remove_left, report_log
 from ballscrew_monitor.report.logs import folder_names, map_for
-from ballscrew_monitor.report.overview import LogEntry, overview_page
-from ballscrew_monitor.report.parameters import parameters_for
-from surrogate.files import replace_file, to_json
+from ballscrew_monitor.report.overview import overview_page
+from ballscrew_monitor.report.parameters import LogParameters, parameters_for
+from surrogate.files import InputError, replace_file, to_json
 from surrogate.progress import Progress
+from surrogate.surface import SurfaceError
 from surrogate.tasks.pool import run_tasks, TaskOutcome
-from surrogate.tasks.workers import open_pool
+from surrogate.tasks.workers import ignore, open_pool
 from surrogate.worker import tell_share
 
 INDEX = 'index.html'
@@ -82,107 +85,131 @@ def size_of(log: Path) -> int:
     return max(1, sum(file.stat().st_size for file in files if file.is_file()))
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class LogToReport:
-    """A recording with its parameters, its map and a folder of its own."""
+class Given(NamedTuple):
+    """Files that a log is judged with: parameters and map, None for none, and the usual ones."""
 
-    log: Path
-    folder: str
     params: Path | None
     mapping: Path | None
+    nominal: Path
+
+
+class Workers(NamedTuple):
+    """Number of processes, None for all cores, and the address of a Dask scheduler, if any."""
+
+    number: int | None = None
+    dask: str | None = None
+
+
+def task_inputs(log: Path, given: Given) -> dict[str, str | None]:
+    """Return what a task is told of a recording; a link belongs to the machine where it lies."""
+    named = {'params': given.params, 'map': given.mapping}
+    paths = {key: None if path is None else str(path.resolve()) for key, path in named.items()}
+    return {'log': os.path.abspath(log), 'nominal': str(given.nominal), **paths}
+
+
+def opened_by_task(inputs: Mapping[str, Any], reading: ReadingShare) -> tuple[Bag, LogParameters]:
+    """Return the recording of a task, which tells how far it is read, and its parameters."""
+    params, mapping = (
+        None if inputs[key] is None else Path(inputs[key]) for key in ('params', 'map')
+    )
+    bag = opened_log(Path(inputs['log']), mapping=mapping, shown=reading)
+    return bag, parameters_for(bag, params, Path(inputs['nominal']))
+
+
+def run_mapped(
+    task: Callable[[Mapping[str, Any]], dict[str, Any]],
+    inputs: Mapping[str, Mapping[str, Any]],
+    workers: Workers,
+    report: Callable[[TaskOutcome], None],
+    on_share: Callable[[str, float], None] = ignore,
+    *,
+    few: int = 0,
+) -> None:
+    """Run a task on named inputs: on workers, or here where they are `few` and none is named."""
+    if workers != Workers() or len(inputs) > few:
+        with open_pool(workers.number, workers.dask, on_share=on_share) as pool:
+            run_tasks(pool, task, inputs, report=report)
+        return
+    for name, given in inputs.items():
+        try:
+            outcome = TaskOutcome(name=name, result=task(given))
+        except (InputError, SurfaceError) as error:
+            outcome = TaskOutcome(name=name, result=None, sentence=str(error))
+        report(outcome)
+
+
+def run_on_logs(
+    task: Callable[[Mapping[str, Any]], dict[str, Any]],
+    inputs: Mapping[str, Mapping[str, Any]],
+    workers: Workers,
+    report: Callable[[TaskOutcome], None],
+    *,
+    few: int = 0,
+) -> None:
+    """Run a task on recordings as `run_mapped` does, and show how far they are by their sizes."""
+    bar = Progress(len(inputs), 'recordings')
+    sizes = {name: size_of(Path(known['log'])) for name, known in inputs.items()}
+    progress = LogsProgress(sizes, bar)
+
+    def done(outcome: TaskOutcome) -> None:
+        report(outcome)
+        progress.done(outcome.name)
+
+    try:
+        run_mapped(task, inputs, workers, done, progress.tell, few=few)
+    finally:
+        bar.close()
 
 
 def report_logs(
-    logs: Sequence[Path],
-    out: Path,
-    *,
-    params: Path | None,
-    mapping: Path | None,
-    nominal: Path,
-    notes: Sequence[str],
-    workers: int | None,
-    dask: str | None,
-) -> list[LogEntry]:
+    logs: Sequence[Path], out: Path, given: Given, workers: Workers, notes: Sequence[str]
+) -> list[LogResult]:
     """
-    Write a report of each of several recordings and the page over all; return their entries.
+    Write a report of each of several recordings and the page over all; return what became of each.
 
     The map is for tables alone; `notes` are sentences for the page.
 
     """
     # A map is for tables; one recording has it for certain, and is refused if it is a bag.
     alone = len(logs) == 1
-    whole = [
-        LogToReport(
-            log=log, folder=name, params=params, mapping=map_for(log, mapping, alone=alone)
-        )
+    mapped = {
+        name: (log, given._replace(mapping=map_for(log, given.mapping, alone=alone)))
         for log, name in zip(logs, folder_names(logs), strict=True)
-    ]
-    entries = report_each(whole, out, nominal=nominal, workers=workers, dask=dask)
-    replace_file(out / INDEX, overview_page(entries, notes).encode())
-    return entries
+    }
+    results = report_each(mapped, out, workers)
+    replace_file(out / INDEX, overview_page(results, notes).encode())
+    return results
 
 
 def report_each(
-    logs: Sequence[LogToReport], out: Path, *, nominal: Path, workers: int | None, dask: str | None
-) -> list[LogEntry]:
-    """Write a report of each of several recordings; return their entries."""
+    logs: Mapping[str, tuple[Path, Given]], out: Path, workers: Workers
+) -> list[LogResult]:
+    """Write a report of each recording into its folder; return what became of them."""
     inputs = {
-        log.folder: {
-            'log': os.path.abspath(log.log),  # a link belongs to the machine where it lies
-            'out': str((out / log.folder).resolve()),
-            'params': _text(log.params),
-            'map': _text(log.mapping),
-            'nominal': str(nominal),
-        }
-        for log in logs
+        folder: task_inputs(log, given) | {'out': str((out / folder).resolve())}
+        for folder, (log, given) in logs.items()
     }
-    outcomes = _outcomes(inputs, workers, dask)
-    return [entry_of(log.log.name, log.folder, outcomes[log.folder]) for log in logs]
-
-
-def _outcomes(
-    inputs: Mapping[str, Mapping[str, Any]], workers: int | None, dask: str | None
-) -> dict[str, TaskOutcome]:
-    sizes = {name: size_of(Path(one['log'])) for name, one in inputs.items()}
-    bar = Progress(len(inputs), 'recordings')
-    progress = LogsProgress(sizes, bar)
+    outcomes: dict[str, TaskOutcome] = {}
     try:
-        with open_pool(workers, dask, on_share=progress.tell) as pool:
-            return run_tasks(
-                pool, report_task, inputs, report=lambda outcome: progress.done(outcome.name)
-            )
+        run_on_logs(
+            report_task, inputs, workers, lambda outcome: outcomes.update({outcome.name: outcome})
+        )
     finally:
-        bar.close()
-        for one in inputs.values():  # a worker that was killed has left it
-            remove_left(Path(one['out']))
+        for folder in inputs:  # a worker that was killed has left it
+            remove_left(out / folder)
+    results = []
+    for folder, (log, _) in logs.items():
+        known: Mapping[str, Any] = {'failure': outcomes[folder].sentence}
+        if (record := outcomes[folder].result) is not None:
+            known = record
+        results.append(record_of(LogResult, {**known, 'name': log.name, 'folder': folder}))
+    return results
 
 
 def report_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Report one recording in a worker; plain data in, the `LogResult` as plain data out."""
     reading = ReadingShare()
-    bag = opened_log(Path(inputs['log']), mapping=_path(inputs['map']), shown=reading)
-    parameters = parameters_for(bag, _path(inputs['params']), Path(inputs['nominal']))
+    bag, parameters = opened_by_task(inputs, reading)
     result = report_log(bag, Path(inputs['out']), parameters, on_share=reading.tell_judged)
     record: dict[str, Any] = to_json(dataclasses.asdict(result))
     return record
-
-
-def _path(text: str | None) -> Path | None:
-    return None if text is None else Path(text)
-
-
-def _text(path: Path | None) -> str | None:
-    return None if path is None else str(path.resolve())
-
-
-def entry_of(name: str, folder: str, outcome: TaskOutcome) -> LogEntry:
-    """Return what became of a recording, of which a worker told."""
-    if outcome.result is None:
-        return LogEntry(name=name, folder=folder, failure=outcome.sentence)
-    record = dict(outcome.result)
-    # For what is not known the defaults stand.
-    known = [
-        {key: one for key, one in line.items() if one is not None} for line in record.pop('lines')
-    ]
-    lines = [AxisLine(**line) for line in known]
-    return LogEntry(name=name, folder=folder, result=LogResult(lines=lines, **record))

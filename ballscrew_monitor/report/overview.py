@@ -3,13 +3,13 @@
 """The page over many recordings: a row for each axis of each, and how an axis does over dates."""
 
 from collections.abc import Iterable, Mapping, Sequence
-import dataclasses
 import datetime
 import math
 from urllib.parse import quote
 
+from ballscrew_monitor.recordings.declared import record_of
 from ballscrew_monitor.recordings.words import counted, duration, NONE, percent
-from ballscrew_monitor.report.health_history import by_axis, healths, peers_among, read_history
+from ballscrew_monitor.report.health_history import AxisHistory, by_axis, healths, peers_among
 from ballscrew_monitor.report.health_part import health_trends, peers_table, verdict_box
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
 from ballscrew_monitor.report.logs import PAGE
@@ -21,28 +21,13 @@ SCRIPTS = ('format.js', 'table.js', 'overview.js')
 MARKS = {'good': 'optimal', 'bad': 'outside', 'perhaps': 'perhaps', 'unknown': 'unjudged'}
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class LogEntry:
-    """A recording and its folder, with what became of it: a result, or why there is none."""
-
-    name: str
-    folder: str
-    result: LogResult | None = None
-    failure: str = ''
-
-    @property
-    def is_bad(self) -> bool:
-        """Return True if nothing was judged on any axis."""
-        return self.result is None or not self.result.judged
-
-
-Listed = tuple[LogEntry, AxisLine]
+Listed = tuple[LogResult, AxisLine]
 Titles = Mapping[MachineAxis, str]
 """Names of axes, with their machine where several have one of that name."""
 
 
 def overview_page(
-    entries: Sequence[LogEntry],
+    entries: Sequence[LogResult],
     notes: Sequence[str] = (),
     *,
     title: str = '',
@@ -54,11 +39,11 @@ def overview_page(
     `parts` come below the verdict; the page bears a `title` of its own, if any.
 
     """
-    listed = [(entry, line) for entry in entries if entry.result for line in entry.result.lines]
+    listed = [(entry, line) for entry in entries for line in entry.lines]
     listed.sort(key=lambda pair: -math.inf if math.isnan(pair[1].begins) else pair[1].begins)
     axes = [line.key for _, line in listed]
     titles = axis_titles(axes)
-    bad = [entry for entry in entries if entry.result is None]
+    bad = [entry for entry in entries if entry.failure]
     failures = (element('li', element('b', entry.name), f': {entry.failure}') for entry in bad)
     first, trends = _health(entries, titles)
     notes = [*notes, *filter(None, [folders_note(axes)])]
@@ -96,10 +81,8 @@ def overview_page(
     return page('Ball screw reports', body, scripts=SCRIPTS)
 
 
-def _health(entries: Sequence[LogEntry], titles: Titles) -> tuple[list[Markup], list[Markup]]:
-    found = [
-        read_history(one) for entry in entries if entry.result for one in entry.result.histories
-    ]
+def _health(entries: Sequence[LogResult], titles: Titles) -> tuple[list[Markup], list[Markup]]:
+    found = [record_of(AxisHistory, history) for entry in entries for history in entry.histories]
     courses = [
         healths(own, title=titles[axis]) for axis, own in by_axis(found).items() if len(own) > 1
     ]
@@ -110,11 +93,11 @@ def _health(entries: Sequence[LogEntry], titles: Titles) -> tuple[list[Markup], 
     return first, [*trends, *peers_table(peers)]
 
 
-def _verdict(entries: Sequence[LogEntry], listed: Sequence[Listed]) -> Markup:
+def _verdict(entries: Sequence[LogResult], listed: Sequence[Listed]) -> Markup:
     counts = dict.fromkeys(MARKS, 0)
     for _, line in listed:
         counts[line.standing] += 1
-    lost = sum(entry.result is None for entry in entries)
+    lost = sum(bool(entry.failure) for entry in entries)
     sentence = (
         f'{counts["bad"]} of {len(listed)} axis recordings ran outside the optimal zone, '
         f'{counts["perhaps"]} perhaps, '
@@ -126,7 +109,7 @@ def _verdict(entries: Sequence[LogEntry], listed: Sequence[Listed]) -> Markup:
     return element('div', element('p', sentence, class_='sentence'), class_=f'verdict {kind}')
 
 
-def _row(entry: LogEntry, line: AxisLine, title: str) -> TableRow:
+def _row(entry: LogResult, line: AxisLine, title: str) -> TableRow:
     sure, part = (
         time / line.running_time if line.running_time else math.nan
         for time in (line.surely_outside, line.outside_time)
@@ -187,7 +170,7 @@ def _trends(listed: Sequence[Listed], titles: Titles) -> Iterable[Markup]:
         yield from pictures
 
 
-def _mark(entry: LogEntry, line: AxisLine) -> Mark:
+def _mark(entry: LogResult, line: AxisLine) -> Mark:
     part = line.outside_time / line.running_time
     return Mark(
         at=line.begins,

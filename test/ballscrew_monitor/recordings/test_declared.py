@@ -2,11 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Keys and units of records come from their declarations alone."""
 
+from collections.abc import Sequence
 import dataclasses
+import enum
+import json
 import math
+from typing import NamedTuple
 
 from ballscrew_monitor.core.inputs import Source
-from ballscrew_monitor.recordings.declared import keys, plain, unwritten, written
+from ballscrew_monitor.recordings.declared import keys, plain, record_of, unwritten, written
+import pytest
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -46,3 +51,38 @@ def test_a_record_is_written_as_it_is_declared_with_its_keys():
     assert plain(Whole(load=0.0, speed=None))['speed_rad_s_reason'] == 'no valid sample'
     written_keys = 'load_N start_stamp_ns speed_rad_s parts by_input doubled'
     assert list(keys(Whole)) == written_keys.split()
+
+
+class Colour(enum.Enum):
+    RED = 'r'
+
+
+class Place(NamedTuple):
+    colour: Colour
+    band: int
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
+class Tree:
+    depth: float
+    places: tuple[Place, ...]
+    parts: Sequence[Part]
+    best: Part | None
+    none: Part | None = None
+    text: str = 'default'
+
+
+def test_a_record_comes_back_out_of_json():
+    tree = Tree(depth=1.5, places=(Place(Colour.RED, 3),), parts=[Part(), Part()], best=Part())
+    content = json.dumps(dataclasses.asdict(tree), default=lambda colour: colour.value)
+    assert record_of(Tree, json.loads(content)) == tree
+    content = {'depth': None, 'places': [['r', 3]], 'parts': [{}], 'best': None}
+    back = record_of(Tree, content)
+    assert math.isnan(back.depth)
+    assert (back.places, back.parts, back.best) == (tree.places, [Part()], None)
+
+
+@pytest.mark.parametrize('content', [{'tall': 1}, {'depth': 1.0}])
+def test_what_is_no_such_record_is_refused(content):
+    with pytest.raises((KeyError, TypeError)):
+        record_of(Tree, content)

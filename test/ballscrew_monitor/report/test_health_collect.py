@@ -24,9 +24,10 @@ from ballscrew_monitor.health.records import (
     UsualWarning,
 )
 from ballscrew_monitor.health.summary import array_of
-from ballscrew_monitor.report import health_collect
-from ballscrew_monitor.report.health_axes import read_health, same_start_note
-from ballscrew_monitor.report.health_collect import collect, Given, Workers
+from ballscrew_monitor.recordings.declared import record_of
+from ballscrew_monitor.report import health_collect, many_logs
+from ballscrew_monitor.report.health_axes import same_start_note
+from ballscrew_monitor.report.health_collect import collect
 from ballscrew_monitor.report.health_folder import (
     axis_folders,
     held_logs,
@@ -36,6 +37,7 @@ from ballscrew_monitor.report.health_folder import (
     read_entry,
 )
 from ballscrew_monitor.report.machines import MachineAxis
+from ballscrew_monitor.report.many_logs import Given, Workers
 import numpy as np
 import polars as pl
 import pytest
@@ -92,13 +94,13 @@ def collected(tmp_path_factory):
 @pytest.fixture
 def judgements(monkeypatch):
     """Return the names of the logs that are judged from here on."""
-    names, judged = [], health_collect.judged
+    names, opened = [], health_collect.opened_by_task
 
-    def noted(log, *args, **more):
-        names.append(log.name)
-        return judged(log, *args, **more)
+    def noted(inputs, reading):
+        names.append(Path(inputs['log']).name)
+        return opened(inputs, reading)
 
-    monkeypatch.setattr(health_collect, 'judged', noted)
+    monkeypatch.setattr(health_collect, 'opened_by_task', noted)
     return names
 
 
@@ -258,7 +260,7 @@ def test_a_cluster_that_is_lost_ends_in_a_sentence_and_the_next_run_goes_on(
             result = health_collect.collect_task(inputs)
             return [(name, {'result': result, 'sentence': '', 'worker': 'w', 'seconds': 0.0})]
 
-    monkeypatch.setattr(health_collect, 'open_pool', LostPool)
+    monkeypatch.setattr(many_logs, 'open_pool', LostPool)
     with pytest.raises(SurfaceError, match='the scheduler was lost'):
         collect(logs, folder, given, Workers(dask='tcp://nowhere:8786'))
     assert len(held_logs(folder)) == 2
@@ -345,5 +347,5 @@ def test_health_survives_plain_data():
         usual_warnings=(UsualWarning(Code.RCS_HIGH, 3, -2, 1),),
     )
     plain = json.loads(json.dumps(to_json(dataclasses.asdict(health))))
-    again = read_health(plain)
+    again = record_of(Health, plain)
     assert repr(again) == repr(health)

@@ -9,8 +9,8 @@ import math
 from ballscrew_monitor.cli import main
 from ballscrew_monitor.health.records import Cell, Condition, Health, Quantity, SpectrumBin
 from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.recordings.declared import record_of
 from ballscrew_monitor.report.health_axes import assess_axes, logged_axes
-from ballscrew_monitor.report.health_collect import Workers
 from ballscrew_monitor.report.health_command import days_of
 from ballscrew_monitor.report.health_history import (
     AxisHistory,
@@ -18,13 +18,13 @@ from ballscrew_monitor.report.health_history import (
     health_after,
     healths,
     peers_among,
-    read_history,
 )
 from ballscrew_monitor.report.health_part import health_chapter
 from ballscrew_monitor.report.health_picture import figure_health
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
 from ballscrew_monitor.report.machines import axis_titles
-from ballscrew_monitor.report.overview import LogEntry, overview_page
+from ballscrew_monitor.report.many_logs import Workers
+from ballscrew_monitor.report.overview import overview_page
 import pytest
 from surrogate.files import to_json
 from surrogate.surface import shipped_surface
@@ -78,7 +78,7 @@ def history(limits, number, wiper):
 
 def test_a_history_survives_json(months, usual_limits):
     plain = json.loads(json.dumps(to_json(dataclasses.asdict(months[3]))))
-    found = read_history(plain)
+    found = record_of(AxisHistory, plain)
     assert repr(found.cells) == repr(list(months[3].cells))
     (one,) = found.bins
     assert (one.wear_time, one.time) == ((1.0, 2.0), 1280.0)
@@ -188,8 +188,7 @@ def test_three_machines_of_one_screw_share_what_they_know(months):
 def entry(one):
     line = AxisLine(axis=one.axis, standing='bad', verdict='Outside: always', machine=one.machine)
     record = to_json(dataclasses.asdict(one))
-    result = LogResult(name='m', lines=[line], unjudged=[], histories=[record])
-    return LogEntry(name='month', folder='month', result=result)
+    return LogResult(name='month', folder='month', lines=[line], histories=[record])
 
 
 def aged(one, months):

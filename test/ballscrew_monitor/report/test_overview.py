@@ -6,7 +6,7 @@ import math
 import re
 
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
-from ballscrew_monitor.report.overview import LogEntry, overview_page
+from ballscrew_monitor.report.overview import overview_page
 
 DAY = 86400.0
 HOSTILE = '</script><script>alert(1)</script>'
@@ -25,7 +25,7 @@ def make_entry(name, day, outside, *, axis='x'):
         worst='RCS 0.5' if outside else '',
         depth=0.5,
     )
-    return LogEntry(name=name, folder=name, result=LogResult(name=name, lines=[line], unjudged=[]))
+    return LogResult(name=name, folder=name, lines=[line])
 
 
 def rows_of(page):
@@ -82,18 +82,17 @@ def test_a_trend_has_a_point_for_each_date_and_one_date_is_none():
 
 
 def test_recordings_that_could_not_be_read_are_named_as_text():
-    bad = LogEntry(name=HOSTILE, folder='bad', failure=f'bag {HOSTILE} is damaged')
+    bad = LogResult(name=HOSTILE, folder='bad', failure=f'bag {HOSTILE} is damaged')
     page = overview_page([bad])
     assert HOSTILE not in page
     assert page.count('alert(1)') == 2
     assert '1 recording could not be read' in page
-    assert bad.is_bad
+    assert not bad.judged
 
 
 def test_what_is_not_known_is_a_dash():
     line = AxisLine(axis='x', standing='unknown', verdict='nothing was judged')
-    result = LogResult(name='a', lines=[line], unjudged=['x'])
-    page = overview_page([LogEntry(name='a', folder='a', result=result)])
+    page = overview_page([LogResult(name='a', folder='a', lines=[line], unjudged=['x'])])
     assert 'nan' not in page.partition('<tbody>')[2].partition('</tbody>')[0].replace(
         'data-value="NaN"', ''
     )

@@ -12,7 +12,7 @@ from ballscrew_monitor.health.records import Baseline, SpectrumBin, Stretch
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import HealthStore, read_health
 from ballscrew_monitor.health.summary import add
-from ballscrew_monitor.report import health_kept
+from ballscrew_monitor.report import health_axes
 from ballscrew_monitor.settings.parameters import defaults
 import pytest
 
@@ -71,12 +71,12 @@ def test_another_speed_is_advised_where_the_parameters_or_the_command_let_it(
     folder, monkeypatch, parameter, option
 ):
     asked = []
-    monkeypatch.setattr(health_kept, 'course', lambda *parts: asked.append(parts[-1]))
+    monkeypatch.setattr(health_axes, 'course', lambda *parts: asked.append(parts[-1]))
     values = defaults(['x']) | {'x.advice.speed': parameter}
     options = {'baseline_days': 91.0, 'days': None, 'speed_allowed': option}
     stored = read_health(folder)
-    titles = {health_kept.stored_axis(folder, 'x'): 'x'}
-    health_kept.kept_healths(folder, stored, titles, values, options)
+    titles = {health_axes.stored_axis(folder, 'x'): 'x'}
+    health_axes.kept_healths(folder, stored, titles, values, options)
     assert {one.speed_allowed for one in asked} == {parameter or option}
 
 
