@@ -10,7 +10,7 @@ Maps, parameters, sheets and surfaces are written beside the page.
 """
 
 import argparse
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 import contextlib
 import dataclasses
 from pathlib import Path
@@ -21,17 +21,15 @@ from typing import Any, TypeVar
 from ballscrew_monitor.core.interrupts import DONE, FAILED
 from ballscrew_monitor.core.prerequisites import require
 from ballscrew_monitor.recordings import log_facts
-from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_files import is_bag
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.tables.guess import Guess, guess, names_motion
 from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.tables.sources import is_log
 from ballscrew_monitor.recordings.words import counted, say
-from ballscrew_monitor.report.check_page import check_parts, Checked, next_steps, without_motion
+from ballscrew_monitor.report.check_page import check_parts, CheckedLog, next_steps, without_motion
 from ballscrew_monitor.report.command import check_most_unjudged, is_bad
 from ballscrew_monitor.report.free_run import FreeRun, identified
-from ballscrew_monitor.report.log_report import LogResult
 from ballscrew_monitor.report.logs import find_logs, folder_names
 from ballscrew_monitor.report.many_logs import Given, INDEX, report_each, Workers
 from ballscrew_monitor.report.overview import overview_page
@@ -47,29 +45,9 @@ MAPS, SURFACES, SHEETS = 'maps', 'surfaces', 'sheets'
 BESIDE = '.map.yaml'
 KEY = re.compile(r'^(\w+):', re.M)
 Sheet = TypeVar('Sheet', Screw, Lubricant)
+Sheets = tuple[Screw, Lubricant]
 OIL = 'iso_vg_68'
 UNCERTAINTY = 0.1  # [N m] of a torque whose map is guessed
-
-
-@dataclasses.dataclass(slots=True)
-class _Log:
-    """A recording with its map or parameters, or why it cannot be judged."""
-
-    path: Path
-    folder: str
-    is_free: bool = False
-    guess: Guess | None = None
-    mapping: Path | None = None
-    params: Path | None = None
-    bag: Bag | None = None
-    values: Mapping[str, Any] = dataclasses.field(default_factory=dict)
-    failure: str = ''
-    is_other: bool = False  # a short table of anything but a motion
-
-    @property
-    def used(self) -> Path | None:
-        """Return the file that was written of it, of a map or of parameters."""
-        return self.mapping or self.params
 
 
 def check_command(args: argparse.Namespace, nominal: Path) -> int:
@@ -83,30 +61,67 @@ def check_command(args: argparse.Namespace, nominal: Path) -> int:
     paths = find_logs([args.folder], tables=True, out=args.out, is_log=is_log)
     sheets = sheets_of(args.folder, args.screw, args.oil)
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
-        entries, checked = _check(paths, sheets, args, nominal)
-        steps = next_steps(entries, checked)
-        for entry in entries:
-            for line in entry.lines:
-                normal = f' Normal? {line.normal}.' if line.normal else ''
-                print(printable(f'{entry.name}:{normal} {line.verdict}'))
-            if entry.failure:
-                say(f'{entry.name}: {entry.failure}')
-        if checked.others:
-            say(without_motion(checked.others))
-        for step in steps:
-            print(printable(f'to do: {step}'))
-        bad = sum(
-            is_bad(entry, Path(entry.name), args)
-            for entry in entries
-            if entry.folder not in checked.free
+        opened = _opened(paths, sheets, args, nominal)
+        logs, others = (
+            [log for log in opened if log.is_other is other] for other in (False, True)
         )
-        print(f'{counted(len(entries), "recording")}, {bad} bad, page in {args.out / INDEX}')
+        runs = _free_runs(logs, sheets, args.out) if sheets else []
+        surfaces = _give_surfaces(logs, sheets, runs, args) if sheets else {}
+        _report(logs, args, nominal)
+        assumed_oil = OIL if args.oil is None and sheets and sheets[1].name == OIL else ''
+        steps = next_steps(logs, runs, is_screw_known=sheets is not None, assumed_oil=assumed_oil)
+        parts = check_parts(logs, others, runs, surfaces, steps)
+        results, title = [log.result for log in logs], f'Check of {args.folder.resolve().name}'
+        replace_file(args.out / INDEX, overview_page(results, title=title, parts=parts).encode())
+        bad = _print(logs, others, steps, args)
     if args.json:
-        print(json_text(_record(entries, checked, steps)))
+        record = {
+            'recordings': {log.path.name: _record(log) for log in logs},
+            'identified': {run.axis: run.text for run in runs},
+            'surfaces': surfaces,
+            'no_recordings': [log.path.name for log in others],
+            'what_to_do': steps,
+        }
+        print(json_text(record))
     return FAILED if bad else DONE
 
 
-def sheets_of(folder: Path, screw: str | None, oil: str | None) -> tuple[Screw, Lubricant] | None:
+def _print(
+    logs: Sequence[CheckedLog],
+    others: Sequence[CheckedLog],
+    steps: Sequence[str],
+    args: argparse.Namespace,
+) -> int:
+    """Print what recordings come to and what to do; return how many are bad."""
+    for result in (log.result for log in logs):
+        for line in result.lines:
+            normal = f' Normal? {line.normal}.' if line.normal else ''
+            print(printable(f'{result.name}:{normal} {line.verdict}'))
+        if result.failure:
+            say(f'{result.name}: {result.failure}')
+    if others:
+        say(without_motion(others))
+    for step in steps:
+        print(printable(f'to do: {step}'))
+    judged = [log for log in logs if not log.is_free_run]
+    bad = sum(is_bad(log.result, Path(log.path.name), args) for log in judged)
+    print(f'{counted(len(logs), "recording")}, {bad} bad, page in {args.out / INDEX}')
+    return bad
+
+
+def _record(log: CheckedLog) -> dict[str, Any]:
+    """Return what the page says of a recording as plain data."""
+    names = 'normal', 'standing', 'verdict', 'expected', 'judged', 'losses'
+    return {
+        'failure': log.result.failure,
+        'map': log.used,
+        'axes': {
+            line.axis: {name: getattr(line, name) for name in names} for line in log.result.lines
+        },
+    }
+
+
+def sheets_of(folder: Path, screw: str | None, oil: str | None) -> Sheets | None:
     """
     Return the sheets of screw and oil that are named, or lie in the folder; None without a screw.
 
@@ -117,9 +132,9 @@ def sheets_of(folder: Path, screw: str | None, oil: str | None) -> tuple[Screw, 
     files = sorted(folder.glob('*.yaml')) if folder.is_dir() else []
     screws = [load_screw(screw)] if screw else list(_sheets(files, Screw, load_screw))
     oils = [load_lubricant(oil)] if oil else list(_sheets(files, Lubricant, load_lubricant))
-    for option, found in (('--screw', screws), ('--oil', oils)):
-        if len(found) > 1:
-            names = ', '.join(one.name for one in found)
+    for option, held in (('--screw', screws), ('--oil', oils)):
+        if len(held) > 1:
+            names = ', '.join(sheet.name for sheet in held)
             raise InputError(f'folder {folder} holds several sheets, {names}: {option} names one')
     if not screws:
         return None
@@ -134,131 +149,69 @@ def _sheets(
     own, others = ({key_of(spec) for spec in dataclasses.fields(of)} for of in (kind, other))
     own -= others
     for file in files:
-        if not file.name.endswith(BESIDE) and own & _top_keys(file):
+        if file.name.endswith(BESIDE):
+            continue
+        try:
+            content = read_yaml(file)
+            keys = set(map(str, content)) if isinstance(content, dict) else set()
+        except InputError:  # then the keys are those that begin its lines
+            keys = set(KEY.findall(file.read_text(encoding='utf-8', errors='replace')))
+        if own & keys:
             yield load(str(file))
 
 
-def _top_keys(file: Path) -> set[str]:
-    """Return the keys of a YAML file, as they begin its lines where it is no YAML."""
-    try:
-        content = read_yaml(file)
-    except InputError:
-        return set(KEY.findall(file.read_text(encoding='utf-8', errors='replace')))
-    return set(map(str, content)) if isinstance(content, dict) else set()
-
-
-def _check(
-    paths: Sequence[Path],
-    sheets: tuple[Screw, Lubricant] | None,
-    args: argparse.Namespace,
-    nominal: Path,
-) -> tuple[list[LogResult], Checked]:
-    """Do all that a check does with recordings; return their entries, and what these rest on."""
-    opened = _opened(paths, sheets, args, nominal)
-    logs = [log for log in opened if not log.is_other or _is_named(log, args)]
-    _write_maps(logs, args.out)
-    runs = list(_free_runs(logs, sheets, args.out)) if sheets else []
-    surfaces = _give_surfaces(logs, sheets, runs, args) if sheets else {}
-    entries = _entries(logs, args, nominal)
-    checked = Checked(
-        sheets=None if sheets is None else (sheets[0].name, sheets[1].name),
-        is_oil_known=args.oil is not None or bool(sheets and sheets[1].name != OIL),
-        free=frozenset(log.folder for log in logs if log.is_free and not log.failure),
-        runs=tuple(runs),
-        surfaces=surfaces,
-        used={
-            log.folder: str(log.used.relative_to(args.out)) for log in logs if log.used is not None
-        },
-        others=tuple(log.path.name for log in opened if log not in logs),
-        unstated={log.path.name: log.guess.unstated for log in logs if log.guess},
-    )
-    title, parts = f'Check of {args.folder.resolve().name}', check_parts(entries, checked)
-    replace_file(args.out / INDEX, overview_page(entries, title=title, parts=parts).encode())
-    return entries, checked
-
-
 def _opened(
-    paths: Sequence[Path],
-    sheets: tuple[Screw, Lubricant] | None,
-    args: argparse.Namespace,
-    nominal: Path,
-) -> list[_Log]:
-    """Return recordings with their guess or their bag; raises InputError if none is readable."""
-    free = _free_paths(paths, args.free_run)
+    paths: Sequence[Path], sheets: Sheets | None, args: argparse.Namespace, nominal: Path
+) -> list[CheckedLog]:
+    """
+    Return recordings with their guess or their bag; maps that are used are written.
+
+    Raises InputError if none is readable, and for the name of a free run that is not among them.
+
+    """
+    for name in args.free_run:
+        if not any(path.name == name for path in paths):
+            held = ', '.join(path.name for path in paths)
+            raise InputError(f'--free-run is {name}, the folder holds {held}')
     logs = [
-        _Log(path=path, folder=name, is_free=path in free)
+        CheckedLog(path=path, folder=name, out=args.out, is_free=path.name in args.free_run)
         for path, name in zip(paths, folder_names(paths), strict=True)
     ]
-    bar = Progress(len(logs), 'recordings opened')
-    try:
-        for number, log in enumerate(logs):
-            bar.show(number, len(logs))
-            _open(log, sheets, args, nominal)
-    finally:
-        bar.close()
+    for log in _shown(logs, 'recordings opened'):
+        _open(log, sheets, args, nominal)
+        text = log.guess.text if log.guess else ''
+        if log.mapping and not log.failure:
+            text = log.mapping.read_text(encoding='utf-8')
+        if text:
+            log.mapping = _written(args.out / MAPS / f'{log.folder}.yaml', text)
+        elif log.failure:
+            log.mapping = None
     if all(log.failure and not log.guess for log in logs):
         more = f' (and {len(logs) - 1} more)' if len(logs) > 1 else ''
         raise InputError(f'nothing in {args.folder} can be read: {logs[0].failure}{more}')
     return logs
 
 
-def _is_named(log: _Log, args: argparse.Namespace) -> bool:
-    """Return True if somebody says that a file is a recording."""
-    return log.is_free or log.path == args.folder
+def _shown(logs: Sequence[CheckedLog], unit: str) -> Iterator[CheckedLog]:
+    """Yield recordings, and show how many are done."""
+    bar = Progress(len(logs), unit)
+    try:
+        for number, log in enumerate(logs):
+            bar.show(number, len(logs))
+            yield log
+        bar.show(len(logs), len(logs))
+    finally:
+        bar.close()
 
 
-def _write_maps(logs: Sequence[_Log], out: Path) -> None:
-    """Keep the map of each table that is judged, and of each that waits for a value."""
-    for log in logs:
-        text = log.guess.text if log.guess else ''
-        if log.mapping and not log.failure:
-            text = log.mapping.read_text(encoding='utf-8')
-        if text:
-            log.mapping = out / MAPS / f'{log.folder}.yaml'
-            _write(log.mapping, text)
-        elif log.failure:
-            log.mapping = None
-
-
-def _entries(logs: Sequence[_Log], args: argparse.Namespace, nominal: Path) -> list[LogResult]:
-    """Report what can be judged; return what became of each recording."""
-    readable = {
-        log.folder: (log.path, Given(log.params, log.mapping, nominal))
-        for log in logs
-        if not log.failure
-    }
-    workers = Workers(args.workers, args.dask)
-    reported = report_each(readable, args.out, workers) if readable else []
-    results = {result.folder: result for result in reported}
-    return [
-        results.get(log.folder)
-        or LogResult(name=log.path.name, folder=log.folder, failure=log.failure)
-        for log in logs
-    ]
-
-
-def _free_paths(paths: Sequence[Path], names: Sequence[str]) -> list[Path]:
-    """Return the recordings that are named as free runs; raises InputError for another name."""
-    for name in names:
-        if not any(path.name == name for path in paths):
-            held = ', '.join(path.name for path in paths)
-            raise InputError(f'--free-run is {name}, the folder holds {held}')
-    return [path for path in paths if path.name in names]
-
-
-def _open(
-    log: _Log, sheets: tuple[Screw, Lubricant] | None, args: argparse.Namespace, nominal: Path
-) -> None:
+def _open(log: CheckedLog, sheets: Sheets | None, args: argparse.Namespace, nominal: Path) -> None:
     """Open a recording; a table by the map that is given or guessed, if that says all."""
     try:
         table = log.path.is_file() and not is_bag(log.path)
         given = args.map or map_beside(log.path)
         if table and given is None:
-            log.guess = _with_sheets(guess(log.path), sheets)
-            if log.is_free:
-                log.guess = _as_free_run(log.guess)
-            if log.guess.unstated:
-                log.failure = '; '.join(log.guess.unstated)
+            log.guess = _of_machine(guess(log.path), sheets, is_free=log.is_free)
+            log.failure = '; '.join(log.guess.unstated)
             return
         log.mapping = given if table else None
         if log.mapping:
@@ -267,7 +220,9 @@ def _open(
         log.values = parameters_for(log.bag, args.params, nominal).values
     except (InputError, SurfaceError) as error:
         log.failure = str(error)
-        log.is_other = log.mapping is None and not names_motion(log.path) and not is_log(log.path)
+        is_named = log.is_free or log.path == args.folder  # somebody says that it is a recording
+        tells_nothing = not names_motion(log.path) and not is_log(log.path)
+        log.is_other = log.mapping is None and tells_nothing and not is_named
 
 
 def map_beside(log: Path) -> Path | None:
@@ -285,102 +240,87 @@ def map_beside(log: Path) -> Path | None:
     return shared if is_first and shared.is_file() else None
 
 
-def _with_sheets(first: Guess, sheets: tuple[Screw, Lubricant] | None) -> Guess:
-    """Return a guessed map that states screw, oil and lead of the sheets."""
-    if sheets is None:
-        return first
-    stated = {
-        'screw': sheets[0].name,
-        'oil': sheets[1].name,
-        'lead_mm': float(f'{sheets[0].lead * MILLI:.6g}'),
-    }
-    axes = {name: one | stated for name, one in first.content['axes'].items()}
-    gone = {f'{axis}.{key}' for axis in axes for key in stated}
-    assumed = {key: one for key, one in first.content['assumed'].items() if key not in gone}
-    return dataclasses.replace(first, content=first.content | {'axes': axes, 'assumed': assumed})
+def _of_machine(first: Guess, sheets: Sheets | None, *, is_free: bool) -> Guess:
+    """
+    Return a guessed map that states screw, oil and lead of the sheets.
 
+    That of a free run takes no torque for a load: all of it is friction.
 
-def _as_free_run(first: Guess) -> Guess:
-    """Return a guessed map that takes no torque for a load: all of it is friction."""
+    """
+    stated = {}
+    if sheets is not None:
+        lead = float(f'{sheets[0].lead * MILLI:.6g}')
+        stated = {'screw': sheets[0].name, 'oil': sheets[1].name, 'lead_mm': lead}
     axes, assumed = {}, dict(first.content['assumed'])
-    for name, one in first.content['axes'].items():
-        axes[name] = one
-        if 'torque' in one and 'load' not in one:
-            axes[name] = one | {'load': {'from': 'motor_torque'}, 'always_free': True}
-            for key in ('load.from', 'efficiency'):
-                assumed.pop(f'{name}.{key}', None)
+    for name, columns in first.content['axes'].items():
+        axes[name], known = columns | stated, [*stated]
+        if is_free and 'torque' in columns and 'load' not in columns:
+            axes[name] |= {'load': {'from': 'motor_torque'}, 'always_free': True}
+            known += ['load.from', 'efficiency']
             why = 'no log says it; of a motor that tells its own torque'
-            assumed[f'{name}.torque_uncertainty_Nm'] = {'value': UNCERTAINTY, 'reason': why}
+            uncertainty = {'value': UNCERTAINTY, 'reason': why}
+            assumed[f'{name}.torque_uncertainty_Nm'] = uncertainty
+        for key in known:
+            assumed.pop(f'{name}.{key}', None)
     return dataclasses.replace(first, content=first.content | {'axes': axes, 'assumed': assumed})
 
 
-def _free_runs(
-    logs: Sequence[_Log], sheets: tuple[Screw, Lubricant], out: Path
-) -> Iterator[FreeRun]:
-    """Yield what free runs identify, of each axis the first that does; show how far that is."""
-    bar, known = Progress(len(logs), 'recordings looked at for a free run'), set[str]()
-    try:
-        for number, log in enumerate(logs):
-            bar.show(number, len(logs))
-            if log.failure:
+def _free_runs(logs: Sequence[CheckedLog], sheets: Sheets, out: Path) -> list[FreeRun]:
+    """Return what free runs identify, of each axis the first that does; show how far that is."""
+    runs: list[FreeRun] = []
+    for log in _shown(logs, 'recordings looked at for a free run'):
+        if log.failure:
+            continue
+        try:
+            bag = log.bag or opened_log(log.path, mapping=log.mapping)
+            values = log.values or log_facts.parameters_of(bag) or {}
+        except InputError as error:
+            log.failure = str(error)
+            continue
+        for axis in values.get('axes', ()):
+            if any(run.axis == axis and run.sheet for run in runs):
                 continue
-            try:
-                bag = log.bag or opened_log(log.path, mapping=log.mapping)
-                values = log.values or log_facts.parameters_of(bag) or {}
-            except InputError as error:
-                log.failure = str(error)
-                continue
-            for axis in values.get('axes', ()):
-                if axis in known:
-                    continue
-                sheet = out / SHEETS / f'{sheets[0].name}_{axis}.yaml'
-                with contextlib.suppress(InputError):
-                    run = identified(bag, values, axis, sheets, sheet, is_free=log.is_free)
-                    if run is not None:
-                        known |= {axis} if run.sheet else set()
-                        yield run
-        bar.show(len(logs), len(logs))
-    finally:
-        bar.close()
+            sheet = out / SHEETS / f'{sheets[0].name}_{axis}.yaml'
+            with contextlib.suppress(InputError):
+                run = identified(bag, values, axis, sheets, sheet, is_free=log.is_free)
+                runs += [] if run is None else [run]
+    return runs
 
 
 def _give_surfaces(
-    logs: Sequence[_Log],
-    sheets: tuple[Screw, Lubricant],
-    runs: Sequence[FreeRun],
-    args: argparse.Namespace,
+    logs: Sequence[CheckedLog], sheets: Sheets, runs: Sequence[FreeRun], args: argparse.Namespace
 ) -> dict[str, str]:
     """Let each recording be judged with the surface of its screw; return these by axis."""
     screws = {run.axis: load_screw(str(run.sheet)) for run in runs if run.sheet}
-    found: dict[str, Path] = {}
-    told: dict[str, str] = {}
+    files: dict[str, Path] = {}
+    surfaces: dict[str, str] = {}
 
     def place(axis: str) -> tuple[Screw, Path]:
         screw = screws.get(axis, sheets[0])
-        if screw.name not in found:
-            found[screw.name] = _surface(screw, sheets[1], args)
-        told[axis] = str(found[screw.name])
-        return screw, found[screw.name].resolve()
+        if screw.name not in files:
+            files[screw.name] = _surface(screw, sheets[1], args)
+        surfaces[axis] = str(files[screw.name])
+        return screw, files[screw.name].resolve()
 
     for log in logs:
         if log.guess:
             axes = {}
-            for axis, one in log.guess.content['axes'].items():
+            for axis, columns in log.guess.content['axes'].items():
                 screw, file = place(axis)
-                axes[axis] = one | {'screw': screw.name, 'surface': str(file)}
+                axes[axis] = columns | {'screw': screw.name, 'surface': str(file)}
             log.guess = dataclasses.replace(log.guess, content=log.guess.content | {'axes': axes})
             assert log.mapping is not None
-            _write(log.mapping, log.guess.text)
+            _written(log.mapping, log.guess.text)
         elif log.bag is not None and log.mapping is None:
-            values, said = dict(log.values), set[str]()
+            values, stated = dict(log.values), set[str]()
             for axis in values['axes']:
                 screw, file = place(axis)
-                stated = {'surface': str(file), 'screw': screw.name, 'oil': sheets[1].name}
-                values |= {f'{axis}.{key}': one for key, one in stated.items()}
-                said |= {f'{axis}.{key}' for key in stated}
-            log.params = args.out / MAPS / f'{log.folder}.params.yaml'
-            _write(log.params, log_facts.parameters_text(values, said))
-    return told
+                of_sheets = {'surface': str(file), 'screw': screw.name, 'oil': sheets[1].name}
+                values |= {f'{axis}.{key}': value for key, value in of_sheets.items()}
+                stated |= {f'{axis}.{key}' for key in of_sheets}
+            text = log_facts.parameters_text(values, stated)
+            log.params = _written(args.out / MAPS / f'{log.folder}.params.yaml', text)
+    return surfaces
 
 
 def _surface(screw: Screw, oil: Lubricant, args: argparse.Namespace) -> Path:
@@ -412,36 +352,21 @@ def _surface(screw: Screw, oil: Lubricant, args: argparse.Namespace) -> Path:
     return built
 
 
-def _write(path: Path, text: str) -> None:
+def _report(logs: Sequence[CheckedLog], args: argparse.Namespace, nominal: Path) -> None:
+    """Report the recordings that can be judged."""
+    readable = {
+        log.folder: (log.path, Given(log.params, log.mapping, nominal))
+        for log in logs
+        if not log.failure
+    }
+    workers = Workers(args.workers, args.dask)
+    reported = report_each(readable, args.out, workers) if readable else []
+    results = {result.folder: result for result in reported}
+    for log in logs:
+        log.reported = results.get(log.folder)
+
+
+def _written(path: Path, text: str) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
     replace_file(path, text.encode())
-
-
-def _record(
-    entries: Sequence[LogResult], checked: Checked, steps: Sequence[str]
-) -> dict[str, Any]:
-    """Return what the page says as plain data."""
-    return {
-        'recordings': {
-            entry.name: {
-                'failure': entry.failure,
-                'map': checked.used.get(entry.folder, ''),
-                'axes': {
-                    line.axis: {
-                        'normal': line.normal,
-                        'standing': line.standing,
-                        'verdict': line.verdict,
-                        'expected': line.expected,
-                        'judged': line.judged,
-                        'losses': line.losses,
-                    }
-                    for line in entry.lines
-                },
-            }
-            for entry in entries
-        },
-        'identified': {run.axis: run.text for run in checked.runs},
-        'surfaces': dict(checked.surfaces),
-        'no_recordings': list(checked.others),
-        'what_to_do': list(steps),
-    }
+    return path

@@ -5,9 +5,12 @@
 from collections.abc import Iterator, Mapping, Sequence
 import dataclasses
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote
 
+from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.declared import record_of
+from ballscrew_monitor.recordings.tables.guess import Guess
 from ballscrew_monitor.recordings.words import listed, NONE
 from ballscrew_monitor.report.free_run import FreeRun, RECORD
 from ballscrew_monitor.report.health_history import AxisHistory, by_axis, healths
@@ -24,129 +27,154 @@ NEEDED = {
 """Inputs that are worth recording, with their words."""
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
-class Checked:
+@dataclasses.dataclass(kw_only=True, slots=True)
+class CheckedLog:
     """
-    What a check rests on.
+    A recording with its map or parameters below `out`, and what became of it.
 
-    Names of the sheets of screw and oil, None without one; folders of recordings that are said to
-    be `free`, which need not be judged, and what they gave; surfaces by axis; the map or
-    parameters that were used by folder; names of `others`, short tables without a motion; what a
-    guess could not state, by recording.
+    `failure` says why it cannot be judged, which a free run need not be; what is `is_other` is a
+    short table without a motion.
 
     """
 
-    sheets: tuple[str, str] | None
-    is_oil_known: bool
-    free: frozenset[str]
-    runs: tuple[FreeRun, ...]
-    surfaces: Mapping[str, str]
-    used: Mapping[str, str]
-    others: tuple[str, ...]
-    unstated: Mapping[str, Sequence[str]]
+    path: Path
+    folder: str
+    out: Path
+    is_free: bool
+    guess: Guess | None = None
+    mapping: Path | None = None
+    params: Path | None = None
+    bag: Bag | None = None
+    values: Mapping[str, Any] = dataclasses.field(default_factory=dict)
+    failure: str = ''
+    is_other: bool = False
+    reported: LogResult | None = None
+
+    @property
+    def is_free_run(self) -> bool:
+        """Return True if it is said to be a free run and can be read."""
+        return self.is_free and not self.failure
+
+    @property
+    def used(self) -> str:
+        """Return the file of its map or of its parameters that was written, if any."""
+        file = self.mapping or self.params
+        return '' if file is None else str(file.relative_to(self.out))
+
+    @property
+    def result(self) -> LogResult:
+        """Return what became of it."""
+        return self.reported or LogResult(
+            name=self.path.name, folder=self.folder, failure=self.failure
+        )
 
 
-def without_motion(names: Sequence[str]) -> str:
+def without_motion(others: Sequence[CheckedLog]) -> str:
     """Return in a sentence which files are taken for no recordings."""
     return (
         'no recordings, as no column is named as a motion and few rows are of numbers: '
-        f'{listed(names)}'
+        f'{listed([log.path.name for log in others])}'
     )
 
 
-def check_parts(entries: Sequence[LogResult], checked: Checked) -> list[Markup]:
-    """Return the parts of the page beside those of an overview."""
+def check_parts(
+    logs: Sequence[CheckedLog],
+    others: Sequence[CheckedLog],
+    runs: Sequence[FreeRun],
+    surfaces: Mapping[str, str],
+    steps: Sequence[str],
+) -> list[Markup]:
+    """Return the parts of the page beside those of an overview; `surfaces` are files by axis."""
+    sentences = (step if step.endswith('?') else f'{step}.' for step in steps)
     return [
         element('h2', 'What to do next, and what to record'),
-        element('ul', *(element('li', _sentence(one)) for one in next_steps(entries, checked))),
+        element('ul', *(element('li', sentence) for sentence in sentences)),
         element('h2', 'What was read'),
         table(
             ('Recording', 'Axis', 'Expected', 'Judged', 'Reasons of the differences', 'Map'),
-            _rows(entries, checked),
+            _rows(logs),
         ),
-        *([element('p', f'{without_motion(checked.others)}.')] if checked.others else []),
+        *([element('p', f'{without_motion(others)}.')] if others else []),
         element('h2', 'Friction beside the contacts'),
-        *_identified(checked),
+        *_friction(runs),
         element('h2', 'Surfaces'),
-        *_surfaces(checked),
+        *_surfaces(surfaces),
         element('h2', 'Zone and health'),
-        *_zone(entries),
+        *_zone([log.result for log in logs]),
     ]
 
 
-def _sentence(step: str) -> str:
-    return step if step.endswith('?') else f'{step}.'
-
-
-def next_steps(entries: Sequence[LogResult], checked: Checked) -> list[str]:
+def next_steps(
+    logs: Sequence[CheckedLog], runs: Sequence[FreeRun], *, is_screw_known: bool, assumed_oil: str
+) -> list[str]:
     """Return what to do and what to record, each once, what hinders a verdict first."""
-    steps = [f'{name}: {why}' for name, whys in checked.unstated.items() for why in whys]
+    guesses = {log.path.name: log.guess.unstated for log in logs if log.guess}
+    steps = [f'{name}: {why}' for name, whys in guesses.items() for why in whys]
     steps += [
-        f'{one.name}: {one.failure}'
-        for one in entries
-        if one.failure and not checked.unstated.get(one.name)
+        f'{log.path.name}: {log.result.failure}'
+        for log in logs
+        if log.result.failure and not guesses.get(log.path.name)
     ]
     if steps:
         first = ': maps/ beside this page holds the first ones'
         steps.append(
             'Lay a map beside each table that needs one, feed.map.yaml for feed.csv'
-            + (first if any(checked.unstated.values()) else '')
+            + (first if any(guesses.values()) else '')
         )
-    judged = [one for one in entries if not one.failure and one.folder not in checked.free]
-    lines = [line for one in judged for line in one.lines]
+    lines = [line for log in logs if not log.is_free_run for line in log.result.lines]
     steps += [f'Axis {line.axis}: {line.remedy.rstrip(".")}' for line in lines if line.remedy]
-    steps += [hint for one in entries for hint in one.hints]
-    if checked.sheets is None:
+    steps += [hint for log in logs for hint in log.result.hints]
+    if not is_screw_known:
         steps.append(
             'State the screw and the oil of the machine, --screw and --oil, or lay their sheets '
             'into the folder: the shipped ones were assumed'
         )
-    elif not checked.is_oil_known:
-        steps.append(f'State the oil, --oil: {checked.sheets[1]} was assumed')
+    elif assumed_oil:
+        steps.append(f'State the oil, --oil: {assumed_oil} was assumed')
     for name, words in NEEDED.items():
         recorded = {line.axis for line in lines if name not in line.missing}
         axes = dict.fromkeys(line.axis for line in lines if line.axis not in recorded)
         if axes:
             steps.append(f'Record {words} of axis {", ".join(axes)}')
-    if not any(run.sheet for run in checked.runs):
+    if not any(run.sheet for run in runs):
         steps.append(RECORD)
     return list(dict.fromkeys(steps))
 
 
-def _rows(entries: Sequence[LogResult], checked: Checked) -> Iterator[TableRow]:
-    for entry in entries:
-        used = checked.used.get(entry.folder, '')
-        where = element('a', used, href=quote(used)) if used else NONE
-        if entry.failure:
-            yield TableRow((entry.name, NONE, NONE, NONE, entry.failure, where))
-            continue
-        for line in entry.lines:
-            numbers = (TableCell(str(one), kind='number') for one in (line.expected, line.judged))
-            yield TableRow((entry.name, line.axis, *numbers, line.losses or NONE, where))
+def _rows(logs: Sequence[CheckedLog]) -> Iterator[TableRow]:
+    for log in logs:
+        name, result = log.path.name, log.result
+        where = element('a', log.used, href=quote(log.used)) if log.used else NONE
+        if result.failure:
+            yield TableRow((name, NONE, NONE, NONE, result.failure, where))
+        for line in result.lines:
+            counts = (
+                TableCell(str(count), kind='number') for count in (line.expected, line.judged)
+            )
+            yield TableRow((name, line.axis, *counts, line.losses or NONE, where))
 
 
-def _identified(checked: Checked) -> Iterator[Markup]:
-    for run in checked.runs:
+def _friction(runs: Sequence[FreeRun]) -> Iterator[Markup]:
+    for run in runs:
         yield element('h3', f'Axis {run.axis}, from {run.log}')
         yield element('pre', run.text)
-    if not checked.runs:
+    if not runs:
         yield element('p', 'Not identified: no recording is a free run with a motor torque.')
 
 
-def _surfaces(checked: Checked) -> Iterator[Markup]:
-    for axis, file in checked.surfaces.items():
+def _surfaces(surfaces: Mapping[str, str]) -> Iterator[Markup]:
+    for axis, file in surfaces.items():
         surface = Surface.load(file)
         onset = onset_of_surface(surface).sentence()
         yield element('p', f'Axis {axis}: {Path(file).name}, tier {surface.tier}. {onset}.')
-    if not checked.surfaces:
+    if not surfaces:
         yield element('p', 'Each recording was judged with the surface that it names.')
 
 
 def _zone(entries: Sequence[LogResult]) -> Iterator[Markup]:
     for entry in entries:
         for line in entry.lines:
-            said = [f'Normal? {line.normal}.'] if line.normal else []
-            parts = [element('p', one) for one in said]
+            parts = [element('p', f'Normal? {line.normal}.')] if line.normal else []
             parts.append(element('p', f'{entry.name}: {line.verdict}', class_='sentence'))
             yield element('div', *parts, class_=f'verdict {line.standing}')
     histories = [
