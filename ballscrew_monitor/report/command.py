@@ -3,7 +3,7 @@
 """`ballscrew replay`: recordings judged without DDS, in words, as JSON, or as reports."""
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 import contextlib
 import json
 from pathlib import Path
@@ -19,7 +19,7 @@ from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.replay import axes_for
 from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.words import counted, percent, say, shown_progress
-from ballscrew_monitor.report.judging import AxisCase, judge_log, LogCase
+from ballscrew_monitor.report.judging import judge_log, LogCase
 from ballscrew_monitor.report.ledger import unjudged_share
 from ballscrew_monitor.report.logs import find_logs, left_out, PAGE, SUMMARY
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
@@ -111,7 +111,7 @@ def _print_one(
     with shown_progress(bag.duration) as on_done:
         found = judge_log(bag, parameters, on_share=on_done)
     _say_notes(found.notes, parameters)
-    say(*_silences(bag, parameters.values, found))
+    say(*(_silences(bag, parameters.values, found) if found.unjudged else ()))
     if not args.json:
         print(printable('\n'.join(log_lines(found))))
     return printed_records(summary_record(found)), _code(log, found, unjudged_share(found), args)
@@ -183,24 +183,19 @@ def _reported(folder: Path, args: argparse.Namespace) -> Records:
     return printed_records(json.loads((folder / SUMMARY).read_text(encoding='utf-8')))
 
 
-def _silences(bag: Bag, values: Mapping[str, Any], log: LogCase) -> list[str]:
-    if not log.unjudged:
-        return []
+def _silences(bag: Bag, values: Mapping[str, Any], log: LogCase) -> Iterator[str]:
+    """Yield why nothing was judged on an axis, for each such axis."""
     axes = {axis.name: axis for axis in axes_for(bag, with_types(values, bag.types))}
     cases = {case.axis: case for case in log.axes}
-    reasons = {
-        name: _reason(bag, silence(bag, axes[name]), cases.get(name)) for name in log.unjudged
-    }
-    return [f'nothing was judged on axis {name}: {why}' for name, why in reasons.items()]
-
-
-def _reason(bag: Bag, fault: str, case: AxisCase | None) -> str:
-    if case is not None and never_moved(case):
-        return 'it never moved'
-    if case is not None and case.outcome.reason and not fault:
-        return case.outcome.reason
-    more = f'; {fault}' if fault else ''
-    return f'topics, fields and joints of its parameters must be those of {bag.path}{more}'
+    for name in log.unjudged:
+        case, fault = cases.get(name), silence(bag, axes[name])
+        why = f'topics, fields and joints of its parameters must be those of {bag.path}'
+        why += f'; {fault}' if fault else ''
+        if case is not None and never_moved(case):
+            why = 'it never moved'
+        elif case is not None and case.outcome.reason and not fault:
+            why = case.outcome.reason
+        yield f'nothing was judged on axis {name}: {why}'
 
 
 def _say_origin(parameters: LogParameters) -> None:

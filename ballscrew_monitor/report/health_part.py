@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from ballscrew_monitor.core.conversions import clock_text, seconds
 from ballscrew_monitor.health.assess import DRAG
 from ballscrew_monitor.health.peers import Peer
-from ballscrew_monitor.health.records import Condition, Health, Quantity, TOLERANCE
+from ballscrew_monitor.health.records import Condition, Health, TOLERANCE
 from ballscrew_monitor.recordings.words import number
 from ballscrew_monitor.report.page import element, joined, Markup, table, TableCell, TableRow
 from ballscrew_monitor.report.trend import Mark, trend
@@ -35,12 +35,29 @@ def verdict_box(health: Health) -> Markup:
 
 def health_chapter(health: Health) -> Markup:
     """Return the health of an axis: the verdict, what is known and what is not, and causes."""
-    known = [one for one in health.quantities if one.is_known]
+    known = [
+        TableRow(
+            (
+                quantity.name,
+                TableCell(number(quantity.value), kind='number'),
+                TableCell(f'{number(quantity.low)} to {number(quantity.high)}', kind='short'),
+                quantity.unit,
+                quantity.evidence,
+            )
+        )
+        for quantity in health.quantities
+        if quantity.is_known
+    ]
+    causes = [
+        TableRow(('excluded' if cause.excluded else f'{100.0 * cause.weight:.0f} %', cause.text))
+        for cause in health.causes
+    ]
+    heads = 'Quantity', 'Value', '95 % interval', 'Unit', 'Rests on'
     return joined(
         element('h3', 'Health: normal or worse'),
         verdict_box(health),
-        *_known(known),
-        *_causes(health),
+        table(heads, known) if known else '',
+        table(('Weight', 'Cause'), causes) if causes else '',
         *(
             element('p', f'{", ".join(names)}: {reason}.', class_='muted')
             for reason, names in health.unknown.items()
@@ -49,75 +66,50 @@ def health_chapter(health: Health) -> Markup:
     )
 
 
-def _known(quantities: Sequence[Quantity]) -> Iterable[Markup]:
-    if quantities:
-        heads = 'Quantity', 'Value', '95 % interval', 'Unit', 'Rests on'
-        yield table(heads, (_row(one) for one in quantities))
-
-
-def _row(one: Quantity) -> TableRow:
-    return TableRow(
-        (
-            one.name,
-            TableCell(number(one.value), kind='number'),
-            TableCell(f'{number(one.low)} to {number(one.high)}', kind='short'),
-            one.unit,
-            one.evidence,
-        )
-    )
-
-
-def _causes(health: Health) -> Iterable[Markup]:
-    if health.causes:
-        rows = (
-            TableRow(('excluded' if one.excluded else f'{100.0 * one.weight:.0f} %', one.text))
-            for one in health.causes
-        )
-        yield table(('Weight', 'Cause'), rows)
-
-
 def peers_table(peers: Sequence[Peer]) -> Iterable[Markup]:
     """Yield how axes with one programme rank, the one that differs most first."""
-    if peers:
-        yield element('h3', 'Axes with the same programme, beside each other')
-        heads = 'Axis', 'Friction [%]', '95 % interval [%]', 'Peers', 'Said'
-        yield table(heads, (_peer_row(one) for one in peers))
-
-
-def _peer_row(one: Peer) -> TableRow:
-    value, low, high = (
-        100.0 * part for part in (one.difference.value, one.difference.low, one.difference.high)
-    )
-    return TableRow(
-        (
-            one.axis,
+    if not peers:
+        return
+    rows = []
+    for peer in peers:
+        difference = peer.difference
+        value, low, high = (
+            100.0 * part for part in (difference.value, difference.low, difference.high)
+        )
+        cells = (
+            peer.axis,
             TableCell(f'{value:+.0f}', kind='number', value=value),
             TableCell(f'{low:+.0f} to {high:+.0f}', kind='number', value=low),
-            TableCell(f'{one.peers}', kind='number', value=one.peers),
-            'apart from its peers' if one.is_apart else 'as its peers',
-        ),
-        kind='bad' if one.is_apart else '',
-    )
+            TableCell(f'{peer.peers}', kind='number', value=peer.peers),
+            'apart from its peers' if peer.is_apart else 'as its peers',
+        )
+        rows.append(TableRow(cells, kind='bad' if peer.is_apart else ''))
+    yield element('h3', 'Axes with the same programme, beside each other')
+    yield table(('Axis', 'Friction [%]', '95 % interval [%]', 'Peers', 'Said'), rows)
 
 
 def health_trends(courses: Sequence[Health]) -> Iterable[Markup]:
     """Yield the change of the friction with its intervals, if it is known at two dates or more."""
-    marks = [_mark(one, one.quantity(DRAG)) for one in courses if one.quantity(DRAG).is_known]
+    marks = []
+    for health in courses:
+        drag = health.quantity(DRAG)
+        if drag.is_known:
+            value, low, high = (
+                f'{100.0 * part:.0f}' for part in (drag.value, drag.low, drag.high)
+            )
+            title = f'{clock_text(health.stamp)[:10]}: {value} % ({low} to {high} %)'
+            marks.append(
+                Mark(
+                    at=seconds(health.stamp),
+                    value=drag.value,
+                    low=drag.low,
+                    high=drag.high,
+                    kind=MARKS[health.condition],
+                    title=title,
+                )
+            )
     drawn = trend(marks, normal=0.0, tolerance=TOLERANCE)
     if drawn:
         title = 'change of the friction, with 95 % intervals'
         yield element('h3', f'Axis {courses[-1].axis}: {title}')
         yield drawn
-
-
-def _mark(health: Health, quantity: Quantity) -> Mark:
-    percent = f'{100.0 * quantity.value:.0f} %'
-    between = f'{100.0 * quantity.low:.0f} to {100.0 * quantity.high:.0f} %'
-    return Mark(
-        at=seconds(health.stamp),
-        value=quantity.value,
-        low=quantity.low,
-        high=quantity.high,
-        kind=MARKS[health.condition],
-        title=f'{clock_text(health.stamp)[:10]}: {percent} ({between})',
-    )

@@ -282,26 +282,24 @@ def _hints(case: AxisCase, source: Source, setting: InputSetting, heard: Heard) 
     cure = IN_THE_MAP if case.facts.is_mapped else f'check {facts.parameter}.unit and scale'
     if case.outcome.refused.get(source, {}).get(Why.IMPLAUSIBLE):
         hints.append(f'{facts.parameter}: samples beyond what is plausible were refused: {cure}')
-    hints += _of_time(heard.status, facts.parameter)
+    status = heard.status
+    if status.slow:
+        slow = slow_reason(status.longest_gap, facts.parameter)
+        hints.append(f'{facts.parameter}: it {slow}')
+    if abs(status.lag) > seconds(YEAR):
+        hints.append(
+            f'{facts.parameter}: its stamps are of another clock than those of its arrival'
+        )
+    elif status.lagging:
+        hints.append(
+            f'{facts.parameter}: its stamps lie {duration(status.lag)} behind their arrival: set '
+            'the clocks alike'
+        )
     hints += contradictions(case, source, facts.parameter)
     if source is Source.SPEED:
         hints += _of_speed(case, setting, heard, facts.parameter, cure)
     elif source is not Source.TEMPERATURE and heard.low == heard.high:
         hints.append(f'{facts.parameter}: it never changes, is it connected?')
-    return hints
-
-
-def _of_time(status: InputStatus, parameter: str) -> Sequence[str]:
-    hints = []
-    if status.slow:
-        hints.append(f'{parameter}: it {slow_reason(status.longest_gap, parameter)}')
-    if abs(status.lag) > seconds(YEAR):
-        hints.append(f'{parameter}: its stamps are of another clock than those of its arrival')
-    elif status.lagging:
-        hints.append(
-            f'{parameter}: its stamps lie {duration(status.lag)} behind their arrival: set the '
-            'clocks alike'
-        )
     return hints
 
 
@@ -339,7 +337,7 @@ def _amount(unit: str, setting: InputSetting, heard: Heard) -> float:
 
 def contradictions(case: AxisCase, source: Source, parameter: str) -> Sequence[str]:
     """Return that sign or size of an input contradicts the others, and what may mend it."""
-    factor = case.balance.factor
+    factor, friction = case.balance.factor, case.balance.friction
     if source is case.balance.turned:
         alone = source is Source.LOAD and Source.TORQUE not in case.inputs
         why = DRIVES if alone else TURNED[source]
@@ -351,22 +349,17 @@ def contradictions(case: AxisCase, source: Source, parameter: str) -> Sequence[s
         f'{parameter}: the motor torque changes {number(factor)} times as much as this load '
         f'needs at a lead of {case.surface.lead * MILLI:g} mm'
     )
-    return [f'{doubt}: {_mend_of_size(case)}']
-
-
-def _mend_of_size(case: AxisCase) -> str:
-    """Return the unit that explains how torque and load differ in size, else what to check."""
-    friction = case.balance.friction
     fitting = [
         meant
-        for (factor, times), meant in UNITS_APART.items()
-        if _is_near(case.balance.factor, factor)
+        for (ratio, times), meant in UNITS_APART.items()
+        if _is_near(factor, ratio)
         and (math.isnan(friction) or _is_near(friction, times, TOLERANT))
     ]
     if len(fitting) != 1:
-        return 'check unit and scale of both, the lead, and a gear between motor and screw'
-    source, unit, value = fitting[0]
-    return f'the {WORDS[source]} looks like {unit}: {_write(case, source, value)}'
+        cure = 'check unit and scale of both, the lead, and a gear between motor and screw'
+        return [f'{doubt}: {cure}']
+    whose, unit, value = fitting[0]
+    return [f'{doubt}: the {WORDS[whose]} looks like {unit}: {_write(case, whose, value)}']
 
 
 def _is_near(value: float, other: float, within: float = 2.0) -> bool:

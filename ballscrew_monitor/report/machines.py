@@ -41,26 +41,18 @@ def folder_of(log: Path) -> Path:
 
 def machine_names(axes: Iterable[MachineAxis]) -> dict[str, str]:
     """Return a short name of each machine: of a folder, as much of its path as tells it apart."""
-    machines = list(dict.fromkeys(machine.machine for machine in axes))
-    return {machine: _short_name(machine, {*machines} - {machine}) for machine in machines}
-
-
-def _short_name(machine: str, others: set[str]) -> str:
-    if not _is_folder(machine):
-        return machine
-    parts = Path(machine).parts
-    endings = (str(Path(*parts[-depth:])) for depth in range(1, len(parts)))
-    alone = (
-        ending for ending in endings if not any(_ends_with(other, ending) for other in others)
-    )
-    return next(alone, machine)
-
-
-def _ends_with(machine: str, ending: str) -> bool:
-    if not _is_folder(machine):
-        return machine == ending
-    count = len(Path(ending).parts)
-    return Path(machine).parts[-count:] == Path(ending).parts
+    machines = list(dict.fromkeys(axis.machine for axis in axes))
+    parts = {name: Path(name).parts if _is_folder(name) else (name,) for name in machines}
+    names = {}
+    for machine, own in parts.items():
+        others = [other for name, other in parts.items() if name != machine]
+        alone = (
+            '/'.join(own[-depth:])
+            for depth in range(1, len(own))
+            if not any('/'.join(other[-depth:]) == '/'.join(own[-depth:]) for other in others)
+        )
+        names[machine] = next(alone, machine)
+    return names
 
 
 def _is_folder(machine: str) -> bool:

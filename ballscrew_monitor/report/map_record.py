@@ -46,16 +46,9 @@ def _ends(span: tuple[float, float]) -> dict[str, float]:
     return dict(zip(('low', 'high'), span, strict=True))
 
 
-def _shape(cells: Array) -> dict[str, Any]:
-    return {'columns': cells.shape[1], 'rows': cells.shape[0]}
-
-
-def _zone_record(cells: Array) -> dict[str, Any]:
-    return _shape(cells) | {'cells': packed(cells.ravel())}
-
-
-def _dwell_record(cells: Array) -> dict[str, Any]:
-    return _shape(cells) | {'longest': longest_dwell(cells), 'cells': floats(cells)}
+def _grid(cells: Array, content: Any, **more: float) -> dict[str, Any]:
+    """Return cells as a page carries them, with their `content` in one of its forms."""
+    return {'columns': cells.shape[1], 'rows': cells.shape[0], **more, 'cells': content}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -88,9 +81,11 @@ class OperatingMap:
     speed: tuple[float, float] = written(form=_ends)
     load: tuple[float, float] = written(form=_ends)
     light_load: float
-    zone: Array = written(form=_zone_record)
+    zone: Array = written(form=lambda cells: _grid(cells, packed(cells.ravel())))
     lines: Sequence[MapLine]
-    dwell: Array = written(form=_dwell_record)
+    dwell: Array = written(
+        form=lambda cells: _grid(cells, floats(cells), longest=longest_dwell(cells))
+    )
     events: Sequence[Mapping[str, Any]]
 
 

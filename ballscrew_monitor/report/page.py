@@ -10,14 +10,13 @@ are compact columns, and texts are JSON that ends no element.
 
 import base64
 from collections.abc import Iterable, Sequence
-import dataclasses
 import functools
 import hashlib
 import html
 from importlib import resources
 import json
 import math
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -79,25 +78,33 @@ def joined(*pieces: str) -> Markup:
     )
 
 
-@dataclasses.dataclass(frozen=True, slots=True)
-class TableCell:
-    """What a cell shows; `value` is what it is sorted by, `kind` its class."""
+class TableCell(Markup):
+    """A cell of a table; `value` is what it is sorted by, `kind` its class."""
 
-    text: str
-    _: dataclasses.KW_ONLY
-    kind: str = ''
-    value: float | None = None
+    __slots__ = ()
+
+    def __new__(cls, text: str, *, kind: str = '', value: float | None = None) -> Self:
+        shown = None if value is None else f'{value!r}' if math.isfinite(value) else 'NaN'
+        return super().__new__(cls, element('td', text, class_=kind or None, data_value=shown))
 
 
-@dataclasses.dataclass(frozen=True, slots=True)
-class TableRow:
-    """Cells of a row, or their texts alone, and the time [s] that it leads to if any."""
+class TableRow(Markup):
+    """A row of a table: cells, or their texts alone, and the time [s] that it leads to if any."""
 
-    cells: Sequence[TableCell | str]
-    _: dataclasses.KW_ONLY
-    begin: float | None = None
-    end: float | None = None
-    kind: str = ''
+    __slots__ = ()
+
+    def __new__(
+        cls,
+        cells: Iterable[str],
+        *,
+        begin: float | None = None,
+        end: float | None = None,
+        kind: str = '',
+    ) -> Self:
+        drawn = (cell if isinstance(cell, TableCell) else TableCell(cell) for cell in cells)
+        times = (None if at is None else f'{at:.4f}' for at in (begin, end))
+        named = dict(zip(('data_begin', 'data_end'), times))
+        return super().__new__(cls, element('tr', *drawn, class_=kind or None, **named))
 
 
 def table(heads: Sequence[str], rows: Iterable[TableRow], *, kind: str = '') -> Markup:
@@ -106,34 +113,13 @@ def table(heads: Sequence[str], rows: Iterable[TableRow], *, kind: str = '') -> 
         element('th', text, class_='number' if text.endswith(']') else None, scope='col')
         for text in heads
     )
-    body = (_row(row) for row in rows)
-    made = element(
+    drawn = element(
         'table',
         element('thead', element('tr', *head)),
-        element('tbody', *body),
+        element('tbody', *rows),
         class_=kind or None,
     )
-    return element('div', made, class_='wide tall' if LEADING in kind else 'wide')
-
-
-def _row(row: TableRow) -> Markup:
-    cells = (
-        element('td', cell.text, class_=cell.kind or None, data_value=_stated(cell.value))
-        for cell in (TableCell(one) if isinstance(one, str) else one for one in row.cells)
-    )
-    return element(
-        'tr',
-        *cells,
-        class_=row.kind or None,
-        data_begin=None if row.begin is None else f'{row.begin:.4f}',
-        data_end=None if row.end is None else f'{row.end:.4f}',
-    )
-
-
-def _stated(value: float | None) -> str | None:
-    if value is None:
-        return None
-    return f'{value!r}' if math.isfinite(value) else 'NaN'
+    return element('div', drawn, class_='wide tall' if LEADING in kind else 'wide')
 
 
 def share_bar(parts: Sequence[tuple[float, str]], title: str) -> Markup:
@@ -214,13 +200,8 @@ def page(
 
 
 def _hashes(texts: list[str]) -> str:
-    return (
-        ' '.join(
-            f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
-            for text in texts
-        )
-        or "'none'"
-    )
+    digests = (base64.b64encode(hashlib.sha256(text.encode()).digest()) for text in texts)
+    return ' '.join(f"'sha256-{digest.decode()}'" for digest in digests) or "'none'"
 
 
 def _raw(name: str, text: str) -> Markup:
@@ -248,7 +229,9 @@ def packed(values: ArrayLike) -> dict[str, Any]:
     """
     numbers = np.asarray(values, dtype=float)
     known = np.abs(numbers) <= LARGEST
-    low, high = _span(numbers[known])
+    low, high = 0.0, 0.0
+    if known.any():
+        low, high = float(numbers[known].min()), float(numbers[known].max())
     steps = np.zeros(numbers.size, dtype=np.uint16)
     # The span may be subnormal, and its reciprocal infinite: it divides.
     steps[known] = 1 + np.rint((numbers[known] - low) / ((high - low) or 1.0) * LEVELS)
@@ -258,10 +241,6 @@ def packed(values: ArrayLike) -> dict[str, Any]:
         return record | {'data': _encoded('<u2', steps)}
     runs = np.diff(starts, append=steps.size)
     return record | {'data': _encoded('<u2', steps[starts]), 'runs': _encoded('<u4', runs)}
-
-
-def _span(numbers: Any) -> tuple[float, float]:
-    return (float(numbers.min()), float(numbers.max())) if numbers.size else (0.0, 0.0)
 
 
 def script_json(record: Any) -> str:

@@ -76,19 +76,19 @@ def _assumed_names(case: AxisCase) -> Iterable[str]:
     if Source.TEMPERATURE not in case.inputs and case.facts.default_temperature_known == 'assumed':
         yield f'oil temperature of {celsius(case.settings.default_temperature):g} °C'
     for key, assumption in case.facts.assumed.items():
-        if key not in ('load.from', 'load', 'temperature_degC'):
-            yield _assumed_name(key, assumption.get('value'))
-
-
-def _assumed_name(key: str, value: object) -> str:
-    shown = f'{value:g}' if isinstance(value, float) else str(value)
-    if key == 'efficiency' and isinstance(value, float):
-        shown = f'{100.0 * value:g} %'
-    quantity, dot, part = key.rpartition('.')
-    if dot and part == 'unit':
-        return f'{quantity} in {shown_unit(shown)}'
-    words = KEYS.get(key)
-    return words.format(shown) if words else key.replace('.', ' ').replace('_', ' ')
+        value = assumption.get('value')
+        shown = f'{value:g}' if isinstance(value, float) else str(value)
+        if key == 'efficiency' and isinstance(value, float):
+            shown = f'{100.0 * value:g} %'
+        quantity, _, part = key.rpartition('.')
+        if key in ('load.from', 'load', 'temperature_degC'):  # told above
+            continue
+        if quantity and part == 'unit':
+            yield f'{quantity} in {shown_unit(shown)}'
+        elif key in KEYS:
+            yield KEYS[key].format(shown)
+        else:
+            yield key.replace('.', ' ').replace('_', ' ')
 
 
 def assumptions_part(case: AxisCase, parameters: str) -> Markup:
@@ -175,28 +175,29 @@ def torque_part(case: AxisCase) -> Markup:
         f'(root mean square) at {number(fit.measured)} N m; on average by '
         f'{number(fit.forward)} N m forward and {number(fit.backward)} N m backward.'
     ]
-    lines += _torque_reasons(fit.forward, fit.backward)
-    return joined(
-        element('h3', 'Torque: measured and modelled'), *(element('p', line) for line in lines)
-    )
-
-
-def _torque_reasons(forward: float, backward: float) -> list[str]:
-    """Return what a mean difference may come from; both directions must have been seen."""
-    if math.isnan(forward + backward):
-        return ['Only one direction was recorded, so friction and offset cannot be told apart.']
     # What rounding leaves of equal means is no torque.
-    friction, offset = (round(0.5 * mean, 6) for mean in (forward - backward, forward + backward))
-    return [
-        f'The part that turns with the direction, {number(friction)} N m, is '
-        + (
+    friction, offset = (
+        round(0.5 * mean, 6) for mean in (fit.forward - fit.backward, fit.forward + fit.backward)
+    )
+    if math.isnan(offset):
+        lines.append(
+            'Only one direction was recorded, so friction and offset cannot be told apart.'
+        )
+    else:
+        reason = (
             'friction that the model does not know: wipers, recirculation, bearings, guides. '
             '`ballscrew identify` fits it.'
             if friction > 0
             else 'friction that the model has too much of.'
-        ),
-        f'The part that does not, {number(offset)} N m, is weight of the axis, or a wrong zero.',
-    ]
+        )
+        lines += [
+            f'The part that turns with the direction, {number(friction)} N m, is {reason}',
+            f'The part that does not, {number(offset)} N m, is weight of the axis, or a wrong '
+            'zero.',
+        ]
+    return joined(
+        element('h3', 'Torque: measured and modelled'), *(element('p', line) for line in lines)
+    )
 
 
 def inputs_part(case: AxisCase) -> Markup:
@@ -250,17 +251,12 @@ def _ledger_row(seen: InputSeen, ledger: Ledger) -> TableRow:
 
 def _trouble_table(seen: Sequence[InputSeen]) -> Iterable[Markup]:
     """Yield what is wrong with the messages of the inputs; what went well has no column."""
-    heads = [head for head in Trouble if any(head in input_seen.troubles for input_seen in seen)]
+    by_input = {NAMES[each.source]: each.troubles for each in seen if each.place}
+    heads = [head for head in Trouble if any(head in amounts for amounts in by_input.values())]
     if heads:
         rows = (
-            TableRow(
-                (
-                    NAMES[input_seen.source],
-                    *(input_seen.troubles.get(head, NONE) for head in heads),
-                )
-            )
-            for input_seen in seen
-            if input_seen.place
+            TableRow((name, *(amounts.get(head, NONE) for head in heads)))
+            for name, amounts in by_input.items()
         )
         yield table(('Input', *(head.value for head in heads)), rows)
 

@@ -11,7 +11,7 @@ file. Queries read a part of it after the other: no more of it is resident than 
 from collections.abc import Callable, Iterator
 import enum
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from ballscrew_monitor.core.conversions import Direction, Nut
 from ballscrew_monitor.core.judgement import (
@@ -34,55 +34,47 @@ ROW_GROUP = 65_536
 """Rows of a group in the Parquet that users get."""
 
 
-class Column(NamedTuple):
-    """Field of a row that a column holds, its type, and the class of its codes if it has some."""
-
-    field: str
-    kind: Any = np.float64
-    codes: type[enum.IntEnum] | None = None
-
-
-COLUMNS = {
-    'stamp': Column('stamp', np.int64),
-    'log_time': Column('now', np.int64),
-    'speed': Column('speed'),
-    'axial_load': Column('axial_load'),
-    'temperature': Column('temperature'),
-    'motor_torque': Column('motor_torque'),
-    'speed_source': Column('speed_source', np.uint8, PointSource),
-    'axial_load_source': Column('axial_load_source', np.uint8, PointSource),
-    'temperature_source': Column('temperature_source', np.uint8, PointSource),
-    'motor_torque_source': Column('motor_torque_source', np.uint8, PointSource),
-    'direction': Column('direction', np.uint8, Direction),
-    'validity': Column('validity', np.uint8, PointValidity),
-    'efficiency': Column('efficiency'),
-    'rcs': Column('rcs'),
-    'film_ratio': Column('film_ratio'),
-    'friction_torque': Column('friction_torque'),
-    'machine_torque': Column('machine_torque'),
-    'axial_load_uncertainty': Column('axial_load_uncertainty'),
-    'worst_nut': Column('machine_nut', np.uint8, Nut),
-    'regime': Column('regime', np.uint8, Regime),
-    'contact_state': Column('contact_state', np.uint8, ContactState),
-    'gates': Column('gates', np.uint8),
-    'zone': Column('zone', np.uint8, Zone),
-    'reason': Column('reason', np.uint8, Reason),
-    'level': Column('level', np.uint8, Level),
-    'event_id': Column('event_id', np.uint32),
-    'tick': Column('tick', np.bool_),
-    'published': Column('published', np.bool_),
+COLUMNS: dict[str, Any] = {
+    'stamp': np.int64,
+    'log_time': np.int64,
+    'speed': np.float64,
+    'axial_load': np.float64,
+    'temperature': np.float64,
+    'motor_torque': np.float64,
+    'speed_source': PointSource,
+    'axial_load_source': PointSource,
+    'temperature_source': PointSource,
+    'motor_torque_source': PointSource,
+    'direction': Direction,
+    'validity': PointValidity,
+    'efficiency': np.float64,
+    'rcs': np.float64,
+    'film_ratio': np.float64,
+    'friction_torque': np.float64,
+    'machine_torque': np.float64,
+    'axial_load_uncertainty': np.float64,
+    'worst_nut': Nut,
+    'regime': Regime,
+    'contact_state': ContactState,
+    'gates': np.uint8,
+    'zone': Zone,
+    'reason': Reason,
+    'level': Level,
+    'event_id': np.uint32,
+    'tick': np.bool_,
+    'published': np.bool_,
 }
-"""The columns by name; codes are numbers in the file, words in the table that users get."""
+"""Type of each column, or the class of its codes: numbers in the file, words in the table."""
+FIELDS = {name: name for name in COLUMNS} | {'log_time': 'now', 'worst_nut': 'machine_nut'}
+"""Field of a row that a column holds."""
+CODES = {name: kind for name, kind in COLUMNS.items() if issubclass(kind, enum.IntEnum)}
 WORDS = {
     name: pl.Series(words, dtype=pl.Enum(words))
-    for name, column in COLUMNS.items()
-    if column.codes
-    for words in [[member.name for member in column.codes]]
+    for name, kind in CODES.items()
+    for words in [[member.name for member in kind]]
 }
 """Words for the codes of a column, in their order."""
-
-
-STORED = np.dtype([(name, column.kind) for name, column in COLUMNS.items()])
+STORED = np.dtype([(name, np.uint8 if name in CODES else kind) for name, kind in COLUMNS.items()])
 """A row in the file."""
 
 
@@ -95,8 +87,8 @@ class RowTable:
     def add(self, rows: NDArray[Any]) -> None:
         """Append rows, an array of ROW with at least one."""
         stored = np.empty(len(rows), STORED)
-        for name, column in COLUMNS.items():
-            stored[name] = rows[column.field]
+        for name, field in FIELDS.items():
+            stored[name] = rows[field]
         with self._path.open('ab') as file:
             file.write(stored.tobytes())
         self.rows += len(rows)
