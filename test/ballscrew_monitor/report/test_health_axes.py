@@ -12,7 +12,7 @@ from ballscrew_monitor.health.records import Baseline, SpectrumBin, Stretch
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import HealthStore, read_health
 from ballscrew_monitor.health.summary import add
-from ballscrew_monitor.report import health_axes
+from ballscrew_monitor.report import health_axes, health_history
 from ballscrew_monitor.settings.parameters import defaults
 import pytest
 
@@ -71,7 +71,7 @@ def test_another_speed_is_advised_where_the_parameters_or_the_command_let_it(
     folder, monkeypatch, parameter, option
 ):
     asked = []
-    monkeypatch.setattr(health_axes, 'course', lambda *parts: asked.append(parts[-1]))
+    monkeypatch.setattr(health_history, 'course', lambda *parts: asked.append(parts[-1]))
     values = defaults(['x']) | {'x.advice.speed': parameter}
     options = {'baseline_days': 91.0, 'days': None, 'speed_allowed': option}
     stored = read_health(folder)
