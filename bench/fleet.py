@@ -17,7 +17,7 @@ import time
 
 from ballscrew_monitor.health.stroke import Positions
 from ballscrew_monitor.report.health_axes import assess_task, joined_axes
-from ballscrew_monitor.report.health_folder import keep, LogIdentity
+from ballscrew_monitor.report.health_folder import keep
 from ballscrew_monitor.report.health_history import HistoryMaker
 from ballscrew_monitor.settings.axis import settings_of
 from ballscrew_monitor.settings.parameters import defaults
@@ -41,7 +41,7 @@ def collect_year(year: AxisYear, folder: Path, machine: str) -> int:
         maker = HistoryMaker(surface, log=f'{number}.csv', positions=positions)
         maker.add(rows)
         history = maker.history('x', file, settings, machine=machine)
-        keep(folder, LogIdentity(f'{number:016x}', f'{0:016x}'), [history], ())
+        keep(folder, (f'{number:016x}', f'{0:016x}'), [history], ())
     return len(year.logs)
 
 

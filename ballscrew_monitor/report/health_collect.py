@@ -73,7 +73,7 @@ def collect(logs: Sequence[Path], folder: Path, given: Given, workers: Workers) 
     identities = {log: identity_of(log, files) for log in logs if log.exists()}
     missing = [log for log in logs if log not in identities]
     new = [
-        log for log, known in identities.items() if not is_complete(held.get(known.log, ()), known)
+        log for log, known in identities.items() if not is_complete(held.get(known[0], ()), known)
     ]
     failures = Failures()
     for log in missing:
@@ -83,9 +83,9 @@ def collect(logs: Sequence[Path], folder: Path, given: Given, workers: Workers) 
         if not histories:
             failures.add(log, failure or 'nothing was judged in it')
             return
-        identity = identities[log]
+        place, version = identities[log]
         try:
-            keep(folder, identity, histories, held.get(identity.log, ()))
+            keep(folder, (place, version), histories, held.get(place, ()))
         except OSError as error:
             raise SurfaceError(f'{folder} cannot be written: {error.strerror or error}') from None
 

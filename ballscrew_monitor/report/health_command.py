@@ -13,7 +13,7 @@ from typing import Any
 
 from ballscrew_monitor.core.interrupts import DONE, FAILED
 from ballscrew_monitor.health.fleet import controlled
-from ballscrew_monitor.health.records import Health, Quantity
+from ballscrew_monitor.health.records import Health
 from ballscrew_monitor.health.rows import DAY
 from ballscrew_monitor.health.store import FILE, read_health
 from ballscrew_monitor.health.words import health_record
@@ -63,10 +63,15 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
             axes = joined_axes(axes, folder)
         of_nodes = [stored_axis(folder, axis) for folder in stores for axis in stores[folder]]
         titles = axis_titles([*axes, *of_nodes])
-        found = assess_axes(axes, titles, _options(args), workers)
+        options = {
+            'baseline_days': args.baseline_days,
+            'days': None if args.baseline is None else days_of(*args.baseline),
+            'speed_allowed': args.speed_advice,
+        }
+        found = assess_axes(axes, titles, options, workers)
         for folder, stored in stores.items():
             values = read_file(args.params or nominal)
-            found |= kept_healths(folder, stored, titles, values, _options(args))
+            found |= kept_healths(folder, stored, titles, values, options)
         found, fleet = controlled(found)
         for last in (courses[-1] for courses in found.values()):
             print(printable('\n'.join(lines_of(last))))
@@ -131,14 +136,6 @@ def check_output(out: Path) -> None:
     )
 
 
-def _options(args: argparse.Namespace) -> dict[str, Any]:
-    return {
-        'baseline_days': args.baseline_days,
-        'days': None if args.baseline is None else days_of(*args.baseline),
-        'speed_allowed': args.speed_advice,
-    }
-
-
 def days_of(first: str, last: str) -> tuple[int, int]:
     """Return begin and end [ns] of the days from `first` to `last`, UTC; raises InputError."""
     try:
@@ -153,26 +150,20 @@ def days_of(first: str, last: str) -> tuple[int, int]:
 
 def lines_of(health: Health) -> list[str]:
     """Return what is said of an axis, line by line."""
-    known = [f'  {one.name:<34} {_shown(one)}' for one in health.quantities if one.is_known]
-    silent = [f'  {", ".join(names)}: {reason}' for reason, names in health.unknown.items()]
-    causes = [
-        f'  {"excluded" if one.excluded else f"{100 * one.weight:.0f} %":>8}  {one.text}'
-        for one in health.causes
-    ]
-    return [
-        health.verdict,
-        *([f'To do: {health.advice}.'] if health.advice else []),
-        *known,
-        *silent,
-        *(['causes:', *causes] if causes else []),
-        *(f'note: {note}' for note in health.notes),
-    ]
-
-
-def _shown(one: Quantity) -> str:
-    unit = '' if one.unit == '-' else f' {one.unit}'
-    interval = '' if one.low == one.high else f' ({one.low:.4g} to {one.high:.4g})'
-    return f'{one.value:.4g}{unit}{interval}; {one.evidence}'
+    lines = [health.verdict, *([f'To do: {health.advice}.'] if health.advice else [])]
+    for quantity in health.quantities:
+        if quantity.is_known:
+            unit = '' if quantity.unit == '-' else f' {quantity.unit}'
+            low, high = quantity.low, quantity.high
+            interval = '' if low == high else f' ({low:.4g} to {high:.4g})'
+            number = f'{quantity.value:.4g}{unit}{interval}'
+            lines.append(f'  {quantity.name:<34} {number}; {quantity.evidence}')
+    lines += [f'  {", ".join(names)}: {reason}' for reason, names in health.unknown.items()]
+    lines += ['causes:'] if health.causes else []
+    for cause in health.causes:
+        weight = 'excluded' if cause.excluded else f'{100 * cause.weight:.0f} %'
+        lines.append(f'  {weight:>8}  {cause.text}')
+    return [*lines, *(f'note: {note}' for note in health.notes)]
 
 
 def _records(

@@ -41,24 +41,17 @@ MOST_CELLS = 100_000
 COLUMNS = ('machine', 'axis', 'log', 'cells')  # fields with columns of their own
 
 
-class LogIdentity(NamedTuple):
-    """A log by its place, and the version of it and of all that it is judged with."""
-
-    log: str
-    version: str
-
-
-class Entry(NamedTuple):
-    """A file of the folder, and what its name says."""
+class KeptLog(NamedTuple):
+    """A file of the folder: place and version of its log, and how many further axes follow."""
 
     path: Path
-    log: LogIdentity
+    identity: tuple[str, str]
     left: int
 
 
-def identity_of(log: Path, given: Sequence[Path | None]) -> LogIdentity:
+def identity_of(log: Path, given: Sequence[Path | None]) -> tuple[str, str]:
     """
-    Return the identity of a log that is judged with files such as a map, None for none.
+    Return place and version of a log that is judged with files such as a map, None for none.
 
     Size and time of modification tell a version, the contents of what is `given`.
 
@@ -69,7 +62,7 @@ def identity_of(log: Path, given: Sequence[Path | None]) -> LogIdentity:
         status = file.stat()
         parts.append((file.name, status.st_size, status.st_mtime_ns))
     parts += [None if path is None else _digest(path.read_bytes()) for path in given]
-    return LogIdentity(_digest(os.fsencode(os.path.abspath(log))), _digest(repr(parts).encode()))
+    return _digest(os.fsencode(os.path.abspath(log))), _digest(repr(parts).encode())
 
 
 def _digest(content: bytes) -> str:
@@ -81,27 +74,30 @@ def is_health_folder(path: Path) -> bool:
     return path.is_dir() and any(path.glob(f'{MACHINE}*/{AXIS}*'))
 
 
-def held_logs(folder: Path) -> dict[str, list[Entry]]:
-    """Return the files of each log of a folder, by the identity of its place."""
-    held: dict[str, list[Entry]] = {}
-    for key in axis_folders(folder).values():
-        for entry in _entries(key):
-            held.setdefault(entry.log.log, []).append(entry)
+def held_logs(folder: Path) -> dict[str, list[KeptLog]]:
+    """Return the files of each log of a folder, by its place."""
+    held: dict[str, list[KeptLog]] = {}
+    for axis_folder in axis_folders(folder).values():
+        for entry in _entries(axis_folder):
+            held.setdefault(entry.identity[0], []).append(entry)
     return held
 
 
-def is_complete(entries: Sequence[Entry], log: LogIdentity) -> bool:
+def is_complete(entries: Sequence[KeptLog], identity: tuple[str, str]) -> bool:
     """Return True if the files of a log hold all of its axes in a version."""
-    return any(entry.log == log and entry.left == 0 for entry in entries)
+    return any(entry.identity == identity and entry.left == 0 for entry in entries)
 
 
 def keep(
-    folder: Path, log: LogIdentity, histories: Sequence[AxisHistory], former: Sequence[Entry]
+    folder: Path,
+    identity: tuple[str, str],
+    histories: Sequence[AxisHistory],
+    former: Sequence[KeptLog],
 ) -> None:
     """Keep what a log holds of each of its axes, in place of the `former` files of that log."""
     kept = set()
     for left, history in zip(range(len(histories))[::-1], histories, strict=True):
-        path = _place(folder, history) / f'{log.log}-{log.version}-{left}.parquet'
+        path = _place(folder, history) / f'{"-".join(identity)}-{left}.parquet'
         with new_file(path) as temporary:
             frame_of(history).write_parquet(temporary, compression='zstd', statistics=False)
         kept.add(path)
@@ -148,11 +144,11 @@ def axis_folders(folder: Path) -> dict[tuple[str, str], Path]:
     }
 
 
-def _entries(axis_folder: Path) -> Iterator[Entry]:
+def _entries(axis_folder: Path) -> Iterator[KeptLog]:
     for path in sorted(axis_folder.glob(f'{DAY}*/*.parquet')):
         match = NAME.fullmatch(path.name)
         if match is not None:
-            yield Entry(path, LogIdentity(match['log'], match['version']), int(match['left']))
+            yield KeptLog(path, (match['log'], match['version']), int(match['left']))
 
 
 def read_axis(axis_folder: Path) -> tuple[list[AxisHistory], list[str]]:
@@ -162,22 +158,19 @@ def read_axis(axis_folder: Path) -> tuple[list[AxisHistory], list[str]]:
     Of a log of which several versions are there, as when a run was killed, the newest counts.
 
     """
-    newest: dict[str, Entry] = {}
+    newest: dict[str, Path] = {}
     for entry in _entries(axis_folder):
-        other = newest.get(entry.log.log)
-        if other is None or _written(other) < _written(entry):
-            newest[entry.log.log] = entry
+        place, _ = entry.identity
+        other = newest.get(place)
+        if other is None or other.stat().st_mtime_ns < entry.path.stat().st_mtime_ns:
+            newest[place] = entry.path
     histories, notes = [], []
-    for entry in newest.values():
+    for path in newest.values():
         try:
-            histories.append(read_entry(entry.path))
+            histories.append(read_entry(path))
         except InputError as error:
             notes.append(str(error))
     return histories, notes
-
-
-def _written(entry: Entry) -> int:
-    return entry.path.stat().st_mtime_ns
 
 
 def read_entry(path: Path) -> AxisHistory:

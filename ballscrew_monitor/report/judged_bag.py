@@ -18,7 +18,7 @@ from ballscrew_monitor.recordings.bag_writer import whole_bag
 from ballscrew_monitor.recordings.bulk.batches import batches, END
 from ballscrew_monitor.recordings.recorder import DIAGNOSTICS, recorded_topics
 from ballscrew_monitor.settings.parameters import input_topics, NODE_NAME, output, with_types
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticArray
 
 NAME = 'judged'
 PERIOD = SECOND  # [ns] of log time after which diagnostics come again
@@ -68,39 +68,38 @@ class Answers:
     def __init__(self) -> None:
         self._causes: dict[str, Code] = {}  # of the event that is active, or of the last one
         self._latest: dict[str, TimedState] = {}
-        self._said: dict[str, Any] = {}
-        self._said_at = 0  # [ns]
+        self._summaries: dict[str, Any] = {}
+        self._sent = 0  # [ns]
 
-    def messages(self, one: TimedState) -> Iterator[tuple[str, Any]]:
+    def messages(self, timed: TimedState) -> Iterator[tuple[str, Any]]:
         """Yield topic and message of all that the node would say with a state."""
-        name = one.axis.name
+        name, axis = timed.axis.name, timed.axis
         if name not in self._causes:
             self._causes[name] = Code.UNKNOWN
-            info = state_messages.surface_info_message(
-                name, one.axis.surface, one.axis.monitor.settings, stamp=one.log_time
+            settings = axis.monitor.settings
+            yield (
+                output(name, 'surface_info'),
+                state_messages.surface_info_message(
+                    name, axis.surface, settings, stamp=timed.log_time
+                ),
             )
-            yield output(name, 'surface_info'), info
-        yield output(name, 'state'), one.state
-        if one.event is not None:
-            self._causes[name] = Code(one.event.cause.code)
-            yield output(name, 'out_of_zone'), one.event
-        yield from self._diagnostics(one)
+        yield output(name, 'state'), timed.state
+        if timed.event is not None:
+            self._causes[name] = Code(timed.event.cause.code)
+            yield output(name, 'out_of_zone'), timed.event
+        summary = summaries(timed.state, timed.inputs, self._causes[name], {})
+        self._latest[name] = timed
+        if summary != self._summaries.get(name) or timed.log_time - self._sent >= PERIOD:
+            self._summaries[name], self._sent = summary, timed.log_time
+            yield DIAGNOSTICS.name, self._diagnostics(timed.log_time)
 
-    def _diagnostics(self, one: TimedState) -> Iterator[tuple[str, DiagnosticArray]]:
-        """Yield diagnostics of all axes where those of one change, or the last are old."""
-        name = one.axis.name
-        summary = summaries(one.state, one.inputs, self._causes[name], {})
-        self._latest[name] = one
-        if summary == self._said.get(name) and one.log_time - self._said_at < PERIOD:
-            return
-        self._said[name], self._said_at = summary, one.log_time
-        # A viewer shows the last message of a topic alone: it is to tell of every axis.
-        array = DiagnosticArray(
-            status=[each for latest in self._latest.values() for each in self._statuses(latest)]
-        )
-        state_messages.fill_time(array.header.stamp, one.log_time)
-        yield DIAGNOSTICS.name, array
-
-    def _statuses(self, one: TimedState) -> list[DiagnosticStatus]:
-        name, cause, surface = one.axis.name, self._causes[one.axis.name], one.axis.surface
-        return statuses(f'/{NODE_NAME}', name, one.state, one.inputs, cause, surface, links={})
+    def _diagnostics(self, log_time: int) -> DiagnosticArray:
+        """Return the diagnostics of all axes: a viewer shows the last message of a topic alone."""
+        array = DiagnosticArray()
+        for name, latest in self._latest.items():
+            cause, surface = self._causes[name], latest.axis.surface
+            array.status += statuses(
+                f'/{NODE_NAME}', name, latest.state, latest.inputs, cause, surface, links={}
+            )
+        state_messages.fill_time(array.header.stamp, log_time)
+        return array

@@ -122,6 +122,7 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
             assumption.key: {'value': assumption.value, 'reason': assumption.reason}
             for assumption in facts.assumptions
         }
+    mapped = '' if facts is None else str(facts.mapping.get('machine', '')).strip()
     return LogParameters(
         values=chosen.values,
         origin=chosen.origin,
@@ -133,7 +134,7 @@ def parameters_for(bag: Bag, given: Path | None, nominal: Path) -> LogParameters
         },
         nominal=chosen.is_nominal,
         metadata=_metadata(bag, facts, chosen),
-        machine=_machine(facts, chosen),
+        machine=mapped or chosen.values['machine'].strip(),
     )
 
 
@@ -146,11 +147,6 @@ def _by_position(bag: Bag, chosen: ChosenValues) -> tuple[ChosenValues, tuple[st
         notes.append(still_speed(axis, values[f'{axis}.speed.field'], field, unit))
         values |= {f'{axis}.speed.field': field, f'{axis}.speed.unit': unit}
     return dataclasses.replace(chosen, values=values), tuple(notes)
-
-
-def _machine(facts: LogFacts | None, chosen: ChosenValues) -> str:
-    mapped = '' if facts is None else str(facts.mapping.get('machine', '')).strip()
-    return mapped or chosen.values['machine'].strip()
 
 
 def _still_assumed(facts: LogFacts, chosen: ChosenValues) -> Iterator[log_facts.Assumption]:

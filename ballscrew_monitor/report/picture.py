@@ -144,9 +144,15 @@ def _edges(chart: OperatingMap, cells: Any) -> tuple[Any, Any]:
 def _name_lines(axes: Axes, chart: OperatingMap) -> None:
     """Write on each line where it is nearest to its height, unless a name is there already."""
     taken: list[tuple[float, float]] = []
+    slowest, fastest = np.log(chart.speed)
     for line in reversed(chart.lines):  # the limits come last, and first to a place
-        points = _parts(chart, line.points[np.isfinite(line.points[:, 1])])
-        if line.label and len(points):
+        known = line.points[np.isfinite(line.points[:, 1])]
+        if line.label and len(known):
+            parts = (
+                (np.log(known[:, 0]) - slowest) / (fastest - slowest),
+                (known[:, 1] - chart.load[0]) / np.ptp(chart.load),
+            )
+            points = np.stack(parts, axis=-1)
             across, up = points[np.argmin(np.abs(points[:, 1] - line.height))].tolist()
             place = min(max(across, ROOM[0]), 1.0 - ROOM[0]), up
             if all(abs(place[0] - x) > 2 * ROOM[0] or abs(up - y) > ROOM[1] for x, y in taken):
@@ -154,13 +160,6 @@ def _name_lines(axes: Axes, chart: OperatingMap) -> None:
                 colour, _, _ = STYLES[line.kind]
                 style = CENTRED | {'color': COLOURS[colour], 'bbox': BOX, 'zorder': 6}
                 axes.text(*place, line.label, fontsize=8, transform=axes.transAxes, **style)
-
-
-def _parts(chart: OperatingMap, points: Any) -> Any:
-    """Return places as parts of the map, across and up."""
-    low, high = np.log(chart.speed)
-    across = (np.log(points[:, 0]) - low) / (high - low)
-    return np.stack([across, (points[:, 1] - chart.load[0]) / np.ptp(chart.load)], axis=-1)
 
 
 def _dashes(dash: str | None) -> Any:
@@ -214,7 +213,12 @@ def _draw_panel(axes: Axes, panel: dict[str, Any], rows: pl.DataFrame) -> None:
     for limit in panel['limits']:
         axes.axhline(limit['value'], color=COLOURS[limit['colour']], linewidth=1.4)
         _name_level(axes, limit['value'], limit['label'], 'bottom')
-    low, high = _reach(panel, min(seen, default=0.0), max(seen, default=1.0))
+    low, high = min(seen, default=0.0), max(seen, default=1.0)
+    if floor is None:  # numbers with a margin, as `panel.js` has them
+        margin = 0.06 * (high - low) or 0.05 * abs(high) or 1.0
+        low, high = low - margin, min(high + margin, panel['most'] or math.inf)
+    else:
+        low, high = low / 1.3, high * 1.3
     axes.set_ylim(low, high)
     for band in panel['bands']:
         axes.axhspan(band['low'], band['high'], color=COLOURS[band['colour']], zorder=-1)
@@ -224,14 +228,6 @@ def _draw_panel(axes: Axes, panel: dict[str, Any], rows: pl.DataFrame) -> None:
     axes.set_title(panel['title'], loc='left', fontsize=8, pad=3)
     axes.tick_params(labelsize=8)
     axes.grid(visible=True)
-
-
-def _reach(panel: dict[str, Any], low: float, high: float) -> tuple[float, float]:
-    """Return what a panel shows: its numbers with a margin, as `panel.js` does."""
-    if panel['floor'] is not None:
-        return low / 1.3, high * 1.3
-    margin = 0.06 * (high - low) or 0.05 * abs(high) or 1.0
-    return low - margin, min(high + margin, panel['most'] or math.inf)
 
 
 def _name_level(axes: Axes, value: float, text: str, side: str) -> None:
