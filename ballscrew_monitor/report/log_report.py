@@ -211,12 +211,13 @@ def write_events(path: Path, log: LogCase) -> None:
 
 def _result(log: LogCase) -> LogResult:
     cases = {case.axis: case for case in log.axes}
+    lines = [
+        _axis_line(MachineAxis(log.machine, axis), verdict, cases.get(axis))
+        for axis, verdict in zip([*cases, *log.empty], verdicts_of(log), strict=True)
+    ]
     return LogResult(
         name=log.name,
-        lines=[
-            _axis_line(log.machine, axis, verdict, cases.get(axis))
-            for axis, verdict in zip([*cases, *log.empty], verdicts_of(log), strict=True)
-        ],
+        lines=lines,
         unjudged=log.unjudged,
         notes=log.notes,
         hints=hints_on(log.axes),
@@ -225,31 +226,33 @@ def _result(log: LogCase) -> LogResult:
     )
 
 
-def _axis_line(machine: str, axis: str, verdict: AxisVerdict, case: AxisCase | None) -> AxisLine:
-    known: dict[str, Any] = {}
-    if case is not None:
-        summary, worst = case.outcome.summary(), next(iter(case.worst_first), None)
-        known = {
-            'missing': missing_inputs(case),
-            'begins': case.begins,
-            'recorded': case.survey.span,
-            'running_time': math.nan if summary is None else summary.running_time,
-            'outside_time': case.outside_time,
-            'surely_outside': min(case.surely_outside, case.outside_time),
-            'warnings': len(case.outcome.events),
-        }
-        if worst is not None:
-            known['worst'] = f'{worst.quantity} {worst.shown(worst.worst_value)}'
-            known['depth'] = badness(worst)[0]
-        if ledger := speed_ledger(case):
-            known |= {name: getattr(ledger, name) for name in ('expected', 'judged')}
-            known['losses'] = ledger.words
-    return AxisLine(
+def _axis_line(key: MachineAxis, verdict: AxisVerdict, case: AxisCase | None) -> AxisLine:
+    machine, axis = key
+    standing = verdict.standing.value
+    line = AxisLine(
         axis=axis,
-        standing=verdict.standing.value,
+        standing=standing,
         verdict=verdict.whole,
         machine=machine,
         remedy=verdict.remedy,
         normal=verdict.normal,
-        **known,
+    )
+    if case is None:
+        return line
+    summary, worst = case.outcome.summary(), next(iter(case.worst_first), None)
+    ledger = speed_ledger(case)
+    return dataclasses.replace(
+        line,
+        expected=ledger.expected if ledger else 0,
+        judged=ledger.judged if ledger else 0,
+        losses=ledger.words if ledger else '',
+        missing=missing_inputs(case),
+        begins=case.begins,
+        recorded=case.survey.span,
+        running_time=math.nan if summary is None else summary.running_time,
+        outside_time=case.outside_time,
+        surely_outside=min(case.surely_outside, case.outside_time),
+        warnings=len(case.outcome.events),
+        worst='' if worst is None else f'{worst.quantity} {worst.shown(worst.worst_value)}',
+        depth=math.nan if worst is None else badness(worst)[0],
     )
