@@ -9,11 +9,10 @@ from typing import Any
 from urllib.parse import quote
 
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.declared import record_of
 from ballscrew_monitor.recordings.tables.guess import Guess
 from ballscrew_monitor.recordings.words import listed, NONE
 from ballscrew_monitor.report.free_run import FreeRun, RECORD
-from ballscrew_monitor.report.health_history import AxisHistory, by_axis, healths
+from ballscrew_monitor.report.health_history import by_axis, healths
 from ballscrew_monitor.report.health_part import verdict_box
 from ballscrew_monitor.report.log_report import LogResult
 from ballscrew_monitor.report.page import element, Markup, table, TableCell, TableRow
@@ -177,9 +176,7 @@ def _zone(entries: Sequence[LogResult]) -> Iterator[Markup]:
             parts = [element('p', f'Normal? {line.normal}.')] if line.normal else []
             parts.append(element('p', f'{entry.name}: {line.verdict}', class_='sentence'))
             yield element('div', *parts, class_=f'verdict {line.standing}')
-    histories = [
-        record_of(AxisHistory, history) for entry in entries for history in entry.histories
-    ]
+    histories = [history for entry in entries for history in entry.histories]
     for own in by_axis(histories).values():
         if len(own) > 1:  # it stands first on the page
             continue

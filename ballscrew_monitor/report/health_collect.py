@@ -17,7 +17,7 @@ from typing import Any
 from ballscrew_monitor.recordings.declared import record_of
 from ballscrew_monitor.recordings.words import counted, say
 from ballscrew_monitor.report.health_folder import held_logs, identity_of, is_complete, keep
-from ballscrew_monitor.report.health_history import AxisHistory, HistoryMaker
+from ballscrew_monitor.report.health_history import AxisHistory
 from ballscrew_monitor.report.inputs_seen import hints_on
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.logs import map_for
@@ -129,9 +129,7 @@ def collect_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Return as plain data what one log holds of its axes: a task of a worker."""
     reading = ReadingShare()
     bag, parameters = opened_by_task(inputs, reading)
-    case = judge_log(
-        bag, parameters, on_share=reading.tell_judged, health=HistoryMaker, along_stroke=True
-    )
+    case = judge_log(bag, parameters, on_share=reading.tell_judged, health=True, along_stroke=True)
     histories = [dataclasses.asdict(axis.history) for axis in case.axes if axis.history]
     notes = [*case.notes, *(f'check {hint}' for hint in hints_on(case.axes))]
     plain: dict[str, Any] = to_json({'histories': histories, 'notes': notes})

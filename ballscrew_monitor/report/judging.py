@@ -9,7 +9,6 @@ Printing asks for no more than the node: nothing here loads what pages and table
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 import dataclasses
-import functools
 import math
 from typing import Any, Protocol, TYPE_CHECKING
 
@@ -17,6 +16,7 @@ from ballscrew_monitor.core.conversions import LINEAR_UNITS, POSITION_UNITS, Sca
 from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.core.state import MonitorSettings
+from ballscrew_monitor.health.records import Health
 from ballscrew_monitor.recordings.axis_run import AxisRows, TimedState
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.positions import positions_of
@@ -25,6 +25,7 @@ from ballscrew_monitor.recordings.replay import ignore, replay_parts
 from ballscrew_monitor.recordings.summary import AxisOutcome, EventRecord
 from ballscrew_monitor.recordings.words import feed_first
 from ballscrew_monitor.report.balance import Balance, balance_of
+from ballscrew_monitor.report.health_history import AxisHistory, HistoryMaker
 from ballscrew_monitor.report.machines import folder_of
 from ballscrew_monitor.report.parameters import Assumed, AxisFacts, LogParameters
 from ballscrew_monitor.report.survey import Survey, Surveyor
@@ -40,8 +41,6 @@ from numpy.typing import NDArray
 from surrogate.surface import ContactOnset, onset_of_surface, Surface, ZoneLimits
 
 if TYPE_CHECKING:  # they ask for packages that printing does not need
-    from ballscrew_monitor.health.records import Health
-    from ballscrew_monitor.report.health_history import AxisHistory, HistoryMaker
     from ballscrew_monitor.report.row_table import RowTable
 
 RCS = 'RCS'
@@ -110,8 +109,8 @@ class AxisCase:
     facts: AxisFacts = AxisFacts()
     nominal: bool = False
     numbered: bool = False
-    history: 'AxisHistory | None' = None
-    health: 'Health | None' = None
+    history: AxisHistory | None = None
+    health: Health | None = None
     onset: ContactOnset | None = None
     balance: Balance = Balance()
     surely_outside: float = math.nan
@@ -241,13 +240,15 @@ class CaseMaker:
         self,
         axis: str,
         values: Mapping[str, Any],
-        make: 'Callable[..., HistoryMaker] | None' = None,
         machine: str = '',
+        *,
+        health: bool = False,
+        **along: Any,
     ) -> None:
         """
         Begin an axis of a machine with the parameters `values`; InputError without its surface.
 
-        `make` makes what gathers its health, None for nothing.
+        What its `health` rests on is gathered if wanted; `along` is told to `HistoryMaker`.
 
         """
         self._axis, self._values, self._machine = axis, values, machine
@@ -259,7 +260,9 @@ class CaseMaker:
             self._settings.limits,
             max_gap=self._settings.timeouts[Source.SPEED],
         )
-        self._history = None if make is None else make(self._surface, gathering_of(axis, values))
+        self._history: HistoryMaker | None = None
+        if health:
+            self._history = HistoryMaker(self._surface, gathering_of(axis, values), **along)
 
     def add(self, rows: NDArray[Any], run: int = 0) -> None:
         """Take the next rows, an array of ROW, of the run of a number."""
@@ -276,7 +279,15 @@ class CaseMaker:
         `bag` holds the messages of its inputs, None if they were recorded as events.
 
         """
-        survey = self._surveyor.result()
+        survey, history = self._surveyor.result(), None
+        if self._history is not None:
+            history = self._history.history(
+                self._axis,
+                surface_file(self._axis, self._values),
+                self._settings,
+                machine=self._machine,
+                torque_is_load=facts.torque_is_load,
+            )
         return AxisCase(
             axis=self._axis,
             surface=self._surface,
@@ -288,15 +299,7 @@ class CaseMaker:
             },
             outcome=outcome,
             survey=survey,
-            history=None
-            if self._history is None
-            else self._history.history(
-                self._axis,
-                surface_file(self._axis, self._values),
-                self._settings,
-                machine=self._machine,
-                torque_is_load=facts.torque_is_load,
-            ),
+            history=history,
             onset=self._onset(survey.oil.mean),
             balance=balance_of(self._surveyor.sums),
             surely_outside=self._surveyor.sure_time,
@@ -338,15 +341,15 @@ def judge_log(
     on_share: OnShare = ignore,
     rows: RowKeeper | None = None,
     on_state: OnState | None = None,
-    health: 'type[HistoryMaker] | None' = None,
+    health: bool = False,
     along_stroke: bool = False,
 ) -> LogCase:
     """
     Judge a recording and return what is said of it; its rows are kept in `rows`, if anywhere.
 
-    `on_state` is handed each state that would be published; `health` gathers that of each axis,
-    and `along_stroke` by its positions, too. Raises InputError when it cannot be read with the
-    parameters.
+    `on_state` is handed each state that would be published; what the `health` of each axis
+    rests on is gathered if wanted, `along_stroke` by its positions, too. Raises InputError when it
+    cannot be read with the parameters.
 
     """
     machine = parameters.machine or str(folder_of(bag.path))
@@ -357,11 +360,13 @@ def judge_log(
             outcomes.append(part)
         else:
             if part.axis not in makers:
-                make: Callable[..., HistoryMaker] | None = health
-                if health is not None and along_stroke:
+                along: dict[str, Any] = {}
+                if along_stroke:
                     positions = positions_of(bag, part.axis, parameters.values)
-                    make = functools.partial(health, log=str(bag.path), positions=positions)
-                makers[part.axis] = CaseMaker(part.axis, parameters.values, make, machine)
+                    along = {'log': str(bag.path), 'positions': positions}
+                makers[part.axis] = CaseMaker(
+                    part.axis, parameters.values, machine, health=health, **along
+                )
             makers[part.axis].add(part.rows, part.run)
             if rows is not None:
                 rows.add(part.axis, part.rows)

@@ -18,7 +18,6 @@ import fcntl
 import math
 from pathlib import Path
 import shutil
-from typing import Any
 import uuid
 
 from ballscrew_monitor.recordings.bag import Bag
@@ -26,7 +25,7 @@ from ballscrew_monitor.recordings.declared import keys, plain
 from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.recordings.summary import EventRecord
 from ballscrew_monitor.report import logs
-from ballscrew_monitor.report.health_history import health_after, HistoryMaker
+from ballscrew_monitor.report.health_history import AxisHistory, health_after
 from ballscrew_monitor.report.inputs_seen import hints_on, missing_inputs
 from ballscrew_monitor.report.judged_bag import judged_bag
 from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare
@@ -118,7 +117,7 @@ class LogResult:
     Its `folder` is below that of the page over all; `failure` is why it could not be read, empty
     if it could. `hints` say what contradicts itself among the inputs; `unjudged_share` is the
     largest share of an axis that was not judged [-]; `histories` are what the health of its axes
-    rests on, as plain data.
+    rests on.
 
     """
 
@@ -130,7 +129,7 @@ class LogResult:
     notes: Sequence[str] = ()
     hints: Sequence[str] = ()
     unjudged_share: float = 1.0
-    histories: Sequence[dict[str, Any]] = ()
+    histories: Sequence[AxisHistory] = ()
 
     @property
     def judged(self) -> bool:
@@ -167,7 +166,7 @@ def report_log(
                 on_share=lambda judged: on_share(JUDGED_SHARE * judged),
                 rows=store,
                 on_state=add_state,
-                health=HistoryMaker,
+                health=True,
             )
         log = with_health(log)
         with new_file(made / logs.STATES) as partial:
@@ -222,7 +221,7 @@ def _result(log: LogCase) -> LogResult:
         notes=log.notes,
         hints=hints_on(log.axes),
         unjudged_share=unjudged_share(log),
-        histories=[dataclasses.asdict(case.history) for case in log.axes if case.history],
+        histories=[case.history for case in log.axes if case.history],
     )
 
 

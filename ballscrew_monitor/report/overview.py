@@ -7,9 +7,8 @@ import datetime
 import math
 from urllib.parse import quote
 
-from ballscrew_monitor.recordings.declared import record_of
 from ballscrew_monitor.recordings.words import counted, duration, NONE, percent
-from ballscrew_monitor.report.health_history import AxisHistory, by_axis, healths, peers_among
+from ballscrew_monitor.report.health_history import by_axis, healths, peers_among
 from ballscrew_monitor.report.health_part import health_trends, peers_table, verdict_box
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
 from ballscrew_monitor.report.logs import PAGE
@@ -82,7 +81,7 @@ def overview_page(
 
 
 def _health(entries: Sequence[LogResult], titles: Titles) -> tuple[list[Markup], list[Markup]]:
-    found = [record_of(AxisHistory, history) for entry in entries for history in entry.histories]
+    found = [history for entry in entries for history in entry.histories]
     courses = [
         healths(own, title=titles[axis]) for axis, own in by_axis(found).items() if len(own) > 1
     ]

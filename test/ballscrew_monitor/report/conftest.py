@@ -138,7 +138,7 @@ def make_status(source, **changes):
 
 
 def make_case(
-    folders, blocks, events=(), *, totals=None, values=None, known=None, health=None, **changes
+    folders, blocks, events=(), *, totals=None, values=None, known=None, health=False, **changes
 ):
     """Return the case of an axis with blocks of rows and events; `folders` makes folders."""
     axis, values = blocks[0].axis, values or make_values(blocks[0].axis)
@@ -169,7 +169,7 @@ def make_case(
         'limits': build_axis(axis, values).monitor.settings.limits,
     }
     outcome = AxisOutcome(**facts | changes)
-    maker = CaseMaker(axis, values, health)
+    maker = CaseMaker(axis, values, health=health)
     for block in blocks:
         maker.add(block.rows)
     known = known or {}

@@ -187,8 +187,7 @@ def test_three_machines_of_one_screw_share_what_they_know(months):
 
 def entry(one):
     line = AxisLine(axis=one.axis, standing='bad', verdict='Outside: always', machine=one.machine)
-    record = to_json(dataclasses.asdict(one))
-    return LogResult(name='month', folder='month', lines=[line], histories=[record])
+    return LogResult(name='month', folder='month', lines=[line], histories=[one])
 
 
 def aged(one, months):

@@ -5,7 +5,6 @@
 from ballscrew_monitor.core.judgement import PointSource
 from ballscrew_monitor.health.records import LoadSource
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.report.health_history import HistoryMaker
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.log_report import scratch_folder
 from ballscrew_monitor.report.parameters import parameters_for
@@ -38,7 +37,7 @@ def test_a_recording_that_no_node_made_numbers_no_messages(short_bag, parameters
 def test_what_is_advised_follows_the_parameters_of_the_axis(judged, free):
     """On warnings and in the health of a report alike."""
     values = judged.values(**{'x.advice.speed': free})
-    case = judged.case([judged.rows()], values=values, health=HistoryMaker)
+    case = judged.case([judged.rows()], values=values, health=True)
     assert case.settings.speed_allowed is free
     assert case.history.speed_allowed is free
 
@@ -47,7 +46,7 @@ def test_a_log_of_an_axis_without_process_force_tells_of_its_friction(judged):
     derived = judged.rows(count=300, motor_torque_source=1, axial_load_source=PointSource.DERIVED)
     block = judged.changed(derived, speed=100.0, motor_torque=derived.rows['machine_torque'])
     values = judged.values(**{'x.health.free_load': -200.0, 'x.health.always_free': True})
-    (cell,) = judged.case([block], values=values, health=HistoryMaker).history.cells
+    (cell,) = judged.case([block], values=values, health=True).history.cells
     assert (cell.load_source, cell.axial_load) == (LoadSource.FREE, -200.0)
-    (cell,) = judged.case([block], health=HistoryMaker).history.cells
+    (cell,) = judged.case([block], health=True).history.cells
     assert cell.load_source == LoadSource.DERIVED
