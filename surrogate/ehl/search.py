@@ -11,7 +11,7 @@ fails.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 import math
 
 import numpy as np
@@ -42,15 +42,13 @@ PARTING = 1.5
 """Smooth film over the roughness rms at which a rough path starts [-]."""
 
 
-@dataclass(slots=True)
 class Search:
-    """Counters of one call and what it has found."""
+    """The way to one solution, with the iterations that it took and what the half grid found."""
 
-    case: ScaledCase
-    deadline: float
-    newton: int = 0
-    krylov: int = 0
-    half: Half = Half()
+    def __init__(self, *, case: ScaledCase, deadline: float) -> None:
+        self.case, self.deadline = case, deadline
+        self.newton = self.krylov = 0
+        self.half = Half()
 
     def limits(self, *, rough: bool, final: bool) -> NewtonLimits:
         """Return the tolerances of a smooth or rough solve, on the way or at the end."""

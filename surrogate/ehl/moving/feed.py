@@ -8,8 +8,6 @@ i - n. Rows are evaluated in blocks as they come in, so that a strip of any leng
 
 """
 
-from dataclasses import dataclass, field
-
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.ehl.case import ScaledCase
@@ -24,29 +22,31 @@ BLOCK = 256
 """Rows that are evaluated together."""
 
 
-@dataclass(kw_only=True)
 class Feed:
-    """
-    Rows of a raceway that enters a smooth contact.
+    """Rows of a raceway that enters a smooth contact."""
 
-    `place` [m] is where on the raceway the middle of the contact's track lies, along it and
-    across. With `side_slip` [-] it drifts sideways, against the oil by half as much as against
-    the ball. With `ramp` the rough material enters from the inlet, else it is there from the
-    start.
+    def __init__(
+        self,
+        *,
+        case: ScaledCase,
+        grid: Grid,
+        place: tuple[float, float] = (0.0, 0.0),
+        ramp: bool = True,
+        side_slip: float = 0.0,
+    ) -> None:
+        """
+        Begin with the rows that lie on the grid.
 
-    """
+        `place` [m] is where on the raceway the middle of the contact's track lies, along it and
+        across. With `side_slip` [-] it drifts sideways, against the oil by half as much as against
+        the ball. With `ramp` the rough material enters from the inlet, else it is there from the
+        start.
 
-    case: ScaledCase
-    grid: Grid
-    place: tuple[float, float] = (0.0, 0.0)
-    ramp: bool = True
-    side_slip: float = 0.0
-    _rows: Array = field(init=False)
-    _first: int = field(init=False)  # number of the first row that is kept
-
-    def __post_init__(self) -> None:
-        self._first = 0
-        self._rows = self._heights(0, self.grid.shape[0])
+        """
+        self.case, self.grid, self.place = case, grid, place
+        self.ramp, self.side_slip = ramp, side_slip
+        self._first = 0  # number of the first row that is kept
+        self._rows = self._heights(0, grid.shape[0])
 
     def at(self, moved: int) -> Array:
         """Return the heights on the grid after the strip has moved on by so many nodes [-]."""

@@ -9,7 +9,7 @@ whose ripples over the smooth contact move on with the raceway.
 
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,35 +57,35 @@ class Step:
     krylov: int
 
 
-@dataclass(kw_only=True)
 class Stepper:
     """
     A contact on its grid, from a `smooth` state on, in Hertz units.
 
-    Entrainment `speed` [m/s]; the raceway moves unless `moving` is False; `stride` nodes are one
-    step; `shear` as in `Columns` [-]. Between steps the last state and the mass of the columns are
-    kept [-].
+    Between steps the last state and the mass of the columns are kept [-].
 
     """
 
-    case: ScaledCase
-    grid: Grid
-    smooth: GridState
-    limits: NewtonLimits
-    stride: int = 1
-    moving: bool = True
-    shear: float = 0.0
-    speed: float = field(init=False)
-    _state: GridState = field(init=False)
-    _ripples_over: GridState = field(init=False)
-    _approach_before: float = field(init=False)
-    _energy: float = field(init=False)
-    _mass: Array = field(init=False)
-    _carried: Array = field(init=False)
+    def __init__(
+        self,
+        *,
+        case: ScaledCase,
+        grid: Grid,
+        smooth: GridState,
+        limits: NewtonLimits,
+        stride: int = 1,
+        moving: bool = True,
+        shear: float = 0.0,
+    ) -> None:
+        """
+        Take the steady smooth contact as what was before the first step.
 
-    def __post_init__(self) -> None:
-        """Take the steady smooth contact as what was before the first step."""
-        self.speed = self.case.condition.entrainment_speed
+        The raceway moves unless `moving` is False; `stride` nodes are one step; `shear` as in
+        `Columns` [-].
+
+        """
+        self.case, self.grid, self.smooth, self.limits = case, grid, smooth, limits
+        self.stride, self.moving, self.shear = stride, moving, shear
+        self.speed = case.condition.entrainment_speed  # [m/s]
         self._state, self._approach_before = self.smooth, self.smooth.approach
         self._ripples_over = self.smooth
         problem = self._problem(np.zeros(self.grid.shape))

@@ -4,7 +4,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 import math
 from typing import Any
 
@@ -51,19 +50,17 @@ class Measure:
     rcs_along: Array
 
 
-@dataclass(frozen=True, kw_only=True)
 class Gauge:
     """Measures the steps of one contact on its grid."""
 
-    case: ScaledCase
-    grid: Grid
-    slide_roll_ratio: float
-
-    @cached_property
-    def _distance(self) -> Array:
-        """Return the distance of the nodes that count over the semi-axes [-]; else infinity."""
-        counts = self.grid.weights > 0
-        return np.where(counts[None, :], self.case.distance(self.grid), np.inf)
+    def __init__(self, *, case: ScaledCase, grid: Grid, slide_roll_ratio: float) -> None:
+        self.case, self.grid, self.slide_roll_ratio = case, grid, slide_roll_ratio
+        # The distance of the nodes that count over the semi-axes [-], else infinity.
+        counts = grid.weights > 0
+        self._distance = np.where(counts[None, :], case.distance(grid), np.inf)
+        self._force = (
+            case.hertz_pressure * case.height_unit * case.semi_axis_x
+        )  # along the track [N]
 
     def measure(self, step: Step) -> Measure:
         """Return the numbers of a step."""
@@ -124,11 +121,6 @@ class Gauge:
             grid.periodic,
         )
         return 0.5 * lost * grid.dy * self._force
-
-    @property
-    def _force(self) -> float:
-        """Return the unit of a force along the track [N]."""
-        return self.case.hertz_pressure * self.case.height_unit * self.case.semi_axis_x
 
 
 NUMBERS = (
