@@ -166,63 +166,31 @@ def _fine(
         if size <= fine_bytes or not shown:
             return shown, records
         # Rates differ, and so do times that are not even.
-        longest = LESS * fine_bytes / size * min(longest, _length(stretches))
+        length = sum(end - begin for begin, end in stretches)
+        longest = LESS * fine_bytes / size * min(longest, length)
     return 0, []
 
 
-def row_columns(case: AxisCase, numbers: Iterable[str]) -> list[pl.Expr]:
-    """Return rows in the units of the page; NaN where a number is not measured or judged."""
-    still = pl.col('gates') & STANDSTILL != 0
-    unjudged = pl.col('gates') & (STANDSTILL | LIGHT_LOAD) != 0
-    line = pl.col('stamp' if case.survey.by_stamp else 'log_time')
-    measured = pl.col('motor_torque_source') == PointSource.MEASURED
-    turn = RPM / case.surface.lead if case.speaks_feed else RPM  # one of the unit [rad/s]
-    known = {
-        'speed': _unless(_is_held('speed'), buckets.over(pl.col('speed'), turn)),
-        'load': _unless(_is_held('axial_load'), pl.col('axial_load')),
-        'temperature': _unless(_is_held('temperature'), pl.col('temperature') + celsius(0.0)),
-        'efficiency': _unless(unjudged, 100.0 * pl.col('efficiency')),
-        'film_ratio': _unless(still, pl.col('film_ratio')),
-        'rcs': _unless(still, pl.col('rcs')),
-        'measured_torque': _unless(~measured, pl.col('motor_torque')),
-        'machine_torque': _unless(still, pl.col('machine_torque')),
-    }
-    ranks = {name: _rank(name) for name in RANKS}
-    ranks['regime'] = pl.when(still).then(0).otherwise(ranks['regime'])
-    ranks['zone'] = pl.when(still).then(1).otherwise(ranks['zone'])
-    return [
-        buckets.over(line - case.survey.first, SECOND).alias('time'),
-        *(known[name].alias(name) for name in numbers),
-        *(rank.cast(pl.UInt8).alias(name) for name, rank in ranks.items()),
-    ]
-
-
-def _rank(name: str) -> pl.Expr:
-    return pl.sum_horizontal(
-        (pl.col(name) == code).cast(pl.UInt8) * pl.lit(rank, pl.UInt8)
-        for code, rank in RANKS[name].items()
-    )
-
-
-def _is_held(name: str) -> pl.Expr:
-    """Return which numbers are only held since their input went quiet."""
-    return pl.col(f'{name}_source') == PointSource.HELD
-
-
-def _unless(unknown: pl.Expr, value: pl.Expr) -> pl.Expr:
-    return pl.when(unknown).then(math.nan).otherwise(value)
-
-
 def _worst_stretches(case: AxisCase, longest: float) -> tuple[int, list[tuple[float, float]]]:
-    """Return of how many of the worst events samples are kept, and where; `longest` in all [s]."""
+    """
+    Return of how many of the worst events samples are kept, and where; `longest` in all [s].
+
+    Stretches are in order, those that touch are one.
+
+    """
     chosen: list[tuple[float, float]] = []
     count = 0
     for event in case.worst_first[: buckets.WORST]:
         ends = ((at - AROUND, at + AROUND) for at in case.span(event))
-        more = _merged([*chosen, *ends])
-        if _length(more) > longest:
+        spans: list[tuple[float, float]] = []
+        for begin, end in sorted([*chosen, *ends]):
+            if spans and begin <= spans[-1][1]:
+                spans[-1] = spans[-1][0], max(spans[-1][1], end)
+            else:
+                spans.append((begin, end))
+        if sum(end - begin for begin, end in spans) > longest:
             break
-        count, chosen = count + 1, more
+        count, chosen = count + 1, spans
     return count, chosen
 
 
@@ -232,20 +200,45 @@ def _bytes_per_second(case: AxisCase) -> float:
     return count * SAMPLE_BYTES * case.survey.rows / max(case.survey.span, 1e-9)
 
 
-def _length(stretches: Iterable[tuple[float, float]]) -> float:
-    """Return how long stretches are in all [s]."""
-    return sum(end - begin for begin, end in stretches)
-
-
-def _merged(stretches: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return stretches in order, those that touch as one."""
-    spans: list[tuple[float, float]] = []
-    for begin, end in sorted(stretches):
-        if spans and begin <= spans[-1][1]:
-            spans[-1] = spans[-1][0], max(spans[-1][1], end)
-        else:
-            spans.append((begin, end))
-    return spans
+def row_columns(case: AxisCase, numbers: Iterable[str]) -> list[pl.Expr]:
+    """Return rows in the units of the page; NaN where a number is not measured or judged."""
+    still = pl.col('gates') & STANDSTILL != 0
+    unjudged = pl.col('gates') & (STANDSTILL | LIGHT_LOAD) != 0
+    line = pl.col('stamp' if case.survey.by_stamp else 'log_time')
+    measured = pl.col('motor_torque_source') == PointSource.MEASURED
+    turn = RPM / case.surface.lead if case.speaks_feed else RPM  # one of the unit [rad/s]
+    # Since its input went quiet, a number is only held.
+    held = {
+        name: pl.col(f'{name}_source') == PointSource.HELD
+        for name in ('speed', 'axial_load', 'temperature')
+    }
+    known = {
+        'speed': (held['speed'], buckets.over(pl.col('speed'), turn)),
+        'load': (held['axial_load'], pl.col('axial_load')),
+        'temperature': (held['temperature'], pl.col('temperature') + celsius(0.0)),
+        'efficiency': (unjudged, 100.0 * pl.col('efficiency')),
+        'film_ratio': (still, pl.col('film_ratio')),
+        'rcs': (still, pl.col('rcs')),
+        'measured_torque': (~measured, pl.col('motor_torque')),
+        'machine_torque': (still, pl.col('machine_torque')),
+    }
+    ranks = {
+        name: pl.sum_horizontal(
+            (pl.col(name) == code).cast(pl.UInt8) * pl.lit(rank, pl.UInt8)
+            for code, rank in codes.items()
+        )
+        for name, codes in RANKS.items()
+    }
+    ranks['regime'] = pl.when(still).then(0).otherwise(ranks['regime'])
+    ranks['zone'] = pl.when(still).then(1).otherwise(ranks['zone'])
+    return [
+        buckets.over(line - case.survey.first, SECOND).alias('time'),
+        *(
+            pl.when(known[name][0]).then(math.nan).otherwise(known[name][1]).alias(name)
+            for name in numbers
+        ),
+        *(rank.cast(pl.UInt8).alias(name) for name, rank in ranks.items()),
+    ]
 
 
 def panels(case: AxisCase) -> list[dict[str, Any]]:
