@@ -109,12 +109,13 @@ def _print_one(
     parameters = parameters_for(bag, args.params, nominal)
     _say_origin(parameters)
     with shown_progress(bag.duration) as on_done:
-        found = judge_log(bag, parameters, on_share=on_done)
-    _say_notes(found.notes, parameters)
-    say(*(_silences(bag, parameters.values, found) if found.unjudged else ()))
+        judged = judge_log(bag, parameters, on_share=on_done)
+    _say_notes(judged.notes, parameters)
+    say(*(_silences(bag, parameters.values, judged) if judged.unjudged else ()))
     if not args.json:
-        print(printable('\n'.join(log_lines(found))))
-    return printed_records(summary_record(found)), _code(log, found, unjudged_share(found), args)
+        print(printable('\n'.join(log_lines(judged))))
+    code = _code(log, judged, unjudged_share(judged), args)
+    return printed_records(summary_record(judged)), code
 
 
 def _report_one(args: argparse.Namespace, nominal: Path, log: Path) -> tuple[Records, int]:

@@ -68,24 +68,24 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
             'days': None if args.baseline is None else days_of(*args.baseline),
             'speed_allowed': args.speed_advice,
         }
-        found = assess_axes(axes, titles, options, workers)
+        courses = assess_axes(axes, titles, options, workers)
         for folder, stored in stores.items():
             values = read_file(args.params or nominal)
-            found |= kept_healths(folder, stored, titles, values, options)
-        found, fleet = controlled(found)
-        for last in (courses[-1] for courses in found.values()):
-            print(printable('\n'.join(lines_of(last))))
+            courses |= kept_healths(folder, stored, titles, values, options)
+        courses, fleet = controlled(courses)
+        for course in courses.values():
+            print(printable('\n'.join(lines_of(course[-1]))))
         for peer in peers_among(histories, titles):
             print(printable(peer.text))
         say(*filter(None, [folders_note(axes)]))
         if fleet:
             print(f'{fleet}.')
-        records = _records(found, titles)
-        if args.out is not None and found:
-            _write(args.out, records, {titles[axis]: one for axis, one in found.items()})
+        records = _records(courses, titles)
+        if args.out is not None and courses:
+            _write(args.out, records, {titles[key]: course for key, course in courses.items()})
     if args.json:
         print(json_text(records))
-    return DONE if found else FAILED
+    return DONE if courses else FAILED
 
 
 def _collect(args: argparse.Namespace, given: Given, workers: Workers) -> int:
@@ -167,14 +167,14 @@ def lines_of(health: Health) -> list[str]:
 
 
 def _records(
-    found: Mapping[MachineAxis, Sequence[Health]], titles: Mapping[MachineAxis, str]
+    courses: Mapping[MachineAxis, Sequence[Health]], titles: Mapping[MachineAxis, str]
 ) -> dict[str, Any]:
     """Return the last health of each axis, and its course, for JSON."""
-    names, records = machine_names(found), {}
-    for key, courses in found.items():
+    names, records = machine_names(courses), {}
+    for key, course in courses.items():
         whose = {'axis': key.axis, 'machine': names[key.machine]}
-        course = [health_record(one) | whose for one in courses]
-        records[titles[key]] = course[-1] | {'course': course}
+        of_logs = [health_record(health) | whose for health in course]
+        records[titles[key]] = of_logs[-1] | {'course': of_logs}
     return records
 
 

@@ -124,11 +124,11 @@ class HistoryMaker:
             return Missing.STEADY
         return Missing.LOAD if torque_is_load else Missing.TORQUE
 
-    def _take(self, found: Collected) -> None:
-        for stretch in found.stretches:
+    def _take(self, collected: Collected) -> None:
+        for stretch in collected.stretches:
             add(self._cells, stretch, self._first)
-        self._stroke.take(found.stretches)
-        self._bins += found.bins
+        self._stroke.take(collected.stretches)
+        self._bins += collected.bins
 
 
 def assessed(
@@ -206,8 +206,8 @@ def by_axis(histories: Sequence[AxisHistory]) -> dict[MachineAxis, list[AxisHist
 def peers_among(histories: Sequence[AxisHistory], titles: Mapping[MachineAxis, str]) -> list[Peer]:
     """Return how axes with one surface rank over their latest logs."""
     peers: list[Peer] = []
-    for file in dict.fromkeys(one.surface for one in histories):
-        axes = by_axis([one for one in histories if one.surface == file])
+    for file in dict.fromkeys(history.surface for history in histories):
+        axes = by_axis([history for history in histories if history.surface == file])
         if len(axes) > FEWEST_PEERS:
             lead = Surface.load(Path(file)).lead
             cells = {

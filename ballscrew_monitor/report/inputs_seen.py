@@ -169,7 +169,7 @@ def _seen(case: AxisCase, source: Source) -> InputSeen:
     setting, sources = case.inputs.get(source), case.survey.sources[source]
     if setting is None:
         return _without_topic(case, source, sources)
-    status = next(one for one in case.outcome.inputs if one.source is source)
+    status = next(status for status in case.outcome.inputs if status.source is source)
     heard = _heard(setting, case.survey.inputs[source], status)
     origin = _origin(case, source)
     refused = sum(case.outcome.refused.get(source, {}).values())

@@ -7,7 +7,7 @@ import dataclasses
 import datetime
 import math
 
-from ballscrew_monitor.report.page import element, joined, Markup
+from ballscrew_monitor.report.page import element, Markup
 
 WIDTH, HEIGHT = 720.0, 150.0  # of a drawing [px]
 LEFT, RIGHT, TOP, BOTTOM = 64.0, 12.0, 10.0, 26.0  # margins around the marks [px]
@@ -38,11 +38,14 @@ class Frame:
     """Places in a drawing of dates and shares."""
 
     def __init__(self, marks: Sequence[Mark], normal: float, tolerance: float) -> None:
-        self.first, self.last = (pick(one.at for one in marks) for pick in (min, max))
-        seen = [part for one in marks for part in (one.value, one.low, one.high)]
-        seen += [normal - tolerance, normal + tolerance]
-        self.low, self.high = (
-            pick(one for one in seen if math.isfinite(one)) for pick in (min, max)
+        dates = [mark.at for mark in marks]
+        shares = [share for mark in marks for share in (mark.value, mark.low, mark.high)]
+        shares = [*filter(math.isfinite, shares), normal - tolerance, normal + tolerance]
+        self.first, self.last, self.low, self.high = (
+            min(dates),
+            max(dates),
+            min(shares),
+            max(shares),
         )
         edge = ROOM * (self.high - self.low)
         # Shares that are never negative stand on zero.
@@ -67,24 +70,28 @@ def trend(marks: Sequence[Mark], *, normal: float = 0.0, tolerance: float = 0.0)
     frame, band = Frame(marks, normal, tolerance), []
     if tolerance > 0.0:
         top, bottom = (frame.up(normal + sign * tolerance) for sign in (1, -1))
-        band.append(
-            element(
-                'rect',
-                x=LEFT,
-                y=f'{top:.1f}',
-                width=WIDTH - LEFT - RIGHT,
-                height=f'{bottom - top:.1f}',
-                class_='fill-zone',
-            )
-        )
-    places = ' '.join(f'{frame.across(mark.at):.1f},{frame.up(mark.value):.1f}' for mark in marks)
+        size: dict[str, str | float] = {
+            'width': WIDTH - LEFT - RIGHT,
+            'height': f'{bottom - top:.1f}',
+        }
+        band.append(element('rect', x=LEFT, y=f'{top:.1f}', **size, class_='fill-zone'))
+    places, intervals, dots = [], [], []
+    for mark in marks:
+        x, y = f'{frame.across(mark.at):.1f}', f'{frame.up(mark.value):.1f}'
+        places.append(f'{x},{y}')
+        if math.isfinite(mark.low + mark.high):
+            ends = {'y1': f'{frame.up(mark.low):.1f}', 'y2': f'{frame.up(mark.high):.1f}'}
+            intervals.append(element('line', x1=x, x2=x, **ends, class_='line-interval'))
+        title = element('title', mark.title)
+        dot = element('circle', title, cx=x, cy=y, r='4', class_=f'fill-{mark.kind}')
+        dots.append(dot if mark.link is None else element('a', dot, href=mark.link))
     return element(
         'svg',
         *band,
         *_axes(frame),
-        *(_interval(frame, mark) for mark in marks if math.isfinite(mark.low + mark.high)),
-        element('polyline', points=places, class_='line-trend'),
-        *(_mark(frame, mark) for mark in marks),
+        *intervals,
+        element('polyline', points=' '.join(places), class_='line-trend'),
+        *dots,
         class_='trend',
         viewBox=f'0 0 {WIDTH:g} {HEIGHT:g}',
         role='img',
@@ -107,21 +114,3 @@ def _text(x: float, y: float, text: str, anchor: str) -> Markup:
     return element(
         'text', text, x=f'{x:.1f}', y=f'{y:.1f}', text_anchor=anchor, class_='trend-text'
     )
-
-
-def _interval(frame: Frame, mark: Mark) -> Markup:
-    x = f'{frame.across(mark.at):.1f}'
-    low, high = f'{frame.up(mark.low):.1f}', f'{frame.up(mark.high):.1f}'
-    return element('line', x1=x, x2=x, y1=low, y2=high, class_='line-interval')
-
-
-def _mark(frame: Frame, mark: Mark) -> Markup:
-    dot = element(
-        'circle',
-        element('title', mark.title),
-        cx=f'{frame.across(mark.at):.1f}',
-        cy=f'{frame.up(mark.value):.1f}',
-        r='4',
-        class_=f'fill-{mark.kind}',
-    )
-    return joined(dot) if mark.link is None else element('a', dot, href=mark.link)
