@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 from scipy.ndimage import map_coordinates
 from surrogate.ehl.half_space import HalfSpace, make_half_space, repeat
 from surrogate.ehl.kernels.level import make_workspace, Workspace
@@ -80,18 +80,14 @@ class Grid:
     @cached_property
     def space(self) -> HalfSpace:
         """Half-space in double precision."""
-        return make_half_space(
-            *self.shape,
-            self.dx,
-            self.dy,
-            symmetric=self.symmetric,
-            periodic=self.periodic,
-            scale=self.compliance,
-        )
+        return self._half_space(np.float64)
 
     @cached_property
     def krylov_space(self) -> HalfSpace:
         """Half-space in the precision of the linear solver."""
+        return self._half_space(KRYLOV_TYPE)
+
+    def _half_space(self, dtype: DTypeLike) -> HalfSpace:
         return make_half_space(
             *self.shape,
             self.dx,
@@ -99,7 +95,7 @@ class Grid:
             symmetric=self.symmetric,
             periodic=self.periodic,
             scale=self.compliance,
-            dtype=KRYLOV_TYPE,
+            dtype=dtype,
         )
 
     @cached_property
