@@ -177,31 +177,21 @@ def _opened(
         CheckedLog(path=path, folder=name, out=args.out, is_free=path.name in args.free_run)
         for path, name in zip(paths, folder_names(paths), strict=True)
     ]
-    for log in _shown(logs, 'recordings opened'):
-        _open(log, sheets, args, nominal)
-        text = log.guess.text if log.guess else ''
-        if log.mapping and not log.failure:
-            text = log.mapping.read_text(encoding='utf-8')
-        if text:
-            log.mapping = _written(args.out / MAPS / f'{log.folder}.yaml', text)
-        elif log.failure:
-            log.mapping = None
+    with contextlib.closing(Progress(len(logs), 'recordings opened')) as bar:
+        for number, log in enumerate(logs):
+            bar.show(number, len(logs))
+            _open(log, sheets, args, nominal)
+            text = log.guess.text if log.guess else ''
+            if log.mapping and not log.failure:
+                text = log.mapping.read_text(encoding='utf-8')
+            if text:
+                log.mapping = _written(args.out / MAPS / f'{log.folder}.yaml', text)
+            elif log.failure:
+                log.mapping = None
     if all(log.failure and not log.guess for log in logs):
         more = f' (and {len(logs) - 1} more)' if len(logs) > 1 else ''
         raise InputError(f'nothing in {args.folder} can be read: {logs[0].failure}{more}')
     return logs
-
-
-def _shown(logs: Sequence[CheckedLog], unit: str) -> Iterator[CheckedLog]:
-    """Yield recordings, and show how many are done."""
-    bar = Progress(len(logs), unit)
-    try:
-        for number, log in enumerate(logs):
-            bar.show(number, len(logs))
-            yield log
-        bar.show(len(logs), len(logs))
-    finally:
-        bar.close()
 
 
 def _open(log: CheckedLog, sheets: Sheets | None, args: argparse.Namespace, nominal: Path) -> None:
@@ -268,22 +258,25 @@ def _of_machine(first: Guess, sheets: Sheets | None, *, is_free: bool) -> Guess:
 def _free_runs(logs: Sequence[CheckedLog], sheets: Sheets, out: Path) -> list[FreeRun]:
     """Return what free runs identify, of each axis the first that does; show how far that is."""
     runs: list[FreeRun] = []
-    for log in _shown(logs, 'recordings looked at for a free run'):
-        if log.failure:
-            continue
-        try:
-            bag = log.bag or opened_log(log.path, mapping=log.mapping)
-            values = log.values or log_facts.parameters_of(bag) or {}
-        except InputError as error:
-            log.failure = str(error)
-            continue
-        for axis in values.get('axes', ()):
-            if any(run.axis == axis and run.sheet for run in runs):
+    with contextlib.closing(Progress(len(logs), 'recordings looked at for a free run')) as bar:
+        for number, log in enumerate(logs):
+            bar.show(number, len(logs))
+            if log.failure:
                 continue
-            sheet = out / SHEETS / f'{sheets[0].name}_{axis}.yaml'
-            with contextlib.suppress(InputError):
-                run = identified(bag, values, axis, sheets, sheet, is_free=log.is_free)
-                runs += [] if run is None else [run]
+            try:
+                bag = log.bag or opened_log(log.path, mapping=log.mapping)
+                values = log.values or log_facts.parameters_of(bag) or {}
+            except InputError as error:
+                log.failure = str(error)
+                continue
+            for axis in values.get('axes', ()):
+                if any(run.axis == axis and run.sheet for run in runs):
+                    continue
+                sheet = out / SHEETS / f'{sheets[0].name}_{axis}.yaml'
+                with contextlib.suppress(InputError):
+                    run = identified(bag, values, axis, sheets, sheet, is_free=log.is_free)
+                    runs += [] if run is None else [run]
+        bar.show(len(logs), len(logs))
     return runs
 
 
@@ -339,9 +332,9 @@ def _surface(screw: Screw, oil: Lubricant, args: argparse.Namespace) -> Path:
         if canonical_json(Surface.load(built).header['inputs']) == inputs:
             return built
     built.parent.mkdir(parents=True, exist_ok=True)
-    settings, bar = default_settings(args.tier, screw, {}), Progress(0, 'slices of the surface')
+    settings = default_settings(args.tier, screw, {})
     with contextlib.ExitStack() as stack:
-        stack.callback(bar.close)
+        bar = stack.enter_context(contextlib.closing(Progress(0, 'slices of the surface')))
         pool = None
         if spreads(args.tier):
             pool = stack.enter_context(open_pool(args.workers, args.dask))
