@@ -157,8 +157,8 @@ def assess_task(inputs: Mapping[str, Any]) -> dict[str, Any]:
         options['days'] = tuple(options['days'])
     if prior := options.pop('prior', None):
         options['prior'] = record_of(Prior, prior)
-    assessed = healths(histories, title=title, **options)
-    return {'course': [to_json(dataclasses.asdict(health)) for health in assessed], 'notes': notes}
+    course = healths(histories, title=title, **options)
+    return {'course': [to_json(dataclasses.asdict(health)) for health in course], 'notes': notes}
 
 
 def same_start_note(histories: Sequence[AxisHistory], title: str) -> str:
