@@ -101,7 +101,7 @@ class Workers(NamedTuple):
 
 
 def task_inputs(log: Path, given: Given) -> dict[str, str | None]:
-    """Return what a task is told of a recording; a link belongs to the machine where it lies."""
+    """Return the inputs of a task; a link to a recording belongs to the machine where it lies."""
     named = {'params': given.params, 'map': given.mapping}
     paths = {key: None if path is None else str(path.resolve()) for key, path in named.items()}
     return {'log': os.path.abspath(log), 'nominal': str(given.nominal), **paths}
