@@ -41,7 +41,7 @@ def collect_year(year: AxisYear, folder: Path, machine: str) -> int:
         maker = HistoryMaker(surface, log=f'{number}.csv', positions=positions)
         maker.add(rows)
         history = maker.history('x', file, settings, machine=machine)
-        keep(folder, (f'{number:016x}', f'{0:016x}'), [history], ())
+        keep(folder, f'{number:016x}-{0:016x}', [history], ())
     return len(year.logs)
 
 

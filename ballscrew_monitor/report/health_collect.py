@@ -16,7 +16,13 @@ from typing import Any
 
 from ballscrew_monitor.recordings.declared import record_of
 from ballscrew_monitor.recordings.words import counted, say
-from ballscrew_monitor.report.health_folder import held_logs, identity_of, is_complete, keep
+from ballscrew_monitor.report.health_folder import (
+    held_logs,
+    identity_of,
+    is_complete,
+    keep,
+    place_of,
+)
 from ballscrew_monitor.report.health_history import AxisHistory
 from ballscrew_monitor.report.inputs_seen import hints_on
 from ballscrew_monitor.report.judging import judge_log
@@ -72,9 +78,8 @@ def collect(logs: Sequence[Path], folder: Path, given: Given, workers: Workers) 
     files = given.params, given.mapping
     identities = {log: identity_of(log, files) for log in logs if log.exists()}
     missing = [log for log in logs if log not in identities]
-    new = [
-        log for log, known in identities.items() if not is_complete(held.get(known[0], ()), known)
-    ]
+    former = {log: held.get(place_of(identity), []) for log, identity in identities.items()}
+    new = [log for log, identity in identities.items() if not is_complete(former[log], identity)]
     failures = Failures()
     for log in missing:
         failures.add(log, 'it does not exist')
@@ -83,9 +88,8 @@ def collect(logs: Sequence[Path], folder: Path, given: Given, workers: Workers) 
         if not histories:
             failures.add(log, failure or 'nothing was judged in it')
             return
-        place, version = identities[log]
         try:
-            keep(folder, (place, version), histories, held.get(place, ()))
+            keep(folder, identities[log], histories, former[log])
         except OSError as error:
             raise SurfaceError(f'{folder} cannot be written: {error.strerror or error}') from None
 

@@ -17,7 +17,7 @@ import json
 import os
 from pathlib import Path
 import re
-from typing import Any, NamedTuple
+from typing import Any
 from urllib.parse import quote, unquote
 
 from ballscrew_monitor.health.bands import day_of
@@ -32,7 +32,7 @@ from surrogate.limits import MEGA
 VERSION = 1
 """Version of what is collected; logs of another one are collected again."""
 MACHINE, AXIS, DAY = 'machine=', 'axis=', 'day='
-NAME = re.compile(r'(?P<log>[0-9a-f]{16})-(?P<version>[0-9a-f]{16})-(?P<left>\d+)\.parquet')
+NAME = re.compile(r'[0-9a-f]{16}-[0-9a-f]{16}-\d+\.parquet')
 LONGEST_NAME = 200
 """Bytes of the name of a folder, of which file systems allow 255."""
 LARGEST = 8 * MEGA
@@ -41,19 +41,12 @@ MOST_CELLS = 100_000
 COLUMNS = ('machine', 'axis', 'log', 'cells')  # fields with columns of their own
 
 
-class KeptLog(NamedTuple):
-    """A file of the folder: place and version of its log, and how many further axes follow."""
-
-    path: Path
-    identity: tuple[str, str]
-    left: int
-
-
-def identity_of(log: Path, given: Sequence[Path | None]) -> tuple[str, str]:
+def identity_of(log: Path, given: Sequence[Path | None]) -> str:
     """
-    Return place and version of a log that is judged with files such as a map, None for none.
+    Return place and version of a log, by which its files are named.
 
-    Size and time of modification tell a version, the contents of what is `given`.
+    Size and time of modification tell a version, and so do the contents of what is `given`, such
+    as a map, None for none.
 
     """
     files = sorted(path for path in log.rglob('*') if path.is_file()) if log.is_dir() else [log]
@@ -62,7 +55,8 @@ def identity_of(log: Path, given: Sequence[Path | None]) -> tuple[str, str]:
         status = file.stat()
         parts.append((file.name, status.st_size, status.st_mtime_ns))
     parts += [None if path is None else _digest(path.read_bytes()) for path in given]
-    return _digest(os.fsencode(os.path.abspath(log))), _digest(repr(parts).encode())
+    place = _digest(os.fsencode(os.path.abspath(log)))
+    return f'{place}-{_digest(repr(parts).encode())}'
 
 
 def _digest(content: bytes) -> str:
@@ -74,36 +68,38 @@ def is_health_folder(path: Path) -> bool:
     return path.is_dir() and any(path.glob(f'{MACHINE}*/{AXIS}*'))
 
 
-def held_logs(folder: Path) -> dict[str, list[KeptLog]]:
+def place_of(name: str) -> str:
+    """Return the place of a log, by its identity or by the name of one of its files."""
+    return name.partition('-')[0]
+
+
+def held_logs(folder: Path) -> dict[str, list[Path]]:
     """Return the files of each log of a folder, by its place."""
-    held: dict[str, list[KeptLog]] = {}
+    held: dict[str, list[Path]] = {}
     for axis_folder in axis_folders(folder).values():
-        for entry in _entries(axis_folder):
-            held.setdefault(entry.identity[0], []).append(entry)
+        for path in _files(axis_folder):
+            held.setdefault(place_of(path.name), []).append(path)
     return held
 
 
-def is_complete(entries: Sequence[KeptLog], identity: tuple[str, str]) -> bool:
+def is_complete(files: Sequence[Path], identity: str) -> bool:
     """Return True if the files of a log hold all of its axes in a version."""
-    return any(entry.identity == identity and entry.left == 0 for entry in entries)
+    return any(path.name == f'{identity}-0.parquet' for path in files)
 
 
 def keep(
-    folder: Path,
-    identity: tuple[str, str],
-    histories: Sequence[AxisHistory],
-    former: Sequence[KeptLog],
+    folder: Path, identity: str, histories: Sequence[AxisHistory], former: Sequence[Path]
 ) -> None:
     """Keep what a log holds of each of its axes, in place of the `former` files of that log."""
     kept = set()
     for left, history in zip(range(len(histories))[::-1], histories, strict=True):
-        path = _place(folder, history) / f'{"-".join(identity)}-{left}.parquet'
+        path = _place(folder, history) / f'{identity}-{left}.parquet'
         with new_file(path) as temporary:
             frame_of(history).write_parquet(temporary, compression='zstd', statistics=False)
         kept.add(path)
-    for entry in former:
-        if entry.path not in kept:
-            entry.path.unlink(missing_ok=True)
+    for path in former:
+        if path not in kept:
+            path.unlink(missing_ok=True)
 
 
 def frame_of(history: AxisHistory) -> pl.DataFrame:
@@ -144,11 +140,9 @@ def axis_folders(folder: Path) -> dict[tuple[str, str], Path]:
     }
 
 
-def _entries(axis_folder: Path) -> Iterator[KeptLog]:
-    for path in sorted(axis_folder.glob(f'{DAY}*/*.parquet')):
-        match = NAME.fullmatch(path.name)
-        if match is not None:
-            yield KeptLog(path, (match['log'], match['version']), int(match['left']))
+def _files(axis_folder: Path) -> Iterator[Path]:
+    paths = sorted(axis_folder.glob(f'{DAY}*/*.parquet'))
+    return (path for path in paths if NAME.fullmatch(path.name))
 
 
 def read_axis(axis_folder: Path) -> tuple[list[AxisHistory], list[str]]:
@@ -159,11 +153,10 @@ def read_axis(axis_folder: Path) -> tuple[list[AxisHistory], list[str]]:
 
     """
     newest: dict[str, Path] = {}
-    for entry in _entries(axis_folder):
-        place, _ = entry.identity
-        other = newest.get(place)
-        if other is None or other.stat().st_mtime_ns < entry.path.stat().st_mtime_ns:
-            newest[place] = entry.path
+    for path in _files(axis_folder):
+        other = newest.get(place_of(path.name))
+        if other is None or other.stat().st_mtime_ns < path.stat().st_mtime_ns:
+            newest[place_of(path.name)] = path
     histories, notes = [], []
     for path in newest.values():
         try:

@@ -157,10 +157,10 @@ def test_a_log_or_map_that_has_changed_takes_the_place_of_what_was_kept(tmp_path
 
 def test_what_was_stopped_between_two_axes_is_collected_again(collected, tmp_path):
     _, log, mapping = collected
-    (entries,) = held_logs(collected[0]).values()
+    (files,) = held_logs(collected[0]).values()
     known = identity_of(log, (None, mapping))
-    assert health_collect.is_complete(entries, known)
-    first = [entry._replace(left=1) for entry in entries]
+    assert health_collect.is_complete(files, known)
+    first = [path.with_name(path.name.replace('-0.', '-1.')) for path in files]
     assert not health_collect.is_complete(first, known)
 
 
