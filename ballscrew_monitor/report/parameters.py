@@ -168,12 +168,20 @@ def _axis_facts(
     stated = set(known) - {*assumed, TEMPERATURE}
     if f'{axis}.{OF_NODE[TEMPERATURE]}' in chosen.said and TEMPERATURE not in assumed:
         stated.add(TEMPERATURE)
-    lead = known.get('lead_mm')
+    lead, defaulted = known.get('lead_mm'), set[str]()
+    if facts is not None and not chosen.is_given:  # what nobody said: model, limits, all
+        given = chosen.said - {assumption.key for assumption in facts.assumptions}
+        if not {f'{axis}.surface', f'{axis}.screw'} & given:
+            defaulted.add('surface')
+        if not any(name.startswith(f'{axis}.limits.') for name in given):
+            defaulted.add('limits')
+        if len(defaulted) == 2 and not facts.mapping.get('parameters'):
+            defaulted.add('parameters')
     return AxisFacts(
         load_from=str(known.get('load.from') or ''),
         assumed=assumed,
         stated=frozenset(stated),
-        defaulted=frozenset() if facts is None else frozenset(_defaulted(axis, facts, chosen)),
+        defaulted=frozenset(defaulted),
         lead=lead / MILLI if isinstance(lead, int | float) else math.nan,
         motion_unit=str(known.get('speed.unit') or known.get('position.unit') or ''),
     )
@@ -189,21 +197,6 @@ def assumed_of(assumptions: Assumed, axis: str, axes: Sequence[str]) -> Assumed:
         elif whose not in axes:
             general[key] = assumption
     return own | general
-
-
-def _defaulted(axis: str, facts: LogFacts, chosen: ChosenValues) -> Iterator[str]:
-    """Yield of an axis of a log what is judged with as nobody said it: model, limits, and all."""
-    if chosen.is_given:
-        return
-    given = chosen.said - {assumption.key for assumption in facts.assumptions}
-    model = not {f'{axis}.surface', f'{axis}.screw'} & given
-    limits = not any(name.startswith(f'{axis}.limits.') for name in given)
-    if model:
-        yield 'surface'
-    if limits:
-        yield 'limits'
-    if model and limits and not facts.mapping.get('parameters'):
-        yield 'parameters'
 
 
 def _metadata(bag: Bag, facts: LogFacts | None, chosen: ChosenValues) -> dict[str, str]:
