@@ -41,6 +41,7 @@ from ballscrew_monitor.recordings.tables.series import (
     of_amounts,
     OF_SLOPE,
     of_slope,
+    unclear_factors,
     unclear_sign,
 )
 from ballscrew_monitor.recordings.tables.sources import source_of
@@ -272,6 +273,7 @@ class _Guesser:
             self._fill(name, str(time.get('column', '')))
         if not time:
             time = self._time_without_column()
+        self._ask_for_factors()
         self._say_what_is_joined()
         self._say_what_is_left_out(time)
         content: dict[str, Any] = {'log': self.path.name}
@@ -960,6 +962,21 @@ class _Guesser:
             f'state axes.{name}.torque_rated_Nm in the map, the torque at the screw of 100 %: '
             f'{self.axes[name][kind].column} is in % of it, and it is on the plate of the motor'
         )
+
+    def _ask_for_factors(self) -> None:
+        """Let the map say what scales the columns of a head that states factors."""
+        if not self.head.factors:
+            return
+        self.unstated.append(unclear_factors(self.head.factors))
+        for name, used in self.used.items():
+            for kind in filter(used.__contains__, INPUTS):
+                if 'column' in used[kind]:
+                    if scale := used[kind].get('scale'):
+                        self.unstated.append(
+                            f'axes.{name}.{kind}.scale is times {scale:g}, for the unit of '
+                            f'{used[kind]["column"]}'
+                        )
+                    used[kind]['scale'] = None
 
     def _say_what_is_joined(self) -> None:
         """Say of signals that hold words such as NaN in the rows of each other what to write."""

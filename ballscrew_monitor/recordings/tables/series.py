@@ -383,10 +383,15 @@ def _check_factors(path: Path, mapping: TableMap, table: Table) -> None:
     columns = [column for axis in mapping.axes for column in axis.columns.values()]
     factors = table.source.head.factors
     if factors and all(column.scale == 1.0 and column.offset == 0.0 for column in columns):
-        raise InputError(
-            f'log {path}: its head states {short(repr(factors))}: state `scale` and `offset` of '
-            'these columns in the map, or take that row out if the cells hold it'
-        )
+        raise InputError(f'log {path}: {unclear_factors(factors)}')
+
+
+def unclear_factors(factors: str) -> str:
+    """Return what decides by what columns are scaled of which the head states factors."""
+    return (
+        f'its head states {short(repr(factors))}: state `scale` and `offset` of these columns in '
+        'the map, or take that row out if the cells hold it'
+    )
 
 
 def _check_positions(path: Path, mapping: TableMap, table: Table) -> None:

@@ -708,3 +708,21 @@ def test_a_name_of_an_amount_is_no_speed(name, guessed):
 
 def test_the_diameter_of_a_lathe_is_no_way_of_its_axis(guessed, refused):
     refused('column_of_diameter', guessed, {'t_s': TIME, 'X diameter position [mm]': PLACE})
+
+
+def test_a_head_that_scales_its_columns_is_announced_and_asked_for(tmp_path, refused, says):
+    log = tmp_path / 'log.csv'
+    rows = [f'{at / 50:.2f},{SPEED[at]:.3f},{SPEED[at]:.3f}' for at in range(200)]
+    head = ['t,x velocity,x force', 's,cm/s,N', '1,0.5,1']
+    log.write_text('\n'.join([*head, *rows, '']))
+    made = guess(log)
+    assert made.unstated == (says('factors'), says('times_ten'))
+    axes = made.content['axes']['x']
+    assert axes['speed']['scale'] is None
+    assert axes['load']['scale'] is None
+    refused('blank_scale', make_map, made.content)
+    axes['speed']['scale'], axes['load']['scale'] = 5.0, 1.0
+    (rows,) = next(read_series(log, make_map(made.content)).blocks())
+    assert len(rows.stamps) == 200
+    expected = SPEED[50] * 5.0 * 2 * np.pi / 10.0
+    assert rows.columns['x.speed'][50] == pytest.approx(expected, rel=1e-4)
