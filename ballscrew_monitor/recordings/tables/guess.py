@@ -31,6 +31,7 @@ from ballscrew_monitor.recordings.tables.dates import (
     NAME,
     start_in_head,
 )
+from ballscrew_monitor.recordings.tables.heads import NO_NAME
 from ballscrew_monitor.recordings.tables.mapping import MOTOR, SIGNED
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.own_times import is_own_time
@@ -247,7 +248,15 @@ class _Guesser:
             or one.column in self.head.labelled
             or bool(self._unit_of_program(one))
             or (one is self.named[0] and not one.kind)
+            or self._stands_unnamed(one)
         )
+
+    def _stands_unnamed(self, one: Named) -> bool:
+        """Return True for a column without a name that stands before or behind one of an input."""
+        names, at = self.source.names(), self.source.names().index(one.column)
+        after = [name for name in names[at + 1 :] if not NO_NAME.fullmatch(name)]
+        is_index = at == 0 and after and read_name(after[0]).kind == 'time'
+        return bool(NO_NAME.fullmatch(one.column)) and not is_index
 
     def _unit_of_program(self, one: Named) -> str:
         """Return the unit of a time that the program writes which made the table, or nothing."""
@@ -429,20 +438,25 @@ class _Guesser:
         columns = {one.column: self._own_time(time, one) for one in self.times}
         columns = {column: own for column, own in columns.items() if own is not None}
         held = self.source.names()
+        behind = False
         for one in [one for chosen in self.axes.values() for one in chosen.values()]:
             before = (each for each in reversed(held[: held.index(one.column)]) if each in columns)
             column = next(before, time.column)
+            behind |= not set(held[: held.index(one.column)]) & set(columns)
             self.groups[one.column] = column
             if not columns[column]:
                 self.unclear_times.add(one.column)
-        own = [column for column, is_own in columns.items() if is_own]
-        self.idle_times = own if set(own) - set(self.groups.values()) else []
+        own = [column for column, is_own in columns.items() if is_own or NO_NAME.fullmatch(column)]
+        is_idle = bool(set(own) - set(self.groups.values()))
+        self.idle_times = own if is_idle or (behind and len(own) > 1) else []
 
     def _own_time(self, time: Named, one: Named) -> bool | None:
         """Return whether a time is that of other columns, None for a time of none."""
         if _base(one.column) == _base(time.column) and one.column in self.data:
             return True
-        if one.kind != 'time' or one.column not in self.data:
+        if one.column not in self.data or not np.ptp(self.extremes[one.column]):
+            return None
+        if one.kind != 'time' and not self._stands_unnamed(one):
             return None
         values, main = self.data[one.column], self.data[time.column]
         if self._is(estimates.is_of_days, one) or self._fault(one, values):

@@ -60,6 +60,8 @@ SURE = 0.7  # weight of blanks, which stand in texts and dates as well
 FULL = 0.5  # of the cells of the fullest row: emptier ones belong to no table
 FOLLOWING = 12  # rows that show whether a block begins
 UNNAMED = 'column {}'
+NO_NAME = re.compile(r'column \d+|Unnamed: \d+')
+"""Names that are given to columns without one, here and by pandas."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)

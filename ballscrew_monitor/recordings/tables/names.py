@@ -57,6 +57,7 @@ WANTED = frozenset(
 )
 QUALIFIERS = frozenset('filtered smoothed mean average avg rms value wert'.split())
 PROCESSED = frozenset('output raw'.split())
+OF_A_DIAGRAM = AXIS | {'value', 'values', 'wert', 'werte'}
 OF_THE_SCREW = frozenset('oil nut screw lubricant ballscrew öl oel mutter'.split())
 ENCODERS = frozenset(
     'encoder enc scale glass linear direct indirect motor messsystem maßstab massstab'.split()
@@ -136,6 +137,8 @@ def read_name(column: str, text: str = '') -> Named:
     if place == 'axis' and not kind and not OTHERS & set(words):
         left = set(words_without_unit(told, '')) - {axis, axis[:1], axis[1:]} - MEASURED - WANTED
         kind = SHORT.get(min(left), '') if len(left - AXIS) == 1 else ''
+    if place == 'axis' and not kind and _is_of_a_diagram(told, words):
+        place, axis = 'machine', ''
     if not kind and not OTHERS & set(words):
         kind = _kind_by_unit(column, place)
         rank += 0 if is_of_the_screw(column) else BY_UNIT
@@ -166,6 +169,12 @@ def read_name(column: str, text: str = '') -> Named:
         scale=scale,
         doubtful=doubtful,
     )
+
+
+def _is_of_a_diagram(told: str, words: Sequence[str]) -> bool:
+    """Return True for a time that is named as the axis of a diagram, such as X-Axis [ms]."""
+    left = [word for word in words if not word.isdigit() and word not in LINEAR | OF_A_DIAGRAM]
+    return not left and unit_of(told, 'time') in TIMES_BY_UNIT
 
 
 def _is_part_of_the_rated_torque(column: str, words: Sequence[str]) -> bool:

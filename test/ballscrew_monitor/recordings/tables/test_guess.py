@@ -726,3 +726,44 @@ def test_a_head_that_scales_its_columns_is_announced_and_asked_for(tmp_path, ref
     assert len(rows.stamps) == 200
     expected = SPEED[50] * 5.0 * 2 * np.pi / 10.0
     assert rows.columns['x.speed'][50] == pytest.approx(expected, rel=1e-4)
+
+
+SECOND_TIMES = {
+    'of the axis of a diagram': (['Time [ms]', 'v', 'X-Axis [ms]', 'm'], 'read'),
+    'of a letter': (['X [s]', 'v', 'X [ms]', 'm'], 'asked'),
+    'without a name': (['Time [ms]', 'v', '', 'm'], 'asked'),
+    'by pandas': (['Time [ms]', 'v', 'Unnamed: 2', 'm'], 'asked'),
+    'without a name before': (['', 'v', 'Time [ms]', 'm'], 'asked'),
+    'behind': (['v', 'Time A [ms]', 'm', 'Time B [ms]'], 'asked'),
+    'behind, the last without': (['v', 'Time A [ms]', 'm', ''], 'asked'),
+    'behind the first of three': (['p', 'Time A [ms]', 'v', 'Time B [ms]', 'm'], 'asked'),
+}
+
+
+@pytest.mark.parametrize('kind', SECOND_TIMES)
+@pytest.mark.parametrize('late', [2.0, 0.37])
+def test_a_second_time_is_that_of_its_column_or_asked_for(kind, late, tmp_path, refused):
+    heads, outcome = SECOND_TIMES[kind]
+    names = {'v': 'X_vel [mm/s]', 'm': 'X_torque [Nm]', 'p': 'X_pos [mm]'}
+    columns = {'v': SPEED, 'm': SPEED / 50.0, 'p': 100.0 * (1.0 - np.cos(TIME))}
+    stamps = iter([TIME, TIME + late])
+    cells = [columns[one] if one in columns else 1e3 * next(stamps) for one in heads]
+    if heads[0] == 'X [s]':
+        cells[0] = cells[0] / 1e3
+    rows = [';'.join(f'{cell:.4f}' for cell in row) for row in zip(*cells, strict=True)]
+    log = tmp_path / 'log.csv'
+    log.write_text('\n'.join([';'.join(names.get(one, one) for one in heads), *rows, '']))
+    made = guess(log)
+    if outcome == 'asked':
+        refused('blank_own_time', make_map, made.content)
+        return
+    blocks = list(read_series(log, make_map(made.content)).blocks())
+    stamps = [np.concatenate([groups[at].stamps for groups in blocks]) for at in (0, 1)]
+    assert (stamps[1][0] - stamps[0][0]) / 1e9 == pytest.approx(late, abs=1e-6)
+
+
+def test_an_unnamed_index_before_a_time_is_no_second_time(guessed):
+    columns = {'': np.arange(200.0), 't_s': TIME, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED}
+    made = guessed(columns)
+    assert made.content['time'] == {'column': 't_s', 'unit': 's'}
+    assert not made.unstated
