@@ -127,6 +127,7 @@ class LogResult:
     notes: Sequence[str] = ()
     hints: Sequence[str] = ()
     unjudged_share: float = 1.0
+    missed_share: float = 0.0
     histories: Sequence[dict[str, Any]] = ()
 
     @property
@@ -219,6 +220,7 @@ def _result(log: LogCase) -> LogResult:
         notes=log.notes,
         hints=hints_on(log.axes),
         unjudged_share=unjudged_share(log),
+        missed_share=log.missed_share,
         histories=[dataclasses.asdict(one.history) for one in log.axes if one.history],
     )
 

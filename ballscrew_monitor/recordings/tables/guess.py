@@ -42,6 +42,7 @@ from ballscrew_monitor.recordings.tables.series import (
     of_amounts,
     OF_SLOPE,
     of_slope,
+    unclear_direction,
     unclear_factors,
     unclear_sign,
 )
@@ -190,6 +191,8 @@ class _Guesser:
         rows = NUMBERS // len(used)
         # The first rows tell how the speeds go with the positions, all of them the ranges.
         self.data = table.head(rows)
+        # Rows that span the table tell signs, which may be seen late.
+        self.sampled = {name: table.sampled(name) for name in table.readings}
         self.extremes = {name: one.extremes for name, one in table.readings.items()}
         self.timed = {name for name, one in table.readings.items() if one.is_time}
         times = {one.column for one in self.times}
@@ -205,6 +208,7 @@ class _Guesser:
         self.notes += [*table.notes, *unknown, *names.told_by_words(self.named)]
         for one in [one for one in columns if one.column in self.data and one.scale != 1.0]:
             self.data[one.column] = self.data[one.column] * one.scale
+            self.sampled[one.column] = self.sampled[one.column] * one.scale
             self.extremes[one.column] = self.extremes[one.column] * one.scale
         if rows < table.rows:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
@@ -272,7 +276,7 @@ class _Guesser:
             if {'speed', 'position'} <= set(chosen):
                 speed, position = (chosen[kind].column for kind in ('speed', 'position'))
                 extremes = self.extremes[speed], self.extremes[position]
-                if fault := fault_of_speed(*extremes, self.data[position]):
+                if fault := fault_of_speed(*extremes, self.sampled[position]):
                     chosen.pop('speed')
                     self.notes.append(of_slope(name, speed, fault))
 
@@ -606,8 +610,13 @@ class _Guesser:
             if kind in chosen and self._is_used(chosen[kind])
         }
         self._forget_unitless(name)
-        self.ways[name] = self._way_per_speed(name)
+        way = self._way_per_speed(name)
+        self.ways[name] = abs(way)
         self._compare(name)
+        if way < 0.0 and 'speed' in used:
+            used['speed']['scale'] = None
+            columns = (used[kind]['column'] for kind in MOTION)
+            self.unstated.append(unclear_direction(name, *columns))
         for kind in used:
             self._set_unit(name, kind)
             self._set_magnitude(name, kind)
@@ -756,7 +765,7 @@ class _Guesser:
         if kind not in SIGNED:
             return
         data = {
-            each: self._places(self.used[name][each]['column'], chosen[each].unit)
+            each: self._places(self.used[name][each]['column'], chosen[each].unit, self.sampled)
             for each in (*MOTION, *SIGNED)
             if each in self.used[name]
         }
@@ -846,7 +855,7 @@ class _Guesser:
         clocks = [self._clock(column) for column in (position, speed)]
         if not all(map(len, clocks)):
             return math.nan
-        places = self._places(position, self.axes[name]['position'].unit)
+        places = self._places(position, self.axes[name]['position'].unit, self.data)
         return estimates.way_per_speed((clocks[0], places), (clocks[1], self.data[speed]))
 
     def _compare(self, name: str) -> None:
@@ -928,12 +937,12 @@ class _Guesser:
             return times[0] + np.arange(len(times)) * _period(times)
         return times
 
-    def _places(self, column: str, unit: str) -> Array:
+    def _places(self, column: str, unit: str, rows: Mapping[str, Array]) -> Array:
         """Return positions, whole turns counted where they are those of a scale of one turn."""
         turn = TURN / conversions.ROTARY_POSITION_UNITS.get(unit, math.nan)
         if estimates.is_within_turn(self.extremes[column], turn):
-            return estimates.Turns(turn).counted(self.data[column])
-        return self.data[column]
+            return estimates.Turns(turn).counted(rows[column])
+        return rows[column]
 
     def _set_oil(self, name: str, place: dict[str, Any]) -> None:
         """Say of a temperature that does not say so that it is taken for that of the oil."""

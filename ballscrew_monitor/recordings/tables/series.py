@@ -15,7 +15,12 @@ from pathlib import Path
 
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.recordings.tables.amounts import are_amounts, fault_of_slope, fault_of_speed
+from ballscrew_monitor.recordings.tables.amounts import (
+    are_amounts,
+    fault_of_slope,
+    fault_of_speed,
+    opposes,
+)
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.dates import dated
 from ballscrew_monitor.recordings.tables.estimates import is_within_turn, NEAR, Turns
@@ -34,7 +39,7 @@ from surrogate.units import TURN
 BETWEEN = 2.0  # [s] between runs, at least: longer than a sample is fresh
 LONG_GAP = 20.0  # times the usual time between rows, the same
 LONG = 3.0  # times the usual time between rows: across more the speed is not known
-SHOWING = 100_000  # of the first rows, which show whether torques are amounts
+SHOWING = 100_000  # of the first rows, which show whether a position has a slope
 DOUBTFUL = 0.45  # of a turn between rows: noise may make it a motion the other way
 OF_SLOPE = 'the speed is the slope of the position'
 OF_ONE_TURN = (
@@ -198,6 +203,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     held = dataclasses.replace(mapping, axes=tuple(axis for axis, _ in signed))
     times = [Times(table, held, group, shown) for group in groups_of(table, held)]
     _check_magnitudes(path, held, [one.group.columns for one in times])
+    _check_directions(path, held, table, turns)
     _check_slopes(path, held, table, turns, runs=len(times[0].gate.runs))
     run_begins, run_borders = _place(path, times)
     notes = [note for one in times for note in one.notes()]
@@ -228,7 +234,7 @@ def _moving(axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
     if not set(MOTION) <= set(axis.columns):
         return axis, ''
     speed, position = (axis.columns[kind].name for kind in MOTION)
-    places = table.readings[position].extremes, table.head(SHOWING)[position]
+    places = table.readings[position].extremes, table.sampled(position)
     fault = fault_of_speed(table.readings[speed].extremes, *places)
     if not fault:
         return axis, ''
@@ -251,7 +257,7 @@ def _with_sign(
 
     """
     kinds = [kind for kind in SIGNED if kind in axis.columns]
-    data, note = _first_rows(axis, table, turns), ''
+    data, note = _sampled(axis, table, turns), ''
     for kind in kinds:
         column = axis.columns[kind]
         if column.magnitude is None:
@@ -268,13 +274,15 @@ def _with_sign(
     return axis, note
 
 
-def _first_rows(axis: AxisMap, table: Table, turns: Mapping[str, float]) -> dict[str, Array]:
-    """Return the first rows of what has a sign and of the motion, in the units of the map."""
-    columns = {kind: axis.columns[kind] for kind in (*MOTION, *SIGNED) if kind in axis.columns}
-    rows = table.head(SHOWING)
-    for name in {column.name for column in columns.values()} & set(turns):
-        rows[name] = Turns(turns[name]).counted(rows[name])
-    return {kind: line(rows[column.name], column, 1.0) for kind, column in columns.items()}
+def _sampled(axis: AxisMap, table: Table, turns: Mapping[str, float]) -> dict[str, Array]:
+    """Return rows of what has a sign and of the motion that span a log, in units of the map."""
+    data = {}
+    for kind in filter(axis.columns.__contains__, (*MOTION, *SIGNED)):
+        column = axis.columns[kind]
+        values = table.sampled(column.name)
+        counted = Turns(turns[column.name]).counted(values) if column.name in turns else values
+        data[kind] = line(counted, column, 1.0)
+    return data
 
 
 def _motion(axis: AxisMap) -> Column:
@@ -288,14 +296,40 @@ def _check_slopes(
     for axis in mapping.axes:
         if 'speed' in axis.columns:
             continue
-        places = _first_rows(axis, table, turns)['position']
+        column = axis.columns['position'].name
+        places = table.head(SHOWING)[column]
+        places = Turns(turns[column]).counted(places) if column in turns else places
         if fault := fault_of_slope(places, runs):
-            column = axis.columns['position'].name
             raise InputError(
                 f'log {path}: {short(column)} {fault}: its slope is no speed. Name a column of '
                 f'the speed for axes.{axis.name} in the map, or record the position so that its '
                 'cells are empty where it is not new'
             )
+
+
+def _check_directions(
+    path: Path, mapping: TableMap, table: Table, turns: Mapping[str, float]
+) -> None:
+    """Raise InputError for a position that goes the other way than the speed beside it."""
+    for axis in mapping.axes:
+        if not set(MOTION) <= set(axis.columns):
+            continue
+        speed, position = (axis.columns[kind] for kind in MOTION)
+        apart = speed.time != position.time or are_apart(table, speed.name, position.name)
+        data = _sampled(axis, table, turns)
+        if not apart and opposes(data['speed'], data['position']):
+            raise InputError(
+                f'log {path}: {unclear_direction(axis.name, speed.name, position.name)}'
+            )
+
+
+def unclear_direction(axis: str, speed: str, position: str) -> str:
+    """Return what decides which of a speed and a position of other signs is right."""
+    return (
+        f'state axes.{axis}.speed.scale or axes.{axis}.position.scale in the map: '
+        f'{short(position)} moves against {short(speed)}, a scale below 0 turns that one of both '
+        'whose sign is not that of the axis'
+    )
 
 
 def _turns_of(axes: Iterable[AxisMap], table: Table) -> Iterator[tuple[str, float]]:

@@ -5,6 +5,7 @@
 import datetime as dt
 
 from ballscrew_monitor.recordings.tables import guess as guess_module
+from ballscrew_monitor.recordings.tables import read as read_module
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
@@ -152,7 +153,7 @@ def test_what_cannot_be_told_is_said_or_refused(guessed, refused, says):
 
 def test_of_a_long_log_the_first_rows_tell_the_rate_and_all_the_ranges(guessed, monkeypatch, says):
     monkeypatch.setattr(guess_module, 'NUMBERS', 300)
-    late = np.where(np.arange(200) < 150, 0.0, 1.0)
+    late = np.where(np.arange(200) < 140, 0.0, 1.0)
     made = guessed({'t_s': TIME, 'x_vel_mm_s': late * SPEED, 'x_force_N': late * SPEED})
     assert made.content['axes']['x']['load'] == {'column': 'x_force_N', 'unit': 'N'}
     assert says('rate_units_those') in made.notes
@@ -767,3 +768,38 @@ def test_an_unnamed_index_before_a_time_is_no_second_time(guessed):
     made = guessed(columns)
     assert made.content['time'] == {'column': 't_s', 'unit': 's'}
     assert not made.unstated
+
+
+@pytest.mark.parametrize(('factor', 'unit'), [(1.0, 'mm/s'), (6.0, 'rpm')])
+def test_a_speed_against_its_position_is_asked_for(factor, unit, guessed, refused, says, tmp_path):
+    place = 100.0 * (1.0 - np.cos(TIME))
+    columns = {'t_s': TIME, 'x_pos_mm': place, f'x_vel [{unit}]': -factor * SPEED}
+    made = guessed(columns, form='{:.6g}')
+    assert made.unstated == (says('turned', speed=f'x_vel [{unit}]'),)
+    refused('blank_scale', make_map, made.content)
+    speed = made.content['axes']['x']['speed']
+    for scale in (-1.0, 1.0):
+        speed['scale'] = scale
+        mapping = make_map(made.content)
+        if scale > 0.0:
+            refused('still_turned', read_series, tmp_path / 'log.csv', mapping)
+        else:
+            assert read_series(tmp_path / 'log.csv', mapping).count == 200
+
+
+def test_amounts_that_are_seen_late_are_none_the_less(tmp_path, monkeypatch):
+    """An axis that goes one way for long, and reverses in some of the last rows of the log."""
+    monkeypatch.setattr(read_module, 'MOST_ROWS', 4000)
+    monkeypatch.setattr(read_module, 'PIECE', 100)
+    monkeypatch.setattr(guess_module, 'NUMBERS', 2000)
+    rows = np.arange(30_000)
+    speed = 50.0 * np.abs(np.sin(rows / 150.0)) * np.where(rows > 27_000, -1.0, 1.0)
+    torque = 0.02 * np.abs(speed) + 1.0
+    text = [f'{at / 100:.2f};{v:.3f};{m:.4f}' for at, v, m in zip(rows, speed, torque)]
+    log = tmp_path / 'log.csv'
+    log.write_text('\n'.join(['t [s];x velocity [mm/s];x torque [Nm]', *text, '']))
+    made = guess(log)
+    assert made.content['axes']['x']['torque']['magnitude'] in (True, None)
+    made.content['axes']['x']['torque'].pop('magnitude')
+    series = read_series(log, make_map(made.content)) if made.unstated == () else None
+    assert series is None or series.mapping.axes[0].columns['torque'].magnitude
