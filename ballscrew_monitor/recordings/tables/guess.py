@@ -8,7 +8,7 @@ of a time and the decimal sign are not assumed: they stand without a value, to b
 
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
 import datetime as dt
@@ -33,6 +33,13 @@ from ballscrew_monitor.recordings.tables.dates import (
 )
 from ballscrew_monitor.recordings.tables.heads import NO_NAME
 from ballscrew_monitor.recordings.tables.mapping import MOTOR, SIGNED
+from ballscrew_monitor.recordings.tables.marks import (
+    backward_cells,
+    look_at_marks,
+    Mark,
+    Marks,
+    valid_cells,
+)
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.own_times import is_own_time
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, SCALES, UNITS
@@ -163,6 +170,7 @@ class _Guesser:
         self.groups: dict[str, str] = {}
         self.ways: dict[str, float] = {}  # of a position for a unit and second of its speed
         self.unclear_times: set[str] = set()
+        self.mark_cells: dict[str, list[str]] = {}
         self.idle_times: list[str] = []  # where one of several has no column behind it
         self.members: dict[tuple[str, tuple[int, int]], str] = {}
         self.times = [one for one in self.named if self._may_be_time(one)]
@@ -180,6 +188,8 @@ class _Guesser:
                 f'{"; ".join([listed(source.names()), *unknown])}'
             )
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
+        self.marks = self._marks(columns)
+        source = self.source = source.marked(self._known_marks())
         used = list(dict.fromkeys(one.column for one in [*columns, *self.times]))
         table = look_through(source, used, optional=used, shown=shown)
         self.unstated = list(table.doubts.values())[:1]
@@ -214,6 +224,54 @@ class _Guesser:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
         self._forget_texts()
         self._forget_speeds()
+
+    def _marks(self, inputs: Sequence[Named]) -> dict[str, dict[str, dict[str, Any]]]:
+        """Return what a map says of the marks of each input: their columns, and cells if clear."""
+        held = self.source.names()
+        first = min((one.column for one in inputs), key=held.index)
+        found: dict[str, dict[str, dict[str, Any]]] = {one.column: {} for one in inputs}
+        pairs = [
+            (one, role, columns)
+            for one in inputs
+            for role in ('valid', *(['backward'] if one.kind == 'speed' else []))
+            if (columns := names.marks_of(role, one, held, first))
+        ]
+        if not pairs:
+            return found
+        read = list(dict.fromkeys([each for one, _, of in pairs for each in (one.column, *of)]))
+        signed, cells = look_at_marks(self.source.blocks(read), read)
+        for one, role, columns in pairs:
+            if role == 'backward' and one.column in signed:
+                continue
+            of = {'valid': valid_cells, 'backward': backward_cells}[role]
+            kept = of(words_of(columns[0]), cells[columns[0]])
+            if kept or kept is None:
+                clear = kept is not None and len(columns) == 1
+                place = {'column': columns[0], 'cells': kept if clear else None}
+                found[one.column][role] = place
+                self.mark_cells[columns[0]] = cells[columns[0]]
+        return found
+
+    def _known_marks(self) -> dict[str, Marks]:
+        """Return the marks that are clear, by the columns of inputs."""
+        return {
+            column: Marks(**{role: Mark(**place) for role, place in places.items()})
+            for column, places in self.marks.items()
+            if places and all(place['cells'] is not None for place in places.values())
+        }
+
+    def _set_marks(self, name: str, kind: str) -> None:
+        """Let the map read an input by its marks, or ask for the cells that mark it."""
+        place = self.used[name][kind]
+        for role, mark in self.marks[place['column']].items():
+            place[role] = dict(mark)
+            if mark['cells'] is None:
+                cells = listed(sorted(self.mark_cells[mark['column']]))
+                self.unstated.append(
+                    f'state axes.{name}.{kind}.{role}.cells in the map: the cells of '
+                    f'{short(mark["column"])} by which {short(place["column"])} is {role}, of '
+                    f'{cells}; or take {role} out of the map'
+                )
 
     def _unnamed(self) -> str:
         """Return in a sentence how a map names the columns of a table without names."""
@@ -619,6 +677,7 @@ class _Guesser:
             self.unstated.append(unclear_direction(name, *columns))
         for kind in used:
             self._set_unit(name, kind)
+            self._set_marks(name, kind)
             self._set_magnitude(name, kind)
             group = self.groups.get(used[kind]['column'], time)
             used[kind] |= {'time': group} if group != time else {}
@@ -649,7 +708,7 @@ class _Guesser:
         speed = self.used[name].get('speed')
         if speed and 'position' not in self.used[name]:
             least, most = self.extremes[speed['column']]
-            if least * most >= 0.0 and most > least and 'magnitude' not in speed:
+            if least * most >= 0.0 and most > least and not {'magnitude', 'backward'} & set(speed):
                 self._assume(
                     f'{name}.speed.magnitude',
                     False,
@@ -762,7 +821,7 @@ class _Guesser:
     def _set_magnitude(self, name: str, kind: str) -> None:
         """Say of a column of one sign whether it holds amounts, or let the map say it."""
         chosen, place = self.axes[name], self.used[name][kind]
-        if kind not in SIGNED:
+        if kind not in SIGNED or 'backward' in place:
             return
         data = {
             each: self._places(self.used[name][each]['column'], chosen[each].unit, self.sampled)
@@ -1026,7 +1085,7 @@ class _Guesser:
             if kind in axis
         }
         used |= {entry['value'] for entry in self.assumed.values()} | set(time.values())
-        used |= set(self.groups.values())
+        used |= set(self.groups.values()) | set(self.mark_cells)
         self.notes += names.left_out([one for one in self.named if one.column not in used])
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 import dataclasses
 import re
 
+from ballscrew_monitor.recordings.tables import marks
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, UNITS
 from ballscrew_monitor.recordings.tables.unit_names import (
     BRACKETS,
@@ -46,7 +47,7 @@ OTHERS = frozenset(
     'simulated estimated clamping '
     'program sequence number line block inertia bus count index status limit percent pct '
     'beschleunigung ruck spannung leistung fehler abweichung programm satz zeile nummer'.split()
-)
+).union(marks.WORDS)
 ELSEWHERE = frozenset(
     'motor drive ambient cabinet winding room air coolant antrieb umgebung wicklung luft'.split()
 )
@@ -328,6 +329,30 @@ def _likelihood(found: Sequence[Named]) -> Callable[[Named], tuple[bool, int, in
         for kind in {one.kind for one in found}
     }
     return lambda one: (one.place != 'axis', -one.rank, len(words[one.column] - common[one.kind]))
+
+
+def marks_of(role: str, one: Named, columns: Sequence[str], first: str) -> list[str]:
+    """
+    Return the columns of a table that mark the values of an input as `valid` or `backward`.
+
+    Words beside those of the mark are of its input. Where several have none, each stands behind
+    its input, unless one stands before the `first` of all: then these are unclear.
+
+    """
+    table = marks.VALID if role == 'valid' else marks.BACKWARD
+    known = frozenset[str]().union(*table.values())
+    bases = {
+        column: {*words_of(column)} - known - marks.DULL
+        for column in columns
+        if known & {*words_of(column)} and not BRACKETS.search(column)
+    }
+    own = {*words_of(one.column), one.axis, one.axis[:1], *KINDS.get(one.kind, ())}
+    if named := [column for column, base in bases.items() if base and base <= own]:
+        return named
+    bare = [column for column, base in bases.items() if not base]
+    if len(bare) < 2 or columns.index(bare[0]) < columns.index(first):
+        return bare
+    return [column for column in columns[columns.index(one.column) + 1 :][:1] if column in bare]
 
 
 def unknown_units(named: Sequence[Named]) -> list[str]:

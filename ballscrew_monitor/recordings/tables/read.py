@@ -18,6 +18,7 @@ from typing import Any
 from ballscrew_monitor.recordings.tables import heads
 from ballscrew_monitor.recordings.tables.cells import Array, Cells, empties, Reading
 from ballscrew_monitor.recordings.tables.clocks import moments_of
+from ballscrew_monitor.recordings.tables.marks import Marks
 from ballscrew_monitor.recordings.tables.quantities import Layout, OTHER_SIGN
 from ballscrew_monitor.recordings.tables.signs import decide, Decision
 from ballscrew_monitor.recordings.tables.sources import Source, source_of
@@ -140,17 +141,20 @@ def open_table(
     decimal: str = '',
     order: str = '',
     optional: Collection[str] = (),
+    marks: Mapping[str, Marks] | None = None,
     shown: Shown = shown_progress,
 ) -> Table:
     """
-    Look through the columns `names` of a log, and show how far that is.
+    Look through the columns `names` of a log by the `marks` of some, and show how far that is.
 
     Raises InputError when one is missing, holds no number, or holds numbers that may be others
     unless the `decimal` sign is stated; an `optional` one without a number is left out.
 
     """
     source = source_of(path, layout, sheet)
-    _check_names(source, names, layout)
+    of_marks = [one.column for each in (marks or {}).values() for one in each.held]
+    _check_names(source, [*names, *of_marks], layout)
+    source = source.marked(marks or {})
     table = look_through(
         source, names, decimal=decimal, order=order, optional=optional, shown=shown
     )

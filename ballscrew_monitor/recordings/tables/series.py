@@ -189,6 +189,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
         decimal=mapping.decimal,
         order=mapping.order,
         optional=columns,
+        marks=mapping.marks,
         shown=shown,
     )
     for name in mapping.time_columns:

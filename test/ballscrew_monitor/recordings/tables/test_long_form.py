@@ -6,8 +6,8 @@ import itertools
 import math
 
 from ballscrew_monitor.recordings.tables.guess import guess
-from ballscrew_monitor.recordings.tables.long_form import bad_qualities
 from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.marks import bad_qualities
 from ballscrew_monitor.recordings.tables.series import read_series
 from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.times import joined
