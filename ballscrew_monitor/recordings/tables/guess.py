@@ -244,7 +244,7 @@ class _Guesser:
             if role == 'backward' and one.column in signed:
                 continue
             of = {'valid': valid_cells, 'backward': backward_cells}[role]
-            kept = of(words_of(columns[0]), cells[columns[0]])
+            kept = of(words_of(names.base_of(columns[0])), cells[columns[0]])
             if kept or kept is None:
                 clear = kept is not None and len(columns) == 1
                 place = {'column': columns[0], 'cells': kept if clear else None}
@@ -514,7 +514,7 @@ class _Guesser:
 
     def _own_time(self, time: Named, one: Named) -> bool | None:
         """Return whether a time is that of other columns, None for a time of none."""
-        if _base(one.column) == _base(time.column) and one.column in self.data:
+        if names.base_of(one.column) == names.base_of(time.column) and one.column in self.data:
             return True
         if one.column not in self.data or not np.ptp(self.extremes[one.column]):
             return None
@@ -744,7 +744,7 @@ class _Guesser:
                 f'time of {column}: the order of columns does not tell'
             )
             return
-        if not own or _base(own) == _base(time):
+        if not own or names.base_of(own) == names.base_of(time):
             return
         if column not in self.unclear_times:
             self.notes.append(
@@ -1093,11 +1093,6 @@ class _Guesser:
 def _usual_lead() -> float:
     """Return the lead [m] of the screw that is assumed."""
     return Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead
-
-
-def _base(column: str) -> str:
-    """Return the name that a column has in the file, where others may have it too."""
-    return re.sub(r'_duplicated_\d+$', '', column)
 
 
 def _period(times: Array) -> float:

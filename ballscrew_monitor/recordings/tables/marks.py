@@ -195,7 +195,7 @@ def _holds(block: pl.DataFrame, mark: Mark) -> pl.Series:
     """Return in which rows the column of a mark holds one of its cells."""
     column, cells = block[mark.column], {*map(plain_cell, mark.cells)}
     chosen = [cell for cell in column.unique().to_list() if plain_cell(cell) in cells]
-    return column.is_in(pl.Series(chosen, dtype=column.dtype)).fill_null(False)
+    return column.is_in(chosen).fill_null(False)
 
 
 def _negative(cells: pl.Series) -> pl.Series:

@@ -331,6 +331,11 @@ def _likelihood(found: Sequence[Named]) -> Callable[[Named], tuple[bool, int, in
     return lambda one: (one.place != 'axis', -one.rank, len(words[one.column] - common[one.kind]))
 
 
+def base_of(column: str) -> str:
+    """Return the name that a column has in the file, where others may have it too."""
+    return re.sub(r'_duplicated_\d+$', '', column)
+
+
 def marks_of(role: str, one: Named, columns: Sequence[str], first: str) -> list[str]:
     """
     Return the columns of a table that mark the values of an input as `valid` or `backward`.
@@ -341,10 +346,11 @@ def marks_of(role: str, one: Named, columns: Sequence[str], first: str) -> list[
     """
     table = marks.VALID if role == 'valid' else marks.BACKWARD
     known = frozenset[str]().union(*table.values())
+    words = {column: {*words_of(base_of(column))} for column in columns}
     bases = {
-        column: {*words_of(column)} - known - marks.DULL
+        column: words[column] - known - marks.DULL
         for column in columns
-        if known & {*words_of(column)} and not BRACKETS.search(column)
+        if known & words[column] and not BRACKETS.search(column)
     }
     own = {*words_of(one.column), one.axis, one.axis[:1], *KINDS.get(one.kind, ())}
     if named := [column for column, base in bases.items() if base and base <= own]:
