@@ -22,7 +22,7 @@ from typing import Any
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
-from ballscrew_monitor.recordings.tables.amounts import are_amounts, fault_of_speed
+from ballscrew_monitor.recordings.tables.amounts import are_amounts, fault_of_speed, stays_in_gaps
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
 from ballscrew_monitor.recordings.tables.dates import (
     dates_by_name,
@@ -51,6 +51,7 @@ from ballscrew_monitor.recordings.tables.series import (
     of_slope,
     unclear_direction,
     unclear_factors,
+    unclear_gaps,
     unclear_sign,
 )
 from ballscrew_monitor.recordings.tables.sources import source_of
@@ -701,7 +702,20 @@ class _Guesser:
             unit = self._unit(name, 'speed')
             self.notes += estimates.oddities(name, speeds, unit, conversions.LINEAR_SPEED_UNITS)
         self._assume_direction(name)
+        self._ask_for_gaps(name)
         self._ask_for_columns(name)
+
+    def _ask_for_gaps(self, name: str) -> None:
+        """Let the map say whether values stay in gaps, where the speed is the same after them."""
+        used = self.used[name]
+        if 'speed' not in used or self.clock is None:
+            return
+        column = used['speed']['column']
+        if not stays_in_gaps(self._clock(column), self.data[column]):
+            return
+        for kind in [kind for kind in ('speed', 'load', *MOTOR) if 'column' in used.get(kind, {})]:
+            used[kind]['hold'] = None
+        self.unstated.append(unclear_gaps(name, 'speed', column))
 
     def _assume_direction(self, name: str) -> None:
         """Assume of a speed of one sign without a position that it is of one direction."""

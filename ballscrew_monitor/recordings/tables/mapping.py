@@ -97,6 +97,8 @@ PLACES = {
     'cells in whose rows the quantity is valid; in others it is not known',
     'AXIS.speed.backward': '`{column: ..., cells: [...]}`: column of directions, and those of its '
     'cells in whose rows the speed gets a minus',
+    'AXIS.QUANTITY.hold': '`true` for values that were written when they changed: each stays '
+    'until the next; `false` if nothing is known in gaps',
     'AXIS.load.magnitude': '`false` for a force with a sign, also for `speed`; needed only if the '
     'log does not show it',
     'AXIS.temperature': 'column of the oil temperature',
@@ -129,7 +131,8 @@ class Column:
     A column: its name, its unit after factor and offset, and that of its time, if its own.
 
     `magnitude` says whether it holds amounts without a sign, None where that is not said; `marks`
-    are the columns that say where it is valid, and where it goes backward.
+    are the columns that say where it is valid, and where it goes backward; `hold` whether a value
+    stays until the next one is written, None where that is not said.
 
     """
 
@@ -140,6 +143,7 @@ class Column:
     time: str = ''
     magnitude: bool | None = None
     marks: Marks = Marks()
+    hold: bool | None = None
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -411,6 +415,7 @@ class _Part:
             valid=None if at else part.mark('valid'),
             backward=part.mark('backward') if kind == 'speed' else None,
         )
+        hold = None if at else part.flag('hold', None)
         numbers = [part.take(key, default) for key, default in (('scale', 1.0), ('offset', 0.0))]
         if name and not (isinstance(unit, str) and unit in units):
             found = 'missing' if unit is None else repr(unit)
@@ -431,6 +436,7 @@ class _Part:
             time=column_name(time),
             magnitude=magnitude,
             marks=marks,
+            hold=hold,
         )
 
 

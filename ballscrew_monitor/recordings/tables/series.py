@@ -20,6 +20,7 @@ from ballscrew_monitor.recordings.tables.amounts import (
     fault_of_slope,
     fault_of_speed,
     opposes,
+    stays_in_gaps,
 )
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.dates import dated
@@ -205,12 +206,13 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     times = [Times(table, held, group, shown) for group in groups_of(table, held)]
     _check_magnitudes(path, held, [one.group.columns for one in times])
     _check_directions(path, held, table, turns)
+    _check_gaps(path, held, table)
     _check_slopes(path, held, table, turns, runs=len(times[0].gate.runs))
     run_begins, run_borders = _place(path, times)
     notes = [note for one in times for note in one.notes()]
     return Series(
         count=sum(one.count for one in times),
-        rows=tuple(table.rows - one.group.holes for one in times),
+        rows=tuple(one.count if one.group.hold else table.rows - one.group.holes for one in times),
         usual_period=max(one.usual_period for one in times if one.count > 1),
         begin=times[0].begin,
         end=max(one.end for one in times),
@@ -330,6 +332,26 @@ def unclear_direction(axis: str, speed: str, position: str) -> str:
         f'state axes.{axis}.speed.scale or axes.{axis}.position.scale in the map: '
         f'{short(position)} moves against {short(speed)}, a scale below 0 turns that one of both '
         'whose sign is not that of the axis'
+    )
+
+
+def _check_gaps(path: Path, mapping: TableMap, table: Table) -> None:
+    """Raise InputError for a speed that goes on in gaps, of which the map says nothing."""
+    for axis in mapping.axes:
+        speed = axis.columns.get('speed')
+        if speed is None or speed.hold is not None or mapping.time is None:
+            continue
+        rows = table.head(SHOWING)
+        if stays_in_gaps(rows[speed.time or mapping.time.name], rows[speed.name]):
+            raise InputError(f'log {path}: {unclear_gaps(axis.name, "speed", speed.name)}')
+
+
+def unclear_gaps(axis: str, kind: str, column: str) -> str:
+    """Return what decides whether a value that is the same after a gap has stayed."""
+    return (
+        f'state axes.{axis}.{kind}.hold in the map, true if {short(column)} was written when it '
+        'changed, false if nothing is known in gaps: it is the same before and after gaps, in '
+        'motion'
     )
 
 

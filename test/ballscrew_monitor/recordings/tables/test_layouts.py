@@ -155,7 +155,8 @@ def written(made):
     }
     force = [(seconds + step / 2, value) for seconds, value in true['X force [N]']]
     own = made['grouping'] in ('groups', 'own rows')
-    marks = made['marks'] if not own else ''
+    in_lines = made['grouping'] == 'a value a line'
+    marks = '' if own or (in_lines and made['marks'] == 'direction') else made['marks']
     true['X force [N]'] = force if own else true['X force [N]']
 
     def cell(column, value):
@@ -195,7 +196,6 @@ def written(made):
             for row in range(ROWS)
             for each in columns
         ]
-        marks = '' if marks == 'direction' else marks
         if marks:
             names.append({'valid': 'Validity', 'status': 'StatusCode'}.get(marks, 'Quality'))
             for at, line in enumerate(rows):
