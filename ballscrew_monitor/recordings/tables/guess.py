@@ -33,13 +33,8 @@ from ballscrew_monitor.recordings.tables.dates import (
 )
 from ballscrew_monitor.recordings.tables.heads import NO_NAME
 from ballscrew_monitor.recordings.tables.mapping import MOTOR, SIGNED
-from ballscrew_monitor.recordings.tables.marks import (
-    backward_cells,
-    look_at_marks,
-    Mark,
-    Marks,
-    valid_cells,
-)
+from ballscrew_monitor.recordings.tables.marked import look_at_marks
+from ballscrew_monitor.recordings.tables.marks import backward_cells, Mark, Marks, valid_cells
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.own_times import is_own_time
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, SCALES, UNITS

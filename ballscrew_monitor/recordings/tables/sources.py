@@ -21,7 +21,8 @@ from typing import Any, BinaryIO
 from ballscrew_monitor.recordings.tables import foreign, heads
 from ballscrew_monitor.recordings.tables.cells import empties, first_line, readable
 from ballscrew_monitor.recordings.tables.heads import Head, Line
-from ballscrew_monitor.recordings.tables.marks import marked, Marks
+from ballscrew_monitor.recordings.tables.marked import marked
+from ballscrew_monitor.recordings.tables.marks import Marks
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.workbook import read_sheet
 from ballscrew_monitor.recordings.words import listed, short

@@ -26,7 +26,7 @@ LATEST = (1 << 31) * SECOND  # [ns] a stamp holds no later time
 WIDTH = 1e-4  # relative, of a bin
 LARGEST = 1e19  # [ns] more than any stamp
 HELD = 1.5  # times the usual time between rows, after which a value that holds is repeated
-MOST_HELD = 1_000_000  # repeated rows in a gap: a longer one is none of a value that stays
+MOST_HELD = 1_000_000  # repeated rows in a gap: in a longer one nothing is known
 HUGE_GAP = 100  # times the usual time between rows
 _BINS = 2 + math.ceil(math.log(LARGEST) / math.log1p(WIDTH))
 
