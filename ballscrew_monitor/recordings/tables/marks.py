@@ -44,6 +44,7 @@ BAD = frozenset(
 """Words of a quality by which a value is not known, without blanks and signs."""
 GOOD_BYTE = 0x80  # set in a quality of OPC (0xC0) and of PROFIBUS (0x80) that is good
 BAD_STATUS = 0xC000_0000  # bits of a status of OPC UA, none of which is set in a good one
+LARGEST_BYTE = 0xFF
 IN_PER_CENT = frozenset({0, 100})  # of the samples that are good
 HEX = re.compile(r'(?:0?x|16#)([\da-f]{1,8})')
 STATUS = re.compile(r'(?:0?x|16#)[\da-f]{8}', re.I)
@@ -134,13 +135,15 @@ def valid_cells(words: Collection[str], cells: Sequence[str]) -> list[str] | Non
 
     """
     cells = [cell for cell in cells if cell.strip()]
-    if len(cells) > MOST:
+    of_machine = bool(STATES & set(words))
+    bits = any(LARGEST_BYTE < code <= BAD_STATUS >> 2 for code in _codes(cells).values())
+    if len(cells) > MOST or (of_machine and bits):
         return []
     bad, says = bad_qualities(cells), _truth(VALID, words)
     if not bad and says is not None:
         bad = [cell for cell in cells if TRUTHS.get(plain_cell(cell)) is not says]
     elif not bad and len(cells) > 1 and not all(map(GOOD.match, cells)):
-        return [] if STATES & set(words) else None
+        return [] if of_machine else None
     return [cell for cell in cells if cell not in bad] or None
 
 

@@ -50,6 +50,7 @@ def speeds(log, **places):
         (['valid'], ['0'], None),
         (['quality'], ['Bad'], None),
         (['status'], ['0', '1', '2'], []),
+        (['axis', 'status'], ['567', '1591', '0'], []),
         (['state'], ['RUN', 'IDLE'], []),
         (['quality'], [str(at) for at in range(60)], []),
     ],
