@@ -155,7 +155,8 @@ def read_name(column: str, text: str = '') -> Named:
         if kind == 'torque' and not unit and BRACKETS.search(column):
             unit = unit_of(column, other)
             kind = other if unit else kind
-    if kind in WITH_SIGN and (AMOUNTS & set(words) or BARS.search(column)):
+    in_brackets = words_of(' '.join(BRACKETS.findall(column)))
+    if kind in WITH_SIGN and (AMOUNTS & {*words, *in_brackets} or BARS.search(column)):
         kind = ''
     # In another unit than those of the quantity it may be another quantity.
     if unknown_unit(column) and not unit:

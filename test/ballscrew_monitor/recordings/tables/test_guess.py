@@ -707,8 +707,9 @@ def test_a_name_of_an_amount_is_no_speed(name, guessed):
     assert 'speed' not in made.content['axes']['x']
 
 
-def test_the_diameter_of_a_lathe_is_no_way_of_its_axis(guessed, refused):
-    refused('column_of_diameter', guessed, {'t_s': TIME, 'X diameter position [mm]': PLACE})
+@pytest.mark.parametrize('name', ['X diameter position [mm]', 'X pos (dia) [mm]'])
+def test_the_diameter_of_a_lathe_is_no_way_of_its_axis(name, guessed, refused):
+    refused('column_of_diameter', guessed, {'t_s': TIME, name: PLACE})
 
 
 def test_a_head_that_scales_its_columns_is_announced_and_asked_for(tmp_path, refused, says):
