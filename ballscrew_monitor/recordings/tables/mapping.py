@@ -390,7 +390,7 @@ class _Part:
 
     def mark(self, role: str) -> Mark | None:
         """Return the column that marks values, and its cells that do so."""
-        column, cells = self.text(f'{role}.column'), self.take(f'{role}.cells', ())
+        column, cells = self.text(f'{role}.column'), self.take(f'{role}.cells', [])
         cells = cells if isinstance(cells, list) else [cells]
         if column and not all(isinstance(one, str | int | float) for one in cells):
             raise InputError(
@@ -398,6 +398,10 @@ class _Part:
                 f'{column}'
             )
         plain = tuple(map(plain_cell, cells))
+        if bool(column) != bool(plain):
+            raise InputError(
+                f'{self._prefix}.{role} must name a column and those of its cells that count'
+            )
         return Mark(column=column_name(column), cells=plain) if column else None
 
     def column(self, kind: str, *, at: str = '') -> Column | None:

@@ -337,13 +337,14 @@ def unclear_direction(axis: str, speed: str, position: str) -> str:
 
 def _check_gaps(path: Path, mapping: TableMap, table: Table) -> None:
     """Raise InputError for a speed that goes on in gaps, of which the map says nothing."""
-    for axis in mapping.axes:
-        speed = axis.columns.get('speed')
-        if speed is None or speed.hold is not None or mapping.time is None:
-            continue
-        rows = table.head(SHOWING)
-        if stays_in_gaps(rows[speed.time or mapping.time.name], rows[speed.name]):
-            raise InputError(f'log {path}: {unclear_gaps(axis.name, "speed", speed.name)}')
+    speeds = {axis.name: axis.columns['speed'] for axis in mapping.axes if 'speed' in axis.columns}
+    unsaid = {name: column for name, column in speeds.items() if column.hold is None}
+    if not unsaid or mapping.time is None:
+        return
+    rows = table.head(SHOWING)
+    for name, column in unsaid.items():
+        if stays_in_gaps(rows[column.time or mapping.time.name], rows[column.name]):
+            raise InputError(f'log {path}: {unclear_gaps(name, "speed", column.name)}')
 
 
 def unclear_gaps(axis: str, kind: str, column: str) -> str:

@@ -134,6 +134,8 @@ def layout(draw):
         'step': draw.choice([0.01, 0.02, 0.1]),
         'minus': draw.choice(['-', '-', '- ', '\u2212']),
         'marks': draw.choice(['', '', *MARKS]),
+        'second time': draw.choice(['as the first', 'as the first', 'unnamed']),
+        'factors': draw.random() < 0.1,
     }
 
 
@@ -172,7 +174,8 @@ def written(made):
 
     columns = list(SIGNALS)
     if made['grouping'] == 'groups':
-        names = [name, *columns[:2], name, columns[2]]
+        second = name if made['second time'] == 'as the first' else ''
+        names = [name, *columns[:2], second, columns[2]]
         rows = [
             [
                 moment(true[columns[0]][row][0]),
@@ -223,6 +226,10 @@ def written(made):
     if made['units below']:
         split = [each.partition(' [') for each in names]
         heads = [[each for each, *_ in split], [unit.strip(']') for *_, unit in split]]
+    if made['factors'] and not in_lines:
+        rows.insert(0, ['1', number(0.5, 1, made['sign'], ''), *['1'] * (len(names) - 2)])
+        position = columns[0]
+        true[position] = [(seconds, 0.5 * value) for seconds, value in true[position]]
     lines = [*made['preamble'], *(made['separator'].join(row) for row in [*heads, *rows])]
     return made['line end'].join([*lines, '']), true
 
