@@ -527,7 +527,10 @@ class _Guesser:
             one.column in self.timed
         )
         factors = [SCALES[unit][0] if all(units) else 1.0 for unit in units]
-        return is_own_time(main * factors[0], values * factors[1], is_alike=is_alike)
+        own = is_own_time(main * factors[0], values * factors[1], is_alike=is_alike)
+        if own is None and NO_NAME.fullmatch(one.column) and (main != values).any():
+            return False  # no name tells that these are the times of the same rows
+        return own
 
     def _set_epoch(self, why: str, *, since: float | None = None) -> None:
         """State the time of the first row by the head or the name of the file, or assume one."""
