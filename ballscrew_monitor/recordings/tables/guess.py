@@ -261,8 +261,13 @@ class _Guesser:
         place = self.used[name][kind]
         for role, mark in self.marks[place['column']].items():
             place[role] = dict(mark)
-            if mark['cells'] is None:
-                cells = listed(sorted(self.mark_cells[mark['column']]))
+            if mark['cells'] is not None:
+                self.notes.append(
+                    f'axis {name}: {short(place["column"])} is {role} where '
+                    f'{short(mark["column"])} is {listed(mark["cells"])}'
+                )
+            else:
+                cells = listed(self.mark_cells[mark['column']])
                 self.unstated.append(
                     f'state axes.{name}.{kind}.{role}.cells in the map: the cells of '
                     f'{short(mark["column"])} by which {short(place["column"])} is {role}, of '

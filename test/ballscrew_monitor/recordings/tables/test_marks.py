@@ -129,16 +129,20 @@ def test_qualities_of_one_name_stand_behind_their_columns_or_are_asked_for(tmp_p
 )
 @pytest.mark.parametrize('amounts', [True, False])
 def test_a_direction_is_the_sign_of_an_amount_of_speed(
-    name, cells, clear, amounts, tmp_path, refused
+    name, cells, clear, amounts, tmp_path, refused, says
 ):
     log = tmp_path / 'log.csv'
     speed = np.round(np.abs(SPEED) if amounts else SPEED, 4)
     frame = {'t [s]': TIME, 'x velocity [mm/s]': speed, name: cells, 'x force [N]': 9 * SPEED}
     pl.DataFrame(frame).write_csv(log)
     if clear or not amounts:
+        is_used = any(f'is backward where {name} is' in note for note in guess(log).notes)
+        assert is_used == amounts
         np.testing.assert_allclose(speeds(log), SPEED, atol=1e-3)
         return
-    refused('unclear_way', make_map, guess(log).content)
+    made = guess(log)
+    assert made.unstated[0] == says('state_cells')
+    refused('unclear_way', make_map, made.content)
     np.testing.assert_allclose(speeds(log, backward=['CCW']), SPEED, atol=1e-3)
     np.testing.assert_allclose(speeds(log, backward='CW'), -SPEED, atol=1e-3)
 
