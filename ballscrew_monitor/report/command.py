@@ -170,9 +170,11 @@ def _code(log: Path, judged: 'LogCase | LogResult', share: float, args: argparse
     """Return the exit code of a recording that was judged; say what share was not, if too much."""
     most = args.most_unjudged / 100.0
     if judged.judged and share > most:
+        missed = judged.missed_share >= share
+        what = 'motion of an axis was' if missed else 'samples of the speed of an axis were'
         say(
-            f'{log}: {percent(share)} of the samples of the speed of an axis were not judged, '
-            f'allowed are {percent(most)} (--most-unjudged-percent)'
+            f'{log}: {percent(share)} of the {what} not judged, allowed are {percent(most)} '
+            '(--most-unjudged-percent)'
         )
     return DONE if judged.judged and share <= most else FAILED
 

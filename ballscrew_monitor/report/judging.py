@@ -214,6 +214,11 @@ class LogCase:
         return [*self.empty, *(case.axis for case in self.axes if case.is_silent)]
 
     @property
+    def missed_share(self) -> float:
+        """Return the largest share of the motion of an axis between samples [-]."""
+        return max((case.survey.missed_share for case in self.axes), default=0.0)
+
+    @property
     def judged(self) -> bool:
         """Return True if something was judged on at least one axis."""
         return len(self.unjudged) < len(self.axes) + len(self.empty)

@@ -10,12 +10,14 @@ from ballscrew_monitor.core.inputs import Source, Why
 from ballscrew_monitor.core.judgement import Reason
 from ballscrew_monitor.recordings.declared import unwritten, written
 from ballscrew_monitor.recordings.summary import MessageCounts
+from ballscrew_monitor.recordings.words import percent
 from ballscrew_monitor.report.judging import AxisCase, LogCase
 
 UNREAD = 'not read from the files'
 LOST = 'lost on the way to the node'
 OUT_OF_ORDER = 'out of order'
 NO_SLOPE = 'out of order or without a position to make a speed with'
+IN_GAPS = 'in gaps between samples in motion'
 NO_VERDICTS = (Reason.JUDGED, Reason.STANDSTILL)
 """Samples that nothing is missing of: at standstill there is nothing to judge."""
 
@@ -27,7 +29,8 @@ class Ledger:
 
     `promised` by the recording, None if it promises no number; `present` in its files; `read`, as
     they are of this input; `judged`, of any input but the speed those that were good to judge
-    with. `losses` has the number for each reason of a difference; `others` were of other joints.
+    with. `losses` has the number for each reason of a difference; `others` were of other joints;
+    `missed` is the share of the motion that lies between samples [-].
 
     """
 
@@ -37,6 +40,7 @@ class Ledger:
     judged: int
     losses: Mapping[str, int]
     others: int = unwritten(default=0)
+    missed: float = unwritten(default=0.0)
 
     @property
     def unpromised(self) -> str:
@@ -50,14 +54,17 @@ class Ledger:
 
     @property
     def unjudged_share(self) -> float:
-        """Return the share that was not judged [-], NaN where nothing was to be."""
+        """Return the share of samples or motion not judged [-], NaN where nothing was to be."""
         left = self.expected - self.judged
-        return left / self.expected if self.expected > 0 else math.nan
+        return max(left / self.expected, self.missed) if self.expected > 0 else math.nan
 
     @property
     def words(self) -> str:
         """Return the reasons with their numbers."""
-        return ', '.join(f'{count} {reason}' for reason, count in self.losses.items()) or 'none'
+        reasons = [f'{count} {reason}' for reason, count in self.losses.items()]
+        if self.missed:
+            reasons.append(f'{percent(self.missed)} of the motion {IN_GAPS}')
+        return ', '.join(reasons) or 'none'
 
 
 def ledger_of(case: AxisCase, source: Source) -> Ledger:
@@ -78,10 +85,11 @@ def ledger_of(case: AxisCase, source: Source) -> Ledger:
         **{why.fault.counted: count for why, count in messages.refused.items()},
         NO_SLOPE if setting.from_position else OUT_OF_ORDER: messages.left_out,
     }
-    judged = messages.good
+    judged, missed = messages.good, 0.0
     if source is Source.SPEED:
         samples = case.survey.samples
         judged = sum(samples.get(reason, 0) for reason in NO_VERDICTS)
+        missed = case.survey.missed_share
         losses |= {
             reason.text: count for reason, count in samples.items() if reason not in NO_VERDICTS
         }
@@ -92,6 +100,7 @@ def ledger_of(case: AxisCase, source: Source) -> Ledger:
         judged=judged,
         losses={reason: count for reason, count in losses.items() if count > 0},
         others=others,
+        missed=missed,
     )
 
 

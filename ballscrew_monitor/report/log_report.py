@@ -129,6 +129,7 @@ class LogResult:
     notes: Sequence[str] = ()
     hints: Sequence[str] = ()
     unjudged_share: float = 1.0
+    missed_share: float = 0.0
     histories: Sequence[AxisHistory] = ()
 
     @property
@@ -221,6 +222,7 @@ def _result(log: LogCase) -> LogResult:
         notes=log.notes,
         hints=hints_on(log.axes),
         unjudged_share=unjudged_share(log),
+        missed_share=log.missed_share,
         histories=[case.history for case in log.axes if case.history],
     )
 

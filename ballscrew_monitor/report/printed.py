@@ -82,7 +82,7 @@ def _ledger_text(seen: InputSeen) -> str:
     ledger = seen.ledger
     assert ledger is not None
     promised = 'no number' if ledger.promised is None else str(ledger.promised)
-    rest = f'; {ledger.words}' if ledger.losses else ''
+    rest = f'; {ledger.words}' if ledger.losses or ledger.missed else ''
     return (
         f'{NAMES[seen.source].lower()}: {promised} promised, {ledger.present} present, '
         f'{ledger.read} read, {ledger.judged} judged{rest}'

@@ -98,7 +98,8 @@ class Survey:
     alone, `samples` the number of all that are no ticks; `uncounted` [s] before the next row where
     that came after the timeout of the speed. `gaps` of all inputs, that of the speed between two
     samples, that of any other from its timeout on; `speed_gaps`, the longest of them first, as
-    start and length [ns]. `energy` [J] by zone. A log may hold several `runs`; the `pauses` [s]
+    start and length [ns]; `missed` [s] of the gaps lies between two samples in motion. `energy`
+    [J] by zone. A log may hold several `runs`; the `pauses` [s]
     between these are on the time line alone.
 
     """
@@ -121,6 +122,7 @@ class Survey:
     speed_gaps: tuple[tuple[int, int], ...]
     energy: dict[Zone, float]
     torque: TorqueFit
+    missed: float = 0.0
     runs: int = 1
     pauses: float = 0.0
 
@@ -128,6 +130,12 @@ class Survey:
     def rest(self) -> float:
         """Return the time without rows [s], 0 where stamps are no time line."""
         return self.uncounted if self.by_stamp else 0.0
+
+    @property
+    def missed_share(self) -> float:
+        """Return the share of the motion that lies in gaps between samples in motion [-]."""
+        motion = math.fsum(self.moving.values()) + self.missed
+        return self.missed / motion if motion else 0.0
 
     @property
     def possible_motion(self) -> float:
@@ -321,8 +329,8 @@ class Surveyor:
         self._axis, self._surface, self._limits, self._max_gap = axis, surface, limits, max_gap
         self._sums = as_array(RowSums())
         self._gaps: list[tuple[int, int]] = []
-        self._gap_count = self._gap_time = 0
-        self._last_sample = np.empty(0, np.int64)
+        self._gap_count = self._gap_time = self._missed = 0
+        self._last_sample, self._last_moved = np.empty(0, np.int64), np.empty(0, np.bool_)
         self._run, self._runs = 0, 1
 
     def add(self, rows: NDArray[Any], run: int = 0) -> None:
@@ -330,16 +338,20 @@ class Surveyor:
         if run != self._run:
             self._run, self._runs = run, self._runs + 1
             self._sums['parted'] = True
-            self._last_sample = self._last_sample[:0]
+            self._last_sample, self._last_moved = self._last_sample[:0], self._last_moved[:0]
         sure = surely_outside(rows, self._surface, self._limits)
         lead, standstill = self._surface.lead, self._limits.standstill_speed
         compiled_sums()(self._sums, rows, sure, lead, standstill, self._max_gap)
-        samples = np.concatenate([self._last_sample, rows['stamp'][~rows['tick']]])
-        self._last_sample = samples[-1:]
+        of_speed = rows[~rows['tick']]
+        samples = np.concatenate([self._last_sample, of_speed['stamp']])
+        moved = np.abs(of_speed['speed']) >= standstill
+        moved = np.concatenate([self._last_moved, moved])
+        self._last_sample, self._last_moved = samples[-1:].copy(), moved[-1:].copy()
         steps = np.diff(samples)
         for at in np.flatnonzero(steps > self._max_gap).tolist():
             self._gap_count += 1
             self._gap_time += int(steps[at])
+            self._missed += int(steps[at]) if moved[at] and moved[at + 1] else 0
             keep = heapq.heappush if len(self._gaps) < MOST_GAPS else heapq.heappushpop
             keep(self._gaps, (int(steps[at]), int(samples[at])))
 
@@ -380,6 +392,7 @@ class Surveyor:
             moving=_by_reason(sums.moving_time),
             samples={reason: count for reason, count in zip(Reason, sums.samples) if count},
             uncounted=sums.uncounted / SECOND,
+            missed=self._missed / SECOND,
             runs=self._runs,
             pauses=sums.pauses / SECOND if by_stamp else 0.0,
             gaps={source: Gaps(count=count, time=time / SECOND) for source, (count, time) in gaps}

@@ -18,6 +18,8 @@ JUMP = 10.0  # times the usual way from row to row
 ALIKE = 0.05  # part by which two ways may differ that are of one size
 COARSE = 0.1  # of the usual way from row to row: a finer step disturbs no slope
 CHANGES = 0.2  # of the rows in motion at which the way changes, though the axis runs evenly
+GAP = 5.0  # times the usual time between rows, in which a value may have stayed
+SAME_MOTION = 0.9  # correlation of a position's way with its speed, whatever their signs
 SAME_TURN = 0.2  # of the largest mean torque of motions that turns with none of them
 
 
@@ -182,3 +184,48 @@ def fault_of_slope(places: Array, runs: int) -> str:
     if is_coarse and (np.abs(parts - np.round(parts)) < ALIKE).all():
         return f'moves in steps of {finest:.3g}, up to {usual:.3g} from row to row'
     return ''
+
+
+def opposes(speed: Array, position: Array) -> bool:
+    """
+    Return True if a position [-] goes the other way than its speed [-] says, row by row.
+
+    Both are of one motion but for the sign; a jump, such as to the begin of a run, counts nothing.
+
+    """
+    moved, expected = np.diff(position), (speed[1:] + speed[:-1]) / 2
+    good = np.isfinite(moved) & np.isfinite(expected)
+    moved, expected = moved[good], expected[good]
+    if len(moved) < MANY:
+        return False
+    usual = np.abs(moved) <= JUMP * np.quantile(np.abs(moved), 0.99)
+    moved, expected = moved[usual], expected[usual]
+    with np.errstate(over='ignore', invalid='ignore'):
+        both = math.sqrt(float(moved @ moved)) * math.sqrt(float(expected @ expected))
+        return 0.0 < both < math.inf and float(moved @ expected) < -SAME_MOTION * both
+
+
+def stays_in_gaps(times: Array, speed: Array) -> bool:
+    """
+    Return True if gaps between times lie in even motion by its speed [-], as values on change do.
+
+    Before and after such a gap the speed is about the same; they are more than a few of the
+    motion.
+
+    """
+    known = np.isfinite(times) & np.isfinite(speed)
+    steps, speed = np.diff(times[known]), speed[known]
+    if not (steps > 0.0).any():
+        return False
+    largest, changes = float(np.abs(speed).max()), np.abs(np.diff(speed))
+    moving = (
+        (np.abs(speed) > BARELY * largest)[1:] & (speed[1:] * speed[:-1] > 0.0) & (steps > 0.0)
+    )
+    long = moving & (steps > GAP * np.median(steps[steps > 0.0]))
+    of_rows = changes[moving & ~long]
+    if len(of_rows) and float((of_rows == 0.0).mean()) > BARELY:
+        return False  # values are written again though they stay
+    # After a gap the first value is written that has changed.
+    usual = float(np.quantile(of_rows, 0.9)) if len(of_rows) else 0.0
+    gaps = long & (changes <= max(ALIKE * largest, usual))
+    return float(steps[gaps].sum()) > BARELY * float(steps[moving].sum())

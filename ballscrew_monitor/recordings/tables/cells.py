@@ -345,7 +345,7 @@ def _points(texts: pl.Series) -> pl.Series:
     plain = texts.cast(pl.Float64, strict=False)
     if plain.null_count() == texts.null_count():  # blanks around numbers are rare, and cost
         return plain
-    return texts.str.strip_chars().cast(pl.Float64, strict=False)
+    return signs.with_plain_sign(texts).cast(pl.Float64, strict=False)
 
 
 def _holds(texts: pl.Series, mark: str) -> NDArray[np.bool_]:
@@ -371,7 +371,7 @@ def _grouped(sign: str) -> Form:
             numbers = pointed.cast(pl.Float64, strict=False)
             if numbers.null_count() == texts.null_count():
                 return numbers
-        texts = texts.str.strip_chars()
+        texts = signs.with_plain_sign(texts)
         if _holds(texts, other).any() or texts.str.contains(rf'\d{signs.MARKS}\d').any():
             parted = pl.Series(signs.are(texts, pattern))
             texts = texts.str.replace_all(between, '').zip_with(parted, texts)

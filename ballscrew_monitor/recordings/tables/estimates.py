@@ -63,9 +63,9 @@ def way_per_speed(position: tuple[Array, Array], speed: tuple[Array, Array]) -> 
     """
     Return how far an axis moves for a unit and second of its speed, NaN if both are not alike.
 
-    Places and speeds [-] each stand behind their times [s], of which the longest run counts. Least
-    squares over some thousand stretches without a gap, for which the speed is integrated by the
-    trapezoidal rule.
+    It is below 0 where both have other signs. Places and speeds [-] each stand behind their times
+    [s], of which the longest run counts. Least squares over some thousand stretches without a gap,
+    for which the speed is integrated by the trapezoidal rule.
 
     """
     times, places = _longest_run(*position)
@@ -85,7 +85,7 @@ def way_per_speed(position: tuple[Array, Array], speed: tuple[Array, Array]) -> 
         both = math.sqrt(along) * math.sqrt(float(moved @ moved))
     if not 0.0 < both < math.inf or abs(across) < math.sqrt(ALIKE) * both:
         return math.nan
-    return abs(across) / along
+    return across / along
 
 
 def _longest_run(times: Array, values: Array) -> tuple[Array, Array]:

@@ -21,7 +21,7 @@ from xml.etree import ElementTree
 
 from ballscrew_monitor.recordings.tables import line_messages, long_form
 from ballscrew_monitor.recordings.tables.cells import first_line, readable, Unreadable
-from ballscrew_monitor.recordings.tables.heads import Head, Property, unlike
+from ballscrew_monitor.recordings.tables.heads import FACTOR, Head, Property, unlike
 from ballscrew_monitor.recordings.tables.layouts import ADAPTER, Format, RECORDER
 from ballscrew_monitor.recordings.tables.quantities import RATED
 import numpy as np
@@ -44,6 +44,8 @@ EXPECTED = {
     'mdf': 'an MDF file with signals of numbers',
 }
 """What a file of each kind must be."""
+SCALE_FACTOR, ADD_OFFSET, MISSING = 'scale_factor', 'add_offset', ('_FillValue', 'missing_value')
+"""Attributes of the CF conventions: a value is the number times the factor plus the offset."""
 DOCUMENT = re.compile('<!(?:DOCTYPE|ENTITY)', re.I)
 SIGNATURES = ((b'TDSm', 'tdms'), (b'MDF     ', 'mdf'), (b'MATLAB 5.0', 'mat'), (b'\x89HDF', 'hdf'))
 
@@ -53,7 +55,8 @@ class Signals:
     """
     Signals of a file as a frame, and what the file says besides them; a period in [s].
 
-    Cells that are texts were parted by a `separator`.
+    Cells that are texts were parted by a `separator`; `factors` says of a signal that it may have
+    to be scaled.
 
     """
 
@@ -62,6 +65,7 @@ class Signals:
     start: str = ''
     separator: str = ''
     program: Format | None = None
+    factors: str = ''
 
     def head(self) -> Head:
         """Return what the head of a text would say."""
@@ -74,6 +78,7 @@ class Signals:
             first=1,
             properties=properties,
             period=self.period,
+            factors=self.factors,
         )
 
 
@@ -244,6 +249,7 @@ def _flattened(content: Mapping[str, Any], before: str = '') -> Iterable[tuple[s
 def _hdf(path: Path) -> Signals:
     h5py = _optional('h5py', path, 'HDF5 and MATLAB 7.3')
     found: dict[str, Any] = {}
+    factors: list[str] = []
     with h5py.File(path, 'r') as file:
 
         def visit(name: str, item: Any) -> None:
@@ -253,13 +259,33 @@ def _hdf(path: Path) -> Signals:
                 unit = item.attrs.get('unit', item.attrs.get('units', b''))
                 told = unit.decode() if isinstance(unit, bytes) else str(unit)
                 called = name.replace('/', '.')
-                found[f'{called} [{told}]' if told else called] = np.squeeze(item[()])
+                found[f'{called} [{told}]' if told else called] = _scaled(item)
+                factors.extend(_unclear_factors(called, item.attrs))
             elif isinstance(item, h5py.Dataset) and item.dtype.names:
                 for field in item.dtype.names:
                     found[f'{name.replace("/", ".")}.{field}'] = np.squeeze(item[field])
 
         file.visititems(visit)
-    return _arrays(found)
+    return dataclasses.replace(_arrays(found), factors=', '.join(factors))
+
+
+def _scaled(dataset: Any) -> Any:
+    """Return the values of a dataset, by the attributes that the CF conventions define."""
+    values, attributes = np.squeeze(dataset[()]), dataset.attrs
+    missing = [attributes[name] for name in MISSING if name in attributes]
+    if not missing and not {SCALE_FACTOR, ADD_OFFSET} & set(attributes):
+        return values
+    known = np.where(np.isin(values, missing), math.nan, values)
+    return known * attributes.get(SCALE_FACTOR, 1.0) + attributes.get(ADD_OFFSET, 0.0)
+
+
+def _unclear_factors(name: str, attributes: Mapping[str, Any]) -> Iterator[str]:
+    """Yield attributes of a dataset that may scale it, which no convention defines."""
+    for key, value in attributes.items():
+        plain = 0.0 if 'offset' in key.lower() else 1.0
+        if key not in (SCALE_FACTOR, ADD_OFFSET) and FACTOR.search(key.lower().replace('_', ' ')):
+            if np.asarray(value).dtype.kind in 'iuf' and (np.asarray(value) != plain).any():
+                yield f'{name}: {key} {np.squeeze(value)}'
 
 
 def _arrays(content: Mapping[str, Any]) -> Signals:

@@ -8,7 +8,7 @@ of a time and the decimal sign are not assumed: they stand without a value, to b
 
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 import contextlib
 import dataclasses
 import datetime as dt
@@ -22,7 +22,7 @@ from typing import Any
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import LINEAR_POSITION_UNITS
 from ballscrew_monitor.recordings.tables import estimates, names
-from ballscrew_monitor.recordings.tables.amounts import are_amounts, fault_of_speed
+from ballscrew_monitor.recordings.tables.amounts import are_amounts, fault_of_speed, stays_in_gaps
 from ballscrew_monitor.recordings.tables.cells import Array, Cells
 from ballscrew_monitor.recordings.tables.dates import (
     dates_by_name,
@@ -31,7 +31,10 @@ from ballscrew_monitor.recordings.tables.dates import (
     NAME,
     start_in_head,
 )
+from ballscrew_monitor.recordings.tables.heads import NO_NAME
 from ballscrew_monitor.recordings.tables.mapping import MOTOR, SIGNED
+from ballscrew_monitor.recordings.tables.marked import look_at_marks
+from ballscrew_monitor.recordings.tables.marks import backward_cells, Mark, Marks, valid_cells
 from ballscrew_monitor.recordings.tables.names import Named, read_name
 from ballscrew_monitor.recordings.tables.own_times import is_own_time
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, SCALES, UNITS
@@ -41,6 +44,9 @@ from ballscrew_monitor.recordings.tables.series import (
     of_amounts,
     OF_SLOPE,
     of_slope,
+    unclear_direction,
+    unclear_factors,
+    unclear_gaps,
     unclear_sign,
 )
 from ballscrew_monitor.recordings.tables.sources import source_of
@@ -160,6 +166,7 @@ class _Guesser:
         self.groups: dict[str, str] = {}
         self.ways: dict[str, float] = {}  # of a position for a unit and second of its speed
         self.unclear_times: set[str] = set()
+        self.mark_cells: dict[str, list[str]] = {}
         self.idle_times: list[str] = []  # where one of several has no column behind it
         self.members: dict[tuple[str, tuple[int, int]], str] = {}
         self.times = [one for one in self.named if self._may_be_time(one)]
@@ -177,6 +184,8 @@ class _Guesser:
                 f'{"; ".join([listed(source.names()), *unknown])}'
             )
         columns = [one for chosen in self.axes.values() for one in chosen.values()]
+        self.marks = self._marks(columns)
+        source = self.source = source.marked(self._known_marks())
         used = list(dict.fromkeys(one.column for one in [*columns, *self.times]))
         table = look_through(source, used, optional=used, shown=shown)
         self.unstated = list(table.doubts.values())[:1]
@@ -188,6 +197,8 @@ class _Guesser:
         rows = NUMBERS // len(used)
         # The first rows tell how the speeds go with the positions, all of them the ranges.
         self.data = table.head(rows)
+        # Rows that span the table tell signs, which may be seen late.
+        self.sampled = {name: table.sampled(name) for name in table.readings}
         self.extremes = {name: one.extremes for name, one in table.readings.items()}
         self.timed = {name for name, one in table.readings.items() if one.is_time}
         times = {one.column for one in self.times}
@@ -203,11 +214,65 @@ class _Guesser:
         self.notes += [*table.notes, *unknown, *names.told_by_words(self.named)]
         for one in [one for one in columns if one.column in self.data and one.scale != 1.0]:
             self.data[one.column] = self.data[one.column] * one.scale
+            self.sampled[one.column] = self.sampled[one.column] * one.scale
             self.extremes[one.column] = self.extremes[one.column] * one.scale
         if rows < table.rows:
             self.notes.append(f'rate and units are those of the first {rows} of {table.rows} rows')
         self._forget_texts()
         self._forget_speeds()
+
+    def _marks(self, inputs: Sequence[Named]) -> dict[str, dict[str, dict[str, Any]]]:
+        """Return what a map says of the marks of each input: their columns, and cells if clear."""
+        held = self.source.names()
+        first = min((one.column for one in inputs), key=held.index)
+        found: dict[str, dict[str, dict[str, Any]]] = {one.column: {} for one in inputs}
+        pairs = [
+            (one, role, columns)
+            for one in inputs
+            for role in ('valid', *(['backward'] if one.kind == 'speed' else []))
+            if (columns := names.marks_of(role, one, held, first))
+        ]
+        if not pairs:
+            return found
+        read = list(dict.fromkeys([each for one, _, of in pairs for each in (one.column, *of)]))
+        signed, cells = look_at_marks(self.source.blocks(read), read)
+        for one, role, columns in pairs:
+            if role == 'backward' and one.column in signed:
+                continue
+            of = {'valid': valid_cells, 'backward': backward_cells}[role]
+            kept = of(words_of(names.base_of(columns[0])), cells[columns[0]])
+            if kept or kept is None:
+                clear = kept is not None and len(columns) == 1
+                place = {'column': columns[0], 'cells': kept if clear else None}
+                found[one.column][role] = place
+                self.mark_cells[columns[0]] = cells[columns[0]]
+        return found
+
+    def _known_marks(self) -> dict[str, Marks]:
+        """Return the marks that are clear, by the columns of inputs."""
+        return {
+            column: Marks(**{role: Mark(**place) for role, place in places.items()})
+            for column, places in self.marks.items()
+            if places and all(place['cells'] is not None for place in places.values())
+        }
+
+    def _set_marks(self, name: str, kind: str) -> None:
+        """Let the map read an input by its marks, or ask for the cells that mark it."""
+        place = self.used[name][kind]
+        for role, mark in self.marks[place['column']].items():
+            place[role] = dict(mark)
+            if mark['cells'] is not None:
+                self.notes.append(
+                    f'axis {name}: {short(place["column"])} is {role} where '
+                    f'{short(mark["column"])} is {listed(mark["cells"])}'
+                )
+            else:
+                cells = listed(self.mark_cells[mark['column']])
+                self.unstated.append(
+                    f'state axes.{name}.{kind}.{role}.cells in the map: the cells of '
+                    f'{short(mark["column"])} by which {short(place["column"])} is {role}, of '
+                    f'{cells}; or take {role} out of the map'
+                )
 
     def _unnamed(self) -> str:
         """Return in a sentence how a map names the columns of a table without names."""
@@ -246,7 +311,15 @@ class _Guesser:
             or one.column in self.head.labelled
             or bool(self._unit_of_program(one))
             or (one is self.named[0] and not one.kind)
+            or self._stands_unnamed(one)
         )
+
+    def _stands_unnamed(self, one: Named) -> bool:
+        """Return True for a column without a name that stands before or behind one of an input."""
+        names, at = self.source.names(), self.source.names().index(one.column)
+        after = [name for name in names[at + 1 :] if not NO_NAME.fullmatch(name)]
+        is_index = at == 0 and after and read_name(after[0]).kind == 'time'
+        return bool(NO_NAME.fullmatch(one.column)) and not is_index
 
     def _unit_of_program(self, one: Named) -> str:
         """Return the unit of a time that the program writes which made the table, or nothing."""
@@ -262,7 +335,7 @@ class _Guesser:
             if {'speed', 'position'} <= set(chosen):
                 speed, position = (chosen[kind].column for kind in ('speed', 'position'))
                 extremes = self.extremes[speed], self.extremes[position]
-                if fault := fault_of_speed(*extremes, self.data[position]):
+                if fault := fault_of_speed(*extremes, self.sampled[position]):
                     chosen.pop('speed')
                     self.notes.append(of_slope(name, speed, fault))
 
@@ -272,6 +345,7 @@ class _Guesser:
             self._fill(name, str(time.get('column', '')))
         if not time:
             time = self._time_without_column()
+        self._ask_for_factors()
         self._say_what_is_joined()
         self._say_what_is_left_out(time)
         content: dict[str, Any] = {'log': self.path.name}
@@ -427,20 +501,25 @@ class _Guesser:
         columns = {one.column: self._own_time(time, one) for one in self.times}
         columns = {column: own for column, own in columns.items() if own is not None}
         held = self.source.names()
+        behind = False
         for one in [one for chosen in self.axes.values() for one in chosen.values()]:
             before = (each for each in reversed(held[: held.index(one.column)]) if each in columns)
             column = next(before, time.column)
+            behind |= not set(held[: held.index(one.column)]) & set(columns)
             self.groups[one.column] = column
             if not columns[column]:
                 self.unclear_times.add(one.column)
-        own = [column for column, is_own in columns.items() if is_own]
-        self.idle_times = own if set(own) - set(self.groups.values()) else []
+        own = [column for column, is_own in columns.items() if is_own or NO_NAME.fullmatch(column)]
+        is_idle = bool(set(own) - set(self.groups.values()))
+        self.idle_times = own if is_idle or (behind and len(own) > 1) else []
 
     def _own_time(self, time: Named, one: Named) -> bool | None:
         """Return whether a time is that of other columns, None for a time of none."""
-        if _base(one.column) == _base(time.column) and one.column in self.data:
+        if names.base_of(one.column) == names.base_of(time.column) and one.column in self.data:
             return True
-        if one.kind != 'time' or one.column not in self.data:
+        if one.column not in self.data or not np.ptp(self.extremes[one.column]):
+            return None
+        if one.kind != 'time' and not self._stands_unnamed(one):
             return None
         values, main = self.data[one.column], self.data[time.column]
         if self._is(estimates.is_of_days, one) or self._fault(one, values):
@@ -453,7 +532,10 @@ class _Guesser:
             one.column in self.timed
         )
         factors = [SCALES[unit][0] if all(units) else 1.0 for unit in units]
-        return is_own_time(main * factors[0], values * factors[1], is_alike=is_alike)
+        own = is_own_time(main * factors[0], values * factors[1], is_alike=is_alike)
+        if own is None and NO_NAME.fullmatch(one.column) and (main != values).any():
+            return False  # no name tells that these are the times of the same rows
+        return own
 
     def _set_epoch(self, why: str, *, since: float | None = None) -> None:
         """State the time of the first row by the head or the name of the file, or assume one."""
@@ -590,10 +672,16 @@ class _Guesser:
             if kind in chosen and self._is_used(chosen[kind])
         }
         self._forget_unitless(name)
-        self.ways[name] = self._way_per_speed(name)
+        way = self._way_per_speed(name)
+        self.ways[name] = abs(way)
         self._compare(name)
+        if way < 0.0 and 'speed' in used:
+            used['speed']['scale'] = None
+            columns = (used[kind]['column'] for kind in MOTION)
+            self.unstated.append(unclear_direction(name, *columns))
         for kind in used:
             self._set_unit(name, kind)
+            self._set_marks(name, kind)
             self._set_magnitude(name, kind)
             group = self.groups.get(used[kind]['column'], time)
             used[kind] |= {'time': group} if group != time else {}
@@ -617,14 +705,27 @@ class _Guesser:
             unit = self._unit(name, 'speed')
             self.notes += estimates.oddities(name, speeds, unit, conversions.LINEAR_SPEED_UNITS)
         self._assume_direction(name)
+        self._ask_for_gaps(name)
         self._ask_for_columns(name)
+
+    def _ask_for_gaps(self, name: str) -> None:
+        """Let the map say whether values stay in gaps, where the speed is the same after them."""
+        used = self.used[name]
+        if 'speed' not in used or self.clock is None:
+            return
+        column = used['speed']['column']
+        if not stays_in_gaps(self._clock(column), self.data[column]):
+            return
+        for kind in [kind for kind in ('speed', 'load', *MOTOR) if 'column' in used.get(kind, {})]:
+            used[kind]['hold'] = None
+        self.unstated.append(unclear_gaps(name, 'speed', column))
 
     def _assume_direction(self, name: str) -> None:
         """Assume of a speed of one sign without a position that it is of one direction."""
         speed = self.used[name].get('speed')
         if speed and 'position' not in self.used[name]:
             least, most = self.extremes[speed['column']]
-            if least * most >= 0.0 and most > least and 'magnitude' not in speed:
+            if least * most >= 0.0 and most > least and not {'magnitude', 'backward'} & set(speed):
                 self._assume(
                     f'{name}.speed.magnitude',
                     False,
@@ -660,7 +761,7 @@ class _Guesser:
                 f'time of {column}: the order of columns does not tell'
             )
             return
-        if not own or _base(own) == _base(time):
+        if not own or names.base_of(own) == names.base_of(time):
             return
         if column not in self.unclear_times:
             self.notes.append(
@@ -737,10 +838,10 @@ class _Guesser:
     def _set_magnitude(self, name: str, kind: str) -> None:
         """Say of a column of one sign whether it holds amounts, or let the map say it."""
         chosen, place = self.axes[name], self.used[name][kind]
-        if kind not in SIGNED:
+        if kind not in SIGNED or 'backward' in place:
             return
         data = {
-            each: self._places(self.used[name][each]['column'], chosen[each].unit)
+            each: self._places(self.used[name][each]['column'], chosen[each].unit, self.sampled)
             for each in (*MOTION, *SIGNED)
             if each in self.used[name]
         }
@@ -830,7 +931,7 @@ class _Guesser:
         clocks = [self._clock(column) for column in (position, speed)]
         if not all(map(len, clocks)):
             return math.nan
-        places = self._places(position, self.axes[name]['position'].unit)
+        places = self._places(position, self.axes[name]['position'].unit, self.data)
         return estimates.way_per_speed((clocks[0], places), (clocks[1], self.data[speed]))
 
     def _compare(self, name: str) -> None:
@@ -912,12 +1013,12 @@ class _Guesser:
             return times[0] + np.arange(len(times)) * _period(times)
         return times
 
-    def _places(self, column: str, unit: str) -> Array:
+    def _places(self, column: str, unit: str, rows: Mapping[str, Array]) -> Array:
         """Return positions, whole turns counted where they are those of a scale of one turn."""
         turn = TURN / conversions.ROTARY_POSITION_UNITS.get(unit, math.nan)
         if estimates.is_within_turn(self.extremes[column], turn):
-            return estimates.Turns(turn).counted(self.data[column])
-        return self.data[column]
+            return estimates.Turns(turn).counted(rows[column])
+        return rows[column]
 
     def _set_oil(self, name: str, place: dict[str, Any]) -> None:
         """Say of a temperature that does not say so that it is taken for that of the oil."""
@@ -961,6 +1062,21 @@ class _Guesser:
             f'{self.axes[name][kind].column} is in % of it, and it is on the plate of the motor'
         )
 
+    def _ask_for_factors(self) -> None:
+        """Let the map say what scales the columns of a head that states factors."""
+        if not self.head.factors:
+            return
+        self.unstated.append(unclear_factors(self.head.factors))
+        for name, used in self.used.items():
+            for kind in filter(used.__contains__, INPUTS):
+                if 'column' in used[kind]:
+                    if scale := used[kind].get('scale'):
+                        self.unstated.append(
+                            f'axes.{name}.{kind}.scale is times {scale:g}, for the unit of '
+                            f'{used[kind]["column"]}'
+                        )
+                    used[kind]['scale'] = None
+
     def _say_what_is_joined(self) -> None:
         """Say of signals that hold words such as NaN in the rows of each other what to write."""
         unknown = {
@@ -986,7 +1102,7 @@ class _Guesser:
             if kind in axis
         }
         used |= {entry['value'] for entry in self.assumed.values()} | set(time.values())
-        used |= set(self.groups.values())
+        used |= set(self.groups.values()) | set(self.mark_cells)
         self.notes += names.left_out([one for one in self.named if one.column not in used])
 
 
@@ -994,11 +1110,6 @@ class _Guesser:
 def _usual_lead() -> float:
     """Return the lead [m] of the screw that is assumed."""
     return Surface.load(find_surface('', SCREW, OIL), screw=SCREW, oil=OIL).lead
-
-
-def _base(column: str) -> str:
-    """Return the name that a column has in the file, where others may have it too."""
-    return re.sub(r'_duplicated_\d+$', '', column)
 
 
 def _period(times: Array) -> float:

@@ -9,10 +9,11 @@ it, rows as wide as the block say something of each column, and narrow ones of t
 """
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 import csv
 import dataclasses
 import functools
+import itertools
 import math
 import re
 
@@ -37,7 +38,8 @@ SEPARATORS = (';', '\t', '|', ',', BLANKS)
 COMMENTS = ('#', '%', '//')
 COMMENT = '#'
 NUMBER = re.compile(
-    r"[-+]?(?:\d+|[1-9]\d{0,2}(?:[ '’\xa0\u202f]\d{3})+)?(?:[.,]\d+)*[.,]?(?:[eE][-+]?\d+)?\s*%?"
+    r"(?:[-+\u2212\u2013] *)?(?:\d+|[1-9]\d{0,2}(?:[ '’\xa0\u202f]\d{3})+)?(?:[.,]\d+)*[.,]?"
+    r'(?:[eE][-+]?\d+)?\s*%?'
 )
 TIME = re.compile(
     r'(?:\w{2,9}\.?,? )?(?=.*\d)(?:\d{1,4}[-./ ](?:\d{1,2}|\w{3,9}\.?)[-./ ]\d{1,4}|\w{3,9}\.? '
@@ -49,12 +51,17 @@ NO_NUMBER = frozenset(
     {'nan', 'n/a', 'na', 'null', 'none', 'inf', '-inf', '-nan', '#n/a', '--', '-'}
 )
 """Cells that stand for a number that is not known."""
+BARE_FACTOR = re.compile(r'10*(?:[.,]0+)?|0?[.,]0*1|1(?:[.,]0+)?e[-+]?\d+', re.I)
+"""A factor of a time, where a row of factors says no more."""
+USUAL = 0.5, 2.0  # times the usual step, within which a time goes on
 FACTOR = re.compile(r'(scale|scaling|scale ?factor|gain|offset|faktor|skalierung)s?\W*$')
 MOSTLY = 0.8
 SURE = 0.7  # weight of blanks, which stand in texts and dates as well
 FULL = 0.5  # of the cells of the fullest row: emptier ones belong to no table
 FOLLOWING = 12  # rows that show whether a block begins
 UNNAMED = 'column {}'
+NO_NAME = re.compile(r'column \d+|Unnamed: \d+')
+"""Names that are given to columns without one, here and by pandas."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -222,6 +229,7 @@ class _Block:
             self.width -= 1  # a sign at the end of each line parts nothing
         fits = {at for at in self.data if self._fits(kinds[at])}
         self.begin = self._begin(kinds, fits)
+        self.begin += self._bare_factors()
         self.score = self._score(kinds, [at for at in fits if at >= self.begin])
 
     def _fits(self, kinds: Sequence[str]) -> bool:
@@ -244,12 +252,42 @@ class _Block:
                 return at
         return len(self.rows)
 
+    def _bare_factors(self) -> int:
+        """Return how many rows at the begin are factors and offsets: no time goes on with them."""
+        rows = [row for row in self.rows[self.begin :][: FOLLOWING + 2] if len(row) == self.width]
+        columns = list(zip(*rows, strict=True))
+        if any(map(_goes_on, columns)):
+            return 0
+        for count in (2, 1):
+            long = [cells for cells in columns if len(cells) >= count + FOLLOWING // 2]
+            time = next((cells for cells in long if _goes_on(cells[count:])), None)
+            if time and BARE_FACTOR.fullmatch(time[0]) and not _goes_on(time[count - 1 :]):
+                return count
+        return 0
+
     def _score(self, kinds: Sequence[Sequence[str]], rows: Sequence[int]) -> float:
         numbers = sum(kinds[at].count('n') for at in rows)
         cells = sum(len(kinds[at]) - kinds[at].count('-') for at in rows)
         alone = 0.5 if self.width < 2 else 1.0
         alone *= SURE if self.separator == BLANKS else 1.0
         return len(rows) * alone * numbers / cells if cells else 0.0
+
+
+def _number(cell: str) -> float:
+    try:
+        return float(cell.replace(',', '.'))
+    except ValueError:
+        return math.nan
+
+
+def _goes_on(cells: Sequence[str]) -> bool:
+    """Return True if cells are times that rise evenly, or all dates."""
+    times = [*map(_number, cells)]
+    if any(map(math.isnan, times)) or len(times) < 2:
+        return all(TIME.fullmatch(one) and not NUMBER.fullmatch(one) for one in cells)
+    steps = sorted(later - before for before, later in zip(times, times[1:]))
+    least, most = (part * steps[len(steps) // 2] for part in USUAL)
+    return least > 0.0 and least <= steps[0] and steps[-1] <= most
 
 
 def _is_data(kinds: Sequence[str]) -> bool:
@@ -378,7 +416,18 @@ class _Above:
             )
             if match and not all(plain.fullmatch(one.strip()) for one in numbers):
                 return ' '.join(filter(None, row))
-        return ''
+        return next((' '.join(row) for row in self._rows_of_factors()), '')
+
+    def _rows_of_factors(self) -> Iterator[list[str]]:
+        """Yield rows of numbers below the names that are neither 1, 0, nor those of columns."""
+        below = itertools.dropwhile(lambda one: not _known(one[1]), self.wide)
+        for _, row in below:
+            if len(row) == self.width and all(_kind(cell) == 'n' for cell in row):
+                numbers = {*map(_number, row)}
+                first = int(row[0]) if row[0] in ('0', '1') else math.nan
+                numbered = [float(first + at) for at in range(self.width)]
+                if numbers - {1.0} and numbers - {0.0} and [*map(_number, row)] != numbered:
+                    yield row
 
     def _surplus(self, first: int, names: int) -> str:
         begin = self.block.begin

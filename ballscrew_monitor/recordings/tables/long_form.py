@@ -18,9 +18,10 @@ import statistics
 
 from ballscrew_monitor.recordings.tables.cells import Unreadable
 from ballscrew_monitor.recordings.tables.heads import NO_NUMBER, NUMBER, TIME, unlike
+from ballscrew_monitor.recordings.tables.marks import STATUS, valid_cells
 from ballscrew_monitor.recordings.tables.names import read_name
-from ballscrew_monitor.recordings.tables.unit_names import BRACKETS, is_unit
-from ballscrew_monitor.recordings.words import short
+from ballscrew_monitor.recordings.tables.unit_names import BRACKETS, is_unit, words_of
+from ballscrew_monitor.recordings.words import listed, short
 import polars as pl
 from surrogate import limits
 
@@ -42,20 +43,14 @@ ROLES = {
     ),
     'value': frozenset('value varvalue val wert messwert istwert datavalue'.split()),
     'unit': frozenset('unit units einheit uom engunits engineeringunits'.split()),
-    'quality': frozenset('quality status validity state qualität qualitaet'.split()),
+    'quality': frozenset(
+        'quality status validity valid state qualität qualitaet statuscode qualitycode opcquality '
+        'opcstatus opcuastatus isgood isbad ok'.split()
+    ),
 }
 """Words over the columns of a table with a value a line, without blanks and signs."""
 TIMES = re.compile('time|zeit|date|datum|stamp', re.I)
 AXIS = re.compile('axis|achse|joint|gelenk', re.I)
-GOOD = re.compile(r'(?i:good|ok|valid|gut|gültig|gueltig)(?![^\W_])|Good(?=[A-Z])')
-BAD = frozenset(
-    'bad invalid uncertain questionable stale nodata timeout commfail commfailure notconnected '
-    'schlecht ungültig ungueltig unsicher'.split()
-)
-"""Words of a quality by which a value is not known, without blanks and signs."""
-GOOD_BYTE = 0x80  # set in a quality of OPC (0xC0) and of PROFIBUS (0x80) that is good
-BAD_STATUS = 0xC000_0000  # bits of a status of OPC UA, none of which is set in a good one
-IN_PER_CENT = frozenset({0, 100})  # of the samples that are good
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -162,6 +157,9 @@ def _form(lines: Sequence[str], separator: str) -> LongForm | None:
     if not {'name', 'value'} <= set(roles) or not _are_signals(columns[roles['name']]):
         return None
     names = rows[first] if header else [''] * width
+    for at, cells in enumerate(columns):
+        if all(map(STATUS.fullmatch, cells)):
+            roles.setdefault('quality', at)
     times = _times(columns, names, set(roles.values()))
     if not times:
         return None
@@ -305,42 +303,16 @@ def _values(cells: pl.DataFrame, form: LongForm) -> pl.Expr:
     value = pl.col(f'{form.value}')
     if form.quality < 0:
         return value
-    bad = bad_qualities(cells[f'{form.quality}'].drop_nulls().unique().to_list())
+    name, held = form.names[form.quality], cells[f'{form.quality}'].drop_nulls().unique().to_list()
+    valid = valid_cells(words_of(name), held)
+    if valid is None:
+        raise Unreadable(
+            f'column {short(repr(name))} holds {listed(sorted(held))}, of which nothing tells '
+            'when a value is valid: write Good and Bad in it, or take it out if all are'
+        )
+    bad = [cell for cell in held if cell and cell not in valid] if valid else []
     quality = pl.col(f'{form.quality}')
     return pl.when(quality.is_in(bad)).then(pl.lit('nan')).otherwise(value)
-
-
-def bad_qualities(cells: Sequence[str]) -> list[str]:
-    """
-    Return those of the qualities of a table by which a value is not known.
-
-    Where some say that a value is good, all others say that it is not. Numbers are a byte of OPC
-    or PROFIBUS, a status of OPC UA, or per cent; others, such as a state of a machine, say nothing
-    of a value.
-
-    """
-    codes = {
-        cell: int(cell, 0) for cell in cells if re.fullmatch(r'0x[\da-fA-F]+|0|[1-9]\d*', cell)
-    }
-    values = {*codes.values()}
-    words = [cell for cell in cells if cell and cell not in codes]
-    are_words = any(map(GOOD.match, words))
-    if max(values, default=0) > BAD_STATUS >> 2:
-        bad = [cell for cell, code in codes.items() if code & BAD_STATUS]
-    elif any(code & GOOD_BYTE for code in values):
-        bad = [cell for cell, code in codes.items() if not code & GOOD_BYTE]
-    elif values == IN_PER_CENT:
-        bad = [cell for cell, code in codes.items() if not code]
-    else:
-        bad = []
-    return [
-        *bad,
-        *(
-            cell
-            for cell in words
-            if not GOOD.match(cell) and (are_words or re.sub(r'[\W_]+', '', cell.lower()) in BAD)
-        ),
-    ]
 
 
 def _with_units(names: pl.Series, units: pl.Series) -> pl.Series:

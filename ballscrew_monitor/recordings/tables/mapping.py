@@ -19,6 +19,7 @@ from typing import Any
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.recordings.bag_files import is_table
 from ballscrew_monitor.recordings.log_facts import Assumption
+from ballscrew_monitor.recordings.tables.marks import Mark, Marks, plain_cell
 from ballscrew_monitor.recordings.tables.quantities import (
     column_name,
     INPUTS,
@@ -92,6 +93,12 @@ PLACES = {
     'AXIS.current': 'column of the motor current, or % of the rated one',
     'AXIS.torque.magnitude': '`true` for amounts without a sign, which get that of the motion; '
     'also for `current`; needed only if the log does not show it',
+    'AXIS.QUANTITY.valid': '`{column: ..., cells: [...]}`: column of qualities, and those of its '
+    'cells in whose rows the quantity is valid; in others it is not known',
+    'AXIS.speed.backward': '`{column: ..., cells: [...]}`: column of directions, and those of its '
+    'cells in whose rows the speed gets a minus',
+    'AXIS.QUANTITY.hold': '`true` for values that were written when they changed: each stays '
+    'until the next; `false` if nothing is known in gaps',
     'AXIS.load.magnitude': '`false` for a force with a sign, also for `speed`; needed only if the '
     'log does not show it',
     'AXIS.temperature': 'column of the oil temperature',
@@ -123,7 +130,9 @@ class Column:
     """
     A column: its name, its unit after factor and offset, and that of its time, if its own.
 
-    `magnitude` says whether it holds amounts without a sign, None where that is not said.
+    `magnitude` says whether it holds amounts without a sign, None where that is not said; `marks`
+    are the columns that say where it is valid, and where it goes backward; `hold` whether a value
+    stays until the next one is written, None where that is not said.
 
     """
 
@@ -133,6 +142,8 @@ class Column:
     offset: float = 0.0
     time: str = ''
     magnitude: bool | None = None
+    marks: Marks = Marks()
+    hold: bool | None = None
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -213,6 +224,12 @@ class TableMap:
         """Return the names of all columns that are read."""
         chosen = [column.name for axis in self.axes for column in axis.columns.values()]
         return list(dict.fromkeys([*self.time_columns, *chosen]))
+
+    @property
+    def marks(self) -> dict[str, Marks]:
+        """Return what marks the values of columns, by their names."""
+        chosen = [column for axis in self.axes for column in axis.columns.values()]
+        return {column.name: column.marks for column in chosen if column.marks != Marks()}
 
     @property
     def time_columns(self) -> list[str]:
@@ -371,6 +388,22 @@ class _Part:
             raise InputError(f'{self._prefix}.{name} is {_said(value)}, it must be true or false')
         return value
 
+    def mark(self, role: str) -> Mark | None:
+        """Return the column that marks values, and its cells that do so."""
+        column, cells = self.text(f'{role}.column'), self.take(f'{role}.cells', [])
+        cells = cells if isinstance(cells, list) else [cells]
+        if column and not all(isinstance(one, str | int | float) for one in cells):
+            raise InputError(
+                f'{self._prefix}.{role}.cells is {_said(cells[0])}, it must be a list of cells of '
+                f'{column}'
+            )
+        plain = tuple(map(plain_cell, cells))
+        if bool(column) != bool(plain):
+            raise InputError(
+                f'{self._prefix}.{role} must name a column and those of its cells that count'
+            )
+        return Mark(column=column_name(column), cells=plain) if column else None
+
     def column(self, kind: str, *, at: str = '') -> Column | None:
         """Return the column of a kind of quantity, `at` its place unless that is its name."""
         part = self if at else _Part(f'{self._prefix}.{kind}', self._values)
@@ -382,6 +415,11 @@ class _Part:
                 f'{part._prefix}.magnitude is true, it must be false: amounts of a {NAMES[kind]} '
                 'cannot be judged, name another column or none'
             )
+        marks = Marks(
+            valid=None if at else part.mark('valid'),
+            backward=part.mark('backward') if kind == 'speed' else None,
+        )
+        hold = None if at else part.flag('hold', None)
         numbers = [part.take(key, default) for key, default in (('scale', 1.0), ('offset', 0.0))]
         if name and not (isinstance(unit, str) and unit in units):
             found = 'missing' if unit is None else repr(unit)
@@ -401,6 +439,8 @@ class _Part:
             offset=offset,
             time=column_name(time),
             magnitude=magnitude,
+            marks=marks,
+            hold=hold,
         )
 
 

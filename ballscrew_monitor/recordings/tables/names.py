@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 import dataclasses
 import re
 
+from ballscrew_monitor.recordings.tables import marks
 from ballscrew_monitor.recordings.tables.quantities import INPUTS, MOTION, RATED, UNITS
 from ballscrew_monitor.recordings.tables.unit_names import (
     BRACKETS,
@@ -46,7 +47,7 @@ OTHERS = frozenset(
     'simulated estimated clamping '
     'program sequence number line block inertia bus count index status limit percent pct '
     'beschleunigung ruck spannung leistung fehler abweichung programm satz zeile nummer'.split()
-)
+).union(marks.WORDS)
 ELSEWHERE = frozenset(
     'motor drive ambient cabinet winding room air coolant antrieb umgebung wicklung luft'.split()
 )
@@ -57,6 +58,7 @@ WANTED = frozenset(
 )
 QUALIFIERS = frozenset('filtered smoothed mean average avg rms value wert'.split())
 PROCESSED = frozenset('output raw'.split())
+OF_A_DIAGRAM = AXIS | {'value', 'values', 'wert', 'werte'}
 OF_THE_SCREW = frozenset('oil nut screw lubricant ballscrew öl oel mutter'.split())
 ENCODERS = frozenset(
     'encoder enc scale glass linear direct indirect motor messsystem maßstab massstab'.split()
@@ -136,6 +138,8 @@ def read_name(column: str, text: str = '') -> Named:
     if place == 'axis' and not kind and not OTHERS & set(words):
         left = set(words_without_unit(told, '')) - {axis, axis[:1], axis[1:]} - MEASURED - WANTED
         kind = SHORT.get(min(left), '') if len(left - AXIS) == 1 else ''
+    if place == 'axis' and not kind and _is_of_a_diagram(told, words):
+        place, axis = 'machine', ''
     if not kind and not OTHERS & set(words):
         kind = _kind_by_unit(column, place)
         rank += 0 if is_of_the_screw(column) else BY_UNIT
@@ -151,7 +155,8 @@ def read_name(column: str, text: str = '') -> Named:
         if kind == 'torque' and not unit and BRACKETS.search(column):
             unit = unit_of(column, other)
             kind = other if unit else kind
-    if kind in WITH_SIGN and (AMOUNTS & set(words) or BARS.search(column)):
+    in_brackets = words_of(' '.join(BRACKETS.findall(column)))
+    if kind in WITH_SIGN and (AMOUNTS & {*words, *in_brackets} or BARS.search(column)):
         kind = ''
     # In another unit than those of the quantity it may be another quantity.
     if unknown_unit(column) and not unit:
@@ -166,6 +171,12 @@ def read_name(column: str, text: str = '') -> Named:
         scale=scale,
         doubtful=doubtful,
     )
+
+
+def _is_of_a_diagram(told: str, words: Sequence[str]) -> bool:
+    """Return True for a time that is named as the axis of a diagram, such as X-Axis [ms]."""
+    left = [word for word in words if not word.isdigit() and word not in LINEAR | OF_A_DIAGRAM]
+    return not left and unit_of(told, 'time') in TIMES_BY_UNIT
 
 
 def _is_part_of_the_rated_torque(column: str, words: Sequence[str]) -> bool:
@@ -319,6 +330,36 @@ def _likelihood(found: Sequence[Named]) -> Callable[[Named], tuple[bool, int, in
         for kind in {one.kind for one in found}
     }
     return lambda one: (one.place != 'axis', -one.rank, len(words[one.column] - common[one.kind]))
+
+
+def base_of(column: str) -> str:
+    """Return the name that a column has in the file, where others may have it too."""
+    return re.sub(r'_duplicated_\d+$', '', column)
+
+
+def marks_of(role: str, one: Named, columns: Sequence[str], first: str) -> list[str]:
+    """
+    Return the columns of a table that mark the values of an input as `valid` or `backward`.
+
+    Words beside those of the mark are of its input. Where several have none, each stands behind
+    its input, unless one stands before the `first` of all: then these are unclear.
+
+    """
+    table = marks.VALID if role == 'valid' else marks.BACKWARD
+    known = frozenset[str]().union(*table.values())
+    words = {column: {*words_of(base_of(column))} for column in columns}
+    bases = {
+        column: words[column] - known - marks.DULL
+        for column in columns
+        if known & words[column] and not BRACKETS.search(column)
+    }
+    own = {*words_of(one.column), one.axis, one.axis[:1], *KINDS.get(one.kind, ())}
+    if named := [column for column, base in bases.items() if base and base <= own]:
+        return named
+    bare = [column for column, base in bases.items() if not base]
+    if len(bare) < 2 or columns.index(bare[0]) < columns.index(first):
+        return bare
+    return [column for column in columns[columns.index(one.column) + 1 :][:1] if column in bare]
 
 
 def unknown_units(named: Sequence[Named]) -> list[str]:

@@ -18,6 +18,7 @@ from typing import Any
 from ballscrew_monitor.recordings.tables import heads
 from ballscrew_monitor.recordings.tables.cells import Array, Cells, empties, Reading
 from ballscrew_monitor.recordings.tables.clocks import moments_of
+from ballscrew_monitor.recordings.tables.marks import Marks
 from ballscrew_monitor.recordings.tables.quantities import Layout, OTHER_SIGN
 from ballscrew_monitor.recordings.tables.signs import decide, Decision
 from ballscrew_monitor.recordings.tables.sources import Source, source_of
@@ -28,9 +29,38 @@ import polars as pl
 from surrogate.files import InputError
 
 SHORT = 0.05  # of the rows, at most, that may be left out as they hold too few cells
+PIECE, MOST_ROWS = 2048, 150_000  # rows of a piece of a sample, and of all of its pieces
 WORD, ROW = r'^\s*"?[\[(]?\p{L}', '\0row'
 SURE_BETWEEN = ('', ',')
 """Separators of cells whose sign is decimal if the log does not show the other one."""
+
+
+class Sample:
+    """Pieces of the rows of a table at even distances, all of the rows if they are few."""
+
+    def __init__(self) -> None:
+        """Begin with no row."""
+        self._every, self._number, self._rows = 1, 0, 0
+        self._pieces: list[tuple[int, dict[str, pl.Series]]] = []
+
+    def add(self, block: pl.DataFrame) -> None:
+        """Take every so many pieces of a block, and fewer as the table is longer."""
+        for piece in block.iter_slices(PIECE):
+            if self._number % self._every == 0:
+                # A slice would keep the whole block in memory.
+                columns = {one.name: pl.Series(one.to_list(), dtype=one.dtype) for one in piece}
+                self._pieces.append((self._number, columns))
+                self._rows += piece.height
+            self._number += 1
+            if self._rows > MOST_ROWS:
+                self._every *= 2
+                self._pieces = [one for one in self._pieces if one[0] % self._every == 0]
+                self._rows = sum(len(next(iter(columns.values()))) for _, columns in self._pieces)
+
+    def numbers(self, name: str, reading: Reading) -> Array:
+        """Return the numbers of a column."""
+        pieces = [reading.numbers(columns[name]) for _, columns in self._pieces]
+        return np.concatenate(pieces) if pieces else np.zeros(0)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -40,7 +70,8 @@ class Table:
 
     `notes` says in a sentence each what could not be read; `left_out` says why of columns;
     `doubts` says of numbers what else they may be, by the decimal sign that they would have then,
-    and of dates by the word `order`; `decision` is the decimal sign of the table.
+    and of dates by the word `order`; `decision` is the decimal sign of the table; `sample` spans
+    it.
 
     """
 
@@ -52,6 +83,7 @@ class Table:
     doubts: Mapping[str, str]
     decision: Decision
     source: Source
+    sample: Sample
 
     @property
     def first_row(self) -> int:
@@ -76,6 +108,10 @@ class Table:
     def _types(self, names: Collection[str]) -> dict[str, Any]:
         """Return the types of those columns whose cells are all plain numbers."""
         return {name: kind for name in names if (kind := self.readings[name].plain) is not None}
+
+    def sampled(self, name: str) -> Array:
+        """Return a column in rows that span the table, in pieces of rows in a row."""
+        return self.sample.numbers(name, self.readings[name])
 
     def head(self, most: int) -> dict[str, Array]:
         """Return all columns, `most` of their rows."""
@@ -105,17 +141,20 @@ def open_table(
     decimal: str = '',
     order: str = '',
     optional: Collection[str] = (),
+    marks: Mapping[str, Marks] | None = None,
     shown: Shown = shown_progress,
 ) -> Table:
     """
-    Look through the columns `names` of a log, and show how far that is.
+    Look through the columns `names` of a log by the `marks` of some, and show how far that is.
 
     Raises InputError when one is missing, holds no number, or holds numbers that may be others
     unless the `decimal` sign is stated; an `optional` one without a number is left out.
 
     """
     source = source_of(path, layout, sheet)
-    _check_names(source, names, layout)
+    of_marks = [one.column for each in (marks or {}).values() for one in each.held]
+    _check_names(source, [*names, *of_marks], layout)
+    source = source.marked(marks or {})
     table = look_through(
         source, names, decimal=decimal, order=order, optional=optional, shown=shown
     )
@@ -138,7 +177,7 @@ def look_through(
     found = {
         name: Cells(source.path, name, first_row=source.head.first, order=order) for name in names
     }
-    rows, types = 0, dict[str, Any]()
+    rows, types, sample = 0, dict[str, Any](), Sample()
     with shown(source.rows, 'rows looked through') as show:
         for block in source.blocks(list(found), types):
             _check_names_within(source, block, source.head.first + rows)
@@ -150,6 +189,7 @@ def look_through(
                     types[name] = cells.plain
                 if name in left_out or types[name] is None:
                     types.pop(name, None)
+            sample.add(block)
             rows += block.height
             show(rows / source.rows)
     if not rows:
@@ -181,6 +221,7 @@ def look_through(
         doubts=doubts,
         decision=decision,
         source=source,
+        sample=sample,
     )
 
 

@@ -15,7 +15,13 @@ from pathlib import Path
 
 from ballscrew_monitor.core import conversions
 from ballscrew_monitor.core.conversions import SECOND
-from ballscrew_monitor.recordings.tables.amounts import are_amounts, fault_of_slope, fault_of_speed
+from ballscrew_monitor.recordings.tables.amounts import (
+    are_amounts,
+    fault_of_slope,
+    fault_of_speed,
+    opposes,
+    stays_in_gaps,
+)
 from ballscrew_monitor.recordings.tables.cells import Array
 from ballscrew_monitor.recordings.tables.dates import dated
 from ballscrew_monitor.recordings.tables.estimates import is_within_turn, NEAR, Turns
@@ -34,7 +40,7 @@ from surrogate.units import TURN
 BETWEEN = 2.0  # [s] between runs, at least: longer than a sample is fresh
 LONG_GAP = 20.0  # times the usual time between rows, the same
 LONG = 3.0  # times the usual time between rows: across more the speed is not known
-SHOWING = 100_000  # of the first rows, which show whether torques are amounts
+SHOWING = 100_000  # of the first rows, which show whether a position has a slope
 DOUBTFUL = 0.45  # of a turn between rows: noise may make it a motion the other way
 OF_SLOPE = 'the speed is the slope of the position'
 OF_ONE_TURN = (
@@ -184,6 +190,7 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
         decimal=mapping.decimal,
         order=mapping.order,
         optional=columns,
+        marks=mapping.marks,
         shown=shown,
     )
     for name in mapping.time_columns:
@@ -198,12 +205,14 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     held = dataclasses.replace(mapping, axes=tuple(axis for axis, _ in signed))
     times = [Times(table, held, group, shown) for group in groups_of(table, held)]
     _check_magnitudes(path, held, [one.group.columns for one in times])
+    _check_directions(path, held, table, turns)
+    _check_gaps(path, held, table)
     _check_slopes(path, held, table, turns, runs=len(times[0].gate.runs))
     run_begins, run_borders = _place(path, times)
     notes = [note for one in times for note in one.notes()]
     return Series(
         count=sum(one.count for one in times),
-        rows=tuple(table.rows - one.group.holes for one in times),
+        rows=tuple(one.count if one.group.hold else table.rows - one.group.holes for one in times),
         usual_period=max(one.usual_period for one in times if one.count > 1),
         begin=times[0].begin,
         end=max(one.end for one in times),
@@ -228,7 +237,7 @@ def _moving(axis: AxisMap, table: Table) -> tuple[AxisMap, str]:
     if not set(MOTION) <= set(axis.columns):
         return axis, ''
     speed, position = (axis.columns[kind].name for kind in MOTION)
-    places = table.readings[position].extremes, table.head(SHOWING)[position]
+    places = table.readings[position].extremes, table.sampled(position)
     fault = fault_of_speed(table.readings[speed].extremes, *places)
     if not fault:
         return axis, ''
@@ -251,7 +260,7 @@ def _with_sign(
 
     """
     kinds = [kind for kind in SIGNED if kind in axis.columns]
-    data, note = _first_rows(axis, table, turns), ''
+    data, note = _sampled(axis, table, turns), ''
     for kind in kinds:
         column = axis.columns[kind]
         if column.magnitude is None:
@@ -268,13 +277,15 @@ def _with_sign(
     return axis, note
 
 
-def _first_rows(axis: AxisMap, table: Table, turns: Mapping[str, float]) -> dict[str, Array]:
-    """Return the first rows of what has a sign and of the motion, in the units of the map."""
-    columns = {kind: axis.columns[kind] for kind in (*MOTION, *SIGNED) if kind in axis.columns}
-    rows = table.head(SHOWING)
-    for name in {column.name for column in columns.values()} & set(turns):
-        rows[name] = Turns(turns[name]).counted(rows[name])
-    return {kind: line(rows[column.name], column, 1.0) for kind, column in columns.items()}
+def _sampled(axis: AxisMap, table: Table, turns: Mapping[str, float]) -> dict[str, Array]:
+    """Return rows of what has a sign and of the motion that span a log, in units of the map."""
+    data = {}
+    for kind in filter(axis.columns.__contains__, (*MOTION, *SIGNED)):
+        column = axis.columns[kind]
+        values = table.sampled(column.name)
+        counted = Turns(turns[column.name]).counted(values) if column.name in turns else values
+        data[kind] = line(counted, column, 1.0)
+    return data
 
 
 def _motion(axis: AxisMap) -> Column:
@@ -288,14 +299,61 @@ def _check_slopes(
     for axis in mapping.axes:
         if 'speed' in axis.columns:
             continue
-        places = _first_rows(axis, table, turns)['position']
+        column = axis.columns['position'].name
+        places = table.head(SHOWING)[column]
+        places = Turns(turns[column]).counted(places) if column in turns else places
         if fault := fault_of_slope(places, runs):
-            column = axis.columns['position'].name
             raise InputError(
                 f'log {path}: {short(column)} {fault}: its slope is no speed. Name a column of '
                 f'the speed for axes.{axis.name} in the map, or record the position so that its '
                 'cells are empty where it is not new'
             )
+
+
+def _check_directions(
+    path: Path, mapping: TableMap, table: Table, turns: Mapping[str, float]
+) -> None:
+    """Raise InputError for a position that goes the other way than the speed beside it."""
+    for axis in mapping.axes:
+        if not set(MOTION) <= set(axis.columns):
+            continue
+        speed, position = (axis.columns[kind] for kind in MOTION)
+        apart = speed.time != position.time or are_apart(table, speed.name, position.name)
+        data = _sampled(axis, table, turns)
+        if not apart and opposes(data['speed'], data['position']):
+            raise InputError(
+                f'log {path}: {unclear_direction(axis.name, speed.name, position.name)}'
+            )
+
+
+def unclear_direction(axis: str, speed: str, position: str) -> str:
+    """Return what decides which of a speed and a position of other signs is right."""
+    return (
+        f'state axes.{axis}.speed.scale or axes.{axis}.position.scale in the map: '
+        f'{short(position)} moves against {short(speed)}, a scale below 0 turns that one of both '
+        'whose sign is not that of the axis'
+    )
+
+
+def _check_gaps(path: Path, mapping: TableMap, table: Table) -> None:
+    """Raise InputError for a speed that goes on in gaps, of which the map says nothing."""
+    speeds = {axis.name: axis.columns['speed'] for axis in mapping.axes if 'speed' in axis.columns}
+    unsaid = {name: column for name, column in speeds.items() if column.hold is None}
+    if not unsaid or mapping.time is None:
+        return
+    rows = table.head(SHOWING)
+    for name, column in unsaid.items():
+        if stays_in_gaps(rows[column.time or mapping.time.name], rows[column.name]):
+            raise InputError(f'log {path}: {unclear_gaps(name, "speed", column.name)}')
+
+
+def unclear_gaps(axis: str, kind: str, column: str) -> str:
+    """Return what decides whether a value that is the same after a gap has stayed."""
+    return (
+        f'state axes.{axis}.{kind}.hold in the map, true if {short(column)} was written when it '
+        'changed, false if nothing is known in gaps: it is the same before and after gaps, in '
+        'motion'
+    )
 
 
 def _turns_of(axes: Iterable[AxisMap], table: Table) -> Iterator[tuple[str, float]]:
@@ -383,10 +441,15 @@ def _check_factors(path: Path, mapping: TableMap, table: Table) -> None:
     columns = [column for axis in mapping.axes for column in axis.columns.values()]
     factors = table.source.head.factors
     if factors and all(column.scale == 1.0 and column.offset == 0.0 for column in columns):
-        raise InputError(
-            f'log {path}: its head states {short(repr(factors))}: state `scale` and `offset` of '
-            'these columns in the map, or take that row out if the cells hold it'
-        )
+        raise InputError(f'log {path}: {unclear_factors(factors)}')
+
+
+def unclear_factors(factors: str) -> str:
+    """Return what decides by what columns are scaled of which the head states factors."""
+    return (
+        f'its head states {short(repr(factors))}: state `scale` and `offset` of these columns in '
+        'the map, or take that row out if the cells hold it'
+    )
 
 
 def _check_positions(path: Path, mapping: TableMap, table: Table) -> None:

@@ -23,6 +23,16 @@ NAMES = {'.': 'point', ',': 'comma'}
 
 MARKS = r"[ '’\u00a0\u202f\ufffd]"
 """What parts thousands besides a sign: blanks of whatever width, and apostrophes."""
+MINUS, PLUS = '-\u2212\u2013', '+'
+"""Signs before a number; a word processor makes a longer one of a minus."""
+_SIGNED = {sign: rf'^\s*[{marks}]\s*(\d|[.,]\d)' for sign, marks in (('-', MINUS), ('', PLUS))}
+
+
+def with_plain_sign(texts: pl.Series) -> pl.Series:
+    """Return texts without blanks around them, numbers with a plain minus just before them."""
+    for sign, pattern in _SIGNED.items():
+        texts = texts.str.replace(pattern, f'{sign}$1')
+    return texts.str.strip_chars()
 
 
 def thousands(part: str, groups: str = '') -> str:
@@ -31,8 +41,8 @@ def thousands(part: str, groups: str = '') -> str:
 
 
 def are(texts: pl.Series, pattern: str) -> NDArray[np.bool_]:
-    """Return which texts are of a pattern, but for blanks around them and + or - before them."""
-    whole = rf'^\s*[-+]?(?:{pattern})\s*$'
+    """Return which texts are of a pattern, but for blanks around them and a sign before them."""
+    whole = rf'^\s*(?:[{MINUS}{PLUS}]\s*)?(?:{pattern})\s*$'
     return texts.str.contains(whole).fill_null(False).to_numpy()
 
 
@@ -66,9 +76,10 @@ class _Cell:
 
     def number(self, *, decimal: bool, sign: str) -> str:
         """Return the number that the text is if a sign is decimal, or if it parts thousands."""
+        text = with_plain_sign(pl.Series([self.text]))[0]
         if decimal:
-            return f'{float(self.text.replace(sign, ".")):g}'
-        return str(int(self.text.replace(sign, '')))
+            return f'{float(text.replace(sign, ".")):g}'
+        return str(int(text.replace(sign, '')))
 
     def readings(self, sign: str) -> str:
         """Return the numbers that the text may be."""

@@ -21,6 +21,8 @@ from typing import Any, BinaryIO
 from ballscrew_monitor.recordings.tables import foreign, heads
 from ballscrew_monitor.recordings.tables.cells import empties, first_line, readable
 from ballscrew_monitor.recordings.tables.heads import Head, Line
+from ballscrew_monitor.recordings.tables.marked import marked
+from ballscrew_monitor.recordings.tables.marks import Marks
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.workbook import read_sheet
 from ballscrew_monitor.recordings.words import listed, short
@@ -100,6 +102,10 @@ class Source:
     def names(self) -> list[str]:
         """Return the names of all columns."""
         return list(self.head.names)
+
+    def marked(self, marks: Mapping[str, Marks]) -> 'Source':
+        """Return it with the columns that are marked read by their marks."""
+        return dataclasses.replace(self, read=marked(self.read, marks)) if marks else self
 
     def first_rows(self) -> pl.DataFrame:
         """Return the first rows of all columns; raises InputError."""

@@ -25,6 +25,8 @@ Stamps = NDArray[np.int64]
 LATEST = (1 << 31) * SECOND  # [ns] a stamp holds no later time
 WIDTH = 1e-4  # relative, of a bin
 LARGEST = 1e19  # [ns] more than any stamp
+HELD = 1.5  # times the usual time between rows, after which a value that holds is repeated
+MOST_HELD = 1_000_000  # repeated rows in a gap: in a longer one nothing is known
 HUGE_GAP = 100  # times the usual time between rows
 _BINS = 2 + math.ceil(math.log(LARGEST) / math.log1p(WIDTH))
 
@@ -116,7 +118,8 @@ class Group:
     Columns that share their times: their names, and those of the time, that of a date after it.
 
     `hollow` is a column in whose empty cells the others have none either, of `holes` rows; then
-    there is no sample of the group. `is_motion` says whether it holds a speed or position.
+    there is no sample of the group. `is_motion` says whether it holds a speed or position, `hold`
+    whether its values stay until the next ones.
 
     """
 
@@ -125,6 +128,7 @@ class Group:
     hollow: str = ''
     holes: int = 0
     is_motion: bool = True
+    hold: bool = False
 
 
 def groups_of(table: Table, mapping: TableMap) -> list[Group]:
@@ -135,11 +139,12 @@ def groups_of(table: Table, mapping: TableMap) -> list[Group]:
         for kind, column in axis.columns.items()
         if kind in ('speed', 'position')
     }
-    found: dict[tuple[str, tuple[int, int]], list[str]] = {}
+    found: dict[tuple[str, tuple[int, int], bool], list[str]] = {}
     main = mapping.time.name if mapping.time else ''
     for axis in mapping.axes:
         for column in axis.columns.values():
-            key = (column.time or main, table.readings[column.name].holes)
+            holes = table.readings[column.name].holes
+            key = (column.time or main, holes, bool(column.hold))
             found.setdefault(key, []).append(column.name)
     groups = [
         Group(
@@ -148,8 +153,9 @@ def groups_of(table: Table, mapping: TableMap) -> list[Group]:
             hollow=names[0] if holes[0] else '',
             holes=holes[0],
             is_motion=bool(motion & set(names)),
+            hold=hold,
         )
-        for (time, holes), names in found.items()
+        for (time, holes, hold), names in found.items()
     ]
     return sorted(groups, key=lambda group: not group.is_motion)
 
@@ -280,12 +286,13 @@ class Times:
             self._shifts, self.gate.late = dict(zip(rows[1:], offsets[1:], strict=True)), 0
         else:
             self.gate.runs = self.gate.runs[:1]
-        if self._shifts or self._spread:  # else they stay as they were looked through
-            self._course = Course(run_begins)
+        self._run_begins = np.array(run_begins)
+        if self._shifts or self._spread or self.group.hold:  # else they stay as they are
+            self._course, self.count = Course(run_begins), 0
             columns = self.group.time_columns or list(self.group.columns)[:1]
             for _, times, _ in self._placed(columns):
                 self._course.add(times)
-        self._run_begins = np.array(run_begins)
+                self.count += len(times)
         self._late, self._steps = self._course.late, self._course.steps
         self._begin = self.first = self._course.begin
         self.last = self._course.end
@@ -323,7 +330,7 @@ class Times:
     def notes(self) -> list[str]:
         """Return what is odd about the times, a sentence each."""
         found, log = [], f'log {self._table.path}:'
-        if left_out := self._table.rows - self.count - self.group.holes:
+        if left_out := self._table.rows - self.gate.count - self.group.holes:
             found.append(f'{log} {left_out} rows without a time are left out')
         if self.gate.late:
             found.append(
@@ -359,7 +366,32 @@ class Times:
     def _placed(self, names: Collection[str]) -> Iterator[tuple[int, Array, dict[str, Array]]]:
         """Yield blocks as `_told` does, with known times alone, in their runs and spread."""
         told = self._known(names)
-        yield from self._spread.blocks(told) if self._spread else told
+        told = self._spread.blocks(told) if self._spread else told
+        yield from self._held(told) if self.group.hold else told
+
+    def _held(
+        self, told: Iterable[tuple[int, Array, dict[str, Array]]]
+    ) -> Iterator[tuple[int, Array, dict[str, Array]]]:
+        """Yield blocks in which the rows before gaps within a run are repeated."""
+        last = np.zeros(0), dict[str, Array]()
+        usual = self.gate.step
+        for row, times, columns in told:
+            every = np.append(last[0], times)
+            steps = np.diff(every)
+            runs = np.searchsorted(self._run_begins, every, 'right')
+            counts = np.where(steps > HELD * usual, np.ceil(steps / usual - 0.5) - 1, 0)
+            counts = np.where((counts > MOST_HELD) | (np.diff(runs) > 0), 0, counts).astype(int)
+            counts = np.append(counts, 0)
+            each = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts) + 1
+            at = np.append(np.arange(len(every)), np.repeat(np.arange(len(every)), counts))
+            late = np.append(np.zeros(len(every)), each * usual)
+            order = np.argsort(every[at] + late, kind='stable')[len(last[0]) :]
+            values = {
+                name: np.append(last[1].get(name, np.zeros(0)), column)[at][order]
+                for name, column in columns.items()
+            }
+            yield row, (every[at] + late)[order], values
+            last = times[-1:], {name: column[-1:] for name, column in columns.items()}
 
     def _known(self, names: Collection[str]) -> Iterator[tuple[int, Array, dict[str, Array]]]:
         starts = np.array(sorted(self._shifts), dtype=np.int64)

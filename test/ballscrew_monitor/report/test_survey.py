@@ -72,6 +72,15 @@ def test_gaps_are_listed_longest_first_and_are_no_time_of_a_reason(judged):
     assert sum(found.reasons.values()) + found.uncounted == pytest.approx(found.span)
 
 
+def test_the_motion_in_a_gap_between_moving_samples_is_missed(judged):
+    moving, still = judged.rows(0, 10, speed=10.0), judged.rows(111, 10, speed=0.0)
+    again, later = judged.rows(222, 10, speed=10.0), judged.rows(431, 10, speed=-10.0)
+    found = survey_of(moving, still, again, later)
+    assert found.missed == pytest.approx(2.0)
+    assert found.missed_share == pytest.approx(2.0 / 2.27)
+    assert survey_of(moving, still, judged.rows(222, 1, speed=0.0)).missed_share == 0.0
+
+
 def test_pauses_between_runs_are_no_time_and_no_gap(judged):
     surveyor = Surveyor('x', SURFACE, LIMITS, max_gap=GAP)
     for run, begin in enumerate([0, 110, 420]):

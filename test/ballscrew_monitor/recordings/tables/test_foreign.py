@@ -121,6 +121,27 @@ def test_signals_of_a_control_are_those_of_its_axis(name, tmp_path):
     assert content['axes']['x']['current']['column']
 
 
+@pytest.mark.parametrize(
+    ('attributes', 'factors'),
+    [
+        ({'scale_factor': 0.5, 'add_offset': 2.0, '_FillValue': -9.0}, ''),
+        ({'scale': 0.5, 'offset': 0.0}, 'v: scale 0.5'),
+        ({'Gain': 1.0, 'zero_offset': 4}, 'v: zero_offset 4'),
+    ],
+)
+def test_attributes_of_a_dataset_scale_it_by_the_conventions_or_are_named(
+    attributes, factors, tmp_path
+):
+    path = tmp_path / 'log.h5'
+    with h5py.File(path, 'w') as file:
+        file['v'] = np.array([1.0, -9.0, 3.0])
+        file['v'].attrs.update(attributes)
+    signals = foreign.read_signals(path, 'hdf')
+    assert signals.head().factors == factors
+    expected = [1.0, -9.0, 3.0] if factors else [2.5, math.nan, 3.5]
+    np.testing.assert_array_equal(signals.frame['v'], expected)
+
+
 def test_values_on_change_stand_still_between(tmp_path):
     path = tmp_path / 'mill.shdr'
     lines = [f'2025-07-14T11:59:{50 + row / 10:06.3f}Z|Xact|{row}' for row in range(40)]

@@ -5,6 +5,7 @@
 import datetime as dt
 
 from ballscrew_monitor.recordings.tables import guess as guess_module
+from ballscrew_monitor.recordings.tables import read as read_module
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
 from ballscrew_monitor.recordings.tables.series import read_series
@@ -152,7 +153,7 @@ def test_what_cannot_be_told_is_said_or_refused(guessed, refused, says):
 
 def test_of_a_long_log_the_first_rows_tell_the_rate_and_all_the_ranges(guessed, monkeypatch, says):
     monkeypatch.setattr(guess_module, 'NUMBERS', 300)
-    late = np.where(np.arange(200) < 150, 0.0, 1.0)
+    late = np.where(np.arange(200) < 140, 0.0, 1.0)
     made = guessed({'t_s': TIME, 'x_vel_mm_s': late * SPEED, 'x_force_N': late * SPEED})
     assert made.content['axes']['x']['load'] == {'column': 'x_force_N', 'unit': 'N'}
     assert says('rate_units_those') in made.notes
@@ -706,5 +707,100 @@ def test_a_name_of_an_amount_is_no_speed(name, guessed):
     assert 'speed' not in made.content['axes']['x']
 
 
-def test_the_diameter_of_a_lathe_is_no_way_of_its_axis(guessed, refused):
-    refused('column_of_diameter', guessed, {'t_s': TIME, 'X diameter position [mm]': PLACE})
+@pytest.mark.parametrize('name', ['X diameter position [mm]', 'X pos (dia) [mm]'])
+def test_the_diameter_of_a_lathe_is_no_way_of_its_axis(name, guessed, refused):
+    refused('column_of_diameter', guessed, {'t_s': TIME, name: PLACE})
+
+
+def test_a_head_that_scales_its_columns_is_announced_and_asked_for(tmp_path, refused, says):
+    log = tmp_path / 'log.csv'
+    rows = [f'{at / 50:.2f},{SPEED[at]:.3f},{SPEED[at]:.3f}' for at in range(200)]
+    head = ['t,x velocity,x force', 's,cm/s,N', '1,0.5,1']
+    log.write_text('\n'.join([*head, *rows, '']))
+    made = guess(log)
+    assert made.unstated == (says('factors'), says('times_ten'))
+    axes = made.content['axes']['x']
+    assert axes['speed']['scale'] is None
+    assert axes['load']['scale'] is None
+    refused('blank_scale', make_map, made.content)
+    axes['speed']['scale'], axes['load']['scale'] = 5.0, 1.0
+    (rows,) = next(read_series(log, make_map(made.content)).blocks())
+    assert len(rows.stamps) == 200
+    expected = SPEED[50] * 5.0 * 2 * np.pi / 10.0
+    assert rows.columns['x.speed'][50] == pytest.approx(expected, rel=1e-4)
+
+
+SECOND_TIMES = {
+    'of the axis of a diagram': (['Time [ms]', 'v', 'X-Axis [ms]', 'm'], 'read'),
+    'of a letter': (['X [s]', 'v', 'X [ms]', 'm'], 'asked'),
+    'without a name': (['Time [ms]', 'v', '', 'm'], 'asked'),
+    'by pandas': (['Time [ms]', 'v', 'Unnamed: 2', 'm'], 'asked'),
+    'without a name before': (['', 'v', 'Time [ms]', 'm'], 'asked'),
+    'behind': (['v', 'Time A [ms]', 'm', 'Time B [ms]'], 'asked'),
+    'behind, the last without': (['v', 'Time A [ms]', 'm', ''], 'asked'),
+    'behind the first of three': (['p', 'Time A [ms]', 'v', 'Time B [ms]', 'm'], 'asked'),
+}
+
+
+@pytest.mark.parametrize('kind', SECOND_TIMES)
+@pytest.mark.parametrize('late', [2.0, 0.37])
+def test_a_second_time_is_that_of_its_column_or_asked_for(kind, late, tmp_path, refused):
+    heads, outcome = SECOND_TIMES[kind]
+    names = {'v': 'X_vel [mm/s]', 'm': 'X_torque [Nm]', 'p': 'X_pos [mm]'}
+    columns = {'v': SPEED, 'm': SPEED / 50.0, 'p': 100.0 * (1.0 - np.cos(TIME))}
+    stamps = iter([TIME, TIME + late])
+    cells = [columns[one] if one in columns else 1e3 * next(stamps) for one in heads]
+    if heads[0] == 'X [s]':
+        cells[0] = cells[0] / 1e3
+    rows = [';'.join(f'{cell:.4f}' for cell in row) for row in zip(*cells, strict=True)]
+    log = tmp_path / 'log.csv'
+    log.write_text('\n'.join([';'.join(names.get(one, one) for one in heads), *rows, '']))
+    made = guess(log)
+    if outcome == 'asked':
+        refused('blank_own_time', make_map, made.content)
+        return
+    blocks = list(read_series(log, make_map(made.content)).blocks())
+    stamps = [np.concatenate([groups[at].stamps for groups in blocks]) for at in (0, 1)]
+    assert (stamps[1][0] - stamps[0][0]) / 1e9 == pytest.approx(late, abs=1e-6)
+
+
+def test_an_unnamed_index_before_a_time_is_no_second_time(guessed):
+    columns = {'': np.arange(200.0), 't_s': TIME, 'x_vel_mm_s': SPEED, 'x_force_N': SPEED}
+    made = guessed(columns)
+    assert made.content['time'] == {'column': 't_s', 'unit': 's'}
+    assert not made.unstated
+
+
+@pytest.mark.parametrize(('factor', 'unit'), [(1.0, 'mm/s'), (6.0, 'rpm')])
+def test_a_speed_against_its_position_is_asked_for(factor, unit, guessed, refused, says, tmp_path):
+    place = 100.0 * (1.0 - np.cos(TIME))
+    columns = {'t_s': TIME, 'x_pos_mm': place, f'x_vel [{unit}]': -factor * SPEED}
+    made = guessed(columns, form='{:.6g}')
+    assert made.unstated == (says('turned', speed=f'x_vel [{unit}]'),)
+    refused('blank_scale', make_map, made.content)
+    speed = made.content['axes']['x']['speed']
+    for scale in (-1.0, 1.0):
+        speed['scale'] = scale
+        mapping = make_map(made.content)
+        if scale > 0.0:
+            refused('still_turned', read_series, tmp_path / 'log.csv', mapping)
+        else:
+            assert read_series(tmp_path / 'log.csv', mapping).count == 200
+
+
+def test_amounts_that_are_seen_late_are_none_the_less(tmp_path, monkeypatch):
+    """An axis that goes one way for long, and reverses in some of the last rows of the log."""
+    monkeypatch.setattr(read_module, 'MOST_ROWS', 4000)
+    monkeypatch.setattr(read_module, 'PIECE', 100)
+    monkeypatch.setattr(guess_module, 'NUMBERS', 2000)
+    rows = np.arange(30_000)
+    speed = 50.0 * np.abs(np.sin(rows / 150.0)) * np.where(rows > 27_000, -1.0, 1.0)
+    torque = 0.02 * np.abs(speed) + 1.0
+    text = [f'{at / 100:.2f};{v:.3f};{m:.4f}' for at, v, m in zip(rows, speed, torque)]
+    log = tmp_path / 'log.csv'
+    log.write_text('\n'.join(['t [s];x velocity [mm/s];x torque [Nm]', *text, '']))
+    made = guess(log)
+    assert made.content['axes']['x']['torque']['magnitude'] in (True, None)
+    made.content['axes']['x']['torque'].pop('magnitude')
+    series = read_series(log, make_map(made.content)) if made.unstated == () else None
+    assert series is None or series.mapping.axes[0].columns['torque'].magnitude

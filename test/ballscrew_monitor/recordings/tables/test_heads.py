@@ -120,3 +120,29 @@ def test_rows_that_begin_with_an_empty_cell_are_told_from_those_about_columns():
 )
 def test_a_row_that_scales_the_cells_is_known(text, factors):
     assert head_of(text + 9 * '1;2;3\n').factors == factors
+
+
+BARE = ['1,0.5,1', '1;0,5;2,0', '1e-3;0.5;1', '1.0;1;1', '0.001;2;1']
+
+
+@pytest.mark.parametrize('row', BARE)
+@pytest.mark.parametrize('first', [0.0, 2.5, 30.0])
+def test_a_row_of_factors_is_none_of_the_rows_however_it_is_written(row, first):
+    sign = ';' if ';' in row else ','
+    rows = [f'{first + at / 100:.2f}{sign}{at % 7}.5{sign}{at % 5}.5' for at in range(30)]
+    for names in (['t [s],v [mm/s],F [N]'], ['t,v,F', 's,mm/s,N']):
+        heads = [one.replace(',', sign) for one in names]
+        found = head_of('\n'.join([*heads, row, *rows]))
+        assert found.first == len(heads) + 2
+        assert found.factors == ('' if row == '1.0;1;1' else row.replace(sign, ' '))
+        offsets = head_of('\n'.join([*heads, row, sign.join('000'), *rows]))
+        assert offsets.first == len(heads) + (3 if first != 0.01 else 2)
+
+
+@pytest.mark.parametrize('times', [[0, 10, 20], [1, 2, 3], [10, 20, 30], [5, 1000, 1001]])
+def test_first_rows_whose_time_goes_on_are_rows(times):
+    step = times[2] - times[1]
+    times = [*times, *(times[2] + step * at for at in range(1, 30))]
+    rows = [f'{time},{max(at, 1)},{at % 5}' for at, time in enumerate(times)]
+    found = head_of('\n'.join(['t,v,F', *rows]))
+    assert (found.first, found.factors) == (2, '')

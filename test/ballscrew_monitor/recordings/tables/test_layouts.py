@@ -98,6 +98,24 @@ def number(value, digits, sign, part):
     return text.translate(str.maketrans({',': part, '.': sign}))
 
 
+MARKS = {
+    'valid': (lambda column: 'valid', {True: ['1'], False: ['0']}),
+    'quality': (lambda column: f'{column.split(" [")[0]} quality', {True: ['192'], False: ['0']}),
+    'status': (
+        lambda column: f'{column.split(" [")[0]} StatusCode',
+        {True: ['0x00000000'], False: ['0x80000000', '0x80350000']},
+    ),
+    'words': (
+        lambda column: f'{column.split(" [")[0]} Status',
+        {True: ['Good'], False: ['Bad', 'Uncertain']},
+    ),
+    'direction': (lambda column: 'X direction', {True: ['1', '0'], False: ['-1']}),
+}
+"""Columns that mark others: how they are called, and cells of values that are good, and not."""
+BAD_ROWS = range(20, 26)
+SPEED = 'X speed [mm/min]'
+
+
 def layout(draw):
     """Return a drawn layout."""
     sign = draw.choice('.,')
@@ -114,7 +132,19 @@ def layout(draw):
         'quoted': draw.random() < 0.2,
         'line end': draw.choice(['\n', '\r\n']),
         'step': draw.choice([0.01, 0.02, 0.1]),
+        'minus': draw.choice(['-', '-', '- ', '\u2212']),
+        'marks': draw.choice(['', '', *MARKS]),
+        'second time': draw.choice(['as the first', 'as the first', 'unnamed']),
+        'factors': draw.random() < 0.1,
     }
+
+
+def marked(line, marks, good, places):
+    """Mark a row, and put another number into its places where it is bad."""
+    cells = MARKS[marks][1][good]
+    line.append(cells[len(line) % len(cells)])
+    for place in [] if good else places:
+        line[place] = '0'
 
 
 def written(made):
@@ -127,10 +157,14 @@ def written(made):
     }
     force = [(seconds + step / 2, value) for seconds, value in true['X force [N]']]
     own = made['grouping'] in ('groups', 'own rows')
+    in_lines = made['grouping'] == 'a value a line'
+    marks = '' if own or (in_lines and made['marks'] == 'direction') else made['marks']
     true['X force [N]'] = force if own else true['X force [N]']
 
     def cell(column, value):
+        value = abs(value) if (marks, column) == ('direction', SPEED) else value
         text = number(value, FORMS[column], made['sign'], made['part'])
+        text = text.replace('-', made['minus'])
         return f'"{text}"' if made['quoted'] or made['separator'] in text else text
 
     def moment(seconds):
@@ -140,7 +174,8 @@ def written(made):
 
     columns = list(SIGNALS)
     if made['grouping'] == 'groups':
-        names = [name, *columns[:2], name, columns[2]]
+        second = name if made['second time'] == 'as the first' else ''
+        names = [name, *columns[:2], second, columns[2]]
         rows = [
             [
                 moment(true[columns[0]][row][0]),
@@ -164,16 +199,37 @@ def written(made):
             for row in range(ROWS)
             for each in columns
         ]
+        if marks:
+            names.append({'valid': 'Validity', 'status': 'StatusCode'}.get(marks, 'Quality'))
+            for at, line in enumerate(rows):
+                marked(line, marks, at // len(columns) not in BAD_ROWS, [2])
     else:
         names = [name, *columns]
         rows = [
             [moment(row * step), *(cell(each, true[each][row][1]) for each in columns)]
             for row in range(ROWS)
         ]
+        heads = dict.fromkeys(MARKS[marks][0](each) for each in columns) if marks else {}
+        names += heads
+        for row, line in enumerate(rows):
+            for _ in heads:
+                good = row not in BAD_ROWS
+                if marks == 'direction':
+                    good = true[SPEED][row][1] >= 0.0
+                marked(line, marks, good, [] if marks == 'direction' else [1, 2, 3])
+    if marks not in ('', 'direction'):
+        true = {
+            column: [one for row, one in enumerate(samples) if row not in BAD_ROWS]
+            for column, samples in true.items()
+        }
     heads = [names]
     if made['units below']:
         split = [each.partition(' [') for each in names]
         heads = [[each for each, *_ in split], [unit.strip(']') for *_, unit in split]]
+    if made['factors'] and not in_lines:
+        rows.insert(0, ['1', number(0.5, 1, made['sign'], ''), *['1'] * (len(names) - 2)])
+        position = columns[0]
+        true[position] = [(seconds, 0.5 * value) for seconds, value in true[position]]
     lines = [*made['preamble'], *(made['separator'].join(row) for row in [*heads, *rows])]
     return made['line end'].join([*lines, '']), true
 

@@ -6,8 +6,8 @@ import itertools
 import math
 
 from ballscrew_monitor.recordings.tables.guess import guess
-from ballscrew_monitor.recordings.tables.long_form import bad_qualities
 from ballscrew_monitor.recordings.tables.mapping import make_map
+from ballscrew_monitor.recordings.tables.marks import bad_qualities
 from ballscrew_monitor.recordings.tables.series import read_series
 from ballscrew_monitor.recordings.tables.sources import source_of
 from ballscrew_monitor.recordings.tables.times import joined
@@ -154,6 +154,31 @@ def test_a_value_whose_quality_of_opc_is_no_good_is_not_known(tmp_path):
     lines[4] = lines[4].replace(';192', ';0')
     rows = read(tmp_path / 'log.csv', lines)
     assert np.flatnonzero(np.isnan(rows.columns['x.position'])).tolist() == [1]
+
+
+@pytest.mark.parametrize(
+    ('head', 'good', 'bad'),
+    [
+        ('StatusCode', '0x00000000', '0x80000000'),
+        ('StatusCode', 'x00000000', 'x80340000'),
+        ('Some column', '0x00000000', '0x80000000'),
+        ('OPC status', '0', '2147483648'),
+        ('Validity', '1', '0'),
+        ('IsBad', 'false', 'true'),
+    ],
+)
+def test_a_status_is_no_name_of_a_signal(head, good, bad, tmp_path):
+    lines = [f'{lines};{good}' for lines in lines_of(['time', 'name', 'value'])]
+    lines[0] = lines[0].replace(f';{good}', f';{head}')
+    lines[4] = lines[4].replace(f';{good}', f';{bad}')
+    rows = read(tmp_path / 'log.csv', lines)
+    assert np.flatnonzero(np.isnan(rows.columns['x.position'])).tolist() == [1]
+
+
+def test_a_quality_that_no_standard_defines_is_refused(tmp_path, refused):
+    lines = [f'{line};{at % 2}' for at, line in enumerate(lines_of(['time', 'name', 'value']))]
+    lines[0] = f'{lines[0][:-2]};Quality'
+    refused('quality', read, tmp_path / 'log.csv', lines)
 
 
 def test_a_signal_in_two_units_is_refused(tmp_path, refused):

@@ -135,3 +135,24 @@ def test_the_map_of_the_guide_is_one():
     made = make_map(yaml.safe_load(textwrap.dedent('\n'.join(block))))
     assert [axis.name for axis in made.axes] == ['x', 'z']
     assert made.axes[0].load_from == 'current'
+
+
+@pytest.mark.parametrize(
+    ('valid', 'key'),
+    [
+        ({'column': 'q', 'cells': None}, 'blank_cells'),
+        ({'column': 'q', 'cells': []}, 'no_cells'),
+        ({'column': 'q'}, 'no_cells'),
+        ({'cells': [192]}, 'no_cells'),
+        ({'column': 3, 'cells': [192]}, 'no_column'),
+        ({'column': 'q', 'cells': [[1]]}, 'list_cells'),
+        (3, 'no_mark'),
+    ],
+)
+def test_a_mark_is_a_column_and_cells_of_it(valid, key, refused):
+    speed = {'column': 'v', 'unit': 'mm/s', 'valid': {'column': 'q', 'cells': [192, True, 'Ok']}}
+    content = {'time': {'rate_Hz': 10.0}, 'axes': {'x': {'lead_mm': 10.0, 'speed': speed}}}
+    marks = make_map(content).marks['v']
+    assert (marks.valid.column, marks.valid.cells) == ('q', ('192', 'true', 'ok'))
+    speed['valid'] = valid
+    refused(key, make_map, content)

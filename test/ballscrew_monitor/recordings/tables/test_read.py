@@ -6,7 +6,7 @@ import datetime as dt
 from pathlib import Path
 import tempfile
 
-from ballscrew_monitor.recordings.tables import cells, sources
+from ballscrew_monitor.recordings.tables import cells, read, sources
 from ballscrew_monitor.recordings.tables.quantities import Layout
 from ballscrew_monitor.recordings.tables.read import column_names, look_through, open_table
 from hypothesis import given
@@ -302,3 +302,21 @@ def test_cells_of_plain_numbers_are_read_by_type(tmp_path):
     blocks = list(table.source.blocks(['a', 'b'], types))
     assert {tuple(block.dtypes) for block in blocks} == {(pl.Int64, pl.Float64)}
     assert table.readings['b'].extremes.tolist() == [0.25, 199_999.25]
+
+
+@pytest.mark.parametrize('rows', [50, 900, 5000, 40_000])
+@pytest.mark.parametrize('block', [64, 1000])
+def test_a_sample_spans_a_table_in_rows_that_follow_each_other(rows, block, tmp_path, monkeypatch):
+    monkeypatch.setattr(sources, 'BLOCK', block)
+    monkeypatch.setattr(read, 'PIECE', 50)
+    monkeypatch.setattr(read, 'MOST_ROWS', 1000)
+    lines = ''.join(f'{row},{-1 - row if row > rows - 90 else 0.5}\n' for row in range(rows))
+    table = open_table(text_log(tmp_path, f'a,b\n{lines}'), ['a', 'b'])
+    sampled = table.sampled('a')
+    assert len(sampled) == rows if rows <= 1000 else 400 < len(sampled) <= 1050
+    assert sampled[0] == 0
+    assert sampled[-1] > 0.9 * rows
+    steps = np.diff(sampled)
+    assert (steps > 0).all()
+    assert (steps == 1).mean() > 0.95
+    np.testing.assert_array_equal(table.sampled('b') < 0, sampled > rows - 90)

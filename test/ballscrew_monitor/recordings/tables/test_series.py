@@ -272,7 +272,7 @@ def test_large_numbers_beside_good_ones_say_nothing(notes):
     assert not notes(np.where(TIME == TIME[7], 1e80, SPEED), 'mm/s', 1e90 * POSITION)
 
 
-def test_a_gap_noise_and_rest_say_nothing_a_wrong_sign_or_factor_is_told(notes):
+def test_a_gap_noise_and_rest_say_nothing_a_wrong_factor_is_told(notes):
     late = np.where(np.arange(400) < 200, TIME, TIME + 30.0)
     position = np.where(np.arange(400) < 200, POSITION, POSITION + 5e3)
     position[50] = np.nan
@@ -281,8 +281,17 @@ def test_a_gap_noise_and_rest_say_nothing_a_wrong_sign_or_factor_is_told(notes):
     assert not notes(1e3 * noise, 'mm/s')
     assert not notes(0.0 * SPEED, 'mm/s')
     assert not notes(SPEED, 'mm/s', 0.0 * POSITION)
-    assert notes(-SPEED, 'mm/s')[0].endswith('one of both has the wrong sign of its scale')
     assert notes(3.0 * SPEED, 'mm/s')[0].endswith('the time and the lead')
+
+
+@pytest.mark.parametrize('noise', [0.0, 3.0])
+@pytest.mark.parametrize('late', [False, True])
+def test_a_position_that_moves_against_its_speed_is_refused(notes, noise, late, refused):
+    """A run that begins again elsewhere, and noise of a meter, hide no sign."""
+    speed = -SPEED + noise * np.random.default_rng(1).normal(size=400)
+    position = np.where(late & (np.arange(400) > 250), POSITION + 400.0, POSITION)
+    refused('turned', notes, speed, 'mm/s', position)
+    assert not notes(-speed, 'mm/s', POSITION)
 
 
 def test_turns_of_a_position_are_counted(read):
@@ -318,3 +327,47 @@ def test_a_force_and_a_speed_of_one_sign_are_refused_until_the_map_says_that_the
     np.testing.assert_allclose(read(columns, axis).load, columns['f'])
     axis = AXIS | {'torque': {'column': 'm', 'unit': 'N m'}, 'load': {'from': 'torque'}}
     refused('one_sign_of_speed', read, {'t': TIME, 'v': abs(SPEED), 'm': FRICTION}, axis)
+
+
+@pytest.mark.parametrize('step', [0.02, 0.1])
+@pytest.mark.parametrize('runs', [1, 2])
+def test_values_that_were_written_when_they_changed_stay_where_the_map_says_so(
+    step, runs, tmp_path, write_csv, refused, monkeypatch
+):
+    """A profile of even motions: of the plateaus the first row is written alone."""
+    profile = np.interp(np.arange(0, 24, step), [0, 2, 3, 9, 10, 14, 15, 21, 22, 24],
+                        [0, 0, 60, 60, 0, 0, -40, -40, 0, 0])  # fmt: skip
+    seconds = np.arange(len(profile)) * step
+    written = np.append(True, np.diff(profile) != 0.0)
+    columns = {
+        't': np.concatenate([seconds[written]] * runs),
+        'v': np.concatenate([profile[written]] * runs),
+    }
+    monkeypatch.setattr(sources, 'BLOCK', 7)
+    log = write_csv(tmp_path / 'log.csv', columns, form='{:.9g}')
+    axis = {'lead_mm': 10.0, 'speed': {'column': 'v', 'unit': 'mm/s'}}
+    content = {'time': {'column': 't', 'unit': 's', 'epoch': '2000-01-01'}, 'axes': {'x': axis}}
+    refused('gaps', read_series, log, make_map(content))
+    axis['speed']['hold'] = False
+    assert read_series(log, make_map(content)).count == runs * written.sum()
+    axis['speed']['hold'] = True
+    series = read_series(log, make_map(content))
+    rows = [rows for (rows,) in series.blocks()]
+    stamps = np.concatenate([one.stamps for one in rows])
+    speed = np.concatenate([one.columns['x.speed'] for one in rows]) * 10.0 / (2 * np.pi)
+    ends = np.append(np.flatnonzero(np.diff(stamps) > 1.5 * step * 1e9) + 1, len(stamps))
+    assert len(ends) == runs
+    assert series.count == len(stamps) == sum(series.counts)
+    begin = 0
+    for end in ends:
+        passed = (stamps[begin:end] - stamps[begin]) / 1e9
+        true = np.interp(passed, seconds, profile)
+        np.testing.assert_allclose(speed[begin:end], true, atol=1e-6)
+        assert passed[-1] == pytest.approx(seconds[written][-1])
+        begin = end
+
+
+def test_gaps_at_rest_or_between_other_speeds_are_none_of_values_that_stay(read):
+    late = np.where(np.arange(400) < 200, TIME, TIME + 30.0)
+    assert len(read({'t': late, 'v': np.sin(np.arange(400) * np.pi / 200)}).stamps) == 400
+    assert len(read({'t': late, 'v': np.where(late > 20.0, 40.0, -40.0)}).stamps) == 400

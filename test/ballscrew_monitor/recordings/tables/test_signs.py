@@ -214,3 +214,16 @@ def test_one_look_is_enough_for_a_log_that_is_clear(tmp_path, monkeypatch):
     assert not looks
     read_series(log_of(tmp_path, {'v': ['5.400', '5.500'], 'n': ['1', '0.5']}), mapping)
     assert len(looks) == 1
+
+
+@pytest.mark.parametrize('minus', ['-', '- ', '-   ', '\u2212', '\u2212 ', '\u2013'])
+@pytest.mark.parametrize('sign', '.,')
+def test_a_minus_is_one_however_it_is_written(read, minus, sign):
+    texts = [f'{minus}0{sign}800', f'+ 12{sign}5', f'{minus}1{OTHER[sign]}234{sign}5', '+7']
+    values = read({'n': ['1', '2', '3', '4'], 'v': texts})['v']
+    assert values.tolist() == [-0.8, 12.5, -1234.5, 7.0]
+
+
+def test_a_doubtful_number_with_a_long_minus_is_refused(read, refused):
+    refused('long_minus', read, {'n': ['1'], 'v': ['\u22125.400']})
+    assert read({'n': ['1'], 'v': ['\u22125.400']}, decimal=',')['v'].tolist() == [-5400.0]
