@@ -73,7 +73,9 @@ class LivePage {
     this.cards = new Cards([...this.axes.values()], (id) => this.choose(id));
     this.detail = Format.element('div', 'detail');
     const heading = Words.element('h1', 'unseen', 'title');
-    this.element.replaceChildren(heading, this.link, this.cards.element, this.detail, this.player.element);
+    this.element.replaceChildren(
+      heading, this.link, this.cards.element, this.detail, new Fault().element, this.player.element,
+    );
     this.choose(this.axes.has(this.axis?.facts.id) ? this.axis.facts.id : hello.axes[0]?.id);
   }
 
