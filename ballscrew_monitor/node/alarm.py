@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The warning of one axis: its topic, its log, what people do to it; topics that stay."""
 
-from collections import deque
 from collections.abc import Callable, Mapping
 import functools
 from typing import Any
@@ -23,8 +22,6 @@ from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
 from rclpy.publisher import Publisher
-
-MOST_USUAL = 100  # warnings that are known to be usual
 
 
 def quiet_publishers(node: LifecycleNode) -> functools.partial[Any]:
@@ -65,7 +62,6 @@ class Alarm:
         self._node, self._axis, self._publisher = node, axis, publisher
         self._kept, self._record = kept, record
         self.health: Health | None = None  # as it was assessed last
-        self.usual: deque[int] = deque(maxlen=MOST_USUAL)  # numbers of warnings
 
     def publish(self) -> None:
         """Publish the event that is active, or the last one."""
@@ -83,7 +79,7 @@ class Alarm:
     @property
     def is_usual(self) -> bool:
         """Return True if the baseline of the axis already had the last warning."""
-        return self._axis.monitor.memory.event_number in self.usual
+        return self._axis.monitor.memory.event_number in self._axis.monitor.usual
 
     @property
     def advice(self) -> str:
@@ -96,8 +92,10 @@ class Alarm:
         monitor = self._axis.monitor
         memory = monitor.memory
         active, number = memory.event_active, memory.event_number
-        if active and self.health is not None and is_usual(self.health, monitor.event_code, row):
-            self.usual.append(number)
+        place = {'speed': row.speed, 'axial_load': row.axial_load}
+        known = self.health is not None and is_usual(self.health, monitor.event_code, **place)
+        if active and known:
+            monitor.usual.append(number)
         # First: who is killed meanwhile must not have said a number that is not kept.
         kind = Kind.EVENT_BEGIN if active else Kind.EVENT_END
         before = {'freeze_frame': frame} if active else {}
