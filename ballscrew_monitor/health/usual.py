@@ -47,7 +47,12 @@ def _broken(cell: Cell, surface: Surface, limits: Limits) -> list[Code]:
 
 def is_usual(health: Health, code: Code, *, speed: float, axial_load: float) -> bool:
     """Return True if a baseline already had a warning, by speed [rad/s] and axial load [N]."""
+    return warning_at(code, speed=speed, axial_load=axial_load) in health.usual_warnings
+
+
+def warning_at(code: Code, *, speed: float, axial_load: float) -> UsualWarning | None:
+    """Return kind and place of a warning at a speed [rad/s] and a load [N]; None: not known."""
     if not speed or not math.isfinite(speed + axial_load):
-        return False
-    place = speed_band(abs(speed)), load_band(axial_load), 1 if speed > 0.0 else -1
-    return UsualWarning(code, *place) in health.usual_warnings
+        return None
+    way = 1 if speed > 0.0 else -1
+    return UsualWarning(code, speed_band(abs(speed)), load_band(axial_load), way)

@@ -33,7 +33,7 @@ from ballscrew_monitor.report.command import check_most_unjudged, is_bad
 from ballscrew_monitor.report.free_run import FreeRun, identified
 from ballscrew_monitor.report.logs import find_logs, folder_names
 from ballscrew_monitor.report.many_logs import INDEX, LogToReport, report_each
-from ballscrew_monitor.report.overview import LogEntry, overview_page
+from ballscrew_monitor.report.overview import LogEntry, overview_page, with_usual
 from ballscrew_monitor.report.parameters import parameters_for
 from surrogate.datasheet import key_of, read_yaml
 from surrogate.files import canonical_json, InputError, json_text, printable, replace_file
@@ -87,7 +87,7 @@ def check_command(args: argparse.Namespace, nominal: Path) -> int:
         for entry in entries:
             for line in entry.result.lines if entry.result else ():
                 normal = f' Normal? {line.normal}.' if line.normal else ''
-                print(printable(f'{entry.name}:{normal} {line.verdict}'))
+                print(printable(f'{entry.name}:{normal} {line.told}'))
             if entry.result is None:
                 say(f'{entry.name}: {entry.failure}')
         if checked.others:
@@ -158,7 +158,7 @@ def _check(
     _write_maps(logs, args.out)
     runs = list(_free_runs(logs, sheets, args.out)) if sheets else []
     surfaces = _give_surfaces(logs, sheets, runs, args) if sheets else {}
-    entries = _entries(logs, args, nominal)
+    entries = with_usual(_entries(logs, args, nominal))
     checked = Checked(
         sheets=None if sheets is None else (sheets[0].name, sheets[1].name),
         is_oil_known=args.oil is not None or bool(sheets and sheets[1].name != OIL),
@@ -429,7 +429,7 @@ def _record(entries: Sequence[LogEntry], checked: Checked, steps: Sequence[str])
                     line.axis: {
                         'normal': line.normal,
                         'standing': line.standing,
-                        'verdict': line.verdict,
+                        'verdict': line.told,
                         'expected': line.expected,
                         'judged': line.judged,
                         'losses': line.losses,

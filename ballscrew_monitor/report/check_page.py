@@ -146,7 +146,7 @@ def _zone(entries: Sequence[LogEntry]) -> Iterator[Markup]:
         for line in entry.result.lines if entry.result else ():
             said = [f'Normal? {line.normal}.'] if line.normal else []
             parts = [element('p', one) for one in said]
-            parts.append(element('p', f'{entry.name}: {line.verdict}', class_='sentence'))
+            parts.append(element('p', f'{entry.name}: {line.told}', class_='sentence'))
             yield element('div', *parts, class_=f'verdict {line.standing}')
     histories = [
         read_history(one) for entry in entries if entry.result for one in entry.result.histories

@@ -91,7 +91,7 @@ def shares(case: AxisCase, summary: Summary) -> Markup:
     running = summary.running_time
     zone = [
         (summary.optimal_time, 'optimal', 'optimal'),
-        (summary.outside_time, 'outside', 'outside the optimal zone'),
+        *_parts_outside(case, summary),
         (summary.unjudged_time, 'unjudged', 'not judged'),
     ]
     regime = [
@@ -106,6 +106,17 @@ def shares(case: AxisCase, summary: Summary) -> Markup:
         _bar(regime, running, duration),
         *_energy(case, summary),
     )
+
+
+def _parts_outside(case: AxisCase, summary: Summary) -> list[tuple[float, str, str]]:
+    """Return the time surely and perhaps outside, in one where nothing tells how surely."""
+    sure = min(case.surely_outside, summary.outside_time)
+    if math.isnan(sure):
+        return [(summary.outside_time, 'outside', 'outside the optimal zone')]
+    return [
+        (sure, 'outside', 'surely outside the optimal zone'),
+        (summary.outside_time - sure, 'perhaps', 'perhaps outside, within the band of the limit'),
+    ]
 
 
 def _bar(parts: Sequence[tuple[float, str, str]], whole: float, show: Any) -> Markup:

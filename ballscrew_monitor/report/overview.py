@@ -6,10 +6,18 @@ from collections.abc import Iterable, Mapping, Sequence
 import dataclasses
 import datetime
 import math
+from typing import Any
 from urllib.parse import quote
 
+from ballscrew_monitor.health.records import Health
 from ballscrew_monitor.recordings.words import counted, duration, NONE, percent
-from ballscrew_monitor.report.health_history import by_axis, healths, peers_among, read_history
+from ballscrew_monitor.report.health_history import (
+    AxisHistory,
+    by_axis,
+    healths,
+    peers_among,
+    read_history,
+)
 from ballscrew_monitor.report.health_part import health_trends, peers_table, verdict_box
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
 from ballscrew_monitor.report.logs import PAGE
@@ -18,7 +26,13 @@ from ballscrew_monitor.report.page import element, Markup, page, table, TableCel
 from ballscrew_monitor.report.trend import Mark, trend
 
 SCRIPTS = ('format.js', 'table.js', 'overview.js')
-MARKS = {'good': 'optimal', 'bad': 'outside', 'perhaps': 'perhaps', 'unknown': 'unjudged'}
+MARKS = {
+    'good': 'optimal',
+    'bad': 'outside',
+    'perhaps': 'perhaps',
+    'usual': 'unjudged',
+    'unknown': 'unjudged',
+}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -39,6 +53,8 @@ class LogEntry:
 Listed = tuple[LogEntry, AxisLine]
 Titles = Mapping[MachineAxis, str]
 """Names of axes, with their machine where several have one of that name."""
+Courses = Mapping[MachineAxis, Sequence[Health]]
+"""The health after each recording of an axis that has several."""
 
 
 def overview_page(
@@ -54,13 +70,15 @@ def overview_page(
     `parts` come below the verdict; the page bears a `title` of its own, if any.
 
     """
+    courses = _courses(entries)
+    entries = _with_usual(entries, courses)
     listed = [(entry, line) for entry in entries if entry.result for line in entry.result.lines]
     listed.sort(key=lambda pair: -math.inf if math.isnan(pair[1].begins) else pair[1].begins)
     axes = [line.key for _, line in listed]
     titles = axis_titles(axes)
     bad = [entry for entry in entries if entry.result is None]
     failures = (element('li', element('b', entry.name), f': {entry.failure}') for entry in bad)
-    first, trends = _health(entries, titles)
+    first, trends = _health(entries, courses, titles)
     notes = [*notes, *filter(None, [folders_note(axes)])]
     body = element(
         'main',
@@ -96,17 +114,45 @@ def overview_page(
     return page('Ball screw reports', body, scripts=SCRIPTS)
 
 
-def _health(entries: Sequence[LogEntry], titles: Titles) -> tuple[list[Markup], list[Markup]]:
-    found = [
+def with_usual(entries: Sequence[LogEntry]) -> list[LogEntry]:
+    """Return recordings with those warnings counted that the baselines of their axes had."""
+    return _with_usual(entries, _courses(entries))
+
+
+def _with_usual(entries: Sequence[LogEntry], courses: Courses) -> list[LogEntry]:
+    known = {axis: course[-1].usual_warnings for axis, course in courses.items()}
+    return [
+        dataclasses.replace(entry, result=entry.result and _with_known(entry.result, known))
+        for entry in entries
+    ]
+
+
+def _with_known(result: LogResult, known: Mapping[MachineAxis, Any]) -> LogResult:
+    lines = [line.with_usual(known.get(line.key, ())) for line in result.lines]
+    return dataclasses.replace(result, lines=lines)
+
+
+def _histories(entries: Sequence[LogEntry]) -> list[AxisHistory]:
+    return [
         read_history(one) for entry in entries if entry.result for one in entry.result.histories
     ]
-    courses = [
-        healths(own, title=titles[axis]) for axis, own in by_axis(found).items() if len(own) > 1
-    ]
-    peers = peers_among(found, titles)
-    first = [verdict_box(course[-1]) for course in courses]
+
+
+def _courses(entries: Sequence[LogEntry]) -> Courses:
+    titles = axis_titles(
+        [line.key for entry in entries if entry.result for line in entry.result.lines]
+    )
+    found = by_axis(_histories(entries))
+    return {axis: healths(own, title=titles[axis]) for axis, own in found.items() if len(own) > 1}
+
+
+def _health(
+    entries: Sequence[LogEntry], courses: Courses, titles: Titles
+) -> tuple[list[Markup], list[Markup]]:
+    peers = peers_among(_histories(entries), titles)
+    first = [verdict_box(course[-1]) for course in courses.values()]
     first += [element('p', one.text, class_='hint') for one in peers if one.is_apart]
-    trends = [drawn for course in courses for drawn in health_trends(course)]
+    trends = [drawn for course in courses.values() for drawn in health_trends(course)]
     return first, [*trends, *peers_table(peers)]
 
 
@@ -118,11 +164,12 @@ def _verdict(entries: Sequence[LogEntry], listed: Sequence[Listed]) -> Markup:
     sentence = (
         f'{counts["bad"]} of {len(listed)} axis recordings ran outside the optimal zone, '
         f'{counts["perhaps"]} perhaps, '
-        f'{counts["good"]} were good, {counts["unknown"]} could not be judged'
+        + (f'{counts["usual"]} as usual for their axis, ' if counts['usual'] else '')
+        + f'{counts["good"]} were good, {counts["unknown"]} could not be judged'
     )
     sentence += f'; {counted(lost, "recording")} could not be read.' if lost else '.'
     worst = {**counts, 'unknown': counts['unknown'] + lost}
-    kind = next((one for one in ('bad', 'perhaps', 'unknown') if worst[one]), 'good')
+    kind = next((one for one in ('bad', 'perhaps', 'usual', 'unknown') if worst[one]), 'good')
     return element('div', element('p', sentence, class_='sentence'), class_=f'verdict {kind}')
 
 
@@ -134,12 +181,7 @@ def _row(entry: LogEntry, line: AxisLine, title: str) -> TableRow:
     link = element('a', entry.name, href=f'{quote(entry.folder)}/{PAGE}')
     return TableRow(
         (
-            TableCell(
-                text=element(
-                    'span', line.verdict.partition(':')[0], class_=f'tag {line.standing}'
-                ),
-                kind='short',
-            ),
+            TableCell(text=element('span', line.tag, class_=f'tag {line.standing}'), kind='short'),
             TableCell(link, kind='place'),
             title,
             TableCell(_date(line.begins), kind='short'),
@@ -148,11 +190,16 @@ def _row(entry: LogEntry, line: AxisLine, title: str) -> TableRow:
             _time(line.running_time),
             TableCell(percent(sure).removesuffix(' %'), kind='number', value=sure),
             TableCell(percent(part).removesuffix(' %'), kind='number', value=part),
-            TableCell(str(line.warnings), kind='short', value=line.warnings),
+            TableCell(_warnings(line), kind='short', value=line.warnings),
             TableCell(line.worst or NONE, kind='short', value=line.depth),
         ),
-        kind='bad' if line.standing == 'bad' else '',
+        kind=line.standing if line.standing in ('bad', 'usual') else '',
     )
+
+
+def _warnings(line: AxisLine) -> str:
+    """Return how many warnings there were, and how many of them are usual."""
+    return f'{line.warnings}, usual {line.usual}' if line.usual else str(line.warnings)
 
 
 def _time(seconds: float) -> TableCell:
