@@ -189,7 +189,7 @@ class _Parts:
             kept.append(message)
             size += len(message.data)
             first = message.log_time - self._case.seconds * 1e9
-            while size > self._room or kept[0].log_time < first:
+            while kept and (size > self._room or kept[0].log_time < first):
                 size -= len(kept.popleft().data)
         parameters: dict[str, Any] = {}
         for message in kept:
@@ -337,6 +337,8 @@ def _text_of(path: Path) -> str:
 def report_command(args: argparse.Namespace) -> int:
     """Write the file and print what it holds; raises InputError for what cannot be read."""
     kinds = {'hosts': Secret.HOST, 'users': Secret.USER, 'names': Secret.NAME}
+    if not args.minutes > 0.0:
+        raise InputError(f'--minutes is {args.minutes:g}, it must be above 0')
     own = state_directory(AUTO, NODE_NAME)
     default = [own] if own is not None and is_state(own) else []
     for path in args.paths:

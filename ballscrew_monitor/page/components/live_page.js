@@ -99,9 +99,10 @@ class LivePage {
     const events = new Events(axis, this.live, this.acting, (begin, end) => this.show(begin, end));
     const health = new Health(axis);
     this.detail.append(first.element, this.whatIf.element, this.strips.element, events.element, health.element);
+    this.reveal();
     const cards = this.news;
     this.views = [
-      this.painter.add(() => first.draw(), 200),
+      this.painter.add(() => this.first(first), 200),
       this.painter.add(() => this.whatIf.map.over.draw(), 100),
       this.painter.add(() => events.draw(), 1000),
       this.painter.add(() => health.draw(), 1000),
@@ -113,6 +114,18 @@ class LivePage {
     if (axis.map) {
       this.whatIf.take(axis.map);
     }
+  }
+
+  first(screen) {
+    screen.draw();
+    this.reveal();
+  }
+
+  /** Show map and charts as soon as there is something to draw. */
+  reveal() {
+    const { rows, map } = this.axis;
+    this.strips.element.hidden = !rows.count;
+    this.whatIf.element.hidden = !rows.count && !map;
   }
 
   show(begin, end) {

@@ -217,8 +217,12 @@ def test_without_a_node_it_holds_versions_and_failures(machine, tmp_path, failur
 
 def test_what_does_not_exist_is_refused(machine, tmp_path, capsys, says):
     path = tmp_path / 'nowhere'
-    assert cli.main(['report-fault', str(path)]) == 2
-    assert capsys.readouterr().err == f'ballscrew: {says("fault_nowhere", path=path)}\n'
+    for more, sentence in (
+        ([], says('fault_nowhere', path=path)),
+        (['--minutes', '0'], says('minutes')),
+    ):
+        assert cli.main(['report-fault', str(path), *more]) == 2
+        assert capsys.readouterr().err == f'ballscrew: {sentence}\n'
 
 
 def test_a_name_is_hidden_where_it_is_a_word(machine):
