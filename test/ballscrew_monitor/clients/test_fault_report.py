@@ -217,10 +217,8 @@ def test_without_a_node_it_holds_versions_and_failures(machine, tmp_path, failur
 
 def test_what_does_not_exist_is_refused(machine, tmp_path, capsys, says):
     path = tmp_path / 'nowhere'
-    for more, sentence in (
-        ([], says('fault_nowhere', path=path)),
-        (['--minutes', '0'], says('minutes')),
-    ):
+    asked = ((says('fault_nowhere', path=path), []), (says('minutes'), ['--minutes', '0']))
+    for sentence, more in asked:
         assert cli.main(['report-fault', str(path), *more]) == 2
         assert capsys.readouterr().err == f'ballscrew: {sentence}\n'
 

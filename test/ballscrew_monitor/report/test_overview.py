@@ -7,7 +7,8 @@ import math
 import re
 
 from ballscrew_monitor.core.judgement import Code
-from ballscrew_monitor.health.records import Condition, Health, UsualWarning
+from ballscrew_monitor.health.assess import DRAG
+from ballscrew_monitor.health.records import Condition, Health, Quantity, UsualWarning
 from ballscrew_monitor.report import overview
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
 from ballscrew_monitor.report.overview import LogEntry, overview_page, with_usual
@@ -108,7 +109,12 @@ def test_usual_warnings_are_counted_apart_and_grey(monkeypatch):
     """A recording of whose warnings all are usual is neither good nor bad."""
     known = UsualWarning(Code.RCS_HIGH, 3, -8, 1)
     health = Health(
-        axis='x', stamp=0, condition=Condition.NORMAL, verdict='Normal.', usual_warnings=(known,)
+        axis='x',
+        stamp=0,
+        condition=Condition.NORMAL,
+        verdict='Normal.',
+        quantities=[Quantity(name=DRAG)],
+        usual_warnings=(known,),
     )
     entries = []
     for name, places in (('all', [known, known]), ('some', [known, known._replace(direction=-1)])):
