@@ -29,7 +29,7 @@ from ballscrew_monitor.report.page import (
     TableCell,
     TableRow,
 )
-from ballscrew_monitor.report.verdict import AxisVerdict, verdicts_of
+from ballscrew_monitor.report.verdict import AxisVerdict, parts_outside, verdicts_of
 
 SIGNS = {'>=': '≥'}
 LASTING = ' A warning goes on over standstill and over what could not be judged.'
@@ -91,7 +91,14 @@ def shares(case: AxisCase, summary: Summary) -> Markup:
     running = summary.running_time
     zone = [
         (summary.optimal_time, 'optimal', 'optimal'),
-        *_parts_outside(case, summary),
+        *(
+            (
+                time,
+                'perhaps' if word == 'perhaps' else 'outside',
+                f'{word} outside the optimal zone'.lstrip(),
+            )
+            for word, time in parts_outside(case, summary).items()
+        ),
         (summary.unjudged_time, 'unjudged', 'not judged'),
     ]
     regime = [
@@ -106,17 +113,6 @@ def shares(case: AxisCase, summary: Summary) -> Markup:
         _bar(regime, running, duration),
         *_energy(case, summary),
     )
-
-
-def _parts_outside(case: AxisCase, summary: Summary) -> list[tuple[float, str, str]]:
-    """Return the time surely and perhaps outside, in one where nothing tells how surely."""
-    sure = min(case.surely_outside, summary.outside_time)
-    if math.isnan(sure):
-        return [(summary.outside_time, 'outside', 'outside the optimal zone')]
-    return [
-        (sure, 'outside', 'surely outside the optimal zone'),
-        (summary.outside_time - sure, 'perhaps', 'perhaps outside, within the band of the limit'),
-    ]
 
 
 def _bar(parts: Sequence[tuple[float, str, str]], whole: float, show: Any) -> Markup:

@@ -40,7 +40,7 @@ from ballscrew_monitor.report.machines import MachineAxis
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.printed import summary_record
 from ballscrew_monitor.report.row_table import RowStore
-from ballscrew_monitor.report.verdict import AxisVerdict, verdicts_of
+from ballscrew_monitor.report.verdict import AxisVerdict, VerdictKind, verdicts_of
 from surrogate.files import json_text, new_file, new_folder, replace_file
 
 PREFIX, LOCK = '.rows-', 'lock'
@@ -120,7 +120,7 @@ class AxisLine:
     @property
     def tag(self) -> str:
         """Return the verdict in a word or two."""
-        return 'Usual' if self.standing == 'usual' else self.verdict.partition(':')[0]
+        return 'Usual' if self.standing == 'usual' else VerdictKind(self.standing).word
 
     @property
     def told(self) -> str:

@@ -43,6 +43,7 @@ class LivePage {
     axis?.take(frame);
     this.news?.();
     if (axis && axis === this.axis) {
+      this.reveal();
       if (frame.kind === 'map') {
         this.whatIf.take(frame);
       } else {
@@ -102,7 +103,7 @@ class LivePage {
     this.reveal();
     const cards = this.news;
     this.views = [
-      this.painter.add(() => this.first(first), 200),
+      this.painter.add(() => first.draw(), 200),
       this.painter.add(() => this.whatIf.map.over.draw(), 100),
       this.painter.add(() => events.draw(), 1000),
       this.painter.add(() => health.draw(), 1000),
@@ -114,11 +115,6 @@ class LivePage {
     if (axis.map) {
       this.whatIf.take(axis.map);
     }
-  }
-
-  first(screen) {
-    screen.draw();
-    this.reveal();
   }
 
   /** Show map and charts as soon as there is something to draw. */

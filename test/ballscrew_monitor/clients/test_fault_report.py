@@ -28,7 +28,8 @@ from std_msgs.msg import Header
 
 HOST, USER, HOME = 'cell7-hmi', 'mgruber', '/srv/people/mgruber'
 PERSON, REASON, OTHER, TOKEN = 'Jörg Huber', 'seen by J.H.', 'cell8-hmi', 'correct-horse-battery'
-SECRETS = (HOST, USER, HOME, PERSON, json.dumps(PERSON)[1:-1], REASON, OTHER, TOKEN, 'apprentice')
+APPRENTICE = 'apprentice'  # another user, whose home is named
+SECRETS = (HOST, USER, HOME, PERSON, json.dumps(PERSON)[1:-1], REASON, OTHER, TOKEN, APPRENTICE)
 TOPICS = {
     f'/{HOST.replace("-", "_")}/joint_states': 'sensor_msgs/msg/JointState',
     '/monitor/x/out_of_zone': 'ballscrew_msgs/msg/OutOfZone',
@@ -92,7 +93,7 @@ def state_dir(tmp_path):
 def table(tmp_path):
     """Make a table whose head names who has recorded it, in letters of one byte too."""
     path = tmp_path / f'{USER}.csv'
-    lines = [f'# {PERSON} on {HOST}, /home/apprentice/logs', 'time_s,speed']
+    lines = [f'# {PERSON} on {HOST}, /home/{APPRENTICE}/logs', 'time_s,speed']
     path.write_bytes('\n'.join([*lines, *(f'{n},{n}' for n in range(50))]).encode('latin-1'))
     return path
 
@@ -101,7 +102,7 @@ def table(tmp_path):
 def failure(tmp_path):
     path = tmp_path / 'ballscrew_failure_1.txt'
     text = f'{HOME}/.venv/bin/ballscrew page --token={TOKEN}\nAuthorization: Bearer {TOKEN}\n'
-    path.write_text(f'{text}File "/home/apprentice/a.py"\nhttp://{USER}:{TOKEN}@{HOST}:80/\n')
+    path.write_text(f'{text}File "/home/{APPRENTICE}/a.py"\nhttp://{USER}:{TOKEN}@{HOST}:80/\n')
     return path
 
 
@@ -147,7 +148,7 @@ def test_no_secret_leaves_the_machine(machine, state_dir, table, failure, tmp_pa
     ('shown', 'seen'),
     [
         (Secret.HOST, {HOST, OTHER}),
-        (Secret.USER, {USER, HOME, 'apprentice'}),
+        (Secret.USER, {USER, HOME, APPRENTICE}),
         (Secret.NAME, {PERSON, json.dumps(PERSON)[1:-1], REASON}),
         (Secret.TOKEN, set()),
     ],
