@@ -44,7 +44,8 @@ EXIT_CODES = {
     'findings',
     BAD_INPUT: 'bad input: one sentence says what, where and what is allowed; or a package is '
     'missing: the sentence says how to get it',
-    BUG: 'a fault of the program: one sentence names the file to send with a report',
+    BUG: 'a fault of the program: one sentence names the file, which `report-fault` makes ready '
+    'to be sent',
     INTERRUPTED: 'ended by SIGINT (Ctrl-C); the node itself and `ballscrew page` end with 0',
     SIGNALLED
     + signal.SIGTERM: 'ended by SIGTERM; the node itself and `ballscrew page` end with 0',
@@ -69,7 +70,10 @@ def _failed() -> int:
     with os.fdopen(number, 'w', encoding='utf-8', errors='backslashreplace') as file:
         file.write(text)
     line = text.strip().splitlines()[-1][:300]
-    say(f'this is a fault of the program ({line}): please report it with the file {path}')
+    say(
+        f'this is a fault of the program ({line}): ballscrew report-fault makes one file to send '
+        f'of it and of {path}'
+    )
     return BUG
 
 
@@ -111,7 +115,7 @@ def command_parser() -> argparse.ArgumentParser:
     for name, (handler, text) in COMMANDS.items():
         command = subparsers.add_parser(name, help=text, epilog=options.ENDINGS.get(name))
         command.set_defaults(handler=handler)
-        getattr(options, f'add_{name}')(command)
+        getattr(options, f'add_{name.replace("-", "_")}')(command)
     add_commands(subparsers, {'bag': _read_bag, 'table': _read_table})
     return parser
 
@@ -239,6 +243,13 @@ def _events(args: argparse.Namespace) -> int:
     return 0
 
 
+def _report_fault(args: argparse.Namespace) -> int:
+    from ballscrew_monitor.clients.fault_report import report_command
+
+    require('ballscrew_msgs')
+    return report_command(args)
+
+
 def _recover(args: argparse.Namespace) -> int:
     from ballscrew_monitor.recordings.recover import recover
 
@@ -279,10 +290,11 @@ COMMANDS = {
     'events': (_events, 'print the event log of a node out of its state_dir'),
     'play': (_play, 'play the inputs of the node from a bag over DDS, with /clock'),
     'page': (_page, 'serve a live page of all axes to browsers'),
+    'report-fault': (_report_fault, 'make one file to send when something fails'),
     'recover': (_recover, 'mend a recording whose writer was killed'),
 }
 """Handler and help of each command; `options` adds what it may be told."""
 DISCOVERING = (_solve, _doctor, _play, _page)
 """Commands that need others in the ROS graph."""
-WITH_ROS = (_run, _replay, _check, _health, _import, *DISCOVERING)
+WITH_ROS = (_run, _replay, _check, _health, _import, _report_fault, *DISCOVERING)
 """Commands that need ROS; they put in order themselves what a signal would leave behind."""

@@ -169,6 +169,25 @@ def add_recover(parser: Parser) -> None:
     _add_file(parser, 'file', 'FILE', 'MCAP file, or the folder of an unfinished one')
 
 
+def add_report_fault(parser: Parser) -> None:
+    """Add what `ballscrew report-fault` may be told."""
+    text = 'bag, table of text, or state_dir (default that of /ballscrew_monitor of this user)'
+    _add_file(parser, 'paths', 'LOG|STATE_DIR', text, nargs='*')
+    _add_file(parser, '--params', 'FILE', 'parameters of the node, if no recording holds them')
+    text = 'text of a failure (default: the last failures of commands of this user)'
+    _add_file(parser, '--failure', 'FILE', text, nargs='+')
+    text = 'time before the end of a bag that is put in (default 2)'
+    _add_number(parser, '--minutes', 'T', text, default=2.0)
+    text = (
+        'what is not hidden: names of machines, of users and their homes, of persons with their '
+        'reasons; tables that are no text'
+    )
+    things = 'hosts', 'users', 'names', 'tables'
+    parser.add_argument('--include', nargs='+', choices=things, default=[], help=text)
+    text = 'the file (default %(default)s)'
+    _add_file(parser, '--out', 'ZIP', text, default=Path('ballscrew_fault.zip'))
+
+
 def add_events(parser: Parser) -> None:
     """Add what `ballscrew events` may be told."""
     text = 'state_dir of the node (default that of /ballscrew_monitor of this user)'

@@ -91,6 +91,7 @@ THEMES = {
     'ballscrew_monitor/node/test_solve.py',
     'ballscrew_monitor/node/test_system.py',
     'ballscrew_monitor/page/components/test_german.py',
+    'ballscrew_monitor/page/components/test_screens.py',
     'ballscrew_monitor/recordings/test_black_box.py',
     'ballscrew_monitor/recordings/test_compatibility.py',
     'ballscrew_monitor/report/test_memory.py',

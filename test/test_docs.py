@@ -55,7 +55,7 @@ FOREIGN = re.compile(
 OPENING = re.compile(
     r'(What|From|Which|Just|How|Where|When|Why|Who|Whose|Whether|Whatever|Takes|Makes|Says)\b'
 )
-COMMAND = re.compile(r'ballscrew ((?:(?:surface|screw|oil) )?[a-z]+)((?: [^`\n#]*)?)')
+COMMAND = re.compile(r'ballscrew ((?:(?:surface|screw|oil) )?[a-z]+(?:-[a-z]+)?)((?: [^`\n#]*)?)')
 LINK = re.compile(r'\]\(([^)#]*)(?:#([^)]+))?\)')
 EMPTY = re.compile(r'^(\|.*\| \|)$', re.MULTILINE)
 FUNCTION = re.compile(r'`([\w/]+/\w+\.py): (\w+)`')

@@ -43,6 +43,7 @@ from rclpy.clock import Clock
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from surrogate.files import InputError, json_text
+from surrogate.units import digits
 
 UDP = Path('/proc/net/udp')
 PORTS, PER_DOMAIN, OFFSETS = 7400, 250, range(10, 60)  # DDSI-RTPS 2.3, 9.6.1
@@ -342,7 +343,9 @@ def _line(facts: InputFacts) -> str:
     heard, status = facts.heard, facts.heard.status
     parts = [f'{head}: {status.received} messages']
     parts += [f'{status.rate:.4g} Hz'] if math.isfinite(status.rate) else []
-    parts += [f'stamps {1e3 * status.lag:.2g} ms behind'] if math.isfinite(status.lag) else []
+    parts += (
+        [f'stamps {digits(1e3 * status.lag, 2)} ms behind'] if math.isfinite(status.lag) else []
+    )
     if math.isfinite(heard.low):
         parts.append(f'{heard.low:.4g} to {heard.high:.4g} {facts.unit}')
     return ', '.join(parts)

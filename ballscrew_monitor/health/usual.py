@@ -16,7 +16,6 @@ from ballscrew_monitor.core.judgement import Code, Limits
 from ballscrew_monitor.health.bands import load_band, speed_band
 from ballscrew_monitor.health.lubrication import opposed
 from ballscrew_monitor.health.records import Baseline, Cell, Health, UsualWarning
-from ballscrew_monitor.judge.records import Row
 from surrogate.surface import Surface, Validity
 
 
@@ -46,9 +45,14 @@ def _broken(cell: Cell, surface: Surface, limits: Limits) -> list[Code]:
     return codes
 
 
-def is_usual(health: Health, code: Code, row: Row) -> bool:
-    """Return True if the baseline of an axis already had a warning that a `row` raises."""
-    if not row.speed or not math.isfinite(row.speed + row.axial_load):
-        return False
-    place = speed_band(abs(row.speed)), load_band(row.axial_load), 1 if row.speed > 0.0 else -1
-    return UsualWarning(code, *place) in health.usual_warnings
+def is_usual(health: Health, code: Code, *, speed: float, axial_load: float) -> bool:
+    """Return True if a baseline already had a warning, by speed [rad/s] and axial load [N]."""
+    return warning_at(code, speed=speed, axial_load=axial_load) in health.usual_warnings
+
+
+def warning_at(code: Code, *, speed: float, axial_load: float) -> UsualWarning | None:
+    """Return kind and place of a warning at a speed [rad/s] and a load [N]; None: not known."""
+    if not speed or not math.isfinite(speed + axial_load):
+        return None
+    way = 1 if speed > 0.0 else -1
+    return UsualWarning(code, speed_band(abs(speed)), load_band(axial_load), way)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Part of a memory that outlives the node, as a row of its database."""
 
+from collections.abc import Iterable
 import dataclasses
 import json
 import math
@@ -28,8 +29,8 @@ class AxisRecord:
     An axis as it outlives its monitor, a row of the database.
 
     `event` is the number of its last event; `memory` holds the fields KEPT of a `Memory` in JSON,
-    times in [ns], an active event with the last stamp seen of it; then how that event ended, and
-    how long [ns] and why the warning is still shelved.
+    times in [ns], an active event with the last stamp seen of it; then how that event ended, how
+    long [ns] and why the warning is still shelved, and the numbers of usual events in JSON.
 
     """
 
@@ -41,15 +42,22 @@ class AxisRecord:
     end_reason: str = ''
     left_ns: int = 0
     reason: str = ''
+    usual: str = '[]'
 
     @classmethod
     def of(
-        cls, axis: str, memory: Any, ending: Ending, shelving: Shelving, now: int
+        cls,
+        axis: str,
+        memory: Any,
+        ending: Ending,
+        shelving: Shelving,
+        now: int,
+        usual: Iterable[int] = (),
     ) -> 'AxisRecord':
         """
         Return what is kept of a memory at `now` [ns] of the clock of the node.
 
-        `ending` is of its event and `shelving` of its warning.
+        `ending` is of its event and `shelving` of its warning; `usual` are numbers of events.
 
         """
         kept: dict[str, Any] = {name: getattr(memory, name) for name in KEPT}
@@ -65,6 +73,7 @@ class AxisRecord:
             end_reason=ending.reason,
             left_ns=shelving.left(now),
             reason=shelving.reason,
+            usual=json.dumps(list(usual)),
         )
 
     def read_memory(self) -> Memory:
@@ -92,9 +101,16 @@ class AxisRecord:
         """Return how its event ended; raises KeyError for what no node has written."""
         return Ending(EventEnd[self.ending], self.ended_by, self.end_reason)
 
+    def read_usual(self) -> list[int]:
+        """Return the numbers of usual events; raises ValueError for what no node has written."""
+        numbers = read_json(self.usual)
+        if not isinstance(numbers, list) or any(type(number) is not int for number in numbers):
+            raise ValueError(f'usual is {self.usual}')
+        return numbers
+
     def check(self) -> None:
         """Raise ValueError, KeyError or TypeError for a record that no node has written."""
-        self.read_memory(), self.read_ending()
+        self.read_memory(), self.read_ending(), self.read_usual()
         if self.left_ns < 0:
             raise ValueError(f'left_ns is {self.left_ns}')
 
@@ -117,4 +133,5 @@ def after_restart(record: AxisRecord) -> AxisRecord:
         return record
     memory.event_active = False
     over = AxisRecord.of(record.axis, memory, RESTARTED, NOT_SHELVED, 0)
-    return dataclasses.replace(over, left_ns=record.left_ns, reason=record.reason)
+    kept = {name: getattr(record, name) for name in ('left_ns', 'reason', 'usual')}
+    return dataclasses.replace(over, **kept)

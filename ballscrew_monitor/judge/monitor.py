@@ -8,6 +8,7 @@ step; they are kept here.
 
 """
 
+from collections import deque
 import dataclasses
 import math
 import operator
@@ -46,6 +47,7 @@ from ballscrew_monitor.judge.step import NOTHING, STATE, step
 from ballscrew_monitor.judge.zone import ACTIVE, end_excursion
 from surrogate.surface import Surface
 
+MOST_USUAL = 100  # events that are known to be usual
 EARLIEST, LATEST = -(2**61), 2**61
 """Stamps that are judged [ns]; stamps beyond count as these."""
 MOST_OTHERS = 16
@@ -125,6 +127,7 @@ class Monitor:
         self.use_surface(surface)
         self.memory = Memory()
         self.speeds, self.positions = SlopeRing(), SlopeRing()
+        self.usual: deque[int] = deque(maxlen=MOST_USUAL)  # numbers of events: the health tells
         self.shelve_reason = ''
         self._ending = NOT_ENDED
         self.joints = JointNames()
@@ -244,8 +247,8 @@ class Monitor:
 
     def kept(self, now: int) -> AxisRecord:
         """Return what is to be kept over a restart at `now` [ns] of the clock of the node."""
-        axis = self._settings.axis
-        return AxisRecord.of(axis, self.memory, self.ending, self.shelving, within(now))
+        told = self.ending, self.shelving, within(now), self.usual
+        return AxisRecord.of(self._settings.axis, self.memory, *told)
 
     def take_up(self, kept: AxisRecord, now: int) -> None:
         """
@@ -266,6 +269,8 @@ class Monitor:
             for name in EXCURSION:
                 getattr(memory, name)[ACTIVE] = getattr(before, name)[ACTIVE]
             self.ending = kept.read_ending()
+        numbers = [*kept.read_usual(), *(before.event_number + each for each in self.usual)]
+        self.usual = deque(numbers, maxlen=MOST_USUAL)
         memory.event_number += before.event_number
         if not memory.shelved_until:
             left = Shelving(until=-kept.left_ns, reason=kept.reason)

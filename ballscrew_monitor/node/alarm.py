@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The warning of one axis: its topic, its log, what people do to it; topics that stay."""
 
-from collections import deque
 from collections.abc import Callable, Mapping
 import functools
 from typing import Any
@@ -13,6 +12,7 @@ from ballscrew_monitor.core.state import Ending, NAMELESS, NOT_SHELVED, Shelving
 from ballscrew_monitor.health.records import Health
 from ballscrew_monitor.health.usual import is_usual
 from ballscrew_monitor.judge.records import Row
+from ballscrew_monitor.judge.zone import ACTIVE
 from ballscrew_monitor.messages.state_messages import advice_text, event_cause, out_of_zone_message
 from ballscrew_monitor.node.kept_axes import KeptAxes
 from ballscrew_monitor.node.state_records import event_facts, Kind, point_facts, totals_facts
@@ -23,8 +23,6 @@ from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.lifecycle import LifecycleNode
 from rclpy.publisher import Publisher
-
-MOST_USUAL = 100  # warnings that are known to be usual
 
 
 def quiet_publishers(node: LifecycleNode) -> functools.partial[Any]:
@@ -65,7 +63,6 @@ class Alarm:
         self._node, self._axis, self._publisher = node, axis, publisher
         self._kept, self._record = kept, record
         self.health: Health | None = None  # as it was assessed last
-        self.usual: deque[int] = deque(maxlen=MOST_USUAL)  # numbers of warnings
 
     def publish(self) -> None:
         """Publish the event that is active, or the last one."""
@@ -83,7 +80,7 @@ class Alarm:
     @property
     def is_usual(self) -> bool:
         """Return True if the baseline of the axis already had the last warning."""
-        return self._axis.monitor.memory.event_number in self.usual
+        return self._axis.monitor.memory.event_number in self._axis.monitor.usual
 
     @property
     def advice(self) -> str:
@@ -96,8 +93,7 @@ class Alarm:
         monitor = self._axis.monitor
         memory = monitor.memory
         active, number = memory.event_active, memory.event_number
-        if active and self.health is not None and is_usual(self.health, monitor.event_code, row):
-            self.usual.append(number)
+        self._note_usual()
         # First: who is killed meanwhile must not have said a number that is not kept.
         kind = Kind.EVENT_BEGIN if active else Kind.EVENT_END
         before = {'freeze_frame': frame} if active else {}
@@ -108,6 +104,25 @@ class Alarm:
             self._warn(f'event {number}: {"; ".join(filter(None, texts))}')
         elif monitor.level is Level.OK:
             self._say(f'event {number} is over')
+
+    def hear(self, health: Health) -> None:
+        """Take an assessment; the warning that is on may be a usual one, as is known only now."""
+        self.health = health
+        if self._note_usual():
+            self.publish()
+            self.remember()
+
+    def _note_usual(self) -> bool:
+        """Note the active event if the baseline already had it; return True if that is news."""
+        monitor = self._axis.monitor
+        memory = monitor.memory
+        if self.health is None or not memory.event_active or self.is_usual:
+            return False
+        speed, load = (float(each[ACTIVE]) for each in (memory.event_speed, memory.event_load))
+        known = is_usual(self.health, monitor.event_code, speed=speed, axial_load=load)
+        if known:
+            monitor.usual.append(memory.event_number)
+        return known
 
     def end(self, reason: str) -> bool:
         """End the active event, as nothing is judged any more; return True if there was one."""

@@ -184,7 +184,8 @@ class AxisHealths:
         while worker.done:
             health, message = worker.done.popleft()
             name = health.axis
-            self._last[name] = self._publishers[name].alarm.health = health
+            self._last[name] = health
+            self._publishers[name].alarm.hear(health)
             self._latched[name].health.publish(message)
             self._record(f'~/{name}/health', message)
 

@@ -367,7 +367,7 @@ class AxisPublisher:
             refused=self.refused,
             defect=self.defect,
             policy=self._policy,
-            usual=self.alarm.usual,
+            usual=self.axis.monitor.usual,
             health=self.alarm.health,
             advice=self.alarm.advice,
         )

@@ -9,6 +9,7 @@ import time
 from urllib.parse import parse_qs
 
 from ballscrew_monitor.page import components
+from ballscrew_monitor.page.fault import Making
 from ballscrew_monitor.page.guard import COOKIE, Guard, MOST_TOKEN, Tokens
 from ballscrew_monitor.page.hub import Browser, Hub, PERIOD
 from starlette.applications import Starlette
@@ -16,12 +17,14 @@ from starlette.requests import HTTPConnection, Request
 from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
+from surrogate.files import InputError
 
 LARGEST_FORM = 4 * MOST_TOKEN  # [byte]
 FORM_TIME = 10.0  # [s] to send it
 TRY_LATER, RUDE = 1013, 1008  # codes with which a socket is closed
 BUSY = 'Too many browsers look at this page.'
 NO_REQUESTS = 'Too much was sent that is no request.'
+ATTACHED = {'Content-Disposition': 'attachment; filename="ballscrew_fault.zip"'}
 Answering = Callable[[Browser, str], Awaitable[bool]]
 """Answers the text of a browser; returns True if its socket may stay."""
 
@@ -37,14 +40,16 @@ class PageApp:
         metrics: Callable[[], Response],
         *,
         language: str = '',
+        fault: Making | None = None,
     ) -> None:
         """
-        Serve a hub; `answer` is given what browsers say, `metrics` makes those.
+        Serve a hub; `answer` is given what browsers say, `metrics` and `fault` make their files.
 
         The `language` is that of the reader if it is empty.
 
         """
         self._language = language
+        self._fault, self._is_making = fault, False
         self.failure: Exception | None = None
         self._hub, self._answer, self._tokens, self._metrics = hub, answer, tokens, metrics
 
@@ -57,6 +62,7 @@ class PageApp:
             Route('/healthz', self._healthz),
             Route('/favicon.ico', lambda request: Response(status_code=204)),
             Route('/metrics', lambda request: self._metrics()),
+            Route('/report-fault', self._report_fault, methods=['POST']),
             WebSocketRoute('/live', self._live),
         ]
         return Guard(
@@ -113,6 +119,18 @@ class PageApp:
             secure=request.url.scheme == 'https',
         )
         return answer
+
+    async def _report_fault(self, request: Request) -> Response:
+        if self._fault is None or self._is_making:
+            return PlainTextResponse('The file is being made already.', status_code=429)
+        self._is_making = True
+        try:
+            content = await self._fault()
+        except (InputError, OSError) as error:
+            return PlainTextResponse(str(error), status_code=500)
+        finally:
+            self._is_making = False
+        return Response(content, media_type='application/zip', headers=ATTACHED)
 
     async def _live(self, socket: WebSocket) -> None:
         await socket.accept()

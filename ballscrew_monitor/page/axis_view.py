@@ -51,6 +51,7 @@ class AxisView:
         self.map_frame: bytes | None = None
         self.grades: list[str] = []  # oils of which there are surfaces
         self.usual: frozenset[int] = frozenset()  # warnings that the baseline already had
+        self.parameters: Mapping[str, Any] = {}  # of the node, those of this axis and of all
         self.codes: dict[str, int] = {}  # of the diagnostics by their parts
         self.is_changed = False  # what `hello` says
         self._heard = math.nan  # [s]
@@ -93,6 +94,10 @@ class AxisView:
         """Take the numbers of the warnings that the baseline of the axis already had."""
         self._events_are_news |= numbers != self.usual
         self.usual = numbers
+
+    def hear_parameters(self, values: Mapping[str, Any]) -> None:
+        """Take parameters of the node by their names."""
+        self.parameters = values
 
     def stand(self, standing: str) -> None:
         """Take the state of the node."""

@@ -17,6 +17,7 @@ from ballscrew_monitor.core.interrupts import DONE, interrupts
 from ballscrew_monitor.page.acting import Acting, LONG, refusals
 from ballscrew_monitor.page.app import PageApp
 from ballscrew_monitor.page.components import languages
+from ballscrew_monitor.page.fault import fault_maker
 from ballscrew_monitor.page.guard import is_loopback, read_token, Tokens
 from ballscrew_monitor.page.hub import Hub
 from ballscrew_monitor.page.metrics import HubCollector, Metrics
@@ -52,7 +53,7 @@ def page_command(args: argparse.Namespace, nominal: Path) -> int:
             else:
                 node = stack.enter_context(started_node('ballscrew_page'))
                 begin = lambda hub: LiveSource(node, hub, options)  # noqa: E731
-            asyncio.run(_serve(options, bound, begin, lambda: bool(stopped)))
+            asyncio.run(_serve(options, bound, begin, lambda: bool(stopped), args.log))
     return DONE
 
 
@@ -143,13 +144,18 @@ def _checked(args: argparse.Namespace) -> PageOptions:
 
 
 async def _serve(
-    options: PageOptions, bound: socket.socket, begin: Begin, is_stopped: Callable[[], bool]
+    options: PageOptions,
+    bound: socket.socket,
+    begin: Begin,
+    is_stopped: Callable[[], bool],
+    log: Path | None,
 ) -> None:
     hub, tokens = Hub(acting=options.acting), Tokens(options.token)
     what_if, source = WhatIf(hub, options.oils), begin(hub)
     metrics = Metrics(HubCollector(hub, lambda: tokens.wrong))
     answer = Questions({**what_if.handlers, **source.handlers}, long=LONG).answer
-    app = PageApp(hub, answer, tokens, metrics, language=options.language)
+    fault = fault_maker(hub, log, options.token)
+    app = PageApp(hub, answer, tokens, metrics, language=options.language, fault=fault)
     server = server_of(options, app.guarded(options.host))
     print(f'page {options.url} (Ctrl-C ends it)', flush=True)
     tasks = [asyncio.create_task(part.follow()) for part in (what_if, source)]

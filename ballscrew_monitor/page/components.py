@@ -34,6 +34,7 @@ SCRIPTS = (
         'events.js',
         'health.js',
         'player.js',
+        'fault.js',
         'live_page.js',
     ),
 )

@@ -28,6 +28,7 @@ from ballscrew_monitor.page.axis_view import AxisView
 from ballscrew_monitor.page.hub import Hub, MOST_AXES, PERIOD
 from ballscrew_monitor.page.phrases import phrase, Said
 from ballscrew_monitor.page.surfaces import PatientClient, SurfaceLink
+from ballscrew_monitor.settings.parameters import defaults
 from ballscrew_msgs.msg import AxisHealth, BallScrewState, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rcl_interfaces.srv import GetParameters
@@ -46,7 +47,7 @@ DIAGNOSTICS_QOS = QoSProfile(depth=DEPTH)
 LATE_QOS = QoSProfile(depth=DEPTH, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
 """QoS of what is published for late joiners, of which several may come in one turn."""
 LEAVES = ('surface', 'speed.unit')
-"""Parameters of an axis that the page asks for."""
+"""Parameters of an axis that go with its surface; a report of a fault tells all others too."""
 Post = Callable[..., Any]
 """Calls a function with arguments in the thread of the hub."""
 
@@ -281,16 +282,18 @@ class AxisLink:
         self._surface.ask()
         if self._is_due:
             names = [f'{self.view.axis}.{leaf}' for leaf in LEAVES]
-            tell = functools.partial(self._tell_surface, self._info)
+            names += sorted(defaults([self.view.axis]).keys() - {*names})
+            tell = functools.partial(self._tell_surface, self._info, names)
             self._parameters.call(GetParameters.Request(names=names), tell)
 
-    def _tell_surface(self, info: SurfaceInfo, future: Future) -> None:
+    def _tell_surface(self, info: SurfaceInfo, names: list[str], future: Future) -> None:
         """Take the parameters that go with a surface, if no other has come since."""
         if not self._is_due or info is not self._info:
             return
         answer = future.result()
-        if answer is not None and len(answer.values) == len(LEAVES):
-            path, unit = map(parameter_value_to_python, answer.values)
+        if answer is not None and len(answer.values) == len(names):
+            path, unit, *_ = values = [*map(parameter_value_to_python, answer.values)]
+            self._post(self.view.hear_parameters, dict(zip(names, values, strict=True)))
             about = records.surface_record(info, unit)
             self._surface.tell(about, info, path)
             self._is_due = False

@@ -32,7 +32,7 @@ from ballscrew_monitor.report.command import check_most_unjudged, is_bad
 from ballscrew_monitor.report.free_run import FreeRun, identified
 from ballscrew_monitor.report.logs import find_logs, folder_names
 from ballscrew_monitor.report.many_logs import Given, INDEX, report_each, Workers
-from ballscrew_monitor.report.overview import overview_page
+from ballscrew_monitor.report.overview import overview_page, with_usual
 from ballscrew_monitor.report.parameters import parameters_for
 from surrogate.datasheet import key_of, read_yaml
 from surrogate.files import canonical_json, InputError, json_text, printable, replace_file
@@ -96,7 +96,7 @@ def _print(
     for result in (log.result for log in logs):
         for line in result.lines:
             normal = f' Normal? {line.normal}.' if line.normal else ''
-            print(printable(f'{result.name}:{normal} {line.verdict}'))
+            print(printable(f'{result.name}:{normal} {line.told}'))
         if result.failure:
             say(f'{result.name}: {result.failure}')
     if others:
@@ -111,12 +111,13 @@ def _print(
 
 def _record(log: CheckedLog) -> dict[str, Any]:
     """Return what the page says of a recording as plain data."""
-    names = 'normal', 'standing', 'verdict', 'expected', 'judged', 'losses'
+    names = 'normal', 'standing', 'expected', 'judged', 'losses'
     return {
         'failure': log.result.failure,
         'map': log.used,
         'axes': {
-            line.axis: {name: getattr(line, name) for name in names} for line in log.result.lines
+            line.axis: {'verdict': line.told} | {name: getattr(line, name) for name in names}
+            for line in log.result.lines
         },
     }
 
@@ -353,7 +354,7 @@ def _report(logs: Sequence[CheckedLog], args: argparse.Namespace, nominal: Path)
         if not log.failure
     }
     workers = Workers(args.workers, args.dask)
-    reported = report_each(readable, args.out, workers) if readable else []
+    reported = with_usual(report_each(readable, args.out, workers)) if readable else []
     results = {result.folder: result for result in reported}
     for log in logs:
         log.reported = results.get(log.folder)

@@ -174,7 +174,7 @@ def _zone(entries: Sequence[LogResult]) -> Iterator[Markup]:
     for entry in entries:
         for line in entry.lines:
             parts = [element('p', f'Normal? {line.normal}.')] if line.normal else []
-            parts.append(element('p', f'{entry.name}: {line.verdict}', class_='sentence'))
+            parts.append(element('p', f'{entry.name}: {line.told}', class_='sentence'))
             yield element('div', *parts, class_=f'verdict {line.standing}')
     histories = [history for entry in entries for history in entry.histories]
     for own in by_axis(histories).values():

@@ -29,7 +29,7 @@ from ballscrew_monitor.report.page import (
     TableCell,
     TableRow,
 )
-from ballscrew_monitor.report.verdict import AxisVerdict, verdicts_of
+from ballscrew_monitor.report.verdict import AxisVerdict, parts_outside, verdicts_of
 
 SIGNS = {'>=': '≥'}
 LASTING = ' A warning goes on over standstill and over what could not be judged.'
@@ -91,7 +91,14 @@ def shares(case: AxisCase, summary: Summary) -> Markup:
     running = summary.running_time
     zone = [
         (summary.optimal_time, 'optimal', 'optimal'),
-        (summary.outside_time, 'outside', 'outside the optimal zone'),
+        *(
+            (
+                time,
+                'perhaps' if word == 'perhaps' else 'outside',
+                f'{word} outside the optimal zone'.lstrip(),
+            )
+            for word, time in parts_outside(case, summary).items()
+        ),
         (summary.unjudged_time, 'unjudged', 'not judged'),
     ]
     regime = [

@@ -10,7 +10,7 @@ in use, also on a network file system that knows locks.
 
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 import contextlib
 import csv
 import dataclasses
@@ -20,22 +20,26 @@ from pathlib import Path
 import shutil
 import uuid
 
+from ballscrew_monitor.core.judgement import Code
+from ballscrew_monitor.health.records import UsualWarning
+from ballscrew_monitor.health.usual import warning_at
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.declared import keys, plain
 from ballscrew_monitor.recordings.replay import ignore
 from ballscrew_monitor.recordings.summary import EventRecord
+from ballscrew_monitor.recordings.words import counted
 from ballscrew_monitor.report import logs
 from ballscrew_monitor.report.health_history import AxisHistory, health_after
 from ballscrew_monitor.report.inputs_seen import hints_on, missing_inputs
 from ballscrew_monitor.report.judged_bag import judged_bag
-from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare
+from ballscrew_monitor.report.judging import AxisCase, badness, judge_log, LogCase, OnShare, RCS
 from ballscrew_monitor.report.ledger import speed_ledger, unjudged_share
 from ballscrew_monitor.report.log_page import maps_of, report_page
 from ballscrew_monitor.report.machines import MachineAxis
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.report.printed import summary_record
 from ballscrew_monitor.report.row_table import RowStore
-from ballscrew_monitor.report.verdict import AxisVerdict, verdicts_of
+from ballscrew_monitor.report.verdict import AxisVerdict, VerdictKind, verdicts_of
 from surrogate.files import json_text, new_file, new_folder, replace_file
 
 PREFIX, LOCK = '.rows-', 'lock'
@@ -80,7 +84,8 @@ class AxisLine:
     `begins` [s] since 1970, time recorded, in motion, outside and surely so [s], NaN where not
     known; the worst event in words, and its depth [-]. How many samples of the speed there should
     be, how many were judged, and why no others; what to do, whether it is normal, and the inputs
-    that were not measured.
+    that were not measured. `places` hold kind and place of each warning, as far as it is known,
+    and `usual` of how many the baseline already had.
 
     """
 
@@ -102,6 +107,29 @@ class AxisLine:
     remedy: str = ''
     normal: str = ''
     missing: Sequence[str] = ()
+    places: Sequence[Sequence[int]] = ()
+    usual: int = 0
+
+    def with_usual(self, usual_warnings: Collection[tuple[int, ...]]) -> 'AxisLine':
+        """Return it with its usual warnings counted; where all are usual, so is its standing."""
+        usual = sum(tuple(place) in usual_warnings for place in self.places)
+        standing = 'usual' if usual and usual == self.warnings else self.standing
+        return dataclasses.replace(self, usual=usual, standing=standing)
+
+    @property
+    def tag(self) -> str:
+        """Return the verdict in a word or two."""
+        return 'Usual' if self.standing == 'usual' else VerdictKind(self.standing).word
+
+    @property
+    def told(self) -> str:
+        """Return the verdict, and how many of the warnings are usual."""
+        if not self.usual:
+            return self.verdict
+        return (
+            f'{self.verdict} Usual for this axis, as its baseline had them: {self.usual} of '
+            f'{counted(self.warnings, "warning")}.'
+        )
 
     @property
     def key(self) -> MachineAxis:
@@ -254,6 +282,12 @@ def _axis_line(key: MachineAxis, verdict: AxisVerdict, case: AxisCase | None) ->
         outside_time=case.outside_time,
         surely_outside=min(case.surely_outside, case.outside_time),
         warnings=len(case.outcome.events),
+        places=[place for place in map(_place, case.outcome.events) if place is not None],
         worst='' if worst is None else f'{worst.quantity} {worst.shown(worst.worst_value)}',
         depth=math.nan if worst is None else badness(worst)[0],
     )
+
+
+def _place(event: EventRecord) -> UsualWarning | None:
+    code = Code.RCS_HIGH if event.quantity == RCS else Code.EFFICIENCY_LOW
+    return warning_at(code, speed=event.speed, axial_load=event.axial_load)

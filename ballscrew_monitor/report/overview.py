@@ -3,10 +3,12 @@
 """The page over many recordings: a row for each axis of each, and how an axis does over dates."""
 
 from collections.abc import Iterable, Mapping, Sequence
+import dataclasses
 import datetime
 import math
 from urllib.parse import quote
 
+from ballscrew_monitor.health.records import Health
 from ballscrew_monitor.recordings.words import counted, duration, NONE, percent
 from ballscrew_monitor.report.health_history import by_axis, healths, peers_among
 from ballscrew_monitor.report.health_part import health_trends, peers_table, verdict_box
@@ -17,12 +19,20 @@ from ballscrew_monitor.report.page import element, Markup, page, table, TableCel
 from ballscrew_monitor.report.trend import Mark, trend
 
 SCRIPTS = ('format.js', 'table.js', 'overview.js')
-MARKS = {'good': 'optimal', 'bad': 'outside', 'perhaps': 'perhaps', 'unknown': 'unjudged'}
+MARKS = {
+    'good': 'optimal',
+    'bad': 'outside',
+    'perhaps': 'perhaps',
+    'usual': 'unjudged',
+    'unknown': 'unjudged',
+}
 
 
 Listed = tuple[LogResult, AxisLine]
 Titles = Mapping[MachineAxis, str]
 """Names of axes, with their machine where several have one of that name."""
+Courses = Mapping[MachineAxis, Sequence[Health]]
+"""The health after each recording of an axis that has several."""
 
 
 def overview_page(
@@ -38,13 +48,15 @@ def overview_page(
     `parts` come below the verdict; the page bears a `title` of its own, if any.
 
     """
+    courses = _courses(entries)
+    entries = _with_usual(entries, courses)
     listed = [(entry, line) for entry in entries for line in entry.lines]
     listed.sort(key=lambda pair: -math.inf if math.isnan(pair[1].begins) else pair[1].begins)
     axes = [line.key for _, line in listed]
     titles = axis_titles(axes)
     bad = [entry for entry in entries if entry.failure]
     failures = (element('li', element('b', entry.name), f': {entry.failure}') for entry in bad)
-    first, trends = _health(entries, titles)
+    first, trends = _health(entries, courses, titles)
     notes = [*notes, *filter(None, [folders_note(axes)])]
     body = element(
         'main',
@@ -80,15 +92,36 @@ def overview_page(
     return page('Ball screw reports', body, scripts=SCRIPTS)
 
 
-def _health(entries: Sequence[LogResult], titles: Titles) -> tuple[list[Markup], list[Markup]]:
-    found = [history for entry in entries for history in entry.histories]
-    courses = [
-        healths(own, title=titles[axis]) for axis, own in by_axis(found).items() if len(own) > 1
+def with_usual(entries: Sequence[LogResult]) -> list[LogResult]:
+    """Return recordings with those warnings counted that the baselines of their axes had."""
+    return _with_usual(entries, _courses(entries))
+
+
+def _with_usual(entries: Sequence[LogResult], courses: Courses) -> list[LogResult]:
+    known = {axis: course[-1].usual_warnings for axis, course in courses.items()}
+    return [
+        dataclasses.replace(
+            entry, lines=[line.with_usual(known.get(line.key, ())) for line in entry.lines]
+        )
+        for entry in entries
     ]
-    peers = peers_among(found, titles)
-    first = [verdict_box(course[-1]) for course in courses]
+
+
+def _courses(entries: Sequence[LogResult]) -> Courses:
+    titles = axis_titles([line.key for entry in entries for line in entry.lines])
+    histories = by_axis([history for entry in entries for history in entry.histories])
+    return {
+        axis: healths(own, title=titles[axis]) for axis, own in histories.items() if len(own) > 1
+    }
+
+
+def _health(
+    entries: Sequence[LogResult], courses: Courses, titles: Titles
+) -> tuple[list[Markup], list[Markup]]:
+    peers = peers_among([history for entry in entries for history in entry.histories], titles)
+    first = [verdict_box(course[-1]) for course in courses.values()]
     first += [element('p', one.text, class_='hint') for one in peers if one.is_apart]
-    trends = [drawn for course in courses for drawn in health_trends(course)]
+    trends = [drawn for course in courses.values() for drawn in health_trends(course)]
     return first, [*trends, *peers_table(peers)]
 
 
@@ -100,11 +133,12 @@ def _verdict(entries: Sequence[LogResult], listed: Sequence[Listed]) -> Markup:
     sentence = (
         f'{counts["bad"]} of {len(listed)} axis recordings ran outside the optimal zone, '
         f'{counts["perhaps"]} perhaps, '
-        f'{counts["good"]} were good, {counts["unknown"]} could not be judged'
+        + (f'{counts["usual"]} as usual for their axis, ' if counts['usual'] else '')
+        + f'{counts["good"]} were good, {counts["unknown"]} could not be judged'
     )
     sentence += f'; {counted(lost, "recording")} could not be read.' if lost else '.'
     worst = {**counts, 'unknown': counts['unknown'] + lost}
-    kind = next((one for one in ('bad', 'perhaps', 'unknown') if worst[one]), 'good')
+    kind = next((one for one in ('bad', 'perhaps', 'usual', 'unknown') if worst[one]), 'good')
     return element('div', element('p', sentence, class_='sentence'), class_=f'verdict {kind}')
 
 
@@ -116,12 +150,7 @@ def _row(entry: LogResult, line: AxisLine, title: str) -> TableRow:
     link = element('a', entry.name, href=f'{quote(entry.folder)}/{PAGE}')
     return TableRow(
         (
-            TableCell(
-                text=element(
-                    'span', line.verdict.partition(':')[0], class_=f'tag {line.standing}'
-                ),
-                kind='short',
-            ),
+            TableCell(text=element('span', line.tag, class_=f'tag {line.standing}'), kind='short'),
             TableCell(link, kind='place'),
             title,
             TableCell(_date(line.begins), kind='short'),
@@ -130,11 +159,16 @@ def _row(entry: LogResult, line: AxisLine, title: str) -> TableRow:
             _time(line.running_time),
             TableCell(percent(sure).removesuffix(' %'), kind='number', value=sure),
             TableCell(percent(part).removesuffix(' %'), kind='number', value=part),
-            TableCell(str(line.warnings), kind='short', value=line.warnings),
+            TableCell(_warnings(line), kind='short', value=line.warnings),
             TableCell(line.worst or NONE, kind='short', value=line.depth),
         ),
-        kind='bad' if line.standing == 'bad' else '',
+        kind=line.standing if line.standing in ('bad', 'usual') else '',
     )
+
+
+def _warnings(line: AxisLine) -> str:
+    """Return how many warnings there were, and how many of them are usual."""
+    return f'{line.warnings}, usual {line.usual}' if line.usual else str(line.warnings)
 
 
 def _time(seconds: float) -> TableCell:

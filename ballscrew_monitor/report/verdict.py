@@ -250,20 +250,28 @@ def _outside(case: AxisCase, summary: Summary, more: str) -> AxisVerdict:
 
 
 def _time_outside(case: AxisCase, summary: Summary) -> str:
-    """Return how long surely and how long perhaps, by the bands of the limit, if it has them."""
-    outside, running = summary.outside_time, summary.running_time
-    sure = min(case.surely_outside, outside)
-    if math.isnan(sure):
-        return f'for {duration(outside)} ({share(outside, running)} of its motion)'
-    # A row lasts a little longer or shorter than the judgement has it: less than that is nothing.
-    perhaps = outside - sure if outside - sure > ROUNDING * outside else 0.0
-    times = {'surely': sure if sure > ROUNDING * outside else 0.0, 'perhaps': perhaps}
+    running = summary.running_time
     parts = [
-        f'{word} for {duration(time)} ({share(time, running)} of its motion)'
-        for word, time in times.items()
-        if time > 0.0
+        f'{word} for {duration(time)} ({share(time, running)} of its motion)'.lstrip()
+        for word, time in parts_outside(case, summary).items()
     ]
     return ' and '.join(parts)
+
+
+def parts_outside(case: AxisCase, summary: Summary) -> dict[str, float]:
+    """
+    Return the time outside [s], *surely* and *perhaps*, by the bands of the limit.
+
+    It has no word where nothing tells how surely, and where there is none.
+
+    """
+    outside = summary.outside_time
+    sure = min(case.surely_outside, outside)
+    if math.isnan(sure) or not outside:
+        return {'': outside}
+    # A row lasts a little longer or shorter than the judgement has it: less than that is nothing.
+    times = {'surely': sure, 'perhaps': outside - sure}
+    return {word: time for word, time in times.items() if time > ROUNDING * outside}
 
 
 def _why(events: tuple[EventRecord, ...]) -> str:

@@ -4,6 +4,7 @@
 
 import argparse
 from collections.abc import Callable
+import functools
 from pathlib import Path
 import sys
 from typing import Any
@@ -61,21 +62,32 @@ def add_inputs(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--oil', default='iso_vg_68', metavar='NAME|FILE', help='oil datasheet (default iso_vg_68)'
     )
+    add_verbose(parser)
+
+
+def add_verbose(parser: argparse.ArgumentParser) -> None:
+    """Add what tells more than asks for something to be done."""
+    parser.add_argument(
+        '--verbose',
+        action='store_true',
+        help='also tell what asks for nothing to be done: formulas beyond the range that they '
+        'were fitted over, an unusual static rating',
+    )
 
 
 def load_inputs(args: argparse.Namespace) -> tuple[Screw, Lubricant]:
     """Return the sheets of screw and oil; raises InputError, also for what no screw has."""
     screw, lubricant = load_screw(args.screw), load_lubricant(args.oil)
-    examine(screw)
+    examine(screw, verbose=args.verbose)
     return screw, lubricant
 
 
-def examine(screw: Screw) -> None:
+def examine(screw: Screw, *, verbose: bool = False) -> None:
     """Tell what is unusual in a sheet; raises InputError for what no screw has."""
     from surrogate.formulas.plausibility import check_plausible, doubts
 
     check_plausible(screw)
-    tell(doubts(screw))
+    tell(doubts(screw, rating=verbose))
 
 
 def add_operating_point(parser: argparse.ArgumentParser, *, required: bool) -> None:
@@ -129,7 +141,8 @@ def _point(args: argparse.Namespace) -> int:
     else:
         record = closed_form_record(screw, lubricant, point, inlet_heating=not args.isothermal)
     onset = onset_of_sheets(screw, lubricant, kelvin)
-    show(record | {'contact_onset': onset.record()}, page, json=args.json)
+    told = functools.partial(page, verbose=args.verbose)
+    show(record | {'contact_onset': onset.record()}, told, json=args.json)
     if args.plot:
         from surrogate.screw.figures import draw_point
 

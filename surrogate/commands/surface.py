@@ -5,6 +5,7 @@
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
+import functools
 import math
 from pathlib import Path
 import sys
@@ -12,7 +13,7 @@ from typing import Any
 
 from surrogate.builder.tiers import build_surface, default_settings, spreads
 from surrogate.commands.output import add_json, show, tell
-from surrogate.commands.point import add_inputs, load_inputs
+from surrogate.commands.point import add_inputs, add_verbose, load_inputs
 from surrogate.commands.surface_inspect import add_file, add_inspect_commands
 from surrogate.commands.sweep import add_sweep_command, add_workers
 from surrogate.files import InputError
@@ -42,6 +43,7 @@ def add_surface_command(subparsers: Any) -> None:
     clean.set_defaults(handler=_clean)
     info = actions.add_parser('info', help='describe a surface file')
     add_file(info)
+    add_verbose(info)
     add_json(info)
     info.set_defaults(handler=_info)
     add_inspect_commands(actions)
@@ -118,7 +120,7 @@ def _build(args: argparse.Namespace) -> int:
     write(out, data)
     print(f'{out}: tier {args.tier}, {data.mask.size} nodes, sha256 {data.sha256}')
     print(f'{onset_of_surface(Surface(data)).sentence()}.')
-    tell(surface_warnings(data))
+    tell(surface_warnings(data) if args.verbose else [])
     if args.with_preloads:
         from surrogate.builder.companions import build_companions
 
@@ -188,5 +190,5 @@ def _info(args: argparse.Namespace) -> int:
 
     path = find_surface(args.file)
     record = info_record(path, read(path))
-    show(record, info_page, json=args.json)
+    show(record, functools.partial(info_page, verbose=args.verbose), json=args.json)
     return 0

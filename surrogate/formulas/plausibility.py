@@ -69,8 +69,8 @@ def check_plausible(screw: Screw) -> None:
         )
 
 
-def doubts(screw: Screw) -> list[str]:
-    """Return a sentence for each number that is possible but unusual."""
+def doubts(screw: Screw, *, rating: bool = True) -> list[str]:
+    """Return a sentence for each number that is possible but unusual, of the `rating` if asked."""
     sentences = []
     circle = 2 * math.pi * screw.pitch_radius / math.cos(helix_angle(screw))
     turns = screw.loaded_balls_per_nut * screw.ball_diameter / circle
@@ -80,7 +80,7 @@ def doubts(screw: Screw) -> list[str]:
             f'pitch_radius_mm is {radius:g} mm, on which the balls fill {turns:.2g} turns: '
             f'if it is the diameter, {radius / 2:g} mm would fit'
         )
-    if not USUAL[0] <= rated_pressure(screw) <= USUAL[1]:
+    if rating and not USUAL[0] <= rated_pressure(screw) <= USUAL[1]:
         fit = rating_by_hertz(screw) / MILLI
         sentences.append(f'{_rating(screw)}, usual is 4 to 4.5 GPa: {fit:.3g} kN would fit')
     sentences += _doubts_of_roughness(screw.roughness)

@@ -52,7 +52,7 @@ def closed_form_record(
             for contact in result.contacts
         ],
         angles=(screw.contact_angle, screw.contact_angle),
-        warnings=formula_warnings(result) if point.speed else (),
+        formula_warnings=formula_warnings(result) if point.speed else (),
         inlet_heating=inlet_heating,
     )
     return record | {
@@ -86,8 +86,8 @@ def _deviation(deviation: float) -> str:
     return '' if math.isnan(deviation) else f', strips differ by {100 * deviation:.2g} %'
 
 
-def page(record: Mapping[str, Any]) -> str:
-    """Return a record as a page of text in workshop units."""
+def page(record: Mapping[str, Any], *, verbose: bool = False) -> str:
+    """Return a record as a page of text in workshop units; `verbose` with ranges of formulas."""
     rows = [
         (
             'efficiency',
@@ -139,5 +139,6 @@ def page(record: Mapping[str, Any]) -> str:
             *(f'  contact: {record[name]}' for name in ('asperity_law',) if name in record),
             f'  status: {record["status"]}',
             *(f'  warning: {text}' for text in record['warnings']),
+            *(f'  formulas: {text}' for text in record['formula_warnings'] if verbose),
         ]
     )

@@ -36,6 +36,7 @@ KEYS = {
     'tier': 'model',
     'status': 'how the solve ended, with the reason of a number that is not known',
     'warnings': 'sentences about ratings and ranges',
+    'formula_warnings': 'formulas beyond the range that they were fitted over',
     'screw': 'name of the sheet',
     'oil': 'name of the sheet',
     'roughness': 'stated roughness with its assumptions',
@@ -109,7 +110,8 @@ def point_record(
     reasons: Sequence[str],
     sliding: Sequence[float],
     angles: tuple[float, float],
-    warnings: Sequence[str],
+    warnings: Sequence[str] = (),
+    formula_warnings: Sequence[str] = (),
     inlet_heating: bool,
 ) -> dict[str, Any]:
     """
@@ -132,6 +134,7 @@ def point_record(
         'tier': tier,
         'status': result.status,
         'warnings': [*rating_warnings(screw, lubricant, point), *warnings],
+        'formula_warnings': list(formula_warnings),
         'screw': screw.name,
         'oil': lubricant.name,
         'roughness': roughness_sentence(screw.roughness, screw.ball_roughness),
@@ -225,7 +228,7 @@ def rating_warnings(screw: Screw, lubricant: Lubricant, point: OperatingPoint) -
         )
     if abs(point.load) > screw.static_rating:
         warnings.append(
-            f'load: {abs(point.load):.4g} N, the static rating is {screw.static_rating:.4g} N'
+            f'load: {abs(point.load):.0f} N, the static rating is {screw.static_rating:.0f} N'
         )
     if screw.preload and abs(point.load) >= UNLOADING_RATIO * screw.preload:
         what = 'the relieved nut carries nothing'

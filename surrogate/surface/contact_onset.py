@@ -31,6 +31,8 @@ WORST = 1.2
 """Speed at which the worst contact begins over that of the loaded nut, at most [-]."""
 RMS_POWER = 0.7
 """Exponent of the speed of the onset in the Rq that has it [-]."""
+TRACE, SLOW_TORQUE = 'a trace of the raceway as it runs', 'the torque at slow speeds'
+"""Measurements that narrow the band of a raceway traced new and run in, and of any other."""
 MARCHED_RMS = 0.05e-6, 0.4e-6
 """Rq of the raceways that were marched [m]."""
 
@@ -233,12 +235,12 @@ def onset_of_surface(
 
 
 def _unknown(raceway: Mapping[str, Any]) -> str:
-    """Return by what the band of a surface comes about, which the roughness of its sheet tells."""
+    """Return by what the band of a surface comes about, and the measurement that narrows it."""
     if raceway['onset_band']:
         return ' by its calibration'
-    cut = (raceway['state'], raceway['traced']) == ('run_in', 'new')
-    inputs = 'running in, oil and temperature' if cut else 'oil and temperature'
-    return f' by {inputs}, with the roughness of the sheet'
+    if (raceway['state'], raceway['traced']) == ('run_in', 'new'):
+        return f' by running in, oil and temperature; {TRACE} narrows it most'
+    return f' by oil and temperature; {SLOW_TORQUE} narrows it most'
 
 
 def _has(

@@ -93,13 +93,14 @@ def _summary(data: SurfaceData, group: str, name: str) -> dict[str, float]:
     return {'median': float(np.median(known)), 'max': float(known.max())}
 
 
-def info_page(record: Mapping[str, Any]) -> str:
-    """Return the record as a page."""
+def info_page(record: Mapping[str, Any], *, verbose: bool = False) -> str:
+    """Return the record as a page; `verbose` with the formulas that leave their ranges."""
     return '\n'.join(
         [
             f'{record["file"]}',
             f'  {record["contact_onset"]["sentence"]}',
             *_head(record),
+            *(f'  formulas     {text}' for text in record['formula_warnings'] if verbose),
             *_quality(record),
         ]
     )
@@ -156,7 +157,6 @@ def _quality(record: Mapping[str, Any]) -> Iterator[str]:
         )
     if record['march'] is not None:
         yield from march_lines(record['march'])
-    yield from (f'  formulas     {text}' for text in record['formula_warnings'])
     yield '  measured interpolation error                    max         p95'
     for name, error in record['errors'].items():
         yield f'    {_label(name):44} {error["max"]:<10.3g}  {error["p95"]:.3g}'

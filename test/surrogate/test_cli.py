@@ -76,8 +76,11 @@ def test_four_quadrants(record, rpm, load, drives):
 
 
 def test_point_as_a_page(run, capsys):
-    """A person reads the tier, the point and what leaves a fitted range."""
-    assert run(*POINT, '--speed-rpm', '600', '--load-N', '1000', '--temperature-degC', '40') == 0
+    """A person reads the tier, the point and, where it is asked for, what leaves a range."""
+    asked = (*POINT, '--speed-rpm', '600', '--load-N', '1000', '--temperature-degC', '40')
+    assert run(*asked) == 0
+    assert 'outside its range' not in capsys.readouterr().out
+    assert run(*asked, '--verbose') == 0
     text = capsys.readouterr().out
     for part in (
         'tier closed_form: 600 rev/min, 1000 N, 40 degC',
@@ -103,7 +106,7 @@ def test_ratings_are_warned_about(record):
     found = record('--speed-rpm', '3000', '--load-N', '60000', '--temperature-degC', '110')
     for part in (
         'speed: D n is 96',
-        'load: 6e+04 N, the static rating is 5.5e+04 N',
+        'load: 60000 N, the static rating is 55000 N',
         'temperature: 110 degC, the oil sheet covers 0 to 100 degC',
     ):
         assert any(part in text for text in found['warnings'])

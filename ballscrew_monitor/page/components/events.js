@@ -67,6 +67,7 @@ class Events {
 
   draw() {
     const { events, totals } = this.axis;
+    this.element.dataset.state = this.axis.level; // how sure the warning is that is on
     if (events !== this.shown) {
       this.shown = events;
       this.list.replaceChildren(events.length ? this.table(events) : Words.element('p', 'muted', 'events_none'));

@@ -172,7 +172,7 @@ class FirstScreen {
     const { axis } = this;
     const age = Format.time(axis.age, axis.age < 10 ? 0.1 : 1);
     const told = axis.recorded ? Words.say('data_recorded') : Words.say('data_age', { age });
-    this.write('age', axis.state ? told : '');
+    this.write('age', axis.rows.count ? told : '');
     const { inputs = [], faults = [] } = axis.state ?? {};
     const listed = JSON.stringify([faults, inputs.map(({ name, state, words }) => [name, state, words])]);
     if (listed !== this.shown) {

@@ -43,6 +43,7 @@ class LivePage {
     axis?.take(frame);
     this.news?.();
     if (axis && axis === this.axis) {
+      this.reveal();
       if (frame.kind === 'map') {
         this.whatIf.take(frame);
       } else {
@@ -73,7 +74,9 @@ class LivePage {
     this.cards = new Cards([...this.axes.values()], (id) => this.choose(id));
     this.detail = Format.element('div', 'detail');
     const heading = Words.element('h1', 'unseen', 'title');
-    this.element.replaceChildren(heading, this.link, this.cards.element, this.detail, this.player.element);
+    this.element.replaceChildren(
+      heading, this.link, this.cards.element, this.detail, new Fault().element, this.player.element,
+    );
     this.choose(this.axes.has(this.axis?.facts.id) ? this.axis.facts.id : hello.axes[0]?.id);
   }
 
@@ -97,6 +100,7 @@ class LivePage {
     const events = new Events(axis, this.live, this.acting, (begin, end) => this.show(begin, end));
     const health = new Health(axis);
     this.detail.append(first.element, this.whatIf.element, this.strips.element, events.element, health.element);
+    this.reveal();
     const cards = this.news;
     this.views = [
       this.painter.add(() => first.draw(), 200),
@@ -111,6 +115,13 @@ class LivePage {
     if (axis.map) {
       this.whatIf.take(axis.map);
     }
+  }
+
+  /** Show map and charts as soon as there is something to draw. */
+  reveal() {
+    const { rows, map } = this.axis;
+    this.strips.element.hidden = !rows.count;
+    this.whatIf.element.hidden = !rows.count && !map;
   }
 
   show(begin, end) {

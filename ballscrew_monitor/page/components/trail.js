@@ -129,4 +129,6 @@ class Trail extends MapFrame {
   }
 }
 
-Trail.LEVELS = { ok: 'good', warn: 'bad', unknown: 'unknown' };
+Trail.LEVELS = {
+  ok: 'good', warn: 'bad', surely: 'bad', perhaps: 'amber', usual: 'unknown', rest: 'unknown', unknown: 'unknown',
+};

@@ -51,7 +51,9 @@ const Format = (() => {
   }
 
   function marked(number) {
-    return String(number).replace('.', mark);
+    const text = String(number);
+    const plain = { useGrouping: false, maximumFractionDigits: 20 };
+    return (text.includes('e') ? number.toLocaleString('en', plain) : text).replace('.', mark);
   }
 
   /** Return a time since the start [s], as 1:02:03.4 or 12.34 s. */

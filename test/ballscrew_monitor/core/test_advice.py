@@ -4,6 +4,7 @@
 
 import dataclasses
 import math
+from pathlib import Path
 import re
 
 from ballscrew_monitor.core.advice import Advisor, speed_advice
@@ -20,6 +21,8 @@ from surrogate.surface import shipped_surface, Surface
 
 SURFACE = Surface.load(shipped_surface())
 SHIPPED = [Surface.load(path) for path in sorted(shipped_surface().parent.glob('*.npz'))]
+GOLDEN = Path(__file__).parents[2] / 'golden' / 'data'
+TOLD = re.compile(r'(?:advice|remedy|What to do)["\']?\s*[:=]\s*(\S.*)', re.IGNORECASE)
 LOAD_OR_SIGN = re.compile(r'\d\s*k?N\b|\bloads? (of|with)\b|[-+\u2212]\s*\d')
 SPEED = re.compile(r'rev/min|rad/s|m/min|m/s')
 
@@ -148,6 +151,14 @@ def test_no_advice_names_a_load_or_a_sign(
     assert not run_at or re.fullmatch(r'at this load run at [\d.]+ rev/min', run_at)
     helpful = '; or '.join(filter(None, [workshop, run_at]))
     assert message.advice == (helpful or (USUAL if usual else ''))
+
+
+def test_no_advice_of_a_scenario_names_a_load_or_a_sign():
+    """Of all golden outputs: messages, logs, pages and words of scenarios and recordings."""
+    texts = [file.read_text(encoding='utf-8') for file in sorted(GOLDEN.rglob('*.txt'))]
+    told = [words for text in texts for words in TOLD.findall(text)]
+    assert sum('would with' in words for words in told) > 10
+    assert [words for words in told if LOAD_OR_SIGN.search(words)] == []
 
 
 def test_a_sign_a_load_and_a_speed_are_found_by_the_property():

@@ -1,73 +1,73 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Warnings of a kind, speed and load that the baseline had are usual, all others are not."""
+"""A warning is usual where the baseline already had it: its kind, band of speed, load and way."""
 
-import dataclasses
-import math
+import types
 
 from ballscrew_monitor.core.judgement import Code
 from ballscrew_monitor.health.bands import load_band, speed_band
-from ballscrew_monitor.health.records import Baseline, Condition, Health
-from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.health.records import Baseline, Cell, UsualWarning
 from ballscrew_monitor.health.usual import is_usual, usual_warnings
-from ballscrew_monitor.judge.records import Row
 import pytest
+from surrogate.surface import Validity
 
-FIRST = 20_000
-BASELINE = Baseline(begin=FIRST * DAY, end=(FIRST + 10) * DAY, reason='learned')
-SLOW, FAST = 4.0, 100.0  # [rad/s] where the film is too thin, and where it is not
-
-
-@pytest.fixture
-def cell(motion):
-    """Return a function that gives a cell of steady motion at a speed in the baseline."""
-
-    def make(speed):
-        places = {'speed_band': speed_band(speed), 'load_band': load_band(500.0)}
-        return motion.cell(first_day=FIRST + 2, speed=speed, axial_load=500.0, **places)
-
-    return make
+BASELINE = Baseline(begin=100, end=200, reason='learned')
 
 
-@pytest.fixture
-def usual(surface, usual_limits):
-    """Return a function that says whether a warning is usual after cells."""
-
-    def says(cells, *, code=Code.RCS_HIGH, baseline=BASELINE, speed=SLOW, load=500.0):
-        known = usual_warnings(cells, baseline, surface, usual_limits)
-        normal = {'condition': Condition.NORMAL, 'verdict': '', 'usual_warnings': known}
-        row = Row(speed=speed, axial_load=load)
-        return is_usual(Health(axis='x', stamp=0, **normal), code, row)
-
-    return says
+def cell(speed=2.0, load=-1000.0, start=150):
+    bands = {'speed_band': speed_band(abs(speed)), 'load_band': load_band(load)}
+    way = 1 if speed > 0.0 else -1
+    place = {'speed': speed, 'axial_load': load, 'temperature': 313.0, 'direction': way}
+    return Cell(start=start, **bands, **place)
 
 
-def test_a_warning_where_the_baseline_was_outside_is_usual(surface, usual_limits, cell, usual):
-    assert surface.lookup(SLOW, -500.0, 313.0).rcs >= usual_limits.rcs
-    assert usual([cell(SLOW)])
-    assert usual([cell(SLOW)], speed=1.05 * SLOW)
+class Slipping:
+    """A surface on which metal carries below 10 rad/s, and efficiency is low below 5 rad/s."""
+
+    def lookup(self, speed, opposing_load, temperature):
+        return types.SimpleNamespace(
+            validity=Validity.VALID if temperature < 330.0 else Validity.TEMPERATURE_OUT_OF_RANGE,
+            rcs=1.0 if speed < 10.0 else 0.0,
+            efficiency=0.5 if speed < 5.0 else 0.95,
+        )
 
 
 @pytest.mark.parametrize(
-    'changes',
+    ('point', 'codes'),
     [
-        {'code': Code.EFFICIENCY_LOW},
-        {'speed': 1.5 * SLOW},
-        {'speed': -SLOW},
-        {'speed': 0.0},
-        {'speed': math.nan},
-        {'load': 1500.0},
-        {'load': -500.0},
-        {'load': math.nan},
-        {'baseline': None},
-        {'baseline': dataclasses.replace(BASELINE, end=(FIRST + 1) * DAY)},
+        (cell(), {Code.RCS_HIGH, Code.EFFICIENCY_LOW}),
+        (cell(load=-100.0), {Code.RCS_HIGH}),  # too light to judge the efficiency
+        (cell(speed=7.0), {Code.RCS_HIGH}),
+        (cell(speed=20.0), set()),
+        (cell(start=99), set()),
+        (cell(start=200), set()),
+        (cell(start=100), {Code.RCS_HIGH, Code.EFFICIENCY_LOW}),
     ],
 )
-def test_another_kind_speed_load_direction_or_time_is_not(cell, usual, changes):
-    assert not usual([cell(SLOW)], **changes)
+def test_what_the_baseline_had_is_known(usual_limits, point, codes):
+    known = usual_warnings([point, cell(speed=30.0)], BASELINE, Slipping(), usual_limits)
+    place = point.speed_band, point.load_band, point.direction
+    assert known == tuple(sorted(UsualWarning(code, *place) for code in codes))
+    assert usual_warnings([point], None, Slipping(), usual_limits) == ()
 
 
-def test_a_place_where_the_baseline_was_inside_is_not(surface, usual_limits, cell, usual):
-    """A warning there is news: only another temperature or another oil can have raised it."""
-    assert surface.lookup(FAST, -500.0, 313.0).rcs < usual_limits.rcs
-    assert not usual([cell(FAST)], speed=FAST)
+@pytest.mark.parametrize(
+    ('changes', 'usual'),
+    [
+        ({}, True),
+        ({'speed': 2.05, 'axial_load': -1020.0}, True),
+        ({'speed': -2.0}, False),
+        ({'speed': 3.0}, False),
+        ({'axial_load': -3000.0}, False),
+        ({'axial_load': 1000.0}, False),
+        ({'speed': 0.0}, False),
+        ({'axial_load': float('nan')}, False),
+        ({'code': Code.EFFICIENCY_LOW}, False),
+    ],
+)
+def test_another_kind_speed_load_or_way_is_news(usual_limits, changes, usual):
+    point = cell(load=-1000.0, speed=2.0)
+    place = point.speed_band, point.load_band, point.direction
+    health = types.SimpleNamespace(usual_warnings=(UsualWarning(Code.RCS_HIGH, *place),))
+    asked = {'code': Code.RCS_HIGH, 'speed': 2.0, 'axial_load': -1000.0} | changes
+    assert is_usual(health, **asked) is usual

@@ -26,22 +26,22 @@ def remembered(**changes):
 def test_the_sums_the_last_event_and_the_shelving_come_back_and_nothing_else():
     memory = remembered(event_derived=[1, 0], event_worst=[0.25, 0.5])
     shelving = Shelving(until=99, reason='nut is ordered')
-    record = AxisRecord.of('x', memory, ADA, shelving, 30)
+    record = AxisRecord.of('x', memory, ADA, shelving, 30, [3, 7])
     again = record.read_memory()
     kept = dataclasses.replace(memory, stamp=0, event_start=[10, 0], event_worst=[0.25, math.nan])
     assert repr(again) == repr(kept)
     assert (record.axis, record.event) == ('x', 7)
     assert (record.left_ns, record.reason) == (69, 'nut is ordered')
-    assert record.read_ending() == ADA
+    assert (record.read_ending(), record.read_usual()) == (ADA, [3, 7])
     assert repr(AxisRecord('x').read_memory()) == repr(Memory())
     assert AxisRecord('x').read_ending() == NOT_ENDED
 
 
 def test_an_event_that_was_interrupted_is_over_at_its_last_stamp():
-    active = AxisRecord.of('x', remembered(event_active=True), NOT_ENDED, NOT_SHELVED, 0)
+    active = AxisRecord.of('x', remembered(event_active=True), NOT_ENDED, NOT_SHELVED, 0, [7])
     record = after_restart(active)
     over = remembered(event_stamp=30)
-    assert record == AxisRecord.of('x', over, RESTARTED, NOT_SHELVED, 0)
+    assert record == AxisRecord.of('x', over, RESTARTED, NOT_SHELVED, 0, [7])
     assert after_restart(record) is record
 
 
@@ -68,7 +68,15 @@ def test_a_memory_that_no_node_has_written_is_refused(changes):
 
 @pytest.mark.parametrize(
     'changes',
-    [{'event': 2**32}, {'event': -1}, {'left_ns': -1}, {'ending': 'LATE'}, {'memory': '[1]'}],
+    [
+        {'event': 2**32},
+        {'event': -1},
+        {'left_ns': -1},
+        {'ending': 'LATE'},
+        {'memory': '[1]'},
+        {'usual': '[1.5]'},
+        {'usual': '{}'},
+    ],
 )
 def test_a_record_that_no_node_has_written_is_refused(changes):
     AxisRecord('x', event=2**32 - 1).check()

@@ -13,8 +13,13 @@ from ballscrew_monitor import cli
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.fault_codes import Fault
 from ballscrew_monitor.core.state import NOT_ENDED, NOT_SHELVED
+from ballscrew_monitor.health.bands import load_band, speed_band
+from ballscrew_monitor.health.records import Cell
+from ballscrew_monitor.health.rows import DAY
+from ballscrew_monitor.health.store import HealthStore
 from ballscrew_monitor.judge.kept import AxisRecord
 from ballscrew_monitor.judge.records import Memory
+from ballscrew_monitor.messages.diagnostics import USUAL_EVENTS
 from ballscrew_monitor.node.restart_state import RestartState
 from ballscrew_monitor.node.state_database import FILE, read_entries
 from ballscrew_msgs.msg import BallScrewState, OutOfZone
@@ -267,3 +272,60 @@ def test_a_shelved_warning_calls_nobody_and_outlives_the_node(axis, says):
     assert axis.log()[-1]['reason'] == 'short'
     node.until(lambda: not axis.events[-1].shelved, 'the event that says so')
     axis.until_level('x: Lubrication', DiagnosticStatus.WARN)
+
+
+def keep_baseline(folder):
+    """Keep days on which the axis went to and fro at SLOW and FAST, against 1 kN at each."""
+    first, speeds = 20_000, (SLOW, FAST)  # days since 1970
+    cells = [
+        Cell(
+            start=day * DAY,
+            first_day=day,
+            speed_band=speed_band(speed),
+            load_band=load_band(-1000.0),
+            direction=way,
+            stretches=20,
+            duration=200.0,
+            speed=way * speed,
+            axial_load=-1000.0,
+            temperature=313.15,
+            motor_torque=way * 0.9,
+        )
+        for day in range(first, first + 300, 2)
+        for speed in speeds
+        for way in (1, -1)
+    ]
+    store = HealthStore(folder)
+    store.load()
+    store.add('x', cells)
+    store.close()
+
+
+def test_a_usual_warning_is_known_as_such_over_a_restart(axis):
+    """Level, code and number of the warning are those of any other."""
+    axis.folder.mkdir()
+    keep_baseline(axis.folder)
+    healths = axis.node.healths()
+
+    def usual():
+        named = [
+            pair.value
+            for message in axis.node.told
+            for status in message.status
+            for pair in status.values
+            if status.name.endswith(': x: Lubrication') and pair.key == USUAL_EVENTS
+        ]
+        return named[-1:]
+
+    axis.start(x__health__enabled='true', x__temperature__default=40.0)
+    axis.node.until(lambda: healths, 'the health')
+    axis.begin(1)
+    axis.node.until(lambda: usual() == ['1'], 'the usual warning')
+    assert axis.until_level('x: Lubrication', DiagnosticStatus.WARN) == Fault.RCS_HIGH.text
+    assert axis.events[-1].advice.endswith('usual for this axis')
+    axis.kill()
+    axis.start(x__health__enabled='true', x__temperature__default=40.0)
+    axis.move(FAST, lambda state: state.level == BallScrewState.LEVEL_OK, 'a stay inside')
+    axis.node.until(lambda: usual() == ['1'], 'the usual warning')
+    axis.begin(2)
+    axis.node.until(lambda: usual() == ['1 2'], 'another one')

@@ -57,10 +57,12 @@ def heard_axis(node='/monitor', axis='x'):
 class Served:
     """A page on a free port, and what a reader does with it."""
 
-    def __init__(self, *, token=None, host='127.0.0.1', cert=None, key=None, handlers=()):
+    def __init__(
+        self, *, token=None, host='127.0.0.1', cert=None, key=None, handlers=(), fault=None
+    ):
         self.hub, self.tokens = Hub(), Tokens(token, slowness=0.0)
         self.options = PageOptions(host=host, port=0, token=token, cert=cert, key=key)
-        self._handlers = dict(handlers)
+        self._handlers, self._fault = dict(handlers), fault
         self._loop = asyncio.new_event_loop()
         self._started = threading.Event()
         self._thread = threading.Thread(target=self._run)
@@ -72,7 +74,9 @@ class Served:
             self.port = bound.getsockname()[1]
             answer = Questions(self._handlers).answer
             metrics = Metrics(HubCollector(self.hub, lambda: self.tokens.wrong))
-            app = PageApp(self.hub, answer, self.tokens, metrics).guarded(self.options.host)
+            fault = self._fault and self._fault(self.hub)
+            app = PageApp(self.hub, answer, self.tokens, metrics, fault=fault)
+            app = app.guarded(self.options.host)
             self.server = server_of(self.options, app)
             self._loop.run_until_complete(self._serve(bound))
 
@@ -99,7 +103,7 @@ class Served:
             sent = {name.replace('_', '-'): value for name, value in headers.items()}
             connection.request(method, path, body, sent)
             answer = connection.getresponse()
-            return answer.status, answer.headers, answer.read().decode()
+            return answer.status, answer.headers, answer.read().decode('utf-8', 'replace')
 
     def status(self, path, **headers):
         """Return the status of an answer that need not end."""

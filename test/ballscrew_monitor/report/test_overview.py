@@ -2,11 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page over recordings: rows by date, a trend where there is one, bad ones named."""
 
+import dataclasses
 import math
 import re
 
+from ballscrew_monitor.core.judgement import Code
+from ballscrew_monitor.health.assess import DRAG
+from ballscrew_monitor.health.records import Condition, Health, Quantity, UsualWarning
+from ballscrew_monitor.report import overview
 from ballscrew_monitor.report.log_report import AxisLine, LogResult
-from ballscrew_monitor.report.overview import overview_page
+from ballscrew_monitor.report.overview import overview_page, with_usual
 
 DAY = 86400.0
 HOSTILE = '</script><script>alert(1)</script>'
@@ -97,3 +102,37 @@ def test_what_is_not_known_is_a_dash():
         'data-value="NaN"', ''
     )
     assert '1 could not be judged' in page
+
+
+def test_usual_warnings_are_counted_apart_and_grey(monkeypatch):
+    """A recording of whose warnings all are usual is neither good nor bad."""
+    known = UsualWarning(Code.RCS_HIGH, 3, -8, 1)
+    health = Health(
+        axis='x',
+        stamp=0,
+        condition=Condition.NORMAL,
+        verdict='Normal.',
+        quantities=[Quantity(name=DRAG)],
+        usual_warnings=(known,),
+    )
+    entries = []
+    for name, places in (('all', [known, known]), ('some', [known, known._replace(direction=-1)])):
+        entry = make_entry(name, len(name), 18.0)
+        (line,) = entry.lines
+        # As JSON of a worker leaves them.
+        line = dataclasses.replace(line, warnings=2, places=[list(place) for place in places])
+        entries.append(dataclasses.replace(entry, lines=[line]))
+    courses = {line.key: [health] for entry in entries for line in entry.lines}
+    monkeypatch.setattr(overview, '_courses', lambda entries: courses)
+    page = overview_page(entries)
+    assert '1 of 2 axis recordings ran outside the optimal zone' in page
+    assert ', 1 as usual for their axis, ' in page
+    assert '<span class="tag usual">Usual</span>' in page
+    assert [page.count(text) for text in ('>2, usual 2<', '>2, usual 1<')] == [1, 1]
+    assert page.count('class="usual"') == 1
+    (whole,), (part,) = (entry.lines for entry in with_usual(entries))
+    assert (whole.standing, part.standing) == ('usual', 'bad')
+    usual = 'Usual for this axis, as its baseline had them: 1 of 2 warnings.'
+    assert part.told == f'{part.verdict} {usual}'
+    courses.clear()
+    assert [line.usual for entry in with_usual(entries) for line in entry.lines] == [0, 0]

@@ -32,7 +32,7 @@ def test_build_info_check(run, tmp_path, capsys):
     """A surface is built, described and found good; a second build is the same surface."""
     path = tmp_path / 'map.npz'
     ranges = ('--load-range', -500, 500, '--temperature-range', 30, 50, '--speed-range', 1, 2000)
-    assert run('build', '--tier', 'closed_form', '--out', path, *ranges) == 0
+    assert run('build', '--tier', 'closed_form', '--out', path, *ranges, '--verbose') == 0
     built, warned = capsys.readouterr()
     assert run('info', path, '--json') == 0
     info = json.loads(capsys.readouterr().out)
@@ -144,6 +144,8 @@ def test_formulas_beyond_what_they_were_fitted_over_are_named_once(run, capsys):
     assert names == [text.split()[0] for text in formula_warnings(corner)]
     assert len(set(names)) == len(names) > 0
     assert run('info', 'closed_form') == 0
+    assert '  formulas ' not in capsys.readouterr().out
+    assert run('info', 'closed_form', '--verbose') == 0
     page = capsys.readouterr().out
     assert [page.count(f'  formulas     {text}') for text in told] == [1] * len(told)
     assert run('info', 'full', '--json') == 0

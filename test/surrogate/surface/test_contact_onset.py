@@ -112,11 +112,12 @@ def test_speed_and_band_are_those_of_the_surface(kelvin):
     [
         (
             {'state': 'run_in', 'traced': 'new'},
-            ' by running in, oil and temperature, with the roughness of the sheet',
+            ' by running in, oil and temperature; a trace of the raceway as it runs narrows it '
+            'most',
         ),
         (
             {'state': 'run_in', 'traced': 'run_in'},
-            ' by oil and temperature, with the roughness of the sheet',
+            ' by oil and temperature; the torque at slow speeds narrows it most',
         ),
         ({'onset_band': 1.5}, ' by its calibration'),
     ],

@@ -103,3 +103,19 @@ def test_on_a_phone_no_word_of_a_warning_is_broken_and_no_column_cut(tab, greete
         .map((one) => getComputedStyle(one, '::before').content)""")
     assert heads[0] == '"Begin: "'
     assert tab.ask("getComputedStyle(document.querySelector('.events td')).display") == 'block'
+
+
+def test_a_warning_that_is_perhaps_one_is_amber_and_a_usual_one_grey(tab, greeted, frames):
+    greeted.greeting[3] = frames.events('x', {'active': True}, {'id': 2, 'usual': True})
+    colours = {}
+    for outside in ('surely', 'perhaps'):
+        greeted.greeting[-1] = frames.state(level='warn', zone='outside', outside=outside)
+        tab.visit(greeted.url)
+        tab.until(f"document.querySelector('.events')?.dataset.state === '{outside}'")
+        edge = "getComputedStyle(document.querySelector('.events tr.bad td')).borderLeftColor"
+        sign = "getComputedStyle(document.querySelector('.sign.level')).backgroundColor"
+        colours[outside] = tab.ask(edge)
+        assert colours[outside] == tab.ask(sign)
+    assert colours['surely'] != colours['perhaps']
+    grey = tab.ask("getComputedStyle(document.querySelector('.events tr.usual')).color")
+    assert grey == tab.ask("getComputedStyle(document.querySelector('.events th')).color")

@@ -78,6 +78,13 @@ def test_how_far_the_limit_is(shown, margin, text):
     assert shown.ask(f'FirstScreen.distance({margin})') == text
 
 
+@pytest.mark.parametrize(
+    ('value', 'text'), [(1030.4, '1030'), (1.0312e-7, '0.000000103'), (-2e-9, '-0.000000002')]
+)
+def test_no_number_is_written_by_powers_of_ten(shown, value, text):
+    assert shown.ask(f'Format.number({value!r})') == text
+
+
 def test_at_standstill_no_distance_is_told(shown, greeted, frames):
     greeted.send(*frames.state(rows=frames.rows(1, speed_rpm=4.0)))
     shown.reads('.numbers > div:last-child .big', '–')
@@ -118,8 +125,12 @@ def test_without_data_one_line_says_what_is_missing(tab, greeted, frames):
     tab.visit(greeted.url)
     tab.reads('.reason', 'no valid sample: Speed')
     tab.reads('.health summary', 'Not known yet: 15 quantities. Open this line to read why.')
-    assert tab.ask("getComputedStyle(document.querySelector('.numbers')).display") == 'none'
     assert tab.ask("document.querySelector('.health').innerText.match(/not known/gi).length") <= 2
+    for part in ('.numbers', '.strips', '.what-if'):
+        assert tab.ask(f"getComputedStyle(document.querySelector('{part}')).display") == 'none'
+    assert tab.text('.age') == ''
+    greeted.send(*frames.state())
+    tab.until("getComputedStyle(document.querySelector('.strips')).display !== 'none'")
 
 
 def test_a_warning_that_is_only_held_says_so(shown, greeted, frames):

@@ -67,3 +67,18 @@ def test_the_axis_is_marked_where_it_is_while_that_is_known(shown, greeted, fram
     greeted.send(*frames.state(rows=rows))
     shown.until("page.axis.rows.last('load_N') === -2000")
     assert differs()
+
+
+def test_the_mark_has_the_colour_of_every_level(shown):
+    """Those that the first screen knows, each of them a colour of the page."""
+    names = shown.ask(
+        'Object.keys(SIGNS).filter((name) => Words.say(`level_${name}`) !== `level_${name}`)'
+    )
+    assert {'surely', 'perhaps', 'usual', 'rest'} <= set(names)
+    colours = shown.ask(
+        'Object.fromEntries(Object.entries(Trail.LEVELS).map(([level, name]) => '
+        '[level, Format.colour(name)]))'
+    )
+    assert set(colours) == set(names)
+    assert all(colours.values())
+    assert len({colours[name] for name in ('ok', 'surely', 'perhaps', 'rest')}) == 4

@@ -1,0 +1,359 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+One file to send when something fails: a zip of what is needed to look for the cause.
+
+Versions, failures of the program, parameters, what a node keeps, and the end of its last recording
+or of the logs that are named. Each part has a largest size, and so has the whole. A mask hides
+hosts, users and persons; `contents.txt` says what is inside and what was hidden.
+
+"""
+
+import argparse
+from collections import deque
+from collections.abc import Collection, Mapping, Sequence
+import contextlib
+import dataclasses
+from importlib import metadata
+import io
+import json
+import os
+from pathlib import Path
+import platform
+import tempfile
+from typing import Any
+import zipfile
+
+from ballscrew_monitor.clients.mask import Mask, Secret
+from ballscrew_monitor.messages.diagnostics import HOST as HOST_KEY
+from ballscrew_monitor.node.restart_state import AUTO, state_directory
+from ballscrew_monitor.node.state_database import FILE, VERSION
+from ballscrew_monitor.node.state_records import AXES, CORRECTIONS, EVENTS
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bag_files import is_bag
+from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.event_messages import read as read_events
+from ballscrew_monitor.recordings.frames import EVENTS as EVENTS_TYPE
+from ballscrew_monitor.recordings.storages import Message
+from ballscrew_monitor.settings.parameters import NODE_NAME
+from ballscrew_msgs.msg import BallScrewState, OutOfZone
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.serialization import deserialize_message
+from surrogate.files import InputError, json_text, printable, replace_file
+from surrogate.store import opened_to_read, readable
+from surrogate.units import MINUTE
+
+FAILURES = 'ballscrew_failure_*.txt'
+LARGEST = 25_000_000  # [byte] of all, before it is packed
+LARGEST_TEXT, LARGEST_LOGS = 1_000_000, 16_000_000  # [byte] of a text, of all logs
+HEAD = 64_000  # [byte] of a table that is kept before its end
+MOST_ENTRIES, MOST_FAILURES = 2000, 3
+PACKAGES = (
+    *('ballscrew_monitor', 'ballscrew_msgs', 'rclpy', 'numpy', 'numba', 'polars', 'mcap'),
+    *('zstandard', 'starlette', 'uvicorn', 'websockets', 'matplotlib', 'PyYAML'),
+)
+SETTINGS = ('RMW_IMPLEMENTATION', 'ROS_DOMAIN_ID', 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_DISTRO')
+"""Variables of the environment that are told."""
+NO_RECORDING = 'no recording of the node: it keeps one where its parameter record says so'
+WIDE = (b'\xff\xfe', b'\xfe\xff')
+BINARY = (
+    '{name} is a table that is no text, in which nothing can be hidden: save it as CSV, or put it '
+    'in as it is with --include tables'
+)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class FaultCase:
+    """
+    What goes into a report: logs and state directories, texts by name, and failures.
+
+    Of a log go the last `seconds` [s]. `shown` is not hidden. A table that is no text goes in as
+    it is with `tables`; else it is refused, or left out unless `table_refused`. `failures` None
+    stands for those of this user.
+
+    """
+
+    paths: Sequence[Path] = ()
+    texts: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    failures: Sequence[Path] | None = None
+    seconds: float = 2.0 * MINUTE
+    shown: Collection[Secret] = ()
+    tables: bool = False
+    table_refused: bool = True
+    tokens: Sequence[str] = ()
+
+
+def fault_report(case: FaultCase) -> tuple[bytes, list[str]]:
+    """Return the zip, and what it holds in lines; raises InputError for what cannot be read."""
+    parts = _Parts(case)
+    failures = own_failures() if case.failures is None else case.failures
+    parts.add_text('versions.json', json_text(versions()))
+    for number, path in enumerate(failures, 1):
+        parts.add_text(f'failure_{number}.txt', _text_of(path))
+    for path in case.paths:
+        if is_state(path):
+            parts.add_state(path)
+        elif path.is_dir() and not is_bag(path):
+            parts.add_last(path)
+        elif is_bag(path):
+            parts.add_bag(path)
+        else:
+            parts.add_table(path)
+    for name, text in case.texts.items():
+        parts.add_text(name, text)
+    return parts.packed()
+
+
+def is_state(path: Path) -> bool:
+    """Return True if a folder is the state directory of a node."""
+    return (path / FILE).is_file()
+
+
+def own_failures() -> list[Path]:
+    """Return the last failures of commands that this user has run, the newest first."""
+    files = [
+        (path.stat().st_mtime, path)
+        for path in Path(tempfile.gettempdir()).glob(FAILURES)
+        if path.is_file() and path.stat().st_uid == os.getuid()
+    ]
+    return [path for _, path in sorted(files, reverse=True)[:MOST_FAILURES]]
+
+
+def versions() -> dict[str, Any]:
+    """Return versions of what this runs with."""
+    found = {}
+    for name in PACKAGES:
+        with contextlib.suppress(metadata.PackageNotFoundError):
+            found[name] = metadata.version(name)
+    return {
+        'python': platform.python_version(),
+        'system': f'{platform.system()} {platform.machine()}',
+        'packages': found,
+        'settings': {name: os.environ[name] for name in SETTINGS if name in os.environ},
+    }
+
+
+class _Parts:
+    """Parts of the zip as they come together: what is hidden in one is hidden in all."""
+
+    def __init__(self, case: FaultCase) -> None:
+        self._case, self._mask = case, Mask(case.shown, case.tokens)
+        self._texts: list[tuple[str, str]] = []
+        self._files: list[tuple[str, bytes]] = []
+        self._bags: list[tuple[str, Bag, list[Message]]] = []
+        self._remarks: list[str] = []
+        self._room = LARGEST_LOGS / max(len(case.paths), 1)  # [byte] for each log
+
+    def add_text(self, name: str, text: str) -> None:
+        """Add a text, of a long one its end."""
+        self._texts.append((name, text[-LARGEST_TEXT:]))
+
+    def add_state(self, folder: Path) -> None:
+        """Add what a node keeps, and its last recording."""
+        tables = (AXES, CORRECTIONS, EVENTS)
+        with opened_to_read(folder, FILE, tables, VERSION) as store:
+            last = f'ORDER BY number DESC LIMIT {MOST_ENTRIES}'
+            rows = [store.rows(table, last if table is EVENTS else '') for table in tables]
+        axes, corrections, events = (
+            [record for _, record in readable(table, found)]
+            for table, found in zip(tables, rows, strict=True)
+        )
+        entries = [entry.record() for entry in reversed(events)]
+        for entry in entries:
+            self._mask.learn(Secret.NAME, (entry.get('name', ''), entry.get('reason', '')))
+        for axis in axes:
+            self._mask.learn(Secret.NAME, (axis.ended_by, axis.end_reason, axis.reason))
+        kept = {'axes': axes, 'corrections': corrections}
+        self.add_text(
+            'state.json',
+            json_text({name: [*map(dataclasses.asdict, each)] for name, each in kept.items()}),
+        )
+        self.add_text('events.jsonl', '\n'.join(map(json.dumps, entries)))
+        self.add_last(folder / 'recordings')
+
+    def add_last(self, folder: Path) -> None:
+        """Add the last recording of a folder, if there is one."""
+        bags = sorted(filter(is_bag, folder.glob('*/')), key=lambda path: path.stat().st_mtime)
+        if not bags:
+            self._remarks.append(NO_RECORDING)
+            return
+        try:
+            self.add_bag(bags[-1])
+        except InputError as error:  # such as one that has just begun
+            self._remarks.append(str(error))
+
+    def add_bag(self, path: Path) -> None:
+        """Add the end of a bag, and the parameters that it holds."""
+        bag, size, kept = Bag(path, salvage=True), 0, deque[Message]()
+        for message in bag.messages():
+            kept.append(message)
+            size += len(message.data)
+            first = message.log_time - self._case.seconds * 1e9
+            while kept and (size > self._room or kept[0].log_time < first):
+                size -= len(kept.popleft().data)
+        parameters: dict[str, Any] = {}
+        for message in kept:
+            parameters |= self._learn_from(bag.types[message.topic], message.data)
+        self._bags.append((f'log_{len(self._bags) + 1}', bag, list(kept)))
+        if parameters:
+            self.add_text('parameters.json', json_text(parameters))
+        self._remarks += bag.notes
+
+    def _learn_from(self, type_name: str, data: bytes) -> dict[str, Any]:
+        """Learn who is named in a message; return the parameters that it holds."""
+        values: dict[str, Any] = {}
+        if type_name == EVENTS_TYPE:
+            for taken in map(json.loads, read_events(data).snapshots):
+                memory = taken.get('memory', {})
+                named = memory.get('shelve_reason', ''), *memory.get('ending', ())[1:]
+                self._mask.learn(Secret.NAME, named)
+                values |= taken.get('values', {})
+        elif kind := NAMING.get(type_name):
+            message = deserialize_message(data, kind)
+            for secret, texts in _named_in(message).items():
+                self._mask.learn(secret, texts)
+        return values
+
+    def add_table(self, path: Path) -> None:
+        """Add a table: its first lines and its end."""
+        try:
+            size = path.stat().st_size
+            with path.open('rb') as stream:
+                head = stream.read(HEAD if size > self._room else size)
+                stream.seek(max(len(head), size - int(self._room)))
+                end = stream.read()
+        except OSError as error:
+            raise InputError(f'log {path} cannot be read: {error.strerror}') from None
+        name = f'log_{path.name}'
+        if b'\0' not in head or head.startswith(WIDE):
+            encoding = 'utf-16' if head.startswith(WIDE) else 'utf-8'
+            if size > self._room and encoding == 'utf-8':
+                head = head[: head.rfind(b'\n') + 1]
+                end = end[end.find(b'\n') + 1 :]
+            text = (head + end).decode(encoding, 'surrogateescape')
+            self._texts.append((name, text))
+        elif not self._case.tables and self._case.table_refused:
+            raise InputError(BINARY.format(name=path))
+        elif not self._case.tables:
+            self._remarks.append(BINARY.format(name=path.name))
+        elif size > LARGEST_LOGS:
+            raise InputError(f'{path} has {size} bytes, allowed are {LARGEST_LOGS}')
+        else:
+            self._files.append((name, head + end))
+
+    def packed(self) -> tuple[bytes, list[str]]:
+        """Return the zip, and what it holds in lines."""
+        contents = [
+            (name, self._mask.text(text).encode('utf-8', 'surrogateescape'))
+            for name, text in self._texts
+        ]
+        contents += self._files
+        for name, bag, messages in self._bags:
+            contents += self._masked_bag(name, bag, messages)
+        contents = self._bounded(contents)
+        lines = self._lines(contents)
+        buffer = io.BytesIO()
+        with zipfile.ZipFile(buffer, 'w', zipfile.ZIP_DEFLATED) as archive:
+            for name, content in [('contents.txt', '\n'.join(lines).encode()), *contents]:
+                archive.writestr(name, content)
+        return buffer.getvalue(), lines
+
+    def _bounded(self, contents: Sequence[tuple[str, bytes]]) -> list[tuple[str, bytes]]:
+        """Return what there is room for; a name that is there already gets a number."""
+        kept: dict[str, bytes] = {}
+        for name, content in contents:
+            if sum(map(len, kept.values())) + len(content) > LARGEST:
+                self._remarks.append(f'{name} is left out: {len(content)} bytes are too many')
+                continue
+            masked = self._mask.text(name)
+            kept[f'{len(kept)}_{masked}' if masked in kept else masked] = content
+        return list(kept.items())
+
+    def _masked_bag(
+        self, name: str, bag: Bag, messages: Sequence[Message]
+    ) -> list[tuple[str, bytes]]:
+        """Return the files of a bag of messages; those of types that are not known stay out."""
+        topics = {message.topic: self._mask.text(message.topic) for message in messages}
+        left_out: set[str] = set()
+        with tempfile.TemporaryDirectory() as folder, BagWriter(Path(folder), name) as writer:
+            for topic, shown in topics.items():
+                try:
+                    kind = bag.types[topic]
+                    writer.add_topic(Topic(name=shown, type_name=kind, offer=Offer.RELIABLE))
+                except InputError:
+                    left_out.add(topic)
+            for message in messages:
+                if message.topic not in left_out:
+                    data = self._mask.message(bag.types[message.topic], message.data)
+                    times = {'log_time': message.log_time, 'publish_time': message.publish_time}
+                    writer.write(topics[message.topic], data, **times)
+            writer.close()
+            files = [(f'{name}/{file.name}', file.read_bytes()) for file in _files_in(folder)]
+        self._remarks += [
+            f'{topics[topic]} is left out: its type {bag.types[topic]} is not installed here'
+            for topic in sorted(left_out)
+        ]
+        return files
+
+    def _lines(self, contents: Sequence[tuple[str, bytes]]) -> list[str]:
+        hidden = self._mask.count
+        counts = ', '.join(f'{hidden[kind]} x {kind}' for kind in Secret if hidden[kind])
+        shown = ', '.join(sorted(self._case.shown)) or 'nothing'
+        return [
+            *(f'{name}  {len(content)} bytes' for name, content in contents),
+            f'hidden: {counts or "nothing"}; shown as asked for: {shown}',
+            *map(self._mask.text, self._remarks),
+        ]
+
+
+NAMING = {
+    'ballscrew_msgs/msg/OutOfZone': OutOfZone,
+    'ballscrew_msgs/msg/BallScrewState': BallScrewState,
+    'diagnostic_msgs/msg/DiagnosticArray': DiagnosticArray,
+}
+"""Messages that name persons or machines."""
+
+
+def _named_in(message: Any) -> dict[Secret, list[str]]:
+    """Return what a message names: persons and their reasons, or machines."""
+    if isinstance(message, DiagnosticArray):
+        pairs = [pair for status in message.status for pair in status.values]
+        return {Secret.HOST: [pair.value for pair in pairs if pair.key == HOST_KEY]}
+    names = ('acknowledged_by', 'acknowledge_reason', 'shelve_reason')
+    return {Secret.NAME: [getattr(message, name, '') for name in names]}
+
+
+def _files_in(folder: str) -> list[Path]:
+    return sorted(path for path in Path(folder).iterdir() if path.is_file())
+
+
+def _text_of(path: Path) -> str:
+    try:
+        return path.read_bytes()[-LARGEST_TEXT:].decode('utf-8', 'replace')
+    except OSError as error:
+        raise InputError(f'{path} cannot be read: {error.strerror}') from None
+
+
+def report_command(args: argparse.Namespace) -> int:
+    """Write the file and print what it holds; raises InputError for what cannot be read."""
+    kinds = {'hosts': Secret.HOST, 'users': Secret.USER, 'names': Secret.NAME}
+    if not args.minutes > 0.0:
+        raise InputError(f'--minutes is {args.minutes:g}, it must be above 0')
+    own = state_directory(AUTO, NODE_NAME)
+    default = [own] if own is not None and is_state(own) else []
+    for path in args.paths:
+        if not path.exists():
+            raise InputError(f'{path} does not exist, it must be a log or the state_dir of a node')
+    content, lines = fault_report(
+        FaultCase(
+            paths=args.paths or default,
+            texts={'parameters.yaml': _text_of(args.params)} if args.params else {},
+            failures=args.failure,
+            seconds=args.minutes * MINUTE,
+            shown=[kinds[name] for name in args.include if name in kinds],
+            tables='tables' in args.include,
+        )
+    )
+    replace_file(args.out, content)
+    print(printable('\n'.join([f'{args.out}: {len(content)} bytes to send', *lines])))
+    return 0

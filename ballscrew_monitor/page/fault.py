@@ -1,0 +1,69 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""File to send when something fails, as the page makes it: what it knows, and what lies here."""
+
+import asyncio
+from collections.abc import Awaitable, Callable, Mapping
+import csv
+import io
+from pathlib import Path
+from typing import Any
+
+from ballscrew_monitor.clients.fault_report import fault_report, FaultCase, is_state
+from ballscrew_monitor.node.restart_state import AUTO, state_directory
+from ballscrew_monitor.page.axis_view import AxisView
+from ballscrew_monitor.page.history import COLUMNS
+from ballscrew_monitor.page.hub import Hub
+from surrogate.files import json_text
+
+SPAN = 120.0  # [s] of the last rows of an axis
+Making = Callable[[], Awaitable[bytes]]
+
+
+def fault_maker(hub: Hub, log: Path | None, token: str | None) -> Making:
+    """Return what makes the file in a thread of its own, for nodes or a recording `log`."""
+
+    async def make() -> bytes:
+        views = list(hub.axes.values())
+        case = FaultCase(
+            paths=[log] if log else sorted(places_of(views)),
+            texts={name: text for view in views for name, text in texts_of(view).items()},
+            tokens=[token] if token else [],
+            table_refused=False,
+        )
+        content, _ = await asyncio.to_thread(fault_report, case)
+        return content
+
+    return make
+
+
+def texts_of(view: AxisView) -> dict[str, str]:
+    """Return the last rows of an axis as CSV, and as JSON all else that is known of it."""
+    rows = view.history.since(0)
+    buffer = io.StringIO()
+    writer = csv.writer(buffer)
+    writer.writerow(COLUMNS)
+    writer.writerows(rows[rows[:, 0] >= rows[-1:, 0].max(initial=0.0) - SPAN].tolist())
+    known = {
+        **view.hello(),
+        'state': view.state,
+        'standing': view.standing,
+        'health': view.health,
+        'events': list(view.events.values()),
+        'codes': view.codes,
+        'parameters': view.parameters,
+    }
+    name = view.name.strip('/').replace('/', '_')
+    return {f'page_{name}.json': json_text(known), f'page_{name}.csv': buffer.getvalue()}
+
+
+def places_of(views: list[AxisView]) -> set[Path]:
+    """Return the state directories and recordings on this machine of the nodes of some axes."""
+    places: set[Path] = set()
+    for view in views:
+        values: Mapping[str, Any] = view.parameters
+        state = state_directory(str(values.get('state_dir', AUTO)), view.node)
+        recordings = Path(str(values.get('record_dir', AUTO)))
+        places |= {state} if state is not None and is_state(state) else set()
+        places |= {recordings} if recordings.is_absolute() and recordings.is_dir() else set()
+    return places
