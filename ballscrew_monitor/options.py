@@ -171,7 +171,10 @@ def add_recover(parser: Parser) -> None:
 
 def add_report_fault(parser: Parser) -> None:
     """Add what `ballscrew report-fault` may be told."""
-    text = 'bag, table of text, or state_dir (default that of /ballscrew_monitor of this user)'
+    text = (
+        'bag, folder of recordings, table of text, or state_dir (default that of '
+        '/ballscrew_monitor of this user)'
+    )
     _add_file(parser, 'paths', 'LOG|STATE_DIR', text, nargs='*')
     _add_file(parser, '--params', 'FILE', 'parameters of the node, if no recording holds them')
     text = 'text of a failure (default: the last failures of commands of this user)'

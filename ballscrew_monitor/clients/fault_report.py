@@ -216,30 +216,33 @@ class _Parts:
 
     def add_table(self, path: Path) -> None:
         """Add a table: its first lines and its end."""
-        try:
-            size = path.stat().st_size
-            with path.open('rb') as stream:
-                head = stream.read(HEAD if size > self._room else size)
-                stream.seek(max(len(head), size - int(self._room)))
-                end = stream.read()
-        except OSError as error:
-            raise InputError(f'log {path} cannot be read: {error.strerror}') from None
+        head, end = self._ends_of(path)
         name = f'log_{path.name}'
         if b'\0' not in head or head.startswith(WIDE):
-            encoding = 'utf-16' if head.startswith(WIDE) else 'utf-8'
-            if size > self._room and encoding == 'utf-8':
-                head = head[: head.rfind(b'\n') + 1]
-                end = end[end.find(b'\n') + 1 :]
-            text = (head + end).decode(encoding, 'surrogateescape')
-            self._texts.append((name, text))
-        elif not self._case.tables and self._case.table_refused:
+            self._texts.append((name, _text_of_table(head, end)))
+        elif self._case.tables and not end:
+            self._files.append((name, head))
+        elif self._case.tables:
+            size = path.stat().st_size
+            raise InputError(f'{path} has {size} bytes, allowed are {self._room:.0f}')
+        elif self._case.table_refused:
             raise InputError(BINARY.format(name=path))
-        elif not self._case.tables:
-            self._remarks.append(BINARY.format(name=path.name))
-        elif size > LARGEST_LOGS:
-            raise InputError(f'{path} has {size} bytes, allowed are {LARGEST_LOGS}')
         else:
-            self._files.append((name, head + end))
+            self._remarks.append(BINARY.format(name=path.name))
+
+    def _ends_of(self, path: Path) -> tuple[bytes, bytes]:
+        """Return a file in whole, with nothing after it, or what it begins and ends with."""
+        try:
+            with path.open('rb') as stream:
+                size = stream.seek(0, os.SEEK_END)
+                stream.seek(0)
+                if size <= self._room:
+                    return stream.read(), b''
+                head = stream.read(HEAD)
+                stream.seek(size - int(self._room))
+                return head, stream.read()
+        except OSError as error:
+            raise InputError(f'log {path} cannot be read: {error.strerror}') from None
 
     def packed(self) -> tuple[bytes, list[str]]:
         """Return the zip, and what it holds in lines."""
@@ -321,6 +324,15 @@ def _named_in(message: Any) -> dict[Secret, list[str]]:
         return {Secret.HOST: [pair.value for pair in pairs if pair.key == HOST_KEY]}
     names = ('acknowledged_by', 'acknowledge_reason', 'shelve_reason')
     return {Secret.NAME: [getattr(message, name, '') for name in names]}
+
+
+def _text_of_table(head: bytes, end: bytes) -> str:
+    """Return a table by its first bytes and its last ones, both in whole lines."""
+    if head.startswith(WIDE):
+        return (head + end).decode('utf-16', 'replace')
+    if end:
+        head, end = head.rpartition(b'\n')[0] + b'\n', end.partition(b'\n')[2]
+    return (head + end).decode('utf-8', 'surrogateescape')
 
 
 def _files_in(folder: str) -> list[Path]:

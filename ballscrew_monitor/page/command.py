@@ -79,6 +79,8 @@ def _begin_log(args: argparse.Namespace, nominal: Path) -> Begin:
     say(f'parameters: {parameters.origin}', *parameters.sentences)
     with shown_progress(bag.duration) as on_done:
         axes = recorded_axes(bag, parameters, on_done)
+    for axis in axes:
+        axis.view.hear_parameters(parameters.values)
     say(*parameters.notes, *bag.notes)
     return lambda hub: Recording(hub, axes)
 

@@ -196,13 +196,17 @@ def test_it_is_bounded(machine, tmp_path, monkeypatch):
     assert all(row.partition(',')[0] == row.partition(',')[2] for row in rows[1:])
 
 
-def test_a_table_that_is_no_text_needs_an_option(machine, tmp_path, refused):
+def test_a_table_that_is_no_text_needs_an_option(machine, monkeypatch, tmp_path, refused):
     table = tmp_path / 'log.parquet'
     table.write_bytes(b'PAR1\0\0')
     with refused('table_no_text', path=table):
         fault_report(FaultCase(paths=[table], failures=[]))
     content, _ = fault_report(FaultCase(paths=[table], failures=[], tables=True))
     assert unpacked(content, tmp_path / 'there')[0]['log_log.parquet'] == b'PAR1\0\0'
+    with monkeypatch.context() as patch:
+        patch.setattr(reports, 'LARGEST_LOGS', 5)
+        with refused('table_large', path=table):
+            fault_report(FaultCase(paths=[table], failures=[], tables=True))
     content, lines = fault_report(FaultCase(paths=[table], failures=[], table_refused=False))
     assert set(unpacked(content, tmp_path / 'third')[0]) == {'contents.txt', 'versions.json'}
     assert any('log.parquet' in line for line in lines)
@@ -230,3 +234,11 @@ def test_a_name_is_hidden_where_it_is_a_word(machine):
     text = f'axial Al, al_pc of {USER}_old at {HOST.upper()}: 10.1.2.3, a@b.org, x 1.2.3'
     hidden = 'axial NAME, NAME_pc of USER_old at HOST: HOST, NAME, x 1.2.3'
     assert mask.text(text) == hidden
+
+
+def test_a_table_in_letters_of_two_bytes_is_read(machine, tmp_path):
+    table = tmp_path / 'wide.csv'
+    table.write_text(f'# {PERSON} at {HOST}\ntime_s,speed\n0,1\n', encoding='utf-16')
+    content, _ = fault_report(FaultCase(paths=[table], failures=[]))
+    files, _ = unpacked(content, tmp_path / 'there')
+    assert files['log_wide.csv'].decode().endswith('at HOST\ntime_s,speed\n0,1\n')

@@ -4,6 +4,7 @@
 
 import contextlib
 import http.client
+import io
 import json
 from pathlib import Path
 import re
@@ -13,6 +14,7 @@ import struct
 import subprocess
 import sys
 import urllib.request
+import zipfile
 
 from ballscrew_monitor import cli
 from ballscrew_monitor.page.components import languages
@@ -174,6 +176,11 @@ def test_a_recording_is_played(node, short_bag):
                 break
         assert kinds['clock']['span_s'] == pytest.approx(3.0, abs=0.1)
         assert kinds['hello']['axes'][0]['node'] == short_bag.name
+        with urllib.request.urlopen(f'{url}report-fault', b'') as answer:
+            archive = zipfile.ZipFile(io.BytesIO(answer.read()))
+        known = json.loads(archive.read(f'page_{short_bag.name}_x.json'))
+        assert known['parameters']['axes'] == ['x']
+        assert {'log_1/log_1.mcap', 'versions.json'} <= {*archive.namelist()}
     finally:
         process.terminate()
         process.communicate(timeout=DEADLINE)
