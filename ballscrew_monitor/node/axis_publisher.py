@@ -13,6 +13,7 @@ from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import MonitorSettings, Shelving
 from ballscrew_monitor.judge.full_point import answer, corrected, Dwell, objection, solved_at
+from ballscrew_monitor.judge.many import ManyJudge
 from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.messages import diagnostics, state_messages
 from ballscrew_monitor.messages.state_messages import plain_values, TIERS
@@ -68,6 +69,7 @@ class AxisPublisher:
         """
         self.axis = axis
         self.dwell, self.frame = Dwell(), FreezeFrame()
+        self.many: ManyJudge | None = None  # while turns are judged compiled
         self.refused = ''  # why the last reload of the surface was
         self.defect = ''  # of the program, where it failed for this axis first
         self.failed = False  # in what was guarded last

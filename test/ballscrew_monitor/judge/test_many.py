@@ -104,7 +104,6 @@ def at_once(monitor, events):
         assert len(judged.memories) == len(judged.told)
         rows.append(judged.rows.copy())
         memories.append(judged.memories.copy())
-    judge.give_back()
     return np.concatenate(rows), np.concatenate(memories)
 
 

@@ -1,0 +1,175 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+The messages of one turn as an array of events in the order of judging.
+
+The numbers of all messages are taken together; one that gives no plain sample is read by itself.
+So the events are those that the messages give one by one.
+
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+from ballscrew_monitor.core.fields import OtherJoints
+from ballscrew_monitor.core.inputs import Input, Refusal, Source, StampSource
+from ballscrew_monitor.judge.monitor import EARLIEST, fill, LATEST
+from ballscrew_monitor.judge.records import Event, NOT_KNOWN
+from ballscrew_monitor.node.event_recorder import AxisEvent, Heard
+from ballscrew_monitor.node.sources import Reading
+from ballscrew_monitor.node.topic import Topic
+from ballscrew_monitor.recordings.bulk.events import blank, Events, some
+from ballscrew_monitor.settings.axis import Axis
+import numpy as np
+from numpy.typing import NDArray
+from surrogate.surface.records import as_array
+
+
+class AxisTurn(NamedTuple):
+    """The events of one axis in a turn, and the joints that some name, by places in `events`."""
+
+    axis: Axis
+    events: Events
+    joints: dict[int, OtherJoints]
+
+    def joints_until(self, end: int) -> dict[Source, list[OtherJoints]]:
+        """Return the joints that the events of each input before a place name."""
+        named: dict[Source, list[OtherJoints]] = {}
+        for place, joints in self.joints.items():
+            if place < end:
+                named.setdefault(Source(self.events['source'][place]), []).append(joints)
+        return named
+
+
+class Turn(NamedTuple):
+    """Events, for each the number of its axis among `axes`, and the joints that some name."""
+
+    axes: Sequence[Axis]
+    events: Events
+    numbers: NDArray[np.int64]
+    joints: Mapping[int, OtherJoints]
+
+    def by_axis(self) -> list[AxisTurn]:
+        """Return the events of each axis that has any."""
+        order = np.argsort(self.numbers, kind='stable')
+        numbers, begins = np.unique(self.numbers[order], return_index=True)
+        turns = []
+        for number, places in zip(numbers.tolist(), np.split(order, begins[1:]), strict=True):
+            joints = {
+                at: self.joints[place]
+                for at, place in enumerate(places.tolist() if self.joints else ())
+                if place in self.joints
+            }
+            turns.append(AxisTurn(self.axes[number], some(self.events, places), joints))
+        return turns
+
+
+class _Slot(NamedTuple):
+    """An input that is read in a turn, what finds its number, and how far stamps may lead [ns]."""
+
+    axis: Axis
+    source: Input
+    find: Callable[[bytes], tuple[float, int] | None]
+    most_ahead: int
+
+
+class TurnReader:
+    """Reads the messages of turns for some axes."""
+
+    def __init__(self, axes: Sequence[Axis], read: Callable[[Heard], list[AxisEvent]]) -> None:
+        """`read` returns what one message says."""
+        self._axes, self._read = axes, read
+        self._numbers = {axis.name: number for number, axis in enumerate(axes)}
+
+    def turn(self, heard: Sequence[Heard], reading: Reading) -> Turn:
+        """Return the events of messages in the order of judging."""
+        slots: list[_Slot] = []
+        topics: dict[str, range] = {}  # of the slots of each topic
+        columns: list[tuple[int, float, int, int, int]] = []
+        odd: dict[int, AxisEvent] = {}  # events of messages that are read by themselves
+        for one in heard:
+            arrival, now, lost = one
+            if (mine := topics.get(arrival.topic.name)) is None:
+                mine = topics[arrival.topic.name] = _open(arrival.topic, reading, slots)
+                for slot in mine:
+                    name = slots[slot].axis.name, slots[slot].source.source
+                    arrival.topic.count(name, arrival.number, now)
+            found = [slots[slot].find(arrival.data) for slot in mine]
+            if not found or None in found:
+                for event in self._read(one):
+                    odd[len(columns)] = event
+                    columns.append((0, 0.0, 0, now, 0))
+                continue
+            missing = NOT_KNOWN if lost is None else lost
+            for slot, number in zip(mine, found, strict=True):
+                assert number is not None
+                columns.append((slot, *number, now, missing))
+        if not columns:
+            return Turn(self._axes, blank(0), np.empty(0, np.int64), {})
+        return self._ordered(slots, columns, odd)
+
+    def _ordered(
+        self,
+        slots: list[_Slot],
+        columns: list[tuple[int, float, int, int, int]],
+        odd: dict[int, AxisEvent],
+    ) -> Turn:
+        """Return the turn of slots, numbers, stamps, arrivals, losses, and of odd events."""
+        slot, number, stamp, now, lost = map(np.array, zip(*columns))
+        inputs = [self._reading(slot) for slot in slots] or [(1.0, 0.0, 0, 0, 0)]
+        factor, shift, most_ahead, source, axis = map(np.array, zip(*inputs))
+        with np.errstate(invalid='ignore', over='ignore'):
+            value = number * factor[slot] + shift[slot]
+        events = blank(
+            len(columns),
+            source=source[slot],
+            stamp=np.clip(np.where(stamp == 0, now, stamp), EARLIEST, LATEST),
+            arrival=np.clip(np.where(now == 0, stamp, now), EARLIEST, LATEST),
+            lost=lost,
+            value=value,
+            stamp_source=np.where(stamp == 0, StampSource.RECEIVE, StampSource.HEADER),
+        )
+        early = (now != 0) & (stamp - now > most_ahead[slot])
+        for place in np.flatnonzero(~np.isfinite(value) | (stamp < 0) | early).tolist():
+            _, *told, at, missing = columns[place]
+            reader = slots[slot[place]]
+            lost_before = None if missing == NOT_KNOWN else missing
+            refusal = reader.source.sample(
+                *told, now=at, max_future=reader.most_ahead, lost=lost_before
+            )
+            odd[place] = reader.axis, refusal
+        numbers, joints = axis[slot], {}
+        for place, (reader_axis, event) in odd.items():
+            record = Event()
+            fill(record, event)
+            events[place] = as_array(record)[0]
+            numbers[place] = self._numbers[reader_axis.name]
+            if isinstance(event, Refusal) and event.joints is not None:
+                joints[place] = event.joints
+        order = _order(events)
+        if joints:
+            places = np.argsort(order)
+            joints = {int(places[place]): one for place, one in joints.items()}
+        return Turn(self._axes, some(events, order), numbers[order], joints)
+
+    def _reading(self, slot: _Slot) -> tuple[float, float, int, int, int]:
+        scaling, number = slot.source.scaling, self._numbers[slot.axis.name]
+        return scaling.factor, scaling.shift, slot.most_ahead, int(slot.source.source), number
+
+
+def _open(topic: Topic, reading: Reading, slots: list[_Slot]) -> range:
+    """Add a slot for each reader of a topic; none if its messages are read by themselves."""
+    begin, several = len(slots), topic.loss.publishers > 1
+    for reader, (axis, source) in enumerate(topic.readers):
+        field = topic.field(reader) if topic.subscription.raw else None
+        if field is None or several or (axis.name, source.source) in reading.several:
+            del slots[begin:]
+            break
+        slots.append(_Slot(axis, source, field.find, axis.max_future + reading.ahead))
+    return range(begin, len(slots))
+
+
+def _order(events: Events) -> NDArray[np.intp]:
+    """Return the places of events in the order of judging, see `ordered` of `core.inputs`."""
+    _, first, group = np.unique(events['stamp'], return_index=True, return_inverse=True)
+    return np.lexsort((events['source'], first[group]))
