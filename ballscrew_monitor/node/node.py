@@ -353,7 +353,7 @@ class BallscrewMonitor(LifecycleNode):
         judge, begin = publisher.many, 0
         for judged in judge.judge(turn.events, states=True):
             for at, row in judge.told(judged):
-                publisher.hear_others(turn, int(judged.places[at]))
+                turn.hear_joints(int(judged.places[at]))
                 self._note_leap(publisher)
                 publisher.frame.take_many(judged.rows[begin : at + 1])
                 begin = at + 1
@@ -362,7 +362,7 @@ class BallscrewMonitor(LifecycleNode):
             publisher.frame.take_many(judged.rows[begin:])
             self._healths.take_many(publisher.name, judged.rows)
             begin = 0
-        publisher.hear_others(turn, len(turn.events))
+        turn.hear_joints(len(turn.events))
 
     def _note_leap(self, publisher: AxisPublisher) -> None:
         if (moved := publisher.axis.monitor.moved) and publisher.may_note_leap():

@@ -32,13 +32,17 @@ class AxisTurn(NamedTuple):
     events: Events
     joints: dict[int, OtherJoints]
 
-    def joints_until(self, end: int) -> dict[Source, list[OtherJoints]]:
-        """Return the joints that the events of each input before a place name."""
+    def hear_joints(self, end: int) -> None:
+        """Keep the joints that events before a place name since the last good sample."""
+        monitor = self.axis.monitor
         named: dict[Source, list[OtherJoints]] = {}
         for place, joints in self.joints.items():
             if place < end:
                 named.setdefault(Source(self.events['source'][place]), []).append(joints)
-        return named
+        for source, heard in named.items():
+            others = monitor.memory.others[source]
+            since = heard[max(len(heard) - others, 0) :]
+            monitor.joints.hear_many(source, since, anew=others <= len(heard))
 
 
 class Turn(NamedTuple):
@@ -51,10 +55,9 @@ class Turn(NamedTuple):
 
     def by_axis(self) -> list[AxisTurn]:
         """Return the events of each axis that has any."""
-        order = np.argsort(self.numbers, kind='stable')
-        numbers, begins = np.unique(self.numbers[order], return_index=True)
         turns = []
-        for number, places in zip(numbers.tolist(), np.split(order, begins[1:]), strict=True):
+        for number in np.unique(self.numbers).tolist():
+            places = np.flatnonzero(self.numbers == number)
             joints = {
                 at: self.joints[place]
                 for at, place in enumerate(places.tolist() if self.joints else ())
