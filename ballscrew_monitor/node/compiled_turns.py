@@ -19,8 +19,8 @@ COMPILED_FROM = 5000.0
 """Events of all inputs in a second [1/s] from which on turns are judged compiled."""
 SPAN = 1.0  # [s] over which they are counted
 NOT_COMPILED = (
-    'inputs send more than {:g} messages a second, which are judged without compiled code and may '
-    'be lost: {}'
+    'messages come faster than {:g} in a second and are judged without compiled code, so some may '
+    'be lost ({}): install numba, and let NUMBA_CACHE_DIR name a folder that the node may write to'
 )
 
 

@@ -66,7 +66,6 @@ class EventRecorder:
         self._lost_at: int | None = None  # the process, on the steady clock
         self._topics: dict[str, int] = {}
         self._notes: dict[OtherJoints, int] = {}
-        self._event = Event()
         self._axes: dict[str, int] = {}  # numbers by name
         self._pause = RESTART
         self._started_at = 0  # the process, on the steady clock, again
@@ -92,12 +91,12 @@ class EventRecorder:
         """Take the events of a turn in the order of judging, at `now` of both clocks [ns]."""
         if self._process is None or not self._axes:
             return
-        record, parts = self._event, []
+        parts = []
         for axis, event in turn:
             if (number := self._axes.get(axis.name)) is None:  # no snapshot could be made of it
                 continue
+            record = Event(axis=number, steady=steady)
             fill(record, event)
-            record.axis, record.steady = number, steady
             joints = event.joints if isinstance(event, Refusal) else None
             record.note = NOT_KNOWN if joints is None else self._note(joints)
             parts.append(_packed(record))
