@@ -12,9 +12,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 from ballscrew_monitor.core.fields import OtherJoints
-from ballscrew_monitor.core.inputs import Input, Refusal, Source, StampSource
+from ballscrew_monitor.core.inputs import Input, InputSample, Refusal, Source, StampSource
 from ballscrew_monitor.judge.monitor import EARLIEST, fill, LATEST
-from ballscrew_monitor.judge.records import Event, NOT_KNOWN
+from ballscrew_monitor.judge.records import Event, NOT_KNOWN, REFUSAL, SAMPLE
 from ballscrew_monitor.node.event_recorder import AxisEvent, Heard
 from ballscrew_monitor.node.sources import Reading
 from ballscrew_monitor.node.topic import Topic
@@ -76,6 +76,12 @@ class _Slot(NamedTuple):
     most_ahead: int
 
 
+Found = tuple[int, float, int, int, int]
+"""Number of a slot, number and stamp of a message, its arrival, messages lost before it."""
+ODD = 0, 0.0, 0, 0, 0
+"""What stands for an event of a message that is read by itself."""
+
+
 class TurnReader:
     """Reads the messages of turns for some axes."""
 
@@ -88,65 +94,42 @@ class TurnReader:
         """Return the events of messages in the order of judging."""
         slots: list[_Slot] = []
         topics: dict[str, range] = {}  # of the slots of each topic
-        columns: list[tuple[int, float, int, int, int]] = []
-        odd: dict[int, AxisEvent] = {}  # events of messages that are read by themselves
+        found: list[Found] = []
+        odd: dict[int, AxisEvent] = {}
         for one in heard:
             arrival, now, lost = one
-            if (mine := topics.get(arrival.topic.name)) is None:
+            mine = topics.get(arrival.topic.name)
+            if mine is None:
                 mine = topics[arrival.topic.name] = _open(arrival.topic, reading, slots)
                 for slot in mine:
                     name = slots[slot].axis.name, slots[slot].source.source
                     arrival.topic.count(name, arrival.number, now)
-            found = [slots[slot].find(arrival.data) for slot in mine]
-            if not found or None in found:
-                for event in self._read(one):
-                    odd[len(columns)] = event
-                    columns.append((0, 0.0, 0, now, 0))
+            numbers = [slots[slot].find(arrival.data) for slot in mine]
+            if not numbers or None in numbers:
+                events = self._read(one)
+                odd |= enumerate(events, len(found))
+                found += [ODD] * len(events)
                 continue
             missing = NOT_KNOWN if lost is None else lost
-            for slot, number in zip(mine, found, strict=True):
+            for slot, number in zip(mine, numbers, strict=True):
                 assert number is not None
-                columns.append((slot, *number, now, missing))
-        if not columns:
-            return Turn(self._axes, blank(0), np.empty(0, np.int64), {})
-        return self._ordered(slots, columns, odd)
+                found.append((slot, *number, now, missing))
+        return self._ordered(slots, found, odd)
 
     def _ordered(
-        self,
-        slots: list[_Slot],
-        columns: list[tuple[int, float, int, int, int]],
-        odd: dict[int, AxisEvent],
+        self, slots: Sequence[_Slot], found: Sequence[Found], odd: dict[int, AxisEvent]
     ) -> Turn:
-        """Return the turn of slots, numbers, stamps, arrivals, losses, and of odd events."""
-        slot, number, stamp, now, lost = map(np.array, zip(*columns))
-        inputs = [self._reading(slot) for slot in slots] or [(1.0, 0.0, 0, 0, 0)]
-        factor, shift, most_ahead, source, axis = map(np.array, zip(*inputs))
-        with np.errstate(invalid='ignore', over='ignore'):
-            value = number * factor[slot] + shift[slot]
-        events = blank(
-            len(columns),
-            source=source[slot],
-            stamp=np.clip(np.where(stamp == 0, now, stamp), EARLIEST, LATEST),
-            arrival=np.clip(np.where(now == 0, stamp, now), EARLIEST, LATEST),
-            lost=lost,
-            value=value,
-            stamp_source=np.where(stamp == 0, StampSource.RECEIVE, StampSource.HEADER),
-        )
-        early = (now != 0) & (stamp - now > most_ahead[slot])
-        for place in np.flatnonzero(~np.isfinite(value) | (stamp < 0) | early).tolist():
-            _, *told, at, missing = columns[place]
-            reader = slots[slot[place]]
-            lost_before = None if missing == NOT_KNOWN else missing
-            refusal = reader.source.sample(
-                *told, now=at, max_future=reader.most_ahead, lost=lost_before
-            )
-            odd[place] = reader.axis, refusal
-        numbers, joints = axis[slot], {}
-        for place, (reader_axis, event) in odd.items():
+        """Return the turn of what was found, but for the events at odd places."""
+        events = _samples(slots, found) if slots and found else blank(len(found))
+        for place in np.flatnonzero(events['kind'] == REFUSAL).tolist():
+            odd[place] = slots[found[place][0]].axis, _read_again(slots, found[place])
+        of_slots = [self._numbers[slot.axis.name] for slot in slots] or [0]
+        numbers = np.array([of_slots[slot] for slot, *_ in found], np.int64)
+        joints = {}
+        for place, (axis, event) in odd.items():
             record = Event()
             fill(record, event)
-            events[place] = as_array(record)[0]
-            numbers[place] = self._numbers[reader_axis.name]
+            events[place], numbers[place] = as_array(record)[0], self._numbers[axis.name]
             if isinstance(event, Refusal) and event.joints is not None:
                 joints[place] = event.joints
         order = _order(events)
@@ -155,9 +138,36 @@ class TurnReader:
             joints = {int(places[place]): one for place, one in joints.items()}
         return Turn(self._axes, some(events, order), numbers[order], joints)
 
-    def _reading(self, slot: _Slot) -> tuple[float, float, int, int, int]:
-        scaling, number = slot.source.scaling, self._numbers[slot.axis.name]
-        return scaling.factor, scaling.shift, slot.most_ahead, int(slot.source.source), number
+
+def _samples(slots: Sequence[_Slot], found: Sequence[Found]) -> Events:
+    """Return the samples of what was found; what gives none is a REFUSAL without its reason."""
+    slot, number, stamp, now, lost = map(np.array, zip(*found))
+    inputs = [(one.source.source, *_line(one), one.most_ahead) for one in slots]
+    source, factor, shift, most_ahead = (np.array(column)[slot] for column in zip(*inputs))
+    with np.errstate(invalid='ignore', over='ignore'):
+        value = number * factor + shift
+    early = (now != 0) & (stamp - now > most_ahead)
+    return blank(
+        len(found),
+        kind=np.where(~np.isfinite(value) | (stamp < 0) | early, REFUSAL, SAMPLE),
+        source=source,
+        stamp=np.clip(np.where(stamp == 0, now, stamp), EARLIEST, LATEST),
+        arrival=np.clip(np.where(now == 0, stamp, now), EARLIEST, LATEST),
+        lost=lost,
+        value=value,
+        stamp_source=np.where(stamp == 0, StampSource.RECEIVE, StampSource.HEADER),
+    )
+
+
+def _line(slot: _Slot) -> tuple[float, float]:
+    return slot.source.scaling.factor, slot.source.scaling.shift
+
+
+def _read_again(slots: Sequence[_Slot], found: Found) -> InputSample | Refusal:
+    """Return what an input makes of a number that gives no sample."""
+    number, value, stamp, now, missing = found
+    lost, slot = None if missing == NOT_KNOWN else missing, slots[number]
+    return slot.source.sample(value, stamp, now=now, max_future=slot.most_ahead, lost=lost)
 
 
 def _open(topic: Topic, reading: Reading, slots: list[_Slot]) -> range:
