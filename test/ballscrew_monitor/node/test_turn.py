@@ -5,12 +5,17 @@
 import math
 import random
 import types
+from types import MappingProxyType
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.core.inputs import ordered, Why
+from ballscrew_monitor.judge.many import ManyJudge
 from ballscrew_monitor.judge.monitor import fill
-from ballscrew_monitor.judge.records import EVENT, Event, REFUSAL
+from ballscrew_monitor.judge.records import EVENT, Event, REFUSAL, Row
+from ballscrew_monitor.messages.state_messages import empty_state, fill_state
+from ballscrew_monitor.node.freeze_frame import FreezeFrame
 from ballscrew_monitor.node.intake import _events
+from ballscrew_monitor.node.node import BallscrewMonitor
 from ballscrew_monitor.node.sources import LossCounter, Reading
 from ballscrew_monitor.node.topic import Arrival, Topic, UNREAD
 from ballscrew_monitor.node.turn import TurnReader
@@ -25,22 +30,38 @@ from surrogate.surface.records import as_array
 
 NOW = 1_000 * SECOND
 SHARED = '/joint_states'
+OF_EACH_ROW = (*Row.__slots__, 'validity', 'rcs', 'efficiency', 'friction_torque', 'film_ratio')
+"""Fields that a row has whether it is published or not."""
 
 
-def make_axis(name):
+DERIVED = {
+    'x.load.source': 'motor_torque',
+    'x.inertia': 1e-3,
+    'x.torque.uncertainty': 0.05,
+    'x.torque.topic': SHARED,
+    'x.torque.field': 'effort[x]',
+    'x.torque.type': 'sensor_msgs/msg/JointState',
+}
+
+
+def make_axis(name, more=MappingProxyType({})):
     values = defaults([name]) | {
         f'{name}.speed.topic': SHARED,
         f'{name}.speed.field': f'velocity[{name}]',
         f'{name}.load.topic': f'/{name}/load',
+        f'{name}.limits.raise_delay': 0.1,
+        f'{name}.limits.clear_delay': 0.1,
     }
-    return build_axis(name, values)
+    if more:
+        values[f'{name}.load.topic'] = ''
+    return build_axis(name, values | more)
 
 
 class Inputs:
     """Two axes whose speeds share a topic, and messages to them."""
 
-    def __init__(self, publishers=1):
-        self.axes = [make_axis(name) for name in 'xy']
+    def __init__(self, publishers=1, more=MappingProxyType({})):
+        self.axes = [make_axis('x', more), make_axis('y')]
         self.topics = {}
         for axis in self.axes:
             for source in axis.inputs:
@@ -175,3 +196,91 @@ def test_nothing_comes_of_messages_that_the_program_fails_at():
     )
     assert len(turn.events) == 0
     assert turn.by_axis() == []
+
+
+class Spoken:
+    """What a node does with the rows of an axis, with a node's own way to judge."""
+
+    def __init__(self, axis):
+        self.axis, self.name, self.frame = axis, axis.name, FreezeFrame()
+        self.many = ManyJudge(axis.monitor, 8)
+        self.states, self.rows, self.leaps = [], [], []
+        self.may_note_leap = lambda: True
+        self._healths = types.SimpleNamespace(
+            take_many=lambda _, rows: self.rows.extend(rows[[*OF_EACH_ROW]].tolist())
+        )
+        self._kept = types.SimpleNamespace(note=lambda *_, by_s, **__: self.leaps.append(by_s))
+        self._note_leap = lambda publisher: BallscrewMonitor._note_leap(self, publisher)
+
+    def judge_each(self, event):
+        BallscrewMonitor._judge_one(self, self, self.axis.monitor.update, event)
+        if self.axis.monitor.row is not None:
+            self.rows += as_array(self.axis.monitor.row)[[*OF_EACH_ROW]].tolist()
+
+    def judge_many(self, turn):
+        BallscrewMonitor._judge_many(self, self, turn)
+
+    def _publish(self, publisher, row):
+        if row is not None:
+            state = empty_state(self.name)
+            inputs = fill_state(state, row, self.axis.monitor)
+            frame = self.frame.facts(row.stamp) if row.edge else {}
+            ending = self.axis.monitor.ending
+            self.states.append(repr((state, inputs, frame, ending)))
+
+
+def machine_turn(inputs, draw, number):
+    """Return the messages of 20 ms of a machine that is slow at times, stops and goes wrong."""
+    heard = []
+    for at in range(4):
+        now = NOW + (4 * number + at) * SECOND // 200
+        stamp = now - 1000
+        if number > 150:
+            stamp += 10 * SECOND  # a leap of the source
+        speed = 0.6 if number % 60 > 20 else 100.0
+        message = joints(stamp, x=speed, y=speed)
+        message.effort = [3.0, 3.0]
+        odd = draw.random()
+        if odd < 0.02:
+            message.velocity[draw.randrange(2)] = math.nan
+        elif odd < 0.04:
+            message.name = ['z', 'y']
+        for name in inputs.topics:
+            if name != SHARED and draw.random() < 0.9:
+                heard.append(inputs.heard(name, load(-1000.0, stamp), now, 0, 1))
+        lost = draw.choice([0] * 20 + [2])
+        if number % 70 < 55:  # a hole after that
+            heard.append(inputs.heard(SHARED, message, now, lost, 1))
+    return heard
+
+
+@pytest.mark.parametrize('more', [MappingProxyType({}), DERIVED], ids=['measured', 'derived'])
+def test_states_and_rows_are_the_same_judged_one_by_one_and_compiled(more):
+    """With warnings, holes, refusals, other joints, a clock that is set, and stamps that leap."""
+    ways = []
+    for way in ('each', 'many'):
+        inputs, draw = Inputs(more=more), random.Random(1)
+        spoken = {axis.name: Spoken(axis) for axis in inputs.axes}
+        reading = Reading(20 * SECOND)
+        for number in range(200):
+            heard = machine_turn(inputs, draw, number)
+            if number in (40, 90):
+                for axis in inputs.axes:
+                    axis.monitor.set_clock(NOW + number * SECOND // 50, NOW + SECOND * 7)
+            if way == 'many':
+                for part in inputs.turn(heard, reading).by_axis():
+                    spoken[part.axis.name].judge_many(part)
+            else:
+                events = [event for one in heard for event in inputs.one_by_one(one, reading)]
+                for axis, event in ordered(events):
+                    spoken[axis.name].judge_each(event)
+        ways.append(spoken)
+    each, many = ways
+    for name, wanted in each.items():
+        assert repr(many[name].states) == repr(wanted.states)
+        assert repr(many[name].rows) == repr(wanted.rows)
+        assert many[name].leaps == wanted.leaps
+        left, right = (spoken[name].axis.monitor for spoken in ways)
+        assert as_array(left.memory).tobytes() == as_array(right.memory).tobytes()
+        assert left.memory.event_number > 1
+    assert each['y'].leaps == [10.0]
