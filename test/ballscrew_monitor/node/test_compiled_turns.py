@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Turns are judged compiled where events come fast, once the code is there; else interpreted."""
 
+from pathlib import Path
+
 from ballscrew_monitor.node import compiled_turns
 from ballscrew_monitor.node.compiled_turns import COMPILED_FROM, CompiledTurns, SPAN
 import pytest
@@ -70,3 +72,8 @@ def test_what_cannot_be_compiled_is_warned_of_once(bench, refusal, says):
     assert not bench.run(1.1 * COMPILED_FROM, seconds=10.0)
     assert bench.warnings == [says('not_compiled', why=str(refusal))]
     assert len(bench.done) == 1
+
+
+def test_the_guide_states_the_rate():
+    guide = (Path(__file__).parents[3] / 'docs' / 'guide' / 'own_machine.md').read_text()
+    assert f'From {COMPILED_FROM:g} messages a second on' in guide
