@@ -109,10 +109,10 @@ class JointNames:
             if len(heard) < MOST_OTHERS:
                 heard[refusal.joints] = None
 
-    def hear_many(self, source: Source, joints: Iterable[OtherJoints], *, anew: bool) -> None:
-        """Keep the joints of several refusals; `anew`: they are all since the last good sample."""
+    def hear_many(self, source: Source, joints: Iterable[OtherJoints], *, all_since: bool) -> None:
+        """Keep the joints of several refusals; `all_since`: all since the last good sample."""
         heard = self.named[source]
-        if anew:
+        if all_since:
             heard.clear()
         for others in joints:
             if len(heard) < MOST_OTHERS:

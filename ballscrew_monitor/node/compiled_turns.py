@@ -1,7 +1,7 @@
 # Copyright 2026 ballscrew_monitor contributors
 # SPDX-License-Identifier: Apache-2.0
 """
-Whether the turns of a node are judged compiled: when events come fast, and the code is loaded.
+Choice of how the turns of a node are judged: compiled if events come fast and code is loaded.
 
 The code is compiled into its cache by a process of its own and loaded by a thread, so that the
 judgement goes on meanwhile, interpreted. It takes memory only where it is used.

@@ -42,7 +42,7 @@ class AxisTurn(NamedTuple):
         for source, heard in named.items():
             others = monitor.memory.others[source]
             since = heard[max(len(heard) - others, 0) :]
-            monitor.joints.hear_many(source, since, anew=others <= len(heard))
+            monitor.joints.hear_many(source, since, all_since=others <= len(heard))
 
 
 class Turn(NamedTuple):

@@ -240,7 +240,7 @@ class AxisRun:
             count, others = int(np.searchsorted(places, end)), monitor.memory.others[source]
             first = max(count - others, 0)
             named = self._notes.named(numbers[first:count])
-            monitor.joints.hear_many(source, named, anew=others <= count)
+            monitor.joints.hear_many(source, named, all_since=others <= count)
 
 
 def _counts(axis: Axis) -> dict[Source, MessageCounts]:
