@@ -24,10 +24,12 @@ from typing import Any
 
 from ballscrew_monitor.cycle.domain import free_domain
 from ballscrew_monitor.cycle.node_process import ros_environment
+from ballscrew_monitor.node.compiled_turns import COMPILED_FROM
 from node_parts.peer import axis_names, Peer, topic
 from node_parts.results import Findings, HEAD, line_of, report, write
 import rclpy
 
+LOADING = 10.0  # [s] in which the node loads what judges fast inputs
 TIMEOUT = 0.3  # [s] after it a tick tells the last counts
 BARE = Path(__file__).parent / 'node_parts' / 'bare.py'
 
@@ -79,6 +81,9 @@ def measure(domain: int, asked: argparse.Namespace) -> Findings:
         with peers(domain, axes, period, asked.record) as (bare, node, start):
             found.starts.append((axes, start))
             for rate in asked.rates:
+                if 2 * axes * rate >= COMPILED_FROM:
+                    node.run(rate, LOADING)
+                    node.settle()
                 for _ in range(asked.pairs):
                     for peer in (bare, node):
                         found.turns.append(peer.take_turn(rate, asked.seconds))

@@ -48,7 +48,11 @@ BAG_SOURCES = (
 # What the solver is compiled with.
 NUMERICAL = ('llvmlite', 'numba', 'numpy', 'pyyaml', 'scipy')
 # What is compiled, and what calls it.
-COMPILED = ('surrogate.ehl.solver', 'ballscrew_monitor.judge.many')
+COMPILED = (
+    'surrogate.ehl.solver',
+    'ballscrew_monitor.judge.many',
+    'ballscrew_monitor.health.collect',
+)
 SOLVER_SOURCES = (
     'surrogate/ehl/kernels/*.py',
     'surrogate/ehl/*.py',

@@ -22,13 +22,14 @@ from ballscrew_monitor.health.spectrum import (
     SpectrumMemory,
     take_bins,
 )
+from ballscrew_monitor.judge.records import Row
 import numpy as np
 from numpy.typing import NDArray
-from surrogate.surface import Found, Surface
+from surrogate.surface import Found, shipped_surface, Surface
 from surrogate.surface.compiled import compiled
 from surrogate.surface.records import as_array, dtype_of, from_array
 
-STRETCH = dtype_of(Stretch)
+ROW, STRETCH = dtype_of(Row), dtype_of(Stretch)
 ROOM = 256
 """Stretches that are handed over at a time."""
 
@@ -115,6 +116,11 @@ class Collector:
             found = self._run.take(self._taken(ended)) + self._run.finish()
             found += self._taken(finish_rest(self._memory, self._stretch))
         return Collected(found, take_bins(self._sums))
+
+
+def prepare() -> None:
+    """Compile what takes many rows."""
+    Collector(Surface.load(shipped_surface())).take_many(np.empty(0, ROW))
 
 
 @functools.cache

@@ -7,10 +7,12 @@ import functools
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.advice import Criterion, Nearest, nearest
+from ballscrew_monitor.core.state import NOT_ENDED
 from ballscrew_monitor.judge.monitor import Monitor
 from ballscrew_monitor.judge.records import EVENT, Memory, Row, Settings
 from ballscrew_monitor.judge.slopes import SlopeRing
 from ballscrew_monitor.judge.step import step_many
+from ballscrew_monitor.judge.zone import ACTIVE
 import numpy as np
 from numpy.typing import NDArray
 from surrogate.surface import Found, look_up_many, shipped_surface, Surface
@@ -57,23 +59,43 @@ def compiled_nearest() -> Nearest:
 
 
 class ManyJudge:
-    """Judges arrays of events in the place of a monitor."""
+    """
+    Judges arrays of events in the place of a monitor.
 
-    def __init__(self, monitor: Monitor) -> None:
-        self._monitor = monitor
-        monitor.nearest = compiled_nearest()
-        self._rows = np.empty(AT_ONCE, dtype=ROW)
-        self._places = np.empty(AT_ONCE, dtype=np.int64)
-        self._tables = monitor.surface.array_tables
-        parts = (monitor.numbers, monitor.memory, monitor.speeds, monitor.positions)
-        self._arrays = tuple(as_array(part) for part in parts)
+    It remembers for the monitor until somebody asks that for its memory.
 
-    def give_back(self) -> None:
+    """
+
+    def __init__(self, monitor: Monitor, at_once: int = AT_ONCE) -> None:
+        """Judge `at_once` events in one go."""
+        self._monitor, self._at_once = monitor, at_once
+        self._rows = np.empty(at_once, dtype=ROW)
+        self._places = np.empty(at_once, dtype=np.int64)
+        self._memories = np.empty(min(MOST_MEMORIES, at_once), dtype=MEMORY)
+        self._arrays: tuple[NDArray[Any], ...] = ()  # memory and slopes
+        self._settings: Any = None  # in force, and as an array
+        self._numbers: Any = None
+        self._last: Any = None  # memory that was looked at for a leap
+        self._event = 0  # number of the last one
+
+    def _give_back(self) -> None:
         """Let the monitor remember what is remembered here."""
-        _, memory, speeds, positions = self._arrays
+        memory, speeds, positions = self._arrays
         self._monitor.memory = from_array(Memory, memory[0])
         self._monitor.speeds = from_array(SlopeRing, speeds[0])
         self._monitor.positions = from_array(SlopeRing, positions[0])
+
+    def _take_over(self) -> None:
+        """Remember what the monitor does."""
+        monitor = self._monitor
+        if not monitor.is_lent(self._give_back):
+            memory = monitor.memory
+            self._event, self._last = memory.event_number, as_array(memory)[0]
+            parts = memory, monitor.speeds, monitor.positions
+            self._arrays = tuple(as_array(part) for part in parts)
+            monitor.lend(self._give_back)
+        if monitor.numbers is not self._settings:
+            self._settings, self._numbers = monitor.numbers, as_array(monitor.numbers)
 
     def judge(self, events: NDArray[Any], *, states: bool = False) -> Iterator[Judged]:
         """
@@ -83,18 +105,49 @@ class ManyJudge:
         the rows that begin or end an excursion.
 
         """
-        memories = np.empty(MOST_MEMORIES if states else 64, dtype=MEMORY)
-        at = 0
+        self._take_over()
+        tables, at = self._monitor.surface.array_tables, 0
         while at < len(events):
-            end = at + AT_ONCE
+            end = at + self._at_once
             some = events[at:end]
             taken, count, told = compiled_step()(
-                self._tables, *self._arrays, some, self._rows, self._places, memories, states
+                tables,
+                self._numbers,
+                *self._arrays,
+                some,
+                self._rows,
+                self._places,
+                self._memories,
+                states,
             )
             rows, places = self._rows[:count], self._places
             which = np.flatnonzero(rows['published'] if states else rows['edge'])
-            yield Judged(rows, places[:count] + at, memories[:told], which)
+            yield Judged(rows, places[:count] + at, self._memories[:told], which)
             at += taken
+
+    def told(self, judged: Judged) -> Iterator[tuple[int, Row]]:
+        """Yield those rows of which the memory is known; the monitor remembers it meanwhile."""
+        monitor = self._monitor
+        try:
+            for at, memory in zip(judged.told.tolist(), judged.memories, strict=True):
+                shown = from_array(Memory, memory)
+                monitor.show(shown)
+                if shown.event_number != self._event:
+                    self._event, monitor.ending = shown.event_number, NOT_ENDED
+                monitor.moved = self._moved_to(memory)
+                yield at, from_array(Row, judged.rows[at])
+        finally:
+            monitor.lend(self._give_back)
+            monitor.moved = self._moved_to(self._arrays[0][0])
+
+    def _moved_to(self, memory: Any) -> int:
+        """Return by how much the begin of an excursion has moved since the last look [ns]."""
+        before, self._last = self._last, memory.copy()
+        same = before['event_active'] and before['event_number'] == memory['event_number']
+        # Of a step of the node's clock its own event tells.
+        leaps = same and not before['clock_step']
+        start = 'event_start'
+        return int(memory[start][ACTIVE] - before[start][ACTIVE]) if leaps else 0
 
 
 def prepare() -> None:

@@ -9,6 +9,7 @@ step; they are kept here.
 """
 
 from collections import deque
+from collections.abc import Callable, Iterable
 import dataclasses
 import math
 import operator
@@ -110,6 +111,15 @@ class JointNames:
             if len(heard) < MOST_OTHERS:
                 heard[refusal.joints] = None
 
+    def hear_many(self, source: Source, joints: Iterable[OtherJoints], *, all_since: bool) -> None:
+        """Keep the joints of several refusals; `all_since`: all since the last good sample."""
+        heard = self.named[source]
+        if all_since:
+            heard.clear()
+        for others in joints:
+            if len(heard) < MOST_OTHERS:
+                heard[others] = None
+
     def of(self, source: Source) -> OtherJoints | None:
         """Return the joints of all messages about others, of however many publishers."""
         heard = self.named[source]
@@ -125,8 +135,9 @@ class Monitor:
     def __init__(self, surface: Surface, settings: MonitorSettings) -> None:
         self.settings = settings
         self.use_surface(surface)
-        self.memory = Memory()
-        self.speeds, self.positions = SlopeRing(), SlopeRing()
+        self._memory: Any = Memory()
+        self._speeds, self._positions = SlopeRing(), SlopeRing()
+        self._fetch: Callable[[], None] | None = None
         self.usual: deque[int] = deque(maxlen=MOST_USUAL)  # numbers of events: the health tells
         self.shelve_reason = ''
         self._ending = NOT_ENDED
@@ -137,6 +148,56 @@ class Monitor:
         self.row: Row | None = None  # of the last event, until the next; None if it gave none
         self._advisor: Advisor | None = None
         self.moved = 0  # by how much the last step has moved the begin of an excursion [ns]
+
+    @property
+    def memory(self) -> Any:
+        """Return what is remembered but for slopes."""
+        self._have_back()
+        return self._memory
+
+    @memory.setter
+    def memory(self, memory: Any) -> None:
+        self._have_back()
+        self._memory = memory
+
+    @property
+    def speeds(self) -> SlopeRing:
+        """Return the speeds of which the slope is the acceleration."""
+        self._have_back()
+        return self._speeds
+
+    @speeds.setter
+    def speeds(self, speeds: SlopeRing) -> None:
+        self._have_back()
+        self._speeds = speeds
+
+    @property
+    def positions(self) -> SlopeRing:
+        """Return the positions of which the slope is the speed."""
+        self._have_back()
+        return self._positions
+
+    @positions.setter
+    def positions(self, positions: SlopeRing) -> None:
+        self._have_back()
+        self._positions = positions
+
+    def lend(self, fetch: Callable[[], None]) -> None:
+        """Let others remember, until memory or slopes are asked for: `fetch` sets them then."""
+        self._fetch = fetch
+
+    def is_lent(self, fetch: Callable[[], None]) -> bool:
+        """Return True if the one who would `fetch` is who remembers."""
+        return self._fetch == fetch
+
+    def show(self, memory: Memory) -> None:
+        """Remember what was remembered after a row, until it is lent again."""
+        self._fetch, self._memory = None, memory
+
+    def _have_back(self) -> None:
+        if self._fetch is not None:
+            fetch, self._fetch = self._fetch, None
+            fetch()
 
     @property
     def settings(self) -> MonitorSettings:
@@ -171,15 +232,14 @@ class Monitor:
         self._step()
 
     def _step(self) -> Row | None:
-        number, start = self.memory.event_number, self.memory.event_start[ACTIVE]
+        memory, slopes = self.memory, (self._speeds, self._positions)
+        number, start = memory.event_number, memory.event_start[ACTIVE]
         # Of a step of the node's clock its own event tells.
-        leaps = self.memory.event_active and self._event.kind != STEP
-        leaps = leaps and not self.memory.clock_step
-        slopes = self.speeds, self.positions
-        outcome = step(self._tables, self.numbers, self.memory, *slopes, self._event, self._row)
-        if self.memory.event_number != number:
+        leaps = memory.event_active and self._event.kind != STEP and not memory.clock_step
+        outcome = step(self._tables, self.numbers, memory, *slopes, self._event, self._row)
+        if memory.event_number != number:
             self.ending = NOT_ENDED
-        self.moved = self.memory.event_start[ACTIVE] - start if leaps else 0
+        self.moved = memory.event_start[ACTIVE] - start if leaps else 0
         self.row = None if outcome == NOTHING else self._row
         if outcome != STATE:
             return None

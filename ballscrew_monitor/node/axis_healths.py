@@ -23,6 +23,7 @@ from ballscrew_monitor.node.state_records import Kind
 from ballscrew_monitor.settings.axis import gathering_of
 from ballscrew_msgs.srv import SetBaseline
 from diagnostic_msgs.msg import DiagnosticStatus
+from numpy.typing import NDArray
 from rclpy.clock import Clock
 from rclpy.node import Node
 from surrogate.files import InputError
@@ -86,6 +87,11 @@ class AxisHealths:
         """Take a row of the judgement."""
         if axis in self._gatherers and not self._held:
             self._gatherers[axis].take(row)
+
+    def take_many(self, axis: str, rows: NDArray[Any]) -> None:
+        """Take rows of the judgement, an array of them."""
+        if axis in self._gatherers and not self._held:
+            self._gatherers[axis].take_many(rows)
 
     def set_clock(self, step: int, now: int) -> None:
         """

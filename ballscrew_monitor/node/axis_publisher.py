@@ -3,6 +3,7 @@
 """Everything that the node keeps of one axis: the axis, its publishers, and its last words."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+import functools
 import traceback
 from typing import Any, TypeVar
 
@@ -13,6 +14,7 @@ from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.state import MonitorSettings, Shelving
 from ballscrew_monitor.judge.full_point import answer, corrected, Dwell, objection, solved_at
+from ballscrew_monitor.judge.many import ManyJudge
 from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.messages import diagnostics, state_messages
 from ballscrew_monitor.messages.state_messages import plain_values, TIERS
@@ -37,6 +39,7 @@ from surrogate.surface import Surface, SurfaceError, SurfacePoint
 STATE_QOS = QoSProfile(depth=10, reliability=QoSReliabilityPolicy.RELIABLE)
 LOG_INTERVAL = nanoseconds(1.0)  # [ns] shortest time between two lines about the inputs
 MOST_LEAPS = 8  # of the stamps in one warning that the event log tells of
+MOST_EVENTS = 512  # of a turn that are judged in one go
 AT_ONCE = 50  # points that are evaluated before samples have a turn
 LAST_WORD = Duration(seconds=0.5)  # for subscribers to take the end of an event
 NEWS_INTERVAL = nanoseconds(0.1)  # [ns] shortest time between two diagnostics sent for a change
@@ -151,6 +154,11 @@ class AxisPublisher:
         )
         self._info.publish(message)
         self._recording.record(f'~/{self.name}/surface_info', message)
+
+    @functools.cached_property
+    def many(self) -> ManyJudge:
+        """Judge of turns that are judged compiled."""
+        return ManyJudge(self.axis.monitor, MOST_EVENTS)
 
     @property
     def name(self) -> str:

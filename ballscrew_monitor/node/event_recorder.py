@@ -25,12 +25,13 @@ from ballscrew_monitor.judge.snapshot import snapshot
 from ballscrew_monitor.messages import diagnostics
 from ballscrew_monitor.node.recording_process import recording, RecordingProcess
 from ballscrew_monitor.node.topic import Arrival
-from ballscrew_monitor.recordings.bulk.events import MOST_NAMED, TICK_SOURCE
+from ballscrew_monitor.recordings.bulk.events import Events, MOST_NAMED, some, TICK_SOURCE
 from ballscrew_monitor.recordings.event_messages import note_text
 from ballscrew_monitor.recordings.frames import BEGIN, EVENTS, Frame, FrameKind, HOLE, PERIODIC
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_msgs.msg import AxisHealth, OutOfZone, SurfaceInfo
 from diagnostic_msgs.msg import DiagnosticStatus
+import numpy as np
 from rclpy.node import Node
 
 LATCHED = (AxisHealth, OutOfZone, SurfaceInfo)
@@ -65,7 +66,6 @@ class EventRecorder:
         self._lost_at: int | None = None  # the process, on the steady clock
         self._topics: dict[str, int] = {}
         self._notes: dict[OtherJoints, int] = {}
-        self._event = Event()
         self._axes: dict[str, int] = {}  # numbers by name
         self._pause = RESTART
         self._started_at = 0  # the process, on the steady clock, again
@@ -91,16 +91,36 @@ class EventRecorder:
         """Take the events of a turn in the order of judging, at `now` of both clocks [ns]."""
         if self._process is None or not self._axes:
             return
-        record, parts = self._event, []
+        parts = []
         for axis, event in turn:
             if (number := self._axes.get(axis.name)) is None:  # no snapshot could be made of it
                 continue
+            record = Event(axis=number, steady=steady)
             fill(record, event)
-            record.axis, record.steady = number, steady
             joints = event.joints if isinstance(event, Refusal) else None
             record.note = NOT_KNOWN if joints is None else self._note(joints)
             parts.append(_packed(record))
         self._put_events(b''.join(parts), now)
+
+    def take_many(
+        self,
+        events: Events,
+        axes: Sequence[str],
+        joints: Mapping[int, OtherJoints],
+        now: int,
+        steady: int,
+    ) -> None:
+        """Take the same as an array, with the axis of each, and the joints named at places."""
+        if self._process is None or not self._axes:
+            return
+        numbers = np.array([self._axes.get(axis, -1) for axis in axes])
+        kept = some(events, numbers >= 0)
+        kept['axis'], kept['steady'] = numbers[numbers >= 0], steady
+        left = np.cumsum(numbers >= 0) - 1
+        for place, named in joints.items():
+            if numbers[place] >= 0:
+                kept['note'][left[place]] = self._note(named)
+        self._put_events(kept.tobytes(), now)
 
     def tick(self, grid: int, now: int, steady: int) -> None:
         """Take a tick of all axes at `grid` [ns]."""

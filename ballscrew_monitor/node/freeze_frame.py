@@ -8,6 +8,9 @@ import operator
 from typing import Any
 
 from ballscrew_monitor.core.conversions import celsius, nanoseconds, seconds
+from ballscrew_monitor.judge.records import Row
+from numpy.typing import NDArray
+from surrogate.surface.records import from_array
 
 SPAN, STEP = nanoseconds(10.0), nanoseconds(0.1)
 """What is kept before an event, and the time between two of its samples [ns]."""
@@ -31,14 +34,25 @@ class FreezeFrame:
 
     def take(self, row: Any) -> None:
         """Take a row of the judgement, if there is one; a clock that is set back begins again."""
-        if row is None or row.tick:
-            return
-        past = row.stamp - self._rows[-1][0] if self._rows else STEP
+        if row is not None and not row.tick and self._wants(row.stamp, row.edge):
+            self._keep(row)
+
+    def take_many(self, rows: NDArray[Any]) -> None:
+        """Take rows, an array of them, as one after the other."""
+        columns = (rows[name].tolist() for name in ('stamp', 'edge', 'tick'))
+        for at, (stamp, edge, tick) in enumerate(zip(*columns)):
+            if not tick and self._wants(stamp, edge):
+                self._keep(from_array(Row, rows[at]))
+
+    def _wants(self, stamp: int, edge: int) -> bool:
+        past = stamp - self._rows[-1][0] if self._rows else STEP
         if past < 0:
             self._rows.clear()
-        if not 0 <= past < STEP or row.edge:
-            stamp, speed, load, temperature, *others = self._read(row)
-            self._rows.append((stamp, speed, load, celsius(temperature), *others))
+        return not 0 <= past < STEP or bool(edge)
+
+    def _keep(self, row: Any) -> None:
+        stamp, speed, load, temperature, *others = self._read(row)
+        self._rows.append((stamp, speed, load, celsius(temperature), *others))
 
     def facts(self, stamp: int) -> dict[str, list[float]]:
         """

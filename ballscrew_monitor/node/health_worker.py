@@ -20,7 +20,7 @@ from typing import Any
 from ballscrew_monitor.core.judgement import WarningPolicy
 from ballscrew_monitor.health.assess import HealthSettings
 from ballscrew_monitor.health.bands import day_of
-from ballscrew_monitor.health.collect import Collected, Collector
+from ballscrew_monitor.health.collect import Collected, Collector, ROW
 from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.health.keeper import HealthKeeper
 from ballscrew_monitor.health.records import Health, SpectrumBin, Stretch
@@ -28,11 +28,14 @@ from ballscrew_monitor.health.spectrum import merged_bins
 from ballscrew_monitor.health.store import HealthStore
 from ballscrew_monitor.messages.health_messages import health_message
 from ballscrew_msgs.msg import AxisHealth
+import numpy as np
+from numpy.typing import NDArray
 from surrogate.files import InputError
 from surrogate.surface import Surface
 
 MOST_STRETCHES = 10_000
 """Stretches that wait to be handed over; the oldest are dropped."""
+MOST_ROWS = 500  # of arrays that wait to be added up
 MOST_JOBS = 64
 SURFACE_DIGITS = 16
 """Digits of the hash of a surface, without its corrections, that name it."""
@@ -49,14 +52,29 @@ class Gatherer:
         self._collector = Collector(surface, settings)
         self._stretches: deque[Stretch] = deque(maxlen=MOST_STRETCHES)
         self._bins: list[SpectrumBin] = []
+        self._rows = bytearray()  # of arrays, not added up yet
 
     def take(self, row: Any) -> None:
         """Take a row of the judgement, None for an event that gave none."""
         if row is not None and not self.defect:
+            self._gather_many()
             self._add(self._guarded(self._collector.take, row))
+
+    def take_many(self, rows: NDArray[Any]) -> None:
+        """Take rows, an array of them, which are added up some hundreds at a time, compiled."""
+        if len(rows) and not self.defect:
+            self._rows += rows.tobytes()
+            if len(self._rows) >= MOST_ROWS * ROW.itemsize:
+                self._gather_many()
+
+    def _gather_many(self) -> None:
+        if self._rows and not self.defect:
+            rows, self._rows = np.frombuffer(self._rows, ROW), bytearray()
+            self._add(self._guarded(self._collector.take_many, rows))
 
     def hand_over(self, surface: Surface, *, rows_end: bool = False) -> Collected:
         """Return what has been added up, and go on with the `surface` of now."""
+        self._gather_many()
         if not self.defect:
             self._add(self._guarded(self._collector.finish, rows_end=rows_end))
             self._collector.use_surface(surface)

@@ -32,9 +32,11 @@ from ballscrew_monitor.core.inputs import (
 )
 from ballscrew_monitor.core.links import Link
 from ballscrew_monitor.core.tick_grid import ClockSteps, LEAST_STEP
+from ballscrew_monitor.node.compiled_turns import CompiledTurns
 from ballscrew_monitor.node.event_recorder import AxisEvent, EventRecorder, Heard, SILENT
 from ballscrew_monitor.node.sources import READING, Reading
 from ballscrew_monitor.node.topic import Apart, Arrival, link_of, open_topic, Topic
+from ballscrew_monitor.node.turn import AxisTurn, TurnReader
 from ballscrew_monitor.settings.axis import Axis
 from ballscrew_monitor.settings.qos import publishers_on
 from rclpy.event_handler import EventHandler
@@ -47,6 +49,7 @@ from surrogate.files import InputError
 CLOCK = '/clock'
 PAUSE = 5e-4  # [s] between two looks at the inputs while messages come, at least
 PAUSE_PER_TOPIC = 4e-5  # [s] the same for each topic, twenty times what a look at it takes
+LONGER = 4.0  # times the pause while turns are judged compiled: the larger they are the better
 QUIET = 1.5e-3  # [s] without a message after which the executor waits for the next one
 STAY = 0.02  # [s] longest turn; what becomes ready in one may wait for the next one too
 STEPS = 9  # of `/clock`, of which the middle one counts
@@ -78,6 +81,8 @@ class Intake(Waitable):
         worked: Callable[[float, int], None] = _forget,
         stepped: Callable[[int, int], None] = _forget,
         steps: ClockSteps | None = None,
+        compiled: CompiledTurns | None = None,
+        take_many: Callable[[AxisTurn], None] = _forget,
     ) -> None:
         """
         Subscribe once to each topic, however many inputs read it; `recorder` gets all.
@@ -85,7 +90,7 @@ class Intake(Waitable):
         `guard` calls what reads for an axis, and returns None if the program fails in it; `worked`
         takes for how long [s] messages were at work, and how many. `stepped` takes by how much
         [ns] the clock was set, and the time of that; `steps` know the clock of the system from
-        before.
+        before. While turns are due to be `compiled`, `take_many` gets those of each axis instead.
 
         """
         super().__init__(node.default_callback_group)
@@ -105,6 +110,8 @@ class Intake(Waitable):
         self._stayed = False  # for all of STAY, the last time
         self.topics: dict[str, Topic] = {}
         self._axes = list(axes)
+        self._compiled, self._take_many = compiled, take_many
+        self._turns = TurnReader(self._axes, self._judged)
         for axis in self._axes:
             for source in axis.inputs:
                 self._read(axis, source)
@@ -218,6 +225,7 @@ class Intake(Waitable):
             self._stayed = False
             return
         pause = max(PAUSE, PAUSE_PER_TOPIC * len(self.topics))
+        pause *= LONGER if self.is_compiled else 1.0
         stay = min(STAY, self._time_to_timer())
         now = begin = came = time.monotonic()
         while now - came < QUIET and now - begin < stay:
@@ -308,7 +316,11 @@ class Intake(Waitable):
                 step = 0
             heard.append((arrival, at, lost))
         self._hand_over(heard, step)
-        self._worked(time.monotonic() - begin, len(arrivals))
+        now_steady = time.monotonic()
+        self._worked(now_steady - begin, len(arrivals))
+        if self._compiled is not None:
+            events = sum(len(arrival.topic.readers) for arrival in arrivals)
+            self._compiled.count(events, now_steady)
         return True
 
     def _hand_over(self, heard: list[Heard], step: int) -> None:
@@ -319,12 +331,8 @@ class Intake(Waitable):
 
         """
         if heard:
-            turn = ordered([event for one in heard for event in self._judged(one)])
-            self._recorder.hear(heard)
-            self._recorder.take(turn, heard[-1][1], time.monotonic_ns())
-            self._recorder.flush()  # whatever becomes of the node with these events
-            for axis, event in turn:
-                self._take(axis, event)
+            hand_over = self._hand_over_many if self.is_compiled else self._hand_over_each
+            hand_over(heard)
             self._recorder.flush()
             heard.clear()
         if step:
@@ -333,6 +341,30 @@ class Intake(Waitable):
             for axis in self._axes:
                 self._guard(axis, 'a step of the clock', axis.monitor.set_clock, now - step, now)
             self._stepped(step, now)
+
+    def _hand_over_each(self, heard: list[Heard]) -> None:
+        turn = ordered([event for one in heard for event in self._judged(one)])
+        self._recorder.hear(heard)
+        self._recorder.take(turn, heard[-1][1], time.monotonic_ns())
+        self._recorder.flush()  # whatever becomes of the node with these events
+        for axis, event in turn:
+            self._take(axis, event)
+
+    def _hand_over_many(self, heard: list[Heard]) -> None:
+        turn = self._turns.turn(heard, self._reading)
+        self._recorder.hear(heard)
+        if self._recorder.on:
+            names = [self._axes[number].name for number in turn.numbers.tolist()]
+            now, steady = heard[-1][1], time.monotonic_ns()
+            self._recorder.take_many(turn.events, names, turn.joints, now, steady)
+            self._recorder.flush()
+        for part in turn.by_axis():
+            self._take_many(part)
+
+    @property
+    def is_compiled(self) -> bool:
+        """Return True if turns are judged compiled now."""
+        return self._compiled is not None and self._compiled.are_due
 
     def _show(self, shown: Any) -> int:
         """Take a time of `/clock`; return by how much it leaps [ns], 0 if it goes on as before."""

@@ -17,6 +17,7 @@ from ballscrew_monitor.node.alarm import LatchedTopics
 from ballscrew_monitor.node.axis_healths import AxisHealths
 from ballscrew_monitor.node.axis_publisher import AxisPublisher, end_all, STATE_QOS
 from ballscrew_monitor.node.axis_services import AxisServices, not_built
+from ballscrew_monitor.node.compiled_turns import CompiledTurns
 from ballscrew_monitor.node.event_recorder import NodeRecorder
 from ballscrew_monitor.node.heartbeat import Heartbeat
 from ballscrew_monitor.node.intake import Intake
@@ -26,6 +27,8 @@ from ballscrew_monitor.node.printable_log import printable_logger
 from ballscrew_monitor.node.restart_state import RestartState, state_directory
 from ballscrew_monitor.node.solve_server import SolveServer
 from ballscrew_monitor.node.state_records import Kind, step_text
+from ballscrew_monitor.node.turn import AxisTurn
+from ballscrew_monitor.recordings.bulk.events import ticks
 from ballscrew_monitor.settings import parameters
 from ballscrew_monitor.settings.axis import Axis, build_axes, named_topics, start_text
 from ballscrew_monitor.settings.qos import check_overrides, longest_period
@@ -75,6 +78,7 @@ class BallscrewMonitor(LifecycleNode):
         self._values = self._store.values
         self._recording = NodeRecorder(self, self._values, self._axis_publishers)
         self._grid = TickGrid(nanoseconds(self._values['tick_period']))
+        self._compiled = CompiledTurns(self.get_logger().warning)
         self._steps = ClockSteps()  # of the system, also while the node is inactive
         self._heartbeat = Heartbeat(self, clock=self._steady)
         self._diagnostics = self.create_publisher(DiagnosticArray, '/diagnostics', STATE_QOS)
@@ -226,6 +230,8 @@ class BallscrewMonitor(LifecycleNode):
             self._heartbeat.vitals.work,
             self._on_step,
             self._steps,
+            self._compiled,
+            self._on_turn,
         )
         # A timer on the system clock stops when that is set back, for as long as it was set back.
         clock = self.get_clock() if self.get_parameter('use_sim_time').value else self._steady
@@ -335,13 +341,39 @@ class BallscrewMonitor(LifecycleNode):
         if publisher.defect != known:
             self._publish_diagnostics([publisher.name])
 
+    def _on_turn(self, turn: AxisTurn) -> None:
+        """Judge the events of a turn, compiled; a defect is an error of their axis alone."""
+        publisher = self._axis_publishers[turn.axis.name]
+        known = publisher.defect
+        publisher.guarded(f'{len(turn.events)} events', self._judge_many, publisher, turn)
+        if publisher.defect != known:
+            self._publish_diagnostics([publisher.name])
+
+    def _judge_many(self, publisher: AxisPublisher, turn: AxisTurn) -> None:
+        judge, begin = publisher.many, 0
+        for judged in judge.judge(turn.events, states=True):
+            for at, row in judge.told(judged):
+                turn.hear_joints(int(judged.places[at]))
+                self._note_leap(publisher)
+                publisher.frame.take_many(judged.rows[begin : at + 1])
+                begin = at + 1
+                self._publish(publisher, row)
+            self._note_leap(publisher)
+            publisher.frame.take_many(judged.rows[begin:])
+            self._healths.take_many(publisher.name, judged.rows)
+            begin = 0
+        turn.hear_joints(len(turn.events))
+
+    def _note_leap(self, publisher: AxisPublisher) -> None:
+        if (moved := publisher.axis.monitor.moved) and publisher.may_note_leap():
+            text = f'the stamps of the speed leap {step_text(moved)} in a warning'
+            self._kept.note(Kind.CLOCK_STEP, publisher.name, by_s=seconds(moved), text=text)
+
     def _judge_one(
         self, publisher: AxisPublisher, judge: Callable[[Any], Row | None], event: Any
     ) -> None:
         row = judge(event)
-        if (moved := publisher.axis.monitor.moved) and publisher.may_note_leap():
-            text = f'the stamps of the speed leap {step_text(moved)} in a warning'
-            self._kept.note(Kind.CLOCK_STEP, publisher.name, by_s=seconds(moved), text=text)
+        self._note_leap(publisher)
         publisher.frame.take(publisher.axis.monitor.row)
         self._publish(publisher, row)
 
@@ -359,7 +391,10 @@ class BallscrewMonitor(LifecycleNode):
         self._recording.events.tick(grid, now, steady)
         self._recording.events.flush()
         for publisher in self._axis_publishers.values():
-            self._judge(publisher, publisher.axis.monitor.tick, grid)
+            if self._intake.is_compiled:
+                self._on_turn(AxisTurn(publisher.axis, ticks([grid], place=0), {}))
+            else:
+                self._judge(publisher, publisher.axis.monitor.tick, grid)
         self._recording.renew(steady, now)
 
     def _publish(self, publisher: AxisPublisher, row: Row | None) -> None:

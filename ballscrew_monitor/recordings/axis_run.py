@@ -9,10 +9,9 @@ import operator
 from typing import Any, NamedTuple
 
 from ballscrew_monitor.core.inputs import InputStatus, Source, Why
-from ballscrew_monitor.core.state import NOT_ENDED, RUN_ENDED
+from ballscrew_monitor.core.state import RUN_ENDED
 from ballscrew_monitor.judge import records, views
-from ballscrew_monitor.judge.many import Judged, ManyJudge
-from ballscrew_monitor.judge.monitor import MOST_OTHERS
+from ballscrew_monitor.judge.many import compiled_nearest, ManyJudge
 from ballscrew_monitor.messages.state_messages import (
     empty_state,
     fill_state,
@@ -81,8 +80,8 @@ class AxisRun:
     """Judges the ordered events of one axis and collects what they come to."""
 
     def __init__(self, axis: Axis, notes: Notes) -> None:
-        self.axis, self._notes = axis, notes
-        self._judge = ManyJudge(axis.monitor)
+        self._notes = notes
+        self._begin(axis)
         self._events: dict[int, EventRecord] = {}
         self._rows = self._states = self._first = self._last = 0
         self._last_row: Any = None
@@ -93,6 +92,10 @@ class AxisRun:
         self._begun = axis.monitor.memory  # as the run began
         self._span = [0, 0]  # stamps of its first and last row [ns], 0 without one
         self._ended: OutOfZone | None = None  # by no sample, and not told yet
+
+    def _begin(self, axis: Axis) -> None:
+        self.axis, self._judge = axis, ManyJudge(axis.monitor)
+        axis.monitor.nearest = compiled_nearest()
 
     def take(self, events: Events, *, states: bool = True) -> Iterator[AxisRows | Due]:
         """Judge events; yield their rows, and the states that are due."""
@@ -111,7 +114,6 @@ class AxisRun:
         active = monitor.memory.event_active
         for _ in self._judge.judge(events):  # which gives no row
             pass
-        self._judge.give_back()
         self._begun, self._span = monitor.memory, [0, 0]
         if active:
             monitor.ending = RUN_ENDED
@@ -130,14 +132,14 @@ class AxisRun:
             mine = places[events['source'][places] == source]
             notes[source] = mine, events['note'][mine]
         for judged in self._judge.judge(events, states=states):
-            for place, row in self._told(judged):
+            for at, row in self._judge.told(judged):
+                place = int(judged.places[at])
                 self._hear_others(notes, place)
                 log_time = int(events['log_time'][place])
                 yield from ((place, one) for one in self._state(log_time, row, states=states))
             if len(judged.rows):
                 self._count(judged.rows)
                 yield AxisRows(self.axis.name, judged.rows, len(self._runs))
-        self._judge.give_back()
         self._hear_others(notes, len(events))
 
     def _state(self, log_time: int, row: records.Row, *, states: bool) -> Iterator[TimedState]:
@@ -160,8 +162,7 @@ class AxisRun:
     def change(self, axis: Axis) -> None:
         """Go on with an axis as it is described now; an event may have been ended meanwhile."""
         was_active, memory = self.axis.monitor.memory.event_active, axis.monitor.memory
-        self.axis = axis
-        self._judge = ManyJudge(axis.monitor)
+        self._begin(axis)
         if memory.event_number in self._events:
             self._note(memory.event_stamp)
         if was_active and not memory.event_active:
@@ -217,16 +218,6 @@ class AxisRun:
             lost=None if now.lost is None else max(now.lost - (before.lost or 0), 0),
         )
 
-    def _told(self, judged: Judged) -> Iterator[tuple[int, records.Row]]:
-        """Yield the rows of which the memory is known; the monitor remembers it meanwhile."""
-        monitor = self.axis.monitor
-        for at, memory in zip(judged.told.tolist(), judged.memories, strict=True):
-            number = monitor.memory.event_number
-            monitor.memory = from_array(records.Memory, memory)
-            if monitor.memory.event_number != number:
-                monitor.ending = NOT_ENDED
-            yield int(judged.places[at]), from_array(records.Row, judged.rows[at])
-
     def _note(self, until: int) -> None:
         event = event_record(self.axis.monitor, until=until)
         self._events[event.event_id] = event
@@ -244,15 +235,12 @@ class AxisRun:
 
     def _hear_others(self, notes: Mapping[Source, tuple[Any, Any]], end: int) -> None:
         """Keep the joints that messages before a place have named since the last good sample."""
-        named, others = self.axis.monitor.joints.named, self.axis.monitor.memory.others
+        monitor = self.axis.monitor
         for source, (places, numbers) in notes.items():
-            count = int(np.searchsorted(places, end))
-            first = max(count - others[source], 0)
-            if others[source] <= count:
-                named[source].clear()
-            for joints in self._notes.named(numbers[first:count]):
-                if len(named[source]) < MOST_OTHERS:
-                    named[source][joints] = None
+            count, others = int(np.searchsorted(places, end)), monitor.memory.others[source]
+            first = max(count - others, 0)
+            named = self._notes.named(numbers[first:count])
+            monitor.joints.hear_many(source, named, all_since=others <= count)
 
 
 def _counts(axis: Axis) -> dict[Source, MessageCounts]:

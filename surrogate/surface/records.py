@@ -11,12 +11,15 @@ element of a structured array of the same fields: both read and write `record.fi
 """
 
 import dataclasses
+import operator
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Record = TypeVar('Record')
+_TYPES: dict[Any, np.dtype[Any]] = {}
+"""Types of arrays by their records."""
 _KINDS = {'int': np.int64, 'float': np.float64, 'bool': np.bool_}
 
 
@@ -34,6 +37,8 @@ def small(kind: type[np.integer[Any]], start: int = 0) -> Any:
 
 def dtype_of(kind: type[Any]) -> np.dtype[Any]:
     """Return the type of an array of records."""
+    if kind in _TYPES:
+        return _TYPES[kind]
     parts: list[Any] = []
     for field in dataclasses.fields(kind):
         count = field.metadata.get('count')
@@ -42,14 +47,15 @@ def dtype_of(kind: type[Any]) -> np.dtype[Any]:
             parts.append((field.name, field.metadata.get('kind', _KINDS[name])))
         else:
             parts.append((field.name, _KINDS[type(field.metadata['start']).__name__], (count,)))
-    return np.dtype(parts, align=True)
+    made: np.dtype[Any] = np.dtype(parts, align=True)
+    _TYPES[kind] = made
+    return made
 
 
 def as_array(record: object) -> NDArray[Any]:
     """Return an array of one record."""
     array = np.zeros(1, dtype=dtype_of(type(record)))
-    for name in array.dtype.names or ():
-        array[name][0] = getattr(record, name)
+    array[0] = operator.attrgetter(*array.dtype.names or ())(record)
     return array
 
 

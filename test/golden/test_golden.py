@@ -7,6 +7,7 @@ Where a change is meant, record the outputs again and read how they differ.
 
 """
 
+from ballscrew_monitor.node.compiled_turns import CompiledTurns
 from golden import compare
 from golden.cases import CASES
 import numpy as np
@@ -24,6 +25,13 @@ TABLE = {
 def test_outputs_are_those_on_file(case, tmp_path):
     said = compare.compare_all(case, CASES[case](tmp_path))
     text = ''.join('\n  '.join([f'\n{case}/{name}:', *how]) for name, how in said.items())
+    assert not said, text
+
+
+def test_turns_that_are_judged_compiled_say_the_same(tmp_path, monkeypatch):
+    monkeypatch.setattr(CompiledTurns, 'are_due', True)
+    said = compare.compare_all('live', CASES['live'](tmp_path))
+    text = ''.join('\n  '.join([f'\nlive/{name}:', *how]) for name, how in said.items())
     assert not said, text
 
 

@@ -104,7 +104,6 @@ def at_once(monitor, events):
         assert len(judged.memories) == len(judged.told)
         rows.append(judged.rows.copy())
         memories.append(judged.memories.copy())
-    judge.give_back()
     return np.concatenate(rows), np.concatenate(memories)
 
 
@@ -217,6 +216,69 @@ def test_whatever_happens_comes_out_the_same(way, happenings, usual, period):
         patch.setattr(many, 'AT_ONCE', 16)
         patch.setattr(many, 'MOST_MEMORIES', 5)
         compare(Monitor(SURFACE, told), Monitor(SURFACE, told), events)
+
+
+def usual_settings(**changes):
+    return MonitorSettings(
+        axis='x',
+        limits=LIMITS,
+        timeouts=dict.fromkeys((Source.SPEED, Source.LOAD), TIMEOUT),
+        default_temperature=313.15,
+        tick_period=SECOND // 10,
+        **changes,
+    )
+
+
+def turn_of(speeds, begin):
+    """Return a load and these speeds as events."""
+    records = [Event(source=Source.LOAD, stamp=begin, arrival=begin, value=-900.0)]
+    for at, speed in enumerate(speeds):
+        stamp = begin + at * STEP
+        records.append(Event(source=Source.SPEED, stamp=stamp, arrival=stamp, value=speed))
+        records[-1].stamp_source = 1
+    return np.concatenate([as_array(record) for record in records])
+
+
+SLOW, FAST = [0.6] * 6, [100.0] * 6
+
+
+def test_a_monitor_goes_on_by_itself_where_a_judge_has_remembered_for_it():
+    """Turns are judged compiled, interpreted and compiled again, and one is acknowledged."""
+    one, other = (Monitor(SURFACE, usual_settings()) for _ in range(2))
+    judge, numbers = ManyJudge(one), []
+    for turn, speeds in enumerate([SLOW, FAST, SLOW, FAST]):
+        begin = 1000 * SECOND + turn * len(speeds) * STEP
+        events = turn_of(speeds, begin)
+        interpreted(other, events)
+        if turn == 1:
+            interpreted(one, events)
+        else:
+            for judged in judge.judge(events, states=True):
+                for at, row in judge.told(judged):
+                    assert (row.stamp, one.memory.stamp) == (judged.rows['stamp'][at],) * 2
+                    numbers.append((row.edge, one.memory.event_number))
+        if turn == 2:
+            for monitor in (one, other):
+                assert monitor.acknowledge(begin + len(speeds) * STEP)
+        for name in ('memory', 'speeds', 'positions'):
+            left, right = (as_array(getattr(monitor, name)) for monitor in (one, other))
+            assert left.tobytes() == right.tobytes(), f'turn {turn}: {name}'
+    assert {(1, 1), (1, 2)} < set(numbers)
+    assert one.ending == other.ending
+
+
+def test_a_leap_of_the_stamps_in_a_warning_is_told_with_the_row_after_it_or_the_end():
+    monitor = Monitor(SURFACE, usual_settings(publish_period=SECOND, max_lag=SECOND))
+    judge, leap = ManyJudge(monitor), 3600 * SECOND
+    events = turn_of([*SLOW, *SLOW, *SLOW], 1000 * SECOND)
+    events['stamp'][10:] += leap
+    moved = []
+    for begin in range(0, len(events), 4):
+        end = begin + 4
+        for judged in judge.judge(events[begin:end], states=True):
+            moved += [monitor.moved for _ in judge.told(judged)]
+            moved.append(monitor.moved)
+    assert [round(one / SECOND) for one in moved if one] == [3600]
 
 
 def test_what_is_prepared_is_what_a_recording_needs():

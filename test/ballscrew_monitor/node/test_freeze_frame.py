@@ -9,6 +9,8 @@ from ballscrew_monitor.judge.records import EVENT_BEGINS, Row
 from ballscrew_monitor.node.freeze_frame import FreezeFrame, QUANTITIES, SPAN, STEP
 from hypothesis import given
 from hypothesis import strategies as st
+import numpy as np
+from surrogate.surface.records import as_array, dtype_of
 
 START = 1000 * SECOND
 
@@ -81,3 +83,27 @@ def test_it_is_bounded_and_reaches_back_no_further_than_its_span(gaps, edges):
         for one in taken:
             if 0 <= stamp - one <= SPAN - STEP:
                 assert min(abs(one - other) for other in kept) <= STEP + SECOND // 1000
+
+
+@given(
+    st.lists(
+        st.tuples(
+            st.sampled_from([0, 1, STEP // 3, STEP, SPAN, -1, -SECOND]),
+            st.sampled_from([0] * 5 + [EVENT_BEGINS]),
+            st.sampled_from([False] * 5 + [True]),
+        ),
+        max_size=30,
+    ),
+    st.integers(0, 30),
+)
+def test_an_array_of_rows_is_taken_as_they_are_one_by_one(steps, begin):
+    one, other, rows, stamp = FreezeFrame(), FreezeFrame(), [], START
+    for step, edge, tick in steps:
+        stamp += step
+        rows.append(row_at(stamp, speed=float(len(rows)), edge=edge, tick=tick))
+    arrays = np.concatenate([np.empty(0, dtype_of(Row)), *map(as_array, rows)])
+    for row in rows:
+        one.take(row)
+    other.take_many(arrays[:begin])
+    other.take_many(arrays[begin:])
+    assert repr(other.facts(stamp)) == repr(one.facts(stamp))

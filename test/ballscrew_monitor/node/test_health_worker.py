@@ -21,8 +21,10 @@ from ballscrew_monitor.judge.inputs import DERIVED
 from ballscrew_monitor.judge.records import Row
 from ballscrew_monitor.node import health_worker
 from ballscrew_monitor.node.health_worker import Gatherer, HealthWorker, Job
+import numpy as np
 import pytest
 from surrogate.surface import shipped_surface, Surface
+from surrogate.surface.records import as_array
 
 NOON = 20_000 * DAY + DAY // 2
 NOTHING = Collected([], [])
@@ -128,6 +130,20 @@ def test_motion_that_goes_on_is_handed_over_and_its_stretch_later(surface):
     assert [one.duration > 3.0 for one in found.stretches] == [True]
     assert sum(one.time for one in found.bins) == pytest.approx(3.99)
     assert gatherer.hand_over(surface) == NOTHING
+
+
+@pytest.mark.parametrize('most', [150, 10_000])
+def test_arrays_of_rows_are_added_up_as_the_rows_one_by_one(surface, monkeypatch, most):
+    """Whatever waits is added up before a single row, and before it is handed over."""
+    monkeypatch.setattr(health_worker, 'MOST_ROWS', most)
+    some = rows(4.0)
+    gatherer = Gatherer(surface)
+    for begin in range(0, 300, 10):
+        end = begin + 10
+        gatherer.take_many(np.concatenate([as_array(row) for row in some[begin:end]]))
+    for row in some[300:]:
+        gatherer.take(row)
+    assert gatherer.hand_over(surface, rows_end=True) == gathered(surface, some, rows_end=True)
 
 
 def test_a_defect_of_gathering_is_a_sentence_and_no_more_is_taken(surface, says):

@@ -1,0 +1,75 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Choice of how the turns of a node are judged: compiled if events come fast and code is loaded.
+
+The code is compiled into its cache by a process of its own and loaded by a thread, so that the
+judgement goes on meanwhile, interpreted. It takes memory only where it is used.
+
+"""
+
+from collections.abc import Callable, Mapping
+import threading
+from typing import Any
+
+from surrogate.child import result_apart
+from surrogate.files import InputError
+
+COMPILED_FROM = 5000.0
+"""Events of all inputs in a second [1/s] from which on turns are judged compiled."""
+SPAN = 1.0  # [s] over which they are counted
+NOT_COMPILED = (
+    'messages come faster than {:g} in a second and are judged without compiled code, so some may '
+    'be lost ({}): install numba, and let NUMBA_CACHE_DIR name a folder that the node may write to'
+)
+
+
+def load(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Compile what judges many events, or load it out of its cache; a task."""
+    from ballscrew_monitor.health import collect
+    from ballscrew_monitor.judge import many
+
+    many.prepare()
+    collect.prepare()
+    return {}
+
+
+class CompiledTurns:
+    """Decides how turns are judged, by what arrives."""
+
+    def __init__(self, warn: Callable[[str], object]) -> None:
+        """Say by `warn`, once, why nothing is compiled where it should be."""
+        self._warn = warn
+        self._begin, self._count = 0.0, 0
+        self._fast = self._loaded = self._warned = False
+        self._problem = ''
+        self._thread: threading.Thread | None = None
+
+    @property
+    def are_due(self) -> bool:
+        """Return True if turns are judged compiled now."""
+        return self._fast and self._loaded
+
+    def count(self, events: int, now: float) -> None:
+        """Take that so many events have come by `now` [s] of a steady clock."""
+        self._count += events
+        span = now - self._begin
+        if span < SPAN:
+            return
+        self._fast = self._count >= COMPILED_FROM * span
+        self._begin, self._count = now, 0
+        if self._fast and self._thread is None:
+            self._thread = threading.Thread(target=self._load, name='compile', daemon=True)
+            self._thread.start()
+        if self._fast and self._problem and not self._warned:
+            self._warned = True
+            self._warn(NOT_COMPILED.format(COMPILED_FROM, self._problem))
+
+    def _load(self) -> None:
+        """Let a process fill the cache, and load what lies there."""
+        try:
+            result_apart(f'{__name__}:load', {}, memory=0, failure='the judgement is not compiled')
+            load({})
+            self._loaded = True
+        except (ImportError, InputError, OSError, RuntimeError) as error:
+            self._problem = str(error)
