@@ -215,7 +215,7 @@ def stays_in_gaps(times: Array, speed: Array) -> bool:
     """
     known = np.isfinite(times) & np.isfinite(speed)
     steps, speed = np.diff(times[known]), speed[known]
-    if not (steps > 0.0).any():
+    if int((steps > 0.0).sum()) < MANY:
         return False
     largest, changes = float(np.abs(speed).max()), np.abs(np.diff(speed))
     moving = (
