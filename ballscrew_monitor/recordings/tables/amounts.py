@@ -186,6 +186,7 @@ def fault_of_slope(places: Array, runs: int) -> str:
     return ''
 
 
+@np.errstate(over='ignore', invalid='ignore')
 def opposes(speed: Array, position: Array) -> bool:
     """
     Return True if a position [-] goes the other way than its speed [-] says, row by row.
@@ -200,11 +201,11 @@ def opposes(speed: Array, position: Array) -> bool:
         return False
     usual = np.abs(moved) <= JUMP * np.quantile(np.abs(moved), 0.99)
     moved, expected = moved[usual], expected[usual]
-    with np.errstate(over='ignore', invalid='ignore'):
-        both = math.sqrt(float(moved @ moved)) * math.sqrt(float(expected @ expected))
-        return 0.0 < both < math.inf and float(moved @ expected) < -SAME_MOTION * both
+    both = math.sqrt(float(moved @ moved)) * math.sqrt(float(expected @ expected))
+    return 0.0 < both < math.inf and float(moved @ expected) < -SAME_MOTION * both
 
 
+@np.errstate(over='ignore', invalid='ignore')
 def stays_in_gaps(times: Array, speed: Array) -> bool:
     """
     Return True if gaps between times lie in even motion by its speed [-], as values on change do.
@@ -218,9 +219,8 @@ def stays_in_gaps(times: Array, speed: Array) -> bool:
     if int((steps > 0.0).sum()) < MANY:
         return False
     largest, changes = float(np.abs(speed).max()), np.abs(np.diff(speed))
-    moving = (
-        (np.abs(speed) > BARELY * largest)[1:] & (speed[1:] * speed[:-1] > 0.0) & (steps > 0.0)
-    )
+    moving = (np.abs(speed[1:]) > BARELY * largest) & (steps > 0.0)
+    moving &= np.sign(speed[1:]) == np.sign(speed[:-1])
     long = moving & (steps > GAP * np.median(steps[steps > 0.0]))
     of_rows = changes[moving & ~long]
     if len(of_rows) and float((of_rows == 0.0).mean()) > BARELY:
