@@ -18,6 +18,7 @@ JUMP = 10.0  # times the usual way from row to row
 ALIKE = 0.05  # part by which two ways may differ that are of one size
 COARSE = 0.1  # of the usual way from row to row: a finer step disturbs no slope
 CHANGES = 0.2  # of the rows in motion at which the way changes, though the axis runs evenly
+FEWEST_GAPS = 2  # a single one is a logger that stood
 GAP = 5.0  # times the usual time between rows, in which a value may have stayed
 SAME_MOTION = 0.9  # correlation of a position's way with its speed, whatever their signs
 SAME_TURN = 0.2  # of the largest mean torque of motions that turns with none of them
@@ -228,4 +229,6 @@ def stays_in_gaps(times: Array, speed: Array) -> bool:
     # After a gap the first value is written that has changed.
     usual = float(np.quantile(of_rows, 0.9)) if len(of_rows) else 0.0
     gaps = long & (changes <= max(ALIKE * largest, usual))
-    return float(steps[gaps].sum()) > BARELY * float(steps[moving].sum())
+    gaps &= np.append(steps[1:] >= 0.0, True)  # no row comes late into the gap
+    few = gaps.sum() < FEWEST_GAPS or steps[gaps].sum() <= BARELY * steps[moving].sum()
+    return not few
