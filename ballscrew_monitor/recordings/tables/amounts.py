@@ -18,6 +18,7 @@ JUMP = 10.0  # times the usual way from row to row
 ALIKE = 0.05  # part by which two ways may differ that are of one size
 COARSE = 0.1  # of the usual way from row to row: a finer step disturbs no slope
 CHANGES = 0.2  # of the rows in motion at which the way changes, though the axis runs evenly
+FEWEST_GAPS = 2  # a single one is a logger that stood
 GAP = 5.0  # times the usual time between rows, in which a value may have stayed
 SAME_MOTION = 0.9  # correlation of a position's way with its speed, whatever their signs
 SAME_TURN = 0.2  # of the largest mean torque of motions that turns with none of them
@@ -186,6 +187,7 @@ def fault_of_slope(places: Array, runs: int) -> str:
     return ''
 
 
+@np.errstate(over='ignore', invalid='ignore')
 def opposes(speed: Array, position: Array) -> bool:
     """
     Return True if a position [-] goes the other way than its speed [-] says, row by row.
@@ -200,11 +202,11 @@ def opposes(speed: Array, position: Array) -> bool:
         return False
     usual = np.abs(moved) <= JUMP * np.quantile(np.abs(moved), 0.99)
     moved, expected = moved[usual], expected[usual]
-    with np.errstate(over='ignore', invalid='ignore'):
-        both = math.sqrt(float(moved @ moved)) * math.sqrt(float(expected @ expected))
-        return 0.0 < both < math.inf and float(moved @ expected) < -SAME_MOTION * both
+    both = math.sqrt(float(moved @ moved)) * math.sqrt(float(expected @ expected))
+    return 0.0 < both < math.inf and float(moved @ expected) < -SAME_MOTION * both
 
 
+@np.errstate(over='ignore', invalid='ignore')
 def stays_in_gaps(times: Array, speed: Array) -> bool:
     """
     Return True if gaps between times lie in even motion by its speed [-], as values on change do.
@@ -215,12 +217,11 @@ def stays_in_gaps(times: Array, speed: Array) -> bool:
     """
     known = np.isfinite(times) & np.isfinite(speed)
     steps, speed = np.diff(times[known]), speed[known]
-    if not (steps > 0.0).any():
+    if int((steps > 0.0).sum()) < MANY:
         return False
     largest, changes = float(np.abs(speed).max()), np.abs(np.diff(speed))
-    moving = (
-        (np.abs(speed) > BARELY * largest)[1:] & (speed[1:] * speed[:-1] > 0.0) & (steps > 0.0)
-    )
+    moving = (np.abs(speed[1:]) > BARELY * largest) & (steps > 0.0)
+    moving &= np.sign(speed[1:]) == np.sign(speed[:-1])
     long = moving & (steps > GAP * np.median(steps[steps > 0.0]))
     of_rows = changes[moving & ~long]
     if len(of_rows) and float((of_rows == 0.0).mean()) > BARELY:
@@ -228,4 +229,6 @@ def stays_in_gaps(times: Array, speed: Array) -> bool:
     # After a gap the first value is written that has changed.
     usual = float(np.quantile(of_rows, 0.9)) if len(of_rows) else 0.0
     gaps = long & (changes <= max(ALIKE * largest, usual))
-    return float(steps[gaps].sum()) > BARELY * float(steps[moving].sum())
+    gaps &= np.append(steps[1:] >= 0.0, True)  # no row comes late into the gap
+    few = gaps.sum() < FEWEST_GAPS or steps[gaps].sum() <= BARELY * steps[moving].sum()
+    return not few

@@ -771,6 +771,12 @@ class _Guesser:
             return
         place['time'] = None
         self.groups.pop(column)
+        if NO_NAME.fullmatch(own):
+            self.unstated.append(
+                f'state axes.{name}.{kind}.time in the map, {time} or {own}: {column} stands '
+                f'behind {own}, which has no name and may hold its times'
+            )
+            return
         self.unstated.append(
             f'state axes.{name}.{kind}.time in the map, {time} if {column} has the times of its '
             f'row: it stands behind {own}, which has another unit or other years than {time}; '

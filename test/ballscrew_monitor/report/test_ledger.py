@@ -245,14 +245,3 @@ def test_a_motion_that_was_seldom_seen_in_the_zone_is_not_good(judged, says):
     verdict = verdict_of(case)
     assert verdict.whole == says('seldom_optimal')
     assert verdict.standing is VerdictKind.UNKNOWN
-
-
-def test_motion_in_gaps_between_samples_is_not_judged(tmp_path):
-    """A bus that hangs for two of six seconds of even motion leaves all of its samples judged."""
-    numbers = [one for one in range(600) if not 200 <= one < 400]
-    log = judge(write(tmp_path / 'bag', motion(numbers)))
-    ledger = ledger_of(log.axes[0], Source.SPEED)
-    assert ledger.judged == 400
-    assert ledger.words == '34 % of the motion in gaps between samples in motion'
-    assert log.missed_share == pytest.approx(2.01 / 5.99, rel=0.01)
-    assert unjudged_share(log) == log.missed_share

@@ -324,6 +324,7 @@ def test_a_bag_holds_each_row_to_the_last_bit_for_every_reader(first, others):
         both[0][kind] = {'column': name, 'unit': unit}
     for place in (both[0]['speed'], both[0]['load'], both[0]['torque'], both[1]['speed']):
         place['magnitude'] = False
+        place['hold'] = False
     time = {'column': 't', 'unit': 'ms', 'epoch': '2000-01-01T00:00:00Z'}
     content = {'time': time, 'axes': dict(zip('xy', both))}
     stamps = BEGIN + table['t'] * 1_000_000

@@ -744,7 +744,7 @@ SECOND_TIMES = {
 
 @pytest.mark.parametrize('kind', SECOND_TIMES)
 @pytest.mark.parametrize('late', [2.0, 0.37])
-def test_a_second_time_is_that_of_its_column_or_asked_for(kind, late, tmp_path, refused):
+def test_a_second_time_is_that_of_its_column_or_asked_for(kind, late, tmp_path, refused, says):
     heads, outcome = SECOND_TIMES[kind]
     names = {'v': 'X_vel [mm/s]', 'm': 'X_torque [Nm]', 'p': 'X_pos [mm]'}
     columns = {'v': SPEED, 'm': SPEED / 50.0, 'p': 100.0 * (1.0 - np.cos(TIME))}
@@ -757,6 +757,8 @@ def test_a_second_time_is_that_of_its_column_or_asked_for(kind, late, tmp_path, 
     log.write_text('\n'.join([';'.join(names.get(one, one) for one in heads), *rows, '']))
     made = guess(log)
     if outcome == 'asked':
+        if kind == 'without a name':
+            assert made.unstated == (says('unnamed_time'),)
         refused('blank_own_time', make_map, made.content)
         return
     blocks = list(read_series(log, make_map(made.content)).blocks())
