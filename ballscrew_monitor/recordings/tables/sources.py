@@ -47,6 +47,8 @@ WIDE_MARKS = (b'\xff\xfe', b'\xfe\xff')
 NARROW_MARK = b'\xef\xbb\xbf'
 CODINGS = ('utf-8', 'cp1252', 'latin-1')
 """Codings of a line, the first that fits; the last fits always."""
+AFTER_EMPTY = ('\n', '\r', '"', ' ')
+"""What may follow a separator that ends an empty cell, beside another one."""
 TRIES = (
     3  # parts of a text with cells that are not of their column's type, after which none has it
 )
@@ -84,7 +86,8 @@ class Source:
     The columns that are read may come to `most` [bytes]: those at rest take next to no room in a
     file of Parquet, so that all of them together tell nothing. `read` reads some columns part by
     part, those of a text by their types where all cells of the part are of these. Of a workbook it
-    is one `sheet`. `short` are the rows of too few cells since it began.
+    is one `sheet`. `left_out` says why other sheets or arrays are not read; names of a source that
+    `is_grouped` begin with that of a group. `short` are the rows of too few cells since it began.
 
     """
 
@@ -94,12 +97,22 @@ class Source:
     read: Callable[[list[str], Types], Iterator[pl.DataFrame]]
     most: float = math.inf
     sheet: str = ''
-    other_sheets: tuple[str, ...] = ()
+    left_out: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    is_grouped: bool = False
     short: ShortRows = dataclasses.field(default_factory=ShortRows)
 
     def names(self) -> list[str]:
         """Return the names of all columns."""
         return list(self.head.names)
+
+    def unread(self, columns: Collection[str]) -> dict[str, str]:
+        """Return why parts of the file are not read: also groups with none of the columns."""
+        if not self.is_grouped:
+            return dict(self.left_out)
+        groups = {name: name.partition(' [')[0].rpartition('.')[0] for name in self.names()}
+        others = {*groups.values()} - {'', *(groups[name] for name in columns)}
+        why = 'the map names none of its columns'
+        return {**self.left_out, **dict.fromkeys(sorted(others), why)}
 
     def first_rows(self) -> pl.DataFrame:
         """Return the first rows of all columns; raises InputError."""
@@ -142,7 +155,10 @@ def source_of(path: Path, layout: Layout | None = None, sheet: str = '') -> Sour
         signals = foreign.read_signals(path, kind)
         _check_columns(path, signals.frame.width)
         frame = signals.frame.lazy()
-        return of_frame(path, frame, signals.head(), signals.frame.height, math.inf)
+        source = of_frame(path, frame, signals.head(), signals.frame.height, math.inf)
+        return dataclasses.replace(
+            source, left_out=signals.left_out, is_grouped=kind in foreign.GROUPED
+        )
     return _text(path, layout, _Text.of(path, head))
 
 
@@ -247,7 +263,7 @@ def _sheet(path: Path, layout: Layout | None, name: str) -> Source:
     before = head.first - 1
     frame = cells[before:].select(cells.columns[: len(head.names)])
     source = of_frame(path, frame.lazy(), head, frame.height, math.inf)
-    return dataclasses.replace(source, sheet=sheet.name, other_sheets=sheet.others)
+    return dataclasses.replace(source, sheet=sheet.name, left_out=sheet.others)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -384,22 +400,32 @@ def _check_remarks(path: Path, content: bytes, row: int, head: Head) -> None:
 
 
 def _are_whole(content: bytes, separator: str, line_end: str, width: int) -> bool:
-    """Return True if a text has as many cells as rows of a width have, unless some make up."""
+    """
+    Return True if each row of a text has as many cells as a width.
+
+    Where no cell looks empty, that many cells in all tell it: a longer row is refused.
+
+    """
     lines = content.count(line_end.encode()) + (not content.endswith(line_end.encode()))
-    return content.count(separator.encode()) == (width - 1) * lines
+    if content.count(separator.encode()) != (width - 1) * lines:
+        return False
+    if not any((separator + mark).encode() in content for mark in (separator, *AFTER_EMPTY)):
+        return True
+    return bool((_widths(content, separator, line_end) == width).all())
 
 
 def _widths(content: bytes, separator: str, line_end: str) -> NDArray[np.int64]:
     """Return how many cells each row of a text holds, 0 of a blank one; comments are no rows."""
     letters = np.frombuffer(content, np.uint8)
-    outside = np.cumsum(letters == ord('"')) % 2 == 0
-    ends = np.flatnonzero((letters == ord(line_end)) & outside)
+    ends, signs = (np.flatnonzero(letters == ord(one)) for one in (line_end, separator))
+    if b'"' in content:
+        quotes = np.flatnonzero(letters == ord('"'))
+        ends, signs = (one[np.searchsorted(quotes, one) % 2 == 0] for one in (ends, signs))
     ends = ends if content.endswith(line_end.encode()) else np.append(ends, len(letters))
     begins = np.append(0, ends[:-1] + 1)
-    signs = np.append(0, np.cumsum((letters == ord(separator)) & outside))
+    widths = np.diff(np.searchsorted(signs, ends), prepend=0) + 1
     blank = (ends == begins) | ((ends == begins + 1) & (letters[begins] == ord('\r')))
-    widths = np.where(blank, 0, signs[ends] - signs[begins] + 1)
-    return widths[letters[begins] != ord(heads.COMMENT)]
+    return np.where(blank, 0, widths)[letters[begins] != ord(heads.COMMENT)]
 
 
 def _typed(content: bytes, types: Types, options: Mapping[str, Any]) -> pl.DataFrame | None:
