@@ -31,7 +31,7 @@ from ballscrew_monitor.recordings.words import counted, say
 from ballscrew_monitor.report.check_page import check_parts, Checked, next_steps, without_motion
 from ballscrew_monitor.report.command import check_most_unjudged, is_bad
 from ballscrew_monitor.report.free_run import FreeRun, identified
-from ballscrew_monitor.report.logs import find_logs, folder_names
+from ballscrew_monitor.report.logs import find_logs, folder_names, left_out
 from ballscrew_monitor.report.many_logs import INDEX, LogToReport, report_each
 from ballscrew_monitor.report.overview import LogEntry, overview_page
 from ballscrew_monitor.report.parameters import parameters_for
@@ -80,9 +80,11 @@ def check_command(args: argparse.Namespace, nominal: Path) -> int:
     check_most_unjudged(args.most_unjudged)
     require('numba')
     paths = find_logs([args.folder], tables=True, out=args.out, is_log=is_log)
+    unread = left_out([args.folder], paths, args.out, tables=True)
     sheets = sheets_of(args.folder, args.screw, args.oil)
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
-        entries, checked = _check(paths, sheets, args, nominal)
+        entries, checked = _check(paths, sheets, args, nominal, unread)
+        say(*unread)
         steps = next_steps(entries, checked)
         for entry in entries:
             for line in entry.result.lines if entry.result else ():
@@ -151,6 +153,7 @@ def _check(
     sheets: tuple[Screw, Lubricant] | None,
     args: argparse.Namespace,
     nominal: Path,
+    unread: Sequence[str],
 ) -> tuple[list[LogEntry], Checked]:
     """Do all that a check does with recordings; return their entries, and what these rest on."""
     opened = _opened(paths, sheets, args, nominal)
@@ -168,6 +171,7 @@ def _check(
         used={
             log.folder: str(log.used.relative_to(args.out)) for log in logs if log.used is not None
         },
+        unread=tuple(unread),
         others=tuple(log.path.name for log in opened if log not in logs),
         unstated={log.path.name: log.guess.unstated for log in logs if log.guess},
     )
@@ -442,5 +446,6 @@ def _record(entries: Sequence[LogEntry], checked: Checked, steps: Sequence[str])
         'identified': {run.axis: run.text for run in checked.runs},
         'surfaces': dict(checked.surfaces),
         'no_recordings': list(checked.others),
+        'left_out': list(checked.unread),
         'what_to_do': list(steps),
     }

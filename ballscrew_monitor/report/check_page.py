@@ -30,8 +30,8 @@ class Checked:
 
     Names of the sheets of screw and oil, None without one; folders of recordings that are said to
     be `free`, which need not be judged, and what they gave; surfaces by axis; the map or
-    parameters that were used by folder; names of `others`, short tables without a motion; what a
-    guess could not state, by recording.
+    parameters that were used by folder; names of `others`, short tables without a motion; which
+    other files are `unread`, in words; what a guess could not state, by recording.
 
     """
 
@@ -42,6 +42,7 @@ class Checked:
     surfaces: Mapping[str, str]
     used: Mapping[str, str]
     others: tuple[str, ...]
+    unread: tuple[str, ...] = ()
     unstated: Mapping[str, Sequence[str]]
 
 
@@ -64,6 +65,7 @@ def check_parts(entries: Sequence[LogEntry], checked: Checked) -> list[Markup]:
             _rows(entries, checked),
         ),
         *([element('p', f'{without_motion(checked.others)}.')] if checked.others else []),
+        *(element('p', f'{sentence}.') for sentence in checked.unread),
         element('h2', 'Friction beside the contacts'),
         *_identified(checked),
         element('h2', 'Surfaces'),

@@ -295,7 +295,8 @@ class Surveyor:
         """Return what came of all rows; there must have been one."""
         sums = from_array(RowSums, self._sums[0])
         span, log_span = sums.last - sums.first, sums.last_log - sums.first_log
-        by_stamp = span <= STRAY * log_span + STRAY_MARGIN
+        set_back = sums.pauses < 0  # stamps that begin again are no time line
+        by_stamp = span <= STRAY * log_span + STRAY_MARGIN and not set_back
         longest_first = sorted(self._gaps, key=lambda gap: (-gap[0], gap[1]))
         gaps = zip(Source, zip(sums.gaps, sums.gap_time))
         return Survey(
