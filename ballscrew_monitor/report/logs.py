@@ -109,10 +109,11 @@ def left_out(
 
 def _others(folder: Path, logs: Sequence[Path], out: Path | None) -> Iterator[Path]:
     """Yield the files below a folder that are no recordings, nor settings of any."""
-    if not folder.is_dir() or folder in logs:
+    if not folder.is_dir():
         return
+    own = (*SETTINGS, *ENDINGS, ACTIVE) if folder in logs else SETTINGS
     for file in _files(folder, ('',)):
-        if file not in logs and file.suffix.lower() not in SETTINGS and file.name[0] != '.':
+        if file not in logs and not file.name.lower().endswith(own) and file.name[0] != '.':
             yield file
     for child in _folders(folder, out):
         yield from _others(child, logs, out)
