@@ -28,7 +28,13 @@ from ballscrew_monitor.recordings.tables.guess import Guess, guess, names_motion
 from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.tables.sources import is_log
 from ballscrew_monitor.recordings.words import counted, say
-from ballscrew_monitor.report.check_page import check_parts, Checked, next_steps, without_motion
+from ballscrew_monitor.report.check_page import (
+    check_parts,
+    Checked,
+    next_steps,
+    notes_of,
+    without_motion,
+)
 from ballscrew_monitor.report.command import check_most_unjudged, is_bad
 from ballscrew_monitor.report.free_run import FreeRun, identified
 from ballscrew_monitor.report.logs import find_logs, folder_names, left_out
@@ -92,6 +98,7 @@ def check_command(args: argparse.Namespace, nominal: Path) -> int:
                 print(printable(f'{entry.name}:{normal} {line.verdict}'))
             if entry.result is None:
                 say(f'{entry.name}: {entry.failure}')
+        say(*notes_of(entries))
         if checked.others:
             say(without_motion(checked.others))
         for step in steps:
@@ -447,5 +454,6 @@ def _record(entries: Sequence[LogEntry], checked: Checked, steps: Sequence[str])
         'surfaces': dict(checked.surfaces),
         'no_recordings': list(checked.others),
         'left_out': list(checked.unread),
+        'notes': notes_of(entries),
         'what_to_do': list(steps),
     }

@@ -66,6 +66,7 @@ def check_parts(entries: Sequence[LogEntry], checked: Checked) -> list[Markup]:
         ),
         *([element('p', f'{without_motion(checked.others)}.')] if checked.others else []),
         *(element('p', f'{sentence}.') for sentence in checked.unread),
+        *(element('p', f'Note: {one}.', class_='hint') for one in notes_of(entries)),
         element('h2', 'Friction beside the contacts'),
         *_identified(checked),
         element('h2', 'Surfaces'),
@@ -73,6 +74,11 @@ def check_parts(entries: Sequence[LogEntry], checked: Checked) -> list[Markup]:
         element('h2', 'Zone and health'),
         *_zone(entries),
     ]
+
+
+def notes_of(entries: Sequence[LogEntry]) -> list[str]:
+    """Return what is odd about recordings, also where a log contradicts itself or its map."""
+    return [f'{one.name}: {note}' for one in entries if one.result for note in one.result.notes]
 
 
 def _sentence(step: str) -> str:

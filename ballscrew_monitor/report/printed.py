@@ -97,7 +97,7 @@ def printed_records(summary: Mapping[str, Any]) -> dict[str, Any]:
     for axis, record in records.items():
         if isinstance(record, Mapping):
             rest = {key: value for key, value in record.items() if key != 'totals'}
-            rest |= {key: one for key in PARTS if (one := summary[key])}
+            rest |= {key: one for key in PARTS if (one := summary.get(key))}
             records[axis] = {'axis': axis, **(record['totals'] or {}), **rest}
     return records
 
@@ -116,7 +116,7 @@ def summary_record(log: LogCase) -> dict[str, Any]:
         'parameters': log.parameters,
         'unjudged_axes': log.unjudged,
         'unread_topics': dict(log.unread),
-        'unread_parts': dict(log.unread_parts),
+        **({'unread_parts': dict(log.unread_parts)} if log.unread_parts else {}),
         'axes': records,
         'assumptions': {key: dict(assumption) for key, assumption in log.assumptions.items()},
         'notes': list(log.notes),
