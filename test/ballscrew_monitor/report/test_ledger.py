@@ -187,7 +187,7 @@ def test_rows_of_a_table_are_counted_as_messages_are(tmp_path, capsys):
 @pytest.mark.parametrize(
     ('name', 'promised', 'judged'),
     [
-        ('every second row, then none', 240, 180),
+        ('every second row, then none', 420, 220),
         ('none for a while', 300, 180),
         ('the rows end', 180, 180),
         ('rows of two tables', 300, 300),
@@ -198,7 +198,7 @@ def test_a_speed_that_is_empty_for_long_is_missing(tmp_path, capsys, name, promi
     """An empty cell is no sample, as beside another clock; many together are a loss."""
     hollow = {
         'every second row, then none': [
-            f'{row / 100},{"" if row % 2 or 240 <= row < 360 else 50},-1000' for row in range(480)
+            f'{row / 100},{"" if row % 2 or 240 <= row < 640 else 50},-1000' for row in range(840)
         ],
         'none for a while': [
             f'{row / 100},{"" if 100 <= row < 220 else 50},-1000' for row in range(300)

@@ -10,6 +10,7 @@ from ballscrew_monitor.recordings.bulk.written import WrittenTimes
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.parameters import LogParameters
 from ballscrew_monitor.settings import parameters
+from geometry_msgs.msg import WrenchStamped
 import numpy as np
 import pytest
 from rclpy.serialization import serialize_message
@@ -21,24 +22,32 @@ RUN = COUNT * STEP
 TURNS = 10.0 * (COUNT - 1) / 100.0 / 6.283185307179586  # of a run at 10 rad/s
 
 
+TYPES = {
+    '/joint_states': 'sensor_msgs/msg/JointState',
+    '/axial_load': 'geometry_msgs/msg/WrenchStamped',
+}
+
+
 def write(folder, runs):
-    """Write runs of a speed, of which each has its first stamp and its first log time [ns]."""
+    """Write runs of speed and load, of which each has its first stamp and log time [ns]."""
     with BagWriter(folder, folder.name) as writer:
-        topic = Topic(
-            name='/joint_states', type_name='sensor_msgs/msg/JointState', offer=Offer.SENSOR
-        )
-        writer.add_topic(topic)
+        for name, kind in TYPES.items():
+            writer.add_topic(Topic(name=name, type_name=kind, offer=Offer.SENSOR))
         for stamp, log_time in runs:
             for at in range(0, RUN, STEP):
-                message = JointState(name=['x_axis'], velocity=[10.0])
-                message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp + at, SECOND)
                 times = {'log_time': log_time + at, 'publish_time': log_time + at}
-                writer.write('/joint_states', serialize_message(message), **times)
+                speed, load = JointState(name=['x_axis'], velocity=[10.0]), WrenchStamped()
+                load.wrench.force.x = -900.0
+                for topic, message in zip(TYPES, (speed, load), strict=True):
+                    message.header.stamp.sec, message.header.stamp.nanosec = divmod(
+                        stamp + at, SECOND
+                    )
+                    writer.write(topic, serialize_message(message), **times)
     return Bag(folder)
 
 
 def judge(bag):
-    values = parameters.defaults(['x']) | {'x.load.source': 'none'}
+    values = parameters.defaults(['x'])
     return judge_log(bag, LogParameters(values=values, origin='test')).axes[0]
 
 
