@@ -81,8 +81,9 @@ Due = tuple[int, TimedState]
 class AxisRun:
     """Judges the ordered events of one axis and collects what they come to."""
 
-    def __init__(self, axis: Axis, notes: Notes) -> None:
-        self.axis, self._notes = axis, notes
+    def __init__(self, axis: Axis, notes: Notes, *, parted: bool = False) -> None:
+        """Begin; a bag whose stamps begin again is `parted` into runs there."""
+        self.axis, self._notes, self._parted = axis, notes, parted
         self._judge = ManyJudge(axis.monitor)
         self._events: dict[int, EventRecord] = {}
         self._rows = self._states = self._first = self._last = 0
@@ -99,7 +100,7 @@ class AxisRun:
     def take(self, events: Events, *, states: bool = True) -> Iterator[AxisRows | Due]:
         """Judge events; yield their rows, and the states that are due."""
         begins = {*np.flatnonzero(events['kind'] == records.RUN).tolist()}
-        back = {*self._set_back(events)}
+        back = {*self._set_back(events)} if self._parted else set()
         for begin, end in itertools.pairwise([*sorted({0} | begins | back), len(events)]):
             some_events = events[begin:end]
             if begin in begins:

@@ -145,6 +145,7 @@ class RowSums:
     """The sums over rows, and the last of them; stamps and times [ns], energy [J], the rest SI."""
 
     rows: int = 0
+    begin: int = 0
     first: int = 0
     last: int = 0
     first_log: int = 0
@@ -189,7 +190,7 @@ def add_rows(sums: Any, rows: Any, standstill: float, max_gap: int) -> None:
 def _add_time(sums: Any, row: Any, max_gap: int) -> None:
     """Add the time from the last row to this one to what held at the last one."""
     if sums.rows == 0:
-        sums.first, sums.last = row.stamp, row.stamp
+        sums.begin = sums.first = sums.last = row.stamp
         sums.first_log, sums.last_log = row.now, row.now
     else:
         step = row.stamp - sums.stamp
@@ -295,8 +296,9 @@ class Surveyor:
         """Return what came of all rows; there must have been one."""
         sums = from_array(RowSums, self._sums[0])
         span, log_span = sums.last - sums.first, sums.last_log - sums.first_log
-        set_back = sums.pauses < 0  # stamps that begin again are no time line
-        by_stamp = span <= STRAY * log_span + STRAY_MARGIN and not set_back
+        by_stamp = span <= STRAY * log_span + STRAY_MARGIN
+        # Runs whose stamps begin again lie over each other: they last longer than the span.
+        pauses = sums.pauses + span - (sums.stamp - sums.begin) if self._runs > 1 else 0
         longest_first = sorted(self._gaps, key=lambda gap: (-gap[0], gap[1]))
         gaps = zip(Source, zip(sums.gaps, sums.gap_time))
         return Survey(
@@ -320,7 +322,7 @@ class Surveyor:
             samples={reason: count for reason, count in zip(Reason, sums.samples) if count},
             uncounted=sums.uncounted / SECOND,
             runs=self._runs,
-            pauses=sums.pauses / SECOND if by_stamp else 0.0,
+            pauses=pauses / SECOND if by_stamp else 0.0,
             gaps={source: Gaps(count=count, time=time / SECOND) for source, (count, time) in gaps}
             | {Source.SPEED: Gaps(count=self._gap_count, time=self._gap_time / SECOND)},
             speed_gaps=tuple((at, length) for length, at in longest_first),

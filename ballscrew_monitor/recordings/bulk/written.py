@@ -3,8 +3,8 @@
 """
 Log times that go back in the order in which messages were written: two runs in one bag.
 
-By log time such runs would be sorted into each other. A little disorder, as of several threads of
-a recorder, is none.
+By log time such runs would be sorted into each other. A little disorder is that of several threads
+of a recorder.
 
 """
 

@@ -56,7 +56,7 @@ class Signals:
     Signals of a file as a frame, and what the file says besides them; a period in [s].
 
     Cells that are texts were parted by a `separator`. `left_out` has the reason why a part of the
-    file is none of the signals, by its name.
+    file is not among them, by its name.
 
     """
 

@@ -81,7 +81,7 @@ def messages(times, places):
 
 
 def test_chunks_in_whatever_order_are_compared_as_they_were_written():
-    """Three chunks, of which the last begins anew; the reader gives them by their first times."""
+    """Three chunks, of which the last begins again; the reader gives them by their first times."""
     first, second, third = 0, 1 << 32, 2 << 32
     written = WrittenTimes()
     written.add('/a', messages([5 * SECOND, 6 * SECOND], [first, first + 1]))
