@@ -42,6 +42,8 @@ ZIP, PARQUET = b'PK\3\4', b'PAR1'
 EDGES = re.compile(rb'^[ \t]+|[ \t]+(?=\r?$)', re.M)
 SPACES = re.compile(rb'[ \t]+')
 """Blanks at the ends of lines, and between cells that they part."""
+COMMENTS = ('comment', 'comments', 'kommentar', 'bemerkung', 'remark', 'remarks')
+"""Names of a last column whose cells a row need not have."""
 REMARK, LINE_FEED = re.compile(rb'^#(.*)$', re.M), b'\n'
 WIDE_MARKS = (b'\xff\xfe', b'\xfe\xff')
 NARROW_MARK = b'\xef\xbb\xbf'
@@ -354,6 +356,7 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     }
     places = {name: at for at, name in enumerate(head.names)}
     width, short = len(head.names), ShortRows()
+    least = width - (head.names[-1].casefold() in COMMENTS)  # which most rows leave out
     # Names for as many columns and one more, which must be empty, stand before each part.
     line = head.separator.join(map(str, range(width + 1))) + text.line_end
 
@@ -367,7 +370,10 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
             for part in _parts(stream, text.line_end.encode()):
                 content = SPACES.sub(b' ', EDGES.sub(b'', part)) if blanks else part
                 _check_remarks(path, content, row, head)
-                whole = _are_whole(content, head.separator, text.line_end, width)
+                whole = any(
+                    _are_whole(content, head.separator, text.line_end, one)
+                    for one in {least, width}
+                )
                 known = {str(places[name]): kind for name, kind in types.items() if tries}
                 named = b''.join([line.encode(), content])
                 cells = _typed(named, known, options) if whole else None
@@ -380,7 +386,7 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
                         at = int(surplus.argmax())
                         found = int(widths[at]) if len(widths) == cells.height else width + 1
                         raise InputError(f'log {path}: {head.surplus(row + at, found)}')
-                    cells = short.left_out(cells, widths, width, row)
+                    cells = short.left_out(cells, widths, least, row)
                 row += cells.height
                 yield cells.rename(called).select(names)
 
