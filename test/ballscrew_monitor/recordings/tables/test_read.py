@@ -136,7 +136,7 @@ def test_a_longer_row_does_not_hide_one_of_fewer_cells(name, tmp_path, says):
 @pytest.mark.parametrize('seen', [{}, {0: 'begin'}, {7: 'seen', 30: 'end'}])
 def test_a_last_column_of_comments_may_be_left_out_of_a_row(seen, tmp_path):
     """As LabVIEW writes it."""
-    rows = [f'{row},{2 * row}' + f',{seen[row]}' * (row in seen) for row in range(40)]
+    rows = [f'{row},{2 * row}' + (f',{seen[row]}' if row in seen else '') for row in range(40)]
     table = open_table(text_log(tmp_path, '\n'.join(['t,v,Comment', *rows, ''])), ['t', 'v'])
     assert not table.notes
     assert table.head(99)['v'].tolist() == [2 * row for row in range(40)]
