@@ -12,6 +12,7 @@ from ballscrew_monitor.core.inputs import InputStatus, Source, Why
 from ballscrew_monitor.core.state import RUN_ENDED
 from ballscrew_monitor.judge import records, views
 from ballscrew_monitor.judge.many import compiled_nearest, ManyJudge
+from ballscrew_monitor.judge.step import BACKWARD_JUMP
 from ballscrew_monitor.messages.state_messages import (
     empty_state,
     fill_state,
@@ -79,8 +80,9 @@ Due = tuple[int, TimedState]
 class AxisRun:
     """Judges the ordered events of one axis and collects what they come to."""
 
-    def __init__(self, axis: Axis, notes: Notes) -> None:
-        self._notes = notes
+    def __init__(self, axis: Axis, notes: Notes, *, parted: bool = False) -> None:
+        """Begin; a bag whose stamps begin again is `parted` into runs there."""
+        self._notes, self._parted = notes, parted
         self._begin(axis)
         self._events: dict[int, EventRecord] = {}
         self._rows = self._states = self._first = self._last = 0
@@ -92,6 +94,7 @@ class AxisRun:
         self._begun = axis.monitor.memory  # as the run began
         self._span = [0, 0]  # stamps of its first and last row [ns], 0 without one
         self._ended: OutOfZone | None = None  # by no sample, and not told yet
+        self._last_stamp = np.zeros(0, np.int64)  # of the speed [ns]
 
     def _begin(self, axis: Axis) -> None:
         self.axis, self._judge = axis, ManyJudge(axis.monitor)
@@ -100,18 +103,21 @@ class AxisRun:
     def take(self, events: Events, *, states: bool = True) -> Iterator[AxisRows | Due]:
         """Judge events; yield their rows, and the states that are due."""
         begins = {*np.flatnonzero(events['kind'] == records.RUN).tolist()}
-        for begin, end in itertools.pairwise([*sorted({0} | begins), len(events)]):
+        back = {*self._set_back(events)} if self._parted else set()
+        for begin, end in itertools.pairwise([*sorted({0} | begins | back), len(events)]):
             some_events = events[begin:end]
             if begin in begins:
                 self._begin_run(some_events[:1])
+            elif begin in back:
+                self._end_run()
             for part in self._take(some_events, states=states):
                 yield part if isinstance(part, AxisRows) else (begin + part[0], part[1])
 
     def _begin_run(self, events: Events) -> None:
         """Let the run end, and with it what is outside; `events` hold the begin of the next."""
         monitor = self.axis.monitor
-        self._runs.append(self._run())
         active = monitor.memory.event_active
+        self._runs.append(self._run())
         for _ in self._judge.judge(events):  # which gives no row
             pass
         self._begun, self._span = monitor.memory, [0, 0]
@@ -119,6 +125,22 @@ class AxisRun:
             monitor.ending = RUN_ENDED
             self._ended = out_of_zone_message(monitor, shelved=False)
             self._note(int(monitor.memory.event_stamp))
+
+    def _end_run(self) -> None:
+        """Let a run end where the stamps of the speed begin again, which the judge sees itself."""
+        self._runs.append(self._run())
+        self._begun, self._span = self.axis.monitor.memory, [0, 0]
+
+    def _set_back(self, events: Events) -> Iterator[int]:
+        """Yield the places of samples of the speed at which a clock was set back."""
+        is_speed = (events['kind'] == records.SAMPLE) & (events['source'] == Source.SPEED)
+        places = np.flatnonzero(is_speed)
+        stamps = events['stamp'][places]
+        before = np.concatenate(
+            [self._last_stamp if len(self._last_stamp) else stamps[:1], stamps]
+        )
+        self._last_stamp = before[-1:]
+        yield from places[before[:-1] - stamps > BACKWARD_JUMP].tolist()
 
     def _take(self, events: Events, *, states: bool) -> Iterator[AxisRows | Due]:
         """Judge events of one run as `take` does."""

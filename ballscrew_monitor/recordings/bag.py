@@ -14,6 +14,7 @@ import contextlib
 import dataclasses
 import heapq
 from pathlib import Path
+import types
 
 from ballscrew_monitor.recordings.bag_files import kind_of, manifest, of_ros1, OWN
 from ballscrew_monitor.recordings.log_times import with_believed_log_times
@@ -51,14 +52,16 @@ class Bag:
     An opened bag: its topics and its time span; the messages are read on demand.
 
     `metadata` is what it says of itself; `refused` counts by topic the messages that did not
-    decode, with a sentence about the first. `promised` counts by topic the messages that its own
-    metadata state, empty without any; those that are `absent` are not in its files. Topics that
-    others are `worked_out` of need no reader of their own.
+    decode, with a sentence about the first. `unread` says why parts of its file are not read.
+    `promised` counts by topic the messages that its own metadata state, empty without any; those
+    that are `absent` are not in its files. Topics that others are `worked_out` of need no reader
+    of their own.
 
     """
 
     absent = 'counted by metadata.yaml and not in the files'
     worked_out: frozenset[str] = frozenset()
+    unread: Mapping[str, str] = types.MappingProxyType({})
 
     def __init__(self, path: str | Path, *, salvage: bool = False) -> None:
         """

@@ -89,7 +89,7 @@ def replay_parts(
         return _parts(recorded.events(on_done), recorded.runs, states=states)
     axes, period = axes_for(bag, values), nanoseconds(values['tick_period'])
     batches = ordered_events(bag, axes, period, notes, on_done=on_done)
-    return _parts(batches, [AxisRun(axis, notes) for axis in axes], states=states)
+    return _parts(batches, [AxisRun(axis, notes, parted=True) for axis in axes], states=states)
 
 
 def axes_for(bag: Bag, values: Mapping[str, Any]) -> list[Axis]:

@@ -27,10 +27,16 @@ from ballscrew_monitor.recordings.tables.guess import Guess, guess, names_motion
 from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.tables.sources import is_log
 from ballscrew_monitor.recordings.words import counted, say
-from ballscrew_monitor.report.check_page import check_parts, CheckedLog, next_steps, without_motion
+from ballscrew_monitor.report.check_page import (
+    check_parts,
+    CheckedLog,
+    next_steps,
+    notes_of,
+    without_motion,
+)
 from ballscrew_monitor.report.command import check_most_unjudged, is_bad
 from ballscrew_monitor.report.free_run import FreeRun, identified
-from ballscrew_monitor.report.logs import find_logs, folder_names
+from ballscrew_monitor.report.logs import find_logs, folder_names, left_out
 from ballscrew_monitor.report.many_logs import Given, INDEX, report_each, Workers
 from ballscrew_monitor.report.overview import overview_page, with_usual
 from ballscrew_monitor.report.parameters import parameters_for
@@ -59,27 +65,31 @@ def check_command(args: argparse.Namespace, nominal: Path) -> int:
     check_most_unjudged(args.most_unjudged)
     require('numba')
     paths = find_logs([args.folder], tables=True, out=args.out, is_log=is_log)
+    unread = left_out([args.folder], paths, args.out, tables=True)
     sheets = sheets_of(args.folder, args.screw, args.oil)
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
         opened = _opened(paths, sheets, args, nominal)
         logs, others = (
             [log for log in opened if log.is_other is other] for other in (False, True)
         )
+        asides = [*unread, *([without_motion(others)] if others else [])]
         runs = _free_runs(logs, sheets, args.out) if sheets else []
         surfaces = _give_surfaces(logs, sheets, runs, args) if sheets else {}
         _report(logs, args, nominal)
         assumed_oil = OIL if args.oil is None and sheets and sheets[1].name == OIL else ''
         steps = next_steps(logs, runs, is_screw_known=sheets is not None, assumed_oil=assumed_oil)
-        parts = check_parts(logs, others, runs, surfaces, steps)
+        parts = check_parts(logs, asides, runs, surfaces, steps)
         results, title = [log.result for log in logs], f'Check of {args.folder.resolve().name}'
         replace_file(args.out / INDEX, overview_page(results, title=title, parts=parts).encode())
-        bad = _print(logs, others, steps, args)
+        bad = _print(logs, asides, steps, args)
     if args.json:
         record = {
             'recordings': {log.path.name: _record(log) for log in logs},
             'identified': {run.axis: run.text for run in runs},
             'surfaces': surfaces,
             'no_recordings': [log.path.name for log in others],
+            'left_out': unread,
+            'notes': notes_of(logs),
             'what_to_do': steps,
         }
         print(json_text(record))
@@ -88,19 +98,18 @@ def check_command(args: argparse.Namespace, nominal: Path) -> int:
 
 def _print(
     logs: Sequence[CheckedLog],
-    others: Sequence[CheckedLog],
+    asides: Sequence[str],
     steps: Sequence[str],
     args: argparse.Namespace,
 ) -> int:
-    """Print what recordings come to and what to do; return how many are bad."""
+    """Print what recordings come to, what is said of other files, and what to do; count the bad."""
     for result in (log.result for log in logs):
         for line in result.lines:
             normal = f' Normal? {line.normal}.' if line.normal else ''
             print(printable(f'{result.name}:{normal} {line.told}'))
         if result.failure:
             say(f'{result.name}: {result.failure}')
-    if others:
-        say(without_motion(others))
+    say(*notes_of(logs), *asides)
     for step in steps:
         print(printable(f'to do: {step}'))
     judged = [log for log in logs if not log.is_free_run]

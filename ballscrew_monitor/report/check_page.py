@@ -78,12 +78,17 @@ def without_motion(others: Sequence[CheckedLog]) -> str:
 
 def check_parts(
     logs: Sequence[CheckedLog],
-    others: Sequence[CheckedLog],
+    asides: Sequence[str],
     runs: Sequence[FreeRun],
     surfaces: Mapping[str, str],
     steps: Sequence[str],
 ) -> list[Markup]:
-    """Return the parts of the page beside those of an overview; `surfaces` are files by axis."""
+    """
+    Return the parts of the page beside those of an overview.
+
+    `asides` say which files are no recordings; `surfaces` are files by axis.
+
+    """
     sentences = (step if step.endswith('?') else f'{step}.' for step in steps)
     return [
         element('h2', 'What to do next, and what to record'),
@@ -93,7 +98,8 @@ def check_parts(
             ('Recording', 'Axis', 'Expected', 'Judged', 'Reasons of the differences', 'Map'),
             _rows(logs),
         ),
-        *([element('p', f'{without_motion(others)}.')] if others else []),
+        *(element('p', f'{aside}.') for aside in asides),
+        *(element('p', f'Note: {note}.', class_='hint') for note in notes_of(logs)),
         element('h2', 'Friction beside the contacts'),
         *_friction(runs),
         element('h2', 'Surfaces'),
@@ -101,6 +107,11 @@ def check_parts(
         element('h2', 'Zone and health'),
         *_zone([log.result for log in logs]),
     ]
+
+
+def notes_of(logs: Sequence[CheckedLog]) -> list[str]:
+    """Return what is odd about recordings, also where a log contradicts itself or its map."""
+    return [f'{log.path.name}: {note}' for log in logs for note in log.result.notes]
 
 
 def next_steps(

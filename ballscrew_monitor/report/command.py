@@ -13,7 +13,7 @@ from typing import Any, TYPE_CHECKING
 from ballscrew_monitor.core.interrupts import DONE, FAILED
 from ballscrew_monitor.core.prerequisites import require
 from ballscrew_monitor.recordings.bag import Bag
-from ballscrew_monitor.recordings.bag_files import is_table
+from ballscrew_monitor.recordings.bag_files import is_bag
 from ballscrew_monitor.recordings.bulk.decode import silence
 from ballscrew_monitor.recordings.opener import opened_log
 from ballscrew_monitor.recordings.replay import axes_for
@@ -21,7 +21,7 @@ from ballscrew_monitor.recordings.tables.mapping import read_map
 from ballscrew_monitor.recordings.words import counted, percent, say, shown_progress
 from ballscrew_monitor.report.judging import judge_log, LogCase
 from ballscrew_monitor.report.ledger import unjudged_share
-from ballscrew_monitor.report.logs import find_logs, left_out, PAGE, SUMMARY
+from ballscrew_monitor.report.logs import left_out, logs_of, map_for, PAGE, SUMMARY
 from ballscrew_monitor.report.parameters import LogParameters, parameters_for
 from ballscrew_monitor.report.printed import log_lines, printed_records, summary_record, without
 from ballscrew_monitor.report.verdict import never_moved
@@ -38,10 +38,10 @@ Records = dict[str, Any]
 
 def replay_command(args: argparse.Namespace, nominal: Path) -> int:
     """Do what the command line asks for; return the exit code."""
-    logs = find_logs(args.logs, tables=args.map is not None, out=args.out)
+    logs = logs_of(args.logs, args.map, args.out)
     _check(logs, args)
     require('numba')  # before workers meet its absence, each for itself
-    say(*left_out(args.logs, logs, args.out))
+    say(*left_out(args.logs, logs, args.out, tables=args.map is not None))
     # With --json, standard output is JSON alone.
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
         records, code = _replay(logs, args, nominal)
@@ -53,7 +53,7 @@ def replay_command(args: argparse.Namespace, nominal: Path) -> int:
 def _check(logs: Sequence[Path], args: argparse.Namespace) -> None:
     """Raise InputError for what no recording can be judged with, and for no place of reports."""
     if args.map is not None:
-        if len(logs) > 1 and not any(is_table(log) for log in logs):
+        if len(logs) > 1 and all(is_bag(log) for log in logs):
             raise InputError(
                 f'map {args.map} is for tables, none of the {len(logs)} recordings is one: leave '
                 'out --map'
@@ -91,7 +91,7 @@ def _print_many(
         if not args.json:
             print(printable(str(log)))
         try:
-            mapping = args.map if is_table(log) else None  # it is for tables alone
+            mapping = map_for(log, args.map, alone=False)
             records[str(log)], code = _print_one(args, nominal, log, mapping)
         except (InputError, SurfaceError) as error:
             say(f'{log}: {error}')
@@ -142,7 +142,8 @@ def _report_many(
     from ballscrew_monitor.report.many_logs import Given, INDEX, report_logs, Workers
 
     given, workers = Given(args.params, args.map, nominal), Workers(args.workers, args.dask)
-    results = report_logs(logs, args.out, given, workers, left_out(args.logs, logs, args.out))
+    notes = left_out(args.logs, logs, args.out, tables=args.map is not None)
+    results = report_logs(logs, args.out, given, workers, notes)
     records: Records = {}
     for log, result in zip(logs, results, strict=True):
         if result.failure:

@@ -29,7 +29,7 @@ from ballscrew_monitor.report.health_axes import (
 from ballscrew_monitor.report.health_collect import collect, Failures, map_logs
 from ballscrew_monitor.report.health_folder import is_health_folder
 from ballscrew_monitor.report.health_history import AxisHistory, peers_among
-from ballscrew_monitor.report.logs import find_logs
+from ballscrew_monitor.report.logs import logs_of
 from ballscrew_monitor.report.machines import axis_titles, folders_note, machine_names, MachineAxis
 from ballscrew_monitor.report.many_logs import Given, Workers
 from ballscrew_monitor.settings.parameters import read_file
@@ -55,7 +55,7 @@ def health_command(args: argparse.Namespace, nominal: Path) -> int:
     stores = {path: read_health(path) for path in args.logs if (path / FILE).is_file()}
     collected = [path for path in args.logs if is_health_folder(path)]
     named = [path for path in args.logs if path not in stores and path not in collected]
-    logs = find_logs(named, tables=args.map is not None, out=args.out)
+    logs = logs_of(named, args.map, args.out)
     with contextlib.redirect_stdout(sys.stderr if args.json else sys.stdout):
         histories = _histories(logs, given, workers)
         axes = logged_axes(histories)
@@ -96,7 +96,7 @@ def _collect(args: argparse.Namespace, given: Given, workers: Workers) -> int:
         )
     if args.out.exists() and not args.out.is_dir():
         raise InputError(f'output {args.out} is a file, it must be a directory')
-    logs = find_logs(args.logs[1:], tables=args.map is not None, out=args.out)
+    logs = logs_of(args.logs[1:], args.map, args.out)
     return FAILED if collect(logs, args.out, given, workers) else DONE
 
 

@@ -200,7 +200,7 @@ class LogCase:
     `name` as its reader knows it, `parameters` where they came from; axes with rows, and the names
     of those without any; assumptions by what they are about, with value and reason; notes on the
     recording itself; the machine that it is of. `unread` has the number of messages of each topic
-    that no input is read from.
+    that no input is read from, `unread_parts` why other parts of its file are not read.
 
     """
 
@@ -212,6 +212,7 @@ class LogCase:
     notes: Sequence[str] = ()
     machine: str = ''
     unread: Mapping[str, int] = dataclasses.field(default_factory=dict)
+    unread_parts: Mapping[str, str] = dataclasses.field(default_factory=dict)
 
     @property
     def unjudged(self) -> list[str]:
@@ -405,6 +406,7 @@ def judge_log(
             for topic, info in bag.topics.items()
             if not numbered and topic not in {*input_topics(parameters.values), *bag.worked_out}
         },
+        unread_parts=bag.unread,
     )
 
 

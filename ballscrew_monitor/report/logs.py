@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings that are meant, bags, files, and folders that hold some; and folders of reports."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 import contextlib
 from pathlib import Path
 import re
 
-from ballscrew_monitor.recordings.bag_files import ACTIVE, ENDINGS, is_table, TABLES
+from ballscrew_monitor.recordings.bag_files import ACTIVE, ENDINGS, is_bag, is_table, TABLES
 from surrogate.files import InputError
 
 _PART = re.compile(r'(.*)_(\d+)')  # file of a bag that was split
@@ -15,9 +15,10 @@ PAGE, STATES, EVENTS, JUDGED = 'report.html', 'states.parquet', 'events.csv', 'j
 SUMMARY, PICTURE = 'summary.json', 'cycle.png'
 PRODUCTS = (JUDGED, STATES, EVENTS)
 """How a folder with a report is known, and what is no recording in it."""
-NO_LOGS = ('.yaml', '.yml', '.md', '.html', '.py', '.pdf', '.png', '.npz', '.toml', '.active')
-"""Endings of what may lie beside recordings."""
-MOST_NAMED = 5  # tables that are left out
+SETTINGS = ('.yaml', '.yml', '.toml')
+NO_LOGS = (*SETTINGS, '.md', '.html', '.py', '.pdf', '.png', '.npz', '.active')
+"""Endings of what may lie beside recordings; settings are named nowhere."""
+MOST_NAMED = 5  # files that are left out, for one reason
 _UNSAFE = re.compile(r'[^\w.-]+')
 
 
@@ -77,18 +78,62 @@ def _recordings(
     return sorted(held) + below
 
 
-def left_out(paths: Sequence[Path], logs: Sequence[Path], out: Path | None = None) -> list[str]:
-    """Return a sentence about tables in folders that are not among the recordings, if any."""
-    held = find_logs([path for path in paths if path.is_dir()], tables=True, out=out)
-    tables = [str(path) for path in held if is_table(path) and path not in logs]
-    more = f' and {len(tables) - MOST_NAMED} more' if len(tables) > MOST_NAMED else ''
-    names = ', '.join(tables[:MOST_NAMED]) + more
-    return [f'left out, as tables are judged by a --map: {names}'] if tables else []
+def logs_of(paths: Iterable[Path], mapping: Path | None, out: Path | None = None) -> list[Path]:
+    """Return the recordings that paths name, with a map also tables of any ending."""
+    if mapping is None:
+        return find_logs(paths, out=out)
+    from ballscrew_monitor.recordings.tables.sources import is_log
+
+    return find_logs(paths, tables=True, out=out, is_log=is_log)
+
+
+def left_out(
+    paths: Iterable[Path], logs: Sequence[Path], out: Path | None = None, *, tables: bool = False
+) -> list[str]:
+    """
+    Return in a sentence which files in folders are not among the recordings, and why.
+
+    With `tables` files of any ending were looked into.
+
+    """
+    reasons: dict[str, list[str]] = {}
+    for folder in paths:
+        for file in _others(folder, logs, out):
+            reasons.setdefault(_why_not(file, tables=tables), []).append(str(file))
+    parts = []
+    for why, names in reasons.items():
+        more = f' and {len(names) - MOST_NAMED} more' if len(names) > MOST_NAMED else ''
+        parts.append(f'as {why}: {", ".join(names[:MOST_NAMED])}{more}')
+    return [f'left out, {"; ".join(parts)}'] if parts else []
+
+
+def _others(folder: Path, logs: Sequence[Path], out: Path | None) -> Iterator[Path]:
+    """Yield the files below a folder that are no recordings, nor settings of any."""
+    if not folder.is_dir():
+        return
+    own = (*SETTINGS, *ENDINGS, ACTIVE) if folder in logs else SETTINGS
+    for file in _files(folder, ('',)):
+        if file not in logs and not file.name.lower().endswith(own) and file.name[0] != '.':
+            yield file
+    for child in _folders(folder, out):
+        yield from _others(child, logs, out)
+
+
+def _why_not(file: Path, *, tables: bool) -> str:
+    if not file.stat().st_size:
+        return 'they are empty'
+    if file.suffix.lower() in NO_LOGS:
+        return 'their ending is that of no recording'
+    if is_table(file):
+        return 'tables are judged by a --map'
+    if tables:
+        return 'they hold neither messages nor rows of numbers'
+    return 'their ending is none of a bag, and tables are judged by a --map'
 
 
 def map_for(log: Path, mapping: Path | None, *, alone: bool) -> Path | None:
-    """Return the map of a recording: one of several has it if it is a table, one alone always."""
-    return mapping if alone or is_table(log) else None
+    """Return the map of a recording: one of several has it if it is no bag, one alone always."""
+    return mapping if alone or not is_bag(log) else None
 
 
 def is_one_bag(folder: Path, *, tables: bool = False, out: Path | None = None) -> bool:

@@ -15,6 +15,8 @@ from ballscrew_monitor.report.ledger import Ledger, speed_ledger
 from ballscrew_monitor.report.survey import REST
 from ballscrew_monitor.report.verdict import AxisVerdict, verdict_of, verdicts_of
 
+PARTS = ('unread_parts',)
+"""What is said of a recording with each of its axes, where there is any."""
 HEAD = 12
 """Width of the column of heads, as that of `Summary.lines`."""
 SAID = {
@@ -95,6 +97,7 @@ def printed_records(summary: Mapping[str, Any]) -> dict[str, Any]:
     for axis, record in records.items():
         if isinstance(record, Mapping):
             rest = {key: value for key, value in record.items() if key != 'totals'}
+            rest |= {key: one for key in PARTS if (one := summary.get(key))}
             records[axis] = {'axis': axis, **(record['totals'] or {}), **rest}
     return records
 
@@ -113,6 +116,7 @@ def summary_record(log: LogCase) -> dict[str, Any]:
         'parameters': log.parameters,
         'unjudged_axes': log.unjudged,
         'unread_topics': dict(log.unread),
+        **({'unread_parts': dict(log.unread_parts)} if log.unread_parts else {}),
         'axes': records,
         'assumptions': {key: dict(assumption) for key, assumption in log.assumptions.items()},
         'notes': list(log.notes),

@@ -166,6 +166,7 @@ class RowSums:
     """
 
     rows: int = 0
+    begin: int = 0
     first: int = 0
     last: int = 0
     first_log: int = 0
@@ -222,7 +223,7 @@ def add_rows(
 def _add_time(sums: Any, row: Any, sure: bool, max_gap: int) -> None:
     """Add the time from the last row to this one to what held at the last one."""
     if sums.rows == 0:
-        sums.first, sums.last = row.stamp, row.stamp
+        sums.begin = sums.first = sums.last = row.stamp
         sums.first_log, sums.last_log = row.now, row.now
     else:
         step = row.stamp - sums.stamp
@@ -370,6 +371,8 @@ class Surveyor:
         sums = self.sums
         span, log_span = sums.last - sums.first, sums.last_log - sums.first_log
         by_stamp = span <= STRAY * log_span + STRAY_MARGIN
+        # Runs whose stamps begin again lie over each other: they last longer than the span.
+        pauses = sums.pauses + span - (sums.stamp - sums.begin) if self._runs > 1 else 0
         longest_first = sorted(self._gaps, key=lambda gap: (-gap[0], gap[1]))
         gaps = zip(Source, zip(sums.gaps, sums.gap_time))
         return Survey(
@@ -394,7 +397,7 @@ class Surveyor:
             uncounted=sums.uncounted / SECOND,
             missed=self._missed / SECOND,
             runs=self._runs,
-            pauses=sums.pauses / SECOND if by_stamp else 0.0,
+            pauses=pauses / SECOND if by_stamp else 0.0,
             gaps={source: Gaps(count=count, time=time / SECOND) for source, (count, time) in gaps}
             | {Source.SPEED: Gaps(count=self._gap_count, time=self._gap_time / SECOND)},
             speed_gaps=tuple((at, length) for length, at in longest_first),

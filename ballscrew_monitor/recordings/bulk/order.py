@@ -30,6 +30,7 @@ from ballscrew_monitor.recordings.bulk.events import (
     TICK_SOURCE,
     ticks,
 )
+from ballscrew_monitor.recordings.bulk.written import check_rising, WrittenTimes
 from ballscrew_monitor.settings.axis import Axis
 import numpy as np
 
@@ -50,16 +51,19 @@ def ordered_events(
     Yield the events of `axes` in the order in which they are judged, a tick each `period` [ns].
 
     `notes` keep what they refer to. `on_done` is told how far the bag is judged [-]. Raises
-    InputError for a damaged bag.
+    InputError for a damaged bag, and for one of several runs that cannot be told apart.
 
     """
     readers = readers_by_topic(axes)
     decoders = {topic: TopicDecoder(bag, wanted, notes) for topic, wanted in readers.items()}
-    order = EventOrder(period, bag.run_borders)
+    order, written = EventOrder(period, bag.run_borders), WrittenTimes()
     for batch in batches(bag, decoders.keys()):
+        for topic, messages in batch.topics.items():
+            written.add(topic, messages)
         decoded = [decoders[topic].events(messages) for topic, messages in batch.topics.items()]
         yield order.push(joined(decoded), batch.until)
         on_done(batch.done)
+    check_rising(bag, written, decoders.keys())
     yield order.finish()
 
 

@@ -46,6 +46,8 @@ EXPECTED = {
 """What a file of each kind must be."""
 SCALE_FACTOR, ADD_OFFSET, MISSING = 'scale_factor', 'add_offset', ('_FillValue', 'missing_value')
 """Attributes of the CF conventions: a value is the number times the factor plus the offset."""
+GROUPED = ('mat', 'hdf', 'tdms')
+"""Kinds whose signals are in groups, as `run.speed`."""
 DOCUMENT = re.compile('<!(?:DOCTYPE|ENTITY)', re.I)
 SIGNATURES = ((b'TDSm', 'tdms'), (b'MDF     ', 'mdf'), (b'MATLAB 5.0', 'mat'), (b'\x89HDF', 'hdf'))
 
@@ -56,7 +58,7 @@ class Signals:
     Signals of a file as a frame, and what the file says besides them; a period in [s].
 
     Cells that are texts were parted by a `separator`; `factors` says of a signal that it may have
-    to be scaled.
+    to be scaled. `left_out` has the reason why a part of the file is not among them, by its name.
 
     """
 
@@ -66,6 +68,7 @@ class Signals:
     separator: str = ''
     program: Format | None = None
     factors: str = ''
+    left_out: Mapping[str, str] = dataclasses.field(default_factory=dict)
 
     def head(self) -> Head:
         """Return what the head of a text would say."""
@@ -141,15 +144,18 @@ def _json(path: Path) -> Signals:
     header = content.get('Header') if isinstance(content, dict) else None
     if isinstance(header, dict) and 'SignalListHFData' in header:
         return _sinumerik_json(content)
+    left_out = {}
     if isinstance(content, dict):
         lists = {key: value for key, value in content.items() if isinstance(value, list)}
-        records = [value for value in lists.values() if value and isinstance(value[0], dict)]
+        records = [key for key, one in lists.items() if one and isinstance(one[0], dict)]
         if not records:
             return Signals(frame=_side_by_side(lists))
-        content = records[0]
+        content = lists[records[0]]
+        left_out = dict.fromkeys(records[1:], f'the records of {records[0]} come before it')
     if not _are_all(dict, content):
         raise TypeError
-    return Signals(frame=pl.from_dicts(content, infer_schema_length=None))
+    frame = pl.from_dicts(content, infer_schema_length=None)
+    return Signals(frame=frame, left_out=left_out)
 
 
 def _sinumerik_json(content: Mapping[str, Any]) -> Signals:
@@ -250,21 +256,28 @@ def _hdf(path: Path) -> Signals:
     h5py = _optional('h5py', path, 'HDF5 and MATLAB 7.3')
     found: dict[str, Any] = {}
     factors: list[str] = []
+    room = limits.WORKBOOK
+
+    def visit(name: str, item: Any) -> None:
+        nonlocal room
+        if not isinstance(item, h5py.Dataset):
+            return
+        called = name.replace('/', '.')
+        if item.dtype.kind not in 'iufb' and not item.dtype.names:
+            found[called] = np.broadcast_to(np.void(b' '), item.shape or ())  # which is no number
+            return
+        room -= item.size * max(item.dtype.itemsize, 8)
+        if room < 0:
+            raise Unreadable(f'its arrays up to {name} come to more than {limits.WORKBOOK} bytes')
+        for field in item.dtype.names or ():
+            found[f'{called}.{field}'] = np.squeeze(item[field])
+        if not item.dtype.names:
+            unit = item.attrs.get('unit', item.attrs.get('units', b''))
+            told = unit.decode() if isinstance(unit, bytes) else str(unit)
+            found[f'{called} [{told}]' if told else called] = _scaled(item)
+            factors.extend(_unclear_factors(called, item.attrs))
+
     with h5py.File(path, 'r') as file:
-
-        def visit(name: str, item: Any) -> None:
-            if isinstance(item, h5py.Dataset) and item.dtype.kind in 'iuf':
-                if item.size * 8 > limits.WORKBOOK:
-                    raise Unreadable(f'{name} comes to more than {limits.WORKBOOK} bytes')
-                unit = item.attrs.get('unit', item.attrs.get('units', b''))
-                told = unit.decode() if isinstance(unit, bytes) else str(unit)
-                called = name.replace('/', '.')
-                found[f'{called} [{told}]' if told else called] = _scaled(item)
-                factors.extend(_unclear_factors(called, item.attrs))
-            elif isinstance(item, h5py.Dataset) and item.dtype.names:
-                for field in item.dtype.names:
-                    found[f'{name.replace("/", ".")}.{field}'] = np.squeeze(item[field])
-
         file.visititems(visit)
     return dataclasses.replace(_arrays(found), factors=', '.join(factors))
 
@@ -291,13 +304,14 @@ def _unclear_factors(name: str, attributes: Mapping[str, Any]) -> Iterator[str]:
 def _arrays(content: Mapping[str, Any]) -> Signals:
     """Return arrays as signals: those of one length, and columns of a matrix, side by side."""
     held: dict[str, Any] = {}
+    left_out: dict[str, str] = {}
     period, rates = math.nan, {'fs', 'rate', 'samplerate', 'samplingrate', 'frequency'}
     periods = {'ts', 'dt', 'sampletime', 'period', 'samplingperiod'}
     for name, value in content.items():
         array, last = np.asarray(value), re.sub('[_ ]', '', name.rpartition('.')[2].lower())
         if array.dtype.kind not in 'iufb':
-            continue
-        if array.ndim == 0 and float(array) > 0.0 and last in rates | periods:
+            left_out |= {name: 'it holds no numbers'} if array.size > 1 else {}
+        elif array.ndim == 0 and float(array) > 0.0 and last in rates | periods:
             period = 1.0 / float(array) if last in rates else float(array)
         elif array.ndim == 1 and len(array) > 1:
             held[name] = array.astype(np.float64)
@@ -305,30 +319,33 @@ def _arrays(content: Mapping[str, Any]) -> Signals:
             tall = array if array.shape[0] >= array.shape[1] else array.T
             for at in range(tall.shape[1]):
                 held[f'{name} {at + 1}'] = tall[:, at].astype(np.float64)
-    return Signals(frame=_side_by_side(held), period=period)
+        elif array.size > 1:
+            left_out[name] = f'it is an array of {" x ".join(map(str, array.shape))}'
+    return Signals(frame=_side_by_side(held), period=period, left_out=left_out)
 
 
 def _side_by_side(columns: Mapping[str, Sequence[Any]]) -> pl.DataFrame:
-    """Return columns of several lengths as a frame; those of one length stand together."""
+    """Return columns of several lengths as a frame, those of one length together."""
     lengths = dict.fromkeys(len(column) for column in columns.values())
-    frames = [
-        pl.DataFrame(
-            {name: column for name, column in columns.items() if len(column) == length},
-            strict=False,
-        )
+    height = max(lengths, default=0)
+    series = [
+        pl.Series(name, column, strict=False).extend_constant(None, height - length)
         for length in lengths
+        for name, column in columns.items()
+        if len(column) == length
     ]
-    return pl.concat(frames, how='horizontal') if frames else pl.DataFrame()
+    return pl.DataFrame(series)
 
 
 def _tdms(path: Path) -> Signals:
     file = _optional('nptdms', path, 'TDMS', 'npTDMS').TdmsFile.read(path)
     held: dict[str, Any] = {}
-    period = math.nan
-    for group in file.groups():
+    period, groups = math.nan, file.groups()
+    for group in groups:
+        before = f'{group.name}.' if len(groups) > 1 else ''
         for channel in group.channels():
-            unit = channel.properties.get('unit_string', '')
-            held[f'{channel.name} [{unit}]' if unit else channel.name] = channel[:]
+            unit, name = channel.properties.get('unit_string', ''), f'{before}{channel.name}'
+            held[f'{name} [{unit}]' if unit else name] = channel[:]
             period = float(channel.properties.get('wf_increment', period))
     return Signals(frame=_side_by_side(held), period=period)
 

@@ -349,11 +349,11 @@ class _Guesser:
         self._say_what_is_joined()
         self._say_what_is_left_out(time)
         content: dict[str, Any] = {'log': self.path.name}
-        if others := self.source.other_sheets:
+        if self.source.sheet and (others := self.source.left_out):
             content['sheet'] = self.source.sheet
             self.notes.append(
-                f'sheet {short(self.source.sheet)} is read, not {listed(others)}: `sheet` in the '
-                'map names another'
+                f'sheet {short(self.source.sheet)} is read, not {listed([*others])}: `sheet` in '
+                'the map names another'
             )
         content |= {'date_from': self.date_from} if self.date_from else {}
         content |= {'decimal': None} if self._is_decimal_open() else {}

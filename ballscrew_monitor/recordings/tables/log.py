@@ -66,7 +66,7 @@ AT_ONCE = 32768  # events that are made at a time: they stay in the cache
 class TableLog(Bag):
     """A table read by a map; what its rows say of the map is a remark once all are read."""
 
-    absent = 'rows without a time'
+    absent = 'rows without a time or a value'
 
     def __init__(self, path: Path, mapping: TableMap, shown: Shown = shown_progress) -> None:
         """
@@ -91,6 +91,7 @@ class TableLog(Bag):
             )
             for name, pattern in self._patterns.items()
         }
+        self.unread = self._series.unread
         self.worked_out = frozenset(
             absolute(joints_topic(self._series.of(axis, 'torque')))
             for axis in self._series.mapping.axes

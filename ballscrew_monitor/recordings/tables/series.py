@@ -38,6 +38,7 @@ from surrogate.files import InputError
 from surrogate.units import TURN
 
 BETWEEN = 2.0  # [s] between runs, at least: longer than a sample is fresh
+MOST_NAMED = 5  # parts of a file in a sentence
 LONG_GAP = 20.0  # times the usual time between rows, the same
 LONG = 3.0  # times the usual time between rows: across more the speed is not known
 SHOWING = 100_000  # of the first rows, which show whether a position has a slope
@@ -65,13 +66,14 @@ class Series:
     """
     A log by rows, and what was wrong with it.
 
-    `count` is the number of those with a time, `rows` that of each group in the file,
+    `count` is the number of those with a time, `rows` that of each group that should have one,
     `usual_period` the time between them [s].
 
     `mapping` is that by which it is read, without the columns that hold nothing; `begin` and `end`
     are the first and the last stamp [ns], `run_begins` the first of each run and `run_borders`
-    those in the pauses between them. Columns of one time are a group, of which `places` names that
-    of each quantity. The rows themselves are read when they are asked for.
+    those in the pauses between them; `unread` says why parts of the file are not read. Columns of
+    one time are a group, of which `places` names that of each quantity. The rows themselves are
+    read when they are asked for.
 
     """
 
@@ -83,6 +85,7 @@ class Series:
     run_begins: tuple[int, ...]
     run_borders: tuple[int, ...]
     notes: tuple[str, ...]
+    unread: Mapping[str, str]
     mapping: TableMap
     places: Mapping[str, int]
     _times: tuple[Times, ...]
@@ -210,21 +213,24 @@ def read_series(path: Path, mapping: TableMap, shown: Shown = shown_progress) ->
     _check_slopes(path, held, table, turns, runs=len(times[0].gate.runs))
     run_begins, run_borders = _place(path, times)
     notes = [note for one in times for note in one.notes()]
+    unread = table.source.unread(columns)
     return Series(
         count=sum(one.count for one in times),
-        rows=tuple(one.count if one.group.hold else table.rows - one.group.holes for one in times),
+        rows=tuple(one.count if one.group.hold else one.promised for one in times),
         usual_period=max(one.usual_period for one in times if one.count > 1),
         begin=times[0].begin,
         end=max(one.end for one in times),
         run_begins=(times[0].begin, *run_begins),
         run_borders=tuple(run_borders),
         notes=(
+            *_unread(path, unread),
             *_losses(mapping, table.left_out),
             *filter(None, (note for _, note in [*moving, *signed])),
             *table.notes,
             *(f'{short(name)} {OF_ONE_TURN}' for name in turns),
             *dict.fromkeys(notes),
         ),
+        unread=unread,
         mapping=held,
         places={name: at for at, one in enumerate(times) for name in one.group.columns},
         _times=tuple(times),
@@ -478,6 +484,14 @@ def _readable(axis: AxisMap, left_out: Mapping[str, str]) -> AxisMap:
                 f'axes.{axis.name}.{kind} in the map'
             )
     return axis.without(left_out)
+
+
+def _unread(path: Path, unread: Mapping[str, str]) -> list[str]:
+    """Return in a sentence which parts of a file are not read, and why."""
+    parts = [f'{short(name)}, as {why}' for name, why in unread.items()]
+    more = [f'and {len(parts) - MOST_NAMED} more'] if len(parts) > MOST_NAMED else []
+    words = '; '.join([*parts[:MOST_NAMED], *more])
+    return [f'log {path}: not read of this file: {words}'] if parts else []
 
 
 def _losses(mapping: TableMap, left_out: Mapping[str, str]) -> list[str]:

@@ -44,11 +44,15 @@ ZIP, PARQUET = b'PK\3\4', b'PAR1'
 EDGES = re.compile(rb'^[ \t]+|[ \t]+(?=\r?$)', re.M)
 SPACES = re.compile(rb'[ \t]+')
 """Blanks at the ends of lines, and between cells that they part."""
+COMMENTS = ('comment', 'comments', 'kommentar', 'bemerkung', 'remark', 'remarks')
+"""Names of a last column whose cells a row need not have."""
 REMARK, LINE_FEED = re.compile(rb'^#(.*)$', re.M), b'\n'
 WIDE_MARKS = (b'\xff\xfe', b'\xfe\xff')
 NARROW_MARK = b'\xef\xbb\xbf'
 CODINGS = ('utf-8', 'cp1252', 'latin-1')
 """Codings of a line, the first that fits; the last fits always."""
+AFTER_EMPTY = ('\n', '\r', '"', ' ')
+"""What may follow a separator that ends an empty cell, beside another one."""
 TRIES = (
     3  # parts of a text with cells that are not of their column's type, after which none has it
 )
@@ -86,7 +90,8 @@ class Source:
     The columns that are read may come to `most` [bytes]: those at rest take next to no room in a
     file of Parquet, so that all of them together tell nothing. `read` reads some columns part by
     part, those of a text by their types where all cells of the part are of these. Of a workbook it
-    is one `sheet`. `short` are the rows of too few cells since it began.
+    is one `sheet`. `left_out` says why other sheets or arrays are not read; names of a source that
+    `is_grouped` begin with that of a group. `short` are the rows of too few cells since it began.
 
     """
 
@@ -96,7 +101,8 @@ class Source:
     read: Callable[[list[str], Types], Iterator[pl.DataFrame]]
     most: float = math.inf
     sheet: str = ''
-    other_sheets: tuple[str, ...] = ()
+    left_out: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    is_grouped: bool = False
     short: ShortRows = dataclasses.field(default_factory=ShortRows)
 
     def names(self) -> list[str]:
@@ -106,6 +112,15 @@ class Source:
     def marked(self, marks: Mapping[str, Marks]) -> 'Source':
         """Return it with the columns that are marked read by their marks."""
         return dataclasses.replace(self, read=marked(self.read, marks)) if marks else self
+
+    def unread(self, columns: Collection[str]) -> dict[str, str]:
+        """Return why parts of the file are not read: also groups with none of the columns."""
+        if not self.is_grouped:
+            return dict(self.left_out)
+        groups = {name: name.partition(' [')[0].rpartition('.')[0] for name in self.names()}
+        others = {*groups.values()} - {'', *(groups[name] for name in columns)}
+        why = 'the map names none of its columns'
+        return {**self.left_out, **dict.fromkeys(sorted(others), why)}
 
     def first_rows(self) -> pl.DataFrame:
         """Return the first rows of all columns; raises InputError."""
@@ -148,7 +163,10 @@ def source_of(path: Path, layout: Layout | None = None, sheet: str = '') -> Sour
         signals = foreign.read_signals(path, kind)
         _check_columns(path, signals.frame.width)
         frame = signals.frame.lazy()
-        return of_frame(path, frame, signals.head(), signals.frame.height, math.inf)
+        source = of_frame(path, frame, signals.head(), signals.frame.height, math.inf)
+        return dataclasses.replace(
+            source, left_out=signals.left_out, is_grouped=kind in foreign.GROUPED
+        )
     return _text(path, layout, _Text.of(path, head))
 
 
@@ -253,7 +271,7 @@ def _sheet(path: Path, layout: Layout | None, name: str) -> Source:
     before = head.first - 1
     frame = cells[before:].select(cells.columns[: len(head.names)])
     source = of_frame(path, frame.lazy(), head, frame.height, math.inf)
-    return dataclasses.replace(source, sheet=sheet.name, other_sheets=sheet.others)
+    return dataclasses.replace(source, sheet=sheet.name, left_out=sheet.others)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -344,6 +362,7 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
     }
     places = {name: at for at, name in enumerate(head.names)}
     width, short = len(head.names), ShortRows()
+    least = width - (head.names[-1].casefold() in COMMENTS)  # which most rows leave out
     # Names for as many columns and one more, which must be empty, stand before each part.
     line = head.separator.join(map(str, range(width + 1))) + text.line_end
 
@@ -357,7 +376,10 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
             for part in _parts(stream, text.line_end.encode()):
                 content = SPACES.sub(b' ', EDGES.sub(b'', part)) if blanks else part
                 _check_remarks(path, content, row, head)
-                whole = _are_whole(content, head.separator, text.line_end, width)
+                whole = any(
+                    _are_whole(content, head.separator, text.line_end, one)
+                    for one in {least, width}
+                )
                 known = {str(places[name]): kind for name, kind in types.items() if tries}
                 named = b''.join([line.encode(), content])
                 cells = _typed(named, known, options) if whole else None
@@ -370,7 +392,7 @@ def _text(path: Path, layout: Layout | None, text: _Text) -> Source:
                         at = int(surplus.argmax())
                         found = int(widths[at]) if len(widths) == cells.height else width + 1
                         raise InputError(f'log {path}: {head.surplus(row + at, found)}')
-                    cells = short.left_out(cells, widths, width, row)
+                    cells = short.left_out(cells, widths, least, row)
                 row += cells.height
                 yield cells.rename(called).select(names)
 
@@ -390,22 +412,32 @@ def _check_remarks(path: Path, content: bytes, row: int, head: Head) -> None:
 
 
 def _are_whole(content: bytes, separator: str, line_end: str, width: int) -> bool:
-    """Return True if a text has as many cells as rows of a width have, unless some make up."""
+    """
+    Return True if each row of a text has as many cells as a width.
+
+    Where no cell looks empty, that many cells in all tell it: a longer row is refused.
+
+    """
     lines = content.count(line_end.encode()) + (not content.endswith(line_end.encode()))
-    return content.count(separator.encode()) == (width - 1) * lines
+    if content.count(separator.encode()) != (width - 1) * lines:
+        return False
+    if not any((separator + mark).encode() in content for mark in (separator, *AFTER_EMPTY)):
+        return True
+    return bool((_widths(content, separator, line_end) == width).all())
 
 
 def _widths(content: bytes, separator: str, line_end: str) -> NDArray[np.int64]:
     """Return how many cells each row of a text holds, 0 of a blank one; comments are no rows."""
     letters = np.frombuffer(content, np.uint8)
-    outside = np.cumsum(letters == ord('"')) % 2 == 0
-    ends = np.flatnonzero((letters == ord(line_end)) & outside)
+    ends, signs = (np.flatnonzero(letters == ord(one)) for one in (line_end, separator))
+    if b'"' in content:
+        quotes = np.flatnonzero(letters == ord('"'))
+        ends, signs = (one[np.searchsorted(quotes, one) % 2 == 0] for one in (ends, signs))
     ends = ends if content.endswith(line_end.encode()) else np.append(ends, len(letters))
     begins = np.append(0, ends[:-1] + 1)
-    signs = np.append(0, np.cumsum((letters == ord(separator)) & outside))
+    widths = np.diff(np.searchsorted(signs, ends), prepend=0) + 1
     blank = (ends == begins) | ((ends == begins + 1) & (letters[begins] == ord('\r')))
-    widths = np.where(blank, 0, signs[ends] - signs[begins] + 1)
-    return widths[letters[begins] != ord(heads.COMMENT)]
+    return np.where(blank, 0, widths)[letters[begins] != ord(heads.COMMENT)]
 
 
 def _typed(content: bytes, types: Types, options: Mapping[str, Any]) -> pl.DataFrame | None:

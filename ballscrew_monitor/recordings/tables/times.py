@@ -239,7 +239,8 @@ class Times:
 
     `count` rows have one. Rows out of order are sorted: as many wait in memory as are between the
     one that comes the latest and its place. A time that begins again is that of another run, and
-    rows that share a stamp are spread over the time up to the next.
+    rows that share a stamp are spread over the time up to the next. `promised` are the rows that
+    should have a sample: an empty cell is one that is missing only where many follow each other.
 
     """
 
@@ -247,12 +248,16 @@ class Times:
         """Look through the times; raises InputError when they give no stamps."""
         self.group, self._table, self._mapping = group, table, mapping
         self.gate, self._course = TimeGate(wall=self._is_wall()), Course()
+        silence = Silence()
         self._spread: Spread | None = None
         with shown(table.rows, 'times looked through') as show:
             for row, times, _ in self._told(group.time_columns or list(group.columns)[:1]):
                 known = np.isfinite(times)
-                self.gate.add(times[known], row + np.flatnonzero(known))
+                rows = row + np.flatnonzero(known)
+                self.gate.add(times[known], rows)
                 self._course.add(times[known])
+                if group.holes:
+                    silence.add(times[known], rows)
                 show((row + len(times) - table.first_row) / table.rows)
         self.gate.finish()
         self.count, self._shown = self.gate.count, shown
@@ -265,6 +270,8 @@ class Times:
         if mapping.time:
             self._check_gate()
         self._shifts = dict[int, float]()
+        short = min(table.source.short.count, group.holes)
+        self.promised = table.rows - group.holes + short + silence.samples(self.gate.step)
 
     def place(
         self, offsets: Sequence[float], rows: Sequence[int], run_begins: Sequence[float]
@@ -469,6 +476,35 @@ class Times:
                 f'log {self._table.path}: its times are {begin:g} to {end:g} s, which give no '
                 'stamps after 1970 and before 2038: correct time.unit, or state a time.epoch'
             )
+
+
+class Silence:
+    """Where a group has no sample for long while the rows of the log go on."""
+
+    def __init__(self) -> None:
+        """Begin with no sample."""
+        self._last = np.zeros(0), np.zeros(0, np.int64)
+        self._counts = np.zeros(HUGE_GAP + 1, np.int64)  # of the rows from sample to sample
+        self._long: list[tuple[int, float]] = []
+
+    def add(self, times: Array, rows: Stamps) -> None:
+        """Take further samples, their times [s] and their rows in the file."""
+        rest, steps = (
+            np.diff(np.concatenate([last, one])) for last, one in zip(self._last, (times, rows))
+        )
+        self._counts += np.bincount(np.minimum(steps, HUGE_GAP), minlength=HUGE_GAP + 1)
+        long = steps >= HUGE_GAP
+        self._long += zip(steps[long].tolist(), rest[long].tolist(), strict=True)
+        self._last = (times[-1:], rows[-1:]) if len(times) else self._last
+
+    def samples(self, step: float) -> int:
+        """Return how many samples are missing, of which one usually comes after a `step` [s]."""
+        half = np.searchsorted(np.cumsum(self._counts), self._counts.sum() / 2)
+        return sum(
+            round(min(rows / max(int(half), 1), rest / step)) - 1
+            for rows, rest in self._long
+            if rest > HUGE_GAP * step
+        )
 
 
 class Course:

@@ -36,6 +36,7 @@ CELL_SIZE = limits.XLSX_CELL
 LOOKED_AT = 2000  # rows of a sheet that tell whether it holds a table
 FEWEST = (20, 3)  # rows of numbers of a table, if not those of any sheet
 UNPACKABLE = (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError, OSError)
+ANOTHER = 'a sheet before it has rows of numbers'
 NO_DAY = '1899-12-31 '
 """Day that a sheet adds to a time of day."""
 SHEET = b'sheetData'  # the element that holds the cells
@@ -49,11 +50,11 @@ VALUES = ('v', 'is')  # elements that hold the value of a cell
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
 class Sheet:
-    """A sheet: its name, its cells, and the names of the other sheets of its workbook."""
+    """A sheet: its name, its cells, and why each other sheet of its workbook is not read."""
 
     name: str
     cells: pl.DataFrame
-    others: tuple[str, ...]
+    others: Mapping[str, str]
 
 
 def read_sheet(path: Path, name: str = '') -> Sheet:
@@ -73,7 +74,7 @@ def _read_apart(place: Path, shown: str, name: str, *state: int) -> Sheet:
         task = f'{__name__}:write_cells'
         read = result_apart(task, inputs, memory=limits.MEMORY, failure=failure)
         cells = pl.read_ipc(target)  # its memory is the file, which stays though its name goes
-        return Sheet(name=read['name'], cells=cells, others=tuple(read['others']))
+        return Sheet(name=read['name'], cells=cells, others=read['others'])
 
 
 def write_cells(inputs: Mapping[str, str]) -> dict[str, Any]:
@@ -87,11 +88,14 @@ def write_cells(inputs: Mapping[str, str]) -> dict[str, Any]:
         raise InputError(f'log {path}: sheet {short(repr(stated))} is missing, {_held(names)}')
     only = stated or (names[0] if len(names) == 1 else '')
     tried = [(only, 0)] if only else [(name, fewest) for fewest in FEWEST for name in names]
+    others = dict.fromkeys(names, f'`sheet` in the map names {stated}' if stated else ANOTHER)
     for name, fewest in tried:
         cells = _texts(path, name)
         if only or _holds_table(cells, fewest):
             cells.write_ipc(inputs['target'])
-            return {'name': name, 'others': [one for one in names if one != name]}
+            del others[name]
+            return {'name': name, 'others': others}
+        others[name] = f'it has fewer than {fewest} rows of numbers'
     raise InputError(f'log {path}: no sheet has rows of numbers, {_held(names)}')
 
 

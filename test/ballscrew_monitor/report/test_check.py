@@ -92,6 +92,38 @@ def test_logs_of_any_ending_are_found_and_other_files_are_not(tmp_path, capsys):
     assert record['recordings']['cut.rec']['axes']['x']['judged'] == 2000
 
 
+def test_a_log_that_contradicts_itself_and_a_stray_file_are_named_on_the_page(
+    tmp_path, capsys, says
+):
+    """A position that moves half as far as its speed says, as behind a screw of half the lead."""
+    folder = tmp_path / 'logs'
+    write(folder / 'cut.csv', SPEEDS)
+    rows = (folder / 'cut.csv').read_text().splitlines()
+    moved, before, lines = 0.0, 0.0, [f'{rows[0]},x_position_mm']
+    for row in rows[1:]:
+        speed = float(row.split(',')[1])
+        moved += 0.5 * (before + speed) / 2 / 100
+        before = speed
+        lines.append(f'{row},{moved:.6f}')
+    (folder / 'cut.csv').write_text('\n'.join(lines) + '\n')
+    (folder / 'plan.pdf').write_text('%PDF-1.4')
+    (folder / 'cut.map.yaml').write_text(
+        'time: {column: time_s, unit: s, epoch: 2026-01-05T08:00:00Z}\n'
+        'axes: {x: {lead_mm: 10.0, speed: {column: x_velocity_mm_s, unit: mm/s}, '
+        'position: {column: x_position_mm, unit: mm}, temperature_degC: 40.0, '
+        'load: {column: x_force_N, unit: N, magnitude: false}}}\n'
+    )
+    check(folder, tmp_path, *SHEETS, '--json')
+    printed = capsys.readouterr()
+    record = json.loads(printed.out)
+    assert record['left_out'] == [says('stray', folder=folder)]
+    assert says('half') in record['notes']
+    page = (tmp_path / 'out' / 'index.html').read_text()
+    for sentence in (*record['left_out'], says('half')):
+        assert sentence in page
+        assert sentence in printed.err
+
+
 def test_remarks_and_lists_are_no_bad_recordings(tmp_path, capsys, says):
     folder = tmp_path / 'logs'
     write(folder / 'cut.csv', SPEEDS)

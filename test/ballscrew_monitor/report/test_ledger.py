@@ -11,6 +11,7 @@ from ballscrew_monitor.core.inputs import Source
 from ballscrew_monitor.core.judgement import Reason, Zone
 from ballscrew_monitor.recordings.bag import Bag
 from ballscrew_monitor.recordings.bag_writer import BagWriter, Offer, Topic
+from ballscrew_monitor.recordings.tables.log import TableLog
 from ballscrew_monitor.report.judging import judge_log
 from ballscrew_monitor.report.ledger import ledger_of, unjudged_share
 from ballscrew_monitor.report.parameters import LogParameters
@@ -177,10 +178,48 @@ def test_rows_of_a_table_are_counted_as_messages_are(tmp_path, capsys):
         'present': 280,
         'read': 280,
         'judged': 250,
-        'losses': {'rows without a time': 20, Reason.NO_LOAD.text: 30},
+        'losses': {TableLog.absent: 20, Reason.NO_LOAD.text: 30},
     }
     loads = record['inputs']['load']['ledger']
     assert (loads['present'], loads['judged']) == (280, 250)
+
+
+@pytest.mark.parametrize(
+    ('name', 'promised', 'judged'),
+    [
+        ('every second row, then none', 420, 220),
+        ('none for a while', 300, 180),
+        ('the rows end', 180, 180),
+        ('rows of two tables', 300, 300),
+        ('too few cells', 300, 288),
+    ],
+)
+def test_a_speed_that_is_empty_for_long_is_missing(tmp_path, capsys, name, promised, judged):
+    """An empty cell is no sample, as beside another clock; many together are a loss."""
+    hollow = {
+        'every second row, then none': [
+            f'{row / 100},{"" if row % 2 or 240 <= row < 640 else 50},-1000' for row in range(840)
+        ],
+        'none for a while': [
+            f'{row / 100},{"" if 100 <= row < 220 else 50},-1000' for row in range(300)
+        ],
+        'the rows end': [f'{row / 100},{50 if row < 180 else ""},-1000' for row in range(300)],
+        'rows of two tables': [
+            *(f'{row / 100},50,' for row in range(300)),
+            *(f'{row / 100},,-1000' for row in range(300)),
+        ],
+        'too few cells': [
+            f'{row / 100},50' if row % 25 == 7 else f'{row / 100},50,-1000' for row in range(300)
+        ],
+    }
+    path = tmp_path / 'feed.csv'
+    arguments = table(path, lambda row: ('', ''))
+    path.write_text('t,v,f\n' + '\n'.join(hollow[name]) + '\n')
+    assert cli.main([*arguments, '--json']) == int(judged < 0.95 * promised)
+    ledger = json.loads(capsys.readouterr().out)['x']['inputs']['speed']['ledger']
+    assert (ledger['promised'], ledger['judged']) == (promised, judged)
+    missing = promised - judged
+    assert ledger['losses'] == ({TableLog.absent: missing} if missing else {})
 
 
 @pytest.mark.parametrize(

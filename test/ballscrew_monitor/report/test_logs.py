@@ -5,6 +5,7 @@
 import contextlib
 from pathlib import Path
 
+from ballscrew_monitor.recordings.tables.sources import is_log
 from ballscrew_monitor.report import logs
 from ballscrew_monitor.report.logs import (
     find_logs,
@@ -115,11 +116,31 @@ def test_what_is_named_twice_is_taken_once_and_nothing_is_refused(tmp_path, refu
 
 def test_tables_that_are_left_out_are_named(tmp_path):
     touch(tmp_path / 'a.mcap', *(tmp_path / f't{number}.csv' for number in range(7)))
+    for path in tmp_path.glob('*.csv'):
+        path.write_text('t,v\n')
     (sentence,) = left_out([tmp_path], find_logs([tmp_path]))
     assert 'left out' in sentence
     assert f'{tmp_path / "t4.csv"} and 2 more' in sentence
     assert not left_out([tmp_path], find_logs([tmp_path], tables=True))
     assert not left_out([tmp_path / 'a.mcap', tmp_path / 't1.csv'], [])
+
+
+def test_tables_of_any_ending_are_found_with_a_map_and_all_other_files_are_named(tmp_path, says):
+    """What `check` takes is what a replay by a map takes."""
+    rows = 't,v\n' + ''.join(f'{row},{row}\n' for row in range(40))
+    for name in ('feed.csv', 'scope.trc', 'below/other.rec'):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(rows)
+    (tmp_path / 'plan.pdf').write_text('%PDF-1.4')
+    (tmp_path / 'order').write_text('twelve nuts, please')
+    (tmp_path / 'screw.yaml').write_text('lead_mm: 5.0')
+    touch(tmp_path / 'empty.trc')
+    found = logs.logs_of([tmp_path], tmp_path / 'screw.yaml')
+    assert names(found, tmp_path) == ['feed.csv', 'scope.trc', 'below/other.rec']
+    assert found == find_logs([tmp_path], tables=True, is_log=is_log)
+    (sentence,) = left_out([tmp_path], found, tables=True)
+    assert sentence == says('others', folder=tmp_path)
+    assert [logs.map_for(one, tmp_path, alone=False) for one in found] == [tmp_path] * 3
 
 
 def test_each_report_has_a_folder_of_its_own():

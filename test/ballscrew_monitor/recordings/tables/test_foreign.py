@@ -204,3 +204,48 @@ def test_no_reader_says_what_python_says(kind, key, error, tmp_path, monkeypatch
     path = tmp_path / 'log'
     path.write_text('{}')
     refused(key, foreign.read_signals, path, kind)
+
+
+def of_groups(path, lengths):
+    """Write an HDF5 file with a group of signals of each length, and what holds no signals."""
+    with h5py.File(path, 'w') as file:
+        for name, length in lengths.items():
+            for signal, unit, values in (('time', 's', TIME), ('x_velocity', 'mm/s', SPEED)):
+                file[f'{name}/{signal}'] = values[:length]
+                file[f'{name}/{signal}'].attrs['unit'] = unit
+        file['pictures'] = np.zeros((3, 4, 5))
+        file['words'] = [b'ab', b'cd']
+
+
+@pytest.mark.parametrize('later', [COUNT, COUNT // 2])
+def test_groups_of_arrays_that_are_not_read_are_named(later, tmp_path, says):
+    path = tmp_path / 'log.h5'
+    of_groups(path, {'first': COUNT, 'later': later})
+    for name, length, other in (('first', COUNT, 'later'), ('later', later, 'first')):
+        speed = {'column': f'{name}.x_velocity [mm/s]', 'unit': 'mm/s'}
+        time = {'column': f'{name}.time [s]', 'unit': 's', 'epoch': '2000-01-01T00:00:00Z'}
+        mapping = {'time': time, 'axes': {'x': {'speed': speed, 'lead_mm': 10.0}}}
+        series = read_series(path, make_map(mapping))
+        speeds = np.concatenate([rows[0].columns['x.speed'] for rows in series.blocks()])
+        np.testing.assert_allclose(speeds, math.tau * SPEED[:length] / 10.0)
+        assert series.unread == {
+            other: says('no_column'),
+            'pictures': says('array'),
+            'words': says('no_numbers'),
+        }
+
+
+def test_arrays_are_bounded_in_all(tmp_path, refused, monkeypatch):
+    path = tmp_path / 'log.h5'
+    with h5py.File(path, 'w') as file:
+        for name in ('first', 'later'):
+            file.create_dataset(name, data=np.zeros(20_000), compression='gzip')
+    monkeypatch.setattr(foreign.limits, 'WORKBOOK', 200_000)
+    refused('too_much', guess, path)
+
+
+def test_records_beside_those_that_are_read_are_named(tmp_path, says):
+    records = [{'time [s]': time, 'x velocity [mm/s]': 7.0} for time in TIME.tolist()]
+    path = tmp_path / 'log.json'
+    path.write_text(json.dumps({'run': records, 'other': records}))
+    assert foreign.read_signals(path, 'json').left_out == {'other': says('records')}

@@ -3,6 +3,7 @@
 """Tables that are not as they should be: one sentence, or the good part and how much it is."""
 
 import datetime as dt
+import math
 from pathlib import Path
 import tempfile
 
@@ -112,6 +113,33 @@ def test_a_row_of_fewer_cells_is_left_out_and_counted(tmp_path, says):
     table = open_table(text_log(tmp_path, 't;v;w\n' + 30 * '1;2;x\n' + '1;3\n\n'), ['t', 'v'])
     assert np.nansum(table.head(99)['v']) == 60
     assert says('short_row') in table.notes[0]
+
+
+@pytest.mark.parametrize('name', ['beside it', 'far off', 'both', 'quoted', 'blank', 'remark'])
+def test_a_longer_row_does_not_hide_one_of_fewer_cells(name, tmp_path, says):
+    """As many cells as there should be in all are no proof of each row."""
+    rows = [f'{row},{2 * row},{3 * row}' for row in range(100)]
+    longer = 41 if name == 'beside it' else 80
+    rows[longer] += {'quoted': ',""', 'blank': ', '}.get(name, ',')
+    rows[40] = '40,120'
+    if name == 'remark':
+        rows.insert(60, '# seen, by hand')
+    end = '\r\n' if name == 'both' else '\n'
+    table = open_table(text_log(tmp_path, end.join(['t,v,w', *rows, ''])), ['t', 'v'])
+    assert says('one_shorter') in table.notes[0]
+    values = table.head(999)['v'].tolist()
+    expected = [math.nan if row == 40 else 2.0 * row for row in range(100)]
+    np.testing.assert_array_equal(values, expected)
+    assert open_table(table.path, ['w']).notes == table.notes
+
+
+@pytest.mark.parametrize('seen', [{}, {0: 'begin'}, {7: 'seen', 30: 'end'}])
+def test_a_last_column_of_comments_may_be_left_out_of_a_row(seen, tmp_path):
+    """As LabVIEW writes it."""
+    rows = [f'{row},{2 * row}' + (f',{seen[row]}' if row in seen else '') for row in range(40)]
+    table = open_table(text_log(tmp_path, '\n'.join(['t,v,Comment', *rows, ''])), ['t', 'v'])
+    assert not table.notes
+    assert table.head(99)['v'].tolist() == [2 * row for row in range(40)]
 
 
 def test_times_of_day_become_seconds(tmp_path):

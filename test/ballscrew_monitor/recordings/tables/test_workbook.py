@@ -3,11 +3,13 @@
 """A workbook is refused before it is read if its cells come to too much, however they are told."""
 
 import io
+import json
 import re
 import sys
 import types
 import zipfile
 
+from ballscrew_monitor import cli
 from ballscrew_monitor.recordings.tables import workbook
 from ballscrew_monitor.recordings.tables.guess import guess
 from ballscrew_monitor.recordings.tables.mapping import make_map
@@ -224,6 +226,27 @@ def test_a_map_names_the_sheet(books, refused):
         assert series.usual_period == pytest.approx(period)
     refused('no_such_sheet', read_series, path, make_map(content | {'sheet': 'Messung'}))
     refused('sheet_number', make_map, content | {'sheet': 2})
+
+
+def test_a_replay_says_which_sheets_it_has_not_read(books, says, tmp_path, capsys):
+    path = books({'Info': INFO, 'Daten': DATA, 'Later': OTHER})
+    for stated, others in (
+        ({}, {'Info': 'info', 'Later': 'later'}),
+        ({'sheet': 'Later'}, {'Info': 'by_map', 'Daten': 'by_map'}),
+    ):
+        content = {key: one for key, one in guess(path).content.items() if key != 'sheet'}
+        expected = {name: says(key) for name, key in others.items()}
+        series = read_series(path, make_map(content | stated))
+        assert series.unread == expected
+        assert all(f'{name}, as {why}' in series.notes[0] for name, why in expected.items())
+    mapping, out = tmp_path / 'map.yaml', tmp_path / 'out'
+    mapping.write_text(guess(path).text)
+    cli.main(['replay', str(path), '--map', str(mapping), '--json'])
+    printed = capsys.readouterr()
+    assert set(json.loads(printed.out)['x']['unread_parts']) == {'Info', 'Later'}
+    assert says('unread') in printed.err
+    cli.main(['replay', str(path), '--map', str(mapping), '--out', str(out)])
+    assert says('unread') in (out / 'report.html').read_text()
 
 
 def test_sheets_without_numbers_are_named(books, refused):

@@ -1,0 +1,83 @@
+# Copyright 2026 ballscrew_monitor contributors
+# SPDX-License-Identifier: Apache-2.0
+"""
+Log times that go back in the order in which messages were written: two runs in one bag.
+
+By log time such runs would be sorted into each other. A little disorder is that of several threads
+of a recorder.
+
+"""
+
+from collections.abc import Collection, Iterator
+
+from ballscrew_monitor.core.conversions import seconds
+from ballscrew_monitor.judge.step import BACKWARD_JUMP
+from ballscrew_monitor.recordings.bag import Bag
+from ballscrew_monitor.recordings.bulk.batches import PLACES
+from ballscrew_monitor.recordings.bulk.chunks import Integers, Messages
+from ballscrew_monitor.recordings.storages import McapStorage
+from ballscrew_monitor.recordings.words import counted
+import numpy as np
+from surrogate.files import InputError
+
+
+class WrittenTimes:
+    """The stretches of rising log times of each topic, in chunks that come in whatever order."""
+
+    def __init__(self) -> None:
+        """Begin with no message."""
+        self._stretches: dict[str, list[tuple[int, int, int]]] = {}
+
+    def add(self, topic: str, messages: Messages) -> None:
+        """Take further messages of a topic, those of a chunk together."""
+        order = np.argsort(messages.place)
+        places, times = messages.place[order], messages.log_time[order]
+        borders = np.flatnonzero(np.diff(places >> PLACES)) + 1
+        held = self._stretches.setdefault(topic, [])
+        for place, part in zip(np.split(places, borders), np.split(times, borders), strict=True):
+            while len(part):
+                end = _end(part)
+                held.append((int(place[0]), int(part[:end].min()), int(part[:end].max())))
+                place, part = place[end:], part[end:]
+
+    def falls(self) -> Iterator[tuple[str, int, int]]:
+        """Yield where the log times of a topic go back: to which from which of them [ns]."""
+        for topic, held in self._stretches.items():
+            latest = 0
+            for _, first, last in sorted(held):
+                if latest - first > BACKWARD_JUMP:
+                    yield topic, first, latest
+                latest = max(latest, last) if latest - first <= BACKWARD_JUMP else last
+
+
+def _end(times: Integers) -> int:
+    """Return where log times first go back [ns], how many they are if they do not."""
+    back = np.maximum.accumulate(times) - times > BACKWARD_JUMP
+    return int(back.argmax()) if back.any() else len(times)
+
+
+def check_rising(bag: Bag, times: WrittenTimes, topics: Collection[str]) -> None:
+    """Raise InputError if log times go back; `times` has those of a bag that is read by chunks."""
+    falls = [*times.falls(), *_falls_of_messages(bag, topics)]
+    if falls:
+        topic, to, latest = falls[0]
+        count = sum(name == topic for name, *_ in falls)
+        fall, after = seconds(latest - to), seconds(latest - bag.start_time)
+        raise InputError(
+            f'bag {bag.path}: the log times of {topic} go back {counted(count, "time")}, '
+            f'first by {fall:.4g} s after {after:.4g} s: its runs cannot be told apart, record '
+            'each in a bag of its own'
+        )
+
+
+def _falls_of_messages(bag: Bag, topics: Collection[str]) -> Iterator[tuple[str, int, int]]:
+    """Yield what `falls` does of a bag whose files are not read by chunks."""
+    if all(isinstance(one, McapStorage) and one.is_indexed for one in bag.storages):
+        return
+    latest: dict[str, int] = {}
+    for message in bag.as_written(topics):
+        topic, time = message.topic, message.log_time
+        before = latest.get(topic, time)
+        if before - time > BACKWARD_JUMP:
+            yield topic, time, before
+        latest[topic] = time if before - time > BACKWARD_JUMP else max(before, time)
