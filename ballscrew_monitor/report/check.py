@@ -102,7 +102,7 @@ def _print(
     steps: Sequence[str],
     args: argparse.Namespace,
 ) -> int:
-    """Print what recordings come to, what is said of other files, and what to do; count the bad."""
+    """Print what recordings come to, with sentences aside, and what to do; count the bad."""
     for result in (log.result for log in logs):
         for line in result.lines:
             normal = f' Normal? {line.normal}.' if line.normal else ''
