@@ -18,11 +18,10 @@ from ballscrew_monitor.health.bands import day_of
 from ballscrew_monitor.health.baseline import changed_screw, in_force, motion_by_day
 from ballscrew_monitor.health.causes import causes_of, likely
 from ballscrew_monitor.health.change import changes_of, marks_of
-from ballscrew_monitor.health.damage import rated_of
 from ballscrew_monitor.health.detection import BASELINE_DAYS, latched, Look, looks
 from ballscrew_monitor.health.energy import energy_quantities
 from ballscrew_monitor.health.history import history_of
-from ballscrew_monitor.health.life import life_quantities, shaft_notes
+from ballscrew_monitor.health.life import life_quantities, rated_of, shaft_notes
 from ballscrew_monitor.health.lubrication import (
     boundary_note,
     lubrication_rate,

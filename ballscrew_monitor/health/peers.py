@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from ballscrew_monitor.health.detection import binned_logs, FEWEST_LOGS, NOW, now_of
 from ballscrew_monitor.health.history import effects_of, history_of
-from ballscrew_monitor.health.mixed import estimate, grid, Logs, Prior, SLOPE, SLOPE_DOUBT, USUAL
+from ballscrew_monitor.health.mixed import estimate, GRID, Logs, Prior, SLOPE, SLOPE_DOUBT, USUAL
 from ballscrew_monitor.health.records import Quantity, quantity, TOLERANCE
 from ballscrew_monitor.health.words import percent
 import numpy as np
@@ -149,7 +149,7 @@ def spread_of(cells: NDArray[Any], lead: float) -> Spread | None:
 def _spread(logs: Logs, groups: frozenset[Any], *, warm: bool) -> Spread:
     now = np.arange(len(logs.time)) >= len(logs.time) - now_of(logs.time)
     found = estimate(logs, ~now, now, warm=warm)
-    alone = found.pairs / np.exp(grid().prior)
+    alone = found.pairs / np.exp(GRID.prior)
     pairs = tuple((alone / alone.sum()).tolist())
     variance = found.slope_deviation**2
     information = 1.0 / variance - SLOPE_DOUBT**-2.0
@@ -184,7 +184,7 @@ def prior_of(peers: Sequence[Spread]) -> Prior:
     if len(peers) < FEWEST_PEERS:
         return USUAL
     slope, doubt = _slope_of([peer for peer in peers if math.isfinite(peer.deviation)])
-    usual = np.exp(grid().prior)
+    usual = np.exp(GRID.prior)
     usual = weight = usual / usual.sum()
     likelihood = np.array([peer.pairs for peer in peers])
     for _ in range(ROUNDS):

@@ -22,10 +22,8 @@ from ballscrew_monitor.health.records import (
 from ballscrew_monitor.health.rows import DAY
 from numpy.typing import NDArray
 
-MOST_TOLD = 3
-"""Causes that are told together."""
-LEAST_WEIGHT = 0.05
-"""Weight of a cause that is told [-]: the others carry 95 %."""
+MOST_TOLD = 3  # causes that are told together
+LEAST_WEIGHT = 0.05  # of a cause that is told [-]: the others carry 95 %
 NOT_ASSESSED = 'nothing has been assessed yet'
 MISSING = {
     Missing.CLOCK: 'the clock was not set, or leapt',
