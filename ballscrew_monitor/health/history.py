@@ -97,80 +97,73 @@ def history_of(cells: NDArray[Any], lead: float) -> History | None:
 
 def _history(motion: NDArray[Any], lead: float, *, both: bool, load_known: bool) -> History | None:
     """Return the friction of each log and group, `both` directions together or each alone."""
-    groups_of_cells, first, second = _groups(motion, both=both)
-    if not groups_of_cells:
-        return None
-    cells, others = motion[first], motion[second]
-    loaded = np.array([group.load != 0 for group in groups_of_cells])
-    loads = [np.where(loaded, part['axial_load'], 0.0) for part in (cells, others)]
-    ideal = [-load * lead / TURN for load in loads]  # machine frame
-    torques = [
-        part['motor_torque'] - torque for part, torque in zip((cells, others), ideal, strict=True)
-    ]
-    ways = cells['direction'], others['direction']
-    friction = (ways[0] * torques[0] + ways[1] * torques[1]) / 2.0
-    time = np.minimum(cells['duration'], others['duration'])
-    size = np.abs(friction)
-    least = size / (size + np.maximum(*map(np.abs, ideal)) + 1e-12)
+    entries, pairs = groups_of(motion, both=both)
+    cells = motion[np.array(pairs, np.int64).reshape(-1, 2).T]  # both directions by entries
+    load = np.where([group.load != 0 for group in entries], cells['axial_load'], 0.0)
+    ideal = -load * lead / TURN  # machine frame
+    torque, way, time = cells['motor_torque'] - ideal, cells['direction'], cells['duration'].min(0)
+    friction = (way * torque).sum(axis=0) / 2.0
+    least = np.abs(friction) / (np.abs(friction) + np.abs(ideal).max(axis=0) + 1e-12)
+    alone = np.array([first == second for first, second in pairs], dtype=bool)
     values = {
         'friction': friction,
-        'offset': np.where(first == second, np.nan, (torques[0] + torques[1]) / 2.0),
-        'speed': (np.abs(cells['speed']) + np.abs(others['speed'])) / 2.0,
-        'load': -ways[0] * loads[0],
-        'temperature': (cells['temperature'] + others['temperature']) / 2.0,
+        'offset': np.where(alone, np.nan, torque.sum(axis=0) / 2.0),
+        'speed': np.abs(cells['speed']).sum(axis=0) / 2.0,
+        'load': -way[0] * load[0],
+        'temperature': cells['temperature'].sum(axis=0) / 2.0,
         'weight': least * least * time / (time + USUAL_TIME),
     }
-    counts = friction > 0.0
-    if not counts.any():
+    counts = np.flatnonzero(friction > 0.0)
+    if not len(counts):
         return None
-    start, rows = np.unique(cells['start'][counts], return_inverse=True)
-    seen = [group for group, count in zip(groups_of_cells, counts, strict=True) if count]
-    groups = sorted(set(seen))
+    start, rows = np.unique(cells['start'][0][counts], return_inverse=True)
+    groups = sorted({entries[at] for at in counts})
     place = {group: at for at, group in enumerate(groups)}
-    columns = [place[group] for group in seen]
     parts = {name: np.full((len(start), len(groups)), np.nan) for name in PARTS}
     for name, table in parts.items():
-        table[rows, columns] = values[name][counts]
+        table[rows, [place[entries[at]] for at in counts]] = values[name][counts]
     parts['weight'] = np.nan_to_num(parts['weight'])
-    warm = cells['temperature_measured'] & others['temperature_measured']
-    nothing = np.full(len(start), np.nan)
+    warm = cells['temperature_measured'][:, counts].all(axis=0)
     return History(
         start=start,
         groups=tuple(groups),
-        standstill=nothing.copy(),
-        gain=nothing,
-        warm=bool(warm[counts].sum() > 0.9 * counts.sum()),
+        standstill=np.full(len(start), np.nan),
+        gain=np.full(len(start), np.nan),
+        warm=bool(warm.sum() > 0.9 * len(counts)),
         load_known=load_known,
         **parts,
     )
 
 
-def _groups(
-    motion: NDArray[Any], *, both: bool
-) -> tuple[list[Group], NDArray[np.int64], NDArray[np.int64]]:
-    """Return the groups in which logs ran, and the cells of both directions of each."""
-    places: dict[tuple[int, int], dict[tuple[int, int], int]] = {}
-    names = ('start', 'speed_band', 'load_band', 'direction')
-    for at, (start, speed, load, way) in enumerate(motion[list(names)].tolist()):
-        place = places.setdefault((start, speed), {})
-        other = place.setdefault((load, way), at)
+def groups_of(motion: NDArray[Any], *, both: bool) -> tuple[list[Group], list[tuple[int, int]]]:
+    """
+    Return the groups in which logs ran, and the places of the cells of both directions.
+
+    Of `motion` (an array of CELL), `both` directions together, or each alone without load.
+
+    """
+    logs: dict[tuple[int, int], dict[tuple[int, int], int]] = {}
+    names = ['start', 'speed_band', 'load_band', 'direction']
+    for at, (start, speed, load, way) in enumerate(motion[names].tolist()):
+        log = logs.setdefault((start, speed), {})
         # Where one log has a load from several sources, the longer motion counts.
+        other = log.setdefault((load, way), at)
         if motion['duration'][other] < motion['duration'][at]:
-            place[load, way] = at
+            log[load, way] = at
     groups, pairs = [], []
-    for (_, speed), place in places.items():
-        for (load, way), at in place.items():
+    for (_, speed), log in logs.items():
+        for (load, way), at in log.items():
             if not both:
-                groups.append(Group(speed, load, False, way))
-                pairs.append((at, at))
-            elif way > 0 and (load, -way) in place:
+                if load == 0:  # under load alone, an error of the load is one of the friction
+                    groups.append(Group(speed, load, False, way))
+                    pairs.append((at, at))
+            elif way > 0 and (load, -way) in log:
                 groups.append(Group(speed, load, False, 0))
-                pairs.append((at, place[load, -way]))
-            elif way > 0 and (-load, -way) in place and (-load, way) not in place:
+                pairs.append((at, log[load, -way]))
+            elif way > 0 and (-load, -way) in log and (-load, way) not in log:
                 groups.append(Group(speed, load, True, 0))
-                pairs.append((at, place[-load, -way]))
-    first, second = np.array(pairs, np.int64).reshape(-1, 2).T
-    return groups, first, second
+                pairs.append((at, log[-load, -way]))
+    return groups, pairs
 
 
 def gains_of(motion: NDArray[Any], history: History, lead: float) -> Array:

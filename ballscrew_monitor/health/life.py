@@ -142,10 +142,9 @@ def damage_of(
             (*nut_forces_iso_3408_2006(load * factor, rated.preload), count)
             for load, count in loads
         ]
-        pressed = damage_palmgren_1924(
-            ((force, n) for force, _, n in forces), rated.dynamic_rating
-        )
-        relieved = damage_palmgren_1924(((f, n) for _, f, n in forces), rated.dynamic_rating)
+        rating = rated.dynamic_rating
+        pressed = damage_palmgren_1924(((force, count) for force, _, count in forces), rating)
+        relieved = damage_palmgren_1924(((force, count) for _, force, count in forces), rating)
         return pressed, relieved
 
     value = combined_damage(*nuts(loads, 1.0)) * (turns / seen if seen else NAN)
@@ -191,16 +190,15 @@ def life_quantities(
         'known',
         rate: f'the last {RECENT} days over all days, each by time in motion',
     }
-    quantities = []
-    for name, unit in NAMES.items():
-        reason = reasons[name]
+    for name, reason in reasons.items():
         if not reason and not math.isfinite(ends[name][2]):
-            reason = 'without preload and load the screw does not tire'
-        if reason:
-            quantities.append(unknown(name, unit, reason))
-        else:
-            quantities.append(quantity(name, unit, ends[name], evidence[name]))
-    return quantities
+            reasons[name] = 'without preload and load the screw does not tire'
+    return [
+        unknown(name, unit, reasons[name])
+        if reasons[name]
+        else quantity(name, unit, ends[name], evidence[name])
+        for name, unit in NAMES.items()
+    ]
 
 
 def shaft_notes(header: Mapping[str, Any], speed: float, load: float) -> list[str]:

@@ -10,20 +10,30 @@ from typing import Any
 from ballscrew_monitor.core.judgement import Limits
 from ballscrew_monitor.core.state import MonitorSettings
 from ballscrew_monitor.health.assess import course, HealthSettings, without_order
+from ballscrew_monitor.health.bands import day_of, FIRST_DAY
 from ballscrew_monitor.health.baseline import since_days
 from ballscrew_monitor.health.collect import Collected, Collector
 from ballscrew_monitor.health.detection import BASELINE_DAYS
 from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.health.mixed import Prior, USUAL
 from ballscrew_monitor.health.peers import FEWEST_PEERS, Peer, ranked
-from ballscrew_monitor.health.records import Cell, Health, KeptHealth, Missing, SpectrumBin
+from ballscrew_monitor.health.records import (
+    Cell,
+    Health,
+    KeptHealth,
+    Missing,
+    SpectrumBin,
+    Stretch,
+)
 from ballscrew_monitor.health.rows import has_torque_many, moves_many
 from ballscrew_monitor.health.spectrum import merged_bins
-from ballscrew_monitor.health.stroke import motion_of, Positions, ReversalSums, StrokeSums
+from ballscrew_monitor.health.stroke import Positions, reversal_cells, stroke_cells
 from ballscrew_monitor.health.summary import add, array_of, nothing
 from ballscrew_monitor.report.machines import MachineAxis
+import numpy as np
 from numpy.typing import NDArray
 from surrogate.surface import Surface
+from surrogate.units import TURN
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, slots=True)
@@ -54,6 +64,10 @@ class AxisHistory:
         return MachineAxis(self.machine, self.axis)
 
 
+MOTION = np.dtype([('stamp', np.int64), ('speed', float), ('torque', float)])
+"""Samples of motion: stamp [ns], speed of the table [m/s], torque [N m], NaN where unknown."""
+
+
 class HistoryMaker:
     """Gathers the rows of one axis in order."""
 
@@ -68,7 +82,8 @@ class HistoryMaker:
         """Begin with nothing of a `log`; `surface` is that of the judgement."""
         self._collector, self._lead = Collector(surface, settings), surface.lead
         self._log, self._positions = log, positions
-        self._stroke, self._reversals = StrokeSums(), ReversalSums()
+        self._motion: list[NDArray[Any]] = []  # stamps, speeds and torques along the stroke
+        self._stretches: list[Stretch] = []
         self._cells: dict[Any, Cell] = {}
         self._bins: list[SpectrumBin] = []
         self._first = self._last = 0
@@ -82,10 +97,11 @@ class HistoryMaker:
         self._moved |= bool(moving.any())
         self._measured |= bool((moving & has_torque_many(rows)).any())
         if self._positions is not None:
-            motion = motion_of(rows, self._lead)
-            motor, table = self._positions.at(motion.stamps)
-            self._stroke.add(motion.stamps, motor, motion.torque)
-            self._reversals.add(motion.stamps, motion.speed, motor, table)
+            motion = rows[moving & np.isfinite(rows['speed'])]
+            part = np.zeros(len(motion), MOTION)
+            part['stamp'], part['speed'] = motion['stamp'], motion['speed'] * self._lead / TURN
+            part['torque'] = np.where(has_torque_many(motion), motion['motor_torque'], np.nan)
+            self._motion.append(part)
         self._take(self._collector.take_many(rows))
 
     def history(
@@ -99,10 +115,17 @@ class HistoryMaker:
     ) -> AxisHistory:
         """Return what came of all rows; `torque_is_load`: the map takes the torque for a load."""
         self._take(self._collector.finish())
-        cells = list(self._cells.values())
+        cells, bins = list(self._cells.values()), merged_bins(self._bins)
         if all(cell.direction == 0 for cell in cells):
             cells.append(nothing(self._first, self._missing(torque_is_load=torque_is_load)))
-        cells += self._stroke.cells(self._first) + self._reversals.cells(self._first)
+        if self._positions is not None and self._motion:
+            motion = np.concatenate(self._motion)
+            stamps, speed, torque = motion['stamp'], motion['speed'], motion['torque']
+            motor, table = self._positions.at(stamps)
+            cells += stroke_cells(stamps, motor, torque, self._stretches, self._first)
+            cells += reversal_cells(stamps, speed, motor, table, self._first)
+        if day_of(self._first) < FIRST_DAY:
+            cells, bins = [nothing(self._first, Missing.CLOCK)], []
         return AxisHistory(
             axis=axis,
             surface=str(surface),
@@ -110,7 +133,7 @@ class HistoryMaker:
             first=self._first,
             last=self._last,
             cells=tuple(cells),
-            bins=tuple(merged_bins(self._bins)),
+            bins=tuple(bins),
             speed_allowed=settings.speed_allowed,
             machine=machine,
             log=self._log,
@@ -123,11 +146,12 @@ class HistoryMaker:
             return Missing.STEADY
         return Missing.LOAD if torque_is_load else Missing.TORQUE
 
-    def _take(self, found: Collected) -> None:
-        for stretch in found.stretches:
+    def _take(self, collected: Collected) -> None:
+        for stretch in collected.stretches:
             add(self._cells, stretch, self._first)
-        self._stroke.take(found.stretches)
-        self._bins += found.bins
+        if self._positions is not None:
+            self._stretches += collected.stretches
+        self._bins += collected.bins
 
 
 def read_history(record: Mapping[str, Any]) -> AxisHistory:

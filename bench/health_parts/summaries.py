@@ -7,7 +7,7 @@ import math
 from ballscrew_monitor.health.collect import Collector
 from ballscrew_monitor.health.gather import GatherSettings
 from ballscrew_monitor.health.records import Cell
-from ballscrew_monitor.health.stroke import ReversalSums
+from ballscrew_monitor.health.stroke import reversal_cells
 from ballscrew_monitor.health.summary import add
 from ballscrew_monitor.judge.inputs import DEFAULT, DERIVED, MEASURED
 from ballscrew_monitor.judge.many import ROW
@@ -40,11 +40,11 @@ def reversals_of(log: Log, lead: float) -> list[Cell]:
     """Return the cell of the lost motion of a log with a scale; `lead` [m] of the screw."""
     if log.table is None:
         return []
-    reversals, moves = ReversalSums(), np.abs(log.speed) > MOVES
+    moves = np.abs(log.speed) > MOVES
     stamps = log.start + np.rint(log.time * SECOND).astype(np.int64)
     speed = log.speed * lead / (2.0 * math.pi)
-    reversals.add(*(part[moves] for part in (stamps, speed, log.position, log.table)))
-    return reversals.cells(log.start)
+    columns = (part[moves] for part in (stamps, speed, log.position, log.table))
+    return reversal_cells(*columns, log.start)
 
 
 def cells_of_year(year: AxisYear, *, always_free: bool = False) -> list[Cell]:

@@ -6,7 +6,13 @@ import math
 
 from ballscrew_monitor.core.conversions import SECOND
 from ballscrew_monitor.health.records import CellKind, LoadSource, Stretch
-from ballscrew_monitor.health.stroke import level_of, Positions, ReversalSums, span_of, StrokeSums
+from ballscrew_monitor.health.stroke import (
+    level_of,
+    Positions,
+    reversal_cells,
+    span_of,
+    stroke_cells,
+)
 import numpy as np
 import pytest
 
@@ -41,12 +47,10 @@ def passes(friction, *, offset=0.0, begin=0.0, travel=0.6, rate=100.0, speeds=SP
             start += travel / feed + 1.0
 
 
-def stroke_cells(friction, **changes):
-    sums = StrokeSums()
-    for stretch, stamps, position, torque in passes(friction, **changes):
-        sums.add(stamps, position, torque)
-        sums.take([stretch])
-    return sums.cells(BEGIN)
+def along(parts):
+    """Return the cells of passes one after the other."""
+    stretches, *columns = zip(*parts, strict=True)
+    return stroke_cells(*map(np.concatenate, columns), stretches, BEGIN)
 
 
 def level_friction(speed, position):
@@ -69,7 +73,7 @@ def test_steps_lie_on_one_grid_whatever_a_log_travels():
 
 
 def test_even_friction_is_even_along_the_stroke_and_weight_cancels():
-    cells = stroke_cells(level_friction, offset=0.15)
+    cells = along(passes(level_friction, offset=0.15))
     assert {cell.kind for cell in cells} == {CellKind.STROKE}
     assert len(cells) == 8  # 600 mm in steps of 80 mm
     usual = cells[0].motor_torque
@@ -79,8 +83,8 @@ def test_even_friction_is_even_along_the_stroke_and_weight_cancels():
 
 
 def test_a_bump_stands_in_its_step_with_its_height():
-    even = {cell.speed_band: cell.motor_torque for cell in stroke_cells(level_friction)}
-    cells = {cell.speed_band: cell for cell in stroke_cells(bumped)}
+    even = {cell.speed_band: cell.motor_torque for cell in along(passes(level_friction))}
+    cells = {cell.speed_band: cell for cell in along(passes(bumped))}
     ratio = {step: cell.motor_torque / even[step] for step, cell in cells.items()}
     assert span_of(4, cells[4].load_band) == pytest.approx((0.32, 0.40))
     rest = [one for step, one in ratio.items() if step != 4]
@@ -90,44 +94,37 @@ def test_a_bump_stands_in_its_step_with_its_height():
 
 def test_parts_that_run_at_another_speed_are_not_taken_for_worn_ones():
     """The left half runs at all speeds, the right half only at the slow one."""
-    sums = StrokeSums()
-    for change in ({'travel': 0.3}, {'begin': 0.3, 'travel': 0.3, 'speeds': SPEEDS[:1]}):
-        for stretch, stamps, position, torque in passes(level_friction, **change):
-            later = 0 if 'begin' not in change else 1000 * SECOND
-            stretch.start += later
-            sums.add(stamps + later, position, torque)
-            sums.take([stretch])
-    torques = [cell.motor_torque for cell in sums.cells(BEGIN)]
+    parts = list(passes(level_friction, travel=0.3))
+    later = 1000 * SECOND
+    for stretch, stamps, *columns in passes(
+        level_friction, begin=0.3, travel=0.3, speeds=SPEEDS[:1]
+    ):
+        stretch.start += later
+        parts.append((stretch, stamps + later, *columns))
+    torques = [cell.motor_torque for cell in along(parts)]
     assert torques == pytest.approx([torques[0]] * len(torques))
 
 
 def test_motion_one_way_or_without_torque_or_position_makes_no_cell():
-    for lost in ('way', 'torque', 'position'):
-        sums = StrokeSums()
-        for stretch, stamps, position, torque in passes(level_friction):
-            if lost == 'way' and stretch.speed < 0.0:
-                continue
-            nothing = np.full_like(torque, math.nan)
-            sums.add(
-                stamps,
-                nothing if lost == 'position' else position,
-                nothing if lost == 'torque' else torque,
-            )
-            sums.take([stretch])
-        assert sums.cells(BEGIN) == []
+    parts = list(passes(level_friction))
+    assert along(part for part in parts if part[0].speed > 0.0) == []
+    for lost in (2, 3):  # position, torque
+        unknown = [
+            tuple(np.full_like(x, math.nan) if at == lost else x for at, x in enumerate(part))
+            for part in parts
+        ]
+        assert along(unknown) == []
 
 
 def test_a_turntable_has_no_stroke():
-    assert stroke_cells(level_friction, travel=150.0, speeds=(160.0,), rate=10.0) == []
+    assert along(passes(level_friction, travel=150.0, speeds=(160.0,), rate=10.0)) == []
 
 
 def test_a_derived_load_does_not_part_the_classes():
-    sums = StrokeSums()
-    for number, (stretch, stamps, position, torque) in enumerate(passes(level_friction)):
+    parts = list(passes(level_friction))
+    for number, (stretch, *_) in enumerate(parts):
         stretch.axial_load, stretch.load_source = 900.0 * (-1) ** number, LoadSource.DERIVED
-        sums.add(stamps, position, torque)
-        sums.take([stretch])
-    assert len(sums.cells(BEGIN)) == 8
+    assert len(along(parts)) == 8
 
 
 def turning(lost, *, rate=200.0, skew=0.0, amplitude=0.1, period=4.0, growth=0.0):
@@ -147,39 +144,23 @@ def turning(lost, *, rate=200.0, skew=0.0, amplitude=0.1, period=4.0, growth=0.0
 @pytest.mark.parametrize('lost', [0.0, 5e-6, 30e-6, 120e-6])
 @pytest.mark.parametrize('skew', [0.0, 1e-3])
 def test_lost_motion_is_the_play_whatever_the_encoders_are_sampled_apart(lost, skew):
-    sums = ReversalSums()
-    sums.add(*turning(lost, skew=skew))
-    (cell,) = sums.cells(BEGIN)
+    (cell,) = reversal_cells(*turning(lost, skew=skew), BEGIN)
     assert cell.kind == CellKind.REVERSAL
     assert cell.backlash == pytest.approx(lost, abs=0.2e-6)
     assert cell.stretches == 20
 
 
 def test_a_screw_that_grows_loses_no_motion():
-    sums = ReversalSums()
-    sums.add(*turning(10e-6, growth=2e-6))
-    assert sums.cells(BEGIN)[0].backlash == pytest.approx(10e-6, abs=0.5e-6)
-
-
-@pytest.mark.parametrize('size', [1, 7, 60, 333])
-def test_blocks_of_any_size_come_to_the_same(size):
-    columns = turning(30e-6)
-    whole, parts = ReversalSums(), ReversalSums()
-    whole.add(*columns)
-    for begin in range(0, len(columns[0]), size):
-        end = begin + size
-        parts.add(*(column[begin:end] for column in columns))
-    assert parts.cells(BEGIN)[0].stretches == whole.cells(BEGIN)[0].stretches
-    assert parts.cells(BEGIN)[0].backlash == pytest.approx(30e-6, abs=0.2e-6)
+    (cell,) = reversal_cells(*turning(10e-6, growth=2e-6), BEGIN)
+    assert cell.backlash == pytest.approx(10e-6, abs=0.5e-6)
 
 
 def test_a_single_encoder_or_a_motion_one_way_tells_no_lost_motion():
     stamps, speed, motor, table = turning(30e-6)
-    alone, one_way = ReversalSums(), ReversalSums()
-    alone.add(stamps, speed, motor, np.full_like(table, math.nan))
     forth = speed > 0.0
-    one_way.add(stamps[forth], speed[forth], motor[forth], table[forth])
-    assert alone.cells(BEGIN) == one_way.cells(BEGIN) == []
+    one_way = (column[forth] for column in (stamps, speed, motor, table))
+    assert reversal_cells(stamps, speed, motor, np.full_like(table, math.nan), BEGIN) == []
+    assert reversal_cells(*one_way, BEGIN) == []
 
 
 def test_positions_hold_at_the_stamps_of_their_samples_alone():

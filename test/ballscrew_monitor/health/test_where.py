@@ -24,7 +24,7 @@ from ballscrew_monitor.health.records import (
     Stretch,
 )
 from ballscrew_monitor.health.rows import DAY
-from ballscrew_monitor.health.stroke import StrokeSums
+from ballscrew_monitor.health.stroke import stroke_cells
 from ballscrew_monitor.health.summary import array_of
 from ballscrew_monitor.health.where import (
     LOST,
@@ -60,9 +60,7 @@ def steady_parts(log):
 
 def cells_of_log(log, lead):
     stamps = log.start + np.rint(log.time * SECOND).astype(np.int64)
-    stroke = StrokeSums()
-    stroke.add(stamps, log.position, log.torque)
-    stroke.take(
+    stretches = [
         Stretch(
             start=int(stamps[part.begin]),
             duration=(int(stamps[part.end - 1]) - int(stamps[part.begin])) / SECOND,
@@ -73,8 +71,9 @@ def cells_of_log(log, lead):
             motor_torque=float(np.mean(log.torque[slice(part.begin, part.end)])),
         )
         for part in steady_parts(log)
-    )
-    return stroke.cells(log.start) + reversals_of(log, lead)
+    ]
+    stroke = stroke_cells(stamps, log.position, log.torque, stretches, log.start)
+    return stroke + reversals_of(log, lead)
 
 
 def told(seed, fault, **changes):
